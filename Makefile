@@ -1,0 +1,74 @@
+# The front door. Every target works in a fresh clone; CMakePresets.json holds the builds behind it.
+
+SHELL := bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+.NOTPARALLEL:
+MAKEFLAGS += --no-print-directory
+
+JOBS ?= $(shell nproc 2>/dev/null || echo 2)
+ifneq ($(shell command -v ccache),)
+export CMAKE_CXX_COMPILER_LAUNCHER ?= ccache
+endif
+
+# $(call build,PRESET[,TARGET])
+build = cmake --preset $(1) > /dev/null && cmake --build --preset $(1) --parallel $(JOBS) $(if $(2),--target $(2))
+ctest = ctest --parallel $(JOBS) --no-tests=error
+# Thread sanitizer wants an address space that is not shuffled too far; not every container may ask for that.
+unshuffled = $$(setarch -R true 2> /dev/null && echo setarch -R || true)
+
+.PHONY: help demo test test-long build bench format tidy docs check asan tsan install-packages clean
+
+help:  ## this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-17s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+
+demo: install-packages build  ## two surfaces: do they touch? and a picture of them, build/demo.png
+	@scripts/demo build/release/bin/snug build/demo.png
+
+test: install-packages build  ## every test, on the release build
+	@$(ctest) --preset release
+
+test-long: install-packages build  ## every test with ten times the random cases, then with address sanitizer
+	@RC_PARAMS="max_success=1000" $(ctest) --preset release
+	@$(call build,asan)
+	@$(ctest) --test-dir build/asan --output-on-failure
+
+build:  ## the library, the command, the tests: build/release
+	@$(call build,release)
+
+bench: build  ## the measurements of bench/
+	@bench/run
+
+asan: install-packages  ## the fast tests under address and undefined-behaviour sanitizer
+	@$(call build,asan)
+	@$(ctest) --preset asan
+
+tsan: install-packages  ## the tests labelled threads under thread sanitizer
+	@$(call build,tsan,tests_threads)
+	@$(unshuffled) $(ctest) --preset tsan -L threads --repeat until-fail:3
+
+check: test  ## every gate that a commit must pass
+	@scripts/check_format
+	@scripts/check_layers.py --self-test
+	@scripts/check_layers.py
+	@scripts/check_words --self-test
+	@scripts/check_words
+	@scripts/check_docs.py
+	@scripts/check_package
+	@$(MAKE) asan
+	@$(MAKE) tsan
+
+format:  ## rewrite C++ files in the project's format
+	@scripts/check_format --fix
+
+tidy: build  ## clang-tidy over the library
+	@run-clang-tidy -quiet -j $(JOBS) -p build/release 'src/snug/.*\.cpp$$'
+
+docs:  ## links, citations and derivations that the pages and comments name
+	@scripts/check_docs.py
+
+install-packages:  ## what building, testing and checking need, where it is missing (scripts/packages.txt)
+	@scripts/install_packages
+
+clean:  ## remove build/
+	@rm -rf build

@@ -1,0 +1,189 @@
+#!/usr/bin/env python3
+"""Holds the layers of src/snug to their one-way order, and says where they break it.
+
+Checked: each #include <snug/...> against the order below, that it exists, that snug's headers are included in that form
+only, #pragma once, that USES and SOURCES in a layer's CMakeLists.txt are what its files include and what its folder
+holds, and that no layer includes a library it should not know. `--self-test` plants each fault and expects it found.
+"""
+
+import argparse
+import pathlib
+import re
+import sys
+import tempfile
+
+# A folder includes itself and folders before it, but for the exceptions.
+ORDER = ["base", "mesh", "scheme", "patch", "basis", "enclose", "tree", "surface", "query", "io", "picture"]
+EXCEPTIONS = {
+    "tree": {"base", "enclose"},  # knows sets and ids, no surfaces
+    "io": {"base", "mesh"},
+}
+# What a layer may include besides the C++ standard library and snug; all others: nothing.
+LIBRARIES = {
+    "base": ("oneapi/tbb/",),
+    "picture": ("png.h",),
+}
+POSIX = ("fcntl.h", "unistd.h", "sys/")
+# Folders outside src/snug that must not lean on what they are there to check: the layers they may include.
+INDEPENDENT = {"tests/oracle": set(), "checker": {"base"}}
+# Folders whose headers are checked for #pragma once and whose includes of snug must exist.
+FOLDERS = ["src", "apps", "adapters", "tests", "examples", "bench", "tablegen", "checker"]
+
+INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
+
+
+def allowed(layer):
+    return EXCEPTIONS.get(layer, set(ORDER[: ORDER.index(layer)])) | {layer}
+
+
+def cpp_files(folder):
+    return sorted(p for p in folder.rglob("*") if p.suffix in (".h", ".cpp"))
+
+
+def includes(path):
+    """Triples (line, quoted?, name)."""
+    text = path.read_text(encoding="utf-8")
+    return [(text.count("\n", 0, m.start()) + 1, m[1] == '"', m[2]) for m in INCLUDE.finditer(text)]
+
+
+def layer_of(name):
+    """The layer of an include <snug/layer/...>; None for other includes."""
+    parts = name.split("/")
+    return parts[1] if parts[0] == "snug" and len(parts) > 2 else None
+
+
+def declared(cmake):
+    """What snug_layer(...) lists, as {"SOURCES": [...], "USES": [...], "LINK": [...]}; None without such a call."""
+    text = re.sub(r"#.*", "", cmake.read_text(encoding="utf-8"))
+    call = re.search(r"\bsnug_layer\s*\(([^)]*)\)", text)
+    if not call:
+        return None
+    lists, key = {"SOURCES": [], "USES": [], "LINK": []}, None
+    for word in call[1].split()[1:]:
+        if word in lists:
+            key = word
+        elif key:
+            lists[key].append(word)
+    return lists
+
+
+def check_layer(root, layer):
+    """Faults of src/snug/<layer>."""
+    folder, faults, used = root / "src/snug" / layer, [], set()
+    for path in cpp_files(folder):
+        where = path.relative_to(root)
+        for line, quoted, name in includes(path):
+            target = layer_of(name)
+            if quoted:
+                faults.append(f'{where}:{line}: "{name}": snug\'s headers are included as <snug/...>')
+            elif target:
+                if target not in allowed(layer):
+                    faults.append(f"{where}:{line}: {layer} may not include {target} (<{name}>)")
+                elif target != layer:
+                    used.add(target)
+            elif ("." in name or "/" in name) and not name.startswith(POSIX + LIBRARIES.get(layer, ())):
+                faults.append(f"{where}:{line}: {layer} may not include <{name}>")
+
+    lists = declared(folder / "CMakeLists.txt") if (folder / "CMakeLists.txt").exists() else None
+    where = f"src/snug/{layer}/CMakeLists.txt"
+    if lists is None:
+        return faults + [f"{where}: no snug_layer({layer} ...)"]
+    faults += [f"{where}: USES lacks {name}" for name in ORDER if name in used - set(lists["USES"])]
+    faults += [f"{where}: USES lists {name}, which no file includes" for name in lists["USES"] if name not in used]
+    present = {str(p.relative_to(folder)) for p in cpp_files(folder) if p.suffix == ".cpp"}
+    faults += [f"{where}: SOURCES lacks {name}" for name in sorted(present - set(lists["SOURCES"]))]
+    return faults
+
+
+def check_tree(root):
+    """Faults of a whole checkout, as lines "file:line: what"."""
+    faults = []
+    for folder in sorted((root / "src/snug").iterdir()):
+        if folder.is_dir() and cpp_files(folder):
+            if folder.name in ORDER:
+                faults += check_layer(root, folder.name)
+            else:
+                faults.append(f"src/snug/{folder.name}: not a layer of scripts/check_layers.py")
+    for name in FOLDERS:
+        for path in cpp_files(root / name):
+            where = path.relative_to(root)
+            if path.suffix == ".h" and not re.search(r"^#pragma once$", path.read_text(encoding="utf-8"), re.MULTILINE):
+                faults.append(f"{where}:1: no #pragma once")
+            for line, _, include in includes(path):
+                if include.startswith("snug/") and not (root / "src" / include).exists():
+                    faults.append(f"{where}:{line}: <{include}> does not exist")
+    for name, layers in INDEPENDENT.items():
+        for path in cpp_files(root / name):
+            if not path.stem.endswith("_test"):
+                faults += [f"{path.relative_to(root)}:{line}: {name} stands on its own and may not include <{include}>"
+                           for line, _, include in includes(path)
+                           if layer_of(include) and layer_of(include) not in layers]
+    return faults
+
+
+GOOD_TREE = {
+    "src/snug/base/CMakeLists.txt": "snug_layer(base SOURCES a.cpp)",
+    "src/snug/base/a.h": "#pragma once\n#include <vector>\n",
+    "src/snug/base/a.cpp": "#include <snug/base/a.h>\n#include <oneapi/tbb/parallel_for.h>\n",
+    "src/snug/mesh/CMakeLists.txt": "snug_layer(mesh SOURCES m.cpp USES base)",
+    "src/snug/mesh/m.h": "#pragma once\n#include <snug/base/a.h>\n",
+    "src/snug/mesh/m.cpp": "#include <snug/mesh/m.h>\n",
+    "src/snug/query/CMakeLists.txt": "snug_layer(query SOURCES q.cpp\n  # above it: all\n  USES mesh)",
+    "src/snug/query/q.cpp": "#include <snug/mesh/m.h>\n",
+    "src/snug/io/CMakeLists.txt": "snug_layer(io SOURCES r.cpp USES base)",
+    "src/snug/io/r.h": "#pragma once\n",
+    "src/snug/io/r.cpp": "#include <snug/base/a.h>\n#include <unistd.h>\n",
+    "tests/oracle/o.h": "#pragma once\n#include <gmp.h>\n",
+    "tests/oracle/o_test.cpp": "#include <snug/base/a.h>\n",
+}
+# Each: a file put in the place of one above, and a part of the fault that must be reported.
+BAD_FILES = [
+    ("src/snug/base/a.h", "#pragma once\n#include <snug/mesh/m.h>\n", "a.h:2: base may not include mesh"),
+    ("src/snug/query/q.cpp", "#include <snug/mesh/m.h>\n#include <snug/io/r.h>\n", "query may not include io"),
+    ("src/snug/io/r.cpp", "#include <snug/base/a.h>\n#include <snug/query/q.h>\n", "io may not include query"),
+    ("src/snug/tree/t.cpp", "#include <snug/mesh/m.h>\n", "tree may not include mesh"),
+    ("src/snug/mesh/m.h", "#include <snug/base/a.h>\n", "m.h:1: no #pragma once"),
+    ("src/snug/mesh/m.cpp", '#include "m.h"\n', "included as <snug/...>"),
+    ("src/snug/mesh/m.cpp", "#  include <CLI/CLI.hpp>\n", "mesh may not include <CLI/CLI.hpp>"),
+    ("src/snug/mesh/m.cpp", "#include <gmp.h>\n", "mesh may not include <gmp.h>"),
+    ("src/snug/mesh/m.cpp", "#include <oneapi/tbb/parallel_for.h>\n", "mesh may not include <oneapi"),
+    ("src/snug/mesh/m.cpp", "#include <snug/mesh/gone.h>\n", "does not exist"),
+    ("src/snug/mesh/n.cpp", "\n", "SOURCES lacks n.cpp"),
+    ("src/snug/mesh/CMakeLists.txt", "snug_layer(mesh SOURCES m.cpp)", "USES lacks base"),
+    ("src/snug/query/CMakeLists.txt", "snug_layer(query SOURCES q.cpp USES base mesh)", "lists base, which no file"),
+    ("src/snug/extra/e.cpp", "\n", "src/snug/extra: not a layer"),
+    ("tests/oracle/o.h", "#pragma once\n#include <snug/base/a.h>\n", "tests/oracle stands on its own"),
+]
+
+
+def self_test():
+    def faults_of(tree):
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in tree.items():
+                path = pathlib.Path(folder) / name
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(text, encoding="utf-8")
+            return check_tree(pathlib.Path(folder))
+
+    wrong = [f"a tree without faults gives: {fault}" for fault in faults_of(GOOD_TREE)]
+    for name, text, expected in BAD_FILES:
+        if not any(expected in fault for fault in faults_of({**GOOD_TREE, name: text})):
+            wrong.append(f"passed over in {name}: {expected}")
+    return wrong
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("--self-test", action="store_true", help="check that this check can fail")
+    if parser.parse_args().self_test:
+        faults, passed = self_test(), f"self test passed ({len(BAD_FILES)} faults planted and found)"
+    else:
+        faults, passed = check_tree(pathlib.Path(__file__).resolve().parent.parent), "passed"
+    for fault in faults:
+        print(fault, file=sys.stderr)
+    print(f"check_layers: {f'{len(faults)} faults' if faults else passed}")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,27 @@
+#pragma once
+
+namespace snug {
+
+/// What a broken contract reports: the condition as written, and where.
+struct ContractViolation {
+  const char* condition;
+  const char* file;
+  int line;
+};
+
+/// Called when a condition of SNUG_EXPECT does not hold. It must not return normally: throw, or end the
+/// process.
+using ContractHandler = void (*)(const ContractViolation&);
+
+/// Replaces the handler and returns the one before. The default prints one line and aborts; tests install one
+/// that throws.
+ContractHandler set_contract_handler(ContractHandler handler) noexcept;
+
+/// Calls the handler; aborts if the handler returns.
+[[noreturn]] void contract_violated(const char* condition, const char* file, int line);
+
+}  // namespace snug
+
+/// A caller's or our own bug: checked in every build. Bad data from outside is an InputError instead.
+#define SNUG_EXPECT(condition) \
+  ((condition) ? static_cast<void>(0) : ::snug::contract_violated(#condition, __FILE__, __LINE__))

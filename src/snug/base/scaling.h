@@ -1,0 +1,38 @@
+#pragma once
+
+#include <snug/base/point.h>
+
+namespace snug {
+
+/// Multiplication by a power of two, to bring coordinates to about 1 before any arithmetic and results back
+/// after it.
+///
+/// Guarantee: exact, but for results below DBL_MIN (off by less than underflow_error) and above DBL_MAX
+///            (refused).
+class PowerOfTwo {
+ public:
+  PowerOfTwo() = default;
+  explicit PowerOfTwo(int exponent) : exponent_(exponent) {}
+  /// The power that brings `largest` (> 0, finite) into [1, 2); 1 for zero.
+  [[nodiscard]] static PowerOfTwo normalising(double largest);
+
+  [[nodiscard]] int exponent() const { return exponent_; }
+  [[nodiscard]] PowerOfTwo inverse() const { return PowerOfTwo(-exponent_); }
+  friend PowerOfTwo operator*(PowerOfTwo a, PowerOfTwo b) { return PowerOfTwo(a.exponent_ + b.exponent_); }
+
+  /// May overflow to infinity: for a caller who knows that it cannot, or checks.
+  [[nodiscard]] double apply(double x) const { return std::ldexp(x, exponent_); }
+  [[nodiscard]] Point3 apply(Point3 p) const { return {apply(p.x), apply(p.y), apply(p.z)}; }
+  [[nodiscard]] Vector3 apply(Vector3 v) const { return {apply(v.x), apply(v.y), apply(v.z)}; }
+  /// Does x survive the way there and back?
+  [[nodiscard]] bool exact(double x) const { return std::ldexp(std::ldexp(x, exponent_), -exponent_) == x; }
+
+ private:
+  int exponent_ = 0;
+};
+
+/// Throws InputError (refused) if x is not finite: a result that no longer fits a double is not handed out.
+double require_representable(double x);
+Point3 require_representable(Point3 p);
+
+}  // namespace snug

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <memory>
+
+#include <snug/patch/evaluate.h>
+#include <snug/surface/surface.h>
+#include <testing/twins.h>
+
+namespace snug::testing {
+
+/// Surface of a twin's mesh. `scaled` coordinates are the mesh's own where they lie in [1, 2).
+[[nodiscard]] inline Surface surface_of(const oracle::TwinMesh& twin) {
+  return Surface(control_mesh(twin), rules(twin), std::make_shared<BoundLibrary>(), 1);
+}
+
+[[nodiscard]] inline std::array<Vector3, 3> limit_corners(const Patch& patch) {
+  return {corner_point(patch, 0).relative, corner_point(patch, 1).relative, corner_point(patch, 2).relative};
+}
+
+}  // namespace snug::testing
