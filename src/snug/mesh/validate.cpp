@@ -1,0 +1,277 @@
+#include <snug/mesh/validate.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <unordered_map>
+
+#include <snug/base/scaling.h>
+#include <snug/mesh/half_edges.h>
+
+namespace snug {
+namespace {
+
+std::string number(std::size_t n) { return std::to_string(n); }
+
+std::string listed(const std::vector<std::uint32_t>& ids) {
+  std::string text;
+  for (std::size_t i = 0; i < ids.size() && i < 10; ++i) text += (i ? ", " : "") + number(ids[i]);
+  if (ids.size() > 10) text += " and " + number(ids.size() - 10) + " more";
+  return text;
+}
+
+class Inspector {
+ public:
+  explicit Inspector(const ControlMesh& mesh) : mesh_(mesh) {}
+
+  std::vector<Defect> run() {
+    const bool indices_good = check_faces();
+    check_points();
+    check_tags();
+    if (indices_good) {
+      check_edges();
+      check_duplicates();
+      check_fans();
+      check_areas();
+    }
+    std::stable_sort(found_.begin(), found_.end(),
+                     [](const Defect& a, const Defect& b) { return a.kind < b.kind; });
+    return std::move(found_);
+  }
+
+ private:
+  void add(DefectKind kind, std::string text) { found_.push_back({kind, std::move(text)}); }
+
+  bool check_faces() {
+    bool good = true;
+    used_.assign(mesh_.vertex_count(), false);
+    regular_.assign(mesh_.face_count(), true);
+    for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
+      const auto face = mesh_.face(FaceId(f));
+      if (face.size() < 3) {
+        add(DefectKind::too_few_vertices,
+            "face " + number(f) + " has " + number(face.size()) + " vertices, a face needs 3");
+        regular_[f] = false;
+      }
+      for (const VertexId v : face) {
+        if (v.index() < mesh_.vertex_count()) {
+          used_[v.index()] = true;
+          continue;
+        }
+        add(DefectKind::index_out_of_range, "face " + number(f) + " uses vertex " + number(v.index()) +
+                                                " of " + number(mesh_.vertex_count()));
+        good = false;
+      }
+      std::vector<VertexId> sorted(face.begin(), face.end());
+      std::sort(sorted.begin(), sorted.end());
+      const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+      if (twice != sorted.end()) {
+        add(DefectKind::repeated_vertex,
+            "face " + number(f) + " names vertex " + number(twice->index()) + " twice");
+        regular_[f] = false;
+      }
+    }
+    return good;
+  }
+
+  void check_points() {
+    for (std::size_t v = 0; v < mesh_.vertex_count(); ++v) {
+      if (!is_finite(mesh_.points[v])) {
+        add(DefectKind::coordinate_not_finite,
+            "vertex " + number(v) + " has a coordinate that is not finite");
+      }
+      if (!used_[v]) add(DefectKind::isolated_vertex, "vertex " + number(v) + " is used by no face");
+    }
+  }
+
+  void check_tags() {
+    const auto good_sharpness = [](double s) { return std::isfinite(s) && s >= 0; };
+    const auto there = [&](VertexId v) { return v.index() < mesh_.vertex_count(); };
+    for (std::size_t i = 0; i < mesh_.tags.creases.size(); ++i) {
+      const CreaseTag& tag = mesh_.tags.creases[i];
+      if (!there(tag.a) || !there(tag.b) || !good_sharpness(tag.sharpness)) {
+        add(DefectKind::bad_tag,
+            "crease tag " + number(i) + " needs two vertices of the mesh and a sharpness >= 0");
+      }
+    }
+    for (std::size_t i = 0; i < mesh_.tags.corners.size(); ++i) {
+      const CornerTag& tag = mesh_.tags.corners[i];
+      if (!there(tag.vertex) || !good_sharpness(tag.sharpness)) {
+        add(DefectKind::bad_tag,
+            "corner tag " + number(i) + " needs a vertex of the mesh and a sharpness >= 0");
+      }
+    }
+    for (std::size_t i = 0; i < mesh_.tags.holes.size(); ++i) {
+      if (mesh_.tags.holes[i].index() >= mesh_.face_count()) {
+        add(DefectKind::bad_tag, "hole tag " + number(i) + " names face " +
+                                     number(mesh_.tags.holes[i].index()) + " of " +
+                                     number(mesh_.face_count()));
+      }
+    }
+  }
+
+  void check_edges() {
+    const HalfEdgeGroups groups(mesh_.face_offsets, mesh_.face_vertices, mesh_.vertex_count());
+    for (std::size_t e = 0; e < groups.edge_count(); ++e) {
+      const auto members = groups.of_edge(EdgeId(e));
+      const HalfEdge h = members[0];
+      const VertexId a = mesh_.face_vertices[h];
+      const VertexId b = mesh_.face_vertices[next_in_face(mesh_.face_offsets, groups.face(h), h)];
+      const std::string edge =
+          "edge (" + number(std::min(a, b).index()) + ", " + number(std::max(a, b).index()) + ")";
+      std::vector<std::uint32_t> faces;
+      for (const HalfEdge g : members) faces.push_back(groups.face(g).value());
+      if (members.size() > 2) {
+        add(DefectKind::edge_of_many_faces,
+            edge + " has " + number(members.size()) + " faces: " + listed(faces));
+      } else if (members.size() == 2 && mesh_.face_vertices[members[1]] == a && faces[0] != faces[1]) {
+        add(DefectKind::inconsistent_orientation,
+            edge + " is run along in the same direction by faces " + listed(faces));
+      }
+    }
+  }
+
+  void check_duplicates() {
+    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> by_hash;
+    by_hash.reserve(mesh_.face_count());
+    const auto sorted_face = [&](std::size_t f) {
+      const auto face = mesh_.face(FaceId(f));
+      std::vector<VertexId> sorted(face.begin(), face.end());
+      std::sort(sorted.begin(), sorted.end());
+      return sorted;
+    };
+    for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
+      if (!regular_[f]) continue;
+      const std::vector<VertexId> mine = sorted_face(f);
+      std::uint64_t hash = mine.size();
+      for (const VertexId v : mine) hash = (hash ^ v.value()) * 0x9e3779b97f4a7c15u + (hash >> 29);
+      auto& group = by_hash[hash];
+      for (const std::uint32_t g : group) {
+        if (sorted_face(g) != mine) continue;
+        add(DefectKind::duplicate_face, "face " + number(f) + " has the same vertices as face " + number(g));
+        break;
+      }
+      group.push_back(static_cast<std::uint32_t>(f));
+    }
+  }
+
+  // The corners of faces around a vertex, linked where two faces share an edge at it, must form one chain or
+  // cycle.
+  void check_fans() {
+    std::vector<std::uint32_t> start(mesh_.vertex_count() + 1, 0);
+    for (const VertexId v : mesh_.face_vertices) ++start[v.index() + 1];
+    for (std::size_t v = 0; v < mesh_.vertex_count(); ++v) start[v + 1] += start[v];
+    struct Corner {
+      std::uint32_t before, after;  // neighbours of the vertex in one face
+    };
+    std::vector<Corner> corners(mesh_.face_vertices.size());
+    std::vector<std::uint32_t> fill(start.begin(), start.end() - 1);
+    for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
+      const auto face = mesh_.face(FaceId(f));
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        corners[fill[face[k].index()]++] = {face[(k + face.size() - 1) % face.size()].value(),
+                                            face[(k + 1) % face.size()].value()};
+      }
+    }
+    std::vector<std::uint32_t> parent;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;  // neighbour, corner
+    for (std::size_t v = 0; v < mesh_.vertex_count(); ++v) {
+      const std::uint32_t count = start[v + 1] - start[v];
+      if (count < 2) continue;
+      parent.resize(count);
+      ends.clear();
+      for (std::uint32_t i = 0; i < count; ++i) {
+        parent[i] = i;
+        ends.emplace_back(corners[start[v] + i].before, i);
+        ends.emplace_back(corners[start[v] + i].after, i);
+      }
+      const auto root = [&](std::uint32_t i) {
+        while (parent[i] != i) i = parent[i] = parent[parent[i]];
+        return i;
+      };
+      std::sort(ends.begin(), ends.end());
+      std::uint32_t fans = count;
+      for (std::size_t i = 1; i < ends.size(); ++i) {
+        if (ends[i].first != ends[i - 1].first) continue;
+        const std::uint32_t a = root(ends[i].second), b = root(ends[i - 1].second);
+        if (a != b) {
+          parent[a] = b;
+          --fans;
+        }
+      }
+      if (fans > 1) {
+        add(DefectKind::pinched_vertex,
+            "the faces around vertex " + number(v) + " form " + number(fans) + " fans");
+      }
+    }
+  }
+
+  void check_areas() {
+    const Box3 box = used_box(mesh_);
+    const double largest =
+        box.empty() ? 0.0 : std::max(max_abs(box.lower - Point3{}), max_abs(box.upper - Point3{}));
+    if (!std::isfinite(largest)) return;
+    const PowerOfTwo scale = PowerOfTwo::normalising(largest);
+    for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
+      const auto face = mesh_.face(FaceId(f));
+      if (!regular_[f]) continue;
+      Vector3 area;
+      bool finite = true;
+      const Point3 origin = mesh_.points[face[0].index()];
+      for (std::size_t k = 1; k + 1 < face.size(); ++k) {
+        const Vector3 a = scale.apply(mesh_.points[face[k].index()]) - scale.apply(origin);
+        const Vector3 b = scale.apply(mesh_.points[face[k + 1].index()]) - scale.apply(origin);
+        finite = finite && is_finite(a) && is_finite(b);
+        // Edges are brought to about 1 each, so that a tiny face is not taken for a flat one.
+        const double size = std::max(max_abs(a), max_abs(b));
+        if (size > 0) area = area + cross((1 / size) * a, (1 / size) * b);
+      }
+      if (finite && area == Vector3{}) add(DefectKind::zero_area_face, "face " + number(f) + " has no area");
+    }
+  }
+
+  const ControlMesh& mesh_;
+  std::vector<bool> used_, regular_;
+  std::vector<Defect> found_;
+};
+
+}  // namespace
+
+const char* name_of(DefectKind kind) {
+  switch (kind) {
+    case DefectKind::index_out_of_range:
+      return "index-out-of-range";
+    case DefectKind::coordinate_not_finite:
+      return "coordinate-not-finite";
+    case DefectKind::too_few_vertices:
+      return "too-few-vertices";
+    case DefectKind::repeated_vertex:
+      return "repeated-vertex";
+    case DefectKind::duplicate_face:
+      return "duplicate-face";
+    case DefectKind::edge_of_many_faces:
+      return "edge-of-many-faces";
+    case DefectKind::inconsistent_orientation:
+      return "inconsistent-orientation";
+    case DefectKind::pinched_vertex:
+      return "pinched-vertex";
+    case DefectKind::bad_tag:
+      return "bad-tag";
+    case DefectKind::isolated_vertex:
+      return "isolated-vertex";
+    case DefectKind::zero_area_face:
+      return "zero-area-face";
+  }
+  return "";
+}
+
+std::vector<Defect> defects(const ControlMesh& mesh) { return Inspector(mesh).run(); }
+
+std::string summary(const std::vector<Defect>& list) {
+  std::string text;
+  for (std::size_t i = 0; i < list.size() && i < 10; ++i) text += (i ? "; " : "") + list[i].text;
+  if (list.size() > 10) text += "; and " + number(list.size() - 10) + " more";
+  return text;
+}
+
+}  // namespace snug

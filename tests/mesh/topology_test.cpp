@@ -1,0 +1,45 @@
+#include <snug/mesh/topology.h>
+
+#include <gtest/gtest.h>
+#include <testing/twins.h>
+
+namespace snug {
+namespace {
+
+TEST(topology, half_edges_agree_with_each_other) {
+  for (const oracle::TwinMesh& twin : testing::assorted_meshes(3)) {
+    const ControlMesh mesh = testing::control_mesh(twin);
+    const Topology topology(mesh);
+    std::size_t boundary = 0;
+    for (HalfEdge h = 0; h < topology.half_edge_count(); ++h) {
+      EXPECT_EQ(topology.prev(topology.next(h)), h);
+      EXPECT_EQ(topology.face_of(topology.next(h)), topology.face_of(h));
+      const HalfEdge twin_edge = topology.twin(h);
+      if (twin_edge == no_half_edge) {
+        ++boundary;
+        EXPECT_TRUE(topology.on_boundary(topology.edge_of(h)));
+        continue;
+      }
+      EXPECT_EQ(topology.twin(twin_edge), h);
+      EXPECT_EQ(topology.from(twin_edge), topology.to(h));
+      EXPECT_EQ(topology.edge_of(twin_edge), topology.edge_of(h));
+      EXPECT_EQ(topology.cw(topology.ccw(h) == no_half_edge ? h : topology.ccw(h)),
+                topology.ccw(h) == no_half_edge ? topology.cw(h) : h);
+    }
+    EXPECT_EQ(2 * topology.edge_count(), topology.half_edge_count() + boundary);
+  }
+}
+
+TEST(topology, walks_the_whole_fan_of_every_vertex) {
+  for (const oracle::TwinMesh& twin : testing::assorted_meshes(4)) {
+    const ControlMesh mesh = testing::control_mesh(twin);
+    const Topology topology(mesh);
+    std::vector<std::size_t> faces(mesh.vertex_count(), 0);
+    for (const VertexId v : mesh.face_vertices) ++faces[v.index()];
+    for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
+      EXPECT_EQ(topology.face_valence(VertexId(v)), faces[v]);
+  }
+}
+
+}  // namespace
+}  // namespace snug

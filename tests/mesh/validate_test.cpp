@@ -1,0 +1,81 @@
+#include <snug/mesh/validate.h>
+
+#include <gtest/gtest.h>
+#include <testing/twins.h>
+
+#include <initializer_list>
+
+namespace snug {
+namespace {
+
+ControlMesh mesh_of(std::size_t points, std::initializer_list<std::initializer_list<std::size_t>> faces) {
+  ControlMesh mesh;
+  for (std::size_t i = 0; i < points; ++i) {
+    const double t = static_cast<double>(i);
+    mesh.points.push_back({t, t * t, t * t * t});
+  }
+  for (const auto& face : faces) {
+    std::vector<VertexId> corners;
+    for (const std::size_t v : face) corners.emplace_back(v);
+    mesh.add_face(corners);
+  }
+  return mesh;
+}
+
+bool has(const ControlMesh& mesh, DefectKind kind) {
+  for (const Defect& defect : defects(mesh)) {
+    if (defect.kind == kind) return true;
+  }
+  return false;
+}
+
+TEST(defects, are_none_on_sound_meshes) {
+  for (const oracle::TwinMesh& twin : testing::assorted_meshes(5)) {
+    EXPECT_TRUE(defects(testing::control_mesh(twin)).empty())
+        << summary(defects(testing::control_mesh(twin)));
+  }
+}
+
+TEST(defects, name_each_fault_by_its_elements) {
+  EXPECT_TRUE(has(mesh_of(3, {{0, 1, 5}}), DefectKind::index_out_of_range));
+  EXPECT_TRUE(has(mesh_of(3, {{0, 1}}), DefectKind::too_few_vertices));
+  EXPECT_TRUE(has(mesh_of(4, {{0, 1, 1}}), DefectKind::repeated_vertex));
+  EXPECT_TRUE(has(mesh_of(3, {{0, 1, 2}, {1, 2, 0}}), DefectKind::duplicate_face));
+  EXPECT_TRUE(has(mesh_of(5, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}), DefectKind::edge_of_many_faces));
+  EXPECT_TRUE(has(mesh_of(4, {{0, 1, 2}, {0, 1, 3}}), DefectKind::inconsistent_orientation));
+  EXPECT_TRUE(has(mesh_of(5, {{0, 1, 2}, {0, 3, 4}}), DefectKind::pinched_vertex));
+  EXPECT_TRUE(has(mesh_of(4, {{0, 1, 2}}), DefectKind::isolated_vertex));
+  const auto list = defects(mesh_of(5, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}));
+  ASSERT_FALSE(list.empty());
+  EXPECT_EQ(list[0].text, "edge (0, 1) has 3 faces: 0, 1, 2");
+}
+
+TEST(defects, see_faces_without_area_and_coordinates_that_are_not_finite) {
+  ControlMesh flat = mesh_of(3, {{0, 1, 2}});
+  flat.points[2] = flat.points[1];
+  EXPECT_TRUE(has(flat, DefectKind::zero_area_face));
+  flat.points[2].y = NAN;
+  EXPECT_TRUE(has(flat, DefectKind::coordinate_not_finite));
+  ControlMesh tiny = mesh_of(3, {{0, 1, 2}});
+  for (Point3& p : tiny.points) p = {p.x * 1e-300, p.y * 1e-300, p.z * 1e-300};
+  EXPECT_FALSE(has(tiny, DefectKind::zero_area_face));
+}
+
+TEST(defects, see_bad_tags) {
+  ControlMesh mesh = mesh_of(3, {{0, 1, 2}});
+  mesh.tags.creases.push_back({VertexId(0), VertexId(7), 1.0});
+  EXPECT_TRUE(has(mesh, DefectKind::bad_tag));
+  mesh.tags.creases = {{VertexId(0), VertexId(1), NAN}};
+  EXPECT_TRUE(has(mesh, DefectKind::bad_tag));
+  mesh.tags = {};
+  mesh.tags.holes.push_back(FaceId(3));
+  EXPECT_TRUE(has(mesh, DefectKind::bad_tag));
+}
+
+TEST(summary, lists_ten_and_counts_the_rest) {
+  const std::string text = summary(defects(mesh_of(30, {{0, 1, 2}})));
+  EXPECT_NE(text.find("and 17 more"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace snug
