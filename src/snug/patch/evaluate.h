@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+
+#include <snug/patch/patch.h>
+
+namespace snug {
+
+/// A point of the limit surface.
+struct LimitPoint {
+  Vector3 relative;  ///< to the patch's origin
+  double error;      ///< upper bound, a coordinate, of |relative - exact|
+};
+
+/// A limit point with what the surface does there.
+struct LimitFrame {
+  LimitPoint point;
+  /// Derivatives along u and v where they exist; elsewhere two limit tangents, counter-clockwise, of no
+  /// particular length.
+  std::array<Vector3, 2> tangents;
+  bool differentiable;            ///< tangents are derivatives in (u, v)
+  std::optional<Vector3> normal;  ///< of length 1; absent where the tangents are parallel or vanish
+};
+
+/// Limit point at any parameter, extraordinary corners included.
+///
+/// Guarantee: |relative - exact| <= error a coordinate, for the point whose parameters are exactly these
+/// doubles. Requires:  u >= 0, v >= 0, u + v <= 1 (in doubles). Cost:      regular: 15 rows and de Casteljau;
+/// near an extraordinary corner one split a level, at most 60.
+[[nodiscard]] LimitPoint limit_point(const Patch& patch, TriangleParameter at);
+
+/// The same with tangents and normal, in double precision without a bound for these.
+[[nodiscard]] LimitFrame limit_frame(const Patch& patch, TriangleParameter at);
+
+/// Limit position of corner 0, 1 or 2 of the patch.
+/// Cost:      one row.
+[[nodiscard]] LimitPoint corner_point(const Patch& patch, std::size_t corner);
+
+}  // namespace snug

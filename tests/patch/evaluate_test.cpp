@@ -1,0 +1,131 @@
+#include <snug/patch/evaluate.h>
+
+#include <gtest/gtest.h>
+#include <oracle/loop_twin.h>
+#include <testing/twins.h>
+
+#include <cmath>
+
+namespace snug {
+namespace {
+
+class Patches {
+ public:
+  explicit Patches(const oracle::TwinMesh& twin)
+      : mesh_(testing::control_mesh(twin)), topology_(mesh_), options_(testing::rules(twin)) {}
+  [[nodiscard]] Patch operator[](std::size_t face) {
+    const TurnedKey key = kind_key(topology_, FaceId(face), options_);
+    std::vector<VertexId> control;
+    control_vertices(topology_, FaceId(face), key.first, control);
+    return make_patch(library_.find(key.key), key.first, mesh_.points, control);
+  }
+
+ private:
+  KindLibrary library_;
+  ControlMesh mesh_;
+  Topology topology_;
+  SchemeOptions options_;
+};
+
+void expect_sample(const Patch& patch, const oracle::LimitSample& s) {
+  const LimitPoint point = limit_point(patch, {s.u, s.v});
+  const double coordinate_rounding = 1.2e-16 * (max_abs(patch.origin - Point3{}) + patch.largest);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(patch.origin[k] + point.relative[k], s.position[k],
+                point.error + s.error + coordinate_rounding)
+        << "face " << s.face << " at " << s.u << ", " << s.v;
+  }
+  EXPECT_LT(point.error, 1e-11 * patch.largest) << "face " << s.face << " at " << s.u << ", " << s.v;
+}
+
+TEST(limit_point, agrees_with_the_twin_within_its_own_error) {
+  for (const oracle::TwinMesh& twin : testing::assorted_meshes(12)) {
+    Patches patches(twin);
+    for (const oracle::LimitSample& s : oracle::sample_uniform(twin, 3)) expect_sample(patches[s.face], s);
+  }
+}
+
+TEST(limit_point, agrees_with_the_twin_as_close_to_a_corner_as_doubles_go) {
+  for (const std::uint32_t n : {3u, 4u, 5u, 6u, 7u, 8u, 20u, 100u}) {
+    std::mt19937_64 random(n);
+    const oracle::TwinMesh twin = oracle::meshes::disturbed(oracle::meshes::bipyramid(n), 0, 0.2, random);
+    Patches patches(twin);
+    for (std::uint32_t corner = 0; corner < 3; ++corner) {
+      for (const oracle::LimitSample& s : oracle::sample_near_corner(twin, 0, corner, 40))
+        expect_sample(patches[0], s);
+    }
+  }
+}
+
+TEST(limit_point, agrees_with_the_twin_at_odd_parameters) {
+  std::mt19937_64 random(13);
+  for (const oracle::TwinMesh& twin : testing::assorted_meshes(13)) {
+    Patches patches(twin);
+    for (int trial = 0; trial < 40; ++trial) {
+      // Multiples of 2^-52, so that the turned parameters are not exact.
+      const double u = std::ldexp(static_cast<double>(random() >> 12), -52);
+      const double v = std::ldexp(static_cast<double>(random() >> 12), -52) * (1 - u);
+      const double snapped = std::floor(v * 0x1p52) * 0x1p-52;
+      if (u + snapped > 1) continue;
+      const auto face = static_cast<std::uint32_t>(random() % twin.triangles.size());
+      for (const oracle::LimitSample& s : oracle::sample_at(twin, face, u, snapped))
+        expect_sample(patches[face], s);
+    }
+  }
+}
+
+TEST(limit_frame, has_derivatives_that_differences_confirm) {
+  std::mt19937_64 random(14);
+  for (const oracle::TwinMesh& twin : testing::assorted_meshes(14)) {
+    if (twin.boundary == oracle::Boundary::none) continue;
+    Patches patches(twin);
+    for (std::size_t f = 0; f < twin.triangles.size(); ++f) {
+      const Patch patch = patches[f];
+      const double u = 0.1 + 0.3 * static_cast<double>(random() >> 11) * 0x1p-53;
+      const double v = 0.1 + 0.3 * static_cast<double>(random() >> 11) * 0x1p-53;
+      const LimitFrame frame = limit_frame(patch, {u, v});
+      ASSERT_TRUE(frame.differentiable);
+      const double h = 1e-6;
+      const Vector3 du =
+          (0.5 / h) * (limit_point(patch, {u + h, v}).relative - limit_point(patch, {u - h, v}).relative);
+      const Vector3 dv =
+          (0.5 / h) * (limit_point(patch, {u, v + h}).relative - limit_point(patch, {u, v - h}).relative);
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(frame.tangents[0][k], du[k], 1e-5) << f;
+        EXPECT_NEAR(frame.tangents[1][k], dv[k], 1e-5) << f;
+      }
+    }
+  }
+}
+
+TEST(limit_frame, at_a_corner_is_the_limit_of_the_normals_around_it) {
+  for (const oracle::TwinMesh& twin : testing::assorted_meshes(15)) {
+    if (twin.boundary == oracle::Boundary::none) continue;
+    Patches patches(twin);
+    for (std::size_t f = 0; f < twin.triangles.size(); ++f) {
+      const Patch patch = patches[f];
+      const double near = 0x1p-22;
+      const TriangleParameter at[3] = {{0, 0}, {1, 0}, {0, 1}};
+      const TriangleParameter by[3] = {{near, near}, {1 - 2 * near, near}, {near, 1 - 2 * near}};
+      for (std::size_t c = 0; c < 3; ++c) {
+        // Convergence goes with the ratio of two eigenvalues, which nears 1 at high valences.
+        const CornerFan& fan = patch.kind->corner(patch.to_kind(c));
+        if (fan.closed ? fan.faces() > 8 : fan.faces() < 3 || fan.faces() > 4) continue;
+        const auto corner = limit_frame(patch, at[c]).normal, close = limit_frame(patch, by[c]).normal;
+        ASSERT_TRUE(corner && close);
+        EXPECT_GT(dot(*corner, *close), 0.99) << "face " << f << " corner " << c;
+      }
+    }
+  }
+}
+
+TEST(limit_frame, has_no_normal_where_everything_is_flat_to_a_line) {
+  oracle::TwinMesh line = oracle::meshes::icosahedron();
+  for (oracle::Point& p : line.points) p = {p[0], 0, 0};
+  Patches patches(line);
+  EXPECT_FALSE(limit_frame(patches[0], {0.25, 0.25}).normal);
+  EXPECT_FALSE(limit_frame(patches[0], {0, 0}).normal);
+}
+
+}  // namespace
+}  // namespace snug

@@ -1,0 +1,53 @@
+#include <snug/patch/patch.h>
+
+#include <gtest/gtest.h>
+#include <snug/patch/evaluate.h>
+#include <testing/twins.h>
+
+namespace snug {
+namespace {
+
+TEST(piece_path, remembers_its_digits_and_maps_parameters) {
+  const PiecePath path = PiecePath().child(1).child(3).child(0);
+  EXPECT_EQ(path.text(), "130");
+  EXPECT_EQ(path.level(), 3u);
+  const TriangleParameter p =
+      to_face(path, {0, 0});  // corner 0 of the middle piece faces corner 0 of piece 1
+  EXPECT_EQ(p.u, 0.75);
+  EXPECT_EQ(p.v, 0.25);
+  PiecePath deep;
+  for (unsigned i = 0; i < PiecePath::max_level; ++i) deep = deep.child(i % 4);
+  EXPECT_EQ(deep.digit(59), 3u);
+}
+
+// A piece's limit points are the whole patch's at the mapped parameters.
+TEST(split, keeps_the_limit_surface) {
+  KindLibrary library;
+  std::mt19937_64 random(16);
+  for (const oracle::TwinMesh& twin : testing::assorted_meshes(16)) {
+    if (twin.boundary == oracle::Boundary::none) continue;
+    const ControlMesh mesh = testing::control_mesh(twin);
+    const Topology topology(mesh);
+    const SchemeOptions options = testing::rules(twin);
+    for (std::size_t f = 0; f < topology.face_count(); f += 3) {
+      const TurnedKey key = kind_key(topology, FaceId(f), options);
+      std::vector<VertexId> control;
+      control_vertices(topology, FaceId(f), key.first, control);
+      const Patch whole = make_patch(library.find(key.key), key.first, mesh.points, control);
+      Patch piece = whole;
+      for (int level = 0; level < 6; ++level) {
+        piece = split(piece, static_cast<unsigned>(random() % 4));
+        for (const TriangleParameter at : {TriangleParameter{0, 0}, {1, 0}, {0, 1}, {0.25, 0.5}}) {
+          const LimitPoint own = limit_point(piece, at), root = limit_point(whole, to_face(piece.path, at));
+          for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_NEAR(own.relative[k], root.relative[k], own.error + root.error)
+                << f << " " << piece.path.text();
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace snug
