@@ -1,0 +1,167 @@
+#include <snug/basis/bound_rows.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <snug/base/contract.h>
+#include <snug/base/rounding.h>
+#include <snug/scheme/loop_masks.h>
+
+namespace snug {
+namespace {
+
+// Dense rows over the control points of the root kind: middle and radius, the radius kept for a whole row as
+// a bound of the sum of its entries' errors (interval arithmetic in midpoint-radius form).
+struct DenseRows {
+  std::size_t width = 0;
+  std::vector<double> entries;   // row-major
+  std::vector<double> errors;    // a row
+  std::vector<double> abs_sums;  // a row: of the entries as stored
+  [[nodiscard]] std::size_t count() const { return errors.size(); }
+};
+
+DenseRows identity(std::size_t count) {
+  DenseRows rows{count, std::vector<double>(count * count, 0.0), std::vector<double>(count, 0.0),
+                 std::vector<double>(count, 1.0)};
+  for (std::size_t i = 0; i < count; ++i) rows.entries[i * count + i] = 1;
+  return rows;
+}
+
+// The chosen rows of stencils * net, appended to out.
+//
+// For a row sum_k a_k N_k with a_k off by d_k and N_k off by e_k:  the sum of entries' errors is at most
+//   sum |a_k| e_k  +  sum d_k (|N_k| + e_k)  +  gamma(n) sum |a_k| |N_k|.
+void append_product(const Stencils& stencils, std::size_t r, const DenseRows& net, DenseRows& out) {
+  const Stencils::Row row = stencils.row(r);
+  const std::size_t begin = out.entries.size();
+  out.entries.resize(begin + net.width, 0.0);
+  double* const target = out.entries.data() + begin;
+  double error = 0, largest = 0, magnitude = 0;
+  for (std::size_t i = 0; i < row.sources.size(); ++i) {
+    const std::size_t k = row.sources[i];
+    const double weight = row.weights[i];
+    const double* const source = net.entries.data() + k * net.width;
+    for (std::size_t c = 0; c < net.width; ++c) target[c] += weight * source[c];
+    error += std::fabs(weight) * net.errors[k];
+    magnitude += std::fabs(weight) * net.abs_sums[k];
+    largest = std::max(largest, net.abs_sums[k] + net.errors[k]);
+  }
+  double abs_sum = 0;
+  for (std::size_t c = 0; c < net.width; ++c) abs_sum += std::fabs(target[c]);
+  const double tiny = static_cast<double>(net.width * row.sources.size()) * underflow_error;
+  out.errors.push_back(
+      enlarged(error + row.error * largest + gamma_bound(row.sources.size()) * magnitude + tiny));
+  out.abs_sums.push_back(abs_sum * (1 + gamma_bound(net.width)));
+}
+
+DenseRows product(const Stencils& stencils, const DenseRows& net) {
+  DenseRows out;
+  out.width = net.width;
+  out.entries.reserve(stencils.row_count() * net.width);
+  for (std::size_t r = 0; r < stencils.row_count(); ++r) append_product(stencils, r, net, out);
+  return out;
+}
+
+// Edges of a piece, named by the corner they face, along which a polynomial neighbour's Bezier points are in
+// the hull already: this piece's own there are convex combinations of those, as rows.
+using CoveredEdges = std::array<bool, 3>;
+
+// Place (i, j) of 15 lies on the edge that faces corner k when its k-th barycentric index is 0.
+bool on_covered_edge(std::size_t i, std::size_t j, const CoveredEdges& covered) {
+  return (covered[0] && i + j == 4) || (covered[1] && i == 0) || (covered[2] && j == 0);
+}
+
+class Collector {
+ public:
+  explicit Collector(const Kind& kind) { rows_.width = kind.control_count(); }
+
+  // Rows of one piece; `covered` counts corners as the kind does.
+  void collect(const Kind& kind, const DenseRows& net, unsigned depth, const CoveredEdges& covered) {
+    if (kind.polynomial() && depth > 0) {
+      for (std::size_t j = 0; j < 5; ++j) {
+        for (std::size_t i = 0; i + j < 5; ++i) {
+          if (!on_covered_edge(i, j, covered)) append_product(kind.bezier(), bezier_index(i, j), net, rows_);
+        }
+      }
+      return;
+    }
+    if (depth >= depth_limit(kind)) {
+      append_all(net);
+      return;
+    }
+    const auto& children = kind.children();
+    const bool middle_polynomial = children[3].kind->polynomial();
+    for (const std::size_t c : {std::size_t{3}, std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
+      const KindChild& child = children[c];
+      // In the parent's order, child c keeps corner c: its edges that face the other corners lie on the
+      // parent's.
+      CoveredEdges inherited{false, false, false};
+      if (c < 3) {
+        inherited = covered;
+        inherited[c] = middle_polynomial;
+      }
+      CoveredEdges own;
+      for (std::size_t k = 0; k < 3; ++k) own[k] = inherited[(k + child.first) % 3];
+      collect(*child.kind, product(child.stencils, net), depth + 1, own);
+    }
+  }
+
+  [[nodiscard]] DenseRows take() { return std::move(rows_); }
+
+ private:
+  static unsigned depth_limit(const Kind& kind) {
+    unsigned depth = 1;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!kind.corner(i).regular()) depth = std::max(depth, tip_depth(kind.corner(i)));
+    }
+    return depth;
+  }
+
+  void append_all(const DenseRows& net) {
+    rows_.entries.insert(rows_.entries.end(), net.entries.begin(), net.entries.end());
+    rows_.errors.insert(rows_.errors.end(), net.errors.begin(), net.errors.end());
+    rows_.abs_sums.insert(rows_.abs_sums.end(), net.abs_sums.begin(), net.abs_sums.end());
+  }
+
+  DenseRows rows_;
+};
+
+}  // namespace
+
+double BoundRows::result_error(double largest, double error) const {
+  return enlarged((gamma_bound(control_count_) * abs_sum_ + entry_error_) * largest + abs_sum_ * error) +
+         static_cast<double>(control_count_) * underflow_error;
+}
+
+unsigned tip_depth(const CornerFan& fan) {
+  if (fan.sharp && fan.faces() == 1)
+    return 4;  // the net of a lone corner is the corner of a polygon: no overhang
+  const std::size_t n = fan.closed ? fan.faces() : 2 * fan.faces();
+  const double shrink =
+      fan.closed ? loop::subdominant(n) : std::max(0.5, loop::subdominant_across_boundary(fan.faces()));
+  const double width =
+      std::min(1.0, 2 * std::sin(std::numbers::pi / static_cast<double>(std::max<std::size_t>(n, 3))));
+  const double levels = std::log(0.01 * width) / std::log(shrink);
+  return std::clamp(static_cast<unsigned>(std::ceil(levels)), 3u, 24u);
+}
+
+BoundRows make_bound_rows(const Kind& kind) {
+  Collector collector(kind);
+  collector.collect(kind, identity(kind.control_count()), 0, {false, false, false});
+  const DenseRows rows = collector.take();
+  BoundRows result;
+  result.count_ = rows.count();
+  result.control_count_ = rows.width;
+  result.weights_.resize(rows.entries.size());
+  for (std::size_t r = 0; r < rows.count(); ++r) {
+    for (std::size_t c = 0; c < rows.width; ++c)
+      result.weights_[c * rows.count() + r] = rows.entries[r * rows.width + c];
+    result.entry_error_ = std::max(result.entry_error_, rows.errors[r]);
+    result.abs_sum_ = std::max(result.abs_sum_, rows.abs_sums[r]);
+  }
+  return result;
+}
+
+}  // namespace snug
