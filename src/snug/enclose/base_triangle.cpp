@@ -1,0 +1,31 @@
+#include <snug/enclose/base_triangle.h>
+
+namespace snug {
+
+BaseTriangle base_triangle(const HullPoints& points, const std::array<Vector3, 3>& corners) {
+  BaseTriangle base;
+  base.relative = corners;
+  Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const double size = length(normal);
+  if (size > 0 && std::isfinite(size) && is_finite(normal = (1 / size) * normal)) {
+    double lower = INFINITY, upper = -INFINITY;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double height = dot(normal, points.at(i) - corners[0]);
+      lower = std::min(lower, height);
+      upper = std::max(upper, height);
+    }
+    const Vector3 shift = (0.5 * (lower + upper)) * normal;
+    if (is_finite(shift)) {
+      for (Vector3& corner : base.relative) corner = corner + shift;
+    }
+  }
+  double largest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    base.placed[k] = points.origin + base.relative[k];
+    largest = std::max(largest, max_abs(base.placed[k] - Point3{}));
+  }
+  base.placing_error = unit_roundoff * largest * (1 + 0x1p-50);
+  return base;
+}
+
+}  // namespace snug

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include <snug/basis/bound_rows.h>
+#include <snug/patch/patch.h>
+
+namespace snug {
+
+/// Points whose convex hull contains a limit patch, relative to its origin; one array a coordinate.
+struct HullPoints {
+  Point3 origin;
+  std::vector<double> x, y, z;
+  double error = 0;    ///< upper bound, a coordinate, of |point - exact point|
+  double largest = 0;  ///< largest |coordinate|
+
+  [[nodiscard]] std::size_t size() const { return x.size(); }
+  [[nodiscard]] Vector3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
+};
+
+/// The points M c of a patch, written over `out`, which keeps its memory.
+///
+/// Guarantee: the patch lies in the hull of points that differ from these by at most out.error a coordinate.
+/// Requires:  rows of the patch's kind.
+/// Cost:      3 rows.count() rows.control_count() multiply-adds; no allocation once `out` has been as large.
+void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out);
+
+/// The baseline: the control points themselves. The limit lies in their hull because all masks are
+/// non-negative.
+void control_points(const Patch& patch, HullPoints& out);
+
+/// Least box around the points, moved to the coordinates' origin.
+/// Guarantee: contains the patch, rounding included.
+[[nodiscard]] Box3 outer_box(const HullPoints& points);
+
+/// The set lower <= dot(normal, p) <= upper.
+struct Slab {
+  Vector3 normal;
+  double lower, upper;
+};
+
+/// Slab along `normal`, which need not be of length 1, that contains the patch, rounding included. Bounds
+/// belong to points relative to points.origin.
+[[nodiscard]] Slab outer_slab(const HullPoints& points, const Vector3& normal);
+
+}  // namespace snug
