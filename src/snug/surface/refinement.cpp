@@ -1,0 +1,49 @@
+#include <snug/surface/refinement.h>
+
+#include <utility>
+
+#include <snug/base/contract.h>
+#include <snug/patch/evaluate.h>
+
+namespace snug {
+
+Piece make_piece(BoundLibrary& library, FaceId face, Patch patch, HullPoints& scratch) {
+  Piece piece;
+  piece.face = face;
+  for (std::size_t k = 0; k < 3; ++k) piece.corners[k] = corner_point(patch, k).relative;
+  hull_points(library.rows(*patch.kind), patch, scratch);
+  piece.offset = offset_triangle(scratch, piece.corners);
+  piece.patch = std::move(patch);
+  return piece;
+}
+
+Refinement::Refinement(const Surface& surface) : surface_(surface), roots_(surface.face_count()) {}
+
+PieceId Refinement::root(FaceId face) {
+  PieceId& id = roots_[face.index()];
+  if (!id.valid()) {
+    pieces_.push_back(make_piece(surface_.library(), face, surface_.patch(face), scratch_));
+    id = PieceId(pieces_.size() - 1);
+  }
+  return id;
+}
+
+bool Refinement::can_split(PieceId id) const {
+  const Piece& piece = pieces_[id.index()];
+  return piece.patch.path.level() < PiecePath::max_level && piece.offset.radius > 2 * piece.offset.rounding;
+}
+
+PieceId Refinement::split(PieceId id) {
+  if (pieces_[id.index()].first_child.valid()) return pieces_[id.index()].first_child;
+  SNUG_EXPECT(can_split(id));
+  const PieceId first(pieces_.size());
+  for (unsigned child = 0; child < 4; ++child) {
+    const Piece& parent = pieces_[id.index()];
+    pieces_.push_back(
+        make_piece(surface_.library(), parent.face, snug::split(parent.patch, child), scratch_));
+  }
+  pieces_[id.index()].first_child = first;
+  return first;
+}
+
+}  // namespace snug

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <deque>
+#include <vector>
+
+#include <snug/enclose/interval_triangle.h>
+#include <snug/enclose/offset_triangle.h>
+#include <snug/surface/surface.h>
+
+namespace snug {
+
+/// A piece in a Refinement.
+using PieceId = Id<struct PieceTag>;
+
+/// A piece of a limit surface with its offset triangle, in scaled units.
+struct Piece {
+  FaceId face;
+  Patch patch;
+  std::array<Vector3, 3> corners;  ///< limit corners, relative to patch.origin
+  OffsetTriangle offset;
+  PieceId first_child;  ///< of four in a row; invalid while the piece is whole
+};
+
+/// A piece with its enclosures, made from a patch. `scratch` holds the hull points afterwards.
+[[nodiscard]] Piece make_piece(BoundLibrary& library, FaceId face, Patch patch, HullPoints& scratch);
+
+/// Patches of one surface, split lazily and in place. Scratch memory of a query: one a thread.
+///
+/// Guarantee: what it returns depends on the surface alone, not on the order of calls.
+/// Cost:      a piece about 1 KB; a split four small products and fits. Memory grows with what was touched; a
+///            query that splits counts its own steps against its budget.
+class Refinement {
+ public:
+  /// Requires:  the surface outlives the refinement.
+  explicit Refinement(const Surface& surface);
+
+  [[nodiscard]] const Surface& surface() const { return surface_; }
+  /// The whole patch of a face.
+  /// Requires:  surface().has_patch(face).
+  [[nodiscard]] PieceId root(FaceId face);
+  [[nodiscard]] const Piece& operator[](PieceId id) const { return pieces_[id.index()]; }
+  /// First of the four children, making them if need be.
+  /// Requires:  can_split(id).
+  [[nodiscard]] PieceId split(PieceId id);
+  /// False at the last level, and where rounding alone makes up the radius: children would be no smaller.
+  [[nodiscard]] bool can_split(PieceId id) const;
+
+  /// Pieces made so far.
+  [[nodiscard]] std::size_t size() const { return pieces_.size(); }
+
+ private:
+  const Surface& surface_;
+  std::vector<PieceId> roots_;
+  std::deque<Piece> pieces_;
+  HullPoints scratch_;
+};
+
+}  // namespace snug

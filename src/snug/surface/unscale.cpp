@@ -1,0 +1,48 @@
+#include <snug/surface/unscale.h>
+
+#include <limits>
+
+#include <snug/base/rounding.h>
+
+namespace snug {
+
+double unscaled_down(double x, PowerOfTwo back) {
+  const double y = back.apply(x);
+  if (std::isinf(y)) return y > 0 ? std::numeric_limits<double>::max() : y;
+  return back.exact(x) ? y : rounded_down(y);
+}
+
+double unscaled_up(double x, PowerOfTwo back) {
+  const double y = back.apply(x);
+  return std::isinf(y) || back.exact(x) ? y : rounded_up(y);
+}
+
+Box3 unscaled(const Box3& box, PowerOfTwo back) {
+  Box3 result;
+  for (std::size_t a = 0; a < 3; ++a) {
+    result.lower[a] = require_representable(unscaled_down(box.lower[a], back));
+    result.upper[a] = require_representable(unscaled_up(box.upper[a], back));
+  }
+  return result;
+}
+
+IntervalTriangle unscaled(const IntervalTriangle& triangle, PowerOfTwo back) {
+  return {{unscaled(triangle.corner[0], back), unscaled(triangle.corner[1], back),
+           unscaled(triangle.corner[2], back)}};
+}
+
+OffsetTriangle unscaled(const OffsetTriangle& triangle, PowerOfTwo back) {
+  OffsetTriangle result;
+  bool exact = true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    result.base[k] = require_representable(back.apply(triangle.base[k]));
+    for (std::size_t a = 0; a < 3; ++a) exact = exact && back.exact(triangle.base[k][a]);
+  }
+  result.radius = unscaled_up(triangle.radius, back);
+  result.rounding = unscaled_up(triangle.rounding, back);
+  if (!exact) result.radius = enlarged(result.radius + underflow_error);
+  require_representable(result.radius);
+  return result;
+}
+
+}  // namespace snug

@@ -1,0 +1,44 @@
+#include <snug/surface/refinement.h>
+
+#include <gtest/gtest.h>
+#include <testing/containment.h>
+#include <testing/patches.h>
+
+namespace snug {
+namespace {
+
+TEST(refinement, does_not_depend_on_the_order_of_calls) {
+  const Surface surface = testing::surface_of(oracle::meshes::icosahedron());
+  Refinement first(surface), second(surface);
+  static_cast<void>(first.split(first.root(FaceId(3))));
+  const PieceId a = first.split(first.root(FaceId(0)));
+  const PieceId b = second.split(second.root(FaceId(0)));
+  for (unsigned child = 0; child < 4; ++child) {
+    const Piece& x = first[PieceId(a.index() + child)];
+    const Piece& y = second[PieceId(b.index() + child)];
+    EXPECT_EQ(x.patch.path, y.patch.path);
+    EXPECT_EQ(x.offset.radius, y.offset.radius);
+    EXPECT_EQ(x.offset.base[1], y.offset.base[1]);
+  }
+  EXPECT_EQ(first.split(first.root(FaceId(0))), a);  // made once
+}
+
+TEST(refinement, shrinks_radii_until_rounding_stops_it) {
+  const Surface surface = testing::surface_of(oracle::meshes::icosahedron());
+  Refinement refinement(surface);
+  PieceId id = refinement.root(FaceId(0));
+  double before = refinement[id].offset.radius;
+  unsigned levels = 0;
+  while (refinement.can_split(id)) {
+    id = PieceId(refinement.split(id).index() + 3);
+    ASSERT_LE(refinement[id].offset.radius, before);
+    before = refinement[id].offset.radius;
+    ++levels;
+  }
+  EXPECT_GE(levels, 15u);
+  EXPECT_LE(levels, PiecePath::max_level);
+  EXPECT_LT(before, 1e-13);
+}
+
+}  // namespace
+}  // namespace snug
