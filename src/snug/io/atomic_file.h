@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace snug {
+
+/// A file that is written whole or not at all: bytes go to a temporary file in the folder of the target, and
+/// commit() puts it in the target's place. Text and binary alike; any number of writes of any size.
+///
+///     AtomicFile file(path);
+///     file.write(bytes);
+///     file.commit();
+///
+/// Guarantee: until commit() returns, the target is as it was; afterwards it holds all bytes, on the disk,
+///            with the permissions it had or those of a new file. If commit() is not reached, the destructor
+///            removes the temporary file, so that unwinding from an exception leaves nothing behind. A
+///            symbolic link to a file stays one: the file behind it is replaced. Targets that cannot be
+///            replaced, "-" (standard output), devices, pipes and sockets, receive the bytes as they come,
+///            without a promise of all or nothing.
+/// Errors:    InputError (unreadable) that names the target and the system's reason, from every member but
+///            the destructor; a file is then as it was.
+/// Cost:      64 KiB of buffer.
+class AtomicFile {
+ public:
+  /// Creates the temporary file; fails early if the target is a directory or write protected.
+  explicit AtomicFile(const std::string& path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Requires:  commit() was not called, and nothing failed.
+  void write(std::string_view bytes);
+  /// Requires:  as write().
+  void commit();
+
+ private:
+  void open_temporary(unsigned mode);
+  void flush();
+  void abandon() noexcept;
+  [[noreturn]] void fail(int reason);
+
+  std::string name_;       ///< for messages
+  std::string target_;     ///< symbolic links resolved
+  std::string temporary_;  ///< empty if the bytes go to the target directly
+  std::string buffer_;
+  int descriptor_ = -1;
+  bool finished_ = false;  ///< committed or failed
+};
+
+}  // namespace snug

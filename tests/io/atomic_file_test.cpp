@@ -1,0 +1,156 @@
+#include <snug/io/atomic_file.h>
+
+#include <csignal>
+#include <string>
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <snug/io/read_file.h>
+
+#include "io_testing.h"
+
+namespace snug {
+namespace {
+
+using testing::put;
+using testing::TemporaryFolder;
+using testing::unreadable;
+
+unsigned permissions(const std::string& path) {
+  struct stat status {};
+  EXPECT_EQ(::stat(path.c_str(), &status), 0);
+  return status.st_mode & 0777u;
+}
+
+TEST(atomic_file, appears_whole_at_the_commit) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "out.bin";
+  const std::string part("a\0\xff\r\n", 5);
+  std::string expected;
+  AtomicFile file(path);
+  for (int i = 0; i < 50'000; ++i) {
+    file.write(part);
+    expected += part;
+  }
+  file.write(std::string(300'000, 'z'));
+  expected.append(300'000, 'z');
+  EXPECT_FALSE(std::filesystem::exists(path));
+  file.commit();
+  EXPECT_EQ(read_file(path), expected);
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(atomic_file, leaves_nothing_behind_when_it_is_dropped) {
+  const TemporaryFolder folder;
+  put(folder / "kept", "old");
+  try {
+    AtomicFile file(folder / "kept"), other(folder / "new");
+    file.write(std::string(200'000, 'x'));
+    other.write("x");
+    throw Interrupted();
+  } catch (const Interrupted&) {
+  }
+  EXPECT_EQ(read_file(folder / "kept"), "old");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(atomic_file, replaces_the_bytes_and_keeps_the_permissions) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "out";
+  put(path, "a longer text than the new one");
+  ASSERT_EQ(::chmod(path.c_str(), 0640), 0);
+  AtomicFile file(path);
+  file.write("new");
+  file.commit();
+  EXPECT_EQ(read_file(path), "new");
+  EXPECT_EQ(permissions(path), 0640u);
+}
+
+TEST(atomic_file, gives_a_new_file_the_usual_permissions) {
+  const TemporaryFolder folder;
+  put(folder / "usual", "");
+  AtomicFile file(folder / "out");
+  file.commit();
+  EXPECT_EQ(permissions(folder / "out"), permissions(folder / "usual"));
+}
+
+TEST(atomic_file, keeps_a_symbolic_link) {
+  const TemporaryFolder folder;
+  put(folder / "target", "old");
+  std::filesystem::create_symlink("target", folder / "link");
+  AtomicFile file(folder / "link");
+  file.write("new");
+  file.commit();
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
+  EXPECT_EQ(read_file(folder / "target"), "new");
+}
+
+TEST(atomic_file, writes_to_a_pipe_without_replacing_it) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "pipe";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  const int reader = ::open(path.c_str(), O_RDONLY | O_NONBLOCK);
+  ASSERT_GE(reader, 0);
+  AtomicFile file(path);
+  file.write("through");
+  file.commit();
+  std::string bytes(20, '\0');
+  EXPECT_EQ(::read(reader, bytes.data(), bytes.size()), 7);
+  EXPECT_EQ(bytes.substr(0, 7), "through");
+  ::close(reader);
+  EXPECT_TRUE(std::filesystem::is_fifo(path));
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(atomic_file, a_full_device_is_an_error) {
+  EXPECT_EQ(unreadable([] {
+              AtomicFile file("/dev/full");
+              file.write("x");
+              file.commit();
+            }),
+            "/dev/full: cannot be written: No space left on device");
+}
+
+TEST(atomic_file, a_failed_write_leaves_the_target_untouched) {
+  const TemporaryFolder folder;
+  put(folder / "out", "old");
+  rlimit usual{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &usual), 0);
+  const rlimit tight{100'000, usual.rlim_max};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &tight), 0);
+  const std::string message = unreadable([&] {
+    AtomicFile file(folder / "out");
+    file.write(std::string(1'000'000, 'x'));
+    file.commit();
+  });
+  ::setrlimit(RLIMIT_FSIZE, &usual);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_EQ(message, folder / "out" + ": cannot be written: File too large");
+  EXPECT_EQ(read_file(folder / "out"), "old");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(atomic_file, bad_targets_are_errors_at_once) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(unreadable([] { AtomicFile file(""); }), "the name of the file to write is empty");
+  EXPECT_EQ(unreadable([&] { AtomicFile file(folder.path()); }),
+            folder.path() + ": cannot be written: Is a directory");
+  EXPECT_EQ(unreadable([&] { AtomicFile file(folder / "no/such/out"); }),
+            folder / "no/such/out" + ": cannot be written: No such file or directory");
+  EXPECT_EQ(folder.entries(), 0u);
+}
+
+TEST(atomic_file, a_write_protected_file_is_not_replaced) {
+  if (::geteuid() == 0) GTEST_SKIP() << "the superuser may write everything";
+  const TemporaryFolder folder;
+  put(folder / "out", "old");
+  ASSERT_EQ(::chmod((folder / "out").c_str(), 0444), 0);
+  EXPECT_NE(unreadable([&] { AtomicFile file(folder / "out"); }).find("Permission denied"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace snug

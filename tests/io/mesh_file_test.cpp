@@ -1,0 +1,124 @@
+#include <snug/io/mesh_file.h>
+
+#include <string>
+#include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <snug/io/obj.h>
+#include <snug/io/off.h>
+
+#include "io_testing.h"
+
+namespace snug {
+namespace {
+
+using testing::expect_same_arrays;
+using testing::put;
+using testing::TemporaryFolder;
+using testing::unreadable;
+
+const std::string obj_text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+ControlMesh creased_triangle() { return parse_obj(obj_text + "t crease 2/1/0 0 1 2\n", "triangle"); }
+
+std::string message(const std::string& path) {
+  return unreadable([&] { static_cast<void>(read_mesh(path)); });
+}
+
+/// Standard input comes from a file as long as this lives.
+class InputFrom {
+ public:
+  explicit InputFrom(const std::string& path) : saved_(::dup(STDIN_FILENO)) {
+    const int file = ::open(path.c_str(), O_RDONLY);
+    EXPECT_EQ(::dup2(file, STDIN_FILENO), STDIN_FILENO) << path;
+    ::close(file);
+  }
+  ~InputFrom() {
+    ::dup2(saved_, STDIN_FILENO);
+    ::close(saved_);
+  }
+  InputFrom(const InputFrom&) = delete;
+  InputFrom& operator=(const InputFrom&) = delete;
+
+ private:
+  int saved_;
+};
+
+TEST(mesh_file, round_trips_by_ending_in_any_case) {
+  const TemporaryFolder folder;
+  const ControlMesh mesh = creased_triangle();
+  for (const char* name : {"a.obj", "a.OBJ", "a.off", "a.Off", "b.c.obj"}) {
+    write_mesh(mesh, folder / name);
+    expect_same_arrays(mesh, read_mesh(folder / name));
+  }
+  EXPECT_EQ(read_mesh(folder / "a.obj").tags.creases.size(), 1u);
+}
+
+TEST(mesh_file, says_that_off_has_no_tags) {
+  const TemporaryFolder folder;
+  std::vector<std::string> lines;
+  const Notes notes = [&](const std::string& line) { lines.push_back(line); };
+  ControlMesh mesh = creased_triangle();
+  write_mesh(mesh, folder / "a.off", notes);
+  EXPECT_EQ(lines.size(), 1u);
+  mesh.tags = {};
+  write_mesh(mesh, folder / "a.off", notes);
+  write_mesh(creased_triangle(), folder / "a.obj", notes);
+  EXPECT_EQ(lines.size(), 1u);
+}
+
+TEST(mesh_file, tells_the_formats_of_standard_input_apart) {
+  const TemporaryFolder folder;
+  put(folder / "obj", obj_text);
+  put(folder / "off", format_off(creased_triangle()));
+  put(folder / "bad", "OFF\n3 1 0\n0 0 0\n");
+  for (const char* name : {"obj", "off"}) {
+    const InputFrom input(folder / name);
+    expect_same_arrays(creased_triangle(), read_mesh("-"));
+  }
+  const InputFrom input(folder / "bad");
+  EXPECT_EQ(message("-").substr(0, 16), "standard input:3");
+}
+
+TEST(mesh_file, tells_the_formats_of_files_without_ending_apart) {
+  const TemporaryFolder folder;
+  put(folder / "plain", format_off(creased_triangle()));
+  expect_same_arrays(creased_triangle(), read_mesh(folder / "plain"));
+}
+
+TEST(mesh_file, bad_names_are_clear_errors) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(message(""), "the name of the file to read is empty");
+  EXPECT_EQ(message(folder / "none.obj"),
+            folder / "none.obj" + ": cannot be read: No such file or directory");
+  EXPECT_EQ(message(folder / "a.stl"),
+            folder / "a.stl" + ": meshes are read and written as .obj and .off only");
+  std::filesystem::create_directory(folder / "folder.obj");
+  EXPECT_EQ(message(folder / "folder.obj"), folder / "folder.obj" + ": is a directory: name a file in it");
+  EXPECT_EQ(unreadable([&] { write_mesh(creased_triangle(), folder / "a.stl"); }),
+            folder / "a.stl" + ": meshes are read and written as .obj and .off only");
+  EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(mesh_file, a_million_triangles_round_trip) {
+  const TemporaryFolder folder;
+  ControlMesh mesh;
+  const std::size_t side = 708;
+  for (std::size_t i = 0; i < side * side; ++i) {
+    mesh.points.push_back({static_cast<double>(i % side) / 7, static_cast<double>(i / side) / 3, 0.1});
+  }
+  for (std::size_t i = 0; i + side + 1 < side * side; ++i) {
+    if (i % side == side - 1) continue;
+    mesh.add_face(std::vector{VertexId(i), VertexId(i + 1), VertexId(i + side)});
+    mesh.add_face(std::vector{VertexId(i + 1), VertexId(i + side + 1), VertexId(i + side)});
+  }
+  write_mesh(mesh, folder / "large.obj");
+  write_mesh(mesh, folder / "large.off");
+  expect_same_arrays(mesh, read_mesh(folder / "large.obj"));
+  expect_same_arrays(mesh, read_mesh(folder / "large.off"));
+}
+
+}  // namespace
+}  // namespace snug
