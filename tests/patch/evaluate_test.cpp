@@ -74,6 +74,23 @@ TEST(limit_point, agrees_with_the_twin_at_odd_parameters) {
   }
 }
 
+// u + v = 1 in doubles, but a little above it exactly: what is meant is the nearest point of the far edge.
+TEST(limit_point, does_not_leave_the_triangle_where_a_sum_rounds_to_one) {
+  for (const std::uint32_t n : {8u, 20u, 60u}) {
+    const oracle::TwinMesh twin = oracle::meshes::wheel(n, oracle::Boundary::edge_only);
+    Patches patches(twin);
+    for (std::size_t f = 0; f < 3; ++f) {
+      const Patch patch = patches[f];
+      for (const TriangleParameter at : {TriangleParameter{9e-17, 1}, {1, 9e-17}, {0.75, 0.25 + 0x1p-54}}) {
+        const LimitPoint point = limit_point(patch, at);
+        const LimitPoint meant = limit_point(
+            patch, at.u >= 0.5 ? TriangleParameter{at.u, 1 - at.u} : TriangleParameter{1 - at.v, at.v});
+        EXPECT_EQ(point.relative, meant.relative) << n << " face " << f << " at " << at.u << ", " << at.v;
+      }
+    }
+  }
+}
+
 TEST(limit_frame, has_derivatives_that_differences_confirm) {
   std::mt19937_64 random(14);
   for (const oracle::TwinMesh& twin : testing::assorted_meshes(14)) {

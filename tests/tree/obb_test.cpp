@@ -96,6 +96,28 @@ TEST(certain_gap, never_exceeds_the_distance_of_the_contents) {
   EXPECT_GT(gaps, 2000);
 }
 
+// A placement may stretch by as much as rigidity_tolerance: gaps along cross products stay below the distance all the same.
+TEST(certain_gap, holds_for_placements_that_stretch_as_far_as_allowed) {
+  for (const double angle : {0.03, 0.05, 0.1, 0.5}) {
+    OffsetTriangle a{{Point3{-1, 0, 0}, {1, 0, 0}, {1, 0, 0}}, 0}, b{{Point3{}, {}, {}}, 0};
+    b.base = {Point3{-std::cos(angle), -std::sin(angle), 0},
+              {std::cos(angle), std::sin(angle), 0},
+              {std::cos(angle), std::sin(angle), 0}};
+    const OffsetTriangle* const only_a = &a;
+    const OffsetTriangle* const only_b = &b;
+    PlacedFrame here;
+    const double e = 0.499999e-9;
+    here.rows = {Vector3{1 + e, e, e}, {e, 1 + e, e}, {e, e, 1 + e}};
+    here.defect = 1e-9;
+    PlacedFrame there = here;
+    there.translation = {0, 0, 1};
+    // Both segments keep their middle, so the distance is 1 at most.
+    EXPECT_LE(
+        certain_gap(placed(outer_obb({&only_a, 1}), here), placed(outer_obb({&only_b, 1}), there), 2e-9), 1.0)
+        << angle;
+  }
+}
+
 TEST(certain_gap, finds_most_of_the_distance_between_boxes_side_by_side) {
   OffsetTriangle a{{Point3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 0.1}, b = a;
   for (Point3& p : b.base) p.z += 2;

@@ -3,10 +3,14 @@
 #include <cfloat>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #ifdef __FAST_MATH__
 #error "snug's bounds do not hold with -ffast-math"
 #endif
+
+static_assert(FLT_EVAL_METHOD == 0 && std::numeric_limits<double>::is_iec559,
+              "error terms count roundings to IEEE double after every operation");
 
 namespace snug {
 

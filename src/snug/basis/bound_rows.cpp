@@ -131,8 +131,9 @@ class Collector {
 }  // namespace
 
 double BoundRows::result_error(double largest, double error) const {
-  return enlarged((gamma_bound(control_count_) * abs_sum_ + entry_error_) * largest + abs_sum_ * error) +
-         static_cast<double>(control_count_) * underflow_error;
+  return enlarged((gamma_bound(control_count_) * abs_sum_ + entry_error_) * largest +
+                  (abs_sum_ + entry_error_) * error) +
+         3 * static_cast<double>(control_count_) * underflow_error;
 }
 
 unsigned tip_depth(const CornerFan& fan) {

@@ -22,7 +22,7 @@ OffsetTriangle offset_triangle(const HullPoints& points, const std::array<Vector
     reach = std::max(reach, max_abs(d));
   }
   const double rounding = spatial_error(fit_error(points, base, reach));
-  const double radius = std::sqrt(farthest_sq) + rounding;
+  const double radius = std::sqrt(farthest_sq + 8 * underflow_error) + rounding;
   return {base.placed, finite && std::isfinite(radius) ? enlarged(radius) : INFINITY, rounding};
 }
 

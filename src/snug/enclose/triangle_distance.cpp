@@ -88,7 +88,8 @@ Best search(const Corners& a, const Corners& b) {
 
 // Lower bound of the distance along the direction w.
 double supporting_gap(const Corners& a, const Corners& b, Vector3 w) {
-  const double size = length(w);
+  const double size =
+      std::sqrt(length_sq(w) + 8 * underflow_error);  // where squares underflow, w gets shorter
   if (!(size > 0) || !std::isfinite(1 / size)) return 0;
   w = (1 / size) * w;
   double highest_a = -INFINITY, lowest_b = INFINITY, reach = 0;
@@ -99,7 +100,7 @@ double supporting_gap(const Corners& a, const Corners& b, Vector3 w) {
   }
   // |w| <= 1 + 6 u; two dot products of sum |w_i| |x_i| <= 2 reach and a difference.
   const double gap =
-      (lowest_b - highest_a) * (1 - 16 * unit_roundoff) - 24 * unit_roundoff * reach - underflow_error;
+      (lowest_b - highest_a) * (1 - 16 * unit_roundoff) - 24 * unit_roundoff * reach - 16 * underflow_error;
   return std::isfinite(gap) ? std::max(0.0, gap) : 0.0;
 }
 

@@ -16,10 +16,27 @@ struct Descent {
   TriangleParameter at;
 };
 
+// Is the exact sum u + v at most `limit`? Rounding is monotonic, so only a tie needs the sum's own error, which is exact
+// [Higham02, sec. 4.3].
+bool sum_at_most(double u, double v, double limit) {
+  const double sum = u + v;
+  if (sum != limit) return sum < limit;
+  const double rest = sum - u;
+  return (u - (sum - rest)) + (v - rest) <= 0;
+}
+
+// The parameter that is meant by one whose exact sum is a rounding above 1: the nearest on the far edge. Both differences
+// are exact.
+TriangleParameter on_triangle(TriangleParameter p) {
+  if (sum_at_most(p.u, p.v, 1)) return p;
+  if (p.u >= 0.5) return {p.u, 1 - p.u};
+  return {1 - p.v, p.v};
+}
+
 Descent descend(TriangleParameter p) {
   if (p.u >= 0.5) return {1, {2 * p.u - 1, 2 * p.v}};
   if (p.v >= 0.5) return {2, {2 * p.u, 2 * p.v - 1}};
-  if (p.u + p.v <= 0.5) return {0, {2 * p.u, 2 * p.v}};
+  if (sum_at_most(p.u, p.v, 0.5)) return {0, {2 * p.u, 2 * p.v}};
   return {3, {1 - 2 * p.u, 1 - 2 * p.v}};
 }
 
@@ -142,7 +159,10 @@ std::optional<Vector3> unit_normal(const std::array<Vector3, 2>& tangents) {
   return (1 / size) * normal;
 }
 
-void check(TriangleParameter at) { SNUG_EXPECT(at.u >= 0 && at.v >= 0 && at.u + at.v <= 1); }
+TriangleParameter checked(TriangleParameter at) {
+  SNUG_EXPECT(at.u >= 0 && at.v >= 0 && at.u + at.v <= 1);
+  return on_triangle(at);
+}
 
 // Tangents at a corner of the patch: limits along the corner's ring, ordered counter-clockwise as the face
 // sees them.
@@ -166,8 +186,8 @@ LimitPoint corner_point(const Patch& patch, std::size_t corner) {
           limits.result_error(patch.largest, patch.error)};
 }
 
-LimitPoint limit_point(const Patch& patch, TriangleParameter at) {
-  check(at);
+LimitPoint limit_point(const Patch& patch, TriangleParameter parameter) {
+  const TriangleParameter at = checked(parameter);
   if (const std::size_t corner = corner_at(at); corner < 3) return corner_point(patch, corner);
   const Located here = locate(patch, at);
   if (here.stopped) return stopped_point(here);
@@ -182,8 +202,8 @@ LimitPoint limit_point(const Patch& patch, TriangleParameter at) {
                   here.drift + p.drift);
 }
 
-LimitFrame limit_frame(const Patch& patch, TriangleParameter at) {
-  check(at);
+LimitFrame limit_frame(const Patch& patch, TriangleParameter parameter) {
+  const TriangleParameter at = checked(parameter);
   if (const std::size_t corner = corner_at(at);
       corner < 3 && !patch.kind->corner(patch.to_kind(corner)).regular()) {
     return corner_frame(patch, corner);

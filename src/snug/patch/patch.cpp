@@ -20,7 +20,7 @@ Patch gather(const Kind& kind, std::uint8_t first, PointAt&& at) {
   patch.points.reserve(kind.control_count());
   for (std::size_t i = 0; i < kind.control_count(); ++i) patch.points.push_back(at(i) - patch.origin);
   measure(patch);
-  patch.error = enlarged(unit_roundoff * patch.largest);
+  patch.error = enlarged(unit_roundoff * patch.largest + 4 * underflow_error);
   return patch;
 }
 

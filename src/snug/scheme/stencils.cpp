@@ -44,8 +44,8 @@ void Stencils::append(const Row& row, std::span<const std::uint32_t> new_name) {
 double Stencils::result_error(double largest, double source_error) const {
   const double k = static_cast<double>(max_entries_);
   return enlarged((gamma_bound(max_entries_) * max_abs_sum_ + max_error_) * largest +
-                  max_abs_sum_ * source_error) +
-         k * underflow_error;
+                  (max_abs_sum_ + max_error_) * source_error) +
+         3 * k * underflow_error;
 }
 
 }  // namespace snug

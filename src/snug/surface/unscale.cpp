@@ -9,12 +9,12 @@ namespace snug {
 double unscaled_down(double x, PowerOfTwo back) {
   const double y = back.apply(x);
   if (std::isinf(y)) return y > 0 ? std::numeric_limits<double>::max() : y;
-  return back.exact(x) ? y : rounded_down(y);
+  return back.exact(x) ? y : rounded_down(y - underflow_error);
 }
 
 double unscaled_up(double x, PowerOfTwo back) {
   const double y = back.apply(x);
-  return std::isinf(y) || back.exact(x) ? y : rounded_up(y);
+  return std::isinf(y) || back.exact(x) ? y : rounded_up(y + underflow_error);
 }
 
 Box3 unscaled(const Box3& box, PowerOfTwo back) {

@@ -98,7 +98,8 @@ Obb outer_obb(std::span<const OffsetTriangle* const> members) {
     for (const Point3& p : member->base) {
       const Vector3 d = p - box.centre;
       for (std::size_t k = 0; k < 3; ++k) {
-        const double height = std::fabs(dot(box.axes[k], d)) + 16 * unit_roundoff * max_abs(d);
+        const double height =
+            std::fabs(dot(box.axes[k], d)) + 16 * unit_roundoff * max_abs(d) + 8 * underflow_error;
         box.half[k] = std::max(box.half[k], enlarged(height + member->radius));
       }
     }
@@ -156,7 +157,7 @@ double certain_gap(const PlacedObb& a, const PlacedObb& b, double defect) {
           (a.half[i1] * m[i2][j] + a.half[i2] * m[i1][j] + b.half[j1] * m[i][j2] + b.half[j2] * m[i][j1]) -
           slack;
       // A gap along a longer vector is divided by its length; an overlap only orders visits.
-      best = std::max(best, gap > 0 ? gap / std::sqrt(length_sq) * (1 - 1e-12) : gap);
+      best = std::max(best, gap > 0 ? gap / std::sqrt(length_sq + 8 * (defect + 64 * unit_roundoff)) : gap);
     }
   }
   return best;

@@ -1,0 +1,129 @@
+#include <snug/query/bound.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <snug/base/contract.h>
+#include <snug/base/parallel.h>
+#include <snug/base/rounding.h>
+#include <snug/patch/evaluate.h>
+#include <snug/surface/unscale.h>
+
+namespace snug {
+namespace {
+
+// The pieces of one face, and how many splits they took.
+struct FaceBounds {
+  std::vector<PieceEnclosure> pieces;
+  std::uint64_t splits = 0;
+  bool reached = true;
+};
+
+class FaceBounder {
+ public:
+  FaceBounder(const Surface& surface, const BoundOptions& options, double target)
+      : surface_(surface), options_(options), target_(target), back_(surface.scale().inverse()) {}
+
+  FaceBounds run(FaceId face, std::uint64_t budget) {
+    result_ = {};
+    face_ = face;
+    budget_ = budget;
+    if (surface_.has_patch(face)) visit(surface_.patch(face));
+    return std::move(result_);
+  }
+
+ private:
+  void visit(const Patch& patch) {
+    PieceEnclosure piece;
+    const bool fine = fit(patch, piece);
+    const bool more = options_.tolerance ? !fine : patch.path.level() < options_.level;
+    const bool useful = !options_.tolerance || !stuck_;
+    if (more && useful && result_.splits < budget_ && patch.path.level() < PiecePath::max_level) {
+      ++result_.splits;
+      for (unsigned child = 0; child < 4; ++child) visit(split(patch, child));
+      return;
+    }
+    if (more) result_.reached = false;
+    result_.pieces.push_back(std::move(piece));
+  }
+
+  // Fits the enclosures of a piece; true if they meet the target.
+  bool fit(const Patch& patch, PieceEnclosure& piece) {
+    piece.face = face_;
+    piece.path = patch.path;
+    std::array<Vector3, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[k] = corner_point(patch, k).relative;
+      piece.corners[k] = require_representable(back_.apply(patch.origin + corners[k]));
+    }
+    if (options_.method == BoundMethod::control_box) {
+      control_points(patch, points_);
+      const Box3 box = outer_box(points_);
+      piece.box = unscaled(box, back_);
+      stuck_ = box.longest_side() <= 4 * patch.error;
+      return enlarged(box.longest_side() / 2) <= target_;
+    }
+    hull_points(surface_.library().rows(*patch.kind), patch, points_);
+    const OffsetTriangle offset = offset_triangle(points_, corners);
+    piece.offset = unscaled(offset, back_);
+    piece.interval = unscaled(interval_triangle(points_, corners), back_);
+    stuck_ = offset.radius <= 2 * offset.rounding;
+    return piece.offset->radius <= mesh_target();
+  }
+
+  [[nodiscard]] double mesh_target() const { return options_.tolerance ? *options_.tolerance / 2 : INFINITY; }
+
+  const Surface& surface_;
+  const BoundOptions& options_;
+  double target_;
+  PowerOfTwo back_;
+  FaceId face_;
+  std::uint64_t budget_ = 0;
+  bool stuck_ = false;  // rounding alone makes up the last fit: splitting does not help
+  HullPoints points_;
+  FaceBounds result_;
+};
+
+}  // namespace
+
+BoundSummary bound(const Surface& surface, const BoundOptions& options,
+                   const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor) {
+  SNUG_EXPECT(!options.tolerance || *options.tolerance > 0);
+  SNUG_EXPECT(options.level <= PiecePath::max_level);
+  const double target = options.tolerance ? surface.scale().apply(*options.tolerance / 2) : INFINITY;
+  constexpr std::size_t chunk = 256;
+  BoundSummary summary;
+  std::vector<FaceBounds> results;
+  for (std::size_t begin = 0; begin < surface.face_count(); begin += chunk) {
+    const std::size_t count = std::min(chunk, surface.face_count() - begin);
+    const std::uint64_t left = options.budget - summary.splits;
+    results.assign(count, {});
+    parallel_for(count, options.threads, [&](std::size_t from, std::size_t to) {
+      FaceBounder bounder(surface, options, target);
+      for (std::size_t i = from; i < to; ++i) {
+        monitor.checkpoint();
+        results[i] = bounder.run(FaceId(begin + i), left);
+      }
+    });
+    for (std::size_t i = 0; i < count; ++i) {
+      // The budget is spent in the order of faces, whatever the threads did.
+      const std::uint64_t rest = options.budget - summary.splits;
+      if (results[i].splits > rest) {
+        results[i] = FaceBounder(surface, options, target).run(FaceId(begin + i), rest);
+      }
+      summary.splits += results[i].splits;
+      summary.reached = summary.reached && results[i].reached;
+      for (const PieceEnclosure& piece : results[i].pieces) {
+        ++summary.count;
+        const double radius = piece.offset ? piece.offset->radius : piece.box->longest_side() / 2;
+        summary.max_radius = std::max(summary.max_radius, radius);
+        sink(piece);
+      }
+    }
+    monitor.report(static_cast<double>(begin + count) / static_cast<double>(surface.face_count()));
+  }
+  return summary;
+}
+
+}  // namespace snug

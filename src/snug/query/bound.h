@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include <snug/enclose/interval_triangle.h>
+#include <snug/enclose/offset_triangle.h>
+#include <snug/patch/piece_path.h>
+#include <snug/surface/surface.h>
+
+namespace snug {
+
+enum class BoundMethod : std::uint8_t {
+  rows,         ///< hull rows
+  control_box,  ///< the baseline: least box of the control points
+};
+
+struct BoundOptions {
+  BoundMethod method = BoundMethod::rows;
+  /// Split until each radius is at most half of this, in mesh units; with control_box, until half the box's
+  /// longest side is.
+  std::optional<double> tolerance;
+  /// Without a tolerance: split every patch this often.
+  unsigned level = 0;
+  std::uint64_t budget = 10'000'000;  ///< most splits in all
+  int threads = 0;
+};
+
+/// What encloses one piece of the limit surface, in mesh units.
+struct PieceEnclosure {
+  FaceId face;
+  PiecePath path;
+  Triangle corners;                          ///< limit corners, in double precision
+  std::optional<OffsetTriangle> offset;      ///< absent for control_box
+  std::optional<IntervalTriangle> interval;  ///< absent for control_box
+  std::optional<Box3> box;                   ///< control_box only
+};
+
+struct BoundSummary {
+  std::uint64_t count = 0;
+  double max_radius = 0;
+  std::uint64_t splits = 0;
+  bool reached = true;  ///< every piece meets the tolerance; else budget, levels or rounding stood in the way
+};
+
+/// Enclosures of the whole limit surface, passed to `sink` face by face, pieces of a face in the order of
+/// their paths.
+///
+/// Guarantee: every limit point of face f lies in the union of its pieces' offset triangles, of their
+///            interval triangles, and of their boxes, each on its own, rounding included; also where
+///            `reached` is false. Same output for any number of threads.
+/// Errors:    InputError if a result does not fit a double; whatever `sink` or the monitor throws.
+/// Cost:      a piece about 2 microseconds on regular patches. Memory does not grow with the output.
+BoundSummary bound(const Surface& surface, const BoundOptions& options,
+                   const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor = {});
+
+}  // namespace snug

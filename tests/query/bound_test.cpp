@@ -1,0 +1,117 @@
+#include <snug/query/bound.h>
+
+#include <gtest/gtest.h>
+#include <snug/base/error.h>
+#include <testing/patches.h>
+
+#include <vector>
+
+namespace snug {
+namespace {
+
+struct Collected {
+  std::vector<PieceEnclosure> pieces;
+  BoundSummary summary;
+};
+
+Collected collect(const Surface& surface, const BoundOptions& options) {
+  Collected result;
+  result.summary =
+      bound(surface, options, [&](const PieceEnclosure& piece) { result.pieces.push_back(piece); });
+  return result;
+}
+
+bool same(const Collected& a, const Collected& b) {
+  if (a.pieces.size() != b.pieces.size() || a.summary.splits != b.summary.splits) return false;
+  for (std::size_t i = 0; i < a.pieces.size(); ++i) {
+    const PieceEnclosure &x = a.pieces[i], &y = b.pieces[i];
+    if (x.face != y.face || !(x.path == y.path) || x.offset->base != y.offset->base ||
+        x.offset->radius != y.offset->radius || x.interval->corner != y.interval->corner) {
+      return false;
+    }
+  }
+  return true;
+}
+
+TEST(bound, is_the_same_for_any_number_of_threads) {
+  std::mt19937_64 random(24);
+  const Surface surface = testing::surface_of(
+      oracle::meshes::disturbed(oracle::meshes::quartered(oracle::meshes::icosahedron()), 20, 0.1, random));
+  BoundOptions options;
+  options.tolerance = 0.005;
+  options.threads = 1;
+  const Collected serial = collect(surface, options);
+  for (const int threads : {0, 2, 4}) {
+    options.threads = threads;
+    EXPECT_TRUE(same(serial, collect(surface, options))) << threads;
+  }
+  options.budget = serial.summary.splits / 2;
+  const Collected half = collect(surface, options);
+  options.threads = 1;
+  EXPECT_TRUE(same(half, collect(surface, options)));
+  EXPECT_FALSE(half.summary.reached);
+  EXPECT_EQ(half.summary.splits, options.budget);
+}
+
+TEST(bound, meets_its_tolerance_with_pieces_that_tile_every_face) {
+  const Surface surface = testing::surface_of(oracle::meshes::icosahedron());
+  BoundOptions options;
+  options.tolerance = 0.01;
+  const Collected result = collect(surface, options);
+  EXPECT_TRUE(result.summary.reached);
+  EXPECT_LE(result.summary.max_radius, 0.005);
+  std::vector<double> area(surface.face_count(), 0);
+  for (const PieceEnclosure& piece : result.pieces)
+    area[piece.face.index()] += std::ldexp(1.0, -2 * static_cast<int>(piece.path.level()));
+  for (const double a : area) EXPECT_EQ(a, 1);
+}
+
+TEST(bound, says_so_when_rounding_stops_it) {
+  const Surface surface = testing::surface_of(oracle::meshes::octahedron());
+  BoundOptions options;
+  options.tolerance = 1e-17;
+  options.budget = 20000;
+  const Collected result = collect(surface, options);
+  EXPECT_FALSE(result.summary.reached);
+}
+
+TEST(bound, by_control_boxes_contains_corners_and_is_looser) {
+  const Surface surface = testing::surface_of(oracle::meshes::icosahedron());
+  BoundOptions options;
+  const double rows = collect(surface, options).summary.max_radius;
+  options.method = BoundMethod::control_box;
+  const Collected boxes = collect(surface, options);
+  EXPECT_GT(boxes.summary.max_radius, rows);
+  for (const PieceEnclosure& piece : boxes.pieces) {
+    for (const Point3& p : piece.corners) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_GE(p[k], piece.box->lower[k]);
+        EXPECT_LE(p[k], piece.box->upper[k]);
+      }
+    }
+  }
+}
+
+TEST(bound, refuses_results_that_do_not_fit_a_double) {
+  oracle::TwinMesh twin = oracle::meshes::icosahedron();
+  for (oracle::Point& p : twin.points) {
+    for (double& x : p) x *= 1.79e308;
+  }
+  const Surface surface = testing::surface_of(twin);
+  BoundOptions options;
+  options.level = 0;
+  EXPECT_NO_THROW(static_cast<void>(collect(surface, options)));  // inside the control points' hull: it fits
+}
+
+TEST(bound, stops_when_asked) {
+  const Surface surface = testing::surface_of(oracle::meshes::icosahedron());
+  const std::atomic<bool> stop{true};
+  WorkMonitor monitor;
+  monitor.stop = &stop;
+  EXPECT_THROW(bound(
+                   surface, {}, [](const PieceEnclosure&) {}, monitor),
+               Interrupted);
+}
+
+}  // namespace
+}  // namespace snug

@@ -1,0 +1,115 @@
+#include <snug/query/collide.h>
+
+#include <gtest/gtest.h>
+#include <snug/base/error.h>
+#include <testing/patches.h>
+#include <testing/placements.h>
+
+namespace snug {
+namespace {
+
+struct Pair {
+  Surface a, b;
+  CollisionModel model_a, model_b;
+  CollideScratch scratch;
+  Pair(const oracle::TwinMesh& x, const oracle::TwinMesh& y, int threads = 1)
+      : a(testing::surface_of(x)),
+        b(testing::surface_of(y)),
+        model_a(a, threads),
+        model_b(b, threads),
+        scratch(model_a, model_b) {}
+  Collision ask(const Placement& place, const CollideOptions& options) {
+    return collide(model_a, {}, model_b, place, options, scratch);
+  }
+};
+
+Placement moved(double x, double y, double z) { return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}}; }
+
+bool same(const Collision& x, const Collision& y) {
+  return x.verdict == y.verdict && x.lower == y.lower && x.upper == y.upper && x.witness == y.witness &&
+         x.stats.splits == y.stats.splits;
+}
+
+TEST(collide, separates_what_is_apart_and_meets_what_overlaps) {
+  Pair pair(oracle::meshes::icosahedron(), oracle::meshes::octahedron());
+  const Collision apart = pair.ask(moved(5, 0, 0), {0.01, 0});
+  EXPECT_EQ(apart.verdict, Verdict::separated);
+  EXPECT_GT(apart.lower, 0);
+  EXPECT_LT(apart.lower, 5);
+  const Collision touching = pair.ask(moved(0.9, 0, 0), {0.01, 0});
+  EXPECT_EQ(touching.verdict, Verdict::within);
+  ASSERT_TRUE(touching.witness && touching.upper);
+  EXPECT_LE(*touching.upper, 0.01);
+  EXPECT_LE(distance((*touching.witness)[0], (*touching.witness)[1]), 0.01);
+}
+
+// A shell inside a shell: no points in common, however deep.
+TEST(collide, separates_nested_shells) {
+  oracle::TwinMesh inner = oracle::meshes::icosahedron();
+  for (oracle::Point& p : inner.points) p = {0.5 * p[0], 0.5 * p[1], 0.5 * p[2]};
+  Pair pair(oracle::meshes::icosahedron(), inner);
+  EXPECT_EQ(pair.ask({}, {0.001, 0}).verdict, Verdict::separated);
+}
+
+TEST(collide, honours_the_margin) {
+  Pair pair(oracle::meshes::icosahedron(), oracle::meshes::icosahedron());
+  const Collision near = pair.ask(moved(2, 0, 0), {1e-6, 0});
+  ASSERT_EQ(near.verdict, Verdict::separated);
+  EXPECT_EQ(pair.ask(moved(2, 0, 0), {1e-6, 1.5}).verdict, Verdict::within);
+}
+
+TEST(collide, finds_coincident_surfaces_at_once) {
+  Pair pair(oracle::meshes::icosahedron(), oracle::meshes::icosahedron());
+  EXPECT_EQ(pair.ask({}, {1e-9, 0}).verdict, Verdict::within);
+}
+
+TEST(collide, does_not_depend_on_threads_or_earlier_queries) {
+  std::mt19937_64 random(28);
+  const oracle::TwinMesh x =
+      oracle::meshes::disturbed(oracle::meshes::quartered(oracle::meshes::icosahedron()), 10, 0.1, random);
+  Pair one(x, oracle::meshes::bipyramid(7), 1), two(x, oracle::meshes::bipyramid(7), 2);
+  for (int trial = 0; trial < 300; ++trial) {
+    const Placement place = testing::random_placement(random, testing::random_vector(random, 1.5));
+    const CollideOptions options{0.002, 0};
+    Pair fresh(x, oracle::meshes::bipyramid(7), 1);
+    const Collision answer = one.ask(place, options);
+    EXPECT_TRUE(same(answer, two.ask(place, options)));
+    if (trial % 30 == 0) {
+      EXPECT_TRUE(same(answer, fresh.ask(place, options)));
+    }
+  }
+}
+
+TEST(collide, is_undecided_when_the_budget_ends) {
+  Pair pair(oracle::meshes::icosahedron(), oracle::meshes::icosahedron());
+  const Collision answer = pair.ask(moved(1.2, 0.3, 0.1), {1e-12, 0, 3});
+  EXPECT_EQ(answer.verdict, Verdict::undecided);
+  EXPECT_EQ(answer.lower, 0);
+  EXPECT_LE(answer.stats.splits, 3u);
+}
+
+TEST(collide, works_at_the_ends_of_the_doubles) {
+  for (const double size : {1e-300, 1e-160, 1e160, 1e300}) {
+    oracle::TwinMesh twin = oracle::meshes::icosahedron();
+    for (oracle::Point& p : twin.points) p = {size * p[0], size * p[1], size * p[2]};
+    Pair pair(twin, twin);
+    EXPECT_EQ(pair.ask(moved(4 * size, 0, 0), {0.01 * size, 0}).verdict, Verdict::separated) << size;
+    EXPECT_EQ(pair.ask(moved(size, 0, 0), {0.01 * size, 0}).verdict, Verdict::within) << size;
+  }
+}
+
+TEST(collide, compares_meshes_of_very_different_size) {
+  oracle::TwinMesh grain = oracle::meshes::icosahedron();
+  for (oracle::Point& p : grain.points) p = {1e-9 * p[0], 1e-9 * p[1], 1e-9 * p[2]};
+  Pair pair(oracle::meshes::icosahedron(), grain);
+  EXPECT_EQ(pair.ask(moved(0, 0, 0), {0.01, 0}).verdict, Verdict::separated);  // at the centre
+  EXPECT_EQ(pair.ask(moved(3, 0, 0), {0.01, 0}).verdict, Verdict::separated);
+}
+
+TEST(collide, refuses_a_model_without_surface) {
+  const Surface nothing = testing::surface_of(oracle::meshes::grid(1, 1, oracle::Boundary::none));
+  EXPECT_THROW(CollisionModel{nothing}, InputError);
+}
+
+}  // namespace
+}  // namespace snug
