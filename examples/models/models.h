@@ -1,0 +1,16 @@
+#pragma once
+// The example models; each function returns a finished control mesh.
+
+#include "triangle_mesh.h"
+
+namespace models {
+
+TriangleMesh make_star();
+TriangleMesh make_pawn();
+TriangleMesh make_ring();
+TriangleMesh make_head();
+TriangleMesh make_bust();
+TriangleMesh make_demon();
+TriangleMesh make_figure();
+
+}  // namespace models
