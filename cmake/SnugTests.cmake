@@ -42,7 +42,7 @@ function(snug_test name)
   target_compile_definitions(${name} PRIVATE SNUG_MODELS_DIR="${PROJECT_SOURCE_DIR}/examples/models"
                                              SNUG_CORPUS_DIR="${PROJECT_SOURCE_DIR}/tests/corpus")
   target_link_libraries(${name} PRIVATE ${ARG_LINK})
-  if(TARGET snug_${folder} AND NOT folder STREQUAL "oracle")
+  if(TARGET snug_${folder} AND NOT folder MATCHES "^(oracle|command)$")
     target_link_libraries(${name} PRIVATE snug_${folder})
   endif()
   target_link_libraries(${name} PRIVATE snug_flags snug_warnings GTest::gtest_main)

@@ -1,0 +1,140 @@
+#include "common.h"
+
+#include <cstdio>
+
+#include <fmt/core.h>
+#include <snug/base/contract.h>
+#include <snug/io/atomic_file.h>
+#include <snug/io/mesh_file.h>
+#include <CLI/CLI.hpp>
+
+#include "progress_bar.h"
+#include "version.h"
+
+namespace snug::command {
+
+void add_common_options(CLI::App& app, CommonOptions& options) {
+  app.add_option("--scheme", options.scheme,
+                 "Subdivision scheme; auto: loop for triangles alone, else catmark")
+      ->check(CLI::IsMember({"auto", "loop", "catmark", "catmull-clark", "doo-sabin", "midedge"}))
+      ->capture_default_str();
+  app.add_option("--boundary", options.boundary,
+                 "What the boundary does; default: the file's tag, else edge-and-corner")
+      ->check(CLI::IsMember({"edge-and-corner", "edge-only", "none"}));
+  app.add_option("--bounds", options.bounds,
+                 "What encloses: hull rows, or the baseline box of the control points")
+      ->check(CLI::IsMember({"rows", "table", "control-box"}))
+      ->capture_default_str();
+  app.add_flag("--json", options.json, "One JSON document on standard output");
+  app.add_option("-o", options.output, "Output file; the format follows the ending");
+  app.add_option("--threads", options.threads, "Threads; 0: all cores. Results do not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app.add_option("--budget", options.budget, "Most patches split before the answer is what was reached")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 40))
+      ->capture_default_str();
+  app.add_flag("--quiet", options.quiet, "No progress and no notes on standard error");
+}
+
+Scheme choose_scheme(const std::string& name, const ControlMesh& mesh) {
+  if (name == "loop") return Scheme::loop;
+  if (name == "catmark" || name == "catmull-clark") return Scheme::catmark;
+  if (name == "doo-sabin") return Scheme::doo_sabin;
+  if (name == "midedge") return Scheme::midedge;
+  return natural_scheme(mesh);
+}
+
+SchemeOptions choose_rules(const CommonOptions& options, const std::string& scheme, const ControlMesh& mesh) {
+  SchemeOptions rules;
+  rules.scheme = choose_scheme(scheme, mesh);
+  if (options.boundary == "none") {
+    rules.boundary = BoundaryRule::none;
+  } else if (options.boundary == "edge-only") {
+    rules.boundary = BoundaryRule::edge_only;
+  } else if (options.boundary.empty() && mesh.tags.boundary) {
+    rules.boundary = *mesh.tags.boundary;
+  }
+  return rules;
+}
+
+ControlMesh load_mesh(const std::string& path, const CommonOptions& options) {
+  Notes notes;
+  if (!options.quiet) notes = [](const std::string& line) { fmt::print(stderr, "snug: note: {}\n", line); };
+  ProgressBar bar("reading " + path, options.quiet);
+  return read_mesh(path, notes, bar.monitor());
+}
+
+void naming(const std::string& path, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    throw InputError(error.problem(), path + ": " + error.what());
+  }
+}
+
+Surface load_surface(const std::string& path, const CommonOptions& options, const std::string& scheme,
+                     const std::shared_ptr<BoundLibrary>& library) {
+  ControlMesh mesh = load_mesh(path, options);
+  std::optional<Surface> surface;
+  naming(path, [&] {
+    const SchemeOptions rules = choose_rules(options, scheme, mesh);
+    ProgressBar bar("preparing " + path, options.quiet);
+    surface.emplace(std::move(mesh), rules, library, options.threads, bar.monitor());
+  });
+  return std::move(*surface);
+}
+
+void require_rows(const CommonOptions& options) {
+  if (options.bounds == "table") {
+    throw UsageError("--bounds table: the dissertation's tables are not built yet; give rows or control-box");
+  }
+}
+
+struct Report::Target {
+  explicit Target(const std::string& path) : file(path) {}
+  AtomicFile file;
+};
+
+Report::Report(const char* command, const CommonOptions& options) : start_(std::chrono::steady_clock::now()) {
+  const std::string& output = options.output;
+  if (output.empty() && !options.json) return;
+  if (!output.empty() && output != "-" && !output.ends_with(".json")) {
+    throw UsageError("-o " + output + ": " + command + " writes JSON; give a file that ends in .json");
+  }
+  const std::string target = output.empty() ? "-" : output;
+  to_standard_output_ = target == "-";
+  target_ = std::make_unique<Target>(target);
+  writer_ = std::make_unique<JsonWriter>([this](std::string_view text) { target_->file.write(text); });
+  writer_->begin_object().field("command", command).field("version", version_number);
+}
+
+Report::~Report() = default;
+
+void Report::heads(const std::vector<std::string>& meshes, const std::vector<std::string>& schemes) {
+  if (!writer_) return;
+  const auto one_or_list = [&](const char* key, const std::vector<std::string>& values) {
+    writer_->key(key);
+    if (values.size() == 1) {
+      writer_->value(values[0]);
+      return;
+    }
+    writer_->begin_array();
+    for (const std::string& value : values) writer_->value(value);
+    writer_->end_array();
+  };
+  one_or_list("mesh", meshes);
+  one_or_list("scheme", schemes);
+}
+
+void Report::text(const std::string& line) {
+  if (!to_standard_output_) fmt::print("{}\n", line);
+}
+
+void Report::finish() {
+  if (!writer_) return;
+  writer_->field("seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
+  writer_->end_object().finish();
+  target_->file.commit();
+}
+
+}  // namespace snug::command

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <snug/surface/surface.h>
+
+#include "exit_status.h"
+#include "json_writer.h"
+#include "length.h"
+
+namespace CLI {
+class App;
+}
+
+namespace snug::command {
+
+/// Options that every command takes.
+struct CommonOptions {
+  std::string scheme = "auto";
+  std::string boundary;  ///< empty: the file's tag, else edge-and-corner
+  std::string bounds = "rows";
+  bool json = false;
+  std::string output;  ///< -o; empty for none
+  int threads = 0;
+  std::uint64_t budget = 1'000'000;
+  bool quiet = false;
+};
+
+/// Adds them to a sub-command.
+void add_common_options(CLI::App& app, CommonOptions& options);
+
+/// A sub-command: what it added to the parser, and what runs if it is the one chosen.
+struct Command {
+  CLI::App* app;
+  std::function<ExitStatus()> run;
+};
+
+/// The scheme that --scheme (or an override of it) names for this mesh.
+[[nodiscard]] Scheme choose_scheme(const std::string& name, const ControlMesh& mesh);
+/// The rules for a mesh: the option if given, else the file's tag, else edge-and-corner.
+[[nodiscard]] SchemeOptions choose_rules(const CommonOptions& options, const std::string& scheme,
+                                         const ControlMesh& mesh);
+
+/// Reads a control mesh; notes of the reader go to standard error unless quiet.
+[[nodiscard]] ControlMesh load_mesh(const std::string& path, const CommonOptions& options);
+
+/// Reads a mesh and makes its surface. Refusals name the file.
+[[nodiscard]] Surface load_surface(const std::string& path, const CommonOptions& options,
+                                   const std::string& scheme, const std::shared_ptr<BoundLibrary>& library);
+/// Calls `work` and puts the name of the file in front of refusals it throws.
+void naming(const std::string& path, const std::function<void()>& work);
+
+/// Refuses what is no bound yet; the commands that bound call it.
+void require_rows(const CommonOptions& options);
+
+/// The output of a command: one JSON document on standard output or in the file of -o, or a few lines of
+/// text.
+///
+/// The head of the document (command, version) is written at once; mesh and scheme by heads(); finish() adds
+/// seconds.
+class Report {
+ public:
+  /// Errors:    UsageError for an output file that does not end in .json.
+  Report(const char* command, const CommonOptions& options);
+  ~Report();
+
+  /// Is a document wanted? Else write() is not to be called.
+  [[nodiscard]] bool json() const { return writer_ != nullptr; }
+  [[nodiscard]] JsonWriter& write() { return *writer_; }
+  void heads(const std::vector<std::string>& meshes, const std::vector<std::string>& schemes);
+  /// One line for people, on standard output unless the document goes there.
+  void text(const std::string& line);
+  /// Ends the document and puts the file in place.
+  void finish();
+
+ private:
+  struct Target;
+  bool to_standard_output_ = false;
+  std::chrono::steady_clock::time_point start_;
+  std::unique_ptr<Target> target_;
+  std::unique_ptr<JsonWriter> writer_;
+};
+
+[[nodiscard]] Command add_info(CLI::App& app);
+[[nodiscard]] Command add_bound(CLI::App& app);
+[[nodiscard]] Command add_eval(CLI::App& app);
+[[nodiscard]] Command add_subdivide(CLI::App& app);
+[[nodiscard]] Command add_collide(CLI::App& app);
+[[nodiscard]] Command add_render(CLI::App& app);
+[[nodiscard]] Command add_experiment(CLI::App& app);
+
+}  // namespace snug::command

@@ -1,0 +1,84 @@
+#include <fmt/core.h>
+#include <snug/mesh/statistics.h>
+#include <snug/mesh/validate.h>
+#include <CLI/CLI.hpp>
+
+#include "common.h"
+
+namespace snug::command {
+namespace {
+
+struct Options : CommonOptions {
+  std::string mesh;
+};
+
+std::size_t regular_valence(Scheme scheme) { return scheme == Scheme::loop ? 6 : 4; }
+
+ExitStatus run(const Options& options) {
+  const ControlMesh mesh = load_mesh(options.mesh, options);
+  const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
+  const MeshStatistics counts = statistics(mesh, regular_valence(rules.scheme));
+  const std::vector<Defect> found = defects(mesh);
+  std::optional<std::size_t> kinds;
+  std::string refusal;
+  try {
+    kinds = Surface(mesh, rules, std::make_shared<BoundLibrary>(), options.threads).kind_count();
+  } catch (const InputError& error) {
+    refusal = error.what();
+  }
+
+  Report report("info", options);
+  report.heads({options.mesh}, {name_of(rules.scheme)});
+  if (report.json()) {
+    JsonWriter& json = report.write();
+    json.field("vertices", mesh.vertex_count())
+        .field("faces", mesh.face_count())
+        .field("edges", counts.edges);
+    json.field("closed", counts.closed).field("components", counts.components);
+    json.key("valence").begin_array().value(counts.min_valence).value(counts.max_valence).end_array();
+    json.field("extraordinary", counts.extraordinary).field("boundary_edges", counts.boundary_edges);
+    json.field("creases", mesh.tags.creases.size()).field("corners", mesh.tags.corners.size());
+    json.field("holes", mesh.tags.holes.size());
+    json.key("kinds");
+    kinds ? json.value(*kinds) : json.null();
+    json.key("refusal");
+    kinds ? json.null() : json.value(refusal);
+    json.key("defects").begin_array();
+    for (const Defect& defect : found) {
+      json.begin_object().field("kind", name_of(defect.kind)).field("text", defect.text);
+      json.field("legal", is_legal(defect.kind)).end_object();
+    }
+    json.end_array();
+  }
+  report.text(fmt::format("{}: {} vertices, {} edges, {} faces, {}, {} component{}", options.mesh,
+                          mesh.vertex_count(), counts.edges, mesh.face_count(),
+                          counts.closed ? "closed" : "open", counts.components,
+                          counts.components == 1 ? "" : "s"));
+  report.text(fmt::format("valence {} to {}, {} extraordinary vertices, {} boundary edges, {} creases",
+                          counts.min_valence, counts.max_valence, counts.extraordinary, counts.boundary_edges,
+                          mesh.tags.creases.size()));
+  if (kinds) {
+    report.text(fmt::format("scheme {}: {} kinds of patches", name_of(rules.scheme), *kinds));
+  } else {
+    report.text(fmt::format("scheme {}: refused: {}", name_of(rules.scheme), refusal));
+  }
+  for (std::size_t i = 0; i < found.size() && i < 10; ++i) {
+    report.text(fmt::format("{}: {}", is_legal(found[i].kind) ? "note" : "defect", found[i].text));
+  }
+  if (found.size() > 10) report.text(fmt::format("and {} more", found.size() - 10));
+  report.finish();
+  return ExitStatus::answered;
+}
+
+}  // namespace
+
+Command add_info(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("info", "Counts, valences and defects of a mesh, of a broken one too");
+  command->add_option("MESH", options->mesh, "Control mesh (OBJ or OFF; - for standard input)")->required();
+  add_common_options(*command, *options);
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace snug::command

@@ -1,0 +1,233 @@
+#include "scene_builder.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <snug/base/parallel.h>
+#include <snug/query/evaluate.h>
+
+namespace snug::command {
+namespace {
+
+constexpr std::uint32_t no_rank = UINT32_MAX;
+
+// A point as the camera sees it, in pixels from the middle of the picture.
+struct Pixel {
+  double x, y;
+};
+
+Pixel seen(const Camera& camera, int height, Point3 p) {
+  const Vector3 v = p - camera.eye;
+  const double pixels = 0.5 * height / (camera.tangent * dot(v, camera.forward));
+  return {dot(v, camera.right) * pixels, dot(v, camera.up) * pixels};
+}
+
+double distance(const Pixel& a, const Pixel& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+}  // namespace
+
+PictureUnits::PictureUnits(std::span<const PlacedSurface> parts) {
+  double largest = 0;
+  for (const PlacedSurface& part : parts) {
+    const Box3 box = used_box(part.surface->mesh());
+    if (box.empty()) continue;
+    largest = std::max({largest, max_abs(box.lower - Point3{}), max_abs(box.upper - Point3{}),
+                        max_abs(part.placement.translation())});
+  }
+  // Two halvings: sums of a rotated point and a translation stay small.
+  scale_ = PowerOfTwo::normalising(largest) * PowerOfTwo(-2);
+  Box3 box;
+  for (const PlacedSurface& part : parts) {
+    const ControlMesh& mesh = part.surface->mesh();
+    for (const VertexId v : mesh.face_vertices) {
+      box.add(placed(part.placement, scale_.apply(mesh.points[v.index()])));
+    }
+  }
+  if (box.empty()) return;
+  centre_ = box.lower + 0.5 * (box.upper - box.lower);
+  if (const double zoom = 1 / box.longest_side(); std::isfinite(zoom)) zoom_ = zoom;
+}
+
+Tessellation::Tessellation(const PlacedSurface& part, const PictureUnits& units, std::uint32_t steps,
+                           int threads, const WorkMonitor& monitor)
+    : topology_(&part.surface->topology()),
+      steps_(steps),
+      points_a_face_(std::size_t{steps + 1} * (steps + 2) / 2) {
+  const Surface& surface = *part.surface;
+  rank_.assign(surface.face_count(), no_rank);
+  vertex_owner_.assign(topology_->vertex_count(), no_half_edge);
+  for (std::size_t f = 0; f < surface.face_count(); ++f) {
+    if (!surface.has_patch(FaceId(f))) continue;
+    rank_[f] = static_cast<std::uint32_t>(faces_.size());
+    faces_.emplace_back(f);
+    const HalfEdge first = topology_->first_of(FaceId(f));
+    for (HalfEdge h = first; h < first + 3; ++h) {
+      HalfEdge& owner = vertex_owner_[topology_->from(h).index()];
+      if (owner == no_half_edge) owner = h;
+    }
+  }
+  positions_.resize(faces_.size() * points_a_face_);
+  normals_.resize(faces_.size() * points_a_face_);
+  parallel_for(faces_.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t rank = begin; rank < end; ++rank) {
+      monitor.checkpoint();
+      const FaceEvaluator evaluate_at(surface, faces_[rank]);
+      std::size_t at = rank * points_a_face_;
+      for (std::uint32_t j = 0; j <= steps_; ++j) {
+        for (std::uint32_t i = 0; i + j <= steps_; ++i, ++at) {
+          // The far edge is met exactly: u + v rounds to at most 1.
+          const double v = static_cast<double>(j) / steps_,
+                       u = std::fmin(static_cast<double>(i) / steps_, 1 - v);
+          const SurfacePoint point = evaluate_at({u, v});
+          positions_[at] = units(part.placement, point.position);
+          if (point.normal) normals_[at] = units(part.placement, *point.normal);
+        }
+      }
+    }
+  });
+}
+
+std::vector<double> Tessellation::longest_edges(const Camera& camera, int height) const {
+  std::vector<double> longest(faces_.size(), 0);
+  for (std::size_t rank = 0; rank < faces_.size(); ++rank) {
+    for (std::size_t side = 0; side < 3; ++side) {
+      double sum = 0;
+      Pixel last{};
+      for (std::uint32_t along = 0; along <= steps_; ++along) {
+        const Pixel next =
+            seen(camera, height, positions_[rank * points_a_face_ + number(on_side(side, along))]);
+        if (along > 0) sum += distance(last, next);
+        last = next;
+      }
+      longest[rank] = std::max(longest[rank], sum);
+    }
+  }
+  return longest;
+}
+
+//                  2
+//                 / \        side s runs from corner s to corner s + 1,
+//            2   /   \   1   i grows from corner 0 to corner 1,
+//               /     \      j from corner 0 to corner 2
+//              0-------1
+//                  0
+Tessellation::LatticePoint Tessellation::on_side(std::size_t side, std::uint32_t steps_along) const {
+  switch (side) {
+    case 0:
+      return {steps_along, 0};
+    case 1:
+      return {steps_ - steps_along, steps_along};
+    default:
+      return {0, steps_ - steps_along};
+  }
+}
+
+Point3 Tessellation::shared_position(std::size_t rank, LatticePoint p) const {
+  const auto lent_by = [&](HalfEdge h, std::uint32_t steps_along) {
+    const FaceId f = topology_->face_of(h);
+    return positions_[rank_[f.index()] * points_a_face_ +
+                      number(on_side(h - topology_->first_of(f), steps_along))];
+  };
+  const HalfEdge first = topology_->first_of(faces_[rank]);
+  for (std::uint32_t side = 0; side < 3; ++side) {
+    const std::uint32_t k = steps_ - p.i - p.j;
+    const std::uint32_t across = side == 0 ? p.j : side == 1 ? k : p.i;
+    if (across > 0) continue;
+    const std::uint32_t along = side == 0 ? p.i : side == 1 ? p.j : k;
+    const HalfEdge h = first + side;
+    if (along == 0) return lent_by(vertex_owner_[topology_->from(h).index()], 0);
+    if (along == steps_) return lent_by(vertex_owner_[topology_->to(h).index()], 0);
+    const HalfEdge twin = topology_->twin(h);
+    const bool twin_lends =
+        twin != no_half_edge && twin < h && rank_[topology_->face_of(twin).index()] != no_rank;
+    return twin_lends ? lent_by(twin, steps_ - along) : lent_by(h, along);
+  }
+  return positions_[rank * points_a_face_ + number(p)];
+}
+
+void Tessellation::add_to(Scene& scene, std::uint32_t material, int threads) const {
+  const std::size_t before = scene.triangles.size(), triangles_a_face = std::size_t{steps_} * steps_;
+  scene.triangles.resize(before + triangle_count());
+  parallel_for(faces_.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t rank = begin; rank < end; ++rank) {
+      std::size_t next = before + rank * triangles_a_face;
+      const auto add = [&](LatticePoint a, LatticePoint b, LatticePoint c) {
+        ShadedTriangle& triangle = scene.triangles[next++];
+        triangle.material = material;
+        std::size_t corner = 0;
+        for (const LatticePoint p : {a, b, c}) {
+          triangle.corner[corner] = shared_position(rank, p);
+          triangle.normal[corner++] = normals_[rank * points_a_face_ + number(p)];
+        }
+      };
+      for (std::uint32_t j = 0; j < steps_; ++j) {
+        for (std::uint32_t i = 0; i + j < steps_; ++i) {
+          add({i, j}, {i + 1, j}, {i, j + 1});
+          if (i + j + 1 < steps_) add({i + 1, j + 1}, {i, j + 1}, {i + 1, j});
+        }
+      }
+    }
+  });
+}
+
+std::vector<Polyhedron> enclosure_hulls(std::span<const IntervalTriangle> enclosures,
+                                        const Placement& placement, const PictureUnits& units, int threads,
+                                        const WorkMonitor& monitor) {
+  std::vector<Polyhedron> hulls(enclosures.size());
+  parallel_for(enclosures.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      monitor.checkpoint();
+      IntervalTriangle scaled = enclosures[i];
+      for (Box3& box : scaled.corner) box = {units.scale().apply(box.lower), units.scale().apply(box.upper)};
+      hulls[i] = hull_of_boxes(scaled);
+      for (Point3& p : hulls[i].points) p = units.from_scaled(placement, p);
+    }
+  });
+  return hulls;
+}
+
+void add_polyhedron(Scene& scene, const Polyhedron& solid, Point3 eye, const SolidStyle& style) {
+  const auto& points = solid.points;
+  const std::size_t count = points.size();
+  std::vector<bool> bordered(count * count, false);  // half-edges of facets towards the eye
+  for (const std::vector<std::uint32_t>& facet : solid.facets) {
+    // Twice its area: for slivers, too, better than the cross product of two sides.
+    Vector3 normal;
+    for (std::size_t i = 1; i + 1 < facet.size(); ++i) {
+      normal = normal + cross(points[facet[i]] - points[facet[0]], points[facet[i + 1]] - points[facet[0]]);
+    }
+    if (!(dot(normal, eye - points[facet[0]]) > 0)) continue;
+    for (std::size_t i = 0; i < facet.size(); ++i) {
+      const std::uint32_t from = facet[i], to = facet[(i + 1) % facet.size()];
+      bordered[from * count + to] = true;
+      if (i == 0 || i + 1 == facet.size()) continue;
+      ShadedTriangle& triangle = scene.triangles.emplace_back();
+      triangle.corner[0] = points[facet[0]];
+      triangle.corner[1] = points[from];
+      triangle.corner[2] = points[to];
+      triangle.material = style.material;
+    }
+  }
+  for (std::size_t from = 0; from < count; ++from) {
+    for (std::size_t to = 0; to < count; ++to) {
+      const bool inner = bordered[to * count + from];
+      if (!bordered[from * count + to] || (inner && to < from)) continue;
+      scene.lines.push_back(
+          {points[from], points[to], (inner ? 0.5 : 1) * style.line_width, style.line_colour});
+    }
+  }
+}
+
+void add_cage(Scene& scene, const PlacedSurface& part, const PictureUnits& units, double line_width,
+              Colour line_colour) {
+  const Topology& topology = part.surface->topology();
+  const auto place = [&](VertexId v) {
+    return units(part.placement, part.surface->mesh().points[v.index()]);
+  };
+  for (std::size_t e = 0; e < topology.edge_count(); ++e) {
+    const HalfEdge h = topology.half_of(EdgeId(e));
+    scene.lines.push_back({place(topology.from(h)), place(topology.to(h)), line_width, line_colour});
+  }
+}
+
+}  // namespace snug::command

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <snug/base/motion.h>
+#include <snug/base/progress.h>
+#include <snug/picture/camera.h>
+#include <snug/picture/polyhedron.h>
+#include <snug/picture/scene.h>
+#include <snug/query/bound.h>
+#include <snug/surface/surface.h>
+
+namespace snug::command {
+
+/// A surface where it stands in the picture.
+/// Requires:  the surface outlives it.
+struct PlacedSurface {
+  const Surface* surface;
+  Placement placement;
+};
+
+/// The coordinates of a picture: the box of the placed control meshes, whatever its size and place, is
+/// brought to the origin and to a longest side of 1.
+class PictureUnits {
+ public:
+  explicit PictureUnits(std::span<const PlacedSurface> parts);
+
+  /// From mesh units, before the placement, to the picture.
+  [[nodiscard]] Point3 operator()(const Placement& placement, Point3 p) const {
+    return from_scaled(placement, scale_.apply(p));
+  }
+  [[nodiscard]] Vector3 operator()(const Placement& placement, Vector3 direction) const {
+    return placement.rotate(direction);
+  }
+  /// The same for points that scale() was applied to.
+  [[nodiscard]] Point3 from_scaled(const Placement& placement, Point3 p) const {
+    return Point3{} + zoom_ * (placed(placement, p) - centre_);
+  }
+  /// A first step that brings the largest coordinate to about 1, without rounding.
+  [[nodiscard]] PowerOfTwo scale() const { return scale_; }
+
+ private:
+  [[nodiscard]] Point3 placed(const Placement& placement, Point3 p) const {
+    return Point3{} + placement.rotate(p - Point3{}) + scale_.apply(placement.translation());
+  }
+
+  PowerOfTwo scale_;
+  Point3 centre_;
+  double zoom_ = 1;
+};
+
+/// Limit points of every face on the same lattice. Points on edges and at vertices are taken from one of the
+/// faces there, so that triangles of neighbours share them exactly.
+class Tessellation {
+ public:
+  /// Errors:    InputError if a coordinate does not fit a double; Interrupted.
+  /// Cost:      steps^2 / 2 evaluations a face; 48 bytes each.
+  Tessellation(const PlacedSurface& part, const PictureUnits& units, std::uint32_t steps, int threads,
+               const WorkMonitor& monitor);
+
+  /// All the points, face by face, in picture units.
+  [[nodiscard]] std::span<const Point3> points() const { return positions_; }
+  [[nodiscard]] std::size_t triangle_count() const { return faces_.size() * steps_ * steps_; }
+  /// Of each face, the length on the picture of its longest edge, in pixels.
+  [[nodiscard]] std::vector<double> longest_edges(const Camera& camera, int height) const;
+  /// Adds its triangles to the scene.
+  void add_to(Scene& scene, std::uint32_t material, int threads) const;
+
+ private:
+  // Point (i, j) has the parameters u = i / steps, v = j / steps.
+  struct LatticePoint {
+    std::uint32_t i, j;
+  };
+
+  [[nodiscard]] std::size_t number(LatticePoint p) const {
+    return p.j * (steps_ + 1) - std::size_t{p.j} * (p.j - std::size_t{1}) / 2 + p.i;
+  }
+  [[nodiscard]] LatticePoint on_side(std::size_t side, std::uint32_t steps_along) const;
+  [[nodiscard]] Point3 shared_position(std::size_t rank, LatticePoint p) const;
+
+  const Topology* topology_;
+  std::uint32_t steps_;
+  std::size_t points_a_face_;
+  std::vector<FaceId> faces_;           // those that have a patch
+  std::vector<std::uint32_t> rank_;     // of a face among them, or no_rank
+  std::vector<HalfEdge> vertex_owner_;  // the corner that lends a vertex its point
+  std::vector<Point3> positions_;
+  std::vector<Vector3> normals_;
+};
+
+/// The hull of each enclosure, in picture units.
+[[nodiscard]] std::vector<Polyhedron> enclosure_hulls(std::span<const IntervalTriangle> enclosures,
+                                                      const Placement& placement, const PictureUnits& units,
+                                                      int threads, const WorkMonitor& monitor);
+
+/// How solids are drawn: facets of one material, outlined.
+struct SolidStyle {
+  std::uint32_t material;
+  double line_width;  ///< of the silhouette; the other edges that the eye sees are half as wide
+  Colour line_colour;
+};
+
+/// Adds what an eye sees of a convex solid by itself: the facets towards the eye and their edges.
+void add_polyhedron(Scene& scene, const Polyhedron& solid, Point3 eye, const SolidStyle& style);
+
+/// Adds the edges of the control mesh.
+void add_cage(Scene& scene, const PlacedSurface& part, const PictureUnits& units, double line_width,
+              Colour line_colour);
+
+}  // namespace snug::command

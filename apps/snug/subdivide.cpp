@@ -1,0 +1,63 @@
+#include <fmt/core.h>
+#include <snug/io/mesh_file.h>
+#include <snug/query/subdivide.h>
+#include <CLI/CLI.hpp>
+
+#include "common.h"
+#include "length.h"
+#include "progress_bar.h"
+
+namespace snug::command {
+namespace {
+
+struct Options : CommonOptions {
+  std::string mesh;
+  unsigned level = 1;
+  bool limit = false;
+};
+
+ExitStatus run(const Options& options) {
+  if (options.output.empty()) throw UsageError("subdivide: -o FILE is missing: where the refined mesh goes");
+  if (options.json && options.output == "-")
+    throw UsageError("subdivide: --json and -o - both want standard output");
+  ControlMesh mesh = load_mesh(options.mesh, options);
+  ControlMesh result;
+  Scheme scheme{};
+  naming(options.mesh, [&] {
+    const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
+    scheme = rules.scheme;
+    ProgressBar bar("subdividing " + options.mesh, options.quiet);
+    result = subdivide(std::move(mesh), rules, options.level, options.limit, bar.monitor());
+  });
+  write_mesh(result, options.output);
+  CommonOptions to_standard_output = options;
+  to_standard_output.output.clear();
+  Report report("subdivide", to_standard_output);
+  report.heads({options.mesh}, {name_of(scheme)});
+  if (report.json()) {
+    report.write().field("vertices", result.vertex_count()).field("faces", result.face_count());
+    report.write().field("level", options.level).field("limit", options.limit);
+  }
+  if (options.output != "-") {
+    report.text(fmt::format("{}: {} vertices, {} faces{}", options.output, result.vertex_count(),
+                            result.face_count(), options.limit ? ", at their limit positions" : ""));
+  }
+  report.finish();
+  return ExitStatus::answered;
+}
+
+}  // namespace
+
+Command add_subdivide(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("subdivide", "The refined control mesh, or its limit positions");
+  command->add_option("MESH", options->mesh, "Control mesh (OBJ or OFF; - for standard input)")->required();
+  command->add_option("--level", options->level, "Steps of subdivision")
+      ->check(CLI::Range(0u, 12u))
+      ->capture_default_str();
+  command->add_flag("--limit", options->limit, "Move every vertex to its limit position");
+  add_common_options(*command, *options);
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace snug::command

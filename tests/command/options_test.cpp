@@ -1,0 +1,122 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "run_snug.h"
+
+namespace snug::testing {
+namespace {
+
+// The document without what may differ between runs.
+nlohmann::json comparable(const std::vector<std::string>& arguments) {
+  const Outcome outcome = run_snug(arguments);
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  auto document = nlohmann::json::parse(outcome.out);
+  document.erase("seconds");
+  document.erase("stats");
+  return document;
+}
+
+TEST(threads, change_nothing) {
+  for (const std::vector<std::string>& base :
+       {std::vector<std::string>{"bound", model("bust.obj"), "--tolerance", "0.5%", "--json"},
+        {"collide", model("bust.obj"), model("pawn.obj"), "--tolerance", "0.1%", "--json"},
+        {"eval", model("head.obj"), "--json"}}) {
+    auto one = base, two = base;
+    one.insert(one.end(), {"--threads", "1"});
+    two.insert(two.end(), {"--threads", "2"});
+    EXPECT_EQ(comparable(one), comparable(two)) << base[0];
+  }
+}
+
+TEST(usage, ends_with_2) {
+  const std::string star = model("star.obj");
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {},
+           {"frobnicate"},
+           {"bound"},
+           {"bound", star, "--tolerance", "-1"},
+           {"bound", star, "--tolerance", "0"},
+           {"bound", star, "--tolerance", "1x%"},
+           {"bound", star, "--tolerance", "nan"},
+           {"bound", star, "--tolerance", "1%", "--level", "2"},
+           {"bound", star, "--level", "99"},
+           {"bound", star, "--scheme", "butterfly"},
+           {"bound", star, "--bounds", "table"},
+           {"bound", star, "--threads", "-1"},
+           {"collide", star, star},
+           {"collide", star, star, "--tolerance", "1%", "--place-b", "1 0 0"},
+           {"collide", star, star, "--tolerance", "1%", "--place-b", "1 0 0 x 0 1 0 0 0 0 1 0"},
+           {"subdivide", star},
+           {"render", star},
+           {"experiment", "nothing"}}) {
+    const Outcome outcome = run_snug(arguments);
+    EXPECT_EQ(outcome.status, 2) << (arguments.empty() ? "" : arguments[0]) << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+  }
+}
+
+TEST(placements, that_are_not_rigid_are_refused) {
+  const std::string star = model("star.obj");
+  for (const char* placement : {"2 0 0 0 0 1 0 0 0 0 1 0", "1 0 0 0 0 1 0 0 0 0 -1 0"}) {
+    EXPECT_EQ(run_snug({"collide", star, star, "--tolerance", "1%", "--place-b", placement}).status, 4);
+  }
+}
+
+TEST(verdicts, are_exit_codes_on_request_only) {
+  const std::string star = model("star.obj");
+  const std::string far = "1 0 0 9 0 1 0 0 0 0 1 0";
+  EXPECT_EQ(run_snug({"collide", star, star, "--tolerance", "1%"}).status, 0);
+  EXPECT_EQ(run_snug({"collide", star, star, "--tolerance", "1%", "--exit-code"}).status, 10);
+  EXPECT_EQ(run_snug({"collide", star, star, "--tolerance", "1%", "--exit-code", "--place-b", far}).status,
+            0);
+}
+
+TEST(help_and_version, go_to_standard_output) {
+  const Outcome version = run_snug({"--version"});
+  EXPECT_EQ(version.status, 0);
+  EXPECT_TRUE(version.out.starts_with("snug 0.1.0 (")) << version.out;
+  EXPECT_EQ(run_snug({"--help"}).status, 0);
+  for (const char* command : {"info", "bound", "eval", "subdivide", "collide", "render", "experiment"}) {
+    const Outcome help = run_snug({command, "--help"});
+    EXPECT_EQ(help.status, 0);
+    EXPECT_FALSE(help.out.empty());
+  }
+}
+
+TEST(eval, reads_parameters_from_a_file_and_names_bad_lines) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.file("good.txt")) << "# a comment\n0 0 0\n\n23 0.25 0.5\n";
+  std::ofstream(folder.file("bad.txt")) << "0 0 0\n0 0.7 0.5\n";
+  std::ofstream(folder.file("beyond.txt")) << "24 0 0\n";
+  const Outcome good = run_snug({"eval", model("star.obj"), "--at", folder.file("good.txt"), "--json"});
+  EXPECT_EQ(nlohmann::json::parse(good.out)["points"].size(), 2u);
+  const Outcome bad = run_snug({"eval", model("star.obj"), "--at", folder.file("bad.txt")});
+  EXPECT_EQ(bad.status, 3);
+  EXPECT_NE(bad.err.find("bad.txt:2"), std::string::npos) << bad.err;
+  EXPECT_EQ(run_snug({"eval", model("star.obj"), "--at", folder.file("beyond.txt")}).status, 3);
+}
+
+TEST(files_and_streams, are_the_same_document) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("star.json");
+  EXPECT_EQ(run_snug({"bound", model("star.obj"), "-o", file}).status, 0);
+  std::ifstream written(file);
+  auto document = nlohmann::json::parse(written);
+  document.erase("seconds");
+  EXPECT_EQ(document, comparable({"bound", model("star.obj"), "--json"}));
+}
+
+TEST(interruption, ends_with_130_and_leaves_nothing) {
+  const TemporaryFolder folder;
+  const Outcome outcome = interrupt_snug(
+      {"subdivide", model("bust.obj"), "--level", "9", "--quiet", "-o", folder.file("huge.obj")}, 300);
+  EXPECT_EQ(outcome.status, 130) << outcome.err;
+  EXPECT_TRUE(folder.empty());
+}
+
+}  // namespace
+}  // namespace snug::testing

@@ -1,0 +1,78 @@
+#include "run_snug.h"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace snug::testing {
+namespace {
+
+std::string slurp(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+void redirect(const std::string& path, int flags, int to) {
+  const int file = open(path.c_str(), flags, 0600);
+  if (file < 0 || dup2(file, to) < 0) _exit(126);
+  close(file);
+}
+
+Outcome run(const std::vector<std::string>& arguments, const std::string& input, int interrupt_after) {
+  const TemporaryFolder folder;
+  const std::string in = folder.file("in"), out = folder.file("out"), err = folder.file("err");
+  std::ofstream(in, std::ios::binary) << input;
+  std::vector<char*> argv{const_cast<char*>(SNUG_COMMAND)};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  const pid_t child = fork();
+  if (child < 0) throw std::runtime_error("fork");
+  if (child == 0) {
+    redirect(in, O_RDONLY, STDIN_FILENO);
+    redirect(out, O_WRONLY | O_CREAT | O_TRUNC, STDOUT_FILENO);
+    redirect(err, O_WRONLY | O_CREAT | O_TRUNC, STDERR_FILENO);
+    execv(SNUG_COMMAND, argv.data());
+    _exit(127);
+  }
+  if (interrupt_after >= 0) {
+    usleep(static_cast<useconds_t>(interrupt_after) * 1000);
+    kill(child, SIGINT);
+  }
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0) {
+    if (errno != EINTR) throw std::runtime_error("waitpid");
+  }
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status), slurp(out), slurp(err)};
+}
+
+}  // namespace
+
+Outcome run_snug(const std::vector<std::string>& arguments, const std::string& input) {
+  return run(arguments, input, -1);
+}
+
+Outcome interrupt_snug(const std::vector<std::string>& arguments, int milliseconds) {
+  return run(arguments, "", milliseconds);
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string pattern = (std::filesystem::temp_directory_path() / "snug-test-XXXXXX").string();
+  if (!mkdtemp(pattern.data())) throw std::runtime_error("mkdtemp");
+  path_ = pattern;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::string model(const std::string& name) { return std::string(SNUG_MODELS_DIR) + "/" + name; }
+
+}  // namespace snug::testing

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace snug::testing {
+
+struct Outcome {
+  int status = -1;  ///< exit status; 1000 + signal if a signal ended it
+  std::string out, err;
+};
+
+/// Runs the command with these arguments, standard input empty or `input`, and waits for it.
+[[nodiscard]] Outcome run_snug(const std::vector<std::string>& arguments, const std::string& input = "");
+
+/// Starts the command, sends it SIGINT after `milliseconds`, and waits.
+[[nodiscard]] Outcome interrupt_snug(const std::vector<std::string>& arguments, int milliseconds);
+
+/// A new empty folder, removed with all that is in it when the object goes.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
+  [[nodiscard]] bool empty() const { return std::filesystem::is_empty(path_); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Path of an example model.
+[[nodiscard]] std::string model(const std::string& name);
+
+}  // namespace snug::testing
