@@ -43,7 +43,8 @@ struct Precision {
 ///            1e-12 S to valence 60.
 /// Requires:  coordinates between 1e-140 and 1e140 in size, or zero: squares are taken.
 /// Errors:    std::invalid_argument, see TwinMesh; also if no face has a surface or a placement is not
-/// finite. Cost:      splitting a patch some 10 microseconds, once.
+/// finite.
+/// Cost:      splitting a patch some 10 microseconds, once.
 class SurfaceTwin {
  public:
   static constexpr std::size_t kLargestTree = 200'000;
