@@ -60,6 +60,7 @@ struct CountedImage {
 };
 
 /// The same picture as render() makes, with counts. Guarantee, requires, errors and cost: as render().
-[[nodiscard]] CountedImage render_counted(const Scene& scene, const Camera& camera, const RenderOptions& options = {});
+[[nodiscard]] CountedImage render_counted(const Scene& scene, const Camera& camera,
+                                          const RenderOptions& options = {});
 
 }  // namespace snug

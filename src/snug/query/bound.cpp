@@ -22,8 +22,12 @@ struct FaceBounds {
 
 class FaceBounder {
  public:
-  FaceBounder(const Surface& surface, const BoundOptions& options, double target)
-      : surface_(surface), options_(options), target_(target), back_(surface.scale().inverse()) {}
+  FaceBounder(const Surface& surface, const BoundOptions& options, double target, const WorkMonitor& monitor)
+      : surface_(surface),
+        options_(options),
+        target_(target),
+        monitor_(monitor),
+        back_(surface.scale().inverse()) {}
 
   FaceBounds run(FaceId face, std::uint64_t budget) {
     result_ = {};
@@ -41,6 +45,7 @@ class FaceBounder {
     const bool useful = !options_.tolerance || !stuck_;
     if (more && useful && result_.splits < budget_ && patch.path.level() < PiecePath::max_level) {
       ++result_.splits;
+      monitor_.checkpoint();
       for (unsigned child = 0; child < 4; ++child) visit(split(patch, child));
       return;
     }
@@ -77,6 +82,7 @@ class FaceBounder {
   const Surface& surface_;
   const BoundOptions& options_;
   double target_;
+  const WorkMonitor& monitor_;
   PowerOfTwo back_;
   FaceId face_;
   std::uint64_t budget_ = 0;
@@ -92,17 +98,18 @@ BoundSummary bound(const Surface& surface, const BoundOptions& options,
   SNUG_EXPECT(!options.tolerance || *options.tolerance > 0);
   SNUG_EXPECT(options.level <= PiecePath::max_level);
   const double target = options.tolerance ? surface.scale().apply(*options.tolerance / 2) : INFINITY;
-  constexpr std::size_t chunk = 256;
+  // Faces worked on at once: as many as their pieces are few, so that memory stays small and threads are busy.
+  constexpr std::size_t most_faces = 256, most_pieces = 1 << 16;
+  std::size_t chunk = 1;
   BoundSummary summary;
   std::vector<FaceBounds> results;
-  for (std::size_t begin = 0; begin < surface.face_count(); begin += chunk) {
-    const std::size_t count = std::min(chunk, surface.face_count() - begin);
+  for (std::size_t begin = 0, count = 0; begin < surface.face_count(); begin += count) {
+    count = std::min(chunk, surface.face_count() - begin);
     const std::uint64_t left = options.budget - summary.splits;
     results.assign(count, {});
     parallel_for(count, options.threads, [&](std::size_t from, std::size_t to) {
-      FaceBounder bounder(surface, options, target);
+      FaceBounder bounder(surface, options, target, monitor);
       for (std::size_t i = from; i < to; ++i) {
-        monitor.checkpoint();
         results[i] = bounder.run(FaceId(begin + i), left);
       }
     });
@@ -110,7 +117,7 @@ BoundSummary bound(const Surface& surface, const BoundOptions& options,
       // The budget is spent in the order of faces, whatever the threads did.
       const std::uint64_t rest = options.budget - summary.splits;
       if (results[i].splits > rest) {
-        results[i] = FaceBounder(surface, options, target).run(FaceId(begin + i), rest);
+        results[i] = FaceBounder(surface, options, target, monitor).run(FaceId(begin + i), rest);
       }
       summary.splits += results[i].splits;
       summary.reached = summary.reached && results[i].reached;
@@ -121,6 +128,9 @@ BoundSummary bound(const Surface& surface, const BoundOptions& options,
         sink(piece);
       }
     }
+    std::size_t pieces = 0;
+    for (const FaceBounds& face : results) pieces += face.pieces.size();
+    chunk = std::clamp<std::size_t>(most_pieces * count / (pieces + 1), 1, std::min(4 * count, most_faces));
     monitor.report(static_cast<double>(begin + count) / static_cast<double>(surface.face_count()));
   }
   return summary;

@@ -51,7 +51,8 @@ struct BoundSummary {
 ///            interval triangles, and of their boxes, each on its own, rounding included; also where
 ///            `reached` is false. Same output for any number of threads.
 /// Errors:    InputError if a result does not fit a double; whatever `sink` or the monitor throws.
-/// Cost:      a piece about 2 microseconds on regular patches. Memory does not grow with the output.
+/// Cost:      a piece about 2 microseconds on regular patches. Memory holds the pieces of one face,
+///            or some 65,000; it does not grow with the output.
 BoundSummary bound(const Surface& surface, const BoundOptions& options,
                    const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor = {});
 
