@@ -78,6 +78,33 @@ void bench_patches(const char* title, const Surface& surface) {
   alternate(contestants, static_cast<double>(surface.face_count()), "patch");
 }
 
+CornerFan inside(std::size_t valence) { return {0, static_cast<std::uint16_t>(valence - 1), true, false}; }
+
+// What a kind costs that was never met: the kind itself, its descendants' matrices, and its rows.
+void bench_new_kinds() {
+  std::printf("a new kind, cold library\n");
+  struct Case {
+    const char* name;
+    std::array<CornerFan, 3> corners;
+  };
+  for (const Case& c : {Case{"valences 6 6 6", {inside(6), inside(6), inside(6)}},
+                        {"valences 6 6 7", {inside(6), inside(6), inside(7)}},
+                        {"valences 6 6 12", {inside(6), inside(6), inside(12)}},
+                        {"valences 7 8 9", {inside(7), inside(8), inside(9)}},
+                        {"valences 6 6 50", {inside(6), inside(6), inside(50)}},
+                        {"valences 6 6 500", {inside(6), inside(6), inside(500)}}}) {
+    std::vector<double> seconds;
+    std::size_t rows = 0;
+    for (int round = 0; round < 7; ++round) {
+      seconds.push_back(seconds_of([&] {
+        BoundLibrary library;
+        rows = library.rows(library.kinds().find({Scheme::loop, c.corners})).count();
+      }));
+    }
+    std::printf("  %-34s %8.3f ms, %zu rows\n", c.name, 1e3 * median(seconds), rows);
+  }
+}
+
 Placement random_placement(std::mt19937_64& random, double half_room) {
   const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
   double q[4], norm = 0;
@@ -136,6 +163,7 @@ int main(int argc, char** argv) {
   const auto library = std::make_shared<BoundLibrary>();
   const ControlMesh mesh = read_mesh(argv[1]);
   const SchemeOptions rules;
+  bench_new_kinds();
   bench_patches("control mesh", Surface(mesh, rules, library, 1));
   bench_patches("refined three times", Surface(subdivide(mesh, rules, 3, false), rules, library, 1));
   bench_queries(Surface(mesh, rules, library, 1), Surface(read_mesh(argv[2]), rules, library, 1));

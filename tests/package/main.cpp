@@ -1,12 +1,26 @@
-#include <cstdio>
+// What an outside project does with the installed library: bound a surface, ask whether two touch.
 
-#include <snug/mesh/control_mesh.h>
+#include <cstdio>
+#include <memory>
+
+#include <snug/io/obj.h>
+#include <snug/query/bound.h>
+#include <snug/query/collide.h>
 
 int main() {
-  snug::ControlMesh mesh;
-  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  mesh.face_vertices = {snug::VertexId(0), snug::VertexId(1), snug::VertexId(2)};
-  mesh.face_offsets = {0, 3};
-  std::printf("consumer: %zu vertices, %zu face\n", mesh.vertex_count(), mesh.face_count());
-  return mesh.vertex_count() == 3 && mesh.face_count() == 1 ? 0 : 1;
+  const char* octahedron =
+      "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
+      "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
+  const auto library = std::make_shared<snug::BoundLibrary>();
+  const snug::Surface surface(snug::parse_obj(octahedron, "octahedron"), snug::SchemeOptions{}, library);
+  const snug::BoundSummary summary = snug::bound(surface, {}, [](const snug::PieceEnclosure&) {});
+
+  const snug::CollisionModel model(surface);
+  snug::CollideScratch scratch(model, model);
+  snug::Placement aside;
+  aside.m[3] = 2;
+  const snug::Collision answer = snug::collide(model, {}, model, aside, {.tolerance = 0.01}, scratch);
+  std::printf("consumer: %llu enclosures, %s\n", static_cast<unsigned long long>(summary.count),
+              name_of(answer.verdict));
+  return summary.count == 8 && answer.verdict == snug::Verdict::separated ? 0 : 1;
 }

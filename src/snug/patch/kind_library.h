@@ -69,8 +69,7 @@ class Kind {
 /// All kinds met so far. Grows, never forgets; kinds stay where they are as long as the library lives.
 ///
 /// Guarantee: thread-safe; a kind is made once.
-/// Cost:      find: one hash look-up; a new kind about 20 microseconds up to valence 12, linear in the
-///            valences after.
+/// Cost:      find: one hash look-up; a new kind is linear in the valences (bench/).
 class KindLibrary {
  public:
   KindLibrary() = default;

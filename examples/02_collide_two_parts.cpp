@@ -1,0 +1,39 @@
+// Moves one part toward another and asks at each step whether their limit surfaces touch.
+//
+//   02_collide_two_parts A B
+
+#include <cstdio>
+#include <exception>
+#include <memory>
+
+#include <snug/io/mesh_file.h>
+#include <snug/query/collide.h>
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: 02_collide_two_parts A B\n");
+    return 2;
+  }
+  try {
+    const auto library = std::make_shared<snug::BoundLibrary>();
+    const snug::Surface a(snug::read_mesh(argv[1]), snug::SchemeOptions{}, library);
+    const snug::Surface b(snug::read_mesh(argv[2]), snug::SchemeOptions{}, library);
+
+    // Trees are made once; the scratch memory is made once a thread and used again by every query.
+    const snug::CollisionModel model_a(a), model_b(b);
+    snug::CollideScratch scratch(model_a, model_b);
+    const double size = a.size() > b.size() ? a.size() : b.size();
+    for (int step = 4; step >= 0; --step) {
+      snug::Placement place_b;
+      place_b.m[3] = 0.5 * step * size;
+      const snug::Collision answer =
+          snug::collide(model_a, {}, model_b, place_b, {.tolerance = 0.001 * size}, scratch);
+      std::printf("moved by %g: %s, distance at least %g\n", place_b.m[3], snug::name_of(answer.verdict),
+                  answer.lower);
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,71 @@
+// More meshes, for those who have them: SNUG_EXTRA_MODELS names a folder. Every OBJ and OFF file in it that is accepted is
+// bounded and compared with the twin.
+
+#include <snug/query/bound.h>
+
+#include <gtest/gtest.h>
+#include <oracle/loop_twin.h>
+#include <snug/base/error.h>
+#include <snug/io/mesh_file.h>
+#include <testing/containment.h>
+#include <testing/twins.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+
+namespace snug {
+namespace {
+
+constexpr std::size_t most_faces = 8000;  // what the twin samples in a few seconds
+
+// Checks samples of every face against the union of its pieces; returns how many there were.
+std::size_t check(const Surface& surface, const BoundOptions& options,
+                  const std::vector<oracle::LimitSample>& samples, const std::string& name) {
+  std::vector<std::vector<PieceEnclosure>> pieces(surface.face_count());
+  bound(surface, options, [&](const PieceEnclosure& piece) { pieces[piece.face.index()].push_back(piece); });
+  for (const oracle::LimitSample& s : samples) {
+    const testing::Extended p{s.position[0], s.position[1], s.position[2]};
+    const long double slack = 2.0L * s.error;
+    bool in_offset = false, in_interval = false;
+    for (const PieceEnclosure& piece : pieces[s.face]) {
+      in_offset = in_offset || testing::within_radius(p, piece.offset->base, piece.offset->radius + slack);
+      in_interval = in_interval || testing::in_interval_triangle(p, *piece.interval, slack);
+      if (in_offset && in_interval) break;
+    }
+    EXPECT_TRUE(in_offset && in_interval) << name << ", face " << s.face << " at " << s.u << ", " << s.v;
+    if (::testing::Test::HasFailure()) return 0;
+  }
+  return samples.size();
+}
+
+TEST(extra_models, limit_points_lie_inside_their_enclosures) {
+  const char* folder = std::getenv("SNUG_EXTRA_MODELS");
+  if (!folder) GTEST_SKIP() << "SNUG_EXTRA_MODELS names no folder";
+  std::size_t accepted = 0, refused = 0, points = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string path = entry.path().string();
+    if (!path.ends_with(".obj") && !path.ends_with(".off")) continue;
+    try {
+      const ControlMesh mesh = read_mesh(path);
+      if (mesh.face_count() > most_faces) continue;
+      SchemeOptions rules{natural_scheme(mesh), mesh.tags.boundary.value_or(BoundaryRule::edge_and_corner)};
+      const Surface surface(mesh, rules, std::make_shared<BoundLibrary>());
+      const auto samples =
+          oracle::sample_uniform(testing::twin_mesh(mesh, rules.boundary), mesh.face_count() > 1500 ? 1 : 3);
+      BoundOptions options;
+      points += check(surface, options, samples, path);
+      options.tolerance = 0.01 * surface.size();
+      points += check(surface, options, samples, path);
+      ++accepted;
+    } catch (const InputError&) {
+      ++refused;
+    }
+    if (HasFailure()) return;
+  }
+  std::cout << accepted << " meshes accepted, " << refused << " refused, " << points << " checks\n";
+  EXPECT_GT(accepted, 0u);
+}
+
+}  // namespace
+}  // namespace snug
