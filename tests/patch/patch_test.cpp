@@ -49,5 +49,42 @@ TEST(split, keeps_the_limit_surface) {
   }
 }
 
+// Control points that are off by as much as `error` allows: what is made of them is off by no more than it says.
+TEST(patch_error, covers_points_that_are_off_through_splits_and_evaluation) {
+  KindLibrary library;
+  std::mt19937_64 random(32);
+  for (const oracle::TwinMesh& twin : testing::assorted_meshes(32)) {
+    if (twin.boundary == oracle::Boundary::none) continue;
+    const ControlMesh mesh = testing::control_mesh(twin);
+    const Topology topology(mesh);
+    for (std::size_t f = 0; f < topology.face_count(); f += 5) {
+      const TurnedKey key = kind_key(topology, FaceId(f), testing::rules(twin));
+      std::vector<VertexId> control;
+      control_vertices(topology, FaceId(f), key.first, control);
+      Patch exact = make_patch(library.find(key.key), key.first, mesh.points, control);
+      Patch off = exact;
+      const double error = 1e-3;
+      off.error = error;
+      const bool all_alike = random() % 2;  // the worst case for masks that are not negative
+      for (Vector3& p : off.points) {
+        p = p + (all_alike || random() % 2 ? error : -error) * Vector3{1, -1, 1};
+        off.largest = std::max(off.largest, max_abs(p));
+      }
+      for (int level = 0; level < 8; ++level) {
+        for (const TriangleParameter at : {TriangleParameter{0, 0}, {1, 0}, {0, 1}, {0.3, 0.4}}) {
+          const LimitPoint a = limit_point(exact, at), b = limit_point(off, at);
+          EXPECT_LE(max_abs(a.relative - b.relative), b.error + a.error);
+        }
+        const auto child = static_cast<unsigned>(random() % 4);
+        exact = split(exact, child);
+        off = split(off, child);
+        for (std::size_t i = 0; i < exact.points.size(); ++i) {
+          EXPECT_LE(max_abs(exact.points[i] - off.points[i]), off.error + exact.error);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace snug

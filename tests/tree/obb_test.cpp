@@ -97,24 +97,29 @@ TEST(certain_gap, never_exceeds_the_distance_of_the_contents) {
 }
 
 // A placement may stretch by as much as rigidity_tolerance: gaps along cross products stay below the distance all the same.
+// Thin boxes along nearly the same direction, one above the other, turned so that only the cross product sees the gap.
 TEST(certain_gap, holds_for_placements_that_stretch_as_far_as_allowed) {
-  for (const double angle : {0.03, 0.05, 0.1, 0.5}) {
-    OffsetTriangle a{{Point3{-1, 0, 0}, {1, 0, 0}, {1, 0, 0}}, 0}, b{{Point3{}, {}, {}}, 0};
-    b.base = {Point3{-std::cos(angle), -std::sin(angle), 0},
-              {std::cos(angle), std::sin(angle), 0},
-              {std::cos(angle), std::sin(angle), 0}};
-    const OffsetTriangle* const only_a = &a;
-    const OffsetTriangle* const only_b = &b;
-    PlacedFrame here;
-    const double e = 0.499999e-9;
-    here.rows = {Vector3{1 + e, e, e}, {e, 1 + e, e}, {e, e, 1 + e}};
-    here.defect = 1e-9;
-    PlacedFrame there = here;
-    there.translation = {0, 0, 1};
-    // Both segments keep their middle, so the distance is 1 at most.
-    EXPECT_LE(
-        certain_gap(placed(outer_obb({&only_a, 1}), here), placed(outer_obb({&only_b, 1}), there), 2e-9), 1.0)
-        << angle;
+  const double e = 0.499999e-9;
+  PlacedFrame frame;
+  frame.rows = {Vector3{1 + e, e, e}, {e, 1 + e, e}, {e, e, 1 + e}};
+  frame.defect = 1e-9;
+  const Vector3 along = (1 / std::sqrt(3.0)) * Vector3{1, 1, 1},
+                above = (1 / std::sqrt(2.0)) * Vector3{1, -1, 0};
+  const Vector3 aside = cross(above, along);
+  const auto box = [&](double angle, const Point3& centre) {
+    const Vector3 first = std::cos(angle) * along + std::sin(angle) * aside;
+    const Vector3 second = -std::sin(angle) * along + std::cos(angle) * aside;
+    Obb result;
+    result.axes = {first, std::cos(0.7) * second + std::sin(0.7) * above,
+                   -std::sin(0.7) * second + std::cos(0.7) * above};
+    result.half = {1e-9, 0, 0};
+    result.centre = centre;
+    return placed(result, frame);
+  };
+  for (double angle = 0.0317; angle < 1.5; angle *= 1.02) {
+    const PlacedObb a = box(-angle / 2, {}), b = box(angle / 2, Point3{} + above);
+    const Extended d = testing::minus(testing::extended(b.centre), testing::extended(a.centre));
+    EXPECT_LE(certain_gap(a, b, 2e-9), std::sqrt(testing::inner(d, d))) << angle;
   }
 }
 

@@ -20,8 +20,9 @@ struct Finish {
 /// all around that is brighter from above. No shadows are cast.
 ///
 /// Guarantee: each share lies in [0, 1] and varies continuously with the normal.
-/// Requires:  unit vectors in camera coordinates (x right, y up, z into the picture), dot(normal, to_eye) >=
-/// 0. Source:    diffuse light wrapped around the terminator; highlights [Blinn77].
+/// Requires:  unit vectors in camera coordinates (x right, y up, z into the picture), dot(normal,
+///            to_eye) >= 0.
+/// Source:    diffuse light wrapped around the terminator; highlights [Blinn77].
 [[nodiscard]] Radiance shade(const Finish& finish, Vector3 normal, Vector3 to_eye);
 
 }  // namespace snug
