@@ -4,31 +4,72 @@
 #include <png.h>
 
 #include <random>
+#include <string>
+
+#include <snug/base/error.h>
+
+#include "throwing_contracts.h"
 
 namespace snug {
 namespace {
 
-TEST(encode_png, decodes_to_the_same_pixels) {
-  std::mt19937_64 random(31);
-  for (const auto& [width, height] : {std::pair{1, 1}, {7, 3}, {64, 64}}) {
-    Image image;
-    image.width = width;
-    image.height = height;
-    image.rgb.resize(static_cast<std::size_t>(3 * width * height));
-    for (auto& channel : image.rgb) channel = static_cast<std::uint8_t>(random());
-    const auto bytes = encode_png(image);
-    EXPECT_EQ(bytes, encode_png(image));
+Image decode(const std::vector<std::uint8_t>& bytes) {
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  EXPECT_NE(png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()), 0) << png.message;
+  png.format = PNG_FORMAT_RGB;
+  Image image{static_cast<int>(png.width), static_cast<int>(png.height), {}};
+  image.rgb.resize(PNG_IMAGE_SIZE(png));
+  EXPECT_NE(png_image_finish_read(&png, nullptr, image.rgb.data(), 0, nullptr), 0) << png.message;
+  return image;
+}
 
-    png_image png{};
-    png.version = PNG_IMAGE_VERSION;
-    ASSERT_TRUE(png_image_begin_read_from_memory(&png, bytes.data(), bytes.size())) << png.message;
-    png.format = PNG_FORMAT_RGB;
-    EXPECT_EQ(png.width, static_cast<unsigned>(width));
-    EXPECT_EQ(png.height, static_cast<unsigned>(height));
-    std::vector<std::uint8_t> decoded(PNG_IMAGE_SIZE(png));
-    ASSERT_TRUE(png_image_finish_read(&png, nullptr, decoded.data(), 0, nullptr)) << png.message;
-    EXPECT_EQ(decoded, image.rgb);
+Image noise(int width, int height) {
+  std::mt19937 random(11);
+  Image image{width, height, std::vector<std::uint8_t>(std::size_t{3} * width * height)};
+  for (std::uint8_t& byte : image.rgb) byte = static_cast<std::uint8_t>(random());
+  return image;
+}
+
+TEST(image, png_decodes_back_to_the_same_pixels) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {3, 2}, {1, 200}, {257, 1}, {120, 90}}) {
+    const Image image = noise(width, height);
+    EXPECT_EQ(decode(encode_png(image)), image) << width << " x " << height;
   }
+}
+
+TEST(image, png_bytes_carry_no_time_or_text_and_repeat) {
+  const Image image = noise(40, 30);
+  const std::vector<std::uint8_t> bytes = encode_png(image);
+  EXPECT_EQ(bytes, encode_png(image));
+  std::string chunks;
+  for (std::size_t at = 8; at + 8 <= bytes.size();) {
+    const std::size_t size = bytes[at] << 24U | bytes[at + 1] << 16U | bytes[at + 2] << 8U | bytes[at + 3];
+    chunks += std::string(bytes.begin() + static_cast<std::ptrdiff_t>(at) + 4,
+                          bytes.begin() + static_cast<std::ptrdiff_t>(at) + 8) +
+              ' ';
+    at += size + 12;
+  }
+  for (const char* changing : {"tIME", "tEXt", "zTXt", "iTXt"})
+    EXPECT_EQ(chunks.find(changing), std::string::npos) << chunks;
+  EXPECT_NE(chunks.find("IEND"), std::string::npos) << chunks;
+}
+
+TEST(image, png_refuses_a_width_that_libpng_does_not_write) {
+  const Image image = noise(1'000'001, 1);
+  try {
+    (void)encode_png(image);
+    FAIL() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problem(), InputProblem::refused);
+    EXPECT_NE(std::string(error.what()).find("1000001 x 1"), std::string::npos) << error.what();
+  }
+}
+
+TEST(image, png_expects_a_pixel_for_each_place) {
+  const ThrowingContracts throwing;
+  EXPECT_THROW((void)encode_png({0, 0, {}}), BrokenContract);
+  EXPECT_THROW((void)encode_png({2, 2, std::vector<std::uint8_t>(11)}), BrokenContract);
 }
 
 }  // namespace

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <unordered_map>
+#include <utility>
 
 #include <snug/base/scaling.h>
 #include <snug/mesh/half_edges.h>
@@ -46,6 +45,7 @@ class Inspector {
     bool good = true;
     used_.assign(mesh_.vertex_count(), false);
     regular_.assign(mesh_.face_count(), true);
+    std::vector<VertexId> sorted;
     for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
       const auto face = mesh_.face(FaceId(f));
       if (face.size() < 3) {
@@ -62,7 +62,7 @@ class Inspector {
                                                 " of " + number(mesh_.vertex_count()));
         good = false;
       }
-      std::vector<VertexId> sorted(face.begin(), face.end());
+      sorted.assign(face.begin(), face.end());
       std::sort(sorted.begin(), sorted.end());
       const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
       if (twice != sorted.end()) {
@@ -114,17 +114,21 @@ class Inspector {
     const HalfEdgeGroups groups(mesh_.face_offsets, mesh_.face_vertices, mesh_.vertex_count());
     for (std::size_t e = 0; e < groups.edge_count(); ++e) {
       const auto members = groups.of_edge(EdgeId(e));
+      const bool many = members.size() > 2;
+      const bool same_direction = members.size() == 2 && groups.face(members[0]) != groups.face(members[1]) &&
+                                  mesh_.face_vertices[members[0]] == mesh_.face_vertices[members[1]];
+      if (!many && !same_direction) continue;
       const HalfEdge h = members[0];
       const VertexId a = mesh_.face_vertices[h];
       const VertexId b = mesh_.face_vertices[next_in_face(mesh_.face_offsets, groups.face(h), h)];
-      const std::string edge =
-          "edge (" + number(std::min(a, b).index()) + ", " + number(std::max(a, b).index()) + ")";
       std::vector<std::uint32_t> faces;
       for (const HalfEdge g : members) faces.push_back(groups.face(g).value());
-      if (members.size() > 2) {
+      const std::string edge =
+          "edge (" + number(std::min(a, b).index()) + ", " + number(std::max(a, b).index()) + ")";
+      if (many) {
         add(DefectKind::edge_of_many_faces,
             edge + " has " + number(members.size()) + " faces: " + listed(faces));
-      } else if (members.size() == 2 && mesh_.face_vertices[members[1]] == a && faces[0] != faces[1]) {
+      } else {
         add(DefectKind::inconsistent_orientation,
             edge + " is run along in the same direction by faces " + listed(faces));
       }
@@ -132,26 +136,41 @@ class Inspector {
   }
 
   void check_duplicates() {
-    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> by_hash;
+    // Faces sorted by a hash of their vertices, in whatever order: candidates follow each other.
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> by_hash;
     by_hash.reserve(mesh_.face_count());
-    const auto sorted_face = [&](std::size_t f) {
+    for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
+      if (!regular_[f]) continue;
+      std::uint64_t hash = 0;
+      for (const VertexId v : mesh_.face(FaceId(f))) {
+        std::uint64_t mixed = (v.value() + 1) * 0x9e3779b97f4a7c15u;
+        mixed ^= mixed >> 29;
+        hash += mixed * 0xbf58476d1ce4e5b9u;
+      }
+      by_hash.emplace_back(hash, static_cast<std::uint32_t>(f));
+    }
+    std::sort(by_hash.begin(), by_hash.end());
+    const auto sorted_face = [&](std::uint32_t f) {
       const auto face = mesh_.face(FaceId(f));
       std::vector<VertexId> sorted(face.begin(), face.end());
       std::sort(sorted.begin(), sorted.end());
       return sorted;
     };
-    for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
-      if (!regular_[f]) continue;
-      const std::vector<VertexId> mine = sorted_face(f);
-      std::uint64_t hash = mine.size();
-      for (const VertexId v : mine) hash = (hash ^ v.value()) * 0x9e3779b97f4a7c15u + (hash >> 29);
-      auto& group = by_hash[hash];
-      for (const std::uint32_t g : group) {
-        if (sorted_face(g) != mine) continue;
-        add(DefectKind::duplicate_face, "face " + number(f) + " has the same vertices as face " + number(g));
-        break;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;  // later face, first face like it
+    for (std::size_t begin = 0, end = 0; begin < by_hash.size(); begin = end) {
+      while (end < by_hash.size() && by_hash[end].first == by_hash[begin].first) ++end;
+      for (std::size_t i = begin + 1; i < end; ++i) {
+        for (std::size_t k = begin; k < i; ++k) {
+          if (sorted_face(by_hash[i].second) != sorted_face(by_hash[k].second)) continue;
+          pairs.emplace_back(by_hash[i].second, by_hash[k].second);
+          break;
+        }
       }
-      group.push_back(static_cast<std::uint32_t>(f));
+    }
+    std::sort(pairs.begin(), pairs.end());
+    for (const auto& [later, first] : pairs) {
+      add(DefectKind::duplicate_face,
+          "face " + number(later) + " has the same vertices as face " + number(first));
     }
   }
 
