@@ -11,9 +11,11 @@ constexpr double half_angle_tangent = 0.24932800284318068;  // of 14 degrees
 constexpr double margin = 0.05;
 
 Vector3 unit(Vector3 v) {
-  const double l = length(v);
-  SNUG_EXPECT(std::isfinite(l) && l > 0);
-  return (1 / l) * v;
+  const double largest = max_abs(v);
+  SNUG_EXPECT(is_finite(v) && largest > 0);
+  // The length of v itself might overflow or underflow.
+  const Vector3 scaled{v.x / largest, v.y / largest, v.z / largest};
+  return (1 / length(scaled)) * scaled;
 }
 
 // The lines of sight along both borders of the picture, moved until they touch the points from outside, cross

@@ -61,7 +61,7 @@ std::vector<LatticePoint> lattice_corners(const IntervalTriangle& triangle) {
       LatticePoint corner{};
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double x = (i >> axis) & 1 ? box.upper[axis] : box.lower[axis];
-        if (size > 0) {
+        if (all.lower[axis] < all.upper[axis]) {  // otherwise x may overflow in steps
           // Differences of integers below 2^42: exact, however large the integers themselves.
           corner.at[axis] = static_cast<std::int64_t>(in_steps(x) - in_steps(all.lower[axis]));
           corner.place[axis] = std::ldexp(in_steps(x), step);

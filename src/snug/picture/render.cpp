@@ -63,7 +63,7 @@ void expect_sound(const Scene& scene, const Camera& camera, const RenderOptions&
   SNUG_EXPECT(1 <= options.samples && options.samples <= 16);
   SNUG_EXPECT(in_unit(options.background.top) && in_unit(options.background.foot));
   SNUG_EXPECT(is_finite(camera.eye) && std::isfinite(camera.tangent) && camera.tangent > 0);
-  SNUG_EXPECT(is_unit(camera.right) && is_unit(camera.up));
+  SNUG_EXPECT(is_unit(camera.right) && is_unit(camera.up) && is_unit(camera.forward));
   SNUG_EXPECT(length(cross(camera.right, camera.up) + camera.forward) < 1e-9);
   for (const Material& m : scene.materials)
     SNUG_EXPECT(in_unit(m.colour) && in_unit(m.opacity) && in_unit(m.gloss));
@@ -179,7 +179,10 @@ Renderer::Renderer(const Scene& scene, const Camera& camera, const RenderOptions
       face.corner[i] = turned(t.corner[i] - camera.eye);
       const double largest = max_abs(t.normal[i]);
       face.smooth = face.smooth && largest > 0;
-      if (largest > 0) face.normal[i] = unit(turned((1 / largest) * t.normal[i]));
+      if (largest > 0) {
+        const Vector3& given = t.normal[i];  // divided: 1 / largest may overflow
+        face.normal[i] = unit(turned({given.x / largest, given.y / largest, given.z / largest}));
+      }
       box.add(origin + face.corner[i]);
     }
     const Vector3 area = cross(face.corner[1] - face.corner[0], face.corner[2] - face.corner[0]);
@@ -200,7 +203,7 @@ Renderer::Renderer(const Scene& scene, const Camera& camera, const RenderOptions
 
 void Renderer::add_line(const Line& line, double near_depth) {
   Vector3 a = turned(line.a - camera_.eye), b = turned(line.b - camera_.eye);
-  if (a.z < near_depth && b.z < near_depth) return;
+  if (!(near_depth > 0) || (a.z < near_depth && b.z < near_depth)) return;  // zero: all lines are in the eye
   const auto cut = [near_depth](Vector3 behind, Vector3 ahead) {
     return behind + ((near_depth - behind.z) / (ahead.z - behind.z)) * (ahead - behind);
   };
@@ -311,7 +314,8 @@ Layer Renderer::layer_of(const Hit& hit, const Ray& ray) const {
   normal = unit(normal);
   // Close to a silhouette an interpolated normal may face away: it is turned until it is seen edge on.
   if (const double facing = dot(normal, to_eye); facing < 0) {
-    normal = unit(normal - facing * to_eye);
+    const Vector3 edge_on = normal - facing * to_eye;
+    normal = length_sq(edge_on) > 0 ? unit(edge_on) : to_eye;
   }
   return {hit.depth, shade(finish, normal, to_eye), opacity};
 }
