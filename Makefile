@@ -29,7 +29,7 @@ test: install-packages build  ## every test, on the release build
 	@$(ctest) --preset release
 
 test-long: install-packages build  ## every test with ten times the random cases, then with address sanitizer
-	@RC_PARAMS="max_success=1000" $(ctest) --preset release
+	@RC_PARAMS="max_success=1000" SNUG_PLACEMENTS=20000 $(ctest) --timeout 7200 --preset release
 	@$(call build,asan)
 	@$(ctest) --test-dir build/asan --output-on-failure
 

@@ -76,12 +76,15 @@ ExitStatus run(const Options& options) {
     report.write().end_array().field("count", summary.count).field("max_radius", summary.max_radius);
     report.write().field("reached", summary.reached).field("splits", summary.splits);
   }
-  report.text(fmt::format("{}: {} enclosures of {} faces contain the limit surface, largest radius {:.6g}",
-                          options.mesh, summary.count, surface.face_count(), summary.max_radius));
+  report.text(fmt::format("{}: {} enclosures of {} faces contain the limit surface, largest radius {}",
+                          options.mesh, summary.count, surface.face_count(),
+                          text_at_most(summary.max_radius, true)));
   if (!summary.reached) {
-    report.text(
-        "the tolerance was not reached everywhere (budget, levels or rounding); what is printed is still "
-        "proved");
+    const bool spent = summary.splits >= options.budget;
+    report.text(fmt::format("{} was not reached everywhere: {}; what is printed is still proved",
+                            tolerance ? "the tolerance" : "the level",
+                            spent ? "the budget was spent, face by face; give a larger --budget"
+                                  : "rounding stands in the way; give a larger --tolerance"));
   }
   report.finish();
   return summary.reached ? ExitStatus::answered : ExitStatus::not_reached;

@@ -40,15 +40,16 @@ void write_answer(JsonWriter& json, const Collision& answer, double tolerance, d
 std::string sentence(const Collision& answer, double tolerance, double margin) {
   switch (answer.verdict) {
     case Verdict::separated:
-      return fmt::format("separated: proved, the limit surfaces are at least {:.6g} apart", answer.lower);
+      return fmt::format("separated: proved, the limit surfaces are at least {} apart",
+                         text_at_most(answer.lower));
     case Verdict::within:
-      return fmt::format("within: two points of the limit surfaces are only {:.6g} apart (asked: {:.6g})",
-                         *answer.upper, margin + tolerance);
+      return fmt::format("within: two points of the limit surfaces are at most {} apart (asked: {:.6g})",
+                         text_at_most(*answer.upper, true), margin + tolerance);
     case Verdict::undecided:
       break;
   }
-  return fmt::format("undecided: the distance lies in [{:.6g}, {}]; give a larger --budget or --tolerance",
-                     answer.lower, answer.upper ? fmt::format("{:.6g}", *answer.upper) : "?");
+  return fmt::format("undecided: the distance lies in [{}, {}]; give a larger --tolerance or --budget",
+                     text_at_most(answer.lower), answer.upper ? text_at_most(*answer.upper, true) : "?");
 }
 
 ExitStatus status(Verdict verdict, bool exit_code) {

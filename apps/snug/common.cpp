@@ -1,6 +1,7 @@
 #include "common.h"
 
 #include <cstdio>
+#include <cstdlib>
 
 #include <fmt/core.h>
 #include <snug/base/contract.h>
@@ -95,7 +96,8 @@ struct Report::Target {
   AtomicFile file;
 };
 
-Report::Report(const char* command, const CommonOptions& options) : start_(std::chrono::steady_clock::now()) {
+Report::Report(const char* command, const CommonOptions& options)
+    : quiet_(options.json), start_(std::chrono::steady_clock::now()) {
   const std::string& output = options.output;
   if (output.empty() && !options.json) return;
   if (!output.empty() && output != "-" && !output.ends_with(".json")) {
@@ -127,14 +129,28 @@ void Report::heads(const std::vector<std::string>& meshes, const std::vector<std
 }
 
 void Report::text(const std::string& line) {
-  if (!to_standard_output_) fmt::print("{}\n", line);
+  if (!quiet_ && !to_standard_output_) fmt::print("{}\n", line);
 }
 
 void Report::finish() {
-  if (!writer_) return;
-  writer_->field("seconds", std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
-  writer_->end_object().finish();
-  target_->file.commit();
+  if (writer_) {
+    writer_->field("seconds",
+                   std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
+    writer_->end_object().finish();
+    target_->file.commit();
+  }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
+    throw InputError(InputProblem::unreadable, "standard output: cannot be written");
+  }
+}
+
+std::string text_at_most(double x, bool at_least) {
+  for (int digits = 6; digits < 17; ++digits) {
+    const std::string text = fmt::format("{:.{}g}", x, digits);
+    const double read = std::strtod(text.c_str(), nullptr);
+    if (at_least ? read >= x : read <= x) return text;
+  }
+  return fmt::format("{}", x);
 }
 
 }  // namespace snug::command

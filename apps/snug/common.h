@@ -74,18 +74,22 @@ class Report {
   [[nodiscard]] bool json() const { return writer_ != nullptr; }
   [[nodiscard]] JsonWriter& write() { return *writer_; }
   void heads(const std::vector<std::string>& meshes, const std::vector<std::string>& schemes);
-  /// One line for people, on standard output unless the document goes there.
+  /// One line for people on standard output; nothing with --json, or where the document goes there.
   void text(const std::string& line);
   /// Ends the document and puts the file in place.
   void finish();
 
  private:
   struct Target;
+  bool quiet_;  // no text: --json
   bool to_standard_output_ = false;
   std::chrono::steady_clock::time_point start_;
   std::unique_ptr<Target> target_;
   std::unique_ptr<JsonWriter> writer_;
 };
+
+/// About six digits of a proved bound, rounded to the safe side: down for lower bounds, up with `at_least` for upper ones.
+[[nodiscard]] std::string text_at_most(double x, bool at_least = false);
 
 [[nodiscard]] Command add_info(CLI::App& app);
 [[nodiscard]] Command add_bound(CLI::App& app);

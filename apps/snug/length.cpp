@@ -64,7 +64,11 @@ Placement parse_placement(const std::string& text, const std::string& option) {
     throw UsageError(option + ": " + std::to_string(count) +
                      " numbers; a placement has twelve, a row-major 3x4 motion");
   }
-  require_rigid(placement);
+  try {
+    require_rigid(placement);
+  } catch (const InputError& error) {
+    throw InputError(error.problem(), option + ": " + error.what());
+  }
   return placement;
 }
 

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 #include <vector>
 
 #include <fmt/core.h>
@@ -59,7 +60,7 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    return fail(ExitStatus::usage, error.what());
+    return fail(ExitStatus::usage, (std::string(error.what()) + "; see snug --help").c_str());
   }
   return run(commands);
 }

@@ -67,5 +67,18 @@ TEST(extra_models, limit_points_lie_inside_their_enclosures) {
   EXPECT_GT(accepted, 0u);
 }
 
+// Leaves that a well-known mesh of 1418 triangles needs, where it is there: tightness must not get lost.
+TEST(extra_models, venus_needs_few_leaves) {
+  const char* folder = std::getenv("SNUG_EXTRA_MODELS");
+  const std::string path = std::string(folder ? folder : "") + "/venus.off";
+  if (!folder || !std::filesystem::exists(path)) GTEST_SKIP() << "no venus.off in SNUG_EXTRA_MODELS";
+  const Surface surface(read_mesh(path), {}, std::make_shared<BoundLibrary>());
+  for (const auto& [tolerance, most] : {std::pair{0.02, 1450u}, {0.01, 1700u}, {0.005, 3100u}}) {
+    BoundOptions options;
+    options.tolerance = tolerance * surface.size();
+    EXPECT_LE(bound(surface, options, [](const PieceEnclosure&) {}).count, most) << tolerance;
+  }
+}
+
 }  // namespace
 }  // namespace snug

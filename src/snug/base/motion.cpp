@@ -29,8 +29,9 @@ void require_rigid(const Placement& placement) {
   }
   const double defect = rigidity_defect(placement);
   if (!(defect <= rigidity_tolerance)) {
-    throw InputError(InputProblem::refused, "placement: its rotation is off by " + std::to_string(defect) +
-                                                " (at most 1e-9); give an orthonormal 3x3 part");
+    throw InputError(
+        InputProblem::refused,
+        "placement: its 3x3 part is off from a rotation by more than 1e-9; give an orthonormal one");
   }
   if (dot(cross(placement.row(0), placement.row(1)), placement.row(2)) < 0) {
     throw InputError(InputProblem::refused, "placement: it mirrors; give a rotation with determinant 1");

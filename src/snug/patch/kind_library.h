@@ -69,7 +69,7 @@ class Kind {
 /// All kinds met so far. Grows, never forgets; kinds stay where they are as long as the library lives.
 ///
 /// Guarantee: thread-safe; a kind is made once.
-/// Cost:      find: one hash look-up; a new kind is linear in the valences (bench/).
+/// Cost:      find: one hash look-up; a new kind with its rows 0.05 to 0.5 ms up to valence 12 (bench/).
 class KindLibrary {
  public:
   KindLibrary() = default;

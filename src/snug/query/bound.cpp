@@ -105,7 +105,9 @@ BoundSummary bound(const Surface& surface, const BoundOptions& options,
   std::vector<FaceBounds> results;
   for (std::size_t begin = 0, count = 0; begin < surface.face_count(); begin += count) {
     count = std::min(chunk, surface.face_count() - begin);
-    const std::uint64_t left = options.budget - summary.splits;
+    // A face that needs more than its share of the memory is done again, alone.
+    const std::uint64_t left = std::min<std::uint64_t>(
+        options.budget - summary.splits, std::max<std::uint64_t>(64, most_pieces / (3 * count)));
     results.assign(count, {});
     parallel_for(count, options.threads, [&](std::size_t from, std::size_t to) {
       FaceBounder bounder(surface, options, target, monitor);
@@ -116,7 +118,7 @@ BoundSummary bound(const Surface& surface, const BoundOptions& options,
     for (std::size_t i = 0; i < count; ++i) {
       // The budget is spent in the order of faces, whatever the threads did.
       const std::uint64_t rest = options.budget - summary.splits;
-      if (results[i].splits > rest) {
+      if (results[i].splits > rest || (results[i].splits == left && left < rest)) {
         results[i] = FaceBounder(surface, options, target, monitor).run(FaceId(begin + i), rest);
       }
       summary.splits += results[i].splits;

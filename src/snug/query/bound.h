@@ -23,7 +23,7 @@ struct BoundOptions {
   std::optional<double> tolerance;
   /// Without a tolerance: split every patch this often.
   unsigned level = 0;
-  std::uint64_t budget = 10'000'000;  ///< most splits in all
+  std::uint64_t budget = 10'000'000;  ///< most splits in all; spent face by face
   int threads = 0;
 };
 
@@ -51,7 +51,7 @@ struct BoundSummary {
 ///            interval triangles, and of their boxes, each on its own, rounding included; also where
 ///            `reached` is false. Same output for any number of threads.
 /// Errors:    InputError if a result does not fit a double; whatever `sink` or the monitor throws.
-/// Cost:      a piece about 2 microseconds on regular patches. Memory holds the pieces of one face,
+/// Cost:      a piece 3 to 5 microseconds on regular patches. Memory holds the pieces of one face,
 ///            or some 65,000; it does not grow with the output.
 BoundSummary bound(const Surface& surface, const BoundOptions& options,
                    const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor = {});

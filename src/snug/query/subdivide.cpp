@@ -55,6 +55,13 @@ ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned l
   const Box3 box = used_box(mesh);
   const PowerOfTwo scale =
       PowerOfTwo::normalising(std::max(max_abs(box.lower - Point3{}), max_abs(box.upper - Point3{})));
+  // Isolated vertices stay as they are, however large.
+  std::vector<bool> used(mesh.vertex_count(), false);
+  for (const VertexId v : mesh.face_vertices) used[v.index()] = true;
+  std::vector<std::pair<std::size_t, Point3>> isolated;
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    if (!used[v]) isolated.emplace_back(v, std::exchange(mesh.points[v], Point3{}));
+  }
   for (Point3& p : mesh.points) p = scale.apply(p);
   for (unsigned step = 0; step < level; ++step) {
     monitor.report(static_cast<double>(step) / (level + 1.0));
@@ -71,6 +78,9 @@ ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned l
     if (!kept.empty()) mesh = only_descendants(mesh, kept, level);
   }
   for (Point3& p : mesh.points) p = require_representable(scale.inverse().apply(p));
+  if (kept.empty()) {
+    for (const auto& [v, point] : isolated) mesh.points[v] = point;
+  }
   return mesh;
 }
 

@@ -53,7 +53,7 @@ void require_valences(const Topology& topology) {
   }
   if (bad == 0) return;
   if (bad > 10) text += "; and " + number(bad - 10) + " more";
-  refuse(text + "; interior valences 3 to 1000 are answered: split the faces there");
+  refuse(text + "; interior vertices need 3 to 1000 faces, boundary ones at most 1000: split faces there");
 }
 
 // Tags that leave the surface as it is: zero sharpness; edges that are no edges of the mesh; the boundary's
@@ -82,8 +82,7 @@ void require_no_effective_tags(const ControlMesh& mesh, const Topology& topology
     const bool corner_already = options.boundary == BoundaryRule::edge_and_corner &&
                                 topology.on_boundary(tag.vertex) && topology.face_valence(tag.vertex) == 1;
     if (tag.sharpness > 0 && !corner_already && !topology.isolated(tag.vertex)) {
-      refuse("vertex " + number(tag.vertex.index()) + " is tagged as a corner of sharpness " +
-             std::to_string(tag.sharpness) + until);
+      refuse("vertex " + number(tag.vertex.index()) + " is tagged as a corner" + until);
     }
   }
 }
