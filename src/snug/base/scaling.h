@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cmath>
+#include <cstdlib>
+
 #include <snug/base/point.h>
 
 namespace snug {
@@ -12,7 +15,8 @@ namespace snug {
 class PowerOfTwo {
  public:
   PowerOfTwo() = default;
-  explicit PowerOfTwo(int exponent) : exponent_(exponent) {}
+  explicit PowerOfTwo(int exponent)
+      : exponent_(exponent), factor_(std::abs(exponent) <= 1000 ? std::ldexp(1.0, exponent) : 0) {}
   /// The power that brings `largest` (> 0, finite) into [1, 2); 1 for zero.
   [[nodiscard]] static PowerOfTwo normalising(double largest);
 
@@ -21,14 +25,17 @@ class PowerOfTwo {
   friend PowerOfTwo operator*(PowerOfTwo a, PowerOfTwo b) { return PowerOfTwo(a.exponent_ + b.exponent_); }
 
   /// May overflow to infinity: for a caller who knows that it cannot, or checks.
-  [[nodiscard]] double apply(double x) const { return std::ldexp(x, exponent_); }
+  [[nodiscard]] double apply(double x) const {
+    return factor_ > 0 ? x * factor_ : std::ldexp(x, exponent_);
+  }
   [[nodiscard]] Point3 apply(Point3 p) const { return {apply(p.x), apply(p.y), apply(p.z)}; }
   [[nodiscard]] Vector3 apply(Vector3 v) const { return {apply(v.x), apply(v.y), apply(v.z)}; }
   /// Does x survive the way there and back?
-  [[nodiscard]] bool exact(double x) const { return std::ldexp(std::ldexp(x, exponent_), -exponent_) == x; }
+  [[nodiscard]] bool exact(double x) const { return inverse().apply(apply(x)) == x; }
 
  private:
   int exponent_ = 0;
+  double factor_ = 1;  // 2^exponent, or 0 where that is near the ends of the range
 };
 
 /// Throws InputError (refused) if x is not finite: a result that no longer fits a double is not handed out.

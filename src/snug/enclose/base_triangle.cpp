@@ -8,12 +8,7 @@ BaseTriangle base_triangle(const HullPoints& points, const std::array<Vector3, 3
   Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const double size = length(normal);
   if (size > 0 && std::isfinite(size) && is_finite(normal = (1 / size) * normal)) {
-    double lower = INFINITY, upper = -INFINITY;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const double height = dot(normal, points.at(i) - corners[0]);
-      lower = std::min(lower, height);
-      upper = std::max(upper, height);
-    }
+    const auto [lower, upper] = kernels::heights(points.coordinates(), corners[0], normal);
     const Vector3 shift = (0.5 * (lower + upper)) * normal;
     if (is_finite(shift)) {
       for (Vector3& corner : base.relative) corner = corner + shift;

@@ -18,11 +18,10 @@ struct BaseTriangle {
 
 [[nodiscard]] BaseTriangle base_triangle(const HullPoints& points, const std::array<Vector3, 3>& corners);
 
-/// Upper bound, a coordinate, of the error of p - foot for hull points p and feet on the base: the points'
-/// own error, the base's rounding, and that of p - a - beta e_b - gamma e_c, where p - a and the edges are at
-/// most `reach`.
-[[nodiscard]] inline double fit_error(const HullPoints& points, const BaseTriangle& base, double reach) {
-  return enlarged(points.error + base.placing_error + 32 * unit_roundoff * reach + 32 * underflow_error);
+/// Upper bound, a coordinate, of the error of  p - a - beta e_b - gamma e_c  by rounding, where p - a and the
+/// edges are at most `reach`.
+[[nodiscard]] inline double foot_error(double reach) {
+  return enlarged(32 * unit_roundoff * reach + 32 * underflow_error);
 }
 
 }  // namespace snug

@@ -4,43 +4,19 @@
 
 #include <snug/base/contract.h>
 #include <snug/base/rounding.h>
+#include <snug/enclose/fit_kernels.h>
 
 namespace snug {
-namespace {
-
-double largest_of(const std::vector<double>& values) {
-  double largest = 0;
-  for (const double v : values) largest = std::max(largest, std::fabs(v));
-  return largest;
-}
-
-void measure(HullPoints& points) {
-  points.largest = std::max({largest_of(points.x), largest_of(points.y), largest_of(points.z)});
-}
-
-}  // namespace
-
 void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out) {
   SNUG_EXPECT(rows.control_count() == patch.points.size());
   const std::size_t count = rows.count();
   out.origin = patch.origin;
-  out.x.assign(count, 0.0);
-  out.y.assign(count, 0.0);
-  out.z.assign(count, 0.0);
-  for (std::size_t c = 0; c < patch.points.size(); ++c) {
-    const double* const weight = rows.column(c);
-    const Vector3 p = patch.points[c];
-    double* const x = out.x.data();
-    double* const y = out.y.data();
-    double* const z = out.z.data();
-    for (std::size_t r = 0; r < count; ++r) {
-      x[r] += weight[r] * p.x;
-      y[r] += weight[r] * p.y;
-      z[r] += weight[r] * p.z;
-    }
-  }
-  measure(out);
+  out.x.resize(count);
+  out.y.resize(count);
+  out.z.resize(count);
+  kernels::apply_rows(rows.column(0), count, patch.points, out.x.data(), out.y.data(), out.z.data());
   out.error = rows.result_error(patch.largest, patch.error);
+  out.largest = enlarged((rows.abs_sum() + rows.entry_error()) * patch.largest);
 }
 
 void control_points(const Patch& patch, HullPoints& out) {
@@ -53,7 +29,7 @@ void control_points(const Patch& patch, HullPoints& out) {
     out.y.push_back(p.y);
     out.z.push_back(p.z);
   }
-  measure(out);
+  out.largest = patch.largest;
   out.error = patch.error;
 }
 

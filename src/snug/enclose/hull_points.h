@@ -3,6 +3,7 @@
 #include <vector>
 
 #include <snug/basis/bound_rows.h>
+#include <snug/enclose/fit_kernels.h>
 #include <snug/patch/patch.h>
 
 namespace snug {
@@ -12,9 +13,10 @@ struct HullPoints {
   Point3 origin;
   std::vector<double> x, y, z;
   double error = 0;    ///< upper bound, a coordinate, of |point - exact point|
-  double largest = 0;  ///< largest |coordinate|
+  double largest = 0;  ///< upper bound of every |coordinate|
 
   [[nodiscard]] std::size_t size() const { return x.size(); }
+  [[nodiscard]] kernels::Coordinates coordinates() const { return {x.data(), y.data(), z.data(), x.size()}; }
   [[nodiscard]] Vector3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
 

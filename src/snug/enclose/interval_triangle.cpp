@@ -23,7 +23,7 @@ IntervalTriangle interval_triangle(const HullPoints& points, const std::array<Ve
     }
     reach = std::max(reach, max_abs(d));
   }
-  const double error = fit_error(points, base, reach);
+  const double error = enlarged(points.error + base.placing_error + foot_error(reach));
   IntervalTriangle result;
   for (std::size_t k = 0; k < 3; ++k) {
     for (std::size_t a = 0; a < 3; ++a) {

@@ -1,0 +1,491 @@
+// Compiled once for each instruction set: this file includes itself through foreach_target.h.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "snug/enclose/fit_kernels.cpp"
+#include <hwy/foreach_target.h>
+// After it, as the library wants it.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <snug/base/rounding.h>
+#include <snug/enclose/fit_kernels.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace snug::kernels::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// No operators of Highway's: the portable target lacks them.
+template <class V>
+struct Vec3 {
+  V x, y, z;
+};
+
+template <class V>
+HWY_INLINE V dot(const Vec3<V>& a, const Vec3<V>& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+template <class V>
+HWY_INLINE Vec3<V> add(const Vec3<V>& a, const Vec3<V>& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+template <class V>
+HWY_INLINE Vec3<V> sub(const Vec3<V>& a, const Vec3<V>& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+template <class V>
+HWY_INLINE Vec3<V> scaled(V s, const Vec3<V>& a) {
+  return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
+}
+template <class V>
+HWY_INLINE Vec3<V> cross(const Vec3<V>& a, const Vec3<V>& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+template <class V>
+HWY_INLINE V hypotenuse_sq(V a, V b) {
+  return hn::Add(hn::Mul(a, a), hn::Mul(b, b));
+}
+template <class V>
+HWY_INLINE V max3(V a, V b, V c) {
+  return hn::Max(a, hn::Max(b, c));
+}
+
+// A triangle in a frame (t1, t2, n) of its own: corners (0, 0), (l0, 0), (xc, yc), counter-clockwise. Names and the
+// error terms are those of derivations/rounding.md, "Distance in the triangle's plane".
+template <class V>
+struct PlanarTriangle {
+  Vec3<V> a, t1, t2, n;
+  V l0, l1, l2;          // lengths of the edges ab, bc, ca
+  V d1x, d1y, d2x, d2y;  // directions of bc and of ac
+  V longest;
+  V deviation;  // of the true corners from those in the plane
+  V amplify;    // 1 / sin of half the sharpest angle, at most
+  V stretch;    // of lengths by the frame, at most
+};
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE PlanarTriangle<V> planar_triangle(D d, const Vec3<V>& a, const Vec3<V>& b, const Vec3<V>& c) {
+  PlanarTriangle<V> t;
+  const V one = hn::Set(d, 1.0);
+  const Vec3<V> eb = sub(b, a), ec = sub(c, a);
+  const Vec3<V> area = cross(eb, ec);
+  t.a = a;
+  t.n = scaled(hn::Div(one, hn::Sqrt(dot(area, area))), area);
+  t.t1 = scaled(hn::Div(one, hn::Sqrt(dot(eb, eb))), eb);
+  t.t2 = cross(t.n, t.t1);
+  t.l0 = dot(t.t1, eb);
+  const V xc = dot(t.t1, ec), yc = dot(t.t2, ec);
+  const V bx = hn::Sub(xc, t.l0);
+  t.l1 = hn::Sqrt(hypotenuse_sq(bx, yc));
+  t.l2 = hn::Sqrt(hypotenuse_sq(xc, yc));
+  const V over_l1 = hn::Div(one, t.l1), over_l2 = hn::Div(one, t.l2);
+  t.d1x = hn::Mul(bx, over_l1);
+  t.d1y = hn::Mul(yc, over_l1);
+  t.d2x = hn::Mul(xc, over_l2);
+  t.d2y = hn::Mul(yc, over_l2);
+  t.longest = max3(t.l0, t.l1, t.l2);
+  const V off_b = hn::Add(hn::Abs(dot(t.t2, eb)), hn::Abs(dot(t.n, eb)));
+  t.deviation = hn::Add(hn::Max(off_b, hn::Abs(dot(t.n, ec))), hn::Mul(hn::Set(d, 16 * unit_roundoff), t.longest));
+  const V products = max3(hn::Mul(t.l0, t.l1), hn::Mul(t.l1, t.l2), hn::Mul(t.l2, t.l0));
+  t.amplify = hn::Div(hn::Add(products, products), hn::Mul(t.l0, yc));
+  const V diagonal = max3(hn::Abs(hn::Sub(dot(t.t1, t.t1), one)), hn::Abs(hn::Sub(dot(t.t2, t.t2), one)),
+                          hn::Abs(hn::Sub(dot(t.n, t.n), one)));
+  const V mixed = hn::Add(hn::Add(hn::Abs(dot(t.t1, t.t2)), hn::Abs(dot(t.t1, t.n))), hn::Abs(dot(t.t2, t.n)));
+  t.stretch = hn::Add(hn::Add(diagonal, mixed), hn::Set(d, 16 * unit_roundoff));
+  return t;
+}
+
+// False for needles and whatever is not finite.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE hn::Mask<D> well_shaped(D d, const PlanarTriangle<V>& t) {
+  const auto round = hn::And(hn::Le(t.amplify, hn::Set(d, 64.0)), hn::Gt(t.l0, hn::Zero(d)));
+  return hn::And(round, hn::Le(t.stretch, hn::Set(d, 0x1p-40)));
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V distance_sq(D d, const PlanarTriangle<V>& t, const Vec3<V>& p) {
+  const Vec3<V> r = sub(p, t.a);
+  const V x = dot(t.t1, r), y = dot(t.t2, r), h = dot(t.n, r);
+  const V zero = hn::Zero(d);
+  const V xb = hn::Sub(x, t.l0);
+  // Signed distances of the point's foot from the edges' lines, positive outside.
+  const V s0 = hn::Sub(zero, y);
+  const V s1 = hn::Sub(hn::Mul(xb, t.d1y), hn::Mul(y, t.d1x));
+  const V s2 = hn::Sub(hn::Mul(y, t.d2x), hn::Mul(x, t.d2y));
+  const auto outside = hn::Gt(max3(s0, s1, s2), zero);
+  const V height_sq = hn::Mul(h, h);
+  if (hn::AllFalse(d, outside)) return height_sq;
+  // How far it lies beyond either end of each edge.
+  const V along1 = hn::Add(hn::Mul(xb, t.d1x), hn::Mul(y, t.d1y));
+  const V along2 = hn::Add(hn::Mul(x, t.d2x), hn::Mul(y, t.d2y));
+  const V o0 = max3(zero, xb, hn::Sub(zero, x));
+  const V o1 = max3(zero, hn::Sub(along1, t.l1), hn::Sub(zero, along1));
+  const V o2 = max3(zero, hn::Sub(along2, t.l2), hn::Sub(zero, along2));
+  const V aside_sq = hn::Min(hypotenuse_sq(s0, o0), hn::Min(hypotenuse_sq(s1, o1), hypotenuse_sq(s2, o2)));
+  return hn::Add(height_sq, hn::IfThenElseZero(outside, aside_sq));
+}
+
+template <class V>
+struct ReachV {
+  V distance, rounding;
+};
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE ReachV<V> reach_of(D d, const PlanarTriangle<V>& t, V farthest_sq) {
+  const V far = hn::Sqrt(hn::Add(farthest_sq, hn::Set(d, 8 * underflow_error)));
+  const V size = hn::Add(far, hn::Add(t.longest, t.longest));
+  const V factor = hn::Add(hn::Set(d, 8.0), hn::Mul(hn::Set(d, 48.0), t.amplify));
+  const V rounding = hn::Add(t.deviation, hn::Mul(hn::Mul(hn::Set(d, unit_roundoff), factor), size));
+  const V one = hn::Set(d, 1.0);
+  return {hn::Mul(hn::Add(far, rounding), hn::Add(one, t.stretch)), rounding};
+}
+
+HWY_INLINE Vec3<hn::Vec<hn::CappedTag<double, 1>>> single(const Vector3& v) {
+  const hn::CappedTag<double, 1> d1;
+  return {hn::Set(d1, v.x), hn::Set(d1, v.y), hn::Set(d1, v.z)};
+}
+
+// Calls work(i) for vectors that cover [0, count); the last may overlap the one before. Needs count >= lanes.
+template <class D, class Work>
+HWY_INLINE void each_vector(D d, std::size_t count, const Work& work) {
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes) work(i);
+  if (i < count) work(count - lanes);
+}
+
+template <class D>
+HWY_INLINE void apply_rows_with(D d, const double* weights, std::size_t rows, std::span<const Vector3> points, double* x,
+                                double* y, double* z) {
+  each_vector(d, rows, [&](std::size_t r) HWY_ATTR {
+    auto sx = hn::Zero(d), sy = sx, sz = sx;
+    const double* weight = weights + r;
+    for (const Vector3& p : points) {
+      const auto w = hn::LoadU(d, weight);
+      sx = hn::Add(sx, hn::Mul(w, hn::Set(d, p.x)));
+      sy = hn::Add(sy, hn::Mul(w, hn::Set(d, p.y)));
+      sz = hn::Add(sz, hn::Mul(w, hn::Set(d, p.z)));
+      weight += rows;
+    }
+    hn::StoreU(sx, d, x + r);
+    hn::StoreU(sy, d, y + r);
+    hn::StoreU(sz, d, z + r);
+  });
+}
+
+void ApplyRows(const double* weights, std::size_t rows, std::span<const Vector3> points, double* x, double* y,
+               double* z) {
+  const hn::ScalableTag<double> wide;
+  if (rows >= hn::Lanes(wide)) {
+    apply_rows_with(wide, weights, rows, points, x, y, z);
+  } else {
+    apply_rows_with(hn::CappedTag<double, 1>(), weights, rows, points, x, y, z);
+  }
+}
+
+template <class D>
+HWY_INLINE Range heights_with(D d, const Coordinates& points, const Vector3& from, const Vector3& normal) {
+  using V = hn::Vec<D>;
+  const Vec3<V> origin{hn::Set(d, from.x), hn::Set(d, from.y), hn::Set(d, from.z)};
+  const Vec3<V> n{hn::Set(d, normal.x), hn::Set(d, normal.y), hn::Set(d, normal.z)};
+  V lower = hn::Set(d, INFINITY), upper = hn::Set(d, -INFINITY);
+  each_vector(d, points.count, [&](std::size_t i) HWY_ATTR {
+    const Vec3<V> p{hn::LoadU(d, points.x + i), hn::LoadU(d, points.y + i), hn::LoadU(d, points.z + i)};
+    const V height = dot(n, sub(p, origin));
+    lower = hn::Min(height, lower);  // in this order a NaN is passed over
+    upper = hn::Max(height, upper);
+  });
+  return {hn::GetLane(hn::MinOfLanes(d, lower)), hn::GetLane(hn::MaxOfLanes(d, upper))};
+}
+
+Range Heights(const Coordinates& points, const Vector3& from, const Vector3& normal) {
+  const hn::ScalableTag<double> wide;
+  if (points.count >= hn::Lanes(wide)) return heights_with(wide, points, from, normal);
+  return heights_with(hn::CappedTag<double, 1>(), points, from, normal);
+}
+
+template <class D, class V1>
+HWY_INLINE double farthest_sq_with(D d, const Coordinates& points, const PlanarTriangle<V1>& one) {
+  using V = hn::Vec<D>;
+  const auto all = [&](const V1& v) HWY_ATTR { return hn::Set(d, hn::GetLane(v)); };
+  const auto all3 = [&](const Vec3<V1>& v) HWY_ATTR { return Vec3<V>{all(v.x), all(v.y), all(v.z)}; };
+  const PlanarTriangle<V> t{all3(one.a),      all3(one.t1),       all3(one.t2),     all3(one.n),     all(one.l0),
+                            all(one.l1),      all(one.l2),        all(one.d1x),     all(one.d1y),    all(one.d2x),
+                            all(one.d2y),     all(one.longest),   all(one.deviation), all(one.amplify), all(one.stretch)};
+  V farthest = hn::Zero(d);
+  auto finite = hn::Le(farthest, farthest);
+  each_vector(d, points.count, [&](std::size_t i) HWY_ATTR {
+    const Vec3<V> p{hn::LoadU(d, points.x + i), hn::LoadU(d, points.y + i), hn::LoadU(d, points.z + i)};
+    const V dist_sq = distance_sq(d, t, p);
+    finite = hn::And(finite, hn::Lt(dist_sq, hn::Set(d, INFINITY)));
+    farthest = hn::Max(farthest, dist_sq);
+  });
+  return hn::AllTrue(d, finite) ? hn::GetLane(hn::MaxOfLanes(d, farthest)) : INFINITY;
+}
+
+bool Farthest(const Coordinates& points, const Vector3& a, const Vector3& b, const Vector3& c, Reach& out) {
+  const hn::CappedTag<double, 1> d1;
+  const auto t = planar_triangle(d1, single(a), single(b), single(c));
+  if (!hn::AllTrue(d1, well_shaped(d1, t))) return false;
+  const hn::ScalableTag<double> wide;
+  const double farthest_sq =
+      points.count >= hn::Lanes(wide) ? farthest_sq_with(wide, points, t) : farthest_sq_with(d1, points, t);
+  const auto reach = reach_of(d1, t, hn::Set(d1, farthest_sq));
+  out = {hn::GetLane(reach.distance), hn::GetLane(reach.rounding)};
+  return true;
+}
+
+// ---- regular patches, one a lane ----
+
+constexpr std::size_t controls = 12, bezier_count = 15, split_count = 45;
+
+template <class V>
+HWY_INLINE V mean(V half, V a, V b) {
+  return hn::Mul(half, hn::Add(a, b));
+}
+
+// Bezier points of one coordinate from the twelve control points; 24 times these are the integer sums of
+// patch/polynomial.cpp. At most ten additions and two products each.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void bezier(D d, const V* c, V* b) {
+  const auto times = [&](double k, V v) HWY_ATTR { return hn::Mul(hn::Set(d, k), v); };
+  const V part = hn::Set(d, 1.0 / 24);
+  const V s01 = hn::Add(c[0], c[1]), s12 = hn::Add(c[1], c[2]), s20 = hn::Add(c[2], c[0]);
+  const auto corner = [&](std::size_t v, V r0, V r1, V r2, V r3, V r4, V r5) HWY_ATTR {
+    const V ring = hn::Add(hn::Add(hn::Add(r0, r1), hn::Add(r2, r3)), hn::Add(r4, r5));
+    return hn::Mul(part, hn::Add(times(12, c[v]), hn::Add(ring, ring)));
+  };
+  // Next to corner v on the edge towards w: wings of the edge, then the ring's next ones.
+  const auto beside = [&](std::size_t v, std::size_t w, V wings, V next) HWY_ATTR {
+    const V sum = hn::Add(hn::Add(times(12, c[v]), times(4, c[w])), hn::Add(times(3, wings), next));
+    return hn::Mul(part, sum);
+  };
+  const auto middle = [&](V ends, V wings) HWY_ATTR {
+    return hn::Mul(part, hn::Add(times(8, ends), times(4, wings)));
+  };
+  const auto inner = [&](std::size_t v, V others, V across) HWY_ATTR {
+    return hn::Mul(part, hn::Add(times(10, c[v]), hn::Add(times(6, others), across)));
+  };
+  const V w01 = hn::Add(c[2], c[3]), w12 = hn::Add(c[0], c[4]), w20 = hn::Add(c[1], c[5]);
+  b[0] = corner(0, c[1], c[2], c[3], c[5], c[6], c[7]);
+  b[4] = corner(1, c[0], c[2], c[3], c[4], c[8], c[9]);
+  b[14] = corner(2, c[0], c[1], c[4], c[5], c[10], c[11]);
+  b[1] = beside(0, 1, w01, hn::Add(c[5], c[7]));
+  b[2] = middle(s01, w01);
+  b[3] = beside(1, 0, w01, hn::Add(c[4], c[8]));
+  b[5] = beside(0, 2, w20, hn::Add(c[3], c[6]));
+  b[9] = middle(s20, w20);
+  b[12] = beside(2, 0, w20, hn::Add(c[4], c[11]));
+  b[8] = beside(1, 2, w12, hn::Add(c[3], c[9]));
+  b[11] = middle(s12, w12);
+  b[13] = beside(2, 1, w12, hn::Add(c[5], c[10]));
+  b[6] = inner(0, s12, hn::Add(c[3], c[5]));
+  b[7] = inner(1, s20, hn::Add(c[3], c[4]));
+  b[10] = inner(2, s01, hn::Add(c[4], c[5]));
+}
+
+// De Casteljau's scheme at 1/2 on `count` points in place; after step k, first[k] and last[k] are its ends.
+template <class V>
+HWY_INLINE void halve(V half, V* q, std::size_t count, V* first, V* last) {
+  for (std::size_t k = 0;; ++k) {
+    first[k] = q[0];
+    last[k] = q[count - 1 - k];
+    if (k + 1 == count) return;
+    for (std::size_t i = 0; i + 1 + k < count; ++i) q[i] = mean(half, q[i], q[i + 1]);
+  }
+}
+
+// The 45 different Bezier points of the four quarters, as blossoms f(...) of the edges' midpoints and the corners:
+// corner children f(mid^i, other mid^j, corner^(4-i-j)), then three inner ones of the middle child. The corners of the
+// patch come first.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void split_once(D d, const V* b, V* out) {
+  const V half = hn::Set(d, 0.5);
+  V left[5][5], right[5][5];   // f(m01^i, v0 or v1^(4-i-j), v2^j) at [i][j]
+  V once[4][4], twice[3][3];   // f(m01, ...) and f(m01, m01, ...) in full, at [j][k]: k of v1, j of v2
+  V upper[5][5];               // f(m20^i, v1^j, v2^(4-i-j)) at [i][j]
+  constexpr std::size_t row_start[5] = {0, 5, 9, 12, 14};
+  for (std::size_t j = 0; j < 5; ++j) {
+    V q[5];
+    for (std::size_t k = 0; k + j < 5; ++k) q[k] = b[row_start[j] + k];
+    for (std::size_t i = 0;; ++i) {
+      left[i][j] = q[0];
+      right[i][j] = q[4 - j - i];
+      if (i + j == 4) break;
+      for (std::size_t k = 0; k + i + j < 4; ++k) q[k] = mean(half, q[k], q[k + 1]);
+      if (i == 0) {
+        for (std::size_t k = 0; k + j < 4; ++k) once[j][k] = q[k];
+      }
+      if (i == 1) {
+        for (std::size_t k = 0; k + j < 3; ++k) twice[j][k] = q[k];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < 5; ++k) {
+    V q[5], first[5], last[5];
+    for (std::size_t j = 0; j + k < 5; ++j) q[j] = b[row_start[j] + k];
+    halve(half, q, 5 - k, first, last);
+    for (std::size_t i = 0; i + k < 5; ++i) upper[i][k] = last[i];
+  }
+  V* next = out + 3;
+  for (std::size_t child = 0; child < 3; ++child) {
+    const auto& along = child == 0 ? left : child == 1 ? right : upper;
+    for (std::size_t i = 0; i < 5; ++i) {
+      V q[5], first[5], last[5];
+      for (std::size_t j = 0; i + j < 5; ++j) q[j] = along[i][j];
+      halve(half, q, 5 - i, first, last);
+      for (std::size_t j = 0; i + j < 5; ++j) {
+        if (i == 0 && j == 0) {
+          out[child] = first[0];
+        } else if ((child == 1 ? i : j) < 4) {  // the midpoint of each edge once
+          *next++ = first[j];
+        }
+      }
+    }
+  }
+  const auto blossom2 = [&](V aa, V ab, V bb) HWY_ATTR { return mean(half, mean(half, aa, ab), mean(half, ab, bb)); };
+  *next++ = mean(half, mean(half, twice[0][1], twice[1][0]), mean(half, twice[1][1], twice[2][0]));
+  *next++ = mean(half, blossom2(once[0][2], once[1][1], once[2][0]), blossom2(once[1][2], once[2][1], once[3][0]));
+  *next++ = mean(half, blossom2(once[0][1], once[1][1], once[2][1]), blossom2(once[1][0], once[2][0], once[3][0]));
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* out) {
+  const std::size_t lanes = hn::Lanes(d);
+  V hull[3][split_count];
+  Vec3<V> origin;
+  V* const origins[3] = {&origin.x, &origin.y, &origin.z};
+  V largest = hn::Zero(d);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    V c[controls], b[bezier_count];
+    const double* from = gathered + axis * controls * lanes;
+    const V o = hn::Load(d, from);
+    *origins[axis] = o;
+    for (std::size_t k = 0; k < controls; ++k) {
+      c[k] = hn::Sub(hn::Load(d, from + k * lanes), o);
+      largest = hn::Max(largest, hn::Abs(c[k]));
+    }
+    bezier(d, c, b);
+    split_once(d, b, hull[axis]);
+  }
+  const auto at = [&](std::size_t i) HWY_ATTR { return Vec3<V>{hull[0][i], hull[1][i], hull[2][i]}; };
+
+  // The corners are points of the hull, at height 0.
+  Vec3<V> corner[3] = {at(0), at(1), at(2)};
+  const Vec3<V> normal = cross(sub(corner[1], corner[0]), sub(corner[2], corner[0]));
+  const Vec3<V> n = scaled(hn::Div(hn::Set(d, 1.0), hn::Sqrt(dot(normal, normal))), normal);
+  V lower = hn::Zero(d), upper = lower;
+  const V from = dot(n, corner[0]);
+  for (std::size_t i = 3; i < split_count; ++i) {
+    const V height = hn::Sub(dot(n, at(i)), from);
+    lower = hn::Min(lower, height);
+    upper = hn::Max(upper, height);
+  }
+  const Vec3<V> shift = scaled(hn::Mul(hn::Set(d, 0.5), hn::Add(lower, upper)), n);
+  for (auto& c : corner) c = add(c, shift);
+
+  const PlanarTriangle<V> t = planar_triangle(d, corner[0], corner[1], corner[2]);
+  V farthest = hn::Zero(d);
+  auto good = well_shaped(d, t);
+  for (std::size_t i = 0; i < split_count; ++i) {
+    const V dist_sq = distance_sq(d, t, at(i));
+    good = hn::And(good, hn::Lt(dist_sq, hn::Set(d, INFINITY)));
+    farthest = hn::Max(farthest, dist_sq);
+  }
+  const ReachV<V> reach = reach_of(d, t, farthest);
+
+  // What control points, hull points and the placed base are off by, a coordinate.
+  V placed = hn::Zero(d);
+  for (auto& c : corner) {
+    c = add(origin, c);
+    placed = hn::Max(placed, max3(hn::Abs(c.x), hn::Abs(c.y), hn::Abs(c.z)));
+  }
+  constexpr double hull_error = unit_roundoff + gamma_bound(24);
+  const V error = hn::Add(hn::Add(hn::Mul(hn::Set(d, hull_error * (1 + 0x1p-42)), largest),
+                                  hn::Mul(hn::Set(d, unit_roundoff * (1 + 0x1p-42)), placed)),
+                          hn::Set(d, 64 * underflow_error));
+  const V rounding = hn::Add(reach.rounding, hn::Mul(hn::Set(d, spatial_error(1)), error));
+  const V radius = hn::Add(reach.distance, hn::Sub(rounding, reach.rounding));
+  const V widened =
+      hn::Add(hn::Mul(radius, hn::Set(d, 1 + 0x1p-42)), hn::Set(d, underflow_error));
+  const V answer = hn::IfThenElse(hn::And(good, hn::Lt(widened, hn::Set(d, INFINITY))), widened, hn::Set(d, -1.0));
+
+  HWY_ALIGN double lane[11][HWY_MAX_BYTES / sizeof(double)];
+  for (std::size_t k = 0; k < 3; ++k) {
+    hn::Store(corner[k].x, d, lane[3 * k]);
+    hn::Store(corner[k].y, d, lane[3 * k + 1]);
+    hn::Store(corner[k].z, d, lane[3 * k + 2]);
+  }
+  hn::Store(answer, d, lane[9]);
+  hn::Store(rounding, d, lane[10]);
+  for (std::size_t l = 0; l < lanes; ++l) {
+    for (std::size_t k = 0; k < 3; ++k) out[l].base[k] = {lane[3 * k][l], lane[3 * k + 1][l], lane[3 * k + 2][l]};
+    out[l].radius = lane[9][l];
+    out[l].rounding = lane[10][l];
+  }
+}
+
+void FitRegular(std::span<const Point3> points, std::span<const std::uint32_t> control, std::span<BatchFit> out) {
+  const hn::ScalableTag<double> d;
+  const std::size_t lanes = hn::Lanes(d);
+  HWY_ALIGN double gathered[3 * controls * HWY_MAX_BYTES / sizeof(double)];
+  BatchFit answers[HWY_MAX_BYTES / sizeof(double)];
+  for (std::size_t begin = 0; begin < out.size(); begin += lanes) {
+    // The last group is filled up with copies of its last patch.
+    const std::size_t here = std::min(lanes, out.size() - begin);
+    for (std::size_t l = 0; l < lanes; ++l) {
+      const std::uint32_t* const index = control.data() + controls * (begin + std::min(l, here - 1));
+      for (std::size_t k = 0; k < controls; ++k) {
+        const Point3& p = points[index[k]];
+        gathered[k * lanes + l] = p.x;
+        gathered[(controls + k) * lanes + l] = p.y;
+        gathered[(2 * controls + k) * lanes + l] = p.z;
+      }
+    }
+    if (here == lanes) {
+      fit_group(d, gathered, out.data() + begin);
+    } else {
+      fit_group(d, gathered, answers);
+      std::copy_n(answers, here, out.data() + begin);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace snug::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace snug::kernels {
+
+HWY_EXPORT(ApplyRows);
+HWY_EXPORT(Heights);
+HWY_EXPORT(Farthest);
+HWY_EXPORT(FitRegular);
+
+void apply_rows(const double* weights, std::size_t rows, std::span<const Vector3> points, double* x, double* y,
+                double* z) {
+  HWY_DYNAMIC_DISPATCH(ApplyRows)(weights, rows, points, x, y, z);
+}
+
+Range heights(const Coordinates& points, const Vector3& from, const Vector3& normal) {
+  return HWY_DYNAMIC_DISPATCH(Heights)(points, from, normal);
+}
+
+std::optional<Reach> farthest(const Coordinates& points, const Vector3& a, const Vector3& b, const Vector3& c) {
+  Reach reach;
+  if (!HWY_DYNAMIC_DISPATCH(Farthest)(points, a, b, c, reach)) return std::nullopt;
+  return reach;
+}
+
+void fit_regular(std::span<const Point3> points, std::span<const std::uint32_t> control, std::span<BatchFit> out) {
+  HWY_DYNAMIC_DISPATCH(FitRegular)(points, control, out);
+}
+
+}  // namespace snug::kernels
+#endif

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include <snug/base/point.h>
+
+/// The loops that bounds spend their time in, on the widest vectors that the processor has; chosen at run time.
+///
+/// Guarantee: every lane does the same operations in the same order on every instruction set, none of them
+///            fused, and lanes meet only in minima and maxima: results are the same everywhere, bit by bit.
+namespace snug::kernels {
+
+/// Coordinates of many points, one array each, `count` long.
+struct Coordinates {
+  const double* x;
+  const double* y;
+  const double* z;
+  std::size_t count;
+};
+
+/// x, y, z = M points, for a column-major matrix of `rows` rows. Sums run over the columns in order.
+/// Cost:      3 rows points.size() multiply-adds, four to eight at once.
+void apply_rows(const double* weights, std::size_t rows, std::span<const Vector3> points, double* x,
+                double* y, double* z);
+
+/// Least and largest dot(normal, p - from). NaN where a point is not finite is passed over.
+struct Range {
+  double lower, upper;
+};
+[[nodiscard]] Range heights(const Coordinates& points, const Vector3& from, const Vector3& normal);
+
+/// How far points are from a triangle.
+struct Reach {
+  double distance;  ///< upper bound of the largest distance, but for the points' own error; NaN or infinite
+                    ///< where a point is
+  double rounding;  ///< the part of it that accounts for rounding
+};
+
+/// Largest distance of the points to the triangle; nothing for a triangle that is too flat for its own plane:
+/// a needle, or one without area.
+///
+/// Guarantee: see derivations/rounding.md, "Distance in the triangle's plane".
+[[nodiscard]] std::optional<Reach> farthest(const Coordinates& points, const Vector3& a, const Vector3& b,
+                                            const Vector3& c);
+
+/// What the batch says of one patch.
+struct BatchFit {
+  Point3 base[3];
+  double radius;    ///< negative: not answered, take the general way
+  double rounding;  ///< part of the radius
+};
+
+/// Offset triangles of regular patches inside the surface, straight from their control points: Bezier points,
+/// one split of de Casteljau's, fit; a patch a lane.
+///
+/// Guarantee: as offset_triangle() on the patch's hull points. A triangle that farthest() does not answer is
+///            marked.
+/// Requires:  control: twelve indices into `points` a patch, in the kind's order; out.size() patches.
+/// Cost:      about 0.15 to 0.2 microseconds a patch with four lanes.
+void fit_regular(std::span<const Point3> points, std::span<const std::uint32_t> control,
+                 std::span<BatchFit> out);
+
+}  // namespace snug::kernels
