@@ -21,6 +21,7 @@ EXCEPTIONS = {
 # What a layer may include besides the C++ standard library and snug; all others: nothing.
 LIBRARIES = {
     "base": ("oneapi/tbb/",),
+    "enclose": ("hwy/",),
     "picture": ("png.h",),
 }
 POSIX = ("fcntl.h", "unistd.h", "sys/")

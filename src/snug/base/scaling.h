@@ -25,9 +25,7 @@ class PowerOfTwo {
   friend PowerOfTwo operator*(PowerOfTwo a, PowerOfTwo b) { return PowerOfTwo(a.exponent_ + b.exponent_); }
 
   /// May overflow to infinity: for a caller who knows that it cannot, or checks.
-  [[nodiscard]] double apply(double x) const {
-    return factor_ > 0 ? x * factor_ : std::ldexp(x, exponent_);
-  }
+  [[nodiscard]] double apply(double x) const { return factor_ > 0 ? x * factor_ : std::ldexp(x, exponent_); }
   [[nodiscard]] Point3 apply(Point3 p) const { return {apply(p.x), apply(p.y), apply(p.z)}; }
   [[nodiscard]] Vector3 apply(Vector3 v) const { return {apply(v.x), apply(v.y), apply(v.z)}; }
   /// Does x survive the way there and back?

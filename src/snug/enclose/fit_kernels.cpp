@@ -90,12 +90,14 @@ HWY_INLINE PlanarTriangle<V> planar_triangle(D d, const Vec3<V>& a, const Vec3<V
   t.d2y = hn::Mul(yc, over_l2);
   t.longest = max3(t.l0, t.l1, t.l2);
   const V off_b = hn::Add(hn::Abs(dot(t.t2, eb)), hn::Abs(dot(t.n, eb)));
-  t.deviation = hn::Add(hn::Max(off_b, hn::Abs(dot(t.n, ec))), hn::Mul(hn::Set(d, 16 * unit_roundoff), t.longest));
+  t.deviation =
+      hn::Add(hn::Max(off_b, hn::Abs(dot(t.n, ec))), hn::Mul(hn::Set(d, 16 * unit_roundoff), t.longest));
   const V products = max3(hn::Mul(t.l0, t.l1), hn::Mul(t.l1, t.l2), hn::Mul(t.l2, t.l0));
   t.amplify = hn::Div(hn::Add(products, products), hn::Mul(t.l0, yc));
   const V diagonal = max3(hn::Abs(hn::Sub(dot(t.t1, t.t1), one)), hn::Abs(hn::Sub(dot(t.t2, t.t2), one)),
                           hn::Abs(hn::Sub(dot(t.n, t.n), one)));
-  const V mixed = hn::Add(hn::Add(hn::Abs(dot(t.t1, t.t2)), hn::Abs(dot(t.t1, t.n))), hn::Abs(dot(t.t2, t.n)));
+  const V mixed =
+      hn::Add(hn::Add(hn::Abs(dot(t.t1, t.t2)), hn::Abs(dot(t.t1, t.n))), hn::Abs(dot(t.t2, t.n)));
   t.stretch = hn::Add(hn::Add(diagonal, mixed), hn::Set(d, 16 * unit_roundoff));
   return t;
 }
@@ -160,8 +162,8 @@ HWY_INLINE void each_vector(D d, std::size_t count, const Work& work) {
 }
 
 template <class D>
-HWY_INLINE void apply_rows_with(D d, const double* weights, std::size_t rows, std::span<const Vector3> points, double* x,
-                                double* y, double* z) {
+HWY_INLINE void apply_rows_with(D d, const double* weights, std::size_t rows, std::span<const Vector3> points,
+                                double* x, double* y, double* z) {
   each_vector(d, rows, [&](std::size_t r) HWY_ATTR {
     auto sx = hn::Zero(d), sy = sx, sz = sx;
     const double* weight = weights + r;
@@ -214,9 +216,10 @@ HWY_INLINE double farthest_sq_with(D d, const Coordinates& points, const PlanarT
   using V = hn::Vec<D>;
   const auto all = [&](const V1& v) HWY_ATTR { return hn::Set(d, hn::GetLane(v)); };
   const auto all3 = [&](const Vec3<V1>& v) HWY_ATTR { return Vec3<V>{all(v.x), all(v.y), all(v.z)}; };
-  const PlanarTriangle<V> t{all3(one.a),      all3(one.t1),       all3(one.t2),     all3(one.n),     all(one.l0),
-                            all(one.l1),      all(one.l2),        all(one.d1x),     all(one.d1y),    all(one.d2x),
-                            all(one.d2y),     all(one.longest),   all(one.deviation), all(one.amplify), all(one.stretch)};
+  const PlanarTriangle<V> t{all3(one.a),        all3(one.t1),     all3(one.t2),    all3(one.n),
+                            all(one.l0),        all(one.l1),      all(one.l2),     all(one.d1x),
+                            all(one.d1y),       all(one.d2x),     all(one.d2y),    all(one.longest),
+                            all(one.deviation), all(one.amplify), all(one.stretch)};
   V farthest = hn::Zero(d);
   auto finite = hn::Le(farthest, farthest);
   each_vector(d, points.count, [&](std::size_t i) HWY_ATTR {
@@ -265,9 +268,8 @@ HWY_INLINE void bezier(D d, const V* c, V* b) {
     const V sum = hn::Add(hn::Add(times(12, c[v]), times(4, c[w])), hn::Add(times(3, wings), next));
     return hn::Mul(part, sum);
   };
-  const auto middle = [&](V ends, V wings) HWY_ATTR {
-    return hn::Mul(part, hn::Add(times(8, ends), times(4, wings)));
-  };
+  const auto middle = [&](V ends, V wings)
+                          HWY_ATTR { return hn::Mul(part, hn::Add(times(8, ends), times(4, wings))); };
   const auto inner = [&](std::size_t v, V others, V across) HWY_ATTR {
     return hn::Mul(part, hn::Add(times(10, c[v]), hn::Add(times(6, others), across)));
   };
@@ -306,9 +308,9 @@ HWY_INLINE void halve(V half, V* q, std::size_t count, V* first, V* last) {
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void split_once(D d, const V* b, V* out) {
   const V half = hn::Set(d, 0.5);
-  V left[5][5], right[5][5];   // f(m01^i, v0 or v1^(4-i-j), v2^j) at [i][j]
-  V once[4][4], twice[3][3];   // f(m01, ...) and f(m01, m01, ...) in full, at [j][k]: k of v1, j of v2
-  V upper[5][5];               // f(m20^i, v1^j, v2^(4-i-j)) at [i][j]
+  V left[5][5], right[5][5];  // f(m01^i, v0 or v1^(4-i-j), v2^j) at [i][j]
+  V once[4][4], twice[3][3];  // f(m01, ...) and f(m01, m01, ...) in full, at [j][k]: k of v1, j of v2
+  V upper[5][5];              // f(m20^i, v1^j, v2^(4-i-j)) at [i][j]
   constexpr std::size_t row_start[5] = {0, 5, 9, 12, 14};
   for (std::size_t j = 0; j < 5; ++j) {
     V q[5];
@@ -348,10 +350,13 @@ HWY_INLINE void split_once(D d, const V* b, V* out) {
       }
     }
   }
-  const auto blossom2 = [&](V aa, V ab, V bb) HWY_ATTR { return mean(half, mean(half, aa, ab), mean(half, ab, bb)); };
+  const auto blossom2 = [&](V aa, V ab, V bb)
+                            HWY_ATTR { return mean(half, mean(half, aa, ab), mean(half, ab, bb)); };
   *next++ = mean(half, mean(half, twice[0][1], twice[1][0]), mean(half, twice[1][1], twice[2][0]));
-  *next++ = mean(half, blossom2(once[0][2], once[1][1], once[2][0]), blossom2(once[1][2], once[2][1], once[3][0]));
-  *next++ = mean(half, blossom2(once[0][1], once[1][1], once[2][1]), blossom2(once[1][0], once[2][0], once[3][0]));
+  *next++ =
+      mean(half, blossom2(once[0][2], once[1][1], once[2][0]), blossom2(once[1][2], once[2][1], once[3][0]));
+  *next++ =
+      mean(half, blossom2(once[0][1], once[1][1], once[2][1]), blossom2(once[1][0], once[2][0], once[3][0]));
 }
 
 template <class D, class V = hn::Vec<D>>
@@ -411,9 +416,9 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
                           hn::Set(d, 64 * underflow_error));
   const V rounding = hn::Add(reach.rounding, hn::Mul(hn::Set(d, spatial_error(1)), error));
   const V radius = hn::Add(reach.distance, hn::Sub(rounding, reach.rounding));
-  const V widened =
-      hn::Add(hn::Mul(radius, hn::Set(d, 1 + 0x1p-42)), hn::Set(d, underflow_error));
-  const V answer = hn::IfThenElse(hn::And(good, hn::Lt(widened, hn::Set(d, INFINITY))), widened, hn::Set(d, -1.0));
+  const V widened = hn::Add(hn::Mul(radius, hn::Set(d, 1 + 0x1p-42)), hn::Set(d, underflow_error));
+  const V answer =
+      hn::IfThenElse(hn::And(good, hn::Lt(widened, hn::Set(d, INFINITY))), widened, hn::Set(d, -1.0));
 
   HWY_ALIGN double lane[11][HWY_MAX_BYTES / sizeof(double)];
   for (std::size_t k = 0; k < 3; ++k) {
@@ -424,13 +429,15 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
   hn::Store(answer, d, lane[9]);
   hn::Store(rounding, d, lane[10]);
   for (std::size_t l = 0; l < lanes; ++l) {
-    for (std::size_t k = 0; k < 3; ++k) out[l].base[k] = {lane[3 * k][l], lane[3 * k + 1][l], lane[3 * k + 2][l]};
+    for (std::size_t k = 0; k < 3; ++k)
+      out[l].base[k] = {lane[3 * k][l], lane[3 * k + 1][l], lane[3 * k + 2][l]};
     out[l].radius = lane[9][l];
     out[l].rounding = lane[10][l];
   }
 }
 
-void FitRegular(std::span<const Point3> points, std::span<const std::uint32_t> control, std::span<BatchFit> out) {
+void FitRegular(std::span<const Point3> points, std::span<const std::uint32_t> control,
+                std::span<BatchFit> out) {
   const hn::ScalableTag<double> d;
   const std::size_t lanes = hn::Lanes(d);
   HWY_ALIGN double gathered[3 * controls * HWY_MAX_BYTES / sizeof(double)];
@@ -468,8 +475,8 @@ HWY_EXPORT(Heights);
 HWY_EXPORT(Farthest);
 HWY_EXPORT(FitRegular);
 
-void apply_rows(const double* weights, std::size_t rows, std::span<const Vector3> points, double* x, double* y,
-                double* z) {
+void apply_rows(const double* weights, std::size_t rows, std::span<const Vector3> points, double* x,
+                double* y, double* z) {
   HWY_DYNAMIC_DISPATCH(ApplyRows)(weights, rows, points, x, y, z);
 }
 
@@ -477,13 +484,15 @@ Range heights(const Coordinates& points, const Vector3& from, const Vector3& nor
   return HWY_DYNAMIC_DISPATCH(Heights)(points, from, normal);
 }
 
-std::optional<Reach> farthest(const Coordinates& points, const Vector3& a, const Vector3& b, const Vector3& c) {
+std::optional<Reach> farthest(const Coordinates& points, const Vector3& a, const Vector3& b,
+                              const Vector3& c) {
   Reach reach;
   if (!HWY_DYNAMIC_DISPATCH(Farthest)(points, a, b, c, reach)) return std::nullopt;
   return reach;
 }
 
-void fit_regular(std::span<const Point3> points, std::span<const std::uint32_t> control, std::span<BatchFit> out) {
+void fit_regular(std::span<const Point3> points, std::span<const std::uint32_t> control,
+                 std::span<BatchFit> out) {
   HWY_DYNAMIC_DISPATCH(FitRegular)(points, control, out);
 }
 
