@@ -453,10 +453,9 @@ class PlyParser {
     const TextCursor at({}, name_);
     if (element.count == 0) return;
     if (element.count > body_->room_for(element)) {
-      at.fail_at(element.line,
-                 "the header promises " + std::to_string(element.count) + " elements " +
-                     in_quotes(element.name) +
-                     ", more than the rest of the file can hold: it is truncated, or the count is wrong");
+      at.fail_at(element.line, "the header promises " + std::to_string(element.count) + " elements " +
+                                   in_quotes(element.name) +
+                                   ", more than the file can hold: it is truncated, or the count is wrong");
     }
     if (element.count > most_elements) {
       at.fail_at(element.line, "at most " + std::to_string(most_elements) + " elements of a sort are read");

@@ -104,6 +104,7 @@ class AsciiParser {
     }
     expect("endloop");
     expect("endfacet");
+    ++facet_;
   }
 
   void expect(const char* keyword) {
@@ -112,13 +113,14 @@ class AsciiParser {
   }
 
   [[noreturn]] void fail_at_word(std::string_view word, const std::string& expected) const {
-    const std::string where = "facet " + std::to_string(corners_.size() / 3) + ": ";
+    const std::string where = "facet " + std::to_string(facet_) + ": ";
     if (word.empty()) cursor_.fail(where + "the file ends before its " + expected + ": it is truncated");
     cursor_.fail(where + in_quotes(word) + " stands where " + expected + " should");
   }
 
   TextCursor cursor_;
   Corners corners_;
+  std::size_t facet_ = 0;
 };
 
 Corners read_corners(std::string_view bytes, const std::string& name) {
