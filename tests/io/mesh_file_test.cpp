@@ -104,6 +104,11 @@ TEST(mesh_file, welds_stl_alone) {
   EXPECT_EQ(read_mesh(folder / "a.ply", {}, {}, weld).vertex_count(), 3u);
 }
 
+TEST(mesh_file, knows_which_formats_hold_polygons) {
+  for (const char* name : {"-", "a.obj", "a.OFF", "a.ply"}) EXPECT_TRUE(writes_polygons(name)) << name;
+  for (const char* name : {"a.stl", "a.STL", "a.glb"}) EXPECT_FALSE(writes_polygons(name)) << name;
+}
+
 TEST(mesh_file, a_mesh_that_the_format_cannot_hold_leaves_no_file) {
   const TemporaryFolder folder;
   ControlMesh quad = creased_triangle();

@@ -160,6 +160,42 @@ TEST(ply, false_promises_cost_nothing) {
   EXPECT_NE(message(listed + vertices + "3 0 2 1\n4000000000 0 1 3 2\n").find("face 1"), std::string::npos);
 }
 
+TEST(ply, ascii_numbers_must_fit_the_types_of_the_header) {
+  const auto with_marks = [](const std::string& type, const std::string& count, int values) {
+    std::string file = head;
+    file.insert(file.find("property list"), "property list " + type + " int marks\n");
+    std::string marked = count;
+    for (int i = 0; i < values; ++i) marked += " 7";
+    return file + vertices + marked + " 3 0 2 1\n0 4 0 1 3 2\n";
+  };
+  EXPECT_EQ(parse(with_marks("uchar", "255", 255)).face_count(), 2u);
+  EXPECT_EQ(parse(with_marks("char", "127", 127)).face_count(), 2u);
+  EXPECT_EQ(parse(with_marks("short", "256", 256)).face_count(), 2u);
+  for (const auto& [type, count, values] :
+       {std::tuple("uchar", "256", 256), {"char", "128", 128}, {"uint", "-1", 0}}) {
+    EXPECT_NE(message(with_marks(type, count, values)).find("does not fit the type " + std::string(type)),
+              std::string::npos);
+  }
+  EXPECT_NE(message(with_marks("char", "-1", 0)).find("-1 is not a number of values"), std::string::npos);
+}
+
+TEST(ply, a_header_of_mixed_line_ends_is_refused_unless_a_cr_stands_before_lf) {
+  std::string bent = head;
+  const std::size_t at = bent.find("4\n") + 1;
+  bent.insert(at, "\r");
+  EXPECT_EQ(parse(bent + vertices + faces).vertex_count(), 4u);
+  bent.erase(at + 1, 1);
+  EXPECT_EQ(message(bent + vertices + faces),
+            "mesh.ply:3: the lines of the header end sometimes with CR and sometimes with LF");
+}
+
+TEST(ply, two_lists_of_corners_are_refused) {
+  std::string bent = head;
+  bent.insert(bent.find("end_header"), "property list uchar int vertex_index\n");
+  EXPECT_EQ(message(bent + vertices + "3 0 2 1 3 0 1 2\n3 0 1 3 3 0 3 1\n"),
+            "mesh.ply:7: the faces have two lists of corners");
+}
+
 TEST(ply, triangle_strips_are_refused_unless_there_are_none) {
   const std::string strips = "property list int int vertex_indices\nend_header\n";
   std::string bent = head;

@@ -56,6 +56,15 @@ TEST(weld, the_distance_itself_still_welds) {
             (Numbers{0, 1}));
 }
 
+TEST(weld, cells_are_neither_too_large_nor_too_small) {
+  // The far corners of a cube whose diagonal is longer than the distance; then pairs that lie just within it.
+  EXPECT_EQ(first_of_welded(std::vector<Point3>{{0, 0, 0}, {0.59, 0.59, 0.59}}, 1), (Numbers{0, 1}));
+  for (int i = 0; i < 1000; ++i) {
+    const double x = 1e-3 * i;
+    EXPECT_EQ(first_of_welded(std::vector<Point3>{{x, 0, 0}, {x + 0.999, 0, 0}}, 1), (Numbers{0, 0})) << x;
+  }
+}
+
 TEST(weld, agrees_with_the_rule_on_random_and_on_aligned_points) {
   std::mt19937 random(3);
   for (int trial = 0; trial < 400; ++trial) {

@@ -77,6 +77,11 @@ ControlMesh read_mesh(const std::string& path, const Notes& notes, const WorkMon
 
 void require_writable_ending(const std::string& path) { static_cast<void>(format_to_write(path)); }
 
+bool writes_polygons(const std::string& path) {
+  const std::string ending = format_to_write(path);
+  return ending != ".stl" && ending != ".glb";
+}
+
 void write_mesh(const ControlMesh& mesh, const std::string& path, const Notes& notes) {
   const std::string ending = format_to_write(path);
   if (ending != ".obj" && notes && changes_surface(mesh.tags)) {

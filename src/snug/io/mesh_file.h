@@ -31,4 +31,9 @@ void write_mesh(const ControlMesh& mesh, const std::string& path, const Notes& n
 /// Errors:    InputError (unreadable) if not.
 void require_writable_ending(const std::string& path);
 
+/// Does the format that write_mesh takes for this name hold faces of more than three corners?
+///
+/// Errors:    as require_writable_ending.
+[[nodiscard]] bool writes_polygons(const std::string& path);
+
 }  // namespace snug

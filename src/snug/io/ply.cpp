@@ -94,7 +94,11 @@ class HeaderLines {
     std::string_view line = rest_.substr(0, size);
     if (line.ends_with('\r')) line.remove_suffix(1);
     rest_.remove_prefix(size + 1);
-    return {line, name_, ++count_};
+    TextCursor at(line, name_, ++count_);
+    if (line.find('\r') != std::string_view::npos) {
+      at.fail("the lines of the header end sometimes with CR and sometimes with LF");
+    }
+    return at;
   }
 
   [[nodiscard]] std::size_t count() const { return count_; }

@@ -219,7 +219,11 @@ ControlMesh parse_stl(std::string_view bytes, const std::string& name, const Wel
   if (!weld) return welded_mesh(corners, first_of_welded(corners));
   Box3 box;
   for (const Point3& corner : corners) box.add(corner);
-  return welded_mesh(corners, first_of_welded(corners, weld(box.longest_side())));
+  try {
+    return welded_mesh(corners, first_of_welded(corners, weld(box.longest_side())));
+  } catch (const InputError& error) {
+    throw InputError(error.problem(), name + ": " + error.what());
+  }
 }
 
 std::string format_stl(const ControlMesh& mesh, const std::string& name, StlFormat format,

@@ -27,7 +27,7 @@ using WeldDistance = std::function<double(double size)>;
 ///            by welding are kept, see mesh/validate.h.
 /// Errors:    InputError (unreadable) naming line or facet: coordinates that are not finite, facets that are no
 ///            triangles, a size that does not agree with the number of facets, no facets, a file that is
-///            neither. InputError (refused) as first_of_welded.
+///            neither. InputError as first_of_welded and `weld`, with the name.
 /// Cost:      as first_of_welded.
 [[nodiscard]] ControlMesh parse_stl(std::string_view bytes, const std::string& name,
                                     const WeldDistance& weld = {});
