@@ -17,7 +17,7 @@ namespace snug {
 /// Requires:  finite points, fewer than 2^32 - 1; distance >= 0 and finite.
 /// Errors:    InputError (refused) for a distance above 0 that is smaller than 2^-40 of the largest coordinate.
 /// Cost:      sorting the points; with a distance also their pairs in neighbouring cells of half that distance
-///            until one welds the two cells: a fraction of a second for a million points.
+///            until one welds the two cells: about a second for a million points.
 [[nodiscard]] std::vector<std::uint32_t> first_of_welded(std::span<const Point3> points, double distance = 0);
 
 }  // namespace snug
