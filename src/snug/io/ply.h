@@ -19,7 +19,8 @@ enum class PlyFormat : std::uint8_t { ascii, binary_little_endian, binary_big_en
 /// the list `vertex_index` or `vertex_indices` of any integer type. Elements stand in any order. Other elements
 /// and properties, lists too, are passed over, and so are `comment` and `obj_info` lines. Types have their old
 /// names (char to double) or the new ones (int8 to float64). Header lines end with LF, CR LF or CR, as the
-/// first one does. In ascii files an element stands on a line of its own; blank lines may stand between them.
+/// first one does. In ascii files an element stands on a line of its own, in words as in text_cursor.h; blank
+/// lines may stand between them.
 /// Guarantee: coordinates are exactly the numbers of a binary file; in ascii files they are the doubles nearest
 ///            to the decimals, whatever type the header names. Vertices and faces keep their order. Faces with
 ///            repeated corners, or with one or two, are kept: see mesh/validate.h.
