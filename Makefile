@@ -17,7 +17,7 @@ ctest = ctest --parallel $(JOBS) --no-tests=error
 # Thread sanitizer wants an address space that is not shuffled too far; not every container may ask for that.
 unshuffled = $$(setarch -R true 2> /dev/null && echo setarch -R || true)
 
-.PHONY: help demo test test-long build bench format tidy docs check asan tsan install-packages clean
+.PHONY: help demo test test-long build bench format tidy docs check asan tsan fuzz install-packages clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-17s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -47,6 +47,10 @@ tsan: install-packages  ## the tests labelled threads under thread sanitizer
 	@$(call build,tsan,tests_threads)
 	@$(unshuffled) $(ctest) --preset tsan -L threads --repeat until-fail:3
 
+fuzz: install-packages  ## the readers on made-up files, FUZZ_SECONDS (600) each
+	@$(call build,fuzz)
+	@JOBS=$(JOBS) scripts/fuzz
+
 check: test  ## every gate that a commit must pass
 	@scripts/check_format
 	@scripts/check_layers.py --self-test
@@ -57,6 +61,7 @@ check: test  ## every gate that a commit must pass
 	@scripts/check_package
 	@$(MAKE) asan
 	@$(MAKE) tsan
+	@FUZZ_SECONDS=5 $(MAKE) fuzz
 
 format:  ## rewrite C++ files in the project's format
 	@scripts/check_format --fix

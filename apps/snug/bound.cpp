@@ -1,6 +1,8 @@
 #include <snug/query/bound.h>
 
 #include <fmt/core.h>
+#include <snug/io/mesh_file.h>
+#include <snug/picture/polyhedron.h>
 #include <CLI/CLI.hpp>
 
 #include "common.h"
@@ -10,9 +12,12 @@
 namespace snug::command {
 namespace {
 
+constexpr std::size_t most_facets = 4'000'000;
+
 struct Options : CommonOptions {
   std::string mesh;
   std::string tolerance;
+  std::string polyhedra;
   unsigned level = 0;
 };
 
@@ -47,8 +52,50 @@ void write_piece(JsonWriter& json, const PieceEnclosure& piece) {
   json.end_object();
 }
 
+// The hulls of enclosures side by side in one mesh, for pictures.
+class Polyhedra {
+ public:
+  explicit Polyhedra(bool triangles) : triangles_(triangles) {}
+
+  void add(const PieceEnclosure& piece) {
+    const IntervalTriangle boxes =
+        piece.interval ? *piece.interval : IntervalTriangle{{*piece.box, *piece.box, *piece.box}};
+    const Polyhedron solid = hull_of_boxes(boxes);
+    if (solid.facets.empty()) return;  // a segment or a point
+    ++count_;
+    const std::size_t first = mesh_.vertex_count();
+    mesh_.points.insert(mesh_.points.end(), solid.points.begin(), solid.points.end());
+    for (const std::vector<std::uint32_t>& facet : solid.facets) {
+      const auto corner = [&](std::size_t i) { return VertexId(first + facet[i]); };
+      if (triangles_) {
+        for (std::size_t i = 2; i < facet.size(); ++i)
+          mesh_.add_face(std::array{corner(0), corner(i - 1), corner(i)});
+      } else {
+        for (std::size_t i = 0; i < facet.size(); ++i) mesh_.face_vertices.push_back(corner(i));
+        mesh_.add_face({});
+      }
+    }
+    if (mesh_.face_count() > most_facets) {
+      throw InputError(
+          InputProblem::refused,
+          fmt::format("--polyhedra: more than {} facets; give a larger --tolerance or a lower --level",
+                      most_facets));
+    }
+  }
+
+  [[nodiscard]] const ControlMesh& mesh() const { return mesh_; }
+  [[nodiscard]] std::size_t count() const { return count_; }
+
+ private:
+  bool triangles_;
+  std::size_t count_ = 0;
+  ControlMesh mesh_;
+};
+
 ExitStatus run(const Options& options) {
   require_rows(options);
+  if (options.polyhedra == "-") throw UsageError("bound: --polyhedra - : give a file");
+  const bool triangles = !options.polyhedra.empty() && !writes_polygons(options.polyhedra);
   BoundOptions how;
   how.method = options.bounds == "control-box" ? BoundMethod::control_box : BoundMethod::rows;
   how.level = options.level;
@@ -59,6 +106,7 @@ ExitStatus run(const Options& options) {
   const Surface surface =
       load_surface(options.mesh, options, options.scheme, std::make_shared<BoundLibrary>());
   BoundSummary summary;
+  Polyhedra polyhedra(triangles);
   Report report("bound", options);
   naming(options.mesh, [&] {
     if (tolerance) how.tolerance = tolerance->in_mesh_units(surface.size());
@@ -69,6 +117,7 @@ ExitStatus run(const Options& options) {
         surface, how,
         [&](const PieceEnclosure& piece) {
           if (report.json()) write_piece(report.write(), piece);
+          if (!options.polyhedra.empty()) polyhedra.add(piece);
         },
         bar.monitor());
   });
@@ -86,6 +135,15 @@ ExitStatus run(const Options& options) {
                             spent ? "the budget was spent, face by face; give a larger --budget"
                                   : "rounding stands in the way; give a larger --tolerance"));
   }
+  if (!options.polyhedra.empty()) {
+    if (polyhedra.count() == 0) {
+      throw InputError(InputProblem::refused,
+                       options.mesh + ": no enclosure is a solid or a polygon to write");
+    }
+    write_mesh(polyhedra.mesh(), options.polyhedra, notes_for(options));
+    report.text(fmt::format("{}: {} polyhedra with {} facets, for pictures", options.polyhedra,
+                            polyhedra.count(), polyhedra.mesh().face_count()));
+  }
   report.finish();
   return summary.reached ? ExitStatus::answered : ExitStatus::not_reached;
 }
@@ -95,13 +153,17 @@ ExitStatus run(const Options& options) {
 Command add_bound(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("bound", "Enclosures that contain the limit surface");
-  command->add_option("MESH", options->mesh, "Control mesh (OBJ or OFF; - for standard input)")->required();
+  command->add_option("MESH", options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)")
+      ->required();
   CLI::Option* tolerance =
       command->add_option("--tolerance", options->tolerance,
                           "Split until each radius is at most half of this: mesh units, or 1%");
   command->add_option("--level", options->level, "Split every patch this often")
       ->check(CLI::Range(0u, 12u))
       ->excludes(tolerance);
+  command->add_option(
+      "--polyhedra", options->polyhedra,
+      "The hulls of the enclosures' boxes as one mesh, for pictures: .obj, .off, .ply, .stl or .glb");
   add_common_options(*command, *options);
   return {command, [options] { return run(*options); }};
 }

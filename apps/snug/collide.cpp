@@ -101,7 +101,7 @@ ExitStatus run(const Options& options) {
 Command add_collide(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("collide", "Do two limit surfaces touch? A verdict that is a proof");
-  command->add_option("A", options->mesh_a, "First control mesh")->required();
+  command->add_option("A", options->mesh_a, "First control mesh (OBJ, OFF, PLY or STL)")->required();
   command->add_option("B", options->mesh_b, "Second control mesh")->required();
   command
       ->add_option("--tolerance", options->tolerance,

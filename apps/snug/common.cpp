@@ -34,6 +34,8 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
   app.add_option("--budget", options.budget, "Most patches split before the answer is what was reached")
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 40))
       ->capture_default_str();
+  app.add_option("--weld", options.weld,
+                 "STL: vertices this near become one: mesh units, or percent of the mesh (0.001%)");
   app.add_flag("--quiet", options.quiet, "No progress and no notes on standard error");
 }
 
@@ -58,11 +60,20 @@ SchemeOptions choose_rules(const CommonOptions& options, const std::string& sche
   return rules;
 }
 
+Notes notes_for(const CommonOptions& options) {
+  if (options.quiet) return {};
+  return [](const std::string& line) { fmt::print(stderr, "snug: note: {}\n", line); };
+}
+
 ControlMesh load_mesh(const std::string& path, const CommonOptions& options) {
-  Notes notes;
-  if (!options.quiet) notes = [](const std::string& line) { fmt::print(stderr, "snug: note: {}\n", line); };
+  WeldDistance weld;
+  if (!options.weld.empty()) {
+    weld = [length = parse_length(options.weld, "--weld")](double size) {
+      return length.in_mesh_units(size);
+    };
+  }
   ProgressBar bar("reading " + path, options.quiet);
-  return read_mesh(path, notes, bar.monitor());
+  return read_mesh(path, notes_for(options), bar.monitor(), weld);
 }
 
 void naming(const std::string& path, const std::function<void()>& work) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <snug/io/notes.h>
 #include <snug/surface/surface.h>
 
 #include "exit_status.h"
@@ -29,6 +30,7 @@ struct CommonOptions {
   std::string output;  ///< -o; empty for none
   int threads = 0;
   std::uint64_t budget = 1'000'000;
+  std::string weld;  ///< empty: only equal vertices of STL files are welded
   bool quiet = false;
 };
 
@@ -47,7 +49,11 @@ struct Command {
 [[nodiscard]] SchemeOptions choose_rules(const CommonOptions& options, const std::string& scheme,
                                          const ControlMesh& mesh);
 
-/// Reads a control mesh; notes of the reader go to standard error unless quiet.
+/// Where notes of readers and writers go: standard error, unless quiet.
+[[nodiscard]] Notes notes_for(const CommonOptions& options);
+
+/// Reads a control mesh.
+/// Errors:    UsageError for --weld that is no length.
 [[nodiscard]] ControlMesh load_mesh(const std::string& path, const CommonOptions& options);
 
 /// Reads a mesh and makes its surface. Refusals name the file.

@@ -133,7 +133,8 @@ ExitStatus run(const Options& options) {
 Command add_eval(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("eval", "Limit points, tangents and normals");
-  command->add_option("MESH", options->mesh, "Control mesh (OBJ or OFF; - for standard input)")->required();
+  command->add_option("MESH", options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)")
+      ->required();
   CLI::Option* samples =
       command->add_option("--samples", options->samples, "A lattice of N steps along each edge of every face")
           ->check(CLI::Range(1u, 1000u))

@@ -76,7 +76,8 @@ Command add_info(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("info", "Counts, valences and defects of a mesh, of a broken one too");
-  command->add_option("MESH", options->mesh, "Control mesh (OBJ or OFF; - for standard input)")->required();
+  command->add_option("MESH", options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)")
+      ->required();
   add_common_options(*command, *options);
   return {command, [options] { return run(*options); }};
 }

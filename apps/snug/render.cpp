@@ -314,7 +314,7 @@ ExitStatus run(const Options& options) {
 Command add_render(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("render", "A shaded picture of limit surfaces");
-  command->add_option("MESH", options->meshes, "Control meshes (OBJ or OFF; - for standard input)")
+  command->add_option("MESH", options->meshes, "Control meshes (OBJ, OFF, PLY or STL; - for standard input)")
       ->required();
   command->add_option("--size", options->size, "Pixels: WxH, or one number")->capture_default_str();
   command->add_option("--samples", options->samples, "N * N rays a pixel")

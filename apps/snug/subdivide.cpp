@@ -20,6 +20,7 @@ ExitStatus run(const Options& options) {
   if (options.output.empty()) throw UsageError("subdivide: -o FILE is missing: where the refined mesh goes");
   if (options.json && options.output == "-")
     throw UsageError("subdivide: --json and -o - both want standard output");
+  require_writable_ending(options.output);
   ControlMesh mesh = load_mesh(options.mesh, options);
   ControlMesh result;
   Scheme scheme{};
@@ -29,7 +30,7 @@ ExitStatus run(const Options& options) {
     ProgressBar bar("subdividing " + options.mesh, options.quiet);
     result = subdivide(std::move(mesh), rules, options.level, options.limit, bar.monitor());
   });
-  write_mesh(result, options.output);
+  write_mesh(result, options.output, notes_for(options));
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("subdivide", to_standard_output);
@@ -51,7 +52,8 @@ ExitStatus run(const Options& options) {
 Command add_subdivide(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("subdivide", "The refined control mesh, or its limit positions");
-  command->add_option("MESH", options->mesh, "Control mesh (OBJ or OFF; - for standard input)")->required();
+  command->add_option("MESH", options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)")
+      ->required();
   command->add_option("--level", options->level, "Steps of subdivision")
       ->check(CLI::Range(0u, 12u))
       ->capture_default_str();

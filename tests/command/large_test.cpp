@@ -20,5 +20,14 @@ TEST(large, a_million_triangles_are_bounded) {
   EXPECT_EQ(collide.status, 0) << collide.err;
 }
 
+TEST(polyhedra, beyond_four_million_facets_are_refused_and_leave_no_file) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      run_snug({"bound", model("star.obj"), "--quiet", "--level", "8", "--polyhedra", folder.file("a.ply")});
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_NE(outcome.err.find("4000000 facets"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(folder.empty());
+}
+
 }  // namespace
 }  // namespace snug::testing

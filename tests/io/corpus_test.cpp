@@ -41,7 +41,9 @@ TEST(corpus, every_file_has_one_row) {
   for (const Row& row : index_rows()) listed.insert(row.file);
   for (const auto& entry : std::filesystem::directory_iterator(SNUG_CORPUS_DIR)) {
     const std::string ending = entry.path().extension();
-    if (ending == ".obj" || ending == ".off") present.insert(entry.path().filename());
+    if (ending == ".obj" || ending == ".off" || ending == ".ply" || ending == ".stl") {
+      present.insert(entry.path().filename());
+    }
   }
   EXPECT_GT(listed.size(), 100u);
   EXPECT_EQ(listed, present);
@@ -91,6 +93,22 @@ TEST(corpus, variants_of_a_file_hold_the_same_mesh) {
         "unannounced_colours", "words_on_lines", "vertices_share_lines"}) {
     SCOPED_TRACE(file);
     expect_same_arrays(read("tetrahedron.off"), read(std::string(file) + ".off"));
+  }
+  for (const char* file : {"tetrahedron_ascii", "tetrahedron_little", "tetrahedron_big", "windows_lines",
+                           "windows_header", "old_mac_lines", "comments", "blank_lines", "no_final_newline",
+                           "final_newline", "vertex_index", "new_type_names", "colours", "unknown_elements",
+                           "faces_first", "integer_coordinates", "empty_tristrips"}) {
+    SCOPED_TRACE(file);
+    expect_same_arrays(read("tetrahedron.off"), read(std::string(file) + ".ply"));
+  }
+  const ControlMesh facets = read("tetrahedron_binary.stl");
+  EXPECT_EQ(facets.vertex_count(), 4u);
+  for (const char* file : {"tetrahedron_ascii", "binary_solid", "binary_title_ply", "two_solids",
+                           "upper_case", "windows_lines", "nan_normals", "negative_zeros"}) {
+    SCOPED_TRACE(file);
+    const ControlMesh mesh = read(std::string(file) + ".stl");
+    EXPECT_EQ(mesh.points, facets.points);
+    EXPECT_EQ(mesh.face_vertices, facets.face_vertices);
   }
 }
 

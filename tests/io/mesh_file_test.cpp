@@ -8,6 +8,7 @@
 
 #include <snug/io/obj.h>
 #include <snug/io/off.h>
+#include <snug/io/ply.h>
 
 #include "io_testing.h"
 
@@ -49,32 +50,34 @@ class InputFrom {
 TEST(mesh_file, round_trips_by_ending_in_any_case) {
   const TemporaryFolder folder;
   const ControlMesh mesh = creased_triangle();
-  for (const char* name : {"a.obj", "a.OBJ", "a.off", "a.Off", "b.c.obj"}) {
+  for (const char* name :
+       {"a.obj", "a.OBJ", "a.off", "a.Off", "b.c.obj", "a.ply", "a.PLY", "a.stl", "a.Stl"}) {
     write_mesh(mesh, folder / name);
     expect_same_arrays(mesh, read_mesh(folder / name));
   }
   EXPECT_EQ(read_mesh(folder / "a.obj").tags.creases.size(), 1u);
 }
 
-TEST(mesh_file, says_that_off_has_no_tags) {
+TEST(mesh_file, says_that_only_obj_has_tags) {
   const TemporaryFolder folder;
   std::vector<std::string> lines;
   const Notes notes = [&](const std::string& line) { lines.push_back(line); };
   ControlMesh mesh = creased_triangle();
-  write_mesh(mesh, folder / "a.off", notes);
-  EXPECT_EQ(lines.size(), 1u);
+  for (const char* name : {"a.off", "a.ply", "a.stl", "a.glb"}) write_mesh(mesh, folder / name, notes);
+  EXPECT_EQ(lines.size(), 4u);
   mesh.tags = {};
-  write_mesh(mesh, folder / "a.off", notes);
+  for (const char* name : {"a.off", "a.ply", "a.stl", "a.glb"}) write_mesh(mesh, folder / name, notes);
   write_mesh(creased_triangle(), folder / "a.obj", notes);
-  EXPECT_EQ(lines.size(), 1u);
+  EXPECT_EQ(lines.size(), 4u);
 }
 
 TEST(mesh_file, tells_the_formats_of_standard_input_apart) {
   const TemporaryFolder folder;
   put(folder / "obj", obj_text);
   put(folder / "off", format_off(creased_triangle()));
+  put(folder / "ply", format_ply(creased_triangle()));
   put(folder / "bad", "OFF\n3 1 0\n0 0 0\n");
-  for (const char* name : {"obj", "off"}) {
+  for (const char* name : {"obj", "off", "ply"}) {
     const InputFrom input(folder / name);
     expect_same_arrays(creased_triangle(), read_mesh("-"));
   }
@@ -86,6 +89,33 @@ TEST(mesh_file, tells_the_formats_of_files_without_ending_apart) {
   const TemporaryFolder folder;
   put(folder / "plain", format_off(creased_triangle()));
   expect_same_arrays(creased_triangle(), read_mesh(folder / "plain"));
+  put(folder / "binary", format_ply(creased_triangle(), PlyFormat::binary_big_endian));
+  expect_same_arrays(creased_triangle(), read_mesh(folder / "binary"));
+}
+
+TEST(mesh_file, welds_stl_alone) {
+  const TemporaryFolder folder;
+  ControlMesh mesh = creased_triangle();
+  mesh.points[1] = {0, 0.125, 0};
+  const WeldDistance weld = [](double size) { return size / 4; };
+  write_mesh(mesh, folder / "a.stl");
+  write_mesh(mesh, folder / "a.ply");
+  EXPECT_EQ(read_mesh(folder / "a.stl", {}, {}, weld).vertex_count(), 2u);
+  EXPECT_EQ(read_mesh(folder / "a.ply", {}, {}, weld).vertex_count(), 3u);
+}
+
+TEST(mesh_file, knows_which_formats_hold_polygons) {
+  for (const char* name : {"-", "a.obj", "a.OFF", "a.ply"}) EXPECT_TRUE(writes_polygons(name)) << name;
+  for (const char* name : {"a.stl", "a.STL", "a.glb"}) EXPECT_FALSE(writes_polygons(name)) << name;
+}
+
+TEST(mesh_file, a_mesh_that_the_format_cannot_hold_leaves_no_file) {
+  const TemporaryFolder folder;
+  ControlMesh quad = creased_triangle();
+  quad.points.push_back({1, 1, 0});
+  quad.add_face(std::vector{VertexId(0), VertexId(1), VertexId(3), VertexId(2)});
+  EXPECT_THROW(write_mesh(quad, folder / "a.stl"), InputError);
+  EXPECT_EQ(folder.entries(), 0u);
 }
 
 TEST(mesh_file, bad_names_are_clear_errors) {
@@ -93,12 +123,18 @@ TEST(mesh_file, bad_names_are_clear_errors) {
   EXPECT_EQ(message(""), "the name of the file to read is empty");
   EXPECT_EQ(message(folder / "none.obj"),
             folder / "none.obj" + ": cannot be read: No such file or directory");
-  EXPECT_EQ(message(folder / "a.stl"),
-            folder / "a.stl" + ": meshes are read and written as .obj and .off only");
+  for (const char* name : {"a.xyz", "a.glb"}) {
+    EXPECT_EQ(message(folder / name),
+              folder / name + ": meshes are read from .obj, .off, .ply and .stl files only");
+  }
   std::filesystem::create_directory(folder / "folder.obj");
   EXPECT_EQ(message(folder / "folder.obj"), folder / "folder.obj" + ": is a directory: name a file in it");
-  EXPECT_EQ(unreadable([&] { write_mesh(creased_triangle(), folder / "a.stl"); }),
-            folder / "a.stl" + ": meshes are read and written as .obj and .off only");
+  for (const char* name : {"a.xyz", "a"}) {
+    const std::string expected =
+        folder / name + ": meshes are written to .obj, .off, .ply, .stl and .glb files only";
+    EXPECT_EQ(unreadable([&] { write_mesh(creased_triangle(), folder / name); }), expected);
+    EXPECT_EQ(unreadable([&] { require_writable_ending(folder / name); }), expected);
+  }
   EXPECT_EQ(folder.entries(), 1u);
 }
 
@@ -114,10 +150,10 @@ TEST(mesh_file, a_million_triangles_round_trip) {
     mesh.add_face(std::vector{VertexId(i), VertexId(i + 1), VertexId(i + side)});
     mesh.add_face(std::vector{VertexId(i + 1), VertexId(i + side + 1), VertexId(i + side)});
   }
-  write_mesh(mesh, folder / "large.obj");
-  write_mesh(mesh, folder / "large.off");
-  expect_same_arrays(mesh, read_mesh(folder / "large.obj"));
-  expect_same_arrays(mesh, read_mesh(folder / "large.off"));
+  for (const char* name : {"large.obj", "large.off", "large.ply"}) {
+    write_mesh(mesh, folder / name);
+    expect_same_arrays(mesh, read_mesh(folder / name));
+  }
 }
 
 }  // namespace

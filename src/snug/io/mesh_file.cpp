@@ -1,12 +1,16 @@
 #include <snug/io/mesh_file.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <string_view>
 
 #include <snug/base/error.h>
 #include <snug/io/atomic_file.h>
+#include <snug/io/glb.h>
 #include <snug/io/obj.h>
 #include <snug/io/off.h>
+#include <snug/io/ply.h>
 #include <snug/io/read_file.h>
 
 namespace snug {
@@ -19,8 +23,18 @@ std::string lower_case_ending(const std::string& path) {
   return ending;
 }
 
-[[noreturn]] void refuse_ending(const std::string& path) {
-  throw InputError(InputProblem::unreadable, path + ": meshes are read and written as .obj and .off only");
+[[noreturn]] void refuse_ending(const std::string& path, const std::string& what) {
+  throw InputError(InputProblem::unreadable, path + ": meshes are " + what);
+}
+
+/// The ending that names the format to write.
+std::string format_to_write(const std::string& path) {
+  std::string ending = path == "-" ? ".obj" : lower_case_ending(path);
+  constexpr std::array<std::string_view, 5> known{".obj", ".off", ".ply", ".stl", ".glb"};
+  if (std::find(known.begin(), known.end(), ending) == known.end()) {
+    refuse_ending(path, "written to .obj, .off, .ply, .stl and .glb files only");
+  }
+  return ending;
 }
 
 bool changes_surface(const MeshTags& tags) {
@@ -28,25 +42,53 @@ bool changes_surface(const MeshTags& tags) {
          tags.crease_method != CreaseMethod::uniform || tags.smooth_triangles != SmoothTriangles::catmark;
 }
 
+/// The format of a file whose name does not tell.
+std::string sniffed_format(std::string_view bytes) {
+  if (begins_like_ply(bytes)) return ".ply";
+  return begins_like_off(bytes) ? ".off" : ".obj";
+}
+
+std::string formatted(const ControlMesh& mesh, const std::string& ending, const std::string& path,
+                      const Notes& notes) {
+  if (ending == ".off") return format_off(mesh);
+  if (ending == ".ply") return format_ply(mesh);
+  if (ending == ".stl") return format_stl(mesh, path, StlFormat::binary, notes);
+  if (ending == ".glb") return format_glb(mesh, path, notes);
+  return format_obj(mesh);
+}
+
 }  // namespace
 
-ControlMesh read_mesh(const std::string& path, const Notes& notes, const WorkMonitor& monitor) {
-  const std::string ending = path == "-" ? "" : lower_case_ending(path);
-  if (!ending.empty() && ending != ".obj" && ending != ".off") refuse_ending(path);
-  const std::string text = read_file(path, monitor);
+ControlMesh read_mesh(const std::string& path, const Notes& notes, const WorkMonitor& monitor,
+                      const WeldDistance& weld) {
+  std::string ending = path == "-" ? "" : lower_case_ending(path);
+  constexpr std::array<std::string_view, 5> known{"", ".obj", ".off", ".ply", ".stl"};
+  if (std::find(known.begin(), known.end(), ending) == known.end()) {
+    refuse_ending(path, "read from .obj, .off, .ply and .stl files only");
+  }
+  const std::string bytes = read_file(path, monitor);
   const std::string name = input_name(path);
-  const bool off = ending.empty() ? begins_like_off(text) : ending == ".off";
-  return off ? parse_off(text, name) : parse_obj(text, name, notes);
+  if (ending.empty()) ending = sniffed_format(bytes);
+  if (ending == ".off") return parse_off(bytes, name);
+  if (ending == ".ply") return parse_ply(bytes, name);
+  if (ending == ".stl") return parse_stl(bytes, name, weld);
+  return parse_obj(bytes, name, notes);
+}
+
+void require_writable_ending(const std::string& path) { static_cast<void>(format_to_write(path)); }
+
+bool writes_polygons(const std::string& path) {
+  const std::string ending = format_to_write(path);
+  return ending != ".stl" && ending != ".glb";
 }
 
 void write_mesh(const ControlMesh& mesh, const std::string& path, const Notes& notes) {
-  const std::string ending = path == "-" ? ".obj" : lower_case_ending(path);
-  if (ending != ".obj" && ending != ".off") refuse_ending(path);
-  const bool off = ending == ".off";
-  if (off && notes && changes_surface(mesh.tags))
-    notes(path + ": OFF has no tags: creases and rules are left out");
+  const std::string ending = format_to_write(path);
+  if (ending != ".obj" && notes && changes_surface(mesh.tags)) {
+    notes(path + ": this format has no tags: creases and rules are left out");
+  }
   AtomicFile file(path);
-  file.write(off ? format_off(mesh) : format_obj(mesh));
+  file.write(formatted(mesh, ending, path, notes));
   file.commit();
 }
 

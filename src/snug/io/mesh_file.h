@@ -4,23 +4,36 @@
 
 #include <snug/base/progress.h>
 #include <snug/io/notes.h>
+#include <snug/io/stl.h>
 #include <snug/mesh/control_mesh.h>
 
 namespace snug {
 
-/// The control mesh in a file. The format follows the ending, .obj or .off in any case. Standard input ("-")
-/// and files without an ending are OFF if they begin like OFF, else OBJ.
+/// The control mesh in a file. The format follows the ending, .obj, .off, .ply or .stl in any case. Standard
+/// input ("-") and files without an ending are PLY or OFF if they begin like that, else OBJ. `weld` is for STL
+/// alone.
 ///
-/// Errors:    InputError (unreadable) as read_file, parse_obj and parse_off, and for another ending.
+/// Errors:    InputError as read_file and the parser of the format; (unreadable) for another ending.
 ///            Interrupted as read_file.
 [[nodiscard]] ControlMesh read_mesh(const std::string& path, const Notes& notes = {},
-                                    const WorkMonitor& monitor = {});
+                                    const WorkMonitor& monitor = {}, const WeldDistance& weld = {});
 
-/// Writes a control mesh, whole or not at all (atomic_file.h). The format follows the ending, .obj or .off in
-/// any case; "-" is OBJ on standard output.
+/// Writes a control mesh, whole or not at all (atomic_file.h). The format follows the ending in any case: .obj,
+/// .off, .ply (binary, little endian), .stl (binary) or .glb; "-" is OBJ on standard output.
 ///
-/// Notes:     one line if the format has no tags but the mesh has.
-/// Errors:    InputError (unreadable) for another ending and as AtomicFile. SNUG_EXPECT as format_obj.
+/// Notes:     one line if the format has no tags but the mesh has; as the writer of the format.
+/// Errors:    InputError as the writer of the format and AtomicFile; (unreadable) for another ending.
+///            SNUG_EXPECT as format_obj.
 void write_mesh(const ControlMesh& mesh, const std::string& path, const Notes& notes = {});
+
+/// Before work whose result write_mesh will write: is there a writer for this name?
+///
+/// Errors:    InputError (unreadable) if not.
+void require_writable_ending(const std::string& path);
+
+/// Does the format that write_mesh takes for this name hold faces of more than three corners?
+///
+/// Errors:    as require_writable_ending.
+[[nodiscard]] bool writes_polygons(const std::string& path);
 
 }  // namespace snug

@@ -12,8 +12,10 @@ bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
 }  // namespace
 
-TextCursor::TextCursor(std::string_view text, std::string name)
-    : here_(text.data()), end_(text.data() + text.size()), name_(std::move(name)) {}
+TextCursor::TextCursor(std::string_view text, std::string name) : TextCursor(text, std::move(name), 0) {}
+
+TextCursor::TextCursor(std::string_view text, std::string name, std::size_t line)
+    : here_(text.data()), end_(text.data() + text.size()), name_(std::move(name)), line_(line) {}
 
 void TextCursor::skip_line_end() {
   const bool carriage_return = *here_ == '\r';

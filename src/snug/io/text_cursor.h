@@ -18,6 +18,8 @@ namespace snug {
 class TextCursor {
  public:
   TextCursor(std::string_view text, std::string name);
+  /// For the rest of a text: stands at the beginning of the line of this number.
+  TextCursor(std::string_view text, std::string name, std::size_t line);
 
   /// Steps to the next line, at first to line 1; false when there is none.
   bool next_line();

@@ -25,9 +25,11 @@ constexpr std::array signatures{
               "7zXZ"sv,
               "this is an xz file: unpack it first"},
     Signature{"\x28\xB5\x2F\xFD"sv, "this is a Zstandard file: unpack it first"},
-    Signature{"glTF"sv, "this is a binary glTF file: convert it to OBJ or OFF"},
-    Signature{"ply\n"sv, "this is a PLY file: convert it to OBJ or OFF"},
-    Signature{"ply\r"sv, "this is a PLY file: convert it to OBJ or OFF"},
+    Signature{
+        "glTF"sv,
+        "this is a binary glTF file, which is written but not read: convert it to OBJ, OFF, PLY or STL"},
+    Signature{"ply\n"sv, "this is a PLY file: let its name end in .ply"},
+    Signature{"ply\r"sv, "this is a PLY file: let its name end in .ply"},
 };
 
 bool begins_with_binary_off(std::string_view bytes) {
@@ -55,15 +57,19 @@ bool looks_like_utf16(std::string_view bytes) {
 
 }  // namespace
 
-std::string_view plain_text(std::string_view bytes, const std::string& name) {
-  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
-  if (bytes.ends_with('\x1A')) bytes.remove_suffix(1);
+void refuse_other_formats(std::string_view bytes, const std::string& name) {
   if (bytes.empty()) fail(name, "the file is empty");
   for (const Signature& signature : signatures) {
     if (bytes.starts_with(signature.front)) fail(name, signature.sentence);
   }
   if (begins_with_binary_off(bytes))
     fail(name, "this is a binary OFF file: convert it to the text form of OFF");
+}
+
+std::string_view plain_text(std::string_view bytes, const std::string& name) {
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+  if (bytes.ends_with('\x1A')) bytes.remove_suffix(1);
+  refuse_other_formats(bytes, name);
   if (bytes.find('\0') != std::string_view::npos) {
     fail(name, looks_like_utf16(bytes) ? "this is UTF-16 text: save it as UTF-8"
                                        : "this is not a text file: it holds NUL bytes");

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <string>
+
+namespace snug {
+
+/// The number at `bytes`, stored in the given order.
+///
+/// Requires:  sizeof(Number) bytes.
+template <class Number>
+[[nodiscard]] Number load(const char* bytes, std::endian order) {
+  std::array<char, sizeof(Number)> own;
+  std::copy_n(bytes, sizeof(Number), own.begin());
+  if (order != std::endian::native) std::reverse(own.begin(), own.end());
+  return std::bit_cast<Number>(own);
+}
+
+/// Appends a number in the given order.
+template <class Number>
+void append_binary(std::string& bytes, Number number, std::endian order = std::endian::little) {
+  auto own = std::bit_cast<std::array<char, sizeof(Number)>>(number);
+  if (order != std::endian::native) std::reverse(own.begin(), own.end());
+  bytes.append(own.data(), own.size());
+}
+
+}  // namespace snug

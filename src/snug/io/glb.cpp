@@ -1,0 +1,122 @@
+#include <snug/io/glb.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <snug/base/error.h>
+#include <snug/io/binary.h>
+#include <snug/io/number.h>
+#include <snug/io/single.h>
+
+namespace snug {
+namespace {
+
+using Position = std::array<float, 3>;
+
+constexpr std::size_t header_size = 12, chunk_head_size = 8;
+constexpr std::size_t position_size = 12, index_size = 4;
+
+[[noreturn]] void refuse(const std::string& name, const std::string& message) {
+  throw InputError(InputProblem::refused, name + ": " + message);
+}
+
+/// Triangles of all the fans.
+std::size_t count_triangles(const ControlMesh& mesh, const std::string& name, const Notes& notes) {
+  bool polygons = false;
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const std::size_t corners = mesh.face(FaceId(face)).size();
+    if (corners < 3)
+      refuse(name, "face " + std::to_string(face) + " has " + std::to_string(corners) + " corners");
+    polygons = polygons || corners > 3;
+  }
+  if (mesh.face_count() == 0) refuse(name, "the mesh has no faces, and glTF no empty meshes");
+  if (polygons && notes)
+    notes(name + ": glTF holds triangles only: faces with more corners are split into fans");
+  return mesh.face_vertices.size() - 2 * mesh.face_count();
+}
+
+void append_bounds(std::string& json, const std::vector<Position>& positions) {
+  Position lower = positions[0], upper = positions[0];
+  for (const Position& position : positions) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      lower[axis] = std::min(lower[axis], position[axis]);
+      upper[axis] = std::max(upper[axis], position[axis]);
+    }
+  }
+  const auto append = [&](const char* key, const Position& corner) {
+    json += key;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      json += axis == 0 ? '[' : ',';
+      append_real(json, double{corner[axis]});
+    }
+    json += ']';
+  };
+  append(",\"min\":", lower);
+  append(",\"max\":", upper);
+}
+
+std::string describe(const std::vector<Position>& positions, std::size_t triangles) {
+  const std::size_t position_bytes = positions.size() * position_size;
+  const std::size_t index_bytes = 3 * triangles * index_size;
+  std::string json =
+      R"({"asset":{"version":"2.0","generator":"snug"},"scene":0,"scenes":[{"nodes":[0]}],)"
+      R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":4}]}],)"
+      R"("buffers":[{"byteLength":)";
+  append_integer(json, position_bytes + index_bytes);
+  json += R"(}],"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":)";
+  append_integer(json, position_bytes);
+  json += R"(,"target":34962},{"buffer":0,"byteOffset":)";  // ARRAY_BUFFER
+  append_integer(json, position_bytes);
+  json += R"(,"byteLength":)";
+  append_integer(json, index_bytes);
+  json +=
+      R"(,"target":34963}],"accessors":[{"bufferView":0,"componentType":5126,"count":)";  // ELEMENT_ARRAY_BUFFER, float
+  append_integer(json, positions.size());
+  json += R"(,"type":"VEC3")";
+  append_bounds(json, positions);
+  json += R"(},{"bufferView":1,"componentType":5125,"count":)";  // unsigned int
+  append_integer(json, 3 * triangles);
+  json += R"(,"type":"SCALAR"}]})";
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  return json;
+}
+
+}  // namespace
+
+std::string format_glb(const ControlMesh& mesh, const std::string& name, const Notes& notes) {
+  const std::size_t triangles = count_triangles(mesh, name, notes);
+  const std::vector<Position> positions = in_single_precision(mesh.points, name, notes);
+  const std::string json = describe(positions, triangles);
+  // Both sorts of values take whole words: nothing is left to pad.
+  const std::size_t binary_size = positions.size() * position_size + 3 * triangles * index_size;
+  const std::size_t size = header_size + chunk_head_size + json.size() + chunk_head_size + binary_size;
+  if (size > std::numeric_limits<std::uint32_t>::max()) {
+    refuse(name, "the mesh takes more than the 4 GiB of a binary glTF file: write PLY");
+  }
+  std::string bytes = "glTF";
+  bytes.reserve(size);
+  append_binary(bytes, std::uint32_t{2});
+  append_binary(bytes, static_cast<std::uint32_t>(size));
+  append_binary(bytes, static_cast<std::uint32_t>(json.size()));
+  bytes += "JSON";
+  bytes += json;
+  append_binary(bytes, static_cast<std::uint32_t>(binary_size));
+  bytes.append("BIN\0", 4);
+  for (const Position& position : positions) {
+    for (const float x : position) append_binary(bytes, x);
+  }
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const auto corners = mesh.face(FaceId(face));
+    for (std::size_t corner = 2; corner < corners.size(); ++corner) {
+      append_binary(bytes, corners[0].value());
+      append_binary(bytes, corners[corner - 1].value());
+      append_binary(bytes, corners[corner].value());
+    }
+  }
+  return bytes;
+}
+
+}  // namespace snug

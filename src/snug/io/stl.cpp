@@ -1,0 +1,244 @@
+#include <snug/io/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <snug/base/contract.h>
+#include <snug/base/error.h>
+#include <snug/base/scaling.h>
+#include <snug/io/binary.h>
+#include <snug/io/element_text.h>
+#include <snug/io/number.h>
+#include <snug/io/single.h>
+#include <snug/io/text_cursor.h>
+#include <snug/io/text_kind.h>
+#include <snug/io/weld.h>
+
+namespace snug {
+namespace {
+
+constexpr std::size_t header_size = 80, preamble_size = 84, facet_size = 50;
+
+[[noreturn]] void fail(const std::string& name, const std::string& message) {
+  throw InputError(InputProblem::unreadable, name + ": " + message);
+}
+
+bool same_word(std::string_view word, std::string_view lower_case) {
+  return word.size() == lower_case.size() &&
+         std::equal(word.begin(), word.end(), lower_case.begin(),
+                    [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
+}
+
+bool begins_like_ascii(std::string_view bytes) {
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
+  return bytes.find('\0') == std::string_view::npos &&
+         same_word(TextCursor(bytes, {}).word_across_lines(), "solid");
+}
+
+/// Three corners a facet.
+using Corners = std::vector<Point3>;
+
+Corners read_binary(std::string_view bytes, std::size_t facets, const std::string& name) {
+  if (facets == 0) fail(name, "the file has no facets");
+  if (facets > most_elements / 3) {
+    fail(name, "more than " + std::to_string(most_elements / 3) + " facets: split the mesh");
+  }
+  Corners corners;
+  corners.reserve(3 * facets);
+  for (std::size_t facet = 0; facet < facets; ++facet) {
+    const char* at = bytes.data() + preamble_size + facet * facet_size + 12;  // behind the normal
+    for (int corner = 0; corner < 3; ++corner) {
+      Point3& point = corners.emplace_back();
+      for (std::size_t axis = 0; axis < 3; ++axis, at += 4)
+        point[axis] = load<float>(at, std::endian::little);
+      if (!is_finite(point))
+        fail(name, "facet " + std::to_string(facet) + ": a coordinate is not a finite number");
+    }
+  }
+  return corners;
+}
+
+class AsciiParser {
+ public:
+  AsciiParser(std::string_view text, const std::string& name) : cursor_(text, name) {}
+
+  Corners parse() {
+    std::string_view word = cursor_.word_across_lines();
+    while (same_word(word, "solid")) {
+      read_solid();
+      word = cursor_.word_across_lines();
+    }
+    if (!word.empty()) cursor_.fail(in_quotes(word) + " stands where 'solid' or the end of the file should");
+    if (corners_.empty()) cursor_.fail_everywhere("the file has no facets");
+    return std::move(corners_);
+  }
+
+ private:
+  void read_solid() {
+    cursor_.next_line();  // a name is anything up to there
+    for (;;) {
+      const std::string_view word = cursor_.word_across_lines();
+      if (same_word(word, "endsolid")) break;
+      if (!same_word(word, "facet")) fail_at_word(word, "facet or endsolid");
+      read_facet();
+    }
+    cursor_.next_line();
+  }
+
+  void read_facet() {
+    if (corners_.size() / 3 >= most_elements / 3) cursor_.fail("too many facets: split the mesh");
+    expect("normal");
+    for (int axis = 0; axis < 3; ++axis) cursor_.word_across_lines();
+    expect("outer");
+    expect("loop");
+    for (int corner = 0; corner < 3; ++corner) {
+      expect("vertex");
+      Point3 point;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        point[axis] = read_coordinate(cursor_, corners_.size(), cursor_.word_across_lines());
+      }
+      corners_.push_back(point);
+    }
+    expect("endloop");
+    expect("endfacet");
+    ++facet_;
+  }
+
+  void expect(const char* keyword) {
+    const std::string_view word = cursor_.word_across_lines();
+    if (!same_word(word, keyword)) fail_at_word(word, keyword);
+  }
+
+  [[noreturn]] void fail_at_word(std::string_view word, const std::string& expected) const {
+    const std::string where = "facet " + std::to_string(facet_) + ": ";
+    if (word.empty()) cursor_.fail(where + "the file ends before its " + expected + ": it is truncated");
+    cursor_.fail(where + in_quotes(word) + " stands where " + expected + " should");
+  }
+
+  TextCursor cursor_;
+  Corners corners_;
+  std::size_t facet_ = 0;
+};
+
+Corners read_corners(std::string_view bytes, const std::string& name) {
+  const bool has_count = bytes.size() >= preamble_size;
+  const std::size_t facets =
+      has_count ? load<std::uint32_t>(bytes.data() + header_size, std::endian::little) : 0;
+  // Text of this size would have to be gigabytes long.
+  if (has_count && bytes.size() == preamble_size + facet_size * facets)
+    return read_binary(bytes, facets, name);
+  if (begins_like_ascii(bytes)) return AsciiParser(plain_text(bytes, name), name).parse();
+  refuse_other_formats(bytes, name);
+  if (bytes.find('\0') == std::string_view::npos) {
+    fail(name, "this is no STL file: neither text that begins with 'solid' nor binary");
+  }
+  if (!has_count) fail(name, "the file is too short for binary STL: it is truncated");
+  fail(name, "the file promises " + std::to_string(facets) + " facets, which take " +
+                 std::to_string(preamble_size + facet_size * facets) + " bytes, but has " +
+                 std::to_string(bytes.size()));
+}
+
+ControlMesh welded_mesh(const Corners& corners, const std::vector<std::uint32_t>& first) {
+  ControlMesh mesh;
+  std::vector<std::uint32_t> number(corners.size());
+  mesh.face_vertices.reserve(corners.size());
+  mesh.face_offsets.reserve(corners.size() / 3 + 1);
+  for (std::uint32_t corner = 0; corner < corners.size(); ++corner) {
+    if (first[corner] == corner) {
+      number[corner] = static_cast<std::uint32_t>(mesh.points.size());
+      mesh.points.push_back(corners[corner]);
+    }
+    mesh.face_vertices.emplace_back(number[first[corner]]);
+    if (corner % 3 == 2) mesh.face_offsets.push_back(corner + 1);
+  }
+  return mesh;
+}
+
+/// Of length 1, or zero where the triangle has no area that a double tells from zero.
+Vector3 unit_normal(const Point3& a, const Point3& b, const Point3& c) {
+  // Before the differences: they may overflow.
+  const double size = std::max({max_abs(a - Point3{}), max_abs(b - Point3{}), max_abs(c - Point3{})});
+  if (size == 0) return {};
+  const PowerOfTwo scale = PowerOfTwo::normalising(size);
+  const Vector3 u = scale.apply(b) - scale.apply(a), v = scale.apply(c) - scale.apply(a);
+  const double largest = std::max(max_abs(u), max_abs(v));
+  if (largest == 0) return {};
+  const PowerOfTwo zoom = PowerOfTwo::normalising(largest);
+  const Vector3 normal = cross(zoom.apply(u), zoom.apply(v));
+  const double norm = length(normal);
+  return norm > 0 ? (1 / norm) * normal : Vector3{};
+}
+
+std::array<Point3, 3> triangle(const ControlMesh& mesh, std::size_t face) {
+  const auto corners = mesh.face(FaceId(face));
+  return {mesh.points[corners[0].index()], mesh.points[corners[1].index()], mesh.points[corners[2].index()]};
+}
+
+std::string format_binary(const ControlMesh& mesh, const std::string& name, const Notes& notes) {
+  const auto points = in_single_precision(mesh.points, name, notes);
+  std::string bytes = "binary STL written by snug";
+  bytes.reserve(preamble_size + facet_size * mesh.face_count());
+  bytes.resize(header_size, ' ');
+  append_binary(bytes, static_cast<std::uint32_t>(mesh.face_count()));
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const auto [a, b, c] = triangle(mesh, face);
+    const Vector3 normal = unit_normal(a, b, c);
+    for (std::size_t axis = 0; axis < 3; ++axis) append_binary(bytes, static_cast<float>(normal[axis]));
+    for (const VertexId vertex : mesh.face(FaceId(face))) {
+      for (const float x : points[vertex.index()]) append_binary(bytes, x);
+    }
+    append_binary(bytes, std::uint16_t{0});
+  }
+  return bytes;
+}
+
+std::string format_ascii(const ControlMesh& mesh) {
+  std::string text = "solid snug\n";
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const auto corners = triangle(mesh, face);
+    text += "facet normal ";
+    append_point(text, Point3{} + unit_normal(corners[0], corners[1], corners[2]));
+    text += "\nouter loop\n";
+    for (const Point3& corner : corners) {
+      text += "vertex ";
+      append_point(text, corner);
+      text += '\n';
+    }
+    text += "endloop\nendfacet\n";
+  }
+  return text += "endsolid snug\n";
+}
+
+}  // namespace
+
+ControlMesh parse_stl(std::string_view bytes, const std::string& name, const WeldDistance& weld) {
+  const Corners corners = read_corners(bytes, name);
+  if (!weld) return welded_mesh(corners, first_of_welded(corners));
+  Box3 box;
+  for (const Point3& corner : corners) box.add(corner);
+  try {
+    return welded_mesh(corners, first_of_welded(corners, weld(box.longest_side())));
+  } catch (const InputError& error) {
+    throw InputError(error.problem(), name + ": " + error.what());
+  }
+}
+
+std::string format_stl(const ControlMesh& mesh, const std::string& name, StlFormat format,
+                       const Notes& notes) {
+  if (mesh.face_count() > UINT32_MAX)
+    throw InputError(InputProblem::refused, name + ": too many faces for STL");
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const std::size_t corners = mesh.face(FaceId(face)).size();
+    if (corners != 3) {
+      throw InputError(InputProblem::refused,
+                       name + ": face " + std::to_string(face) + " has " + std::to_string(corners) +
+                           " corners: STL holds triangles only; write PLY, OBJ or OFF");
+    }
+  }
+  return format == StlFormat::binary ? format_binary(mesh, name, notes) : format_ascii(mesh);
+}
+
+}  // namespace snug

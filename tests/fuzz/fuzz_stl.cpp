@@ -1,0 +1,23 @@
+#include <snug/io/stl.h>
+
+#include "claims.h"
+
+using namespace snug;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fuzz::read_or_refuse(
+      data, size, [](std::string_view bytes) { return parse_stl(bytes, "input"); },
+      [](const ControlMesh& mesh) {
+        fuzz::claim_same(mesh, parse_stl(format_stl(mesh, "written", StlFormat::ascii), "written"));
+        // Rounding to floats may weld vertices, but only once.
+        const ControlMesh rounded = parse_stl(format_stl(mesh, "written"), "written");
+        fuzz::claim_same(rounded, parse_stl(format_stl(rounded, "written"), "written"));
+      });
+  fuzz::read_or_refuse(
+      data, size,
+      [](std::string_view bytes) {
+        return parse_stl(bytes, "input", [](double longest_side) { return longest_side / 8; });
+      },
+      [](const ControlMesh&) {});
+  return 0;
+}
