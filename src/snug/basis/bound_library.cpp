@@ -3,6 +3,7 @@
 #include <memory>
 
 #include <snug/base/contract.h>
+#include <snug/basis/shipped.h>
 
 namespace snug {
 
@@ -27,7 +28,8 @@ const BoundRows& BoundLibrary::rows(const Kind& kind) {
   std::atomic<const BoundRows*>& place = (*block)[index % block_size];
   if (const BoundRows* ready = place.load(std::memory_order_acquire)) return *ready;
   // Two threads may make the same rows; the first to finish keeps them. Both are equal.
-  auto fresh = std::make_unique<const BoundRows>(make_bound_rows(kind));
+  std::optional<BoundRows> shipped = ShippedBounds::compiled_in().rows(kind.key());
+  auto fresh = std::make_unique<const BoundRows>(shipped ? *std::move(shipped) : make_bound_rows(kind));
   const BoundRows* expected = nullptr;
   if (!place.compare_exchange_strong(expected, fresh.get(), std::memory_order_acq_rel)) return *expected;
   count_.fetch_add(1);
