@@ -59,7 +59,7 @@ class Sum {
     if (!weight.certainly_at_least(0)) throw Rejected("a mask with a negative weight");
     const Row& source = *piece_.rows[vertex];
     for (std::size_t c = 0; c < row_.size(); ++c) {
-      if (!source[c].is_exactly_zero()) row_[c] += weight * source[c];
+      if (!source[c].is_exactly_zero()) row_[c].add_product(weight, source[c]);
     }
   }
   [[nodiscard]] Row take() { return std::move(row_); }

@@ -98,7 +98,8 @@ std::array<Row, point_count> bezier_rows(const Piece& piece) {
   for (std::size_t p = 0; p < point_count; ++p) {
     rows[p].resize(values[0]->size());
     for (std::size_t q = 0; q < point_count; ++q) {
-      for (std::size_t c = 0; c < rows[p].size(); ++c) rows[p][c] += from_values[p][q] * (*values[q])[c];
+      for (std::size_t c = 0; c < rows[p].size(); ++c)
+        rows[p][c].add_product(from_values[p][q], (*values[q])[c]);
     }
   }
   return rows;
@@ -275,7 +276,7 @@ void prove_table(const StoredTable& table, const RowsProof& rows) {
   for (const Row& row : rows.hull) {
     Planar u;
     for (std::size_t c = 0; c < row.size(); ++c) {
-      for (std::size_t x = 0; x < 2; ++x) u[x] += row[c] * Real(table.layout[c][x]);
+      for (std::size_t x = 0; x < 2; ++x) u[x].add_product(row[c], table.layout[c][x]);
     }
     std::array<Real, 3> part;  // of the area: barycentric coordinates of u
     for (std::size_t k = 0; k < 3; ++k) {

@@ -48,6 +48,12 @@ class Real {
     mpfi_add(ends_, ends_, other.ends_);
     return *this;
   }
+  /// *this += a * b, without memory for the product each time.
+  void add_product(const Real& a, const Real& b) {
+    static thread_local Real product;
+    mpfi_mul(product.ends_, a.ends_, b.ends_);
+    mpfi_add(ends_, ends_, product.ends_);
+  }
   friend Real operator+(Real a, const Real& b) { return a += b; }
   friend Real operator-(Real a, const Real& b) {
     mpfi_sub(a.ends_, a.ends_, b.ends_);

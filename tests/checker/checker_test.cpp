@@ -87,6 +87,29 @@ TEST(checker, writes_the_compiled_in_file_as_it_reads_it) {
   EXPECT_EQ(to_bytes(file), bytes);
 }
 
+TEST(checker, and_library_read_the_same_tables) {
+  BoundsFile file = excerpt(parse(shipped_bytes()));
+  for (StoredKind& kind : file.kinds) {
+    kind.tables = {crude_table(kind), crude_table(kind)};
+    kind.tables[0].name = 1;
+    kind.tables[1].name = 0;
+    kind.tables[1].upper[0][2] += 1;
+  }
+  const std::vector<std::byte> bytes = to_bytes(file);
+  const snug::ShippedBounds read(bytes);
+  ASSERT_EQ(read.keys().size(), file.kinds.size());
+  for (std::size_t i = 0; i < file.kinds.size(); ++i) {
+    for (const StoredTable& table : file.kinds[i].tables) {
+      const auto seen = read.table(read.keys()[i], static_cast<snug::TableLayout>(table.name));
+      ASSERT_TRUE(seen);
+      EXPECT_EQ(seen->layout, table.layout);
+      EXPECT_EQ(seen->triangle, table.triangle);
+      EXPECT_EQ(seen->lower, table.lower);
+      EXPECT_EQ(seen->upper, table.upper);
+    }
+  }
+}
+
 TEST(checker, finds_every_fault_planted_in_compiled_in_rows) {
   BoundsFile file = excerpt(parse(shipped_bytes()));
   for (StoredKind& kind : file.kinds) kind.tables.clear();
