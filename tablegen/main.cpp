@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 #include <fstream>
+#include <utility>
 
 #include "file_writer.h"
 #include "kinds.h"
@@ -18,7 +19,10 @@ int run(const char* name) {
   std::vector<tablegen::KindBounds> kinds;
   for (const snug::KindKey& key : tablegen::shipped_kinds()) {
     const snug::Kind& kind = library.find(key);
-    kinds.push_back({key, snug::make_bound_rows(kind), {}});
+    tablegen::KindBounds bounds{key, snug::make_bound_rows(kind), {}};
+    for (const snug::TableLayout layout : {snug::TableLayout::ngon, snug::TableLayout::characteristic})
+      bounds.tables.push_back({layout, snug::make_bound_table(kind, bounds.rows, layout)});
+    kinds.push_back(std::move(bounds));
   }
   const std::vector<std::byte> bytes = tablegen::file_of(kinds, provenance);
   std::ofstream file(name, std::ios::binary);

@@ -48,9 +48,9 @@ void write_piece(JsonWriter& json, const PieceEnclosure& piece) {
 }
 
 ExitStatus run(const Options& options) {
-  require_rows(options);
   BoundOptions how;
-  how.method = options.bounds == "control-box" ? BoundMethod::control_box : BoundMethod::rows;
+  how.method = bound_method(options);
+  how.layout = table_layout(options);
   how.level = options.level;
   how.budget = options.budget;
   how.threads = options.threads;

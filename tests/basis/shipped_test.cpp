@@ -23,6 +23,18 @@ void expect_same(const BoundRows& shipped, const BoundRows& made) {
   }
 }
 
+template <class Values>
+bool same_bits(const Values& a, const Values& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
+}
+
+void expect_same(const BoundTable& shipped, const BoundTable& made) {
+  EXPECT_TRUE(same_bits(shipped.layout, made.layout));
+  EXPECT_TRUE(same_bits(shipped.triangle, made.triangle));
+  EXPECT_TRUE(same_bits(shipped.lower, made.lower));
+  EXPECT_TRUE(same_bits(shipped.upper, made.upper));
+}
+
 TEST(shipped_bounds, are_bit_by_bit_the_rows_made_at_run_time) {
   const ShippedBounds& shipped = ShippedBounds::compiled_in();
   ASSERT_GT(shipped.keys().size(), 20u);
@@ -33,6 +45,20 @@ TEST(shipped_bounds, are_bit_by_bit_the_rows_made_at_run_time) {
     const Kind& kind = library.kinds().find(key);
     expect_same(*rows, make_bound_rows(kind));
     expect_same(library.rows(kind), *rows);
+  }
+}
+
+TEST(shipped_bounds, are_bit_by_bit_the_tables_made_at_run_time) {
+  const ShippedBounds& shipped = ShippedBounds::compiled_in();
+  BoundLibrary library;
+  for (const KindKey& key : shipped.keys()) {
+    const Kind& kind = library.kinds().find(key);
+    for (const TableLayout layout : {TableLayout::ngon, TableLayout::characteristic}) {
+      const std::optional<BoundTable> table = shipped.table(key, layout);
+      ASSERT_TRUE(table);
+      expect_same(*table, make_bound_table(kind, library.rows(kind), layout));
+      expect_same(library.table(kind, layout), *table);
+    }
   }
 }
 
