@@ -17,7 +17,7 @@ ctest = ctest --parallel $(JOBS) --no-tests=error
 # Thread sanitizer wants an address space that is not shuffled too far; not every container may ask for that.
 unshuffled = $$(setarch -R true 2> /dev/null && echo setarch -R || true)
 
-.PHONY: help demo test test-long build bench format tidy docs check asan tsan fuzz install-packages clean
+.PHONY: help demo test test-long build bench format tidy docs check tables asan tsan fuzz install-packages clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-17s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -59,6 +59,7 @@ check: test  ## every gate that a commit must pass
 	@scripts/check_words
 	@scripts/check_docs.py
 	@scripts/check_package
+	@scripts/check_tables
 	@$(MAKE) asan
 	@$(MAKE) tsan
 	@FUZZ_SECONDS=5 $(MAKE) fuzz
@@ -71,6 +72,11 @@ tidy: build  ## clang-tidy over the library
 
 docs:  ## links, citations and derivations that the pages and comments name
 	@scripts/check_docs.py
+
+tables:  ## make the rows and tables again that are compiled in, then prove them
+	@$(call build,release,tablegen)
+	@build/release/bin/tablegen src/snug/basis/shipped.bin
+	@scripts/check_tables
 
 install-packages:  ## what building, testing and checking need, where it is missing (scripts/packages.txt)
 	@scripts/install_packages

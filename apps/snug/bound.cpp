@@ -93,11 +93,11 @@ class Polyhedra {
 };
 
 ExitStatus run(const Options& options) {
-  require_rows(options);
   if (options.polyhedra == "-") throw UsageError("bound: --polyhedra - : give a file");
   const bool triangles = !options.polyhedra.empty() && !writes_polygons(options.polyhedra);
   BoundOptions how;
-  how.method = options.bounds == "control-box" ? BoundMethod::control_box : BoundMethod::rows;
+  how.method = bound_method(options);
+  how.layout = table_layout(options);
   how.level = options.level;
   how.budget = options.budget;
   how.threads = options.threads;

@@ -22,9 +22,14 @@ void add_common_options(CLI::App& app, CommonOptions& options) {
   app.add_option("--boundary", options.boundary,
                  "What the boundary does; default: the file's tag, else edge-and-corner")
       ->check(CLI::IsMember({"edge-and-corner", "edge-only", "none"}));
-  app.add_option("--bounds", options.bounds,
-                 "What encloses: hull rows, or the baseline box of the control points")
+  app.add_option(
+         "--bounds", options.bounds,
+         "What encloses: hull rows, the dissertation's tables, or the baseline box of the control points")
       ->check(CLI::IsMember({"rows", "table", "control-box"}))
+      ->capture_default_str();
+  app.add_option("--layout", options.layout,
+                 "Where the tables lay control points: on a regular n-gon, or as the characteristic map")
+      ->check(CLI::IsMember({"ngon", "characteristic"}))
       ->capture_default_str();
   app.add_flag("--json", options.json, "One JSON document on standard output");
   app.add_option("-o", options.output, "Output file; the format follows the ending");
@@ -96,10 +101,13 @@ Surface load_surface(const std::string& path, const CommonOptions& options, cons
   return std::move(*surface);
 }
 
-void require_rows(const CommonOptions& options) {
-  if (options.bounds == "table") {
-    throw UsageError("--bounds table: the dissertation's tables are not built yet; give rows or control-box");
-  }
+BoundMethod bound_method(const CommonOptions& options) {
+  if (options.bounds == "table") return BoundMethod::table;
+  return options.bounds == "control-box" ? BoundMethod::control_box : BoundMethod::rows;
+}
+
+TableLayout table_layout(const CommonOptions& options) {
+  return options.layout == "characteristic" ? TableLayout::characteristic : TableLayout::ngon;
 }
 
 struct Report::Target {

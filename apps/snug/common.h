@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <snug/io/notes.h>
+#include <snug/query/bound.h>
 #include <snug/surface/surface.h>
 
 #include "exit_status.h"
@@ -26,6 +27,7 @@ struct CommonOptions {
   std::string scheme = "auto";
   std::string boundary;  ///< empty: the file's tag, else edge-and-corner
   std::string bounds = "rows";
+  std::string layout = "ngon";  ///< of --bounds table
   bool json = false;
   std::string output;  ///< -o; empty for none
   int threads = 0;
@@ -62,8 +64,9 @@ struct Command {
 /// Calls `work` and puts the name of the file in front of refusals it throws.
 void naming(const std::string& path, const std::function<void()>& work);
 
-/// Refuses what is no bound yet; the commands that bound call it.
-void require_rows(const CommonOptions& options);
+/// What --bounds and --layout name.
+[[nodiscard]] BoundMethod bound_method(const CommonOptions& options);
+[[nodiscard]] TableLayout table_layout(const CommonOptions& options);
 
 /// The output of a command: one JSON document on standard output or in the file of -o, or a few lines of
 /// text.

@@ -130,7 +130,8 @@ Enclosures enclose(const Options& options, const std::optional<Length>& toleranc
   Enclosures result;
   if (!options.enclosures) return result;
   BoundOptions how;
-  how.method = options.bounds == "control-box" ? BoundMethod::control_box : BoundMethod::rows;
+  how.method = bound_method(options);
+  how.layout = table_layout(options);
   how.level = options.level;
   how.budget = drawable_budget(options, surfaces);
   how.threads = options.threads;
@@ -186,7 +187,6 @@ std::vector<Tessellation> tessellate(const Options& options, std::span<const Pla
 }
 
 void require_sound(const Options& options) {
-  require_rows(options);
   if (options.output.empty()) throw UsageError("render: -o FILE.png is missing: where the picture goes");
   if (options.output != "-" && !options.output.ends_with(".png")) {
     throw UsageError("render: '" + options.output + "' does not end in .png; pictures are PNG files");

@@ -1,21 +1,18 @@
 #pragma once
 
 #include <array>
-#include <atomic>
-#include <mutex>
+#include <cstddef>
 
 #include <snug/basis/bound_rows.h>
+#include <snug/basis/bound_table.h>
+#include <snug/basis/kind_slots.h>
 
 namespace snug {
 
-/// Rows of all kinds met so far, made on first use, then immutable. Thread-safe; looking up costs two loads.
+/// Rows and tables of all kinds met so far: on first use shipped ones (shipped.h) are taken and others made;
+/// then immutable. Thread-safe; looking up costs two loads.
 class BoundLibrary {
  public:
-  BoundLibrary() = default;
-  ~BoundLibrary();
-  BoundLibrary(const BoundLibrary&) = delete;
-  BoundLibrary& operator=(const BoundLibrary&) = delete;
-
   /// The library of kinds that this one keeps rows for.
   [[nodiscard]] KindLibrary& kinds() { return kinds_; }
   [[nodiscard]] const KindLibrary& kinds() const { return kinds_; }
@@ -23,19 +20,17 @@ class BoundLibrary {
   /// Requires:  a kind of kinds().
   /// Errors:    SNUG_EXPECT beyond 16 million kinds.
   [[nodiscard]] const BoundRows& rows(const Kind& kind);
+  /// The table of a kind, made from its rows.
+  [[nodiscard]] const BoundTable& table(const Kind& kind, TableLayout layout = TableLayout::ngon);
 
-  /// Kinds that have rows, and the memory of these.
-  [[nodiscard]] std::size_t size() const { return count_.load(); }
-  [[nodiscard]] std::size_t bytes() const { return bytes_.load(); }
+  /// Kinds that have rows, and the memory of all rows and tables.
+  [[nodiscard]] std::size_t size() const { return rows_.size(); }
+  [[nodiscard]] std::size_t bytes() const { return rows_.bytes() + tables_[0].bytes() + tables_[1].bytes(); }
 
  private:
-  static constexpr std::size_t block_size = 4096;
-  using Block = std::array<std::atomic<const BoundRows*>, block_size>;
-
   KindLibrary kinds_;
-  std::array<std::atomic<Block*>, 4096> blocks_{};
-  std::mutex growth_;
-  std::atomic<std::size_t> count_{0}, bytes_{0};
+  KindSlots<BoundRows> rows_;
+  std::array<KindSlots<BoundTable>, 2> tables_;  // a layout
 };
 
 }  // namespace snug

@@ -31,6 +31,7 @@ class BoundRows {
 
  private:
   friend BoundRows make_bound_rows(const Kind& kind);
+  friend class ShippedBounds;
   std::size_t count_ = 0, control_count_ = 0;
   std::vector<double> weights_;
   double entry_error_ = 0, abs_sum_ = 0;

@@ -7,6 +7,7 @@
 #include <snug/base/contract.h>
 #include <snug/base/parallel.h>
 #include <snug/base/rounding.h>
+#include <snug/enclose/table_triangle.h>
 #include <snug/patch/evaluate.h>
 #include <snug/surface/unscale.h>
 
@@ -69,10 +70,18 @@ class FaceBounder {
       stuck_ = box.longest_side() <= 4 * patch.error;
       return enlarged(box.longest_side() / 2) <= target_;
     }
-    hull_points(surface_.library().rows(*patch.kind), patch, points_);
-    const OffsetTriangle offset = offset_triangle(points_, corners);
+    OffsetTriangle offset;
+    if (options_.method == BoundMethod::table) {
+      const TableTriangle triangle =
+          table_triangle(surface_.library().table(*patch.kind, options_.layout), patch);
+      offset = offset_triangle(triangle);
+      piece.interval = unscaled(triangle.interval, back_);
+    } else {
+      hull_points(surface_.library().rows(*patch.kind), patch, points_);
+      offset = offset_triangle(points_, corners);
+      piece.interval = unscaled(interval_triangle(points_, corners), back_);
+    }
     piece.offset = unscaled(offset, back_);
-    piece.interval = unscaled(interval_triangle(points_, corners), back_);
     stuck_ = offset.radius <= 2 * offset.rounding;
     return piece.offset->radius <= mesh_target();
   }

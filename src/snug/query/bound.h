@@ -13,11 +13,13 @@ namespace snug {
 
 enum class BoundMethod : std::uint8_t {
   rows,         ///< hull rows
+  table,        ///< the dissertation's tables
   control_box,  ///< the baseline: least box of the control points
 };
 
 struct BoundOptions {
   BoundMethod method = BoundMethod::rows;
+  TableLayout layout = TableLayout::ngon;  ///< table only
   /// Split until each radius is at most half of this, in mesh units; with control_box, until half the box's
   /// longest side is.
   std::optional<double> tolerance;
@@ -51,7 +53,7 @@ struct BoundSummary {
 ///            interval triangles, and of their boxes, each on its own, rounding included; also where
 ///            `reached` is false. Same output for any number of threads.
 /// Errors:    InputError if a result does not fit a double; whatever `sink` or the monitor throws.
-/// Cost:      a piece 3 to 5 microseconds on regular patches. Memory holds the pieces of one face,
+/// Cost:      rows: a piece 3 to 5 microseconds on regular patches. Memory holds the pieces of one face,
 ///            or some 65,000; it does not grow with the output.
 BoundSummary bound(const Surface& surface, const BoundOptions& options,
                    const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor = {});

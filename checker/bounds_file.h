@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace checker {
+
+/// Faces around a corner of a patch, as snug/patch/neighbourhood.h names them: `after` counter-clockwise from the
+/// patch, `before` clockwise; all in `after` if the fan is closed.
+struct Fan {
+  std::uint16_t before = 0, after = 0;
+  bool closed = false, sharp = false;
+  [[nodiscard]] unsigned faces() const { return 1u + before + after; }
+  [[nodiscard]] bool regular() const { return !sharp && (closed ? faces() == 6 : faces() == 3); }
+  friend bool operator==(const Fan&, const Fan&) = default;
+};
+
+using Key = std::array<Fan, 3>;
+[[nodiscard]] std::string to_text(const Key& key);
+
+struct StoredTable {
+  using Plane = std::array<double, 3>;
+  std::uint64_t name = 0;
+  std::vector<std::array<double, 2>> layout;
+  std::array<std::array<double, 2>, 3> triangle{};
+  std::vector<Plane> lower, upper;  // of control points 3, 4, ...
+};
+
+struct StoredKind {
+  std::uint8_t scheme = 0;
+  Key key;
+  std::uint32_t rows = 0, controls = 0;
+  double entry_error = 0, abs_sum = 0;
+  std::vector<double> weights;  // [control][row]
+  std::vector<StoredTable> tables;
+  [[nodiscard]] double& weight(std::size_t row, std::size_t control) { return weights[control * rows + row]; }
+  [[nodiscard]] double weight(std::size_t row, std::size_t control) const {
+    return weights[control * rows + row];
+  }
+};
+
+struct BoundsFile {
+  std::string text;
+  std::vector<StoredKind> kinds;
+};
+
+/// Reads a file of the format in snug/basis/shipped.h, version 1. Any bytes may come.
+/// Errors:    Rejected if it is not one: magic, version, sizes, hash, flags that are neither 0 nor 1, padding
+///            that is not zero, numbers that are not finite.
+[[nodiscard]] BoundsFile parse(std::span<const std::byte> bytes);
+
+/// The file of these contents, with the right hash.
+[[nodiscard]] std::vector<std::byte> to_bytes(const BoundsFile& file);
+
+/// Writes the right length and hash into the header of bytes that were changed; nothing where they are too few.
+void seal(std::vector<std::byte>& bytes);
+
+}  // namespace checker

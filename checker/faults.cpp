@@ -1,0 +1,142 @@
+#include "faults.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "rejected.h"
+
+namespace checker {
+namespace {
+
+// Spoils contents; the hash of what comes out is right.
+Fault of_contents(std::string name, std::function<void(BoundsFile&)> spoil) {
+  return {std::move(name), [spoil = std::move(spoil)](const BoundsFile& file) {
+            BoundsFile copy = file;
+            spoil(copy);
+            return to_bytes(copy);
+          }};
+}
+
+// Spoils bytes.
+Fault of_bytes(std::string name, std::function<void(std::vector<std::byte>&)> spoil) {
+  return {std::move(name), [spoil = std::move(spoil)](const BoundsFile& file) {
+            std::vector<std::byte> bytes = to_bytes(file);
+            spoil(bytes);
+            return bytes;
+          }};
+}
+
+void remove_row(StoredKind& kind, std::size_t row) {
+  StoredKind smaller = kind;
+  --smaller.rows;
+  smaller.weights.resize(std::size_t{smaller.rows} * smaller.controls);
+  for (std::size_t c = 0; c < kind.controls; ++c) {
+    for (std::size_t r = 0; r < smaller.rows; ++r) smaller.weight(r, c) = kind.weight(r < row ? r : r + 1, c);
+  }
+  kind = smaller;
+}
+
+StoredTable& first_table(BoundsFile& file) {
+  for (StoredKind& kind : file.kinds) {
+    if (!kind.tables.empty()) return kind.tables.front();
+  }
+  throw Rejected("no table to spoil");
+}
+
+void shift(StoredTable::Plane& plane, double by) {
+  for (double& value : plane) value += by;
+}
+
+}  // namespace
+
+std::vector<Fault> faults(const BoundsFile& file) {
+  std::vector<Fault> all{
+      of_contents("an entry off by 1e-9", [](BoundsFile& f) { f.kinds[0].weight(7, 1) += 1e-9; }),
+      of_contents("two entries off by 1e-9 each, the sum right",
+                  [](BoundsFile& f) {
+                    f.kinds[0].weight(7, 1) += 1e-9;
+                    f.kinds[0].weight(7, 2) -= 1e-9;
+                  }),
+      of_contents("a row of the last kind off by 1e-13, the sum right",
+                  [](BoundsFile& f) {
+                    f.kinds.back().weight(f.kinds.back().rows - 1, 0) += 1e-13;
+                    f.kinds.back().weight(f.kinds.back().rows - 1, 1) -= 1e-13;
+                  }),
+      of_contents("the first row missing", [](BoundsFile& f) { remove_row(f.kinds[0], 0); }),
+      of_contents("the last row missing",
+                  [](BoundsFile& f) { remove_row(f.kinds.back(), f.kinds.back().rows - 1); }),
+      of_contents("two keys swapped", [](BoundsFile& f) { std::swap(f.kinds[0].key, f.kinds[1].key); }),
+      of_contents("a key turned by a third",
+                  [](BoundsFile& f) {
+                    std::rotate(f.kinds[0].key.begin(), f.kinds[0].key.begin() + 1, f.kinds[0].key.end());
+                  }),
+      of_contents("a key mirrored", [](BoundsFile& f) { std::swap(f.kinds[0].key[0], f.kinds[0].key[1]); }),
+      of_contents("two control points swapped",
+                  [](BoundsFile& f) {
+                    for (std::size_t r = 0; r < f.kinds[0].rows; ++r)
+                      std::swap(f.kinds[0].weight(r, 3), f.kinds[0].weight(r, 4));
+                  }),
+      of_contents("entry_error too small", [](BoundsFile& f) { f.kinds[0].entry_error = 0; }),
+      of_contents("abs_sum too small", [](BoundsFile& f) { f.kinds[0].abs_sum = 1 - 1e-12; }),
+      of_contents("a kind twice", [](BoundsFile& f) { f.kinds.push_back(f.kinds[0]); }),
+      of_contents("another scheme", [](BoundsFile& f) { f.kinds[0].scheme = 1; }),
+      of_contents("corners that do not fit",
+                  [](BoundsFile& f) {
+                    f.kinds[0].key[0] = {0, 2, false, false};
+                  }),
+      of_contents("a weight that is not a number", [](BoundsFile& f) { f.kinds[0].weight(0, 0) = NAN; }),
+      of_bytes("a bit changed under the old hash",
+               [](auto& bytes) { bytes[bytes.size() / 2] ^= std::byte{1}; }),
+      of_bytes("another hash", [](auto& bytes) { bytes[24] ^= std::byte{1}; }),
+      of_bytes("another version", [](auto& bytes) { bytes[8] ^= std::byte{3}; }),
+      of_bytes("the last word cut off", [](auto& bytes) { bytes.resize(bytes.size() - 8); }),
+      of_bytes("the second half cut off", [](auto& bytes) { bytes.resize(bytes.size() / 16 * 8); }),
+      of_bytes("the last word cut off and the header set right",
+               [](auto& bytes) {
+                 bytes.resize(bytes.size() - 8);
+                 seal(bytes);
+               }),
+      of_bytes("nothing left", [](auto& bytes) { bytes.clear(); }),
+  };
+  const bool tables = std::any_of(file.kinds.begin(), file.kinds.end(),
+                                  [](const StoredKind& k) { return !k.tables.empty(); });
+  if (!tables) return all;
+  all.insert(all.end(), {
+                            of_contents("an upper plane lowered by 1e-10",
+                                        [](BoundsFile& f) { shift(first_table(f).upper[0], -1e-10); }),
+                            of_contents("a lower plane raised by 1e-10",
+                                        [](BoundsFile& f) { shift(first_table(f).lower.back(), 1e-10); }),
+                            of_contents("a corner of the triangle drawn in",
+                                        [](BoundsFile& f) { first_table(f).triangle[1][0] -= 1e-6; }),
+                            of_contents("the triangle turned over",
+                                        [](BoundsFile& f) {
+                                          std::swap(first_table(f).triangle[1], first_table(f).triangle[2]);
+                                        }),
+                            of_contents("a place of the layout moved",
+                                        [](BoundsFile& f) { first_table(f).layout[4][0] += 1e-6; }),
+                            of_contents("a corner of the layout moved",
+                                        [](BoundsFile& f) { first_table(f).layout[1][0] += 1e-15; }),
+                        });
+  return all;
+}
+
+BoundsFile excerpt(const BoundsFile& file) {
+  BoundsFile result;
+  result.text = file.text;
+  for (const bool closed : {true, false}) {
+    const StoredKind* least = nullptr;
+    for (const StoredKind& kind : file.kinds) {
+      const auto& key = kind.key;
+      const bool inside = std::all_of(key.begin(), key.end(), [](const Fan& f) { return f.closed; });
+      const bool regular = std::all_of(key.begin(), key.end(), [](const Fan& f) { return f.regular(); });
+      if (inside == closed && !regular && (!least || kind.weights.size() < least->weights.size()))
+        least = &kind;
+    }
+    if (!least) throw Rejected("no kind to plant faults in");
+    result.kinds.push_back(*least);
+  }
+  return result;
+}
+
+}  // namespace checker

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+
+namespace snug {
+
+/// The plane z = at_centre + slope_x (x - centre_x) + slope_y (y - centre_y).
+struct Plane {
+  double at_centre = 0, slope_x = 0, slope_y = 0;
+  double centre_x = 0, centre_y = 0;
+  [[nodiscard]] double operator()(double x, double y) const {
+    return at_centre + slope_x * (x - centre_x) + slope_y * (y - centre_y);
+  }
+};
+
+/// The plane that passes above all points (x_j, y_j, z_j) and is least at (centre_x, centre_y). With the
+/// centroid of a triangle as centre it has the least volume below it over that triangle.
+///
+/// Guarantee: none: up to rounding it is above the points and the least that is. Who needs a proof moves it
+///            up by the largest violation, which costs no more than rounding does. Always a finite plane,
+///            whatever duplicates, points on a line and ties there are; slopes are at most 2^12 in size.
+///            The same input gives the same plane.
+/// Requires:  spans of equal size, at least 1; finite numbers, of about 1.
+/// Cost:      linear in the number of points, expected.
+/// Source:    [Seidel91]; differs: one fixed pseudo-random order, slopes held in a box instead of a check for
+///            unboundedness, and constraints without a direction are passed over.
+[[nodiscard]] Plane lowest_plane_above(std::span<const double> x, std::span<const double> y,
+                                       std::span<const double> z, double centre_x, double centre_y);
+
+}  // namespace snug
