@@ -65,8 +65,11 @@ ExitStatus status(Verdict verdict, bool exit_code) {
 }
 
 ExitStatus run(const Options& options) {
-  if (options.bounds != "rows")
-    throw UsageError("collide: --bounds " + options.bounds + " is not available; give rows");
+  const BoundMethod method = bound_method(options);
+  if (method == BoundMethod::control_box)
+    throw UsageError("collide: --bounds control-box is not available; give rows or table");
+  std::optional<TableLayout> table;
+  if (method == BoundMethod::table) table = table_layout(options);
   const Length tolerance_length = parse_length(options.tolerance, "--tolerance");
   const Length margin_length = parse_length(options.margin, "--margin", true);
   Placement place_a, place_b;
@@ -82,8 +85,8 @@ ExitStatus run(const Options& options) {
   ProgressBar bar("colliding", options.quiet);
   const WorkMonitor monitor = bar.monitor();
   std::optional<CollisionModel> model_a, model_b;
-  naming(options.mesh_a, [&] { model_a.emplace(a, options.threads, monitor); });
-  naming(options.mesh_b, [&] { model_b.emplace(b, options.threads, monitor); });
+  naming(options.mesh_a, [&] { model_a.emplace(a, options.threads, monitor, table); });
+  naming(options.mesh_b, [&] { model_b.emplace(b, options.threads, monitor, table); });
   CollideScratch scratch(*model_a, *model_b);
   const Collision answer =
       collide(*model_a, place_a, *model_b, place_b, {tolerance, margin, options.budget}, scratch, monitor);

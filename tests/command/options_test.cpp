@@ -44,7 +44,9 @@ TEST(usage, ends_with_2) {
            {"bound", star, "--tolerance", "1%", "--level", "2"},
            {"bound", star, "--level", "99"},
            {"bound", star, "--scheme", "butterfly"},
-           {"bound", star, "--bounds", "table"},
+           {"bound", star, "--bounds", "tables"},
+           {"bound", star, "--bounds", "table", "--layout", "hexagon"},
+           {"collide", star, star, "--tolerance", "1%", "--bounds", "control-box"},
            {"bound", star, "--threads", "-1"},
            {"collide", star, star},
            {"collide", star, star, "--tolerance", "1%", "--place-b", "1 0 0"},
@@ -73,6 +75,29 @@ TEST(verdicts, are_exit_codes_on_request_only) {
   EXPECT_EQ(run_snug({"collide", star, star, "--tolerance", "1%", "--exit-code"}).status, 10);
   EXPECT_EQ(run_snug({"collide", star, star, "--tolerance", "1%", "--exit-code", "--place-b", far}).status,
             0);
+}
+
+TEST(tables, bound_render_and_collide) {
+  const std::string star = model("star.obj");
+  const auto rows = comparable({"bound", star, "--json"});
+  for (const char* layout : {"ngon", "characteristic"}) {
+    const auto table = comparable({"bound", star, "--bounds", "table", "--layout", layout, "--json"});
+    EXPECT_EQ(table["count"], rows["count"]);
+    EXPECT_GT(table["max_radius"], rows["max_radius"]);
+    EXPECT_EQ(table["enclosures"][0]["lower"].size(), 3u);
+    EXPECT_EQ(table["enclosures"][0]["corners"], rows["enclosures"][0]["corners"]);
+    for (const char* place : {"1 0 0 9 0 1 0 0 0 0 1 0", "1 0 0 0.2 0 1 0 0 0 0 1 0"}) {
+      const std::vector<std::string> pair{"collide", star,        star,  "--tolerance",
+                                          "1%",      "--place-b", place, "--json"};
+      auto by_table = pair;
+      by_table.insert(by_table.end(), {"--bounds", "table", "--layout", layout});
+      EXPECT_EQ(comparable(by_table)["verdict"], comparable(pair)["verdict"]);
+    }
+  }
+  const TemporaryFolder folder;
+  const Outcome picture = run_snug(
+      {"render", star, "--enclosures", "--bounds", "table", "--size", "40", "-o", folder.file("star.png")});
+  EXPECT_EQ(picture.status, 0) << picture.err;
 }
 
 TEST(help_and_version, go_to_standard_output) {

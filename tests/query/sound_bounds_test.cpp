@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
+#include <snug/enclose/table_triangle.h>
 #include <snug/surface/refinement.h>
 #include <snug/surface/unscale.h>
 #include <testing/containment.h>
@@ -73,6 +74,35 @@ std::string piece_at(double u, double v, unsigned level) {
   return digits;
 }
 
+// What the enclosures come from.
+struct Source {
+  const char* name;
+  BoundMethod method;
+  TableLayout layout;
+};
+constexpr Source sources[] = {{"rows", BoundMethod::rows, TableLayout::ngon},
+                              {"n-gon table", BoundMethod::table, TableLayout::ngon},
+                              {"characteristic table", BoundMethod::table, TableLayout::characteristic}};
+
+struct Enclosures {
+  OffsetTriangle offset;
+  IntervalTriangle interval;
+};
+
+// Of one patch, in mesh units.
+Enclosures enclosures_of(const Surface& surface, const Patch& patch, const Source& source) {
+  const PowerOfTwo back = surface.scale().inverse();
+  if (source.method == BoundMethod::table) {
+    const TableTriangle triangle = table_triangle(surface.library().table(*patch.kind, source.layout), patch);
+    return {unscaled(offset_triangle(triangle), back), unscaled(triangle.interval, back)};
+  }
+  HullPoints points;
+  hull_points(surface.library().rows(*patch.kind), patch, points);
+  const auto corners = testing::limit_corners(patch);
+  return {unscaled(offset_triangle(points, corners), back),
+          unscaled(interval_triangle(points, corners), back)};
+}
+
 class Checker {
  public:
   void check(const OffsetTriangle& offset, const IntervalTriangle& interval, const oracle::LimitSample& s,
@@ -113,18 +143,22 @@ TEST(bounds, contain_a_million_adversarial_limit_points) {
       }
       points += samples.size();
       for (const unsigned level : {0u, 2u}) {
-        std::map<std::pair<std::size_t, std::string>, PieceEnclosure> pieces;
-        BoundOptions options;
-        options.level = level;
-        options.threads = 1;
-        bound(surface, options, [&](const PieceEnclosure& e) {
-          pieces[{e.face.index(), e.path.text()}] = e;
-        });
-        for (const oracle::LimitSample& s : samples) {
-          const auto it = pieces.find({s.face, piece_at(s.u, s.v, level)});
-          ASSERT_NE(it, pieces.end());
-          checker.check(*it->second.offset, *it->second.interval, s,
-                        disguise.name + ", level " + std::to_string(level));
+        for (const Source& source : sources) {
+          std::map<std::pair<std::size_t, std::string>, PieceEnclosure> pieces;
+          BoundOptions options;
+          options.method = source.method;
+          options.layout = source.layout;
+          options.level = level;
+          options.threads = 1;
+          bound(surface, options, [&](const PieceEnclosure& e) {
+            pieces[{e.face.index(), e.path.text()}] = e;
+          });
+          for (const oracle::LimitSample& s : samples) {
+            const auto it = pieces.find({s.face, piece_at(s.u, s.v, level)});
+            ASSERT_NE(it, pieces.end());
+            checker.check(*it->second.offset, *it->second.interval, s,
+                          disguise.name + ", " + source.name + ", level " + std::to_string(level));
+          }
         }
       }
       if (HasFailure()) FAIL() << disguise.name;
@@ -146,11 +180,13 @@ TEST(bounds, hold_for_a_grain_beside_a_boulder) {
     for (const oracle::Triangle& t : grain.triangles)
       twin.triangles.push_back({t[0] + count, t[1] + count, t[2] + count});
     const Surface surface = testing::surface_of(twin);
-    std::map<std::size_t, PieceEnclosure> pieces;
-    bound(surface, {}, [&](const PieceEnclosure& e) { pieces[e.face.index()] = e; });
-    for (const oracle::LimitSample& s : oracle::sample_uniform(twin, 3)) {
-      checker.check(*pieces[s.face].offset, *pieces[s.face].interval, s,
-                    "grain of " + std::to_string(std::log10(size)));
+    const auto samples = oracle::sample_uniform(twin, 3);
+    for (const Source& source : sources) {
+      for (const oracle::LimitSample& s : samples) {
+        const Enclosures e = enclosures_of(surface, surface.patch(FaceId(s.face)), source);
+        checker.check(e.offset, e.interval, s,
+                      std::string(source.name) + ", grain of " + std::to_string(std::log10(size)));
+      }
     }
   }
   EXPECT_GT(checker.checked(), 1000u);
@@ -166,22 +202,20 @@ TEST(bounds, hold_after_thirty_splits_at_valences_3_to_500) {
     oracle::TwinMesh twin = oracle::meshes::disturbed(oracle::meshes::bipyramid(n), 0, 0.1, random);
     for (oracle::Point& p : twin.points) p = {p[0] + 0.7, p[1] / 3, p[2] - 0.2};
     const Surface surface = testing::surface_of(twin);
-    HullPoints points;
     for (std::uint32_t face = 0; face < 2; ++face) {
       for (std::uint32_t corner = 0; corner < 3; ++corner) {
         const auto samples = oracle::sample_near_corner(twin, face, corner, 42);
         Patch patch = surface.patch(FaceId(face));
         std::string path;
         for (unsigned level = 0; level <= 30; ++level) {
-          hull_points(surface.library().rows(*patch.kind), patch, points);
-          const auto corners = testing::limit_corners(patch);
-          const PowerOfTwo back = surface.scale().inverse();
-          const OffsetTriangle offset = unscaled(offset_triangle(points, corners), back);
-          const IntervalTriangle interval = unscaled(interval_triangle(points, corners), back);
-          for (const oracle::LimitSample& s : samples) {
-            if (piece_at(s.u, s.v, level) != path) continue;
-            checker.check(offset, interval, s,
-                          "valence " + std::to_string(n) + ", level " + std::to_string(level));
+          for (const Source& source : sources) {
+            const Enclosures e = enclosures_of(surface, patch, source);
+            for (const oracle::LimitSample& s : samples) {
+              if (piece_at(s.u, s.v, level) != path) continue;
+              checker.check(e.offset, e.interval, s,
+                            std::string(source.name) + ", valence " + std::to_string(n) + ", level " +
+                                std::to_string(level));
+            }
           }
           if (HasFailure()) FAIL() << "valence " << n;
           patch = split(patch, corner);
@@ -200,7 +234,6 @@ TEST(bounds, hold_after_thirty_splits_along_random_paths) {
   for (const oracle::TwinMesh& twin : testing::assorted_meshes(27)) {
     if (twin.boundary == oracle::Boundary::none) continue;
     const Surface surface = testing::surface_of(twin);
-    HullPoints points;
     for (int trial = 0; trial < 6; ++trial) {
       const auto face = static_cast<std::uint32_t>(random() % surface.face_count());
       const double u = static_cast<double>(random() >> 24) * 0x1p-41,
@@ -209,14 +242,12 @@ TEST(bounds, hold_after_thirty_splits_along_random_paths) {
       Patch patch = surface.patch(FaceId(face));
       const std::string whole = piece_at(u, v, 30);
       for (unsigned level = 0; level <= 30; ++level) {
-        hull_points(surface.library().rows(*patch.kind), patch, points);
-        const auto corners = testing::limit_corners(patch);
-        const PowerOfTwo back = surface.scale().inverse();
-        const OffsetTriangle offset = unscaled(offset_triangle(points, corners), back);
-        const IntervalTriangle interval = unscaled(interval_triangle(points, corners), back);
-        for (const oracle::LimitSample& s : samples) {
-          if (piece_at(s.u, s.v, level) == whole.substr(0, level))
-            checker.check(offset, interval, s, whole.substr(0, level));
+        for (const Source& source : sources) {
+          const Enclosures e = enclosures_of(surface, patch, source);
+          for (const oracle::LimitSample& s : samples) {
+            if (piece_at(s.u, s.v, level) == whole.substr(0, level))
+              checker.check(e.offset, e.interval, s, source.name + (" " + whole.substr(0, level)));
+          }
         }
         if (level < 30) patch = split(patch, static_cast<unsigned>(whole[level] - '0'));
       }

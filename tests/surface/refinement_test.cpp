@@ -1,11 +1,27 @@
 #include <snug/surface/refinement.h>
 
 #include <gtest/gtest.h>
+#include <snug/enclose/table_triangle.h>
 #include <testing/containment.h>
 #include <testing/patches.h>
 
 namespace snug {
 namespace {
+
+TEST(refinement, by_tables_has_the_offset_triangles_of_the_tables) {
+  const Surface surface = testing::surface_of(oracle::meshes::icosahedron());
+  for (const TableLayout layout : {TableLayout::ngon, TableLayout::characteristic}) {
+    Refinement refinement(surface, layout);
+    const PieceId first = refinement.split(refinement.root(FaceId(0)));
+    for (unsigned child = 0; child < 4; ++child) {
+      const Piece& piece = refinement[PieceId(first.index() + child)];
+      const BoundTable& table = surface.library().table(*piece.patch.kind, layout);
+      const OffsetTriangle expected = offset_triangle(table_triangle(table, piece.patch));
+      EXPECT_EQ(piece.offset.base, expected.base);
+      EXPECT_EQ(piece.offset.radius, expected.radius);
+    }
+  }
+}
 
 TEST(refinement, does_not_depend_on_the_order_of_calls) {
   const Surface surface = testing::surface_of(oracle::meshes::icosahedron());

@@ -106,7 +106,8 @@ BoundTable make_bound_table(const Kind& kind, const BoundRows& rows, TableLayout
     table.upper.push_back(fitter.above(values));
     std::transform(values.begin(), values.end(), negative.begin(), [](double v) { return -v; });
     BoundTable::CornerValues below = fitter.above(negative);
-    for (double& value : below) value = -value;
+    // The planes may cross outside the domain, at a corner of the triangle: the lower one is put lower there.
+    for (std::size_t k = 0; k < 3; ++k) below[k] = std::min(-below[k], table.upper.back()[k]);
     table.lower.push_back(below);
   }
   return table;

@@ -15,7 +15,7 @@ namespace snug {
 /// With N_i the basis functions and u = sum N_i layout_i the domain point of a parameter:
 ///
 /// Guarantee: u lies in `triangle`, and  lower_i(u) <= N_i <= upper_i(u)  for control points i = 3, 4, ...,
-///            in exact arithmetic for these very doubles.
+///            in exact arithmetic for these very doubles. lower_i <= upper_i at the corners of `triangle`.
 ///            So  x = l(u) + sum_{i >= 3} (c_i - l(layout_i)) N_i,  l linear through the control points of
 ///            the corners, has linear bounds over `triangle`.
 /// Source:    [Wu05, sec. 4.3 to 4.5]; differs: planes are fitted to hull rows instead of a net after seven

@@ -8,6 +8,7 @@
 #include <snug/base/contract.h>
 #include <snug/base/interval.h>
 #include <snug/scheme/loop_masks.h>
+#include <snug/scheme/refine.h>
 
 namespace snug {
 namespace {
@@ -106,10 +107,13 @@ std::vector<LayoutPoint> ngon_layout(const Kind& kind, const Topology& topology,
 // Subdivision around the extraordinary corner shrinks the ring by its eigenvalue; the outer points follow by
 // iteration, for their own eigenvalues are at most 1/8.
 void relax_to_characteristic(const Kind& kind, std::size_t centre, std::vector<LayoutPoint>& layout) {
-  const KindChild& child = kind.children()[centre];
-  SNUG_EXPECT(child.kind == &kind && child.first == 0);
   std::vector<bool> fixed(kind.control_count(), false);
   const Topology topology = neighbourhood(kind.key());
+  // The quarter at the corner has the kind again, and here in the same order.
+  const RefinedTopology refined = refine(topology, neighbourhood_options(kind.key()));
+  std::vector<VertexId> control;
+  control_vertices(refined.topology, FaceId(centre), 0, control);
+  SNUG_EXPECT(control.size() == layout.size());
   fixed[centre] = true;
   for (const std::size_t v : ring_of(topology, centre).after) fixed[v] = true;
   const double grow = 1 / loop::subdominant(kind.corner(centre).faces());
@@ -119,7 +123,7 @@ void relax_to_characteristic(const Kind& kind, std::size_t centre, std::vector<L
     for (std::size_t r = 0; r < layout.size(); ++r) {
       if (fixed[r]) continue;
       LayoutPoint sum{0, 0};
-      const Stencils::Row row = child.stencils.row(r);
+      const Stencils::Row row = refined.stencils.row(control[r].index());
       for (std::size_t i = 0; i < row.sources.size(); ++i)
         sum = sum + row.weights[i] * (old[row.sources[i]] - origin);
       layout[r] = origin + grow * sum;

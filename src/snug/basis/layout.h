@@ -22,7 +22,7 @@ enum class TableLayout : std::uint8_t {
 /// At most one extraordinary corner, inside the mesh: the layout asked for. Others have neither; then both
 /// names give the same one: each control point in the mean of the places that the corners it is next to give
 /// it, an affine image of a regular fan around each, moved as little as brings the limit corners of the
-/// layout to its corners.
+/// layout to its corners (but for a corner with one face, whose ring is the other corners).
 ///
 /// Guarantee: finite numbers, the same for the same kind. A bound needs no more: any layout is sound.
 /// Cost:      linear in the valences, but for `characteristic`: some 200 products with the stencils of a

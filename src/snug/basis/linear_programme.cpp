@@ -97,8 +97,8 @@ Plane lowest_plane_above(std::span<const double> x, std::span<const double> y, s
   for (std::size_t i = 0; i < x.size(); ++i) points[i] = {x[i] - centre_x, y[i] - centre_y, z[i]};
   shuffle(points);
   Slopes slopes{0, 0};
-  double at_centre = points[0].z;
-  for (std::size_t i = 1; i < points.size(); ++i) {
+  double at_centre = -INFINITY;
+  for (std::size_t i = 0; i < points.size(); ++i) {
     const Place& p = points[i];
     if (p.z <= at_centre + slopes.x * p.x + slopes.y * p.y + negligible) continue;
     slopes = best_through(p, points, i);

@@ -285,8 +285,9 @@ const char* name_of(Verdict verdict) {
   return "";
 }
 
-CollisionModel::CollisionModel(const Surface& surface, int threads, const WorkMonitor& monitor)
-    : surface_(&surface) {
+CollisionModel::CollisionModel(const Surface& surface, int threads, const WorkMonitor& monitor,
+                               std::optional<TableLayout> table)
+    : surface_(&surface), table_(table) {
   for (std::size_t f = 0; f < surface.face_count(); ++f) {
     if (surface.has_patch(FaceId(f))) faces_.push_back(FaceId(f));
   }
@@ -300,7 +301,7 @@ CollisionModel::CollisionModel(const Surface& surface, int threads, const WorkMo
     monitor.checkpoint();
     HullPoints points;
     for (std::size_t i = begin; i < end; ++i) {
-      offsets_[i] = make_piece(surface.library(), faces_[i], surface.patch(faces_[i]), points).offset;
+      offsets_[i] = make_piece(surface.library(), faces_[i], surface.patch(faces_[i]), points, table_).offset;
     }
   });
   tree_ = ObbTree(offsets_);

@@ -18,16 +18,19 @@ enum class Verdict : std::uint8_t {
 };
 [[nodiscard]] const char* name_of(Verdict verdict);
 
-/// A surface made ready for queries: offset triangles of its patches and a tree over them. Immutable.
+/// A surface made ready for queries: offset triangles of its patches, from hull rows or from the tables of a
+/// layout, and a tree over them. Immutable.
 ///
 /// Cost:      about 10 microseconds a face, n log n for the tree; some 500 bytes a face.
 class CollisionModel {
  public:
   /// Requires:  the surface outlives the model.
   /// Errors:    InputError (refused) if no face has a patch.
-  explicit CollisionModel(const Surface& surface, int threads = 0, const WorkMonitor& monitor = {});
+  explicit CollisionModel(const Surface& surface, int threads = 0, const WorkMonitor& monitor = {},
+                          std::optional<TableLayout> table = {});
 
   [[nodiscard]] const Surface& surface() const { return *surface_; }
+  [[nodiscard]] std::optional<TableLayout> table() const { return table_; }
   [[nodiscard]] const ObbTree& tree() const { return tree_; }
   /// Face and offset triangle of a leaf.
   [[nodiscard]] FaceId face(std::uint32_t leaf) const { return faces_[leaf]; }
@@ -35,6 +38,7 @@ class CollisionModel {
 
  private:
   const Surface* surface_;
+  std::optional<TableLayout> table_;
   std::vector<FaceId> faces_;
   std::vector<OffsetTriangle> offsets_;
   ObbTree tree_;
@@ -65,7 +69,7 @@ struct Collision {
 struct CollideScratch {
   Refinement a, b;
   CollideScratch(const CollisionModel& model_a, const CollisionModel& model_b)
-      : a(model_a.surface()), b(model_b.surface()) {}
+      : a(model_a.surface(), model_a.table()), b(model_b.surface(), model_b.table()) {}
 };
 
 /// Do two placed limit surfaces touch?

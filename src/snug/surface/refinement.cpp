@@ -3,26 +3,33 @@
 #include <utility>
 
 #include <snug/base/contract.h>
+#include <snug/enclose/table_triangle.h>
 #include <snug/patch/evaluate.h>
 
 namespace snug {
 
-Piece make_piece(BoundLibrary& library, FaceId face, Patch patch, HullPoints& scratch) {
+Piece make_piece(BoundLibrary& library, FaceId face, Patch patch, HullPoints& scratch,
+                 std::optional<TableLayout> table) {
   Piece piece;
   piece.face = face;
   for (std::size_t k = 0; k < 3; ++k) piece.corners[k] = corner_point(patch, k).relative;
-  hull_points(library.rows(*patch.kind), patch, scratch);
-  piece.offset = offset_triangle(scratch, piece.corners);
+  if (table) {
+    piece.offset = offset_triangle(table_triangle(library.table(*patch.kind, *table), patch));
+  } else {
+    hull_points(library.rows(*patch.kind), patch, scratch);
+    piece.offset = offset_triangle(scratch, piece.corners);
+  }
   piece.patch = std::move(patch);
   return piece;
 }
 
-Refinement::Refinement(const Surface& surface) : surface_(surface), roots_(surface.face_count()) {}
+Refinement::Refinement(const Surface& surface, std::optional<TableLayout> table)
+    : surface_(surface), table_(table), roots_(surface.face_count()) {}
 
 PieceId Refinement::root(FaceId face) {
   PieceId& id = roots_[face.index()];
   if (!id.valid()) {
-    pieces_.push_back(make_piece(surface_.library(), face, surface_.patch(face), scratch_));
+    pieces_.push_back(make_piece(surface_.library(), face, surface_.patch(face), scratch_, table_));
     id = PieceId(pieces_.size() - 1);
   }
   return id;
@@ -40,7 +47,7 @@ PieceId Refinement::split(PieceId id) {
   for (unsigned child = 0; child < 4; ++child) {
     const Piece& parent = pieces_[id.index()];
     pieces_.push_back(
-        make_piece(surface_.library(), parent.face, snug::split(parent.patch, child), scratch_));
+        make_piece(surface_.library(), parent.face, snug::split(parent.patch, child), scratch_, table_));
   }
   pieces_[id.index()].first_child = first;
   return first;

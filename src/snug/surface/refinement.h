@@ -2,6 +2,7 @@
 
 #include <array>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include <snug/enclose/interval_triangle.h>
@@ -22,8 +23,10 @@ struct Piece {
   PieceId first_child;  ///< of four in a row; invalid while the piece is whole
 };
 
-/// A piece with its enclosures, made from a patch. `scratch` holds the hull points afterwards.
-[[nodiscard]] Piece make_piece(BoundLibrary& library, FaceId face, Patch patch, HullPoints& scratch);
+/// A piece with its offset triangle, made from a patch: fitted to hull rows, for which `scratch` is used, or
+/// from the tables of a layout.
+[[nodiscard]] Piece make_piece(BoundLibrary& library, FaceId face, Patch patch, HullPoints& scratch,
+                               std::optional<TableLayout> table = {});
 
 /// Patches of one surface, split lazily and in place. Scratch memory of a query: one a thread.
 ///
@@ -33,7 +36,7 @@ struct Piece {
 class Refinement {
  public:
   /// Requires:  the surface outlives the refinement.
-  explicit Refinement(const Surface& surface);
+  explicit Refinement(const Surface& surface, std::optional<TableLayout> table = {});
 
   [[nodiscard]] const Surface& surface() const { return surface_; }
   /// The whole patch of a face.
@@ -51,6 +54,7 @@ class Refinement {
 
  private:
   const Surface& surface_;
+  std::optional<TableLayout> table_;
   std::vector<PieceId> roots_;
   std::deque<Piece> pieces_;
   HullPoints scratch_;
