@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <ctime>
 #include <fstream>
 #include <stdexcept>
 #include <utility>
@@ -25,11 +24,11 @@ struct Duration {
 };
 
 Duration duration_of(const std::function<double()>& work, double& checksum) {
-  const std::clock_t ticks = std::clock();
+  const double processor = processor_seconds();
   const auto start = std::chrono::steady_clock::now();
   checksum = work();
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return {wall, static_cast<double>(std::clock() - ticks) / CLOCKS_PER_SEC};
+  return {wall, processor_seconds() - processor};
 }
 
 // A line of /proc/self/status in KiB, such as "VmHWM:".
@@ -112,17 +111,17 @@ std::vector<Times> Group::run() {
   std::printf("%s (%d rounds)\n", title_.c_str(), rounds_);
   std::vector<Times> results;
   for (std::size_t c = 0; c < count; ++c) {
-    Times times{contestants_[c].name, contestants_[c].items, quantile(wall[c], 0.5),
-                quantile(wall[c], 0), quantile(wall[c], 1),  checksums[c]};
+    Times times{contestants_[c].name,      contestants_[c].items,     quantile(processor[c], 0.5),
+                quantile(processor[c], 0), quantile(processor[c], 1), checksums[c]};
     results.push_back(times);
     const double per_item = 1e6 / times.items;
     const double ratio = (times.median / times.items) / (results.front().median / results.front().items);
     const char* prefix = "";
     const double per_second = rate(times.items / times.median, prefix);
-    std::printf("  %-40s  %10.4f us/%s  %7.2f %s/s  x %-7.2f  [%.4f-%.4f, busy %.2f, cal %.2f]  sum %.17g\n",
+    std::printf("  %-40s  %10.4f us/%s  %7.2f %s/s  x %-8.3g  [%.4f-%.4f, busy %.2f, cal %.2f]  sum %.17g\n",
                 times.name.c_str(), times.median * per_item, item_.c_str(), per_second, prefix, ratio,
-                times.least * per_item, times.most * per_item, quantile(processor[c], 0.5) / times.median,
-                cal, times.checksum);
+                times.least * per_item, times.most * per_item, times.median / quantile(wall[c], 0.5), cal,
+                times.checksum);
   }
   std::fflush(stdout);
   return results;

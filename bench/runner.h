@@ -23,7 +23,7 @@ struct Options {
 /// Errors:    prints usage and ends the process with status 2, also unless `files` file names are given.
 [[nodiscard]] Options start(int argc, char** argv, std::size_t files, const char* usage);
 
-/// Times of one contestant, in seconds.
+/// Processor times of one contestant, in seconds.
 struct Times {
   std::string name;
   double items = 0;
@@ -37,7 +37,8 @@ struct Times {
 ///
 ///   name  us an item  items a second  times the baseline  [least-most us, busy share, cal]  checksum
 ///
-/// busy is processor time over wall time (below 1 somebody else had the processor; above 1 threads); cal is how
+/// Times are processor time, all threads together, so that others on the same machine disturb little; busy is
+/// that over wall time (below 1 somebody else had the processor; above 1 there are threads); cal is how
 /// long calibrate() took around these runs, relative to its best in this process. `times` is the ratio of times
 /// an item to the first contestant's: above 1 is slower.
 class Group {
