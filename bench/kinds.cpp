@@ -1,0 +1,48 @@
+// bench_kinds: what a kind costs that was never met: the kind itself, its descendants' matrices, and its rows.
+
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include <snug/basis/bound_library.h>
+
+#include "runner.h"
+
+namespace {
+
+using namespace snug;
+using namespace snug::bench;
+
+CornerFan inside(std::size_t valence) { return {0, static_cast<std::uint16_t>(valence - 1), true, false}; }
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Options options = start(argc, argv, 0, "");
+  Group group("a new kind, cold library", "kind", options);
+  group.set_cold();
+  for (const auto& [a, b, c] : std::initializer_list<std::array<std::size_t, 3>>{{6, 6, 6},
+                                                                                 {6, 6, 5},
+                                                                                 {6, 6, 7},
+                                                                                 {6, 6, 8},
+                                                                                 {6, 6, 12},
+                                                                                 {7, 8, 9},
+                                                                                 {12, 12, 12},
+                                                                                 {6, 6, 50},
+                                                                                 {6, 6, 500}}) {
+    if (options.quick && c == 500) continue;
+    const KindKey key{Scheme::loop, {inside(a), inside(b), inside(c)}};
+    BoundLibrary library;
+    const BoundRows& rows = library.rows(library.kinds().find(key));
+    const std::string name = "valences " + std::to_string(a) + " " + std::to_string(b) + " " +
+                             std::to_string(c) + ", " + std::to_string(rows.count()) + " rows of " +
+                             std::to_string(rows.control_count()) + ", " +
+                             std::to_string(rows.bytes() / 1024) + " KiB";
+    group.add(name, 1, [key] {
+      BoundLibrary cold;
+      return static_cast<double>(cold.rows(cold.kinds().find(key)).count());
+    });
+  }
+  group.run();
+  return 0;
+}

@@ -1,0 +1,212 @@
+#include "meshes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <numbers>
+#include <random>
+#include <utility>
+
+namespace snug::bench {
+namespace {
+
+constexpr std::uint32_t least_valence = 3, most_valence = 12;
+
+// In [-1, 1), the same on every machine.
+double unit(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; }
+
+struct GridSize {
+  std::size_t columns, rows;
+};
+
+// Edges of about equal length on average: the torus is three times as long around its axis as around its tube.
+GridSize grid_size(std::size_t faces) {
+  const double rows = std::max(3.0, std::round(std::sqrt(static_cast<double>(faces) / 6)));
+  return {static_cast<std::size_t>(std::max(3.0, std::round(static_cast<double>(faces) / (2 * rows)))),
+          static_cast<std::size_t>(rows)};
+}
+
+// A closed triangle mesh as half-edges, three in a row a face, whose edges can be flipped.
+class Flipper {
+ public:
+  explicit Flipper(const ControlMesh& mesh) : valence_(mesh.vertex_count(), 0) {
+    const Topology topology(mesh);
+    from_ = mesh.face_vertices;
+    twin_.reserve(from_.size());
+    for (HalfEdge h = 0; h < from_.size(); ++h) {
+      twin_.push_back(topology.twin(h));
+      ++valence_[from_[h].index()];
+    }
+  }
+
+  //       c                  c
+  //     /   \              / | \        h: a -> b becomes d -> c; the faces stay where they are in the list
+  //    a --- b     ->     a  |  b
+  //     \   /              \ | /
+  //       d                  d
+  //
+  // False, and nothing changes, where a valence would leave its range or the new edge is there already.
+  bool flip(HalfEdge h) {
+    const HalfEdge t = twin_[h];
+    const HalfEdge bc = next(h), ca = next(bc), ad = next(t), db = next(ad);
+    const VertexId a = from_[h], b = from_[t], c = from_[ca], d = from_[db];
+    if (valence_[a.index()] == least_valence || valence_[b.index()] == least_valence ||
+        valence_[c.index()] == most_valence || valence_[d.index()] == most_valence || c == d ||
+        joined(ca, d)) {
+      return false;
+    }
+    const std::array<HalfEdge, 4> outer{twin_[bc], twin_[ca], twin_[ad], twin_[db]};
+    from_[h] = d, from_[bc] = c, from_[ca] = a;
+    from_[t] = c, from_[ad] = d, from_[db] = b;
+    join(bc, outer[1]), join(ca, outer[2]), join(ad, outer[3]), join(db, outer[0]);
+    --valence_[a.index()], --valence_[b.index()];
+    ++valence_[c.index()], ++valence_[d.index()];
+    return true;
+  }
+
+  [[nodiscard]] std::vector<VertexId> take() { return std::move(from_); }
+
+ private:
+  static HalfEdge next(HalfEdge h) { return h % 3 == 2 ? h - 2 : h + 1; }
+  void join(HalfEdge g, HalfEdge h) {
+    twin_[g] = h;
+    twin_[h] = g;
+  }
+  // Does an edge lead from the start of `leaving` to v?
+  [[nodiscard]] bool joined(HalfEdge leaving, VertexId v) const {
+    HalfEdge h = leaving;
+    do {
+      if (from_[next(h)] == v) return true;
+      h = next(twin_[h]);
+    } while (h != leaving);
+    return false;
+  }
+
+  std::vector<VertexId> from_;
+  std::vector<HalfEdge> twin_;
+  std::vector<std::uint32_t> valence_;
+};
+
+}  // namespace
+
+ControlMesh torus_grid(std::size_t columns, std::size_t rows) {
+  ControlMesh mesh;
+  for (std::size_t i = 0; i < columns; ++i) {
+    for (std::size_t j = 0; j < rows; ++j) {
+      const double a = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(columns);
+      const double b = 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(rows);
+      const double r = 3 + std::cos(b);
+      mesh.points.push_back({r * std::cos(a), r * std::sin(a), std::sin(b)});
+    }
+  }
+  const auto at = [&](std::size_t i, std::size_t j) { return VertexId(i % columns * rows + j % rows); };
+  for (std::size_t i = 0; i < columns; ++i) {
+    for (std::size_t j = 0; j < rows; ++j) {
+      mesh.add_face(std::array{at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.add_face(std::array{at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  return mesh;
+}
+
+ControlMesh regular_mesh(std::size_t faces) {
+  const GridSize size = grid_size(faces);
+  return torus_grid(size.columns, size.rows);
+}
+
+ControlMesh irregular_mesh(std::size_t faces, const Irregularity& options) {
+  const GridSize size = grid_size(faces);
+  ControlMesh mesh = torus_grid(size.columns, size.rows);
+  std::mt19937_64 random(options.seed);
+  Flipper flipper(mesh);
+  const std::size_t half_edges = mesh.face_vertices.size();
+  const auto wanted = static_cast<std::size_t>(options.flips * static_cast<double>(half_edges) / 2);
+  // Some tries flip nothing; the limit keeps an impossible wish from running on for ever.
+  for (std::size_t done = 0, tries = 0; done < wanted && tries < 10 * wanted; ++tries) {
+    done += flipper.flip(static_cast<HalfEdge>(random() % half_edges));
+  }
+  mesh.face_vertices = flipper.take();
+  const double move = options.jitter * 2 * std::numbers::pi / static_cast<double>(size.rows);
+  for (Point3& p : mesh.points) {
+    for (std::size_t x = 0; x < 3; ++x) p[x] += move * unit(random);
+  }
+  return mesh;
+}
+
+ControlMesh fan_mesh(std::size_t n, std::size_t rings) {
+  ControlMesh mesh;
+  mesh.points.push_back({});
+  // Ring i has i vertices a sector.
+  const auto at = [&](std::size_t i, std::size_t sector, std::size_t j) {
+    return i == 0 ? VertexId(0) : VertexId(1 + n * i * (i - 1) / 2 + (sector * i + j) % (n * i));
+  };
+  for (std::size_t i = 1; i <= rings; ++i) {
+    for (std::size_t s = 0; s < n; ++s) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const double a = 2 * std::numbers::pi * static_cast<double>(s) / static_cast<double>(n);
+        const double b = 2 * std::numbers::pi * static_cast<double>(s + 1) / static_cast<double>(n);
+        const double p = static_cast<double>(i - j), q = static_cast<double>(j);
+        mesh.points.push_back({p * std::cos(a) + q * std::cos(b), p * std::sin(a) + q * std::sin(b), 0});
+      }
+    }
+  }
+  for (std::size_t i = 0; i < rings; ++i) {
+    for (std::size_t s = 0; s < n; ++s) {
+      for (std::size_t j = 0; j <= i; ++j) {
+        mesh.add_face(std::array{at(i, s, j), at(i + 1, s, j), at(i + 1, s, j + 1)});
+        if (j < i) mesh.add_face(std::array{at(i, s, j), at(i + 1, s, j + 1), at(i, s, j + 1)});
+      }
+    }
+  }
+  return mesh;
+}
+
+void disturb(ControlMesh& mesh, double along, double across, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  for (Point3& p : mesh.points) {
+    p.x += along * unit(random);
+    p.y += along * unit(random);
+    p.z += across * unit(random);
+  }
+}
+
+std::size_t extraordinary_corners(const Kind& kind) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < 3; ++i) count += !kind.corner(i).regular();
+  return count;
+}
+
+std::vector<FaceId> faces_with(const Surface& surface, std::size_t corners) {
+  std::vector<FaceId> faces;
+  for (std::size_t f = 0; f < surface.face_count(); ++f) {
+    if (surface.has_patch(FaceId(f)) && extraordinary_corners(surface.kind(FaceId(f))) == corners) {
+      faces.push_back(FaceId(f));
+    }
+  }
+  return faces;
+}
+
+void print_statistics(const char* name, const Surface& surface) {
+  std::map<std::size_t, std::size_t> valences;
+  for (std::size_t v = 0; v < surface.topology().vertex_count(); ++v) {
+    ++valences[surface.topology().face_valence(VertexId(v))];
+  }
+  std::printf("mesh %s: %zu faces, %zu vertices, %zu kinds\n", name, surface.face_count(),
+              surface.topology().vertex_count(), surface.kind_count());
+  std::printf("  vertices by valence:");
+  for (const auto& [valence, count] : valences) {
+    std::printf("  %zu: %.1f %%", valence,
+                100 * static_cast<double>(count) / static_cast<double>(surface.topology().vertex_count()));
+  }
+  std::printf("\n  faces by extraordinary corners:");
+  for (std::size_t corners = 0; corners <= 3; ++corners) {
+    std::printf("  %zu: %.1f %%", corners,
+                100 * static_cast<double>(faces_with(surface, corners).size()) /
+                    static_cast<double>(surface.face_count()));
+  }
+  std::printf("\n");
+}
+
+}  // namespace snug::bench

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <snug/mesh/control_mesh.h>
+#include <snug/surface/surface.h>
+
+namespace snug::bench {
+
+/// Closed torus of 2 columns * rows triangles, every vertex of valence 6. Radii 3 and 1.
+/// Requires:  columns, rows >= 3.
+[[nodiscard]] ControlMesh torus_grid(std::size_t columns, std::size_t rows);
+
+/// A torus grid of about `faces` triangles.
+[[nodiscard]] ControlMesh regular_mesh(std::size_t faces);
+
+struct Irregularity {
+  double flips = 0.1;    ///< flipped edges, of all edges: 0.1 leaves a third of the vertices regular
+  double jitter = 0.15;  ///< vertices move by at most this part of a grid edge a coordinate
+  std::uint64_t seed = 1;
+};
+
+/// A torus grid of about `faces` triangles after random edge flips and moves of its vertices: valences 3 to 12
+/// in the mixture of a simplified or scanned mesh.
+///
+/// Guarantee: closed, manifold, no edge twice; the same mesh for the same arguments on every machine.
+[[nodiscard]] ControlMesh irregular_mesh(std::size_t faces, const Irregularity& options = {});
+
+/// A vertex of valence n in the middle of `rings` rings of a flat lattice: the corner is at the origin, spokes
+/// have length 1. Faces 0 to n - 1 touch the middle. Regular but for the middle and the border.
+/// Requires:  n >= 3, rings >= 1.
+[[nodiscard]] ControlMesh fan_mesh(std::size_t n, std::size_t rings);
+
+/// Moves every vertex by at most `along` in x and y, and by at most `across` in z, evenly distributed.
+void disturb(ControlMesh& mesh, double along, double across, std::uint64_t seed);
+
+/// Corners of a face's patch that are not regular.
+[[nodiscard]] std::size_t extraordinary_corners(const Kind& kind);
+/// Faces with `corners` extraordinary corners.
+[[nodiscard]] std::vector<FaceId> faces_with(const Surface& surface, std::size_t corners);
+
+/// Prints sizes, the histogram of valences, the number of kinds, the shares of faces by extraordinary corners.
+void print_statistics(const char* name, const Surface& surface);
+
+}  // namespace snug::bench

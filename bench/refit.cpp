@@ -1,0 +1,73 @@
+// bench_refit: the same mesh with other positions: what it costs until every patch is bounded again.
+//
+// The peer has no bounds. Its columns are the least that a refit of its tables does, before anything is bounded:
+// the vertices of one refinement; three limit corners a patch; ten limit points a patch. All from tables made
+// beforehand.
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "meshes.h"
+#include "runner.h"
+#include "subject.h"
+#ifdef SNUG_BENCH_OPENSUBDIV
+#include "peer_opensubdiv.h"
+#endif
+
+namespace {
+
+using namespace snug;
+using namespace snug::bench;
+
+#ifdef SNUG_BENCH_OPENSUBDIV
+struct Table {
+  std::string name;
+  OsdStencils stencils;
+};
+
+std::vector<Table> tables(const ControlMesh& mesh) {
+  const std::vector<TriangleParameter> corners{{0, 0}, {1, 0}, {0, 1}};
+  std::vector<TriangleParameter> ten;
+  for (int j = 0; j <= 3; ++j) {
+    for (int i = 0; i + j <= 3; ++i) ten.push_back({i / 3.0, j / 3.0});
+  }
+  std::vector<Table> all;
+  all.push_back({"Far: vertices of one refinement", OsdStencils::refined(mesh)});
+  all.push_back({"Far: three limit corners a patch", OsdStencils::limit(mesh, corners, 2)});
+  all.push_back({"Far: ten limit points a patch", OsdStencils::limit(mesh, ten, 2)});
+  return all;
+}
+#endif
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Options options = start(argc, argv, 0, "");
+  const ControlMesh mesh = irregular_mesh(options.size(100'000, 2'000));
+  ControlMesh moved = mesh;
+  disturb(moved, 0.01, 0.01, 3);
+  const auto count = static_cast<double>(mesh.face_count());
+
+  Subject subject(mesh);
+  print_statistics("irregular", subject.surface());
+  const std::vector<FaceId> faces = all_faces(mesh.face_count());
+  std::vector<OffsetTriangle> triangles;
+  std::vector<Box3> boxes;
+  Group group("new positions", "patch", options);
+  group.add("snug: offset triangles", count, [&] { return subject.refit(moved.points, triangles); });
+  group.add("snug: the same, surface kept", count, [&] { return subject.enclose_all(triangles); });
+  group.add("snug: boxes of the control points", count, [&] { return subject.box(faces, boxes); });
+#ifdef SNUG_BENCH_OPENSUBDIV
+  std::vector<Table> all = tables(mesh);
+  for (Table& table : all) {
+    OsdStencils& stencils = table.stencils;
+    std::printf("%s: %zu stencils, %zu weights\n", table.name.c_str(), stencils.count(), stencils.weights());
+    stencils.set_float_points(moved.points);
+    group.add(table.name + ", double", count, [&] { return stencils.update(moved.points); });
+    group.add(table.name + ", float (Osd)", count, [&] { return stencils.update_float(); });
+  }
+#endif
+  group.run();
+  return 0;
+}

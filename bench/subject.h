@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <snug/enclose/hull_points.h>
+#include <snug/enclose/offset_triangle.h>
+#include <snug/patch/evaluate.h>
+#include <snug/surface/surface.h>
+
+namespace snug::bench {
+
+/// snug as the measurements see it: many patches at once, on one thread. Whatever way the library has to do that
+/// faster belongs in here, so that every program of bench/ gets it.
+class Subject {
+ public:
+  /// Everything before the first bound, with a library of kinds of its own.
+  explicit Subject(ControlMesh mesh,
+                   std::shared_ptr<BoundLibrary> library = std::make_shared<BoundLibrary>());
+
+  [[nodiscard]] const Surface& surface() const { return *surface_; }
+
+  /// Offset triangles of some faces, in scaled units, written over `out` in the same order.
+  /// Returns:   the sum of the radii.
+  double enclose(std::span<const FaceId> faces, std::vector<OffsetTriangle>& out);
+  /// Of all faces, in their order.
+  double enclose_all(std::vector<OffsetTriangle>& out);
+  /// The baseline: least boxes of the control points.
+  /// Returns:   the sum of their longest sides.
+  double box(std::span<const FaceId> faces, std::vector<Box3>& out);
+
+  /// The same mesh with other positions, and the kinds it has already; then offset triangles of all faces.
+  double refit(std::span<const Point3> points, std::vector<OffsetTriangle>& out);
+
+  /// Limit points of one face, in mesh units, with the sum of their error bounds.
+  double evaluate(FaceId face, std::span<const TriangleParameter> at, std::span<Point3> out);
+
+ private:
+  [[nodiscard]] OffsetTriangle enclose(FaceId face);
+
+  std::shared_ptr<BoundLibrary> library_;
+  std::unique_ptr<Surface> surface_;
+  HullPoints scratch_;
+};
+
+/// Ids 0 to count - 1.
+[[nodiscard]] std::vector<FaceId> all_faces(std::size_t count);
+
+}  // namespace snug::bench
