@@ -55,8 +55,10 @@ int main(int argc, char** argv) {
   std::vector<OffsetTriangle> triangles;
   std::vector<Box3> boxes;
   Group group("new positions", "patch", options);
-  group.add("snug: offset triangles", count, [&] { return subject.refit(moved.points, triangles); });
-  group.add("snug: the same, surface kept", count, [&] { return subject.enclose_all(triangles); });
+  PatchBounds rows = subject.bounds(faces), by_tables = subject.bounds(faces, TableLayout::ngon);
+  group.add("snug: offset triangles", count, [&] { return update(rows, moved.points, triangles); });
+  group.add("snug: offset triangles from tables", count,
+            [&] { return update(by_tables, moved.points, triangles); });
   group.add("snug: boxes of the control points", count, [&] { return subject.box(faces, boxes); });
 #ifdef SNUG_BENCH_OPENSUBDIV
   std::vector<Table> all = tables(mesh);

@@ -21,7 +21,12 @@ void bench_faces(const std::string& title, Subject& subject, const std::vector<F
   std::vector<OffsetTriangle> triangles;
   Group group(title + ", " + std::to_string(faces.size()) + " patches", "patch", options);
   group.add("box of the control points", count, [&] { return subject.box(faces, boxes); });
-  group.add("offset triangle from hull rows", count, [&] { return subject.enclose(faces, triangles); });
+  const auto& points = subject.surface().mesh().points;
+  PatchBounds rows = subject.bounds(faces), tables = subject.bounds(faces, TableLayout::ngon);
+  group.add("offset triangle from hull rows, a patch at a time", count,
+            [&] { return subject.enclose(faces, triangles); });
+  group.add("offset triangle from hull rows", count, [&] { return update(rows, points, triangles); });
+  group.add("offset triangle from tables", count, [&] { return update(tables, points, triangles); });
   group.run();
 }
 

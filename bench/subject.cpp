@@ -10,28 +10,23 @@ Subject::Subject(ControlMesh mesh, std::shared_ptr<BoundLibrary> library)
     : library_(std::move(library)),
       surface_(std::make_unique<Surface>(std::move(mesh), SchemeOptions{}, library_, 1)) {}
 
-OffsetTriangle Subject::enclose(FaceId face) {
-  return make_piece(*library_, face, surface_->patch(face), scratch_).offset;
-}
-
 double Subject::enclose(std::span<const FaceId> faces, std::vector<OffsetTriangle>& out) {
   out.resize(faces.size());
   double sum = 0;
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    out[i] = enclose(faces[i]);
+    out[i] = make_piece(*library_, faces[i], surface_->patch(faces[i]), scratch_).offset;
     sum += out[i].radius;
   }
   return sum;
 }
 
+PatchBounds Subject::bounds(std::span<const FaceId> faces, std::optional<TableLayout> table) const {
+  return PatchBounds(*surface_, {faces.begin(), faces.end()}, table, 1);
+}
+
 double Subject::enclose_all(std::vector<OffsetTriangle>& out) {
-  out.resize(surface_->face_count());
-  double sum = 0;
-  for (std::size_t f = 0; f < out.size(); ++f) {
-    out[f] = enclose(FaceId(f));
-    sum += out[f].radius;
-  }
-  return sum;
+  PatchBounds bounds(*surface_, std::nullopt, 1);
+  return update(bounds, surface_->mesh().points, out);
 }
 
 double Subject::box(std::span<const FaceId> faces, std::vector<Box3>& out) {
@@ -45,13 +40,6 @@ double Subject::box(std::span<const FaceId> faces, std::vector<Box3>& out) {
   return sum;
 }
 
-double Subject::refit(std::span<const Point3> points, std::vector<OffsetTriangle>& out) {
-  ControlMesh mesh = surface_->mesh();
-  mesh.points.assign(points.begin(), points.end());
-  surface_ = std::make_unique<Surface>(std::move(mesh), SchemeOptions{}, library_, 1);
-  return enclose_all(out);
-}
-
 double Subject::evaluate(FaceId face, std::span<const TriangleParameter> at, std::span<Point3> out) {
   const Patch patch = surface_->patch(face);
   const PowerOfTwo back = surface_->scale().inverse();
@@ -62,6 +50,14 @@ double Subject::evaluate(FaceId face, std::span<const TriangleParameter> at, std
     errors += back.apply(point.error);
   }
   return errors;
+}
+
+double update(PatchBounds& bounds, std::span<const Point3> points, std::vector<OffsetTriangle>& out) {
+  out.resize(bounds.faces().size());
+  bounds.update(points, out, 1);
+  double sum = 0;
+  for (const OffsetTriangle& triangle : out) sum += triangle.radius;
+  return sum;
 }
 
 std::vector<FaceId> all_faces(std::size_t count) {

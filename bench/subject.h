@@ -1,12 +1,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include <snug/enclose/hull_points.h>
 #include <snug/enclose/offset_triangle.h>
 #include <snug/patch/evaluate.h>
+#include <snug/surface/patch_bounds.h>
 #include <snug/surface/surface.h>
 
 namespace snug::bench {
@@ -21,28 +23,30 @@ class Subject {
 
   [[nodiscard]] const Surface& surface() const { return *surface_; }
 
-  /// Offset triangles of some faces, in scaled units, written over `out` in the same order.
+  /// Offset triangles of some faces, in scaled units, a patch at a time as queries make them.
   /// Returns:   the sum of the radii.
   double enclose(std::span<const FaceId> faces, std::vector<OffsetTriangle>& out);
-  /// Of all faces, in their order.
+  /// Bounds of some faces at once, their kinds' rows or tables made.
+  [[nodiscard]] PatchBounds bounds(std::span<const FaceId> faces, std::optional<TableLayout> table = {}) const;
+  /// Offset triangles of all faces, with all that it takes to make them.
+  /// Returns:   the sum of the radii.
   double enclose_all(std::vector<OffsetTriangle>& out);
   /// The baseline: least boxes of the control points.
   /// Returns:   the sum of their longest sides.
   double box(std::span<const FaceId> faces, std::vector<Box3>& out);
 
-  /// The same mesh with other positions, and the kinds it has already; then offset triangles of all faces.
-  double refit(std::span<const Point3> points, std::vector<OffsetTriangle>& out);
-
   /// Limit points of one face, in mesh units, with the sum of their error bounds.
   double evaluate(FaceId face, std::span<const TriangleParameter> at, std::span<Point3> out);
 
  private:
-  [[nodiscard]] OffsetTriangle enclose(FaceId face);
-
   std::shared_ptr<BoundLibrary> library_;
   std::unique_ptr<Surface> surface_;
   HullPoints scratch_;
 };
+
+/// Offset triangles for these control points, in mesh units, on one thread.
+/// Returns:   the sum of the radii.
+double update(PatchBounds& bounds, std::span<const Point3> points, std::vector<OffsetTriangle>& out);
 
 /// Ids 0 to count - 1.
 [[nodiscard]] std::vector<FaceId> all_faces(std::size_t count);

@@ -15,8 +15,11 @@ namespace snug {
 class PowerOfTwo {
  public:
   PowerOfTwo() = default;
-  explicit PowerOfTwo(int exponent)
-      : exponent_(exponent), factor_(std::abs(exponent) <= 1000 ? std::ldexp(1.0, exponent) : 0) {}
+  explicit PowerOfTwo(int exponent) : exponent_(exponent) {
+    const bool plain = std::abs(exponent) <= 1000;
+    factor_ = plain ? std::ldexp(1.0, exponent) : 0;
+    inverse_factor_ = plain ? std::ldexp(1.0, -exponent) : 0;
+  }
   /// The power that brings `largest` (> 0, finite) into [1, 2); 1 for zero.
   [[nodiscard]] static PowerOfTwo normalising(double largest);
 
@@ -29,11 +32,15 @@ class PowerOfTwo {
   [[nodiscard]] Point3 apply(Point3 p) const { return {apply(p.x), apply(p.y), apply(p.z)}; }
   [[nodiscard]] Vector3 apply(Vector3 v) const { return {apply(v.x), apply(v.y), apply(v.z)}; }
   /// Does x survive the way there and back?
-  [[nodiscard]] bool exact(double x) const { return inverse().apply(apply(x)) == x; }
+  [[nodiscard]] bool exact(double x) const {
+    return factor_ > 0 ? (x * factor_) * inverse_factor_ == x
+                       : std::ldexp(std::ldexp(x, exponent_), -exponent_) == x;
+  }
 
  private:
   int exponent_ = 0;
   double factor_ = 1;  // 2^exponent, or 0 where that is near the ends of the range
+  double inverse_factor_ = 1;
 };
 
 /// Throws InputError (refused) if x is not finite: a result that no longer fits a double is not handed out.

@@ -436,7 +436,7 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
   }
 }
 
-void FitRegular(std::span<const Point3> points, std::span<const std::uint32_t> control,
+void FitRegular(std::span<const Point3> points, std::span<const VertexId> control,
                 std::span<BatchFit> out) {
   const hn::ScalableTag<double> d;
   const std::size_t lanes = hn::Lanes(d);
@@ -446,9 +446,9 @@ void FitRegular(std::span<const Point3> points, std::span<const std::uint32_t> c
     // The last group is filled up with copies of its last patch.
     const std::size_t here = std::min(lanes, out.size() - begin);
     for (std::size_t l = 0; l < lanes; ++l) {
-      const std::uint32_t* const index = control.data() + controls * (begin + std::min(l, here - 1));
+      const VertexId* const index = control.data() + controls * (begin + std::min(l, here - 1));
       for (std::size_t k = 0; k < controls; ++k) {
-        const Point3& p = points[index[k]];
+        const Point3& p = points[index[k].index()];
         gathered[k * lanes + l] = p.x;
         gathered[(controls + k) * lanes + l] = p.y;
         gathered[(2 * controls + k) * lanes + l] = p.z;
@@ -491,7 +491,7 @@ std::optional<Reach> farthest(const Coordinates& points, const Vector3& a, const
   return reach;
 }
 
-void fit_regular(std::span<const Point3> points, std::span<const std::uint32_t> control,
+void fit_regular(std::span<const Point3> points, std::span<const VertexId> control,
                  std::span<BatchFit> out) {
   HWY_DYNAMIC_DISPATCH(FitRegular)(points, control, out);
 }

@@ -186,6 +186,13 @@ LimitPoint corner_point(const Patch& patch, std::size_t corner) {
           limits.result_error(patch.largest, patch.error)};
 }
 
+std::array<Vector3, 3> limit_corners(const Patch& patch) {
+  const Stencils& limits = patch.kind->corner_limits();
+  std::array<Vector3, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k) corners[k] = limits.apply<Vector3>(patch.to_kind(k), patch.points);
+  return corners;
+}
+
 LimitPoint limit_point(const Patch& patch, TriangleParameter parameter) {
   const TriangleParameter at = checked(parameter);
   if (const std::size_t corner = corner_at(at); corner < 3) return corner_point(patch, corner);

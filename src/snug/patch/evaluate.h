@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include <snug/patch/patch.h>
@@ -37,5 +38,7 @@ struct LimitFrame {
 /// Limit position of corner 0, 1 or 2 of the patch.
 /// Cost:      one row.
 [[nodiscard]] LimitPoint corner_point(const Patch& patch, std::size_t corner);
+/// Limit positions of all three.
+[[nodiscard]] std::array<Vector3, 3> limit_corners(const Patch& patch);
 
 }  // namespace snug

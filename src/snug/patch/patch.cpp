@@ -12,29 +12,39 @@ void measure(Patch& patch) {
 }
 
 template <class PointAt>
-Patch gather(const Kind& kind, std::uint8_t first, PointAt&& at) {
-  Patch patch;
-  patch.kind = &kind;
-  patch.first = first;
-  patch.origin = at(0);
-  patch.points.reserve(kind.control_count());
-  for (std::size_t i = 0; i < kind.control_count(); ++i) patch.points.push_back(at(i) - patch.origin);
-  measure(patch);
-  patch.error = enlarged(unit_roundoff * patch.largest + 4 * underflow_error);
-  return patch;
+void gather(const Kind& kind, std::uint8_t first, const PointAt& at, Patch& out) {
+  out.kind = &kind;
+  out.first = first;
+  out.path = {};
+  out.origin = at(0);
+  out.points.clear();
+  for (std::size_t i = 0; i < kind.control_count(); ++i) out.points.push_back(at(i) - out.origin);
+  measure(out);
+  out.error = enlarged(unit_roundoff * out.largest + 4 * underflow_error);
 }
 
 }  // namespace
 
 Patch make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> points) {
   SNUG_EXPECT(points.size() == kind.control_count() && first < 3);
-  return gather(kind, first, [&](std::size_t i) { return points[i]; });
+  Patch patch;
+  patch.points.reserve(points.size());
+  gather(kind, first, [&](std::size_t i) { return points[i]; }, patch);
+  return patch;
 }
 
 Patch make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> all,
                  std::span<const VertexId> which) {
+  Patch patch;
+  patch.points.reserve(which.size());
+  make_patch(kind, first, all, which, patch);
+  return patch;
+}
+
+void make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> all,
+                std::span<const VertexId> which, Patch& out) {
   SNUG_EXPECT(which.size() == kind.control_count() && first < 3);
-  return gather(kind, first, [&](std::size_t i) { return all[which[i].index()]; });
+  gather(kind, first, [&](std::size_t i) { return all[which[i].index()]; }, out);
 }
 
 Patch split(const Patch& patch, unsigned child) {

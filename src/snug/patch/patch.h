@@ -34,6 +34,9 @@ struct Patch {
 /// The same, gathered from the points of a whole mesh.
 [[nodiscard]] Patch make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> all,
                                std::span<const VertexId> which);
+/// The same, written over `out`, which keeps its memory.
+void make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> all,
+                std::span<const VertexId> which, Patch& out);
 
 /// Piece `child` (0 to 3) of a patch after one step of subdivision.
 ///

@@ -12,7 +12,7 @@ Piece make_piece(BoundLibrary& library, FaceId face, Patch patch, HullPoints& sc
                  std::optional<TableLayout> table) {
   Piece piece;
   piece.face = face;
-  for (std::size_t k = 0; k < 3; ++k) piece.corners[k] = corner_point(patch, k).relative;
+  piece.corners = limit_corners(patch);
   if (table) {
     piece.offset = offset_triangle(table_triangle(library.table(*patch.kind, *table), patch));
   } else {

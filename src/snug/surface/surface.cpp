@@ -43,10 +43,14 @@ Surface::Surface(ControlMesh mesh, const SchemeOptions& options, std::shared_ptr
   });
 }
 
-Patch Surface::patch(FaceId f) const {
+void Surface::control_vertices(FaceId f, std::vector<VertexId>& out) const {
   SNUG_EXPECT(has_patch(f));
+  snug::control_vertices(topology_, f, firsts_[f.index()], out);
+}
+
+Patch Surface::patch(FaceId f) const {
   thread_local std::vector<VertexId> control;
-  control_vertices(topology_, f, firsts_[f.index()], control);
+  control_vertices(f, control);
   return make_patch(*kinds_[f.index()], firsts_[f.index()], scaled_, control);
 }
 

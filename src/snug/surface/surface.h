@@ -41,6 +41,12 @@ class Surface {
   [[nodiscard]] bool has_patch(FaceId f) const { return kinds_[f.index()] != nullptr; }
   /// Requires:  has_patch(f).
   [[nodiscard]] const Kind& kind(FaceId f) const { return *kinds_[f.index()]; }
+  /// Which corner of the face its kind calls corner 0.
+  /// Requires:  has_patch(f).
+  [[nodiscard]] std::uint8_t first(FaceId f) const { return firsts_[f.index()]; }
+  /// The control vertices of a face's patch, in the order of its kind.
+  /// Requires:  has_patch(f).
+  void control_vertices(FaceId f, std::vector<VertexId>& out) const;
   /// The whole patch of a face, in scaled units.
   /// Requires:  has_patch(f).
   /// Cost:      a walk around its corners.

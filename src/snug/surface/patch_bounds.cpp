@@ -1,0 +1,174 @@
+#include <snug/surface/patch_bounds.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <snug/base/contract.h>
+#include <snug/base/error.h>
+#include <snug/base/parallel.h>
+#include <snug/enclose/fit_kernels.h>
+#include <snug/enclose/table_kernel.h>
+#include <snug/patch/evaluate.h>
+#include <snug/surface/unscale.h>
+
+namespace snug {
+namespace {
+
+constexpr std::size_t chunk_size = 256;
+
+// One a thread; keeps its memory from call to call.
+struct Scratch {
+  Patch patch;
+  HullPoints hull;
+  std::array<kernels::BatchFit, chunk_size> answers;
+};
+
+bool regular_inside(const Kind& kind) {
+  const auto& corners = kind.key().corners;
+  return kind.polynomial() && std::all_of(corners.begin(), corners.end(), [](const CornerFan& fan) {
+           return fan.closed && fan.regular();
+         });
+}
+
+OffsetTriangle turned(const kernels::BatchFit& fit, std::uint8_t first) {
+  OffsetTriangle result;
+  for (std::size_t k = 0; k < 3; ++k) result.base[k] = fit.base[(k + 3 - first) % 3];
+  result.radius = fit.radius;
+  result.rounding = fit.rounding;
+  return result;
+}
+
+std::vector<FaceId> faces_with_patch(const Surface& surface) {
+  std::vector<FaceId> faces;
+  for (std::size_t f = 0; f < surface.face_count(); ++f) {
+    if (surface.has_patch(FaceId(f))) faces.push_back(FaceId(f));
+  }
+  return faces;
+}
+
+PowerOfTwo normalising(std::span<const Point3> points, const std::vector<bool>& used) {
+  double largest = 0, probe = 0;
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    if (!used[v]) continue;
+    const Vector3 p = points[v] - Point3{};
+    largest = std::max(largest, max_abs(p));
+    probe += (p.x - p.x) + (p.y - p.y) + (p.z - p.z);  // stays 0 unless one is not finite
+  }
+  if (probe != 0) {
+    throw InputError(InputProblem::refused, "a control point is not finite");
+  }
+  return PowerOfTwo::normalising(largest);
+}
+
+}  // namespace
+
+PatchBounds::PatchBounds(const Surface& surface, std::optional<TableLayout> table, int threads)
+    : PatchBounds(surface, faces_with_patch(surface), table, threads) {}
+
+PatchBounds::PatchBounds(const Surface& surface, std::vector<FaceId> faces, std::optional<TableLayout> table,
+                         int threads)
+    : faces_(std::move(faces)) {
+  BoundLibrary& library = surface.library();
+  // Counting sort of the faces by kind.
+  std::vector<std::uint32_t> group_of(library.kinds().size(), UINT32_MAX), sizes;
+  for (const FaceId f : faces_) {
+    std::uint32_t& group = group_of[surface.kind(f).id().index()];
+    if (group == UINT32_MAX) {
+      group = static_cast<std::uint32_t>(groups_.size());
+      groups_.push_back({&surface.kind(f), nullptr, nullptr, 0, 0});
+      sizes.push_back(0);
+    }
+    ++sizes[group];
+  }
+  std::size_t place = 0, control = 0;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    groups_[g].first_place = place;
+    groups_[g].first_control = control;
+    place += sizes[g];
+    control += sizes[g] * groups_[g].kind->control_count();
+    for (std::size_t begin = groups_[g].first_place; begin < place; begin += chunk_size) {
+      chunks_.push_back({static_cast<std::uint32_t>(g), static_cast<std::uint32_t>(begin),
+                         static_cast<std::uint32_t>(std::min(place, begin + chunk_size))});
+    }
+  }
+  places_.resize(place);
+  control_.resize(control);
+  used_.resize(surface.mesh().vertex_count());
+  scaled_.resize(surface.mesh().vertex_count());
+  std::vector<std::size_t> next(groups_.size());
+  for (std::size_t g = 0; g < groups_.size(); ++g) next[g] = groups_[g].first_place;
+  std::vector<VertexId> vertices;
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    const FaceId f = faces_[i];
+    const std::uint32_t g = group_of[surface.kind(f).id().index()];
+    const std::size_t at = next[g]++;
+    surface.control_vertices(f, vertices);
+    places_[at] = {static_cast<std::uint32_t>(i), surface.first(f)};
+    std::copy(vertices.begin(), vertices.end(),
+              control_.begin() + static_cast<std::ptrdiff_t>(groups_[g].first_control +
+                                                             (at - groups_[g].first_place) * vertices.size()));
+    for (const VertexId v : vertices) used_[v.index()] = true;
+  }
+
+  parallel_for(groups_.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t g = begin; g < end; ++g) {
+      Group& group = groups_[g];
+      if (table) {
+        group.table = &library.table(*group.kind, *table);
+      } else {
+        group.rows = &library.rows(*group.kind);
+      }
+    }
+  });
+}
+
+void PatchBounds::update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads) {
+  SNUG_EXPECT(points.size() == scaled_.size() && out.size() == faces_.size());
+  const PowerOfTwo scale = normalising(points, used_), back = scale.inverse();
+  for (std::size_t v = 0; v < points.size(); ++v) scaled_[v] = scale.apply(points[v]);
+  const auto work = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) fit(chunks_[c], back, out);
+  };
+  if (threads == 1) {
+    work(0, chunks_.size());
+  } else {
+    parallel_for(chunks_.size(), threads, work);
+  }
+}
+
+void PatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTriangle> out) const {
+  thread_local Scratch scratch;
+  const Group& group = groups_[chunk.group];
+  const Kind& kind = *group.kind;
+  const std::size_t count = chunk.end - chunk.begin, controls = kind.control_count();
+  const std::span<const VertexId> control(
+      control_.data() + group.first_control + (chunk.begin - group.first_place) * controls, count * controls);
+  const std::span<kernels::BatchFit> answers(scratch.answers.data(), count);
+  if (group.table) {
+    kernels::fit_table(*group.table, scaled_, control, answers);
+  } else if (regular_inside(kind)) {
+    kernels::fit_regular(scaled_, control, answers);
+  } else {
+    for (kernels::BatchFit& answer : answers) answer.radius = -1;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const Place& place = places_[chunk.begin + i];
+    if (answers[i].radius >= 0) {
+      out[place.position] = unscaled(turned(answers[i], place.first), back);
+      continue;
+    }
+    Patch& patch = scratch.patch;
+    make_patch(kind, place.first, scaled_, control.subspan(i * controls, controls), patch);
+    hull_points(*group.rows, patch, scratch.hull);
+    out[place.position] = unscaled(offset_triangle(scratch.hull, limit_corners(patch)), back);
+  }
+}
+
+std::size_t PatchBounds::bytes() const {
+  return sizeof(*this) + faces_.size() * sizeof(FaceId) + used_.size() / 8 + groups_.size() * sizeof(Group) +
+         chunks_.size() * sizeof(Chunk) + places_.size() * sizeof(Place) + control_.size() * sizeof(VertexId) +
+         scaled_.size() * sizeof(Point3);
+}
+
+}  // namespace snug

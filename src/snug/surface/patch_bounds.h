@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <snug/enclose/offset_triangle.h>
+#include <snug/surface/surface.h>
+
+namespace snug {
+
+/// Offset triangles of the whole patches of a surface, again and again while its control points move and its
+/// connectivity stays: for animation, and the fastest way to bound a large mesh once.
+///
+/// Cost:      see bench/results/rows.txt. Memory: 4 bytes a control point and patch, 24 a vertex.
+class PatchBounds {
+ public:
+  /// Makes what the kinds of the surface need: their rows, or their tables in a layout.
+  /// Requires:  the surface outlives the bounds.
+  explicit PatchBounds(const Surface& surface, std::optional<TableLayout> table = {}, int threads = 0);
+  /// The same for some of the faces, in any order.
+  /// Requires:  each has a patch.
+  PatchBounds(const Surface& surface, std::vector<FaceId> faces, std::optional<TableLayout> table = {},
+              int threads = 0);
+
+  /// The faces that update() answers for, in this order; all with a patch unless chosen.
+  [[nodiscard]] std::span<const FaceId> faces() const { return faces_; }
+
+  /// Bounds of all patches for these control points, in mesh units.
+  ///
+  /// Guarantee: every limit point of a patch is within its radius of its base, rounding included; results do
+  ///            not depend on threads. One thread allocates nothing after its first call.
+  /// Requires:  points: one for each vertex of the mesh; out.size() == faces().size().
+  /// Errors:    InputError (refused) if a point that a face uses is not finite, or a result no double. Then
+  ///            `out` is in no particular state.
+  void update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads = 1);
+
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  // Patches of one kind, in the order of faces.
+  struct Group {
+    const Kind* kind;
+    const BoundRows* rows;
+    const BoundTable* table;                 // none: from rows
+    std::size_t first_place, first_control;  // in places_ and control_
+  };
+  // Patches [begin, end) of places_, all of one group: what one thread does at once.
+  struct Chunk {
+    std::uint32_t group, begin, end;
+  };
+  // Where in faces_ and in the answer, and the corner that the kind calls 0.
+  struct Place {
+    std::uint32_t position;
+    std::uint8_t first;
+  };
+  void fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTriangle> out) const;
+
+  std::vector<FaceId> faces_;
+  std::vector<bool> used_;  // vertices of control_
+  std::vector<Group> groups_;
+  std::vector<Chunk> chunks_;
+  std::vector<Place> places_;
+  std::vector<VertexId> control_;
+  std::vector<Point3> scaled_;
+};
+
+}  // namespace snug
