@@ -31,6 +31,12 @@ class PowerOfTwo {
   [[nodiscard]] double apply(double x) const { return factor_ > 0 ? x * factor_ : std::ldexp(x, exponent_); }
   [[nodiscard]] Point3 apply(Point3 p) const { return {apply(p.x), apply(p.y), apply(p.z)}; }
   [[nodiscard]] Vector3 apply(Vector3 v) const { return {apply(v.x), apply(v.y), apply(v.z)}; }
+  /// Far from both ends of the range: apply(x) cannot overflow for |x| <= 2^60, and what it loses to underflow
+  /// is below underflow_error.
+  [[nodiscard]] bool moderate() const { return std::abs(exponent_) <= 900; }
+  /// 2^exponent().
+  /// Requires:  moderate().
+  [[nodiscard]] double factor() const { return factor_; }
   /// Does x survive the way there and back?
   [[nodiscard]] bool exact(double x) const {
     return factor_ > 0 ? (x * factor_) * inverse_factor_ == x

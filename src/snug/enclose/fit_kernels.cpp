@@ -9,9 +9,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 #include <snug/base/rounding.h>
 #include <snug/enclose/fit_kernels.h>
+#include <snug/enclose/lanes.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {
@@ -109,27 +111,54 @@ HWY_INLINE hn::Mask<D> well_shaped(D d, const PlanarTriangle<V>& t) {
   return hn::And(round, hn::Le(t.stretch, hn::Set(d, 0x1p-40)));
 }
 
+// A point in the triangle's frame, and the signed distances of its foot from the edges' lines, positive outside.
+template <class V>
+struct Foot {
+  V x, y, height_sq;
+  V s0, s1, s2;
+};
+
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V distance_sq(D d, const PlanarTriangle<V>& t, const Vec3<V>& p) {
+HWY_INLINE Foot<V> foot(D d, const PlanarTriangle<V>& t, const Vec3<V>& p) {
   const Vec3<V> r = sub(p, t.a);
   const V x = dot(t.t1, r), y = dot(t.t2, r), h = dot(t.n, r);
-  const V zero = hn::Zero(d);
-  const V xb = hn::Sub(x, t.l0);
-  // Signed distances of the point's foot from the edges' lines, positive outside.
-  const V s0 = hn::Sub(zero, y);
-  const V s1 = hn::Sub(hn::Mul(xb, t.d1y), hn::Mul(y, t.d1x));
-  const V s2 = hn::Sub(hn::Mul(y, t.d2x), hn::Mul(x, t.d2y));
-  const auto outside = hn::Gt(max3(s0, s1, s2), zero);
-  const V height_sq = hn::Mul(h, h);
-  if (hn::AllFalse(d, outside)) return height_sq;
-  // How far it lies beyond either end of each edge.
-  const V along1 = hn::Add(hn::Mul(xb, t.d1x), hn::Mul(y, t.d1y));
-  const V along2 = hn::Add(hn::Mul(x, t.d2x), hn::Mul(y, t.d2y));
-  const V o0 = max3(zero, xb, hn::Sub(zero, x));
-  const V o1 = max3(zero, hn::Sub(along1, t.l1), hn::Sub(zero, along1));
-  const V o2 = max3(zero, hn::Sub(along2, t.l2), hn::Sub(zero, along2));
-  const V aside_sq = hn::Min(hypotenuse_sq(s0, o0), hn::Min(hypotenuse_sq(s1, o1), hypotenuse_sq(s2, o2)));
-  return hn::Add(height_sq, hn::IfThenElseZero(outside, aside_sq));
+  return {x,
+          y,
+          hn::Mul(h, h),
+          hn::Sub(hn::Zero(d), y),
+          hn::Sub(hn::Mul(hn::Sub(x, t.l0), t.d1y), hn::Mul(y, t.d1x)),
+          hn::Sub(hn::Mul(y, t.d2x), hn::Mul(x, t.d2y))};
+}
+
+// Squared distance in the plane from edge 0, 1 or 2.
+template <std::size_t edge, class D, class V = hn::Vec<D>>
+HWY_INLINE V aside_sq(D d, const PlanarTriangle<V>& t, const Foot<V>& f) {
+  // How far the foot lies beyond either end of the edge.
+  const V zero = hn::Zero(d), xb = hn::Sub(f.x, t.l0);
+  if constexpr (edge == 0) return hypotenuse_sq(f.s0, max3(zero, xb, hn::Sub(zero, f.x)));
+  if constexpr (edge == 1) {
+    const V along = hn::Add(hn::Mul(xb, t.d1x), hn::Mul(f.y, t.d1y));
+    return hypotenuse_sq(f.s1, max3(zero, hn::Sub(along, t.l1), hn::Sub(zero, along)));
+  }
+  const V along = hn::Add(hn::Mul(f.x, t.d2x), hn::Mul(f.y, t.d2y));
+  return hypotenuse_sq(f.s2, max3(zero, hn::Sub(along, t.l2), hn::Sub(zero, along)));
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V distance_sq(D d, const PlanarTriangle<V>& t, const Vec3<V>& p) {
+  const Foot<V> f = foot(d, t, p);
+  const auto outside = hn::Gt(max3(f.s0, f.s1, f.s2), hn::Zero(d));
+  if (hn::AllFalse(d, outside)) return f.height_sq;
+  const V nearest = hn::Min(aside_sq<0>(d, t, f), hn::Min(aside_sq<1>(d, t, f), aside_sq<2>(d, t, f)));
+  return hn::Add(f.height_sq, hn::IfThenElseZero(outside, nearest));
+}
+
+// The same, but outside only from one edge: for points that lie near it.
+template <std::size_t edge, class D, class V = hn::Vec<D>>
+HWY_INLINE V distance_sq_by_edge(D d, const PlanarTriangle<V>& t, const Vec3<V>& p) {
+  const Foot<V> f = foot(d, t, p);
+  const auto outside = hn::Gt(max3(f.s0, f.s1, f.s2), hn::Zero(d));
+  return hn::Add(f.height_sq, hn::IfThenElseZero(outside, aside_sq<edge>(d, t, f)));
 }
 
 template <class V>
@@ -245,7 +274,7 @@ bool Farthest(const Coordinates& points, const Vector3& a, const Vector3& b, con
 
 // ---- regular patches, one a lane ----
 
-constexpr std::size_t controls = 12, bezier_count = 15, split_count = 45;
+constexpr std::size_t controls = 12, bezier_count = 15, split_count = 45, of_edge = 8;
 
 template <class V>
 HWY_INLINE V mean(V half, V a, V b) {
@@ -291,71 +320,88 @@ HWY_INLINE void bezier(D d, const V* c, V* b) {
   b[10] = inner(2, s01, hn::Add(c[4], c[5]));
 }
 
-// De Casteljau's scheme at 1/2 on `count` points in place; after step k, first[k] and last[k] are its ends.
-template <class V>
-HWY_INLINE void halve(V half, V* q, std::size_t count, V* first, V* last) {
-  for (std::size_t k = 0;; ++k) {
-    first[k] = q[0];
-    last[k] = q[count - 1 - k];
-    if (k + 1 == count) return;
-    for (std::size_t i = 0; i + 1 + k < count; ++i) q[i] = mean(half, q[i], q[i + 1]);
+// Calls work(0), ..., work(count - 1) with constants: loops over arrays of vectors stay in registers only so.
+template <std::size_t count, std::size_t i = 0, class Work>
+HWY_INLINE void unrolled(const Work& work) {
+  if constexpr (i < count) {
+    work(std::integral_constant<std::size_t, i>());
+    unrolled<count, i + 1>(work);
   }
 }
 
+// De Casteljau's scheme at 1/2: step i has the points at[i][0], ..., at[i][n - 1 - i].
+template <class V, std::size_t n>
+struct Pyramid {
+  V at[n][n];
+  HWY_INLINE Pyramid(V half, const V* q, std::size_t stride) {
+    unrolled<n>([&](auto k) HWY_ATTR { at[0][k] = q[k * stride]; });
+    rise(half);
+  }
+  // The points take(0), take(1), ...
+  template <class Take>
+  HWY_INLINE Pyramid(V half, const Take& take) {
+    unrolled<n>([&](auto k) HWY_ATTR { at[0][k] = take(k); });
+    rise(half);
+  }
+  HWY_INLINE void rise(V half) {
+    unrolled<n - 1>([&](auto i) HWY_ATTR {
+      unrolled<n - 1 - i>([&](auto k) HWY_ATTR { at[i + 1][k] = mean(half, at[i][k], at[i][k + 1]); });
+    });
+  }
+};
+
 // The 45 different Bezier points of the four quarters, as blossoms f(...) of the edges' midpoints and the corners:
-// corner children f(mid^i, other mid^j, corner^(4-i-j)), then three inner ones of the middle child. The corners of the
-// patch come first.
+// corner children f(mid^i, other mid^j, corner^(4-i-j)), then three inner ones of the middle child. First come, for
+// edges 01, 12, 20 in turn, its first corner and the points inside it.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void split_once(D d, const V* b, V* out) {
   const V half = hn::Set(d, 0.5);
   V left[5][5], right[5][5];  // f(m01^i, v0 or v1^(4-i-j), v2^j) at [i][j]
   V once[4][4], twice[3][3];  // f(m01, ...) and f(m01, m01, ...) in full, at [j][k]: k of v1, j of v2
   V upper[5][5];              // f(m20^i, v1^j, v2^(4-i-j)) at [i][j]
-  constexpr std::size_t row_start[5] = {0, 5, 9, 12, 14};
-  for (std::size_t j = 0; j < 5; ++j) {
-    V q[5];
-    for (std::size_t k = 0; k + j < 5; ++k) q[k] = b[row_start[j] + k];
-    for (std::size_t i = 0;; ++i) {
-      left[i][j] = q[0];
-      right[i][j] = q[4 - j - i];
-      if (i + j == 4) break;
-      for (std::size_t k = 0; k + i + j < 4; ++k) q[k] = mean(half, q[k], q[k + 1]);
-      if (i == 0) {
-        for (std::size_t k = 0; k + j < 4; ++k) once[j][k] = q[k];
-      }
-      if (i == 1) {
-        for (std::size_t k = 0; k + j < 3; ++k) twice[j][k] = q[k];
-      }
-    }
-  }
-  for (std::size_t k = 0; k < 5; ++k) {
-    V q[5], first[5], last[5];
-    for (std::size_t j = 0; j + k < 5; ++j) q[j] = b[row_start[j] + k];
-    halve(half, q, 5 - k, first, last);
-    for (std::size_t i = 0; i + k < 5; ++i) upper[i][k] = last[i];
-  }
-  V* next = out + 3;
-  for (std::size_t child = 0; child < 3; ++child) {
+  constexpr std::array<std::size_t, 5> row_start{0, 5, 9, 12, 14};
+  unrolled<5>([&](auto j) HWY_ATTR {
+    const Pyramid<V, 5 - j> p(half, b + row_start[j], 1);
+    unrolled<5 - j>([&](auto i) HWY_ATTR {
+      left[i][j] = p.at[i][0];
+      right[i][j] = p.at[i][4 - j - i];
+    });
+    if constexpr (j < 4) unrolled<4 - j>([&](auto k) HWY_ATTR { once[j][k] = p.at[1][k]; });
+    if constexpr (j < 3) unrolled<3 - j>([&](auto k) HWY_ATTR { twice[j][k] = p.at[2][k]; });
+  });
+  unrolled<5>([&](auto k) HWY_ATTR {
+    const Pyramid<V, 5 - k> p(half, [&](auto j) HWY_ATTR { return b[row_start[j] + k]; });
+    unrolled<5 - k>([&](auto i) HWY_ATTR { upper[i][k] = p.at[i][4 - k - i]; });
+  });
+  std::array<V*, 3> next{out + 1, out + of_edge + 1, out + 2 * of_edge + 1};
+  V* inner = out + 3 * of_edge;
+  unrolled<3>([&](auto child) HWY_ATTR {
     const auto& along = child == 0 ? left : child == 1 ? right : upper;
-    for (std::size_t i = 0; i < 5; ++i) {
-      V q[5], first[5], last[5];
-      for (std::size_t j = 0; i + j < 5; ++j) q[j] = along[i][j];
-      halve(half, q, 5 - i, first, last);
-      for (std::size_t j = 0; i + j < 5; ++j) {
-        if (i == 0 && j == 0) {
-          out[child] = first[0];
-        } else if ((child == 1 ? i : j) < 4) {  // the midpoint of each edge once
-          *next++ = first[j];
+    // Edges of the patch that i alone and j alone walk along.
+    constexpr std::size_t edge_i = child == 2 ? 2 : 0, edge_j = child == 0 ? 2 : 1;
+    unrolled<5>([&](auto i) HWY_ATTR {
+      const Pyramid<V, 5 - i> p(half, along[i], 1);
+      unrolled<5 - i>([&](auto j) HWY_ATTR {
+        if constexpr (i == 0 && j == 0) {
+          out[child * of_edge] = p.at[0][0];
+        } else if constexpr ((child == 1 ? i : j) == 4) {
+          // The midpoint of this edge is another child's.
+        } else if constexpr (j == 0) {
+          *next[edge_i]++ = p.at[j][0];
+        } else if constexpr (i == 0) {
+          *next[edge_j]++ = p.at[j][0];
+        } else {
+          *inner++ = p.at[j][0];
         }
-      }
-    }
-  }
+      });
+    });
+  });
   const auto blossom2 = [&](V aa, V ab, V bb)
                             HWY_ATTR { return mean(half, mean(half, aa, ab), mean(half, ab, bb)); };
-  *next++ = mean(half, mean(half, twice[0][1], twice[1][0]), mean(half, twice[1][1], twice[2][0]));
-  *next++ =
+  *inner++ = mean(half, mean(half, twice[0][1], twice[1][0]), mean(half, twice[1][1], twice[2][0]));
+  *inner++ =
       mean(half, blossom2(once[0][2], once[1][1], once[2][0]), blossom2(once[1][2], once[2][1], once[3][0]));
-  *next++ =
+  *inner++ =
       mean(half, blossom2(once[0][1], once[1][1], once[2][1]), blossom2(once[1][0], once[2][0], once[3][0]));
 }
 
@@ -368,11 +414,11 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
   V largest = hn::Zero(d);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     V c[controls], b[bezier_count];
-    const double* from = gathered + axis * controls * lanes;
+    const double* from = gathered + axis * lanes;
     const V o = hn::Load(d, from);
     *origins[axis] = o;
     for (std::size_t k = 0; k < controls; ++k) {
-      c[k] = hn::Sub(hn::Load(d, from + k * lanes), o);
+      c[k] = hn::Sub(hn::Load(d, from + 3 * k * lanes), o);
       largest = hn::Max(largest, hn::Abs(c[k]));
     }
     bezier(d, c, b);
@@ -381,12 +427,12 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
   const auto at = [&](std::size_t i) HWY_ATTR { return Vec3<V>{hull[0][i], hull[1][i], hull[2][i]}; };
 
   // The corners are points of the hull, at height 0.
-  Vec3<V> corner[3] = {at(0), at(1), at(2)};
+  Vec3<V> corner[3] = {at(0), at(of_edge), at(2 * of_edge)};
   const Vec3<V> normal = cross(sub(corner[1], corner[0]), sub(corner[2], corner[0]));
   const Vec3<V> n = scaled(hn::Div(hn::Set(d, 1.0), hn::Sqrt(dot(normal, normal))), normal);
   V lower = hn::Zero(d), upper = lower;
   const V from = dot(n, corner[0]);
-  for (std::size_t i = 3; i < split_count; ++i) {
+  for (std::size_t i = 1; i < split_count; ++i) {
     const V height = hn::Sub(dot(n, at(i)), from);
     lower = hn::Min(lower, height);
     upper = hn::Max(upper, height);
@@ -397,11 +443,14 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
   const PlanarTriangle<V> t = planar_triangle(d, corner[0], corner[1], corner[2]);
   V farthest = hn::Zero(d);
   auto good = well_shaped(d, t);
-  for (std::size_t i = 0; i < split_count; ++i) {
-    const V dist_sq = distance_sq(d, t, at(i));
+  const auto meet = [&](V dist_sq) HWY_ATTR {
     good = hn::And(good, hn::Lt(dist_sq, hn::Set(d, INFINITY)));
     farthest = hn::Max(farthest, dist_sq);
-  }
+  };
+  for (std::size_t i = 0; i < of_edge; ++i) meet(distance_sq_by_edge<0>(d, t, at(i)));
+  for (std::size_t i = of_edge; i < 2 * of_edge; ++i) meet(distance_sq_by_edge<1>(d, t, at(i)));
+  for (std::size_t i = 2 * of_edge; i < 3 * of_edge; ++i) meet(distance_sq_by_edge<2>(d, t, at(i)));
+  for (std::size_t i = 3 * of_edge; i < split_count; ++i) meet(distance_sq(d, t, at(i)));
   const ReachV<V> reach = reach_of(d, t, farthest);
 
   // What control points, hull points and the placed base are off by, a coordinate.
@@ -445,15 +494,7 @@ void FitRegular(std::span<const Point3> points, std::span<const VertexId> contro
   for (std::size_t begin = 0; begin < out.size(); begin += lanes) {
     // The last group is filled up with copies of its last patch.
     const std::size_t here = std::min(lanes, out.size() - begin);
-    for (std::size_t l = 0; l < lanes; ++l) {
-      const VertexId* const index = control.data() + controls * (begin + std::min(l, here - 1));
-      for (std::size_t k = 0; k < controls; ++k) {
-        const Point3& p = points[index[k].index()];
-        gathered[k * lanes + l] = p.x;
-        gathered[(controls + k) * lanes + l] = p.y;
-        gathered[(2 * controls + k) * lanes + l] = p.z;
-      }
-    }
+    gather_lanes(points, control.data() + controls * begin, controls, 0, controls, here, lanes, gathered);
     if (here == lanes) {
       fit_group(d, gathered, out.data() + begin);
     } else {

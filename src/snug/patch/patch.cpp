@@ -17,8 +17,8 @@ void gather(const Kind& kind, std::uint8_t first, const PointAt& at, Patch& out)
   out.first = first;
   out.path = {};
   out.origin = at(0);
-  out.points.clear();
-  for (std::size_t i = 0; i < kind.control_count(); ++i) out.points.push_back(at(i) - out.origin);
+  out.points.resize(kind.control_count());
+  for (std::size_t i = 0; i < kind.control_count(); ++i) out.points[i] = at(i) - out.origin;
   measure(out);
   out.error = enlarged(unit_roundoff * out.largest + 4 * underflow_error);
 }
@@ -28,7 +28,6 @@ void gather(const Kind& kind, std::uint8_t first, const PointAt& at, Patch& out)
 Patch make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> points) {
   SNUG_EXPECT(points.size() == kind.control_count() && first < 3);
   Patch patch;
-  patch.points.reserve(points.size());
   gather(kind, first, [&](std::size_t i) { return points[i]; }, patch);
   return patch;
 }
@@ -36,7 +35,6 @@ Patch make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> p
 Patch make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> all,
                  std::span<const VertexId> which) {
   Patch patch;
-  patch.points.reserve(which.size());
   make_patch(kind, first, all, which, patch);
   return patch;
 }

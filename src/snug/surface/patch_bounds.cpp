@@ -47,17 +47,20 @@ std::vector<FaceId> faces_with_patch(const Surface& surface) {
   return faces;
 }
 
-PowerOfTwo normalising(std::span<const Point3> points, const std::vector<bool>& used) {
+// `unused`: vertices to pass over, in increasing order.
+PowerOfTwo normalising(std::span<const Point3> points, std::span<const VertexId> unused) {
   double largest = 0, probe = 0;
-  for (std::size_t v = 0; v < points.size(); ++v) {
-    if (!used[v]) continue;
-    const Vector3 p = points[v] - Point3{};
-    largest = std::max(largest, max_abs(p));
-    probe += (p.x - p.x) + (p.y - p.y) + (p.z - p.z);  // stays 0 unless one is not finite
-  }
-  if (probe != 0) {
-    throw InputError(InputProblem::refused, "a control point is not finite");
-  }
+  std::size_t begin = 0;
+  const auto measure = [&](std::size_t end) {
+    for (const Point3& p : points.subspan(begin, end - begin)) {
+      largest = std::max(largest, max_abs(p - Point3{}));
+      probe += (p.x - p.x) + (p.y - p.y) + (p.z - p.z);  // stays 0 unless one is not finite
+    }
+    begin = end + 1;
+  };
+  for (const VertexId v : unused) measure(v.index());
+  measure(points.size());
+  if (probe != 0) throw InputError(InputProblem::refused, "a control point is not finite");
   return PowerOfTwo::normalising(largest);
 }
 
@@ -94,7 +97,7 @@ PatchBounds::PatchBounds(const Surface& surface, std::vector<FaceId> faces, std:
   }
   places_.resize(place);
   control_.resize(control);
-  used_.resize(surface.mesh().vertex_count());
+  std::vector<bool> used(surface.mesh().vertex_count());
   scaled_.resize(surface.mesh().vertex_count());
   std::vector<std::size_t> next(groups_.size());
   for (std::size_t g = 0; g < groups_.size(); ++g) next[g] = groups_[g].first_place;
@@ -108,7 +111,10 @@ PatchBounds::PatchBounds(const Surface& surface, std::vector<FaceId> faces, std:
     std::copy(vertices.begin(), vertices.end(),
               control_.begin() + static_cast<std::ptrdiff_t>(groups_[g].first_control +
                                                              (at - groups_[g].first_place) * vertices.size()));
-    for (const VertexId v : vertices) used_[v.index()] = true;
+    for (const VertexId v : vertices) used[v.index()] = true;
+  }
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (!used[v]) unused_.push_back(VertexId(v));
   }
 
   parallel_for(groups_.size(), threads, [&](std::size_t begin, std::size_t end) {
@@ -125,7 +131,7 @@ PatchBounds::PatchBounds(const Surface& surface, std::vector<FaceId> faces, std:
 
 void PatchBounds::update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads) {
   SNUG_EXPECT(points.size() == scaled_.size() && out.size() == faces_.size());
-  const PowerOfTwo scale = normalising(points, used_), back = scale.inverse();
+  const PowerOfTwo scale = normalising(points, unused_), back = scale.inverse();
   for (std::size_t v = 0; v < points.size(); ++v) scaled_[v] = scale.apply(points[v]);
   const auto work = [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) fit(chunks_[c], back, out);
@@ -166,7 +172,7 @@ void PatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
 }
 
 std::size_t PatchBounds::bytes() const {
-  return sizeof(*this) + faces_.size() * sizeof(FaceId) + used_.size() / 8 + groups_.size() * sizeof(Group) +
+  return sizeof(*this) + faces_.size() * sizeof(FaceId) + unused_.size() * sizeof(VertexId) + groups_.size() * sizeof(Group) +
          chunks_.size() * sizeof(Chunk) + places_.size() * sizeof(Place) + control_.size() * sizeof(VertexId) +
          scaled_.size() * sizeof(Point3);
 }

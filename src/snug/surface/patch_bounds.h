@@ -58,11 +58,11 @@ class PatchBounds {
   void fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTriangle> out) const;
 
   std::vector<FaceId> faces_;
-  std::vector<bool> used_;  // vertices of control_
   std::vector<Group> groups_;
   std::vector<Chunk> chunks_;
   std::vector<Place> places_;
   std::vector<VertexId> control_;
+  std::vector<VertexId> unused_;  // vertices that are not in control_
   std::vector<Point3> scaled_;
 };
 
