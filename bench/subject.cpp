@@ -41,12 +41,18 @@ double Subject::box(std::span<const FaceId> faces, std::vector<Box3>& out) {
 }
 
 double Subject::evaluate(FaceId face, std::span<const TriangleParameter> at, std::span<Point3> out) {
-  const Patch patch = surface_->patch(face);
+  evaluator_.reset(surface_->patch(face));
+  return evaluate(evaluator_, at, out);
+}
+
+double Subject::evaluate(LimitEvaluator& face, std::span<const TriangleParameter> at,
+                         std::span<Point3> out) const {
   const PowerOfTwo back = surface_->scale().inverse();
+  const Point3 origin = face.patch().origin;
   double errors = 0;
   for (std::size_t i = 0; i < at.size(); ++i) {
-    const LimitPoint point = limit_point(patch, at[i]);
-    out[i] = back.apply(patch.origin + point.relative);
+    const LimitPoint point = face(at[i]);
+    out[i] = back.apply(origin + point.relative);
     errors += back.apply(point.error);
   }
   return errors;

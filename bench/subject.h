@@ -7,7 +7,7 @@
 
 #include <snug/enclose/hull_points.h>
 #include <snug/enclose/offset_triangle.h>
-#include <snug/patch/evaluate.h>
+#include <snug/patch/limit_evaluator.h>
 #include <snug/surface/patch_bounds.h>
 #include <snug/surface/surface.h>
 
@@ -27,7 +27,8 @@ class Subject {
   /// Returns:   the sum of the radii.
   double enclose(std::span<const FaceId> faces, std::vector<OffsetTriangle>& out);
   /// Bounds of some faces at once, their kinds' rows or tables made.
-  [[nodiscard]] PatchBounds bounds(std::span<const FaceId> faces, std::optional<TableLayout> table = {}) const;
+  [[nodiscard]] PatchBounds bounds(std::span<const FaceId> faces,
+                                   std::optional<TableLayout> table = {}) const;
   /// Offset triangles of all faces, with all that it takes to make them.
   /// Returns:   the sum of the radii.
   double enclose_all(std::vector<OffsetTriangle>& out);
@@ -37,11 +38,14 @@ class Subject {
 
   /// Limit points of one face, in mesh units, with the sum of their error bounds.
   double evaluate(FaceId face, std::span<const TriangleParameter> at, std::span<Point3> out);
+  /// The same for a face whose evaluator keeps the pieces it met before.
+  double evaluate(LimitEvaluator& face, std::span<const TriangleParameter> at, std::span<Point3> out) const;
 
  private:
   std::shared_ptr<BoundLibrary> library_;
   std::unique_ptr<Surface> surface_;
   HullPoints scratch_;
+  LimitEvaluator evaluator_;
 };
 
 /// Offset triangles for these control points, in mesh units, on one thread.

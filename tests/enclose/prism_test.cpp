@@ -22,7 +22,7 @@ TEST(kobbelt_prism, misses_a_strongly_curved_patch_that_our_enclosures_contain) 
   HullPoints points;
   for (std::size_t f = 0; f < surface.face_count(); ++f) {
     const Patch patch = surface.patch(FaceId(f));
-    const auto corners = testing::limit_corners(patch);
+    const auto corners = limit_corners(patch);
     hull_points(surface.library().rows(*patch.kind), patch, points);
     const Prism prism = kobbelt_prism(points, corners);
     const OffsetTriangle offset = offset_triangle(points, corners);
@@ -44,7 +44,7 @@ TEST(kobbelt_prism, contains_a_flat_patch) {
   HullPoints points;
   const Patch patch = surface.patch(FaceId(24));
   hull_points(surface.library().rows(*patch.kind), patch, points);
-  const Prism prism = kobbelt_prism(points, testing::limit_corners(patch));
+  const Prism prism = kobbelt_prism(points, limit_corners(patch));
   EXPECT_LT(distance_outside(prism, patch.origin + limit_point(patch, {0.25, 0.25}).relative), 1e-14);
 }
 

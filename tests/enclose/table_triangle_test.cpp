@@ -87,7 +87,7 @@ TEST(table_triangle, has_the_corners_of_the_patch_whatever_corner_its_kind_begin
     const Patch patch = surface.patch(FaceId(f));
     const TableTriangle found = table_triangle(surface.library().table(*patch.kind), patch);
     const OffsetTriangle offset = offset_triangle(found);
-    const auto corners = testing::limit_corners(patch);
+    const auto corners = limit_corners(patch);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto distance_to = [&](std::size_t other) {
         return distance(offset.base[k], patch.origin + corners[other]);

@@ -1,4 +1,4 @@
-#include <snug/patch/evaluate.h>
+#include <snug/patch/limit_evaluator.h>
 
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
@@ -28,14 +28,15 @@ class Patches {
 };
 
 void expect_sample(const Patch& patch, const oracle::LimitSample& s) {
-  const LimitPoint point = limit_point(patch, {s.u, s.v});
   const double coordinate_rounding = 1.2e-16 * (max_abs(patch.origin - Point3{}) + patch.largest);
-  for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_NEAR(patch.origin[k] + point.relative[k], s.position[k],
-                point.error + s.error + coordinate_rounding)
-        << "face " << s.face << " at " << s.u << ", " << s.v;
+  for (const LimitPoint& point : {limit_point(patch, {s.u, s.v}), LimitEvaluator(patch)({s.u, s.v})}) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(patch.origin[k] + point.relative[k], s.position[k],
+                  point.error + s.error + coordinate_rounding)
+          << "face " << s.face << " at " << s.u << ", " << s.v;
+    }
+    EXPECT_LT(point.error, 1e-11 * patch.largest) << "face " << s.face << " at " << s.u << ", " << s.v;
   }
-  EXPECT_LT(point.error, 1e-11 * patch.largest) << "face " << s.face << " at " << s.u << ", " << s.v;
 }
 
 TEST(limit_point, agrees_with_the_twin_within_its_own_error) {
@@ -71,6 +72,31 @@ TEST(limit_point, agrees_with_the_twin_at_odd_parameters) {
       for (const oracle::LimitSample& s : oracle::sample_at(twin, face, u, snapped))
         expect_sample(patches[face], s);
     }
+  }
+}
+
+TEST(limit_evaluator, answers_alike_whatever_it_met_before) {
+  std::mt19937_64 random(17);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  LimitEvaluator reused;
+  for (const oracle::TwinMesh& twin : testing::assorted_meshes(17)) {
+    Patches patches(twin);
+    const Patch patch = patches[random() % twin.triangles.size()];
+    reused.reset(patch);
+    std::vector<TriangleParameter> at{{0, 0}, {1, 0}, {0, 1}, {0.5, 0.5}, {0x1p-70, 0}, {0, 0x1p-30}};
+    for (int i = 0; i < 60; ++i) {
+      const double u = std::ldexp(unit(), -static_cast<int>(random() % 8));
+      at.push_back({u, unit() * (1 - u)});
+    }
+    std::vector<LimitPoint> points(at.size());
+    reused(at, points);
+    for (std::size_t i = at.size(); i-- > 0;) {
+      const LimitPoint again = reused(at[i]), fresh = LimitEvaluator(patch)(at[i]);
+      EXPECT_EQ(points[i].relative, fresh.relative);
+      EXPECT_EQ(points[i].error, fresh.error);
+      EXPECT_EQ(again.relative, fresh.relative);
+    }
+    EXPECT_LT(reused.bytes(), 2'000'000u);
   }
 }
 

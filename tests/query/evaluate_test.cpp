@@ -14,8 +14,11 @@ TEST(evaluate, holds_its_error_at_every_scale) {
     const Surface surface = testing::surface_of(twin);
     for (const oracle::LimitSample& s : oracle::sample_uniform(twin, 2)) {
       const SurfacePoint point = evaluate(surface, FaceId(s.face), {s.u, s.v});
-      for (std::size_t k = 0; k < 3; ++k)
+      const SurfacePosition alone = FaceEvaluator(surface, FaceId(s.face)).position({s.u, s.v});
+      for (std::size_t k = 0; k < 3; ++k) {
         EXPECT_LE(std::fabs(point.position[k] - s.position[k]), point.error + s.error);
+        EXPECT_LE(std::fabs(alone.position[k] - s.position[k]), alone.error + s.error);
+      }
       EXPECT_LT(point.error, 1e-13 * size + 1e-307);
       ASSERT_TRUE(point.normal);
       EXPECT_NEAR(length(*point.normal), 1, 1e-14);

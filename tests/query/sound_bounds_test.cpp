@@ -98,7 +98,7 @@ Enclosures enclosures_of(const Surface& surface, const Patch& patch, const Sourc
   }
   HullPoints points;
   hull_points(surface.library().rows(*patch.kind), patch, points);
-  const auto corners = testing::limit_corners(patch);
+  const auto corners = limit_corners(patch);
   return {unscaled(offset_triangle(points, corners), back),
           unscaled(interval_triangle(points, corners), back)};
 }

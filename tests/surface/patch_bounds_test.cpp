@@ -1,29 +1,135 @@
 #include <snug/surface/patch_bounds.h>
 
 #include <gtest/gtest.h>
+#include <oracle/loop_twin.h>
 #include <snug/base/error.h>
 #include <snug/enclose/table_triangle.h>
 #include <snug/surface/refinement.h>
 #include <snug/surface/unscale.h>
+#include <testing/containment.h>
 #include <testing/patches.h>
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 namespace snug {
 namespace {
 
-// Closed and open meshes with regular patches, extraordinary corners and boundaries.
-std::vector<ControlMesh> meshes() {
-  std::vector<ControlMesh> all;
-  for (const oracle::TwinMesh& mesh :
-       {oracle::meshes::icosahedron(), oracle::meshes::torus(7, 6), oracle::meshes::fan(9, 2)}) {
-    all.push_back(testing::control_mesh(mesh));
-  }
+// Closed and open meshes with regular patches, extraordinary corners and boundaries; some patches flat.
+std::vector<oracle::TwinMesh> twins() {
+  std::mt19937_64 random(5);
+  std::vector<oracle::TwinMesh> all{oracle::meshes::icosahedron(), oracle::meshes::grid(9, 7),
+                                    oracle::meshes::bipyramid(9),
+                                    oracle::meshes::grid(6, 6, oracle::Boundary::none)};
+  all.push_back(oracle::meshes::disturbed(oracle::meshes::grid(9, 9), 12, 0.2, random));
+  all.push_back(oracle::meshes::quartered(all[2]));
   return all;
 }
 
+void expect_near(const OffsetTriangle& actual, const OffsetTriangle& expected, double size) {
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(max_abs(actual.base[k] - expected.base[k]), 1e-14 * size);
+  EXPECT_NEAR(actual.radius, expected.radius, 1e-12 * expected.radius + 1e-13 * size);
+}
+
 TEST(patch_bounds, are_those_of_single_patches) {
+  for (const oracle::TwinMesh& twin : twins()) {
+    const Surface surface = testing::surface_of(twin);
+    for (const std::optional<TableLayout> table :
+         {std::optional<TableLayout>(), std::optional(TableLayout::ngon),
+          std::optional(TableLayout::characteristic)}) {
+      PatchBounds bounds(surface, table);
+      std::vector<OffsetTriangle> out(bounds.faces().size());
+      bounds.update(surface.mesh().points, out);
+      HullPoints scratch;
+      for (std::size_t i = 0; i < out.size(); ++i) {
+        const FaceId f = bounds.faces()[i];
+        const Piece piece = make_piece(surface.library(), f, surface.patch(f), scratch, table);
+        expect_near(out[i], unscaled(piece.offset, surface.scale().inverse()), surface.size());
+      }
+    }
+  }
+}
+
+TEST(patch_bounds, cover_the_limit_points_at_every_scale_and_place) {
+  for (const double size : {1e-300, 1e-290, 1e-5, 1.0, 1e290}) {
+    std::size_t count = 0;
+    for (oracle::TwinMesh twin : twins()) {
+      for (oracle::Point& p : twin.points) p = {size * (p[0] + 7), size * p[1], size * (p[2] - 3)};
+      const Surface surface = testing::surface_of(twin);
+      for (const std::optional<TableLayout> table :
+           {std::optional<TableLayout>(), std::optional(TableLayout::ngon)}) {
+        PatchBounds bounds(surface, table);
+        std::vector<OffsetTriangle> out(bounds.faces().size());
+        bounds.update(surface.mesh().points, out);
+        std::vector<const OffsetTriangle*> of(surface.face_count(), nullptr);
+        for (std::size_t i = 0; i < out.size(); ++i) of[bounds.faces()[i].index()] = &out[i];
+        for (const oracle::LimitSample& s : oracle::sample_uniform(twin, 2)) {
+          if (!of[s.face]) continue;
+          const testing::Extended p{s.position[0], s.position[1], s.position[2]};
+          EXPECT_TRUE(testing::within_radius(p, of[s.face]->base, of[s.face]->radius + 2 * s.error)) << size;
+          ++count;
+        }
+      }
+    }
+    EXPECT_GT(count, 10'000u);
+  }
+}
+
+TEST(patch_bounds, of_chosen_faces_come_in_their_order) {
+  const Surface surface = testing::surface_of(oracle::meshes::grid(9, 7));
+  PatchBounds all(surface), some(surface, {FaceId(50), FaceId(3), FaceId(51)});
+  std::vector<OffsetTriangle> of_all(all.faces().size()), of_some(3);
+  all.update(surface.mesh().points, of_all);
+  some.update(surface.mesh().points, of_some);
+  EXPECT_EQ(of_some[0].base, of_all[50].base);
+  EXPECT_EQ(of_some[1].base, of_all[3].base);
+  EXPECT_EQ(of_some[2].radius, of_all[51].radius);
+}
+
+TEST(patch_bounds, follow_the_control_points_and_do_not_depend_on_threads) {
+  std::mt19937_64 random(6);
+  oracle::TwinMesh twin = oracle::meshes::disturbed(oracle::meshes::grid(30, 30), 60, 0.2, random);
+  const Surface surface = testing::surface_of(twin);
+  PatchBounds bounds(surface);
+  std::vector<OffsetTriangle> one(bounds.faces().size()), two = one, fresh = one;
+  bounds.update(surface.mesh().points, one);
+  for (oracle::Point& p : twin.points) p = {p[1] * 5, p[2] + 0.1 * p[0], p[0]};
+  const Surface moved = testing::surface_of(twin);
+  bounds.update(moved.mesh().points, one, 1);
+  bounds.update(moved.mesh().points, two, 2);
+  PatchBounds(moved).update(moved.mesh().points, fresh);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].base, fresh[i].base);
+    EXPECT_EQ(one[i].radius, fresh[i].radius);
+    EXPECT_EQ(one[i].base, two[i].base);
+    EXPECT_EQ(one[i].radius, two[i].radius);
+  }
+}
+
+TEST(patch_bounds, refuse_points_that_are_not_finite) {
+  const Surface surface = testing::surface_of(oracle::meshes::grid(3, 3));
+  PatchBounds bounds(surface);
+  std::vector<OffsetTriangle> out(bounds.faces().size());
+  std::vector<Point3> points = surface.mesh().points;
+  points[5].y = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(bounds.update(points, out), InputError);
+  points[5].y = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(bounds.update(points, out), InputError);
+  bounds.update(surface.mesh().points, out);
+  EXPECT_LT(out[0].radius, 1);
+}
+
+TEST(patch_bounds, pass_over_vertices_without_faces) {
+  ControlMesh mesh = testing::control_mesh(oracle::meshes::icosahedron());
+  mesh.points.insert(mesh.points.begin(), Point3{1e200, 0, 0});
+  for (VertexId& v : mesh.face_vertices) v = VertexId(v.index() + 1);
+  mesh.points.push_back({-1e200, 0, 0});
+  const Surface surface(mesh, {}, std::make_shared<BoundLibrary>(), 1);
+  PatchBounds bounds(surface);
+  std::vector<OffsetTriangle> out(20);
+  bounds.update(mesh.points, out);
+  EXPECT_LT(out[7].radius, 0.2);
 }
 
 }  // namespace

@@ -13,8 +13,4 @@ namespace snug::testing {
   return Surface(control_mesh(twin), rules(twin), std::make_shared<BoundLibrary>(), 1);
 }
 
-[[nodiscard]] inline std::array<Vector3, 3> limit_corners(const Patch& patch) {
-  return {corner_point(patch, 0).relative, corner_point(patch, 1).relative, corner_point(patch, 2).relative};
-}
-
 }  // namespace snug::testing

@@ -485,8 +485,7 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
   }
 }
 
-void FitRegular(std::span<const Point3> points, std::span<const VertexId> control,
-                std::span<BatchFit> out) {
+void FitRegular(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
   const hn::ScalableTag<double> d;
   const std::size_t lanes = hn::Lanes(d);
   HWY_ALIGN double gathered[3 * controls * HWY_MAX_BYTES / sizeof(double)];
@@ -532,8 +531,7 @@ std::optional<Reach> farthest(const Coordinates& points, const Vector3& a, const
   return reach;
 }
 
-void fit_regular(std::span<const Point3> points, std::span<const VertexId> control,
-                 std::span<BatchFit> out) {
+void fit_regular(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
   HWY_DYNAMIC_DISPATCH(FitRegular)(points, control, out);
 }
 

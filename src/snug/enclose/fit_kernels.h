@@ -60,7 +60,6 @@ struct BatchFit {
 ///            marked.
 /// Requires:  control: twelve vertices of `points` a patch, in the kind's order; out.size() patches.
 /// Cost:      about 0.15 to 0.2 microseconds a patch with four lanes.
-void fit_regular(std::span<const Point3> points, std::span<const VertexId> control,
-                 std::span<BatchFit> out);
+void fit_regular(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out);
 
 }  // namespace snug::kernels

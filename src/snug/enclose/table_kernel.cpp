@@ -84,8 +84,8 @@ HWY_INLINE V at(D d, const LinearV<V>& l, double u, double v) {
 }
 
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void fit_lanes(D d, const FlatTable& table, std::span<const Point3> points, const VertexId* control,
-                          std::size_t here, BatchFit* out) {
+HWY_INLINE void fit_lanes(D d, const FlatTable& table, std::span<const Point3> points,
+                          const VertexId* control, std::size_t here, BatchFit* out) {
   const std::size_t lanes = hn::Lanes(d), count = table.columns.size() + 3;
   HWY_ALIGN double gathered[3 * block * HWY_MAX_BYTES / sizeof(double)];
   V origin[3], middle[3][3], half[3][3];  // [axis][corner]
@@ -95,9 +95,8 @@ HWY_INLINE void fit_lanes(D d, const FlatTable& table, std::span<const Point3> p
     const std::size_t to = std::min(count, from + block);
     gather_lanes(points, control, count, from, to, here, lanes, gathered);
     for (std::size_t a = 0; a < 3; ++a) {
-      const auto load = [&](std::size_t i) HWY_ATTR {
-        return hn::Load(d, gathered + (3 * (i - from) + a) * lanes);
-      };
+      const auto load = [&](std::size_t i)
+                            HWY_ATTR { return hn::Load(d, gathered + (3 * (i - from) + a) * lanes); };
       std::size_t i = from;
       if (from == 0) {
         origin[a] = load(0);
@@ -140,10 +139,12 @@ HWY_INLINE void fit_lanes(D d, const FlatTable& table, std::span<const Point3> p
     for (V& m : middle[a]) {
       m = hn::Add(origin[a], m);
       placed = hn::Max(placed, hn::Abs(m));
-      probe = hn::Add(probe, hn::Sub(m, m));  // stays 0 unless one is not finite, whatever maxima make of that
+      probe =
+          hn::Add(probe, hn::Sub(m, m));  // stays 0 unless one is not finite, whatever maxima make of that
     }
   }
-  const V given = hn::Add(hn::Mul(hn::Set(d, table.error_of_largest), largest), hn::Set(d, table.error_at_least));
+  const V given =
+      hn::Add(hn::Mul(hn::Set(d, table.error_of_largest), largest), hn::Set(d, table.error_at_least));
   const V error = hn::Add(given, hn::Mul(hn::Set(d, unit_roundoff * (1 + 0x1p-42)), placed));
   V farthest_sq = hn::Zero(d);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -179,7 +180,8 @@ void FitTable(const FlatTable& table, std::span<const Point3> points, const Vert
   const hn::ScalableTag<double> d;
   const std::size_t lanes = hn::Lanes(d), count = table.columns.size() + 3;
   for (std::size_t begin = 0; begin < out.size(); begin += lanes) {
-    fit_lanes(d, table, points, control + count * begin, std::min(lanes, out.size() - begin), out.data() + begin);
+    fit_lanes(d, table, points, control + count * begin, std::min(lanes, out.size() - begin),
+              out.data() + begin);
   }
 }
 

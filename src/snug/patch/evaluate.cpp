@@ -5,48 +5,10 @@
 
 #include <snug/base/contract.h>
 #include <snug/base/rounding.h>
+#include <snug/patch/descent.h>
 
 namespace snug {
 namespace {
-
-// Where a parameter lies after one split: which child, and its parameter there. Doubling is exact; 1 - 2u may
-// round once, below one unit roundoff.
-struct Descent {
-  unsigned child;
-  TriangleParameter at;
-};
-
-// Is the exact sum u + v at most `limit`? Rounding is monotonic, so only a tie needs the sum's own error, which is exact
-// [Higham02, sec. 4.3].
-bool sum_at_most(double u, double v, double limit) {
-  const double sum = u + v;
-  if (sum != limit) return sum < limit;
-  const double rest = sum - u;
-  return (u - (sum - rest)) + (v - rest) <= 0;
-}
-
-// The parameter that is meant by one whose exact sum is a rounding above 1: the nearest on the far edge. Both differences
-// are exact.
-TriangleParameter on_triangle(TriangleParameter p) {
-  if (sum_at_most(p.u, p.v, 1)) return p;
-  if (p.u >= 0.5) return {p.u, 1 - p.u};
-  return {1 - p.v, p.v};
-}
-
-Descent descend(TriangleParameter p) {
-  if (p.u >= 0.5) return {1, {2 * p.u - 1, 2 * p.v}};
-  if (p.v >= 0.5) return {2, {2 * p.u, 2 * p.v - 1}};
-  if (sum_at_most(p.u, p.v, 0.5)) return {0, {2 * p.u, 2 * p.v}};
-  return {3, {1 - 2 * p.u, 1 - 2 * p.v}};
-}
-
-// The corner that a parameter names exactly, or 3.
-std::size_t corner_at(TriangleParameter p) {
-  if (p.u == 0 && p.v == 0) return 0;
-  if (p.u == 1 && p.v == 0) return 1;
-  if (p.u == 0 && p.v == 1) return 2;
-  return 3;
-}
 
 struct Polynomial {
   std::array<Vector3, 15> points;
@@ -124,13 +86,6 @@ Located locate(const Patch& patch, TriangleParameter at) {
   return here;
 }
 
-// Size of the piece's control net: bounds the distance of any two of its limit points.
-double net_size(const Patch& patch) {
-  Box3 box;
-  for (const Vector3& p : patch.points) box.add(Point3{} + p);
-  return enlarged(box.longest_side()) + 2 * patch.error;
-}
-
 LimitPoint point_of(const Polynomial& polynomial, const std::array<Vector3, 3>& plane, double u, double v,
                     double drift) {
   const double w = 1 - u - v;
@@ -157,11 +112,6 @@ std::optional<Vector3> unit_normal(const std::array<Vector3, 2>& tangents) {
   // Below this the direction is rounding noise.
   if (!(size > 1e-13)) return std::nullopt;
   return (1 / size) * normal;
-}
-
-TriangleParameter checked(TriangleParameter at) {
-  SNUG_EXPECT(at.u >= 0 && at.v >= 0 && at.u + at.v <= 1);
-  return on_triangle(at);
 }
 
 // Tangents at a corner of the patch: limits along the corner's ring, ordered counter-clockwise as the face

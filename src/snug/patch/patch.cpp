@@ -28,7 +28,8 @@ void gather(const Kind& kind, std::uint8_t first, const PointAt& at, Patch& out)
 Patch make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> points) {
   SNUG_EXPECT(points.size() == kind.control_count() && first < 3);
   Patch patch;
-  gather(kind, first, [&](std::size_t i) { return points[i]; }, patch);
+  gather(
+      kind, first, [&](std::size_t i) { return points[i]; }, patch);
   return patch;
 }
 
@@ -42,7 +43,8 @@ Patch make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> a
 void make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> all,
                 std::span<const VertexId> which, Patch& out) {
   SNUG_EXPECT(which.size() == kind.control_count() && first < 3);
-  gather(kind, first, [&](std::size_t i) { return all[which[i].index()]; }, out);
+  gather(
+      kind, first, [&](std::size_t i) { return all[which[i].index()]; }, out);
 }
 
 Patch split(const Patch& patch, unsigned child) {

@@ -8,16 +8,27 @@
 
 namespace snug {
 
+namespace {
+
+SurfacePosition placed(const LimitPoint& point, const Point3& origin, PowerOfTwo back) {
+  const Point3 scaled = origin + point.relative;
+  const double error = point.error + unit_roundoff * max_abs(scaled - Point3{});
+  return {require_representable(back.apply(scaled)), unscaled_up(enlarged(error), back) + underflow_error};
+}
+
+}  // namespace
+
 FaceEvaluator::FaceEvaluator(const Surface& surface, FaceId f)
-    : patch_(surface.patch(f)), back_(surface.scale().inverse()) {}
+    : evaluator_(surface.patch(f)), back_(surface.scale().inverse()) {}
+
+SurfacePosition FaceEvaluator::position(TriangleParameter at) {
+  return placed(evaluator_(at), evaluator_.patch().origin, back_);
+}
 
 SurfacePoint FaceEvaluator::operator()(TriangleParameter at) const {
-  const LimitFrame frame = limit_frame(patch_, at);
-  const Point3 scaled = patch_.origin + frame.point.relative;
+  const LimitFrame frame = limit_frame(evaluator_.patch(), at);
   SurfacePoint result;
-  result.position = require_representable(back_.apply(scaled));
-  const double placed = frame.point.error + unit_roundoff * max_abs(scaled - Point3{});
-  result.error = unscaled_up(enlarged(placed), back_) + underflow_error;
+  static_cast<SurfacePosition&>(result) = placed(frame.point, evaluator_.patch().origin, back_);
   for (std::size_t t = 0; t < 2; ++t) {
     result.tangents[t] = back_.apply(frame.tangents[t]);
     if (!is_finite(result.tangents[t])) require_representable(INFINITY);

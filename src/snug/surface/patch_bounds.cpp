@@ -26,9 +26,8 @@ struct Scratch {
 
 bool regular_inside(const Kind& kind) {
   const auto& corners = kind.key().corners;
-  return kind.polynomial() && std::all_of(corners.begin(), corners.end(), [](const CornerFan& fan) {
-           return fan.closed && fan.regular();
-         });
+  return kind.polynomial() && std::all_of(corners.begin(), corners.end(),
+                                          [](const CornerFan& fan) { return fan.closed && fan.regular(); });
 }
 
 OffsetTriangle turned(const kernels::BatchFit& fit, std::uint8_t first) {
@@ -108,9 +107,10 @@ PatchBounds::PatchBounds(const Surface& surface, std::vector<FaceId> faces, std:
     const std::size_t at = next[g]++;
     surface.control_vertices(f, vertices);
     places_[at] = {static_cast<std::uint32_t>(i), surface.first(f)};
-    std::copy(vertices.begin(), vertices.end(),
-              control_.begin() + static_cast<std::ptrdiff_t>(groups_[g].first_control +
-                                                             (at - groups_[g].first_place) * vertices.size()));
+    std::copy(
+        vertices.begin(), vertices.end(),
+        control_.begin() + static_cast<std::ptrdiff_t>(groups_[g].first_control +
+                                                       (at - groups_[g].first_place) * vertices.size()));
     for (const VertexId v : vertices) used[v.index()] = true;
   }
   for (std::size_t v = 0; v < used.size(); ++v) {
@@ -172,9 +172,9 @@ void PatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
 }
 
 std::size_t PatchBounds::bytes() const {
-  return sizeof(*this) + faces_.size() * sizeof(FaceId) + unused_.size() * sizeof(VertexId) + groups_.size() * sizeof(Group) +
-         chunks_.size() * sizeof(Chunk) + places_.size() * sizeof(Place) + control_.size() * sizeof(VertexId) +
-         scaled_.size() * sizeof(Point3);
+  return sizeof(*this) + faces_.size() * sizeof(FaceId) + unused_.size() * sizeof(VertexId) +
+         groups_.size() * sizeof(Group) + chunks_.size() * sizeof(Chunk) + places_.size() * sizeof(Place) +
+         control_.size() * sizeof(VertexId) + scaled_.size() * sizeof(Point3);
 }
 
 }  // namespace snug

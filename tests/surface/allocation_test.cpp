@@ -1,0 +1,49 @@
+// A program of its own, since it counts every allocation.
+#include <gtest/gtest.h>
+#include <snug/surface/patch_bounds.h>
+#include <testing/patches.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+namespace {
+std::atomic<std::size_t> allocations{0};
+
+void* counted(std::size_t size) {
+  ++allocations;
+  if (void* const p = std::malloc(size ? size : 1)) return p;
+  throw std::bad_alloc();
+}
+}  // namespace
+
+void* operator new(std::size_t size) { return counted(size); }
+void* operator new[](std::size_t size) { return counted(size); }
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete[](void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+
+namespace snug {
+namespace {
+
+TEST(allocation, patch_bounds_take_none_after_their_first_update) {
+  std::mt19937_64 random(8);
+  const Surface surface =
+      testing::surface_of(oracle::meshes::disturbed(oracle::meshes::grid(20, 20), 40, 0.2, random));
+  for (const std::optional<TableLayout> table :
+       {std::optional<TableLayout>(), std::optional(TableLayout::ngon)}) {
+    PatchBounds bounds(surface, table);
+    std::vector<OffsetTriangle> out(bounds.faces().size());
+    bounds.update(surface.mesh().points, out);
+    std::vector<Point3> points = surface.mesh().points;
+    for (Point3& p : points) p.z += p.x * p.x;
+    const std::size_t before = allocations;
+    bounds.update(points, out);
+    EXPECT_EQ(allocations - before, 0u);
+    EXPECT_GT(before, 100u);
+  }
+}
+
+}  // namespace
+}  // namespace snug
