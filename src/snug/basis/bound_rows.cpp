@@ -20,6 +20,11 @@ struct DenseRows {
   std::vector<double> errors;    // a row
   std::vector<double> abs_sums;  // a row: of the entries as stored
   [[nodiscard]] std::size_t count() const { return errors.size(); }
+  void clear() {
+    entries.clear();
+    errors.clear();
+    abs_sums.clear();
+  }
 };
 
 DenseRows identity(std::size_t count) {
@@ -36,8 +41,8 @@ DenseRows identity(std::size_t count) {
 void append_product(const Stencils& stencils, std::size_t r, const DenseRows& net, DenseRows& out) {
   const Stencils::Row row = stencils.row(r);
   const std::size_t begin = out.entries.size();
-  out.entries.resize(begin + net.width, 0.0);
-  double* const target = out.entries.data() + begin;
+  out.entries.resize(begin + net.width);
+  double* const __restrict target = out.entries.data() + begin;
   double error = 0, largest = 0, magnitude = 0;
   for (std::size_t i = 0; i < row.sources.size(); ++i) {
     const std::size_t k = row.sources[i];
@@ -56,12 +61,12 @@ void append_product(const Stencils& stencils, std::size_t r, const DenseRows& ne
   out.abs_sums.push_back(abs_sum * (1 + gamma_bound(net.width)));
 }
 
-DenseRows product(const Stencils& stencils, const DenseRows& net) {
-  DenseRows out;
+// Writes stencils * net over `out`, which keeps its memory.
+void multiply(const Stencils& stencils, const DenseRows& net, DenseRows& out) {
+  out.clear();
   out.width = net.width;
   out.entries.reserve(stencils.row_count() * net.width);
   for (std::size_t r = 0; r < stencils.row_count(); ++r) append_product(stencils, r, net, out);
-  return out;
 }
 
 // Edges of a piece, named by the corner they face, along which a polynomial neighbour's Bezier points are in
@@ -73,9 +78,20 @@ bool on_covered_edge(std::size_t i, std::size_t j, const CoveredEdges& covered) 
   return (covered[0] && i + j == 4) || (covered[1] && i == 0) || (covered[2] && j == 0);
 }
 
+constexpr unsigned deepest = 24;
+
 class Collector {
  public:
-  explicit Collector(const Kind& kind) { rows_.width = kind.control_count(); }
+  explicit Collector(const Kind& kind) {
+    rows_.width = kind.control_count();
+    // At most: four pieces, three a ring, the nets of the tips.
+    std::size_t most = 60;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const CornerFan& fan = kind.corner(i);
+      if (!fan.regular()) most += 36 * std::size_t{tip_depth(fan)} + fan.faces() + 8;
+    }
+    rows_.entries.reserve(most * rows_.width);
+  }
 
   // Rows of one piece; `covered` counts corners as the kind does.
   void collect(const Kind& kind, const DenseRows& net, unsigned depth, const CoveredEdges& covered) {
@@ -93,18 +109,24 @@ class Collector {
     }
     const auto& children = kind.children();
     const bool middle_polynomial = children[3].kind->polynomial();
-    for (const std::size_t c : {std::size_t{3}, std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
-      const KindChild& child = children[c];
-      // In the parent's order, child c keeps corner c: its edges that face the other corners lie on the
-      // parent's.
-      CoveredEdges inherited{false, false, false};
-      if (c < 3) {
-        inherited = covered;
-        inherited[c] = middle_polynomial;
+    // What is no polynomial comes last: below the first level that is one tip, and nothing needs this net after it.
+    for (const bool polynomial : {true, false}) {
+      for (const std::size_t c : {std::size_t{3}, std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
+        const KindChild& child = children[c];
+        if (child.kind->polynomial() != polynomial) continue;
+        // In the parent's order, child c keeps corner c: its edges that face the other corners lie on the
+        // parent's.
+        CoveredEdges inherited{false, false, false};
+        if (c < 3) {
+          inherited = covered;
+          inherited[c] = middle_polynomial;
+        }
+        CoveredEdges own;
+        for (std::size_t k = 0; k < 3; ++k) own[k] = inherited[(k + child.first) % 3];
+        DenseRows& child_net = nets_[depth % 2];
+        multiply(child.stencils, net, child_net);
+        collect(*child.kind, child_net, depth + 1, own);
       }
-      CoveredEdges own;
-      for (std::size_t k = 0; k < 3; ++k) own[k] = inherited[(k + child.first) % 3];
-      collect(*child.kind, product(child.stencils, net), depth + 1, own);
     }
   }
 
@@ -126,6 +148,7 @@ class Collector {
   }
 
   DenseRows rows_;
+  std::array<DenseRows, 2> nets_;  // of pieces at odd depths and at even ones
 };
 
 }  // namespace
@@ -145,7 +168,7 @@ unsigned tip_depth(const CornerFan& fan) {
   const double width =
       std::min(1.0, 2 * std::sin(std::numbers::pi / static_cast<double>(std::max<std::size_t>(n, 3))));
   const double levels = std::log(0.01 * width) / std::log(shrink);
-  return std::clamp(static_cast<unsigned>(std::ceil(levels)), 3u, 24u);
+  return std::clamp(static_cast<unsigned>(std::ceil(levels)), 3u, deepest);
 }
 
 BoundRows make_bound_rows(const Kind& kind) {

@@ -31,13 +31,21 @@ Kind::Kind(KindLibrary& library, KindId id, const KindKey& key)
   const SchemeOptions options = neighbourhood_options(key);
   control_count_ = topology.vertex_count();
   if (polynomial_) bezier_ = bezier_rows(key);
-  std::vector<std::uint32_t> same_names(control_count_);
-  for (std::size_t i = 0; i < control_count_; ++i) same_names[i] = static_cast<std::uint32_t>(i);
-  for (std::size_t i = 0; i < 3; ++i) {
-    add_limit_row(topology, VertexId(i), options, corner_limits_);
-    const TangentRows tangents = tangent_rows(topology, VertexId(i), options);
-    for (std::size_t t = 0; t < 2; ++t) corner_tangents_.append(tangents.rows.row(t), same_names);
-  }
+  for (std::size_t i = 0; i < 3; ++i) add_limit_row(topology, VertexId(i), options, corner_limits_);
+}
+
+const Stencils& Kind::corner_tangents() const {
+  std::call_once(tangents_made_, [&] {
+    const Topology topology = neighbourhood(key_);
+    const SchemeOptions options = neighbourhood_options(key_);
+    std::vector<std::uint32_t> same_names(control_count_);
+    for (std::size_t i = 0; i < control_count_; ++i) same_names[i] = static_cast<std::uint32_t>(i);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const TangentRows tangents = tangent_rows(topology, VertexId(i), options);
+      for (std::size_t t = 0; t < 2; ++t) corner_tangents_.append(tangents.rows.row(t), same_names);
+    }
+  });
+  return corner_tangents_;
 }
 
 const std::array<KindChild, 4>& Kind::children() const {

@@ -45,7 +45,7 @@ class Kind {
   /// Limit positions of the corners: three rows.
   [[nodiscard]] const Stencils& corner_limits() const { return corner_limits_; }
   /// Two tangent rows a corner, those of corner i at 2 i and 2 i + 1 (scheme/refine.h).
-  [[nodiscard]] const Stencils& corner_tangents() const { return corner_tangents_; }
+  [[nodiscard]] const Stencils& corner_tangents() const;
 
   /// The four children; 0 to 2 keep that corner, 3 is the middle one.
   [[nodiscard]] const std::array<KindChild, 4>& children() const;
@@ -56,8 +56,9 @@ class Kind {
   KindKey key_;
   std::size_t control_count_ = 0;
   bool polynomial_ = false;
-  Stencils bezier_, corner_limits_, corner_tangents_;
-  mutable std::once_flag children_made_;
+  Stencils bezier_, corner_limits_;
+  mutable std::once_flag tangents_made_, children_made_;
+  mutable Stencils corner_tangents_;
   mutable std::unique_ptr<std::array<KindChild, 4>> children_;
 };
 
