@@ -121,6 +121,10 @@ TEST(tightness, rows_are_near_the_least_on_bent_nets_and_nearer_than_tables) {
     if (!row.source) {
       EXPECT_EQ(row.over_rows, 1);
     }
+    // The tip's net sticks out at corners of higher valence only, and shows where little else does.
+    if (row.shape == NetShape::flat && !row.source && row.valence <= 12) {
+      EXPECT_EQ(row.median > 2, row.valence > 6) << row.valence;
+    }
     if (row.shape == NetShape::bent) {
       EXPECT_LT(row.median, row.source ? 8 : 1.06) << row.valence;
       EXPECT_GT(row.median, row.source ? 1.3 : 1) << row.valence;

@@ -49,7 +49,7 @@ using Thicknesses = std::vector<double>;
 
 /// The factor that theory gives: 1/4 at a regular corner. Else the `next` eigenvalue for the normal measure
 /// and for tables of the characteristic layout; the subdominant one for the others.
-/// Source:    convergence.md beside the derivations' folder.
+/// Source:    docs/convergence.md.
 [[nodiscard]] double expected_factor(std::size_t n, BoundSource source, ThicknessMeasure measure);
 
 struct RateOptions {
