@@ -59,7 +59,7 @@ struct TightnessRow {
 ///
 /// Guarantee: the same for any number of threads.
 /// Requires:  nets >= 1, steps >= 1.
-/// Cost:      some 5 ms a net at the default steps.
+/// Cost:      some 3 ms a net at the default steps.
 [[nodiscard]] std::vector<TightnessRow> measure_tightness(const TightnessOptions& options,
                                                           const WorkMonitor& monitor = {});
 
