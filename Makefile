@@ -70,7 +70,11 @@ format:  ## rewrite C++ files in the project's format
 tidy: build  ## clang-tidy over the library
 	@run-clang-tidy -quiet -j $(JOBS) -p build/release 'src/snug/.*\.cpp$$'
 
-docs:  ## links, citations and derivations that the pages and comments name
+docs: install-packages  ## plots and tables of docs/convergence.md; links and citations of pages and comments
+	@$(call build,release,snug_command)
+	@mkdir -p build/docs
+	@for name in rates tightness; do build/release/bin/snug experiment $$name -o build/docs/$$name.json > /dev/null; done
+	@scripts/plot_experiments.py build/docs/rates.json build/docs/tightness.json docs/convergence.md docs/pictures
 	@scripts/check_docs.py
 
 tables:  ## make the rows and tables again that are compiled in, then prove them

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <snug/base/quantile.h>
+
 #include "meshes.h"
 #include "runner.h"
 #include "subject.h"

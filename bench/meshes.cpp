@@ -135,43 +135,6 @@ ControlMesh irregular_mesh(std::size_t faces, const Irregularity& options) {
   return mesh;
 }
 
-ControlMesh fan_mesh(std::size_t n, std::size_t rings) {
-  ControlMesh mesh;
-  mesh.points.push_back({});
-  // Ring i has i vertices a sector.
-  const auto at = [&](std::size_t i, std::size_t sector, std::size_t j) {
-    return i == 0 ? VertexId(0) : VertexId(1 + n * i * (i - 1) / 2 + (sector * i + j) % (n * i));
-  };
-  for (std::size_t i = 1; i <= rings; ++i) {
-    for (std::size_t s = 0; s < n; ++s) {
-      for (std::size_t j = 0; j < i; ++j) {
-        const double a = 2 * std::numbers::pi * static_cast<double>(s) / static_cast<double>(n);
-        const double b = 2 * std::numbers::pi * static_cast<double>(s + 1) / static_cast<double>(n);
-        const double p = static_cast<double>(i - j), q = static_cast<double>(j);
-        mesh.points.push_back({p * std::cos(a) + q * std::cos(b), p * std::sin(a) + q * std::sin(b), 0});
-      }
-    }
-  }
-  for (std::size_t i = 0; i < rings; ++i) {
-    for (std::size_t s = 0; s < n; ++s) {
-      for (std::size_t j = 0; j <= i; ++j) {
-        mesh.add_face(std::array{at(i, s, j), at(i + 1, s, j), at(i + 1, s, j + 1)});
-        if (j < i) mesh.add_face(std::array{at(i, s, j), at(i + 1, s, j + 1), at(i, s, j + 1)});
-      }
-    }
-  }
-  return mesh;
-}
-
-void disturb(ControlMesh& mesh, double along, double across, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  for (Point3& p : mesh.points) {
-    p.x += along * unit(random);
-    p.y += along * unit(random);
-    p.z += across * unit(random);
-  }
-}
-
 std::size_t extraordinary_corners(const Kind& kind) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < 3; ++i) count += !kind.corner(i).regular();

@@ -28,14 +28,6 @@ struct Irregularity {
 /// Guarantee: closed, manifold, no edge twice; the same mesh for the same arguments on every machine.
 [[nodiscard]] ControlMesh irregular_mesh(std::size_t faces, const Irregularity& options = {});
 
-/// A vertex of valence n in the middle of `rings` rings of a flat lattice: the corner is at the origin, spokes
-/// have length 1. Faces 0 to n - 1 touch the middle. Regular but for the middle and the border.
-/// Requires:  n >= 3, rings >= 1.
-[[nodiscard]] ControlMesh fan_mesh(std::size_t n, std::size_t rings);
-
-/// Moves every vertex by at most `along` in x and y, and by at most `across` in z, evenly distributed.
-void disturb(ControlMesh& mesh, double along, double across, std::uint64_t seed);
-
 /// Corners of a face's patch that are not regular.
 [[nodiscard]] std::size_t extraordinary_corners(const Kind& kind);
 /// Faces with `corners` extraordinary corners.

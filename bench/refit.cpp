@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <snug/query/corner_nets.h>
+
 #include "meshes.h"
 #include "runner.h"
 #include "subject.h"

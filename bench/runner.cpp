@@ -6,13 +6,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
 #include <utility>
+
+#include <snug/base/quantile.h>
 
 #include "calibration.h"
 
@@ -161,12 +162,6 @@ void print_peak(const std::string& name, double items, const char* item, double 
   std::printf("  %-40s  %10.1f MiB at its peak  %8.1f bytes/%s\n", name.c_str(), mib, mib * 0x1p20 / items,
               item);
   std::fflush(stdout);
-}
-
-double quantile(std::vector<double> values, double share) {
-  const auto at = static_cast<std::size_t>(std::floor(share * static_cast<double>(values.size() - 1) + 0.5));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
-  return values[at];
 }
 
 }  // namespace snug::bench

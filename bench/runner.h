@@ -82,8 +82,4 @@ class Group {
 /// Prints a line "name  MiB  bytes an item".
 void print_peak(const std::string& name, double items, const char* item, double mib);
 
-/// Middle of some values, and the value that a share of them does not exceed.
-/// Requires:  not empty; 0 <= share <= 1.
-[[nodiscard]] double quantile(std::vector<double> values, double share);
-
 }  // namespace snug::bench

@@ -1,17 +1,16 @@
-// bench_tightness MODEL...: radius of the offset triangles over the least possible for the same base triangles.
-//
-// The least possible is the largest distance of a limit point from the base: found on a lattice of limit points and
-// improved around its largest by a pattern search. It is a lower bound, so the ratios are upper bounds.
+// bench_tightness MODEL...: radius of the offset triangles over the least possible for the same base triangles
+// (query/tightness.h), on real meshes and on patches with several extraordinary corners. The ratios are upper
+// bounds. `snug experiment tightness` has patches with one extraordinary corner, and tables.
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <string>
 #include <vector>
 
-#include <snug/enclose/triangle.h>
+#include <snug/base/quantile.h>
 #include <snug/io/mesh_file.h>
 #include <snug/query/subdivide.h>
+#include <snug/query/tightness.h>
 
 #include "meshes.h"
 #include "runner.h"
@@ -22,58 +21,14 @@ namespace {
 using namespace snug;
 using namespace snug::bench;
 
-// Distance of one patch's limit points from a triangle.
-class Deviation {
- public:
-  Deviation(const Patch& patch, const Triangle& base)
-      : patch_(patch),
-        foot_(base[0] - patch.origin, base[1] - patch.origin, base[2] - patch.origin),
-        corner_(base[0] - patch.origin) {}
-
-  [[nodiscard]] double at(TriangleParameter p) const {
-    const Vector3 q = limit_point(patch_, p).relative;
-    const Barycentric foot = foot_(q);
-    return length(q - corner_ - foot.b * foot_.edge_b() - foot.c * foot_.edge_c());
-  }
-
-  [[nodiscard]] double largest(int side) const {
-    TriangleParameter best;
-    double value = -1;
-    for (int j = 0; j <= side; ++j) {
-      for (int i = 0; i + j <= side; ++i) improve({double(i) / side, double(j) / side}, best, value);
-    }
-    for (double step = 0.5 / side; step > 1e-5; step /= 2) {
-      const TriangleParameter c = best;
-      for (const auto& [du, dv] : {std::array{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, -1}, {-1, 1}}) {
-        improve({c.u + du * step, c.v + dv * step}, best, value);
-      }
-    }
-    return value;
-  }
-
- private:
-  void improve(TriangleParameter p, TriangleParameter& best, double& value) const {
-    p.u = std::clamp(p.u, 0.0, 1.0);
-    p.v = std::clamp(p.v, 0.0, 1 - p.u);
-    const double d = at(p);
-    if (d > value) {
-      value = d;
-      best = p;
-    }
-  }
-
-  const Patch& patch_;
-  TriangleFoot foot_;
-  Vector3 corner_;
-};
-
 struct Ratios {
   std::vector<double> all;
 
   // Skips patches so flat that rounding makes up the radius.
   void add(Subject& subject, FaceId face, const OffsetTriangle& enclosure, int side) {
     if (enclosure.radius <= 1000 * enclosure.rounding) return;
-    all.push_back(enclosure.radius / Deviation(subject.surface().patch(face), enclosure.base).largest(side));
+    const Patch patch = subject.surface().patch(face);
+    all.push_back(enclosure.radius / LimitLattice(patch, side).least_radius(enclosure.base));
   }
   void print(const std::string& name) const {
     if (all.empty()) return;
@@ -84,32 +39,6 @@ struct Ratios {
     std::fflush(stdout);
   }
 };
-
-struct NetShape {
-  const char* name;
-  double along, across;
-};
-
-// Patches around a vertex of valence n in random control nets.
-void random_nets(const NetShape& shape, const Options& options, int side) {
-  std::printf("one extraordinary corner, %s\n", shape.name);
-  for (const std::size_t n : {3u, 4u, 5u, 6u, 7u, 8u, 9u, 10u, 11u, 12u, 20u, 50u}) {
-    const auto library = std::make_shared<BoundLibrary>();
-    Ratios ratios;
-    // Spokes are of length 1, edges across them of about 6 / n: moves along the net must not fold it.
-    const double along = shape.along * std::min(1.0, 6.0 / static_cast<double>(n));
-    for (int net = 0; net < options.size(60, 3); ++net) {
-      ControlMesh mesh = fan_mesh(n, 3);
-      disturb(mesh, along, shape.across, static_cast<std::uint64_t>(net) + 1);
-      Subject subject(std::move(mesh), library);
-      const std::vector<FaceId> faces{FaceId(0), FaceId(n / 2)};
-      std::vector<OffsetTriangle> out;
-      static_cast<void>(subject.enclose(faces, out));
-      for (std::size_t i = 0; i < faces.size(); ++i) ratios.add(subject, faces[i], out[i], side);
-    }
-    ratios.print("valence " + std::to_string(n));
-  }
-}
 
 void several_corners(const Options& options, int side) {
   std::printf("irregular mesh, by extraordinary corners\n");
@@ -155,10 +84,6 @@ int main(int argc, char** argv) {
   const Options options = start(argc, argv, files, " [MODEL...]");
   const int side = options.size(64, 16);
   std::printf("radius over the least possible; lattice of %d steps\n", side);
-  for (const NetShape& shape : {NetShape{"flat nets with noise (0.05 across)", 0, 0.05},
-                                NetShape{"bumpy nets (0.25 along, 0.5 across)", 0.25, 0.5}}) {
-    random_nets(shape, options, side);
-  }
   several_corners(options, side);
   for (const std::string& path : options.files) model(path, options, side);
   return 0;

@@ -1,7 +1,10 @@
+#include <snug/query/convergence.h>
 #include <snug/query/printed_pair_test.h>
+#include <snug/query/tightness.h>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -18,7 +21,17 @@ struct Options : CommonOptions {
   std::string name;
   std::uint64_t pairs = 20'000;
   std::uint64_t seed = 1;
+  std::optional<std::size_t> nets;  // each experiment has its own default
+  unsigned levels = RateOptions{}.levels;
+  int samples = TightnessOptions{}.steps;
 };
+
+// The fields that all experiments begin with.
+JsonWriter& begin_rows(Report& report, const Options& options) {
+  JsonWriter& json = report.write();
+  for (const char* none : {"mesh", "scheme"}) json.key(none).begin_array().end_array();
+  return json.field("name", options.name).field("seed", options.seed);
+}
 
 // How often each test called a pair separated that must not be.
 struct PairRow {
@@ -57,10 +70,6 @@ std::vector<PairRow> measure_pairs(const Options& options, const WorkMonitor& mo
 }
 
 ExitStatus pair_test(const Options& options) {
-  if (!options.output.empty() && options.output != "-" && !options.output.ends_with(".json")) {
-    throw UsageError("experiment: '" + options.output +
-                     "' does not end in .json; the rows are written as JSON");
-  }
   Report report("experiment", options);
   std::vector<PairRow> rows;
   {
@@ -68,9 +77,8 @@ ExitStatus pair_test(const Options& options) {
     rows = measure_pairs(options, bar.monitor());
   }
   if (report.json()) {
-    JsonWriter& json = report.write();
-    for (const char* none : {"mesh", "scheme"}) json.key(none).begin_array().end_array();
-    json.field("name", options.name).field("seed", options.seed).key("rows").begin_array();
+    JsonWriter& json = begin_rows(report, options);
+    json.key("rows").begin_array();
     for (const PairRow& row : rows) {
       json.begin_object().field("family", row.family).field("pairs", row.pairs);
       json.field("called_separated", row.called_separated).field("share", row.share());
@@ -93,21 +101,136 @@ ExitStatus pair_test(const Options& options) {
   return ExitStatus::answered;
 }
 
+const char* layout_of(const BoundSource& source) {
+  return source == TableLayout::characteristic ? "characteristic" : "ngon";
+}
+
+const char* bounds_of(const BoundSource& source) { return source ? "table" : "rows"; }
+
+void write_source(JsonWriter& json, const BoundSource& source) {
+  json.field("bounds", bounds_of(source)).key("layout");
+  if (source) {
+    json.value(layout_of(source));
+  } else {
+    json.null();
+  }
+}
+
+std::string text_of(const BoundSource& source) {
+  return source ? fmt::format("table, {}", layout_of(source)) : "rows";
+}
+
+ExitStatus rates(const Options& options) {
+  Report report("experiment", options);
+  RateOptions wanted;
+  wanted.nets = options.nets.value_or(wanted.nets);
+  wanted.levels = options.levels;
+  wanted.seed = options.seed;
+  wanted.threads = options.threads;
+  std::vector<RateRow> rows;
+  {
+    ProgressBar bar("splitting nets", options.quiet);
+    rows = measure_rates(wanted, bar.monitor());
+  }
+  if (report.json()) {
+    JsonWriter& json = begin_rows(report, options);
+    json.field("nets", wanted.nets).field("levels", wanted.levels).key("rows").begin_array();
+    for (const RateRow& row : rows) {
+      const CornerEigenvalues eigenvalues = corner_eigenvalues(row.valence);
+      json.begin_object().field("valence", row.valence);
+      write_source(json, row.source);
+      json.field("measure", name_of(row.measure)).key("thickness").begin_array();
+      for (const double t : row.thickness) json.value(t);
+      json.end_array().field("factor", row.factor).field("expected", row.expected);
+      json.field("subdominant", eigenvalues.subdominant).field("next", eigenvalues.next).end_object();
+    }
+    json.end_array();
+  }
+  report.text("thickness at an extraordinary corner, the factor a level: measured (theory)");
+  std::string line = fmt::format("{:>7}  {:<22}", "valence", "bounds");
+  for (const ThicknessMeasure m : all_thickness_measures) line += fmt::format("  {:<17}", name_of(m));
+  report.text(line);
+  for (std::size_t i = 0; i < rows.size(); i += all_thickness_measures.size()) {
+    line = fmt::format("{:>7}  {:<22}", rows[i].valence, text_of(rows[i].source));
+    for (std::size_t m = 0; m < all_thickness_measures.size(); ++m) {
+      line += fmt::format("  {:.4f} ({:.4f})  ", rows[i + m].factor, rows[i + m].expected);
+    }
+    report.text(line);
+  }
+  report.finish();
+  return ExitStatus::answered;
+}
+
+ExitStatus tightness(const Options& options) {
+  Report report("experiment", options);
+  TightnessOptions wanted;
+  wanted.nets = options.nets.value_or(wanted.nets);
+  wanted.steps = options.samples;
+  wanted.seed = options.seed;
+  wanted.threads = options.threads;
+  std::vector<TightnessRow> rows;
+  {
+    ProgressBar bar("measuring patches", options.quiet);
+    rows = measure_tightness(wanted, bar.monitor());
+  }
+  if (report.json()) {
+    JsonWriter& json = begin_rows(report, options);
+    json.field("nets", wanted.nets).field("samples", wanted.steps).key("rows").begin_array();
+    for (const TightnessRow& row : rows) {
+      json.begin_object().field("shape", name_of(row.shape)).field("valence", row.valence);
+      write_source(json, row.source);
+      json.field("patches", row.patches).field("median", row.median).field("high", row.high);
+      json.field("most", row.most).field("over_rows", row.over_rows).end_object();
+    }
+    json.end_array();
+  }
+  report.text("radius over the least possible for the same base triangle; over that of rows");
+  report.text(fmt::format("{:<6} {:>7}  {:<22} {:>7} {:>8} {:>8} {:>8} {:>9}", "nets", "valence", "bounds",
+                          "patches", "median", "95 %", "most", "over rows"));
+  for (const TightnessRow& row : rows) {
+    report.text(fmt::format("{:<6} {:>7}  {:<22} {:>7} {:>8.4f} {:>8.4f} {:>8.4f} {:>9.3f}",
+                            name_of(row.shape), row.valence, text_of(row.source), row.patches, row.median,
+                            row.high, row.most, row.over_rows));
+  }
+  report.finish();
+  return ExitStatus::answered;
+}
+
+ExitStatus run(const Options& options) {
+  if (options.name == "rates") return rates(options);
+  return options.name == "tightness" ? tightness(options) : pair_test(options);
+}
+
 }  // namespace
 
 Command add_experiment(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("experiment", "A table of the dissertation, measured here");
+  CLI::App* command =
+      app.add_subcommand("experiment", "A table or figure of the dissertation, measured here");
   command
-      ->add_option("NAME", options->name, "pair-test: how often the pair test as printed misses a near pair")
+      ->add_option("NAME", options->name,
+                   "pair-test: how often the pair test as printed misses a near pair; rates: how fast "
+                   "enclosures shrink at an extraordinary corner; tightness: radii over the least possible")
       ->required()
-      ->check(CLI::IsMember({"pair-test"}));
-  command->add_option("--pairs", options->pairs, "Random pairs in all, over three families")
+      ->check(CLI::IsMember({"pair-test", "rates", "tightness"}));
+  command->add_option("--pairs", options->pairs, "pair-test: random pairs in all, over three families")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Seed of the random pairs")->capture_default_str();
+  command
+      ->add_option("--nets", options->nets,
+                   "rates, tightness: nets for each valence (default: 25, and 60 a shape)")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000}));
+  command->add_option("--levels", options->levels, "rates: how often a patch is split")
+      ->check(CLI::Range(4u, 40u))
+      ->capture_default_str();
+  command
+      ->add_option("--samples", options->samples,
+                   "tightness: steps of the lattice of limit points along an edge")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of what is drawn")->capture_default_str();
   add_common_options(*command, *options);
-  return {command, [options] { return pair_test(*options); }};
+  return {command, [options] { return run(*options); }};
 }
 
 }  // namespace snug::command

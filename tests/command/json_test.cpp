@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "run_snug.h"
@@ -129,6 +130,62 @@ TEST(experiment, pair_test_finds_the_printed_test_unsound) {
     EXPECT_EQ(row["rule_a_false"], 0);
   }
   EXPECT_GT(wrong, 200);
+}
+
+// Rows of the experiments say what bounded the patches.
+void expect_source(const json& row) {
+  EXPECT_TRUE(row["valence"].is_number_integer());
+  if (row["bounds"] == "rows") {
+    EXPECT_TRUE(row["layout"].is_null());
+  } else {
+    EXPECT_EQ(row["bounds"], "table");
+    EXPECT_TRUE(row["layout"] == "ngon" || row["layout"] == "characteristic");
+  }
+}
+
+TEST(experiment, rates_fits_a_factor_to_thicknesses) {
+  const json document = answer({"experiment", "rates", "--nets", "3", "--levels", "7", "--seed", "5"});
+  expect_head(document, "experiment");
+  EXPECT_EQ(document["name"], "rates");
+  EXPECT_EQ(document["seed"], 5);
+  EXPECT_EQ(document["nets"], 3);
+  EXPECT_EQ(document["levels"], 7);
+  ASSERT_EQ(document["rows"].size(), 12u * 3 * 3);
+  for (const json& row : document["rows"]) {
+    expect_source(row);
+    EXPECT_TRUE(row["measure"] == "radius" || row["measure"] == "interval" || row["measure"] == "normal");
+    EXPECT_EQ(row["thickness"].size(), 8u);
+    for (const json& t : row["thickness"]) EXPECT_GT(t, 0);
+    EXPECT_NEAR(row["factor"].get<double>(), row["expected"].get<double>(), 0.1);
+    EXPECT_TRUE(row["expected"] == row["subdominant"] || row["expected"] == row["next"]);
+  }
+}
+
+TEST(experiment, tightness_has_quantiles_of_ratios) {
+  const json document = answer({"experiment", "tightness", "--nets", "2", "--samples", "6"});
+  expect_head(document, "experiment");
+  EXPECT_EQ(document["name"], "tightness");
+  EXPECT_EQ(document["nets"], 2);
+  EXPECT_EQ(document["samples"], 6);
+  ASSERT_EQ(document["rows"].size(), 3u * 12 * 3);
+  for (const json& row : document["rows"]) {
+    expect_source(row);
+    EXPECT_TRUE(row["shape"] == "bent" || row["shape"] == "bumpy" || row["shape"] == "flat");
+    EXPECT_EQ(row["patches"], 4);
+    EXPECT_GE(row["median"], 1);
+    EXPECT_GE(row["high"], row["median"]);
+    EXPECT_GE(row["most"], row["high"]);
+    EXPECT_GT(row["over_rows"], 0);
+  }
+}
+
+TEST(experiment, prints_a_table_for_people) {
+  const Outcome rates = run_snug({"experiment", "rates", "--nets", "1", "--levels", "4"});
+  EXPECT_EQ(rates.status, 0) << rates.err;
+  EXPECT_EQ(std::count(rates.out.begin(), rates.out.end(), '\n'), 2 + 12 * 3);
+  const Outcome tightness = run_snug({"experiment", "tightness", "--nets", "1", "--samples", "2"});
+  EXPECT_EQ(tightness.status, 0) << tightness.err;
+  EXPECT_EQ(std::count(tightness.out.begin(), tightness.out.end(), '\n'), 2 + 3 * 12 * 3);
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ TEST(threads, change_nothing) {
   for (const std::vector<std::string>& base :
        {std::vector<std::string>{"bound", model("bust.obj"), "--tolerance", "0.5%", "--json"},
         {"collide", model("bust.obj"), model("pawn.obj"), "--tolerance", "0.1%", "--json"},
-        {"eval", model("head.obj"), "--json"}}) {
+        {"eval", model("head.obj"), "--json"},
+        {"experiment", "rates", "--nets", "4", "--levels", "4", "--json"}}) {
     auto one = base, two = base;
     one.insert(one.end(), {"--threads", "1"});
     two.insert(two.end(), {"--threads", "2"});
@@ -53,7 +54,14 @@ TEST(usage, ends_with_2) {
            {"collide", star, star, "--tolerance", "1%", "--place-b", "1 0 0 x 0 1 0 0 0 0 1 0"},
            {"subdivide", star},
            {"render", star},
-           {"experiment", "nothing"}}) {
+           {"experiment", "nothing"},
+           {"experiment", "rates", "--nets", "0"},
+           {"experiment", "rates", "--nets", "-3"},
+           {"experiment", "rates", "--levels", "3"},
+           {"experiment", "rates", "--levels", "41"},
+           {"experiment", "rates", "--json", "-o", "rates.svg"},
+           {"experiment", "tightness", "--samples", "0"},
+           {"experiment", "tightness", "--seed", "x"}}) {
     const Outcome outcome = run_snug(arguments);
     EXPECT_EQ(outcome.status, 2) << (arguments.empty() ? "" : arguments[0]) << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;

@@ -19,7 +19,8 @@ struct OffsetTriangle {
 /// included.
 ///            base is the triangle of the limit corners, moved to the middle of the hull along its normal;
 ///            one without a normal is not moved. Infinite radius if anything is not finite.
-/// Tightness: the radius is at most 1.06 times the least possible for the same base in the median (measured).
+/// Tightness: the radius is at most 1.08 times the least possible for the same base in the median, but for
+///            nearly flat patches with an extraordinary corner of valence above 6 (docs/convergence.md).
 /// Requires:  corners: limit positions of the patch's corners, relative to points.origin.
 /// Cost:      about 15 ns a hull point.
 /// Source:    [Wu05, eq. 5.1, 5.2]; differs: fitted to hull rows instead of corner boxes,

@@ -1,0 +1,287 @@
+#!/usr/bin/env python3
+"""Plots and tables of docs/convergence.md from the documents of `snug experiment rates` and `snug experiment tightness`.
+
+usage: plot_experiments.py RATES.json TIGHTNESS.json PAGE.md PICTURES
+Writes PICTURES/rates.svg, factors.svg and tightness.svg, and puts the tables between the marks `<!-- table: NAME -->` and
+`<!-- end -->` of the page. Plain SVG, no packages.
+"""
+
+import json
+import math
+import pathlib
+import re
+import sys
+
+# One look for each source of bounds: colour-blind safe, and told apart by its mark as well.
+SOURCES = {
+    ("rows", None): ("hull rows", "#0072b2", "circle"),
+    ("table", "ngon"): ("table, n-gon", "#d55e00", "square"),
+    ("table", "characteristic"): ("table, characteristic", "#009e73", "triangle"),
+}
+GREY, BLACK = "#777777", "#222222"
+PANELS = (3, 5, 6, 8, 12, 50)
+
+
+def source(row):
+    return row["bounds"], row["layout"]
+
+
+class Picture:
+    """An SVG drawing; y grows downwards."""
+
+    def __init__(self, width, height, title):
+        self.parts = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" '
+                      f'height="{height}" font-family="DejaVu Sans, Helvetica, Arial, sans-serif" font-size="12">',
+                      f"<title>{title}</title>", f'<rect width="{width}" height="{height}" fill="#ffffff"/>']
+
+    def line(self, x1, y1, x2, y2, colour=BLACK, width=1, dash=None):
+        dashed = f' stroke-dasharray="{dash}"' if dash else ""
+        self.parts.append(f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" stroke="{colour}" '
+                          f'stroke-width="{width}"{dashed}/>')
+
+    def path(self, points, colour, width=1.5, dash=None):
+        dashed = f' stroke-dasharray="{dash}"' if dash else ""
+        where = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+        self.parts.append(f'<polyline points="{where}" fill="none" stroke="{colour}" stroke-width="{width}"{dashed}/>')
+
+    def mark(self, shape, x, y, colour, size=3.2, hollow=False):
+        look = f'fill="{"#ffffff" if hollow else colour}" stroke="{colour}" stroke-width="1.2"'
+        if shape == "circle":
+            self.parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{size:.1f}" {look}/>')
+        elif shape == "square":
+            self.parts.append(f'<rect x="{x - size:.1f}" y="{y - size:.1f}" width="{2 * size:.1f}" '
+                              f'height="{2 * size:.1f}" {look}/>')
+        else:
+            self.parts.append(f'<path d="M{x:.1f} {y - 1.2 * size:.1f}l{1.15 * size:.1f} {2.1 * size:.1f}'
+                              f'h{-2.3 * size:.1f}z" {look}/>')
+
+    def text(self, x, y, words, anchor="start", colour=BLACK, size=12, turned=False, bold=False):
+        turn = f' transform="rotate(-90 {x:.1f} {y:.1f})"' if turned else ""
+        weight = ' font-weight="bold"' if bold else ""
+        self.parts.append(f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" fill="{colour}" '
+                          f'font-size="{size}"{weight}{turn}>{words}</text>')
+
+    def save(self, path):
+        path.write_text("\n".join(self.parts + ["</svg>", ""]), encoding="utf-8")
+
+
+class Axes:
+    """A frame of a picture. `x` and `y` are (low, high); y may be logarithmic."""
+
+    def __init__(self, picture, box, x, y, logarithmic):
+        self.picture, self.box, self.x, self.y, self.logarithmic = picture, box, x, y, logarithmic
+        left, top, width, height = box
+        picture.parts.append(f'<rect x="{left}" y="{top}" width="{width}" height="{height}" fill="none" '
+                             f'stroke="{BLACK}"/>')
+
+    def at(self, x, y):
+        left, top, width, height = self.box
+        low, high, value = (math.log10(v) for v in (*self.y, y)) if self.logarithmic else (*self.y, y)
+        return (left + width * (x - self.x[0]) / (self.x[1] - self.x[0]),
+                top + height * (1 - (value - low) / (high - low)))
+
+    def ticks_x(self, ticks):
+        for value, words in ticks:
+            x, bottom = self.at(value, self.y[0])
+            self.picture.line(x, bottom, x, bottom + 4)
+            self.picture.text(x, bottom + 17, words, "middle")
+
+    def ticks_y(self, ticks, labels=True):
+        for value, words in ticks:
+            left, y = self.at(self.x[0], value)
+            right, _ = self.at(self.x[1], value)
+            self.picture.line(left, y, right, y, "#dddddd", 0.8)
+            self.picture.line(left - 4, y, left, y)
+            if labels:
+                self.picture.text(left - 7, y + 4, words, "end")
+
+    def title(self, words):
+        left, top, width, _ = self.box
+        self.picture.text(left + width / 2, top - 7, words, "middle", bold=True)
+
+    def label_x(self, words):
+        left, top, width, height = self.box
+        self.picture.text(left + width / 2, top + height + 35, words, "middle")
+
+    def label_y(self, words, distance=48):
+        left, top, _, height = self.box
+        self.picture.text(left - distance, top + height / 2, words, "middle", turned=True)
+
+
+def power(exponent):
+    return f'10<tspan dy="-5" font-size="9">{str(exponent).replace("-", chr(0x2212))}</tspan>'
+
+
+def legend(picture, x, y, entries, step):
+    for i, (draw, words) in enumerate(entries):
+        draw(x + i * step, y)
+        picture.text(x + i * step + 32, y + 4, words)
+
+
+def source_entry(picture, key, dash=None, hollow=False):
+    _, colour, shape = SOURCES[key]
+
+    def draw(x, y):
+        picture.line(x, y, x + 26, y, colour, 1.5, dash)
+        picture.mark(shape, x + 13, y, colour, hollow=hollow)
+    return draw
+
+
+def plain_entry(picture, dash, colour=GREY):
+    return lambda x, y: picture.line(x, y, x + 26, y, colour, 1.3, dash)
+
+
+def plot_rates(rows, path):
+    picture = Picture(940, 720, "Radius at an extraordinary corner, level by level")
+    levels = max(len(row["thickness"]) for row in rows) - 1
+    low, high = -9, 0
+    for i, valence in enumerate(PANELS):
+        box = (75 + 290 * (i % 3), 75 + 320 * (i // 3), 260, 255)
+        axes = Axes(picture, box, (0, levels), (10.0 ** low, 10.0 ** high), True)
+        axes.ticks_y([(10.0 ** e, power(e)) for e in range(low, high + 1)], i % 3 == 0)
+        axes.ticks_x([(k, str(k)) for k in range(0, levels + 1, 2)])
+        axes.title(f"valence {valence}" + (" (regular)" if valence == 6 else ""))
+        mine = [row for row in rows if row["valence"] == valence]
+        radii = {source(row): row for row in mine if row["measure"] == "radius"}
+        across = next(row for row in mine if row["measure"] == "normal" and source(row) == ("rows", None))
+
+        def clipped(values):
+            return [axes.at(k, v) for k, v in enumerate(values) if v >= axes.y[0]]
+
+        # Theory: through the last measured radius of each layout.
+        for key, dash in ((("table", "ngon"), "7 4"), (("table", "characteristic"), "2 3")):
+            row = radii[key]
+            last = len(row["thickness"]) - 1
+            picture.path(clipped([0.35 * row["thickness"][last] * row["expected"] ** (k - last)
+                                  for k in range(last + 1)]), GREY, 1.3, dash)
+        picture.path(clipped(across["thickness"]), SOURCES["rows", None][1], 1.2, "4 3")
+        for x, y in clipped(across["thickness"]):
+            picture.mark("circle", x, y, SOURCES["rows", None][1], 2.6, hollow=True)
+        for key, (_, colour, shape) in SOURCES.items():
+            points = clipped(radii[key]["thickness"])
+            picture.path(points, colour)
+            for x, y in points:
+                picture.mark(shape, x, y, colour, 2.8)
+        if i % 3 == 0:
+            axes.label_y("thickness (spokes of length 1)")
+        axes.label_x("level" if i >= 3 else "")
+    legend(picture, 75, 20, [(source_entry(picture, key), f"radius, {SOURCES[key][0]}") for key in SOURCES], 275)
+    picture_rows = [(source_entry(picture, ("rows", None), "4 3", True), "slab along the normal, hull rows"),
+                    (plain_entry(picture, "7 4"), "slope of theory, n-gon"),
+                    (plain_entry(picture, "2 3"), "slope of theory, characteristic")]
+    legend(picture, 75, 42, picture_rows, 275)
+    picture.save(path)
+
+
+def plot_factors(rows, path):
+    picture = Picture(940, 420, "Factor a level by which enclosures shrink, over the valence")
+    valences = sorted({row["valence"] for row in rows})
+    for i, (measure, title) in enumerate((("radius", "radius of the offset triangle"),
+                                          ("normal", "slab along the limit normal"))):
+        box = (75 + 450 * i, 75, 390, 285)
+        axes = Axes(picture, box, (-0.5, len(valences) - 0.5), (0.1, 0.65), False)
+        axes.ticks_y([(k / 10, f"{k / 10:.1f}") for k in range(1, 7)])
+        axes.ticks_x([(k, str(v)) for k, v in enumerate(valences)])
+        axes.title(title)
+        axes.label_x("valence")
+        first = {v: next(row for row in rows if row["valence"] == v) for v in valences}
+        for field, dash in (("subdominant", "7 4"), ("next", "2 3")):
+            picture.path([axes.at(k, first[v][field]) for k, v in enumerate(valences)], GREY, 1.3, dash)
+        for s, (key, (_, colour, shape)) in enumerate(SOURCES.items()):
+            for row in rows:
+                if row["measure"] == measure and source(row) == key:
+                    x, y = axes.at(valences.index(row["valence"]) + 0.17 * (s - 1), row["factor"])
+                    picture.mark(shape, x, y, colour)
+        if i == 0:
+            axes.label_y("factor a level")
+    entries = [((lambda x, y, key=key: picture.mark(SOURCES[key][2], x + 18, y, SOURCES[key][1])), SOURCES[key][0])
+               for key in SOURCES]
+    entries += [(plain_entry(picture, "7 4"), "subdominant"), (plain_entry(picture, "2 3"), "next eigenvalue")]
+    legend(picture, 75, 25, entries, 172)
+    picture.save(path)
+
+
+def plot_tightness(rows, path):
+    picture = Picture(940, 420, "Radius over the least possible, by valence")
+    valences = sorted({row["valence"] for row in rows})
+    top = 10 ** math.ceil(math.log10(max(row["most"] for row in rows)))
+    steps = [value * 10 ** e for e in range(3) for value in (1, 2, 5) if value * 10 ** e <= top]
+    for i, shape in enumerate(("bent", "bumpy", "flat")):
+        box = (65 + 295 * i, 75, 275, 285)
+        axes = Axes(picture, box, (-0.5, len(valences) - 0.5), (0.9, top), True)
+        axes.ticks_y([(s, str(s)) for s in steps], i == 0)
+        axes.ticks_x([(k, str(v)) for k, v in enumerate(valences)])
+        axes.title({"bent": "bent nets", "bumpy": "bumpy nets", "flat": "nearly flat nets"}[shape])
+        axes.label_x("valence")
+        for s, (key, (_, colour, mark)) in enumerate(SOURCES.items()):
+            for row in rows:
+                if row["shape"] != shape or source(row) != key or row["patches"] == 0:
+                    continue
+                k = valences.index(row["valence"]) + 0.26 * (s - 1)
+                x, y = axes.at(k, row["median"])
+                _, high = axes.at(k, row["high"])
+                _, most = axes.at(k, row["most"])
+                picture.line(x, y, x, most, colour, 0.8)
+                picture.line(x, y, x, high, colour, 2.2)
+                picture.line(x - 2.5, most, x + 2.5, most, colour, 0.8)
+                picture.mark(mark, x, y, colour, 2.8)
+        if i == 0:
+            axes.label_y("radius / least radius", 40)
+    legend(picture, 65, 25, [(source_entry(picture, key), SOURCES[key][0]) for key in SOURCES], 190)
+    picture.text(645, 29, "mark: median, thick: to 95 %, thin: to the worst", size=11)
+    picture.save(path)
+
+
+def table(head, lines):
+    return "\n".join(["| " + " | ".join(cells) + " |" for cells in (head, ["---"] * len(head), *lines)])
+
+
+def factor_table(rows, measure):
+    lines = []
+    for valence in sorted({row["valence"] for row in rows}):
+        mine = {source(row): row for row in rows if row["valence"] == valence and row["measure"] == measure}
+        cells = [str(valence)]
+        for key in SOURCES:
+            cells += [f"{mine[key]['factor']:.3f}", f"{mine[key]['expected']:.3f}"]
+        lines.append(cells)
+    return table(["valence"] + [words for key in SOURCES for words in (SOURCES[key][0], "theory")], lines)
+
+
+def tightness_table(rows, shape):
+    lines = []
+    for valence in sorted({row["valence"] for row in rows}):
+        mine = {source(row): row for row in rows if row["valence"] == valence and row["shape"] == shape}
+        cells = [str(valence)]
+        for key in SOURCES:
+            cells += [f"{mine[key][field]:.3f}" if key[0] == "rows" else f"{mine[key][field]:.2f}"
+                      for field in ("median", "high", "most")]
+        cells += [f"{mine[key]['over_rows']:.2f}" for key in SOURCES if key[0] == "table"]
+        lines.append(cells)
+    head = ["valence"]
+    for key in SOURCES:
+        head += [f"{SOURCES[key][0]}: median", "95 %", "worst"]
+    return table(head + ["n-gon over rows", "characteristic over rows"], lines)
+
+
+def main():
+    if len(sys.argv) != 5:
+        sys.exit(__doc__)
+    rates, tightness = (json.loads(pathlib.Path(name).read_text(encoding="utf-8"))["rows"] for name in sys.argv[1:3])
+    page, pictures = pathlib.Path(sys.argv[3]), pathlib.Path(sys.argv[4])
+    plot_rates(rates, pictures / "rates.svg")
+    plot_factors(rates, pictures / "factors.svg")
+    plot_tightness(tightness, pictures / "tightness.svg")
+    tables = {f"factors {measure}": factor_table(rates, measure) for measure in ("radius", "interval", "normal")}
+    tables |= {f"tightness {shape}": tightness_table(tightness, shape) for shape in ("bent", "bumpy", "flat")}
+    text = page.read_text(encoding="utf-8")
+    for name, lines in tables.items():
+        mark = f"<!-- table: {name} -->"
+        if mark not in text:
+            sys.exit(f"{page}: no place for the table '{name}'")
+        text = re.sub(re.escape(mark) + r".*?<!-- end -->", lambda _, new=f"{mark}\n\n{lines}\n\n<!-- end -->": new,
+                      text, count=1, flags=re.DOTALL)
+    page.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

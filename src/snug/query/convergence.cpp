@@ -1,0 +1,169 @@
+#include <snug/query/convergence.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <snug/base/contract.h>
+#include <snug/base/parallel.h>
+#include <snug/base/quantile.h>
+#include <snug/enclose/interval_triangle.h>
+#include <snug/enclose/table_triangle.h>
+#include <snug/patch/evaluate.h>
+#include <snug/scheme/loop_masks.h>
+
+namespace snug {
+namespace {
+
+// Axes of which the third is a normal.
+struct Frame {
+  Vector3 one, two, normal;
+  explicit Frame(const Vector3& n) : normal(n) {
+    const Vector3 other = std::fabs(n.x) < 0.6 ? Vector3{1, 0, 0} : Vector3{0, 1, 0};
+    one = cross(n, other);
+    one = (1 / length(one)) * one;
+    two = cross(n, one);
+  }
+  [[nodiscard]] Vector3 turned(const Vector3& v) const { return {dot(one, v), dot(two, v), dot(normal, v)}; }
+};
+
+// The patch in other axes about its origin. Its error is not carried over: what comes of it is no bound.
+Patch turned(const Patch& patch, const Frame& frame) {
+  Patch result = patch;
+  result.origin = {};
+  result.largest = 0;
+  for (Vector3& p : result.points) {
+    p = frame.turned(p);
+    result.largest = std::max(result.largest, max_abs(p));
+  }
+  return result;
+}
+
+struct PieceThickness {
+  std::array<double, 3> value;  // a ThicknessMeasure
+  double rounding;
+};
+
+PieceThickness by_rows(BoundLibrary& library, const Patch& patch, const Vector3& normal, HullPoints& points) {
+  hull_points(library.rows(*patch.kind), patch, points);
+  std::array<Vector3, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k) corners[k] = corner_point(patch, k).relative;
+  const OffsetTriangle offset = offset_triangle(points, corners);
+  const Slab slab = outer_slab(points, normal);
+  return {{offset.radius, thickness(interval_triangle(points, corners)), slab.upper - slab.lower},
+          offset.rounding};
+}
+
+PieceThickness by_table(const BoundTable& table, const Patch& patch, const Vector3& normal) {
+  const TableTriangle triangle = table_triangle(table, patch);
+  const OffsetTriangle offset = offset_triangle(triangle);
+  double lower = INFINITY, upper = -INFINITY;
+  for (const Box3& box : table_triangle(table, turned(patch, Frame(normal))).interval.corner) {
+    lower = std::min(lower, box.lower.z);
+    upper = std::max(upper, box.upper.z);
+  }
+  return {{offset.radius, thickness(triangle.interval), upper - lower}, offset.rounding};
+}
+
+}  // namespace
+
+CornerEigenvalues corner_eigenvalues(std::size_t n) {
+  SNUG_EXPECT(n >= 3);
+  const double subdominant = loop::subdominant(n);
+  if (n == 3) return {subdominant, 0.125};  // the Fourier block of index 2 is that of index 1
+  // cos 2x = 2 cos(x)^2 - 1
+  const double c = 4 * subdominant - 1.5;
+  return {subdominant, std::max(subdominant * subdominant, 0.375 + 0.25 * (2 * c * c - 1))};
+}
+
+const char* name_of(ThicknessMeasure measure) {
+  switch (measure) {
+    case ThicknessMeasure::radius:
+      return "radius";
+    case ThicknessMeasure::interval:
+      return "interval";
+    default:
+      return "normal";
+  }
+}
+
+std::array<Thicknesses, 3> corner_thicknesses(const Surface& surface, FaceId f, BoundSource source,
+                                              unsigned levels) {
+  Patch patch = surface.patch(f);
+  const std::optional<Vector3> normal = limit_frame(patch, {0, 0}).normal;
+  SNUG_EXPECT(normal.has_value());
+  const PowerOfTwo back = surface.scale().inverse();
+  BoundLibrary& library = surface.library();
+  std::array<Thicknesses, 3> result;
+  HullPoints points;
+  for (unsigned level = 0;; ++level) {
+    const PieceThickness piece = source ? by_table(library.table(*patch.kind, *source), patch, *normal)
+                                        : by_rows(library, patch, *normal, points);
+    for (std::size_t m = 0; m < 3; ++m) {
+      const bool ended = result[m].size() < level;
+      if (!ended && piece.value[m] > 1000 * piece.rounding) result[m].push_back(back.apply(piece.value[m]));
+    }
+    if (level == levels) return result;
+    patch = split(patch, 0);
+  }
+}
+
+double fitted_factor(std::span<const double> values) {
+  SNUG_EXPECT(values.size() >= 3);
+  const std::size_t first = values.size() / 2;
+  const auto count = static_cast<double>(values.size() - first);
+  const double middle = (count - 1) / 2;
+  double sum = 0, squares = 0;
+  for (std::size_t i = first; i < values.size(); ++i) {
+    const double x = static_cast<double>(i - first) - middle;
+    sum += x * std::log(values[i]);
+    squares += x * x;
+  }
+  return std::exp(sum / squares);
+}
+
+double expected_factor(std::size_t n, BoundSource source, ThicknessMeasure measure) {
+  const CornerEigenvalues eigenvalues = corner_eigenvalues(n);
+  const bool affine_part_vanishes =
+      n == 6 || measure == ThicknessMeasure::normal || source == TableLayout::characteristic;
+  return affine_part_vanishes ? eigenvalues.next : eigenvalues.subdominant;
+}
+
+std::vector<RateRow> measure_rates(const RateOptions& options, const WorkMonitor& monitor) {
+  SNUG_EXPECT(options.nets >= 1 && options.levels >= 4);
+  const auto library = std::make_shared<BoundLibrary>();
+  std::vector<RateRow> rows;
+  for (std::size_t v = 0; v < experiment_valences.size(); ++v) {
+    monitor.report(static_cast<double>(v) / static_cast<double>(experiment_valences.size()));
+    const std::size_t n = experiment_valences[v];
+    // A net, a source, a measure.
+    std::vector<std::array<std::array<Thicknesses, 3>, 3>> all(options.nets);
+    parallel_for(options.nets, options.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t net = begin; net < end; ++net) {
+        monitor.checkpoint();
+        const Surface surface(corner_net(NetShape::bent, n, options.seed + net), {}, library, 1);
+        for (std::size_t s = 0; s < all_bound_sources.size(); ++s) {
+          all[net][s] = corner_thicknesses(surface, FaceId(0), all_bound_sources[s], options.levels);
+        }
+      }
+    });
+    for (std::size_t s = 0; s < all_bound_sources.size(); ++s) {
+      for (std::size_t m = 0; m < all_thickness_measures.size(); ++m) {
+        RateRow row{n, all_bound_sources[s], all_thickness_measures[m], {}, 0, 0};
+        std::size_t levels = options.levels + 1;
+        for (const auto& net : all) levels = std::min(levels, net[s][m].size());
+        for (std::size_t level = 0; level < levels; ++level) {
+          std::vector<double> values;
+          for (const auto& net : all) values.push_back(net[s][m][level]);
+          row.thickness.push_back(quantile(std::move(values), 0.5));
+        }
+        row.factor = fitted_factor(row.thickness);
+        row.expected = expected_factor(n, row.source, row.measure);
+        rows.push_back(std::move(row));
+      }
+    }
+  }
+  return rows;
+}
+
+}  // namespace snug
