@@ -6,6 +6,19 @@
 namespace snug {
 namespace {
 
+// How far the hull reaches behind the corners of a patch, as a share of its size: beyond each corner along the line from
+// the middle of the opposite edge.
+double distance_behind(const std::array<Vector3, 3>& corners, const HullPoints& points) {
+  double most = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3 axis = corners[k] - 0.5 * (corners[(k + 1) % 3] + corners[(k + 2) % 3]);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      most = std::max(most, dot(points.at(i) - corners[k], axis) / dot(axis, axis));
+    }
+  }
+  return most;
+}
+
 // Samples of a patch lie in its box and in its slab along any direction, for rows and for control points.
 TEST(outer_box_and_slab, contain_the_limit_patch) {
   std::mt19937_64 random(18);
@@ -45,6 +58,41 @@ TEST(hull_rows, are_far_tighter_than_the_control_points) {
   hull_points(surface.library().rows(*patch.kind), patch, rows);
   control_points(patch, control);
   EXPECT_LT(2 * outer_box(rows).longest_side(), outer_box(control).longest_side());
+}
+
+// Seen from the limit, a patch fills a sector at its extraordinary corner, but the net of the tip all around it.
+TEST(refine_tip, leaves_the_patch_inside_and_cuts_what_lies_behind_its_corner) {
+  for (const std::uint32_t n : {3u, 5u, 7u, 9u, 30u}) {
+    const Surface surface = testing::surface_of(oracle::meshes::bipyramid(n));
+    BoundLibrary& library = surface.library();
+    const Patch patch = surface.patch(FaceId(0));
+    HullPoints points;
+    hull_points(library.rows(*patch.kind), patch, points);
+    std::size_t tips = 0;
+    while (tips < 3 && points.tips[tips].kind) ++tips;
+    for (std::size_t i = 0; i < 2 * tips; ++i) {
+      const Box3 before = outer_box(points);
+      refine_tip(library, i % tips, points);
+      const Box3 after = outer_box(points);
+      for (std::size_t a = 0; a < 3; ++a) {
+        EXPECT_GE(after.lower[a], before.lower[a] - 2 * points.error);
+        EXPECT_LE(after.upper[a], before.upper[a] + 2 * points.error);
+      }
+    }
+    const Box3 box = outer_box(points);
+    for (int i = 0; i <= 16; ++i) {
+      for (int j = 0; i + j <= 16; ++j) {
+        const LimitPoint at = limit_point(patch, {i / 16.0, j / 16.0});
+        for (std::size_t a = 0; a < 3; ++a) {
+          EXPECT_GE(patch.origin[a] + at.relative[a], box.lower[a] - at.error) << n;
+          EXPECT_LE(patch.origin[a] + at.relative[a], box.upper[a] + at.error) << n;
+        }
+      }
+    }
+    const std::array<Vector3, 3> corners = limit_corners(patch);
+    const double left = distance_behind(corners, points);
+    EXPECT_LT(left, 1e-4) << n;
+  }
 }
 
 }  // namespace

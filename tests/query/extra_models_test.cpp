@@ -57,6 +57,8 @@ TEST(extra_models, limit_points_lie_inside_their_enclosures) {
       points += check(surface, options, samples, path);
       options.tolerance = 0.01 * surface.size();
       points += check(surface, options, samples, path);
+      options.method = BoundMethod::table;
+      points += check(surface, options, samples, path);
       ++accepted;
     } catch (const InputError&) {
       ++refused;

@@ -99,8 +99,8 @@ Enclosures enclosures_of(const Surface& surface, const Patch& patch, const Sourc
   HullPoints points;
   hull_points(surface.library().rows(*patch.kind), patch, points);
   const auto corners = limit_corners(patch);
-  return {unscaled(offset_triangle(points, corners), back),
-          unscaled(interval_triangle(points, corners), back)};
+  const OffsetTriangle offset = offset_triangle(surface.library(), points, corners);
+  return {unscaled(offset, back), unscaled(interval_triangle(points, corners), back)};
 }
 
 class Checker {

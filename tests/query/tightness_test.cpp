@@ -59,7 +59,7 @@ TEST(tightness, finds_the_height_of_a_triangle_over_a_flat_patch) {
   const Surface surface = surface_of_net(fan_mesh(6, 2));
   const Patch patch = surface.patch(FaceId(0));
   const LimitLattice lattice(patch, 8);
-  const auto corners = testing::limit_corners(patch);
+  const auto corners = limit_corners(patch);
   Triangle base;
   for (std::size_t k = 0; k < 3; ++k) base[k] = patch.origin + corners[k] + Vector3{0, 0, 0.375};
   EXPECT_NEAR(lattice.least_radius(base), 0.375, 1e-14);
@@ -83,14 +83,14 @@ TEST(tightness, searches_between_the_points_of_the_lattice) {
   }
 }
 
-// docs/convergence.md: why radii of hull rows shrink by the subdominant eigenvalue only.
+// docs/convergence.md: why radii of hull rows shrink by the subdominant eigenvalue only below valence six.
 TEST(tightness, flat_patches_bulge_beyond_their_corners_below_valence_six_and_not_above) {
   HullPoints scratch;
   for (const std::size_t n : experiment_valences) {
     const Surface surface = surface_of_net(fan_mesh(n, 2));
     Patch patch = surface.patch(FaceId(0));
     for (int level = 0; level < 6; ++level) patch = split(patch, 0);
-    const auto corners = testing::limit_corners(patch);
+    const auto corners = limit_corners(patch);
     const double edge = length(corners[1] - corners[0]);
     const OffsetTriangle offset = make_piece(surface.library(), FaceId(0), patch, scratch).offset;
     const double bulge = LimitLattice(patch, 64).least_radius(offset.base) / edge;
@@ -100,8 +100,7 @@ TEST(tightness, flat_patches_bulge_beyond_their_corners_below_valence_six_and_no
       EXPECT_NEAR(radius, bulge, 1e-4) << n;
     } else {
       EXPECT_LT(bulge, 1e-9) << n;
-      EXPECT_LT(radius, 0.007) << n;
-      EXPECT_GT(radius, n == 6 ? 0 : 0.0005) << n;
+      EXPECT_LT(radius, 1e-6) << n;
     }
   }
 }
@@ -121,9 +120,9 @@ TEST(tightness, rows_are_near_the_least_on_bent_nets_and_nearer_than_tables) {
     if (!row.source) {
       EXPECT_EQ(row.over_rows, 1);
     }
-    // The tip's net sticks out at corners of higher valence only, and shows where little else does.
-    if (row.shape == NetShape::flat && !row.source && row.valence <= 12) {
-      EXPECT_EQ(row.median > 2, row.valence > 6) << row.valence;
+    // The tip's net sticks out at corners of higher valence, and would show where little else does.
+    if (row.shape == NetShape::flat && !row.source) {
+      EXPECT_LT(row.median, 1.15) << row.valence;
     }
     if (row.shape == NetShape::bent) {
       EXPECT_LT(row.median, row.source ? 8 : 1.06) << row.valence;

@@ -9,7 +9,7 @@ namespace snug {
 
 const BoundRows& BoundLibrary::rows(const Kind& kind) {
   return rows_.get(kind.id(), [&] {
-    std::optional<BoundRows> shipped = ShippedBounds::compiled_in().rows(kind.key());
+    std::optional<BoundRows> shipped = ShippedBounds::compiled_in().rows(kind);
     return shipped ? *std::move(shipped) : make_bound_rows(kind);
   });
 }

@@ -34,6 +34,12 @@ DenseRows identity(std::size_t count) {
   return rows;
 }
 
+void append_all(const DenseRows& from, DenseRows& to) {
+  to.entries.insert(to.entries.end(), from.entries.begin(), from.entries.end());
+  to.errors.insert(to.errors.end(), from.errors.begin(), from.errors.end());
+  to.abs_sums.insert(to.abs_sums.end(), from.abs_sums.begin(), from.abs_sums.end());
+}
+
 // The chosen rows of stencils * net, appended to out.
 //
 // For a row sum_k a_k N_k with a_k off by d_k and N_k off by e_k:  the sum of entries' errors is at most
@@ -104,7 +110,7 @@ class Collector {
       return;
     }
     if (depth >= depth_limit(kind)) {
-      append_all(net);
+      append_all(net, tips_);
       return;
     }
     const auto& children = kind.children();
@@ -130,7 +136,11 @@ class Collector {
     }
   }
 
-  [[nodiscard]] DenseRows take() { return std::move(rows_); }
+  // Tips last.
+  [[nodiscard]] DenseRows take() {
+    append_all(tips_, rows_);
+    return std::move(rows_);
+  }
 
  private:
   static unsigned depth_limit(const Kind& kind) {
@@ -141,13 +151,7 @@ class Collector {
     return depth;
   }
 
-  void append_all(const DenseRows& net) {
-    rows_.entries.insert(rows_.entries.end(), net.entries.begin(), net.entries.end());
-    rows_.errors.insert(rows_.errors.end(), net.errors.begin(), net.errors.end());
-    rows_.abs_sums.insert(rows_.abs_sums.end(), net.abs_sums.begin(), net.abs_sums.end());
-  }
-
-  DenseRows rows_;
+  DenseRows rows_, tips_;
   std::array<DenseRows, 2> nets_;  // of pieces at odd depths and at even ones
 };
 
@@ -157,6 +161,20 @@ double BoundRows::result_error(double largest, double error) const {
   return enlarged((gamma_bound(control_count_) * abs_sum_ + entry_error_) * largest +
                   (abs_sum_ + entry_error_) * error) +
          3 * static_cast<double>(control_count_) * underflow_error;
+}
+
+void BoundRows::find_tips(const Kind& kind) {
+  tips_ = {};
+  if (kind.polynomial()) return;
+  std::size_t found = 0, end = 0;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    // A tip's corners but this one are regular: its own tip is of the same kind.
+    const Kind& tip = *kind.children()[corner].kind;
+    if (tip.polynomial()) continue;
+    tips_[found++] = {&tip, end};
+    end += tip.control_count();
+  }
+  for (std::size_t i = 0; i < found; ++i) tips_[i].begin += count_ - end;
 }
 
 unsigned tip_depth(const CornerFan& fan) {
@@ -185,6 +203,7 @@ BoundRows make_bound_rows(const Kind& kind) {
     result.entry_error_ = std::max(result.entry_error_, rows.errors[r]);
     result.abs_sum_ = std::max(result.abs_sum_, rows.abs_sums[r]);
   }
+  result.find_tips(kind);
   return result;
 }
 

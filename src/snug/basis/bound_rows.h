@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -25,6 +26,17 @@ class BoundRows {
   [[nodiscard]] double abs_sum() const { return abs_sum_; }
   [[nodiscard]] std::size_t bytes() const { return weights_.size() * sizeof(double); }
 
+  /// The control net of the piece at an extraordinary corner, some levels down: the last rows are those of the
+  /// tips, in the order of their kinds' control points.
+  struct Tip {
+    const Kind* kind = nullptr;  ///< none: no tip
+    std::size_t begin = 0;       ///< first row
+  };
+  /// Tips in the order of the kind's corners; those without one are left out.
+  [[nodiscard]] const std::array<Tip, 3>& tips() const { return tips_; }
+  /// Number of rows before the first tip's.
+  [[nodiscard]] std::size_t tips_begin() const { return tips_[0].kind ? tips_[0].begin : count_; }
+
   /// Upper bound, a coordinate, of |M c computed - M c exact| for points of at most `largest`, off by at most
   /// `error`.
   [[nodiscard]] double result_error(double largest, double error) const;
@@ -32,8 +44,10 @@ class BoundRows {
  private:
   friend BoundRows make_bound_rows(const Kind& kind);
   friend class ShippedBounds;
+  void find_tips(const Kind& kind);
   std::size_t count_ = 0, control_count_ = 0;
   std::vector<double> weights_;
+  std::array<Tip, 3> tips_;
   double entry_error_ = 0, abs_sum_ = 0;
 };
 

@@ -120,8 +120,8 @@ std::span<const std::byte> ShippedBounds::compiled_in_file() {
   return {snug_shipped_begin, snug_shipped_end};
 }
 
-std::optional<BoundRows> ShippedBounds::rows(const KindKey& key) const {
-  const auto found = bodies_.find(key);
+std::optional<BoundRows> ShippedBounds::rows(const Kind& kind) const {
+  const auto found = bodies_.find(kind.key());
   if (found == bodies_.end()) return {};
   Fields fields(found->second);
   const auto head = fields.next<RowsHead>();
@@ -131,6 +131,7 @@ std::optional<BoundRows> ShippedBounds::rows(const KindKey& key) const {
   result.entry_error_ = head.entry_error;
   result.abs_sum_ = head.abs_sum;
   fields.fill(result.weights_, std::uint64_t{head.rows} * head.controls);
+  result.find_tips(kind);
   return result;
 }
 

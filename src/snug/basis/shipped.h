@@ -48,7 +48,7 @@ class ShippedBounds {
   [[nodiscard]] static std::span<const std::byte> compiled_in_file();
 
   /// Nothing if this kind, or this table of it, is not shipped.
-  [[nodiscard]] std::optional<BoundRows> rows(const KindKey& key) const;
+  [[nodiscard]] std::optional<BoundRows> rows(const Kind& kind) const;
   [[nodiscard]] std::optional<BoundTable> table(const KindKey& key, TableLayout layout) const;
   /// In the order of the file.
   [[nodiscard]] const std::vector<KindKey>& keys() const { return keys_; }

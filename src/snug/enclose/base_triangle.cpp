@@ -5,10 +5,19 @@ namespace snug {
 BaseTriangle base_triangle(const HullPoints& points, const std::array<Vector3, 3>& corners) {
   BaseTriangle base;
   base.relative = corners;
+  base.tips_stick_out = false;
   Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const double size = length(normal);
   if (size > 0 && std::isfinite(size) && is_finite(normal = (1 / size) * normal)) {
-    const auto [lower, upper] = kernels::heights(points.coordinates(), corners[0], normal);
+    const kernels::Coordinates all = points.coordinates();
+    auto [lower, upper] = kernels::heights(all.first(points.tips_begin()), corners[0], normal);
+    if (points.tips[0].kind) {
+      const kernels::Range tips = kernels::heights(all.from(points.tips_begin()), corners[0], normal);
+      base.tips_stick_out =
+          std::max(lower - tips.lower, tips.upper - upper) > notable_excess * (upper - lower);
+      lower = std::min(lower, tips.lower);
+      upper = std::max(upper, tips.upper);
+    }
     const Vector3 shift = (0.5 * (lower + upper)) * normal;
     if (is_finite(shift)) {
       for (Vector3& corner : base.relative) corner = corner + shift;

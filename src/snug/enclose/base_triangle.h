@@ -8,12 +8,16 @@
 
 namespace snug {
 
+/// How much the nets of tips may add to a hull before it is worth refining them.
+inline constexpr double notable_excess = 0.01;
+
 /// The triangle that enclosures of a patch are fitted to: its limit corners, moved along the normal to the
 /// middle of the hull. Shared by offset_triangle.h and interval_triangle.h.
 struct BaseTriangle {
   std::array<Vector3, 3> relative;  ///< to the hull points' origin
   Triangle placed;                  ///< origin + relative, rounded
   double placing_error;             ///< of `placed`, a coordinate
+  bool tips_stick_out;              ///< along the normal, by a notable part of the hull's height
 };
 
 [[nodiscard]] BaseTriangle base_triangle(const HullPoints& points, const std::array<Vector3, 3>& corners);

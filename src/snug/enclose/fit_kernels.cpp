@@ -260,15 +260,20 @@ HWY_INLINE double farthest_sq_with(D d, const Coordinates& points, const PlanarT
   return hn::AllTrue(d, finite) ? hn::GetLane(hn::MaxOfLanes(d, farthest)) : INFINITY;
 }
 
-bool Farthest(const Coordinates& points, const Vector3& a, const Vector3& b, const Vector3& c, Reach& out) {
+bool Farthest(const Coordinates& points, std::size_t split, const Vector3& a, const Vector3& b,
+              const Vector3& c, std::array<Reach, 2>& out) {
   const hn::CappedTag<double, 1> d1;
   const auto t = planar_triangle(d1, single(a), single(b), single(c));
   if (!hn::AllTrue(d1, well_shaped(d1, t))) return false;
   const hn::ScalableTag<double> wide;
-  const double farthest_sq =
-      points.count >= hn::Lanes(wide) ? farthest_sq_with(wide, points, t) : farthest_sq_with(d1, points, t);
-  const auto reach = reach_of(d1, t, hn::Set(d1, farthest_sq));
-  out = {hn::GetLane(reach.distance), hn::GetLane(reach.rounding)};
+  const std::array<Coordinates, 2> parts{points.first(split), points.from(split)};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double farthest_sq = parts[i].count >= hn::Lanes(wide) ? farthest_sq_with(wide, parts[i], t)
+                                                                 : farthest_sq_with(d1, parts[i], t);
+    const auto reach = reach_of(d1, t, hn::Set(d1, farthest_sq));
+    out[i] = {hn::GetLane(reach.distance), hn::GetLane(reach.rounding)};
+    if (parts[i].count == 0) out[i] = {0, 0};
+  }
   return true;
 }
 
@@ -524,11 +529,18 @@ Range heights(const Coordinates& points, const Vector3& from, const Vector3& nor
   return HWY_DYNAMIC_DISPATCH(Heights)(points, from, normal);
 }
 
+std::optional<std::array<Reach, 2>> farthest(const Coordinates& points, std::size_t split, const Vector3& a,
+                                             const Vector3& b, const Vector3& c) {
+  std::array<Reach, 2> reach;
+  if (!HWY_DYNAMIC_DISPATCH(Farthest)(points, split, a, b, c, reach)) return std::nullopt;
+  return reach;
+}
+
 std::optional<Reach> farthest(const Coordinates& points, const Vector3& a, const Vector3& b,
                               const Vector3& c) {
-  Reach reach;
-  if (!HWY_DYNAMIC_DISPATCH(Farthest)(points, a, b, c, reach)) return std::nullopt;
-  return reach;
+  const auto both = farthest(points, points.count, a, b, c);
+  if (!both) return std::nullopt;
+  return (*both)[0];
 }
 
 void fit_regular(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {

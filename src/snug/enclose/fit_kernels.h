@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -19,6 +20,8 @@ struct Coordinates {
   const double* y;
   const double* z;
   std::size_t count;
+  [[nodiscard]] Coordinates first(std::size_t n) const { return {x, y, z, n}; }
+  [[nodiscard]] Coordinates from(std::size_t i) const { return {x + i, y + i, z + i, count - i}; }
 };
 
 /// x, y, z = M points, for a column-major matrix of `rows` rows. Sums run over the columns in order.
@@ -45,6 +48,11 @@ struct Reach {
 /// Guarantee: see derivations/rounding.md, "Distance in the triangle's plane".
 [[nodiscard]] std::optional<Reach> farthest(const Coordinates& points, const Vector3& a, const Vector3& b,
                                             const Vector3& c);
+/// The same for the first `split` points and for the others; no distance for none.
+/// Requires:  split <= points.count.
+[[nodiscard]] std::optional<std::array<Reach, 2>> farthest(const Coordinates& points, std::size_t split,
+                                                           const Vector3& a, const Vector3& b,
+                                                           const Vector3& c);
 
 /// What the batch says of one patch.
 struct BatchFit {

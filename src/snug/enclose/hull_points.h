@@ -1,8 +1,9 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
-#include <snug/basis/bound_rows.h>
+#include <snug/basis/bound_library.h>
 #include <snug/enclose/fit_kernels.h>
 #include <snug/patch/patch.h>
 
@@ -14,7 +15,10 @@ struct HullPoints {
   std::vector<double> x, y, z;
   double error = 0;    ///< upper bound, a coordinate, of |point - exact point|
   double largest = 0;  ///< upper bound of every |coordinate|
+  /// The last points, if they are the control nets of tips (see BoundRows).
+  std::array<BoundRows::Tip, 3> tips;
 
+  [[nodiscard]] std::size_t tips_begin() const { return tips[0].kind ? tips[0].begin : size(); }
   [[nodiscard]] std::size_t size() const { return x.size(); }
   [[nodiscard]] kernels::Coordinates coordinates() const { return {x.data(), y.data(), z.data(), x.size()}; }
   [[nodiscard]] Vector3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
@@ -26,6 +30,12 @@ struct HullPoints {
 /// Requires:  rows of the patch's kind.
 /// Cost:      3 rows.count() rows.control_count() multiply-adds; no allocation once `out` has been as large.
 void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out);
+
+/// Replaces the control net of tip `i` by the points that the rows of its own kind make of it: the hull shrinks
+/// to the pieces around the corner, and a net some levels farther down.
+///
+/// Requires:  points.tips[i].kind.
+void refine_tip(BoundLibrary& library, std::size_t i, HullPoints& points);
 
 /// The baseline: the control points themselves. The limit lies in their hull because all masks are
 /// non-negative.

@@ -9,6 +9,8 @@ namespace snug {
 
 namespace {
 
+constexpr int most_refinements = 3;
+
 // For triangles without a plane of their own: the nearest points of the edges, each found on its own.
 kernels::Reach farthest_by_feet(const HullPoints& points, const std::array<Vector3, 3>& corner) {
   const TriangleFoot foot(corner[0], corner[1], corner[2]);
@@ -27,16 +29,51 @@ kernels::Reach farthest_by_feet(const HullPoints& points, const std::array<Vecto
   return {finite ? std::sqrt(farthest_sq + 8 * underflow_error) + rounding : INFINITY, rounding};
 }
 
+OffsetTriangle finished(const BaseTriangle& base, const HullPoints& points, const kernels::Reach& reach) {
+  const double given = spatial_error(enlarged(points.error + base.placing_error));
+  const double radius = reach.distance + given;
+  return {base.placed, std::isfinite(radius) ? enlarged(radius) : INFINITY, enlarged(reach.rounding + given)};
+}
+
+// Refines the tips whose nets stick out of the rest of the hull, which is within `rest` of the base. Nets that stick out
+// along the normal have moved the base towards them: then both sides are about as far.
+bool refine_tips(BoundLibrary& library, const BaseTriangle& base, double rest, HullPoints& points) {
+  const auto& corner = base.relative;
+  const double most = (base.tips_stick_out ? 1 - notable_excess : 1 + notable_excess) * rest;
+  bool any = false;
+  for (std::size_t i = 0; i < 3 && points.tips[i].kind; ++i) {
+    const kernels::Coordinates net =
+        points.coordinates().from(points.tips[i].begin).first(points.tips[i].kind->control_count());
+    const auto reach = kernels::farthest(net, corner[0], corner[1], corner[2]);
+    if (!reach || reach->distance <= most) continue;
+    refine_tip(library, i, points);
+    any = true;
+  }
+  return any;
+}
+
 }  // namespace
 
 OffsetTriangle offset_triangle(const HullPoints& points, const std::array<Vector3, 3>& corners) {
   const BaseTriangle base = base_triangle(points, corners);
   const auto in_plane =
       kernels::farthest(points.coordinates(), base.relative[0], base.relative[1], base.relative[2]);
-  const kernels::Reach reach = in_plane ? *in_plane : farthest_by_feet(points, base.relative);
-  const double given = spatial_error(enlarged(points.error + base.placing_error));
-  const double radius = reach.distance + given;
-  return {base.placed, std::isfinite(radius) ? enlarged(radius) : INFINITY, enlarged(reach.rounding + given)};
+  return finished(base, points, in_plane ? *in_plane : farthest_by_feet(points, base.relative));
+}
+
+OffsetTriangle offset_triangle(BoundLibrary& library, HullPoints& points,
+                               const std::array<Vector3, 3>& corners) {
+  for (int round = 0;; ++round) {
+    const BaseTriangle base = base_triangle(points, corners);
+    const auto& c = base.relative;
+    const auto reach = kernels::farthest(points.coordinates(), points.tips_begin(), c[0], c[1], c[2]);
+    if (!reach) return finished(base, points, farthest_by_feet(points, c));
+    const auto& [rest, tips] = *reach;
+    const bool tight = !base.tips_stick_out && tips.distance <= (1 + notable_excess) * rest.distance;
+    if (tight || round == most_refinements || !refine_tips(library, base, rest.distance, points)) {
+      return finished(base, points, rest.distance >= tips.distance ? rest : tips);
+    }
+  }
 }
 
 }  // namespace snug

@@ -19,12 +19,20 @@ struct OffsetTriangle {
 /// included.
 ///            base is the triangle of the limit corners, moved to the middle of the hull along its normal;
 ///            one without a normal is not moved. Infinite radius if anything is not finite.
-/// Tightness: the radius is at most 1.08 times the least possible for the same base in the median, but for
-///            nearly flat patches with an extraordinary corner of valence above 6 (docs/convergence.md).
 /// Requires:  corners: limit positions of the patch's corners, relative to points.origin.
 /// Cost:      about 15 ns a hull point.
 /// Source:    [Wu05, eq. 5.1, 5.2]; differs: fitted to hull rows instead of corner boxes,
 /// derivations/hull_rows.md.
 [[nodiscard]] OffsetTriangle offset_triangle(const HullPoints& points, const std::array<Vector3, 3>& corners);
+
+/// The same; where the net of a tip makes the radius larger than the patch needs, the tip is refined first, and
+/// `points` with it.
+///
+/// Tightness: the radius is at most 1.08 times the least possible for the same base in the median, 1.02 on gently
+///            bent nets (docs/convergence.md).
+/// Requires:  points of hull_points() with rows of this library.
+/// Cost:      one fit, and one more with about 200 points a refinement, of which there are at most three.
+[[nodiscard]] OffsetTriangle offset_triangle(BoundLibrary& library, HullPoints& points,
+                                             const std::array<Vector3, 3>& corners);
 
 }  // namespace snug

@@ -58,9 +58,8 @@ class FaceBounder {
   bool fit(const Patch& patch, PieceEnclosure& piece) {
     piece.face = face_;
     piece.path = patch.path;
-    std::array<Vector3, 3> corners;
+    const std::array<Vector3, 3> corners = limit_corners(patch);
     for (std::size_t k = 0; k < 3; ++k) {
-      corners[k] = corner_point(patch, k).relative;
       piece.corners[k] = require_representable(back_.apply(patch.origin + corners[k]));
     }
     if (options_.method == BoundMethod::control_box) {
@@ -78,7 +77,7 @@ class FaceBounder {
       piece.interval = unscaled(triangle.interval, back_);
     } else {
       hull_points(surface_.library().rows(*patch.kind), patch, points_);
-      offset = offset_triangle(points_, corners);
+      offset = offset_triangle(surface_.library(), points_, corners);
       piece.interval = unscaled(interval_triangle(points_, corners), back_);
     }
     piece.offset = unscaled(offset, back_);

@@ -46,9 +46,8 @@ struct PieceThickness {
 
 PieceThickness by_rows(BoundLibrary& library, const Patch& patch, const Vector3& normal, HullPoints& points) {
   hull_points(library.rows(*patch.kind), patch, points);
-  std::array<Vector3, 3> corners;
-  for (std::size_t k = 0; k < 3; ++k) corners[k] = corner_point(patch, k).relative;
-  const OffsetTriangle offset = offset_triangle(points, corners);
+  const std::array<Vector3, 3> corners = limit_corners(patch);
+  const OffsetTriangle offset = offset_triangle(library, points, corners);
   const Slab slab = outer_slab(points, normal);
   return {{offset.radius, thickness(interval_triangle(points, corners)), slab.upper - slab.lower},
           offset.rounding};
@@ -124,8 +123,9 @@ double fitted_factor(std::span<const double> values) {
 
 double expected_factor(std::size_t n, BoundSource source, ThicknessMeasure measure) {
   const CornerEigenvalues eigenvalues = corner_eigenvalues(n);
-  const bool affine_part_vanishes =
-      n == 6 || measure == ThicknessMeasure::normal || source == TableLayout::characteristic;
+  // Hull rows: below valence 6 the limit leaves the triangle of its corners sideways.
+  const bool affine_part_vanishes = n == 6 || measure == ThicknessMeasure::normal ||
+                                    source == TableLayout::characteristic || (!source && n > 6);
   return affine_part_vanishes ? eigenvalues.next : eigenvalues.subdominant;
 }
 

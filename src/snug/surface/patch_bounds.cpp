@@ -70,10 +70,9 @@ PatchBounds::PatchBounds(const Surface& surface, std::optional<TableLayout> tabl
 
 PatchBounds::PatchBounds(const Surface& surface, std::vector<FaceId> faces, std::optional<TableLayout> table,
                          int threads)
-    : faces_(std::move(faces)) {
-  BoundLibrary& library = surface.library();
+    : library_(&surface.library()), faces_(std::move(faces)) {
   // Counting sort of the faces by kind.
-  std::vector<std::uint32_t> group_of(library.kinds().size(), UINT32_MAX), sizes;
+  std::vector<std::uint32_t> group_of(library_->kinds().size(), UINT32_MAX), sizes;
   for (const FaceId f : faces_) {
     std::uint32_t& group = group_of[surface.kind(f).id().index()];
     if (group == UINT32_MAX) {
@@ -121,9 +120,9 @@ PatchBounds::PatchBounds(const Surface& surface, std::vector<FaceId> faces, std:
     for (std::size_t g = begin; g < end; ++g) {
       Group& group = groups_[g];
       if (table) {
-        group.table = &library.table(*group.kind, *table);
+        group.table = &library_->table(*group.kind, *table);
       } else {
-        group.rows = &library.rows(*group.kind);
+        group.rows = &library_->rows(*group.kind);
       }
     }
   });
@@ -167,7 +166,7 @@ void PatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
     Patch& patch = scratch.patch;
     make_patch(kind, place.first, scaled_, control.subspan(i * controls, controls), patch);
     hull_points(*group.rows, patch, scratch.hull);
-    out[place.position] = unscaled(offset_triangle(scratch.hull, limit_corners(patch)), back);
+    out[place.position] = unscaled(offset_triangle(*library_, scratch.hull, limit_corners(patch)), back);
   }
 }
 

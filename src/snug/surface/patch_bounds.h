@@ -57,6 +57,7 @@ class PatchBounds {
   };
   void fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTriangle> out) const;
 
+  BoundLibrary* library_;
   std::vector<FaceId> faces_;
   std::vector<Group> groups_;
   std::vector<Chunk> chunks_;

@@ -17,7 +17,7 @@ Piece make_piece(BoundLibrary& library, FaceId face, Patch patch, HullPoints& sc
     piece.offset = offset_triangle(table_triangle(library.table(*patch.kind, *table), patch));
   } else {
     hull_points(library.rows(*patch.kind), patch, scratch);
-    piece.offset = offset_triangle(scratch, piece.corners);
+    piece.offset = offset_triangle(library, scratch, piece.corners);
   }
   piece.patch = std::move(patch);
   return piece;
