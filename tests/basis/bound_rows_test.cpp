@@ -41,27 +41,32 @@ TEST(bound_rows, end_with_the_control_nets_of_the_tips) {
   std::size_t tips = 0;
   for (const KindKey& key : assorted_kinds()) {
     const Kind& kind = library.kinds().find(key);
-    const BoundRows& rows = library.rows(kind);
-    std::vector<Point3> points(kind.control_count());
-    for (Point3& p : points) p = {unit(), unit(), unit()};
-    const Patch patch = make_patch(kind, 0, points);
-    std::size_t row = rows.tips_begin(), tip = 0;
-    for (unsigned corner = 0; corner < 3; ++corner) {
-      if (kind.corner(corner).regular()) continue;
-      Patch piece = patch;
-      for (unsigned level = 0; level < tip_depth(kind.corner(corner)); ++level) piece = split(piece, corner);
-      ASSERT_EQ(rows.tips()[tip].kind, piece.kind);
-      ASSERT_EQ(rows.tips()[tip].begin, row);
-      for (std::size_t i = 0; i < piece.points.size(); ++i, ++row) {
-        double x = 0;
-        for (std::size_t c = 0; c < points.size(); ++c) x += rows.weight(row, c) * patch.points[c].x;
-        EXPECT_NEAR(x, piece.points[i].x, rows.result_error(patch.largest, patch.error) + piece.error);
+    for (const unsigned most : {1u, 24u}) {
+      const BoundRows rows = make_bound_rows(kind, most);
+      std::vector<Point3> points(kind.control_count());
+      for (Point3& p : points) p = {unit(), unit(), unit()};
+      const Patch patch = make_patch(kind, 0, points);
+      std::size_t row = rows.tips_begin(), tip = 0;
+      for (unsigned corner = 0; corner < 3; ++corner) {
+        if (kind.corner(corner).regular()) continue;
+        Patch piece = patch;
+        for (unsigned level = 0; level < std::min(most, tip_depth(kind.corner(corner))); ++level)
+          piece = split(piece, corner);
+        ASSERT_EQ(rows.tips()[tip].kind, piece.kind);
+        ASSERT_EQ(rows.tips()[tip].begin, row);
+        for (std::size_t i = 0; i < piece.points.size(); ++i, ++row) {
+          double x = 0;
+          for (std::size_t c = 0; c < points.size(); ++c) x += rows.weight(row, c) * patch.points[c].x;
+          EXPECT_NEAR(x, piece.points[i].x, rows.result_error(patch.largest, patch.error) + piece.error);
+        }
+        ++tip;
+        ++tips;
       }
-      ++tip;
-      ++tips;
+      EXPECT_EQ(row, rows.count());
+      if (tip < 3) {
+        EXPECT_EQ(rows.tips()[tip].kind, nullptr);
+      }
     }
-    EXPECT_EQ(row, rows.count());
-    if (tip < 3) EXPECT_EQ(rows.tips()[tip].kind, nullptr);
   }
   EXPECT_GT(tips, 20u);
 }

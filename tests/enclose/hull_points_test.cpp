@@ -61,7 +61,7 @@ TEST(hull_rows, are_far_tighter_than_the_control_points) {
 }
 
 // Seen from the limit, a patch fills a sector at its extraordinary corner, but the net of the tip all around it.
-TEST(refine_tip, leaves_the_patch_inside_and_cuts_what_lies_behind_its_corner) {
+TEST(refine_tips, leaves_the_patch_inside_and_cuts_what_lies_behind_its_corner) {
   for (const std::uint32_t n : {3u, 5u, 7u, 9u, 30u}) {
     const Surface surface = testing::surface_of(oracle::meshes::bipyramid(n));
     BoundLibrary& library = surface.library();
@@ -72,7 +72,7 @@ TEST(refine_tip, leaves_the_patch_inside_and_cuts_what_lies_behind_its_corner) {
     while (tips < 3 && points.tips[tips].kind) ++tips;
     for (std::size_t i = 0; i < 2 * tips; ++i) {
       const Box3 before = outer_box(points);
-      refine_tip(library, i % tips, points);
+      refine_tips(library, {i % tips == 0, i % tips == 1, i % tips == 2}, points);
       const Box3 after = outer_box(points);
       for (std::size_t a = 0; a < 3; ++a) {
         EXPECT_GE(after.lower[a], before.lower[a] - 2 * points.error);

@@ -97,7 +97,7 @@ Enclosures enclosures_of(const Surface& surface, const Patch& patch, const Sourc
     return {unscaled(offset_triangle(triangle), back), unscaled(triangle.interval, back)};
   }
   HullPoints points;
-  hull_points(surface.library().rows(*patch.kind), patch, points);
+  hull_points(surface.library(), patch, points);
   const auto corners = limit_corners(patch);
   const OffsetTriangle offset = offset_triangle(surface.library(), points, corners);
   return {unscaled(offset, back), unscaled(interval_triangle(points, corners), back)};

@@ -6,9 +6,19 @@
 #include <snug/basis/shipped.h>
 
 namespace snug {
+namespace {
+
+bool has_several_tips(const Kind& kind) {
+  int irregular = 0;
+  for (std::size_t i = 0; i < 3; ++i) irregular += !kind.corner(i).regular();
+  return irregular > 1;
+}
+
+}  // namespace
 
 const BoundRows& BoundLibrary::rows(const Kind& kind) {
   return rows_.get(kind.id(), [&] {
+    if (has_several_tips(kind)) return make_bound_rows(kind, 1);
     std::optional<BoundRows> shipped = ShippedBounds::compiled_in().rows(kind);
     return shipped ? *std::move(shipped) : make_bound_rows(kind);
   });
@@ -17,7 +27,9 @@ const BoundRows& BoundLibrary::rows(const Kind& kind) {
 const BoundTable& BoundLibrary::table(const Kind& kind, TableLayout layout) {
   return tables_[static_cast<std::size_t>(layout)].get(kind.id(), [&] {
     std::optional<BoundTable> shipped = ShippedBounds::compiled_in().table(kind.key(), layout);
-    return shipped ? *std::move(shipped) : make_bound_table(kind, rows(kind), layout);
+    if (shipped) return *std::move(shipped);
+    return has_several_tips(kind) ? make_bound_table(kind, make_bound_rows(kind), layout)
+                                  : make_bound_table(kind, rows(kind), layout);
   });
 }
 

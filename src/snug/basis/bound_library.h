@@ -17,10 +17,12 @@ class BoundLibrary {
   [[nodiscard]] KindLibrary& kinds() { return kinds_; }
   [[nodiscard]] const KindLibrary& kinds() const { return kinds_; }
 
+  /// The rows of a kind. With several extraordinary corners they go down one level only: the tips there are of
+  /// kinds that have rows of their own, and there are far fewer of these.
   /// Requires:  a kind of kinds().
   /// Errors:    SNUG_EXPECT beyond 16 million kinds.
   [[nodiscard]] const BoundRows& rows(const Kind& kind);
-  /// The table of a kind, made from its rows.
+  /// The table of a kind, made from rows that go down to tip_depth().
   [[nodiscard]] const BoundTable& table(const Kind& kind, TableLayout layout = TableLayout::ngon);
 
   /// Kinds that have rows, and the memory of all rows and tables.

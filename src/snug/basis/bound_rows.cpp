@@ -88,13 +88,13 @@ constexpr unsigned deepest = 24;
 
 class Collector {
  public:
-  explicit Collector(const Kind& kind) {
+  Collector(const Kind& kind, unsigned most_levels) : most_levels_(most_levels) {
     rows_.width = kind.control_count();
     // At most: four pieces, three a ring, the nets of the tips.
     std::size_t most = 60;
     for (std::size_t i = 0; i < 3; ++i) {
       const CornerFan& fan = kind.corner(i);
-      if (!fan.regular()) most += 36 * std::size_t{tip_depth(fan)} + fan.faces() + 8;
+      if (!fan.regular()) most += 36 * std::size_t{levels(fan)} + fan.faces() + 8;
     }
     rows_.entries.reserve(most * rows_.width);
   }
@@ -143,14 +143,16 @@ class Collector {
   }
 
  private:
-  static unsigned depth_limit(const Kind& kind) {
+  [[nodiscard]] unsigned levels(const CornerFan& fan) const { return std::min(most_levels_, tip_depth(fan)); }
+  [[nodiscard]] unsigned depth_limit(const Kind& kind) const {
     unsigned depth = 1;
     for (std::size_t i = 0; i < 3; ++i) {
-      if (!kind.corner(i).regular()) depth = std::max(depth, tip_depth(kind.corner(i)));
+      if (!kind.corner(i).regular()) depth = std::max(depth, levels(kind.corner(i)));
     }
     return depth;
   }
 
+  unsigned most_levels_;
   DenseRows rows_, tips_;
   std::array<DenseRows, 2> nets_;  // of pieces at odd depths and at even ones
 };
@@ -189,8 +191,8 @@ unsigned tip_depth(const CornerFan& fan) {
   return std::clamp(static_cast<unsigned>(std::ceil(levels)), 3u, deepest);
 }
 
-BoundRows make_bound_rows(const Kind& kind) {
-  Collector collector(kind);
+BoundRows make_bound_rows(const Kind& kind, unsigned most_levels) {
+  Collector collector(kind, most_levels);
   collector.collect(kind, identity(kind.control_count()), 0, {false, false, false});
   const DenseRows rows = collector.take();
   BoundRows result;

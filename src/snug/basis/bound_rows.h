@@ -42,7 +42,7 @@ class BoundRows {
   [[nodiscard]] double result_error(double largest, double error) const;
 
  private:
-  friend BoundRows make_bound_rows(const Kind& kind);
+  friend BoundRows make_bound_rows(const Kind& kind, unsigned most_levels);
   friend class ShippedBounds;
   void find_tips(const Kind& kind);
   std::size_t count_ = 0, control_count_ = 0;
@@ -53,9 +53,10 @@ class BoundRows {
 
 /// Makes the rows of a kind: Bezier points of the polynomial pieces after one split; at an extraordinary
 /// corner of the rings of pieces around it down to tip_depth() levels, and the control net of the last tip.
+/// Tips end at `most_levels` if that is less.
 ///
 /// Cost:      up to valence 12 well below a millisecond; for valence n about 20 n^2 multiply-adds a level.
-[[nodiscard]] BoundRows make_bound_rows(const Kind& kind);
+[[nodiscard]] BoundRows make_bound_rows(const Kind& kind, unsigned most_levels = 24);
 
 /// Levels of rings around an extraordinary corner until the control net of the tip sticks out behind the
 /// corner by less than 1 % of the width of the patch there.

@@ -7,61 +7,92 @@
 #include <snug/enclose/fit_kernels.h>
 
 namespace snug {
-void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out) {
+namespace {
+
+// The points of rows times patch take the place of out's points from `begin` on.
+void apply(const BoundRows& rows, const Patch& patch, std::size_t begin, HullPoints& out) {
   SNUG_EXPECT(rows.control_count() == patch.points.size());
-  const std::size_t count = rows.count();
+  out.resize(begin + rows.count());
+  out.multiply(rows, patch.points);
+  out.error = std::max(out.error, rows.result_error(patch.largest, patch.error));
+  out.largest = std::max(out.largest, enlarged((rows.abs_sum() + rows.entry_error()) * patch.largest));
+}
+
+// The net of a tip that begins at point `begin`, as a patch.
+void take_net(const HullPoints& points, const Kind& kind, std::size_t begin, Patch& net) {
+  net.kind = &kind;
+  net.origin = points.origin;
+  net.points.resize(kind.control_count());
+  net.largest = 0;
+  for (std::size_t i = 0; i < net.points.size(); ++i) {
+    net.points[i] = points.at(begin + i);
+    net.largest = std::max(net.largest, max_abs(net.points[i]));
+  }
+  net.error = points.error;
+}
+
+}  // namespace
+
+void HullPoints::resize(std::size_t count) {
+  if (count > x_.size()) {
+    x_.resize(count);
+    y_.resize(count);
+    z_.resize(count);
+  }
+  count_ = count;
+}
+
+void HullPoints::multiply(const BoundRows& rows, std::span<const Vector3> points) {
+  const std::size_t begin = count_ - rows.count();
+  kernels::apply_rows(rows.column(0), rows.count(), points, x_.data() + begin, y_.data() + begin,
+                      z_.data() + begin);
+}
+
+void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out) {
   out.origin = patch.origin;
-  out.x.resize(count);
-  out.y.resize(count);
-  out.z.resize(count);
-  kernels::apply_rows(rows.column(0), count, patch.points, out.x.data(), out.y.data(), out.z.data());
-  out.error = rows.result_error(patch.largest, patch.error);
-  out.largest = enlarged((rows.abs_sum() + rows.entry_error()) * patch.largest);
+  out.error = out.largest = 0;
+  apply(rows, patch, 0, out);
   out.tips = rows.tips();
 }
 
-void refine_tip(BoundLibrary& library, std::size_t i, HullPoints& points) {
-  thread_local Patch tip;
-  thread_local HullPoints finer;
-  const auto begin = static_cast<std::ptrdiff_t>(points.tips[i].begin);
-  tip.kind = points.tips[i].kind;
-  tip.origin = points.origin;
-  const auto count = static_cast<std::ptrdiff_t>(tip.kind->control_count());
-  tip.points.resize(tip.kind->control_count());
-  tip.largest = 0;
-  for (std::size_t k = 0; k < tip.points.size(); ++k) {
-    tip.points[k] = points.at(points.tips[i].begin + k);
-    tip.largest = std::max(tip.largest, max_abs(tip.points[k]));
-  }
-  tip.error = points.error;
-  hull_points(library.rows(*tip.kind), tip, finer);
+void hull_points(BoundLibrary& library, const Patch& patch, HullPoints& out) {
+  hull_points(library.rows(*patch.kind), patch, out);
+  if (out.tips[1].kind) refine_tips(library, {true, true, true}, out);
+}
 
-  // What is no tip goes before the tips, the new tip where the old one was: as large, being of the same kind.
-  const auto kept = static_cast<std::ptrdiff_t>(finer.tips_begin());
-  const auto rest = static_cast<std::ptrdiff_t>(points.tips_begin());
-  const auto replace = [&](std::vector<double>& old, const std::vector<double>& fresh) {
-    std::copy(fresh.begin() + kept, fresh.end(), old.begin() + begin);
-    old.insert(old.begin() + rest, fresh.begin(), fresh.begin() + kept);
-  };
-  SNUG_EXPECT(static_cast<std::ptrdiff_t>(finer.size()) - kept == count && finer.tips[0].kind == tip.kind);
-  replace(points.x, finer.x);
-  replace(points.y, finer.y);
-  replace(points.z, finer.z);
-  for (BoundRows::Tip& other : points.tips) other.begin += static_cast<std::size_t>(kept);
-  points.error = std::max(points.error, finer.error);
-  points.largest = std::max(points.largest, finer.largest);
+void prepare_hull_points(BoundLibrary& library, const Kind& kind) {
+  for (const BoundRows::Tip& tip : library.rows(kind).tips()) {
+    if (tip.kind) static_cast<void>(library.rows(*tip.kind));
+  }
+}
+
+void refine_tips(BoundLibrary& library, const std::array<bool, 3>& which, HullPoints& points) {
+  thread_local std::array<Patch, 3> nets;
+  std::size_t tips = 0;
+  for (; tips < 3 && points.tips[tips].kind; ++tips) {
+    take_net(points, *points.tips[tips].kind, points.tips[tips].begin, nets[tips]);
+  }
+  // What is no tip is written one after the other; the new net behind it is taken out before the next one comes.
+  std::size_t count = points.tips_begin();
+  for (std::size_t i = 0; i < tips; ++i) {
+    if (!which[i]) continue;
+    const BoundRows& rows = library.rows(*nets[i].kind);
+    SNUG_EXPECT(rows.tips()[0].kind == nets[i].kind && !rows.tips()[1].kind);
+    apply(rows, nets[i], count, points);
+    count += rows.tips_begin();
+    take_net(points, *nets[i].kind, count, nets[i]);
+  }
+  for (std::size_t i = 0; i < tips; ++i) {
+    points.tips[i].begin = count;
+    points.resize(count + nets[i].points.size());
+    for (const Vector3& p : nets[i].points) points.set(count++, p);
+  }
 }
 
 void control_points(const Patch& patch, HullPoints& out) {
   out.origin = patch.origin;
-  out.x.clear();
-  out.y.clear();
-  out.z.clear();
-  for (const Vector3& p : patch.points) {
-    out.x.push_back(p.x);
-    out.y.push_back(p.y);
-    out.z.push_back(p.z);
-  }
+  out.resize(patch.points.size());
+  for (std::size_t i = 0; i < patch.points.size(); ++i) out.set(i, patch.points[i]);
   out.largest = patch.largest;
   out.error = patch.error;
   out.tips = {};
@@ -69,9 +100,10 @@ void control_points(const Patch& patch, HullPoints& out) {
 
 Box3 outer_box(const HullPoints& points) {
   Box3 box;
-  const std::vector<double>* const axes[3] = {&points.x, &points.y, &points.z};
+  const kernels::Coordinates all = points.coordinates();
+  const std::array<const double*, 3> axes{all.x, all.y, all.z};
   for (std::size_t a = 0; a < 3; ++a) {
-    const auto [low, high] = std::minmax_element(axes[a]->begin(), axes[a]->end());
+    const auto [low, high] = std::minmax_element(axes[a], axes[a] + all.count);
     const double o = points.origin[a];
     box.lower[a] = rounded_down(o + rounded_down(*low - points.error));
     box.upper[a] = rounded_up(o + rounded_up(*high + points.error));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include <snug/basis/bound_library.h>
@@ -10,18 +11,32 @@
 namespace snug {
 
 /// Points whose convex hull contains a limit patch, relative to its origin; one array a coordinate.
-struct HullPoints {
+class HullPoints {
+ public:
   Point3 origin;
-  std::vector<double> x, y, z;
   double error = 0;    ///< upper bound, a coordinate, of |point - exact point|
   double largest = 0;  ///< upper bound of every |coordinate|
   /// The last points, if they are the control nets of tips (see BoundRows).
   std::array<BoundRows::Tip, 3> tips;
 
-  [[nodiscard]] std::size_t tips_begin() const { return tips[0].kind ? tips[0].begin : size(); }
-  [[nodiscard]] std::size_t size() const { return x.size(); }
-  [[nodiscard]] kernels::Coordinates coordinates() const { return {x.data(), y.data(), z.data(), x.size()}; }
-  [[nodiscard]] Vector3 at(std::size_t i) const { return {x[i], y[i], z[i]}; }
+  [[nodiscard]] std::size_t size() const { return count_; }
+  [[nodiscard]] std::size_t tips_begin() const { return tips[0].kind ? tips[0].begin : count_; }
+  [[nodiscard]] kernels::Coordinates coordinates() const { return {x_.data(), y_.data(), z_.data(), count_}; }
+  [[nodiscard]] Vector3 at(std::size_t i) const { return {x_[i], y_[i], z_[i]}; }
+
+  /// The first points stay; new ones may be anything. Keeps its memory.
+  void resize(std::size_t count);
+  void set(std::size_t i, const Vector3& p) {
+    x_[i] = p.x;
+    y_[i] = p.y;
+    z_[i] = p.z;
+  }
+  /// Writes rows times points over the last rows.count() points.
+  void multiply(const BoundRows& rows, std::span<const Vector3> points);
+
+ private:
+  std::size_t count_ = 0;
+  std::vector<double> x_, y_, z_;  // as large as they ever were
 };
 
 /// The points M c of a patch, written over `out`, which keeps its memory.
@@ -31,11 +46,15 @@ struct HullPoints {
 /// Cost:      3 rows.count() rows.control_count() multiply-adds; no allocation once `out` has been as large.
 void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out);
 
-/// Replaces the control net of tip `i` by the points that the rows of its own kind make of it: the hull shrinks
-/// to the pieces around the corner, and a net some levels farther down.
-///
-/// Requires:  points.tips[i].kind.
-void refine_tip(BoundLibrary& library, std::size_t i, HullPoints& points);
+/// The same from the rows that a library keeps; the tips of a kind with several are refined, its own rows being
+/// for one level only.
+void hull_points(BoundLibrary& library, const Patch& patch, HullPoints& out);
+/// Makes the rows that the call above will need for patches of this kind.
+void prepare_hull_points(BoundLibrary& library, const Kind& kind);
+
+/// Replaces the control nets of some tips by the points that the rows of their own kinds make of them: the hull
+/// shrinks to the pieces around these corners, and nets some levels farther down.
+void refine_tips(BoundLibrary& library, const std::array<bool, 3>& which, HullPoints& points);
 
 /// The baseline: the control points themselves. The limit lies in their hull because all masks are
 /// non-negative.

@@ -37,19 +37,20 @@ OffsetTriangle finished(const BaseTriangle& base, const HullPoints& points, cons
 
 // Refines the tips whose nets stick out of the rest of the hull, which is within `rest` of the base. Nets that stick out
 // along the normal have moved the base towards them: then both sides are about as far.
-bool refine_tips(BoundLibrary& library, const BaseTriangle& base, double rest, HullPoints& points) {
+bool refine_what_sticks_out(BoundLibrary& library, const BaseTriangle& base, double rest,
+                            HullPoints& points) {
   const auto& corner = base.relative;
   const double most = (base.tips_stick_out ? 1 - notable_excess : 1 + notable_excess) * rest;
-  bool any = false;
+  std::array<bool, 3> which{};
   for (std::size_t i = 0; i < 3 && points.tips[i].kind; ++i) {
     const kernels::Coordinates net =
         points.coordinates().from(points.tips[i].begin).first(points.tips[i].kind->control_count());
     const auto reach = kernels::farthest(net, corner[0], corner[1], corner[2]);
-    if (!reach || reach->distance <= most) continue;
-    refine_tip(library, i, points);
-    any = true;
+    which[i] = reach && reach->distance > most;
   }
-  return any;
+  if (which == std::array<bool, 3>{}) return false;
+  refine_tips(library, which, points);
+  return true;
 }
 
 }  // namespace
@@ -70,7 +71,7 @@ OffsetTriangle offset_triangle(BoundLibrary& library, HullPoints& points,
     if (!reach) return finished(base, points, farthest_by_feet(points, c));
     const auto& [rest, tips] = *reach;
     const bool tight = !base.tips_stick_out && tips.distance <= (1 + notable_excess) * rest.distance;
-    if (tight || round == most_refinements || !refine_tips(library, base, rest.distance, points)) {
+    if (tight || round == most_refinements || !refine_what_sticks_out(library, base, rest.distance, points)) {
       return finished(base, points, rest.distance >= tips.distance ? rest : tips);
     }
   }

@@ -1,5 +1,8 @@
 #include <snug/patch/patch.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include <snug/base/contract.h>
 #include <snug/base/rounding.h>
 
@@ -7,8 +10,13 @@ namespace snug {
 namespace {
 
 void measure(Patch& patch) {
-  patch.largest = 0;
-  for (const Vector3& p : patch.points) patch.largest = std::max(patch.largest, max_abs(p));
+  double x = 0, y = 0, z = 0;  // three chains of maxima, not one
+  for (const Vector3& p : patch.points) {
+    x = std::max(x, std::fabs(p.x));
+    y = std::max(y, std::fabs(p.y));
+    z = std::max(z, std::fabs(p.z));
+  }
+  patch.largest = std::max({x, y, z});
 }
 
 template <class PointAt>
@@ -48,20 +56,24 @@ void make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> al
 }
 
 Patch split(const Patch& patch, unsigned child) {
-  SNUG_EXPECT(child < 4 && patch.points.size() == patch.kind->control_count());
-  const KindChild& step = patch.kind->children()[child < 3 ? patch.to_kind(child) : 3];
   Patch piece;
+  split(patch, child, piece);
+  return piece;
+}
+
+void split(const Patch& patch, unsigned child, Patch& piece) {
+  SNUG_EXPECT(child < 4 && patch.points.size() == patch.kind->control_count() && &piece != &patch);
+  const KindChild& step = patch.kind->children()[child < 3 ? patch.to_kind(child) : 3];
   piece.kind = step.kind;
   piece.first = static_cast<std::uint8_t>((step.first + patch.first) % 3);
   piece.path = patch.path.child(child);
   piece.origin = patch.origin;
-  piece.points.reserve(step.stencils.row_count());
-  for (std::size_t r = 0; r < step.stencils.row_count(); ++r) {
-    piece.points.push_back(step.stencils.apply<Vector3>(r, patch.points));
+  piece.points.resize(step.stencils.row_count());
+  for (std::size_t r = 0; r < piece.points.size(); ++r) {
+    piece.points[r] = step.stencils.apply<Vector3>(r, patch.points);
   }
   measure(piece);
   piece.error = step.stencils.result_error(patch.largest, patch.error);
-  return piece;
 }
 
 }  // namespace snug

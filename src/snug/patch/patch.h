@@ -43,5 +43,7 @@ void make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> al
 /// Guarantee: `error` of the result covers the parent's, the rounding of this step and of the masks.
 /// Cost:      one sparse product: 4 to 7 multiply-adds a control point and coordinate.
 [[nodiscard]] Patch split(const Patch& patch, unsigned child);
+/// The same, written over `piece`, which keeps its memory.
+void split(const Patch& patch, unsigned child, Patch& piece);
 
 }  // namespace snug

@@ -76,7 +76,7 @@ class FaceBounder {
       offset = offset_triangle(triangle);
       piece.interval = unscaled(triangle.interval, back_);
     } else {
-      hull_points(surface_.library().rows(*patch.kind), patch, points_);
+      hull_points(surface_.library(), patch, points_);
       offset = offset_triangle(surface_.library(), points_, corners);
       piece.interval = unscaled(interval_triangle(points_, corners), back_);
     }

@@ -45,7 +45,7 @@ struct PieceThickness {
 };
 
 PieceThickness by_rows(BoundLibrary& library, const Patch& patch, const Vector3& normal, HullPoints& points) {
-  hull_points(library.rows(*patch.kind), patch, points);
+  hull_points(library, patch, points);
   const std::array<Vector3, 3> corners = limit_corners(patch);
   const OffsetTriangle offset = offset_triangle(library, points, corners);
   const Slab slab = outer_slab(points, normal);

@@ -77,7 +77,7 @@ PatchBounds::PatchBounds(const Surface& surface, std::vector<FaceId> faces, std:
     std::uint32_t& group = group_of[surface.kind(f).id().index()];
     if (group == UINT32_MAX) {
       group = static_cast<std::uint32_t>(groups_.size());
-      groups_.push_back({&surface.kind(f), nullptr, nullptr, 0, 0});
+      groups_.push_back({&surface.kind(f), nullptr, 0, 0});
       sizes.push_back(0);
     }
     ++sizes[group];
@@ -122,7 +122,7 @@ PatchBounds::PatchBounds(const Surface& surface, std::vector<FaceId> faces, std:
       if (table) {
         group.table = &library_->table(*group.kind, *table);
       } else {
-        group.rows = &library_->rows(*group.kind);
+        prepare_hull_points(*library_, *group.kind);
       }
     }
   });
@@ -165,7 +165,7 @@ void PatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
     }
     Patch& patch = scratch.patch;
     make_patch(kind, place.first, scaled_, control.subspan(i * controls, controls), patch);
-    hull_points(*group.rows, patch, scratch.hull);
+    hull_points(*library_, patch, scratch.hull);
     out[place.position] = unscaled(offset_triangle(*library_, scratch.hull, limit_corners(patch)), back);
   }
 }

@@ -42,7 +42,6 @@ class PatchBounds {
   // Patches of one kind, in the order of faces.
   struct Group {
     const Kind* kind;
-    const BoundRows* rows;
     const BoundTable* table;                 // none: from rows
     std::size_t first_place, first_control;  // in places_ and control_
   };

@@ -16,7 +16,7 @@ Piece make_piece(BoundLibrary& library, FaceId face, Patch patch, HullPoints& sc
   if (table) {
     piece.offset = offset_triangle(table_triangle(library.table(*patch.kind, *table), patch));
   } else {
-    hull_points(library.rows(*patch.kind), patch, scratch);
+    hull_points(library, patch, scratch);
     piece.offset = offset_triangle(library, scratch, piece.corners);
   }
   piece.patch = std::move(patch);
