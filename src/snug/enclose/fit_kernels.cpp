@@ -290,7 +290,7 @@ HWY_INLINE V mean(V half, V a, V b) {
 }
 
 // Bezier points of one coordinate from the twelve control points; 24 times these are the integer sums of
-// patch/polynomial.cpp. At most ten additions and two products each.
+// patch/polynomial.cpp. A term meets at most six roundings (derivations/rounding.md, "Batches").
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void bezier(D d, const V* c, V* b) {
   const auto times = [&](double k, V v) HWY_ATTR { return hn::Mul(hn::Set(d, k), v); };
