@@ -66,7 +66,7 @@ struct PlanarTriangle {
   V d1x, d1y, d2x, d2y;  // directions of bc and of ac
   V longest;
   V deviation;  // of the true corners from those in the plane
-  V amplify;    // 1 / sin of half the sharpest angle, at most
+  V amplify;    // 2 / the least sine of an angle: at least 1 / sin of half the sharpest angle
   V stretch;    // of lengths by the frame, at most
 };
 
@@ -104,10 +104,13 @@ HWY_INLINE PlanarTriangle<V> planar_triangle(D d, const Vec3<V>& a, const Vec3<V
   return t;
 }
 
-// False for needles and whatever is not finite.
+// False for needles and whatever is not finite. Of a needle in a coordinate plane rounding may turn the normal round:
+// then the third corner's yc, and with it `amplify`, is negative.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> well_shaped(D d, const PlanarTriangle<V>& t) {
-  const auto round = hn::And(hn::Le(t.amplify, hn::Set(d, 64.0)), hn::Gt(t.l0, hn::Zero(d)));
+  const V zero = hn::Zero(d);
+  const auto turned = hn::And(hn::Gt(t.amplify, zero), hn::Gt(t.l0, zero));
+  const auto round = hn::And(hn::Le(t.amplify, hn::Set(d, 64.0)), turned);
   return hn::And(round, hn::Le(t.stretch, hn::Set(d, 0x1p-40)));
 }
 
@@ -287,7 +290,7 @@ HWY_INLINE V mean(V half, V a, V b) {
 }
 
 // Bezier points of one coordinate from the twelve control points; 24 times these are the integer sums of
-// patch/polynomial.cpp. At most ten additions and two products each.
+// patch/polynomial.cpp. A term meets at most six roundings (derivations/rounding.md, "Batches").
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void bezier(D d, const V* c, V* b) {
   const auto times = [&](double k, V v) HWY_ATTR { return hn::Mul(hn::Set(d, k), v); };

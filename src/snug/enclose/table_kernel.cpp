@@ -36,8 +36,8 @@ struct FlatTable {
 
 double reach(const LayoutPoint& u) { return 1 + std::fabs(u[0]) + std::fabs(u[1]); }
 
-// The half width covers the rounding of both. The error is that of table_triangle(), whose terms are: control points
-// relative to the first, u and underflow; a product of the linear function, 8 u; the sums.
+// The half width covers the rounding of both. The error bounds that of centre and half width together: control points
+// relative to the first, the linear function, the sums; derivations/rounding.md, "Batches".
 FlatTable flatten(const BoundTable& table, std::vector<TableColumn>& memory) {
   const std::size_t count = table.control_count();
   memory.clear();
