@@ -193,23 +193,53 @@ HWY_INLINE void each_vector(D d, std::size_t count, const Work& work) {
   if (i < count) work(count - lanes);
 }
 
+// Calls work(0), ..., work(count - 1) with constants: loops over arrays of vectors stay in registers only so.
+template <std::size_t count, std::size_t i = 0, class Work>
+HWY_INLINE void unrolled(const Work& work) {
+  if constexpr (i < count) {
+    work(std::integral_constant<std::size_t, i>());
+    unrolled<count, i + 1>(work);
+  }
+}
+
+// `blocks` vectors of rows from row r on: each point is loaded once for all of them, and their sums do not wait for
+// each other.
+template <std::size_t blocks, class D>
+HWY_INLINE void apply_block(D d, const double* weights, std::size_t rows, std::span<const Vector3> points,
+                            std::size_t r, double* x, double* y, double* z) {
+  using V = hn::Vec<D>;
+  const std::size_t lanes = hn::Lanes(d);
+  V sum[3][blocks];
+  unrolled<blocks>([&](auto b) HWY_ATTR { sum[0][b] = sum[1][b] = sum[2][b] = hn::Zero(d); });
+  const double* weight = weights + r;
+  for (const Vector3& p : points) {
+    const V px = hn::Set(d, p.x), py = hn::Set(d, p.y), pz = hn::Set(d, p.z);
+    unrolled<blocks>([&](auto b) HWY_ATTR {
+      const V w = hn::LoadU(d, weight + b * lanes);
+      sum[0][b] = hn::Add(sum[0][b], hn::Mul(w, px));
+      sum[1][b] = hn::Add(sum[1][b], hn::Mul(w, py));
+      sum[2][b] = hn::Add(sum[2][b], hn::Mul(w, pz));
+    });
+    weight += rows;
+  }
+  unrolled<blocks>([&](auto b) HWY_ATTR {
+    hn::StoreU(sum[0][b], d, x + r + b * lanes);
+    hn::StoreU(sum[1][b], d, y + r + b * lanes);
+    hn::StoreU(sum[2][b], d, z + r + b * lanes);
+  });
+}
+
 template <class D>
 HWY_INLINE void apply_rows_with(D d, const double* weights, std::size_t rows, std::span<const Vector3> points,
                                 double* x, double* y, double* z) {
-  each_vector(d, rows, [&](std::size_t r) HWY_ATTR {
-    auto sx = hn::Zero(d), sy = sx, sz = sx;
-    const double* weight = weights + r;
-    for (const Vector3& p : points) {
-      const auto w = hn::LoadU(d, weight);
-      sx = hn::Add(sx, hn::Mul(w, hn::Set(d, p.x)));
-      sy = hn::Add(sy, hn::Mul(w, hn::Set(d, p.y)));
-      sz = hn::Add(sz, hn::Mul(w, hn::Set(d, p.z)));
-      weight += rows;
-    }
-    hn::StoreU(sx, d, x + r);
-    hn::StoreU(sy, d, y + r);
-    hn::StoreU(sz, d, z + r);
-  });
+  constexpr std::size_t blocks = 3;
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t r = 0;
+  for (; r + blocks * lanes <= rows; r += blocks * lanes) {
+    apply_block<blocks>(d, weights, rows, points, r, x, y, z);
+  }
+  for (; r + lanes <= rows; r += lanes) apply_block<1>(d, weights, rows, points, r, x, y, z);
+  if (r < rows) apply_block<1>(d, weights, rows, points, rows - lanes, x, y, z);
 }
 
 void ApplyRows(const double* weights, std::size_t rows, std::span<const Vector3> points, double* x, double* y,
@@ -328,15 +358,6 @@ HWY_INLINE void bezier(D d, const V* c, V* b) {
   b[10] = inner(2, s01, hn::Add(c[4], c[5]));
 }
 
-// Calls work(0), ..., work(count - 1) with constants: loops over arrays of vectors stay in registers only so.
-template <std::size_t count, std::size_t i = 0, class Work>
-HWY_INLINE void unrolled(const Work& work) {
-  if constexpr (i < count) {
-    work(std::integral_constant<std::size_t, i>());
-    unrolled<count, i + 1>(work);
-  }
-}
-
 // De Casteljau's scheme at 1/2: step i has the points at[i][0], ..., at[i][n - 1 - i].
 template <class V, std::size_t n>
 struct Pyramid {
@@ -434,30 +455,32 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
   }
   const auto at = [&](std::size_t i) HWY_ATTR { return Vec3<V>{hull[0][i], hull[1][i], hull[2][i]}; };
 
-  // The corners are points of the hull, at height 0.
+  // The corners are points of the hull, at height 0. The frame is theirs before they are shifted along its normal.
   Vec3<V> corner[3] = {at(0), at(of_edge), at(2 * of_edge)};
-  const Vec3<V> normal = cross(sub(corner[1], corner[0]), sub(corner[2], corner[0]));
-  const Vec3<V> n = scaled(hn::Div(hn::Set(d, 1.0), hn::Sqrt(dot(normal, normal))), normal);
+  PlanarTriangle<V> t = planar_triangle(d, corner[0], corner[1], corner[2]);
   V lower = hn::Zero(d), upper = lower;
-  const V from = dot(n, corner[0]);
+  const V from = dot(t.n, corner[0]);
   for (std::size_t i = 1; i < split_count; ++i) {
-    const V height = hn::Sub(dot(n, at(i)), from);
+    const V height = hn::Sub(dot(t.n, at(i)), from);
     lower = hn::Min(lower, height);
     upper = hn::Max(upper, height);
   }
-  const Vec3<V> shift = scaled(hn::Mul(hn::Set(d, 0.5), hn::Add(lower, upper)), n);
+  const Vec3<V> shift = scaled(hn::Mul(hn::Set(d, 0.5), hn::Add(lower, upper)), t.n);
   for (auto& c : corner) c = add(c, shift);
+  t.a = corner[0];
 
-  const PlanarTriangle<V> t = planar_triangle(d, corner[0], corner[1], corner[2]);
   V farthest = hn::Zero(d);
   auto good = well_shaped(d, t);
   const auto meet = [&](V dist_sq) HWY_ATTR {
     good = hn::And(good, hn::Lt(dist_sq, hn::Set(d, INFINITY)));
     farthest = hn::Max(farthest, dist_sq);
   };
-  for (std::size_t i = 0; i < of_edge; ++i) meet(distance_sq_by_edge<0>(d, t, at(i)));
-  for (std::size_t i = of_edge; i < 2 * of_edge; ++i) meet(distance_sq_by_edge<1>(d, t, at(i)));
-  for (std::size_t i = 2 * of_edge; i < 3 * of_edge; ++i) meet(distance_sq_by_edge<2>(d, t, at(i)));
+  meet(dot(shift, shift));  // the corners
+  for (std::size_t i = 1; i < of_edge; ++i) {
+    meet(distance_sq_by_edge<0>(d, t, at(i)));
+    meet(distance_sq_by_edge<1>(d, t, at(of_edge + i)));
+    meet(distance_sq_by_edge<2>(d, t, at(2 * of_edge + i)));
+  }
   for (std::size_t i = 3 * of_edge; i < split_count; ++i) meet(distance_sq(d, t, at(i)));
   const ReachV<V> reach = reach_of(d, t, farthest);
 

@@ -1,6 +1,7 @@
 #include <snug/enclose/hull_points.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <snug/base/contract.h>
 #include <snug/base/rounding.h>
@@ -23,11 +24,14 @@ void take_net(const HullPoints& points, const Kind& kind, std::size_t begin, Pat
   net.kind = &kind;
   net.origin = points.origin;
   net.points.resize(kind.control_count());
-  net.largest = 0;
+  double x = 0, y = 0, z = 0;  // three chains of maxima, not one
   for (std::size_t i = 0; i < net.points.size(); ++i) {
-    net.points[i] = points.at(begin + i);
-    net.largest = std::max(net.largest, max_abs(net.points[i]));
+    const Vector3 p = net.points[i] = points.at(begin + i);
+    x = std::max(x, std::fabs(p.x));
+    y = std::max(y, std::fabs(p.y));
+    z = std::max(z, std::fabs(p.z));
   }
+  net.largest = std::max({x, y, z});
   net.error = points.error;
 }
 
