@@ -33,14 +33,21 @@ int main(int argc, char** argv) {
     if (options.quick && c == 500) continue;
     const KindKey key{Scheme::loop, {inside(a), inside(b), inside(c)}};
     BoundLibrary library;
-    const BoundRows& rows = library.rows(library.kinds().find(key));
+    const BoundRows rows = make_bound_rows(library.kinds().find(key));
     const std::string name = "valences " + std::to_string(a) + " " + std::to_string(b) + " " +
                              std::to_string(c) + ", " + std::to_string(rows.count()) + " rows of " +
                              std::to_string(rows.control_count()) + ", " +
                              std::to_string(rows.bytes() / 1024) + " KiB";
+    // Rows to the full depth, whether or not they are shipped, or composed of those of other kinds.
     group.add(name, 1, [key] {
-      BoundLibrary cold;
-      return static_cast<double>(cold.rows(cold.kinds().find(key)).count());
+      KindLibrary cold;
+      return static_cast<double>(make_bound_rows(cold.find(key)).count());
+    });
+    if (c > 50) continue;
+    group.add("  its table", 1, [key] {
+      KindLibrary cold;
+      const Kind& kind = cold.find(key);
+      return make_bound_table(kind, make_bound_rows(kind)).upper.back()[0];
     });
   }
   group.run();

@@ -42,6 +42,36 @@ std::vector<Table> tables(const ControlMesh& mesh) {
 }
 #endif
 
+#ifdef SNUG_BENCH_OPENSUBDIV
+// As many limit points a patch as snug has hull points, spread evenly: what a bound from the peer's points would need
+// at least, were it a proof.
+void bench_as_many_points(const Options& options) {
+  const ControlMesh mesh = irregular_mesh(options.size(5'000, 2'000));
+  ControlMesh moved = mesh;
+  disturb(moved, 0.01, 0.01, 3);
+  Subject subject(mesh);
+  const auto count = static_cast<double>(mesh.face_count());
+  const auto wanted = static_cast<std::size_t>(static_cast<double>(subject.hull_point_count()) / count);
+  std::vector<TriangleParameter> at;
+  int steps = 1;
+  while (static_cast<std::size_t>((steps + 1) * (steps + 2) / 2) < wanted) ++steps;
+  for (int j = 0; j <= steps; ++j) {
+    for (int i = 0; i + j <= steps && at.size() < wanted; ++i) {
+      at.push_back({static_cast<double>(i) / steps, static_cast<double>(j) / steps});
+    }
+  }
+  OsdStencils stencils = OsdStencils::limit(mesh, at, 2);
+  PatchBounds bounds = subject.bounds(all_faces(mesh.face_count()));
+  std::vector<OffsetTriangle> triangles;
+  Group group("new positions, " + std::to_string(mesh.face_count()) + " faces, " + std::to_string(wanted) +
+                  " hull points a patch in the mean",
+              "patch", options);
+  group.add("snug: offset triangles", count, [&] { return update(bounds, moved.points, triangles); });
+  group.add("Far: as many limit points, double", count, [&] { return stencils.update(moved.points); });
+  group.run();
+}
+#endif
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -73,5 +103,8 @@ int main(int argc, char** argv) {
   }
 #endif
   group.run();
+#ifdef SNUG_BENCH_OPENSUBDIV
+  bench_as_many_points(options);
+#endif
   return 0;
 }

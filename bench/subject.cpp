@@ -20,6 +20,15 @@ double Subject::enclose(std::span<const FaceId> faces, std::vector<OffsetTriangl
   return sum;
 }
 
+std::size_t Subject::hull_point_count() {
+  std::size_t sum = 0;
+  for (const FaceId f : all_faces(surface_->face_count())) {
+    hull_points(*library_, surface_->patch(f), scratch_);
+    sum += scratch_.size();
+  }
+  return sum;
+}
+
 PatchBounds Subject::bounds(std::span<const FaceId> faces, std::optional<TableLayout> table) const {
   return PatchBounds(*surface_, {faces.begin(), faces.end()}, table, 1);
 }

@@ -26,6 +26,8 @@ class Subject {
   /// Offset triangles of some faces, in scaled units, a patch at a time as queries make them.
   /// Returns:   the sum of the radii.
   double enclose(std::span<const FaceId> faces, std::vector<OffsetTriangle>& out);
+  /// Of all faces together.
+  [[nodiscard]] std::size_t hull_point_count();
   /// Bounds of some faces at once, their kinds' rows or tables made.
   [[nodiscard]] PatchBounds bounds(std::span<const FaceId> faces,
                                    std::optional<TableLayout> table = {}) const;
