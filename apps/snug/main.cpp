@@ -7,6 +7,7 @@
 
 #include <fmt/core.h>
 #include <snug/base/error.h>
+#include <snug/enclose/fit_kernels.h>
 #include <CLI/CLI.hpp>
 
 #include "common.h"
@@ -47,7 +48,7 @@ int main(int argc, char** argv) {
   install_interrupt_handler();
   CLI::App app{"Tight, proved bounds for the limit surfaces of subdivision meshes, and answers about them.",
                "snug"};
-  app.set_version_flag("--version", version_line);
+  app.set_version_flag("--version", version_head + std::string(snug::kernels::instruction_set()) + ")");
   app.require_subcommand(1);
   app.footer(
       "Exit status: 0 answered, 2 usage, 3 unreadable file, 4 refused mesh, 5 tolerance or budget not "

@@ -534,6 +534,8 @@ void FitRegular(std::span<const Point3> points, std::span<const VertexId> contro
   }
 }
 
+const char* InstructionSet() { return hwy::TargetName(HWY_TARGET); }
+
 }  // namespace
 }  // namespace snug::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -545,6 +547,9 @@ HWY_EXPORT(ApplyRows);
 HWY_EXPORT(Heights);
 HWY_EXPORT(Farthest);
 HWY_EXPORT(FitRegular);
+HWY_EXPORT(InstructionSet);
+
+const char* instruction_set() { return HWY_DYNAMIC_DISPATCH(InstructionSet)(); }
 
 void apply_rows(const double* weights, std::size_t rows, std::span<const Vector3> points, double* x,
                 double* y, double* z) {

@@ -14,6 +14,9 @@
 ///            fused, and lanes meet only in minima and maxima: results are the same everywhere, bit by bit.
 namespace snug::kernels {
 
+/// The instruction set in use, such as AVX2.
+[[nodiscard]] const char* instruction_set();
+
 /// Coordinates of many points, one array each, `count` long.
 struct Coordinates {
   const double* x;
