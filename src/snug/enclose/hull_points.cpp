@@ -37,12 +37,15 @@ void take_net(const HullPoints& points, const Kind& kind, std::size_t begin, Pat
 
 }  // namespace
 
+void HullPoints::reserve(std::size_t count) {
+  if (count <= x_.size()) return;
+  x_.resize(count);
+  y_.resize(count);
+  z_.resize(count);
+}
+
 void HullPoints::resize(std::size_t count) {
-  if (count > x_.size()) {
-    x_.resize(count);
-    y_.resize(count);
-    z_.resize(count);
-  }
+  reserve(count);
   count_ = count;
 }
 
@@ -61,6 +64,11 @@ void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out) {
 
 void hull_points(BoundLibrary& library, const Patch& patch, HullPoints& out) {
   hull_points(library.rows(*patch.kind), patch, out);
+  std::size_t most = out.size();
+  for (std::size_t i = 0; i < 3 && out.tips[i].kind; ++i) {
+    most += (most_tip_refinements + 1) * library.rows(*out.tips[i].kind).count();
+  }
+  out.reserve(most);
   if (out.tips[1].kind) refine_tips(library, {true, true, true}, out);
 }
 

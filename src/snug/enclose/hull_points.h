@@ -26,6 +26,8 @@ class HullPoints {
 
   /// The first points stay; new ones may be anything. Keeps its memory.
   void resize(std::size_t count);
+  /// Memory for so many.
+  void reserve(std::size_t count);
   void set(std::size_t i, const Vector3& p) {
     x_[i] = p.x;
     y_[i] = p.y;
@@ -39,6 +41,9 @@ class HullPoints {
   std::vector<double> x_, y_, z_;  // as large as they ever were
 };
 
+/// How often offset_triangle() refines tips.
+inline constexpr std::size_t most_tip_refinements = 3;
+
 /// The points M c of a patch, written over `out`, which keeps its memory.
 ///
 /// Guarantee: the patch lies in the hull of points that differ from these by at most out.error a coordinate.
@@ -47,7 +52,7 @@ class HullPoints {
 void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out);
 
 /// The same from the rows that a library keeps; the tips of a kind with several are refined, its own rows being
-/// for one level only.
+/// for one level only. Takes memory for all refinements to come.
 void hull_points(BoundLibrary& library, const Patch& patch, HullPoints& out);
 /// Makes the rows that the call above will need for patches of this kind.
 void prepare_hull_points(BoundLibrary& library, const Kind& kind);

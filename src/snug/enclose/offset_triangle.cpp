@@ -9,8 +9,6 @@ namespace snug {
 
 namespace {
 
-constexpr int most_refinements = 3;
-
 // For triangles without a plane of their own: the nearest points of the edges, each found on its own.
 kernels::Reach farthest_by_feet(const HullPoints& points, const std::array<Vector3, 3>& corner) {
   const TriangleFoot foot(corner[0], corner[1], corner[2]);
@@ -64,14 +62,14 @@ OffsetTriangle offset_triangle(const HullPoints& points, const std::array<Vector
 
 OffsetTriangle offset_triangle(BoundLibrary& library, HullPoints& points,
                                const std::array<Vector3, 3>& corners) {
-  for (int round = 0;; ++round) {
+  for (std::size_t round = 0;; ++round) {
     const BaseTriangle base = base_triangle(points, corners);
     const auto& c = base.relative;
     const auto reach = kernels::farthest(points.coordinates(), points.tips_begin(), c[0], c[1], c[2]);
     if (!reach) return finished(base, points, farthest_by_feet(points, c));
     const auto& [rest, tips] = *reach;
     const bool tight = !base.tips_stick_out && tips.distance <= (1 + notable_excess) * rest.distance;
-    if (tight || round == most_refinements || !refine_what_sticks_out(library, base, rest.distance, points)) {
+    if (tight || round == most_tip_refinements || !refine_what_sticks_out(library, base, rest.distance, points)) {
       return finished(base, points, rest.distance >= tips.distance ? rest : tips);
     }
   }
