@@ -69,7 +69,8 @@ OffsetTriangle offset_triangle(BoundLibrary& library, HullPoints& points,
     if (!reach) return finished(base, points, farthest_by_feet(points, c));
     const auto& [rest, tips] = *reach;
     const bool tight = !base.tips_stick_out && tips.distance <= (1 + notable_excess) * rest.distance;
-    if (tight || round == most_tip_refinements || !refine_what_sticks_out(library, base, rest.distance, points)) {
+    if (tight || round == most_tip_refinements ||
+        !refine_what_sticks_out(library, base, rest.distance, points)) {
       return finished(base, points, rest.distance >= tips.distance ? rest : tips);
     }
   }
