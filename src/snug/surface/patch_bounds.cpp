@@ -7,6 +7,7 @@
 #include <snug/base/contract.h>
 #include <snug/base/error.h>
 #include <snug/base/parallel.h>
+#include <snug/base/rounding.h>
 #include <snug/enclose/fit_kernels.h>
 #include <snug/enclose/table_kernel.h>
 #include <snug/patch/evaluate.h>
@@ -36,6 +37,20 @@ OffsetTriangle turned(const kernels::BatchFit& fit, std::uint8_t first) {
   result.radius = fit.radius;
   result.rounding = fit.rounding;
   return result;
+}
+
+// unscaled(turned()) at a moderate power of two, straight to where it belongs: copies would cost as much as the fit.
+void turn_and_scale(const kernels::BatchFit& fit, std::uint8_t first, double factor, OffsetTriangle& out) {
+  std::size_t from = (3 - first) % 3;
+  for (Point3& corner : out.base) {
+    const Point3& p = fit.base[from];
+    corner.x = factor * p.x;
+    corner.y = factor * p.y;
+    corner.z = factor * p.z;
+    from = from == 2 ? 0 : from + 1;
+  }
+  out.radius = enlarged(factor * fit.radius + 4 * underflow_error);
+  out.rounding = enlarged(factor * fit.rounding + 4 * underflow_error);
 }
 
 std::vector<FaceId> faces_with_patch(const Surface& surface) {
@@ -160,7 +175,11 @@ void PatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
   for (std::size_t i = 0; i < count; ++i) {
     const Place& place = places_[chunk.begin + i];
     if (answers[i].radius >= 0) {
-      out[place.position] = unscaled(turned(answers[i], place.first), back);
+      if (back.moderate() && answers[i].radius <= 0x1p50) {
+        turn_and_scale(answers[i], place.first, back.factor(), out[place.position]);
+      } else {
+        out[place.position] = unscaled(turned(answers[i], place.first), back);
+      }
       continue;
     }
     Patch& patch = scratch.patch;

@@ -31,7 +31,7 @@ IntervalTriangle unscaled(const IntervalTriangle& triangle, PowerOfTwo back) {
            unscaled(triangle.corner[2], back)}};
 }
 
-OffsetTriangle unscaled_with_care(const OffsetTriangle& triangle, PowerOfTwo back) {
+OffsetTriangle unscaled(const OffsetTriangle& triangle, PowerOfTwo back) {
   OffsetTriangle result;
   bool exact = true;
   for (std::size_t k = 0; k < 3; ++k) {
