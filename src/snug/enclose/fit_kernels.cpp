@@ -104,10 +104,11 @@ HWY_INLINE PlanarTriangle<V> planar_triangle(D d, const Vec3<V>& a, const Vec3<V
   return t;
 }
 
-// False for needles and whatever is not finite.
+// False for needles and whatever is not finite. A needle whose area is mere rounding may have yc < 0 and with it a
+// negative `amplify`.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> well_shaped(D d, const PlanarTriangle<V>& t) {
-  const auto round = hn::And(hn::Le(t.amplify, hn::Set(d, 64.0)), hn::Gt(t.l0, hn::Zero(d)));
+  const auto round = hn::And(hn::Gt(t.amplify, hn::Zero(d)), hn::Le(t.amplify, hn::Set(d, 64.0)));
   return hn::And(round, hn::Le(t.stretch, hn::Set(d, 0x1p-40)));
 }
 
@@ -231,7 +232,8 @@ HWY_INLINE Range heights_with(D d, const Coordinates& points, const Vector3& fro
     lower = hn::Min(height, lower);  // in this order a NaN is passed over
     upper = hn::Max(height, upper);
   });
-  return {hn::GetLane(hn::MinOfLanes(d, lower)), hn::GetLane(hn::MaxOfLanes(d, upper))};
+  // Which of two zeros is the least depends on their order, and so on the number of lanes: -0 + 0 is 0.
+  return {hn::GetLane(hn::MinOfLanes(d, lower)) + 0.0, hn::GetLane(hn::MaxOfLanes(d, upper)) + 0.0};
 }
 
 Range Heights(const Coordinates& points, const Vector3& from, const Vector3& normal) {
@@ -287,7 +289,7 @@ HWY_INLINE V mean(V half, V a, V b) {
 }
 
 // Bezier points of one coordinate from the twelve control points; 24 times these are the integer sums of
-// patch/polynomial.cpp. At most ten additions and two products each.
+// patch/polynomial.cpp. Each term meets six roundings at most.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void bezier(D d, const V* c, V* b) {
   const auto times = [&](double k, V v) HWY_ATTR { return hn::Mul(hn::Set(d, k), v); };
@@ -442,7 +444,9 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
     lower = hn::Min(lower, height);
     upper = hn::Max(upper, height);
   }
-  const Vec3<V> shift = scaled(hn::Mul(hn::Set(d, 0.5), hn::Add(lower, upper)), n);
+  // No -0, as in heights_with().
+  const V both = hn::Add(hn::Add(lower, upper), hn::Zero(d));
+  const Vec3<V> shift = scaled(hn::Mul(hn::Set(d, 0.5), both), n);
   for (auto& c : corner) c = add(c, shift);
 
   const PlanarTriangle<V> t = planar_triangle(d, corner[0], corner[1], corner[2]);
@@ -468,8 +472,8 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
   const V error = hn::Add(hn::Add(hn::Mul(hn::Set(d, hull_error * (1 + 0x1p-42)), largest),
                                   hn::Mul(hn::Set(d, unit_roundoff * (1 + 0x1p-42)), placed)),
                           hn::Set(d, 64 * underflow_error));
-  const V rounding = hn::Add(reach.rounding, hn::Mul(hn::Set(d, spatial_error(1)), error));
-  const V radius = hn::Add(reach.distance, hn::Sub(rounding, reach.rounding));
+  const V given = hn::Mul(hn::Set(d, spatial_error(1)), error);
+  const V rounding = hn::Add(reach.rounding, given), radius = hn::Add(reach.distance, given);
   const V widened = hn::Add(hn::Mul(radius, hn::Set(d, 1 + 0x1p-42)), hn::Set(d, underflow_error));
   const V answer =
       hn::IfThenElse(hn::And(good, hn::Lt(widened, hn::Set(d, INFINITY))), widened, hn::Set(d, -1.0));

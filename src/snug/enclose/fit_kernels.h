@@ -37,15 +37,19 @@ struct Range {
 
 /// How far points are from a triangle.
 struct Reach {
-  double distance;  ///< upper bound of the largest distance, but for the points' own error; NaN or infinite
-                    ///< where a point is
+  double distance;  ///< upper bound of the largest distance, but for the points' own error; infinite where a
+                    ///< point is not finite
   double rounding;  ///< the part of it that accounts for rounding
 };
 
 /// Largest distance of the points to the triangle; nothing for a triangle that is too flat for its own plane:
-/// a needle, or one without area.
+/// the sine of its sharpest angle below 1/32, without area, not finite, or of a size whose fourth power leaves
+/// the range of doubles.
 ///
-/// Guarantee: see derivations/rounding.md, "Distance in the triangle's plane".
+/// Guarantee: largest distance <= distance <= largest distance + 3 rounding, for the triangle of these very
+///            doubles; rounding is at most (16 + 112 / sine) u (distance + 2 longest edge).
+/// Requires:  points in scaled coordinates (base/scaling.h), or not finite.
+/// Source:    derivations/rounding.md, "Distance in the triangle's plane".
 [[nodiscard]] std::optional<Reach> farthest(const Coordinates& points, const Vector3& a, const Vector3& b,
                                             const Vector3& c);
 /// The same for the first `split` points and for the others; no distance for none.
