@@ -214,6 +214,28 @@ TEST(farthest, withstands_a_search_for_the_worst_rounding) {
   EXPECT_LT(worst, 0.25);   // the derivation's constants are not used up
 }
 
+// Below 1e-70 the square of the area loses digits, and below 1e-81 all of them.
+TEST(farthest, is_answered_well_or_not_at_all_at_any_size) {
+  Random random(52);
+  int answered = 0;
+  for (int trial = 0; trial < 30000; ++trial) {
+    Corners corners = any_corners(random, 1);
+    corners = {Vector3{0, 0, 0}, corners[1] - corners[0], corners[2] - corners[0]};
+    Vector3 point = any_point(random, corners);
+    const double size = std::pow(10.0, trial % 2 ? uniform(random, -83, -76) : uniform(random, -100, 0.3));
+    for (Vector3* v : {&corners[1], &corners[2], &point}) *v = size * *v;
+    Cloud cloud;
+    cloud.add(point);
+    const auto reach = farthest(cloud, corners);
+    if (!reach) continue;
+    ++answered;
+    const Quad truth = true_distance<Quad>(point, corners);
+    ASSERT_LE(truth, Quad(reach->distance)) << size;
+    ASSERT_LE(Quad(reach->distance), (truth + 3 * Quad(reach->rounding)) * (1 + Quad(0x1p-39))) << size;
+  }
+  EXPECT_GT(answered, 10000);
+}
+
 TEST(farthest, answers_triangles_by_their_sharpest_angle) {
   Random random(43);
   for (int trial = 0; trial < 20000; ++trial) {
