@@ -397,6 +397,17 @@ oracle::TwinMesh any_regular_net(Random& random) {
   return mesh;
 }
 
+// Its limit corners span an area of mere rounding, in the plane z = 0.
+oracle::TwinMesh net_on_a_line(Random& random) {
+  oracle::TwinMesh mesh = regular_net();
+  const double x = uniform(random, -1, 1), y = uniform(random, -1, 1);
+  for (oracle::Point& p : mesh.points) {
+    const double along = p[0] + uniform(random, -0.3, 0.3);
+    p = {along * x, along * y, 0};
+  }
+  return mesh;
+}
+
 // Many nets behind each other, as the batch reads them.
 class Nets {
  public:
@@ -502,9 +513,8 @@ TEST(regular_fit, marks_what_it_does_not_answer_and_nothing_else) {
   add([](oracle::Point& p) { p = {0.5, 0.25, 0.125}; });
   add([](oracle::Point& p) { p = {0, 0, 0}; });
   add([](oracle::Point& p) { p = {0.3 * p[0], 0.7 * p[0], 0.1 * p[0]}; });
-  for (double angle = 0.01; angle < 6; angle += 0.01) {  // lines in a coordinate plane: an area of rounding
-    add([&](oracle::Point& p) { p = {std::cos(angle) * p[0], std::sin(angle) * p[0], 0}; });
-  }
+  Random random(53);
+  for (int i = 0; i < 2000; ++i) nets.add(net_on_a_line(random)), nets.add(regular_net());
   add([](oracle::Point& p) { p[1] *= 0.01; });
   for (const double bad : {static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
     for (std::size_t k = 0; k < 36; ++k) {
@@ -527,6 +537,20 @@ TEST(regular_fit, marks_what_it_does_not_answer_and_nothing_else) {
     } else {
       EXPECT_EQ(fits[i].radius, fits[1].radius) << i;
       EXPECT_GE(fits[i].radius, 0) << i;
+    }
+  }
+}
+
+TEST(offset_triangle, contains_patches_on_a_line_in_a_coordinate_plane) {
+  Random random(54);
+  Nets nets;
+  for (std::size_t i = 0; i < 400; ++i) {
+    const oracle::TwinMesh mesh = net_on_a_line(random);
+    nets.add(mesh);
+    const OffsetTriangle offset = nets.offset(i);
+    for (const oracle::LimitSample& s : oracle::sample_uniform(mesh, 2)) {
+      const testing::Extended p{s.position[0], s.position[1], s.position[2]};
+      ASSERT_TRUE(testing::within_radius(p, offset.base, offset.radius + 2 * s.error)) << i;
     }
   }
 }
