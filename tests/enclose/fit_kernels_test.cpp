@@ -544,7 +544,7 @@ TEST(regular_fit, marks_what_it_does_not_answer_and_nothing_else) {
 TEST(offset_triangle, contains_patches_on_a_line_in_a_coordinate_plane) {
   Random random(54);
   Nets nets;
-  for (std::size_t i = 0; i < 400; ++i) {
+  for (std::size_t i = 0; i < 1000; ++i) {
     const oracle::TwinMesh mesh = net_on_a_line(random);
     nets.add(mesh);
     const OffsetTriangle offset = nets.offset(i);
