@@ -69,8 +69,9 @@ template <class Real>
   return std::sqrt(distance_sq_to_triangle(p, triangle));
 }
 
-/// Is a point within `radius` of the triangle?
+/// Is a point within `radius` of the triangle? None is within a negative radius.
 [[nodiscard]] inline bool within_radius(const Extended& p, const Triangle& triangle, long double radius) {
+  if (!(radius >= 0)) return false;
   if (distance_sq_to_triangle(p, triangle) <= radius * radius) return true;
   const Coordinates<Quad> q{p[0], p[1], p[2]};
   return distance_sq_to_triangle(q, triangle) <= Quad(radius) * Quad(radius);

@@ -264,7 +264,8 @@ HWY_INLINE Range heights_with(D d, const Coordinates& points, const Vector3& fro
     lower = hn::Min(height, lower);  // in this order a NaN is passed over
     upper = hn::Max(height, upper);
   });
-  return {hn::GetLane(hn::MinOfLanes(d, lower)), hn::GetLane(hn::MaxOfLanes(d, upper))};
+  // Which of two zeros is the least depends on their order, and so on the number of lanes: -0 + 0 is 0.
+  return {hn::GetLane(hn::MinOfLanes(d, lower)) + 0.0, hn::GetLane(hn::MaxOfLanes(d, upper)) + 0.0};
 }
 
 Range Heights(const Coordinates& points, const Vector3& from, const Vector3& normal) {
@@ -465,7 +466,9 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
     lower = hn::Min(lower, height);
     upper = hn::Max(upper, height);
   }
-  const Vec3<V> shift = scaled(hn::Mul(hn::Set(d, 0.5), hn::Add(lower, upper)), t.n);
+  // No -0, as in heights_with().
+  const V both = hn::Add(hn::Add(lower, upper), hn::Zero(d));
+  const Vec3<V> shift = scaled(hn::Mul(hn::Set(d, 0.5), both), t.n);
   for (auto& c : corner) c = add(c, shift);
   t.a = corner[0];
 
@@ -494,8 +497,8 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
   const V error = hn::Add(hn::Add(hn::Mul(hn::Set(d, hull_error * (1 + 0x1p-42)), largest),
                                   hn::Mul(hn::Set(d, unit_roundoff * (1 + 0x1p-42)), placed)),
                           hn::Set(d, 64 * underflow_error));
-  const V rounding = hn::Add(reach.rounding, hn::Mul(hn::Set(d, spatial_error(1)), error));
-  const V radius = hn::Add(reach.distance, hn::Sub(rounding, reach.rounding));
+  const V given = hn::Mul(hn::Set(d, spatial_error(1)), error);
+  const V rounding = hn::Add(reach.rounding, given), radius = hn::Add(reach.distance, given);
   const V widened = hn::Add(hn::Mul(radius, hn::Set(d, 1 + 0x1p-42)), hn::Set(d, underflow_error));
   const V answer =
       hn::IfThenElse(hn::And(good, hn::Lt(widened, hn::Set(d, INFINITY))), widened, hn::Set(d, -1.0));
