@@ -86,51 +86,8 @@ PatchBounds::PatchBounds(const Surface& surface, std::optional<TableLayout> tabl
 PatchBounds::PatchBounds(const Surface& surface, std::vector<FaceId> faces, std::optional<TableLayout> table,
                          int threads)
     : library_(&surface.library()), faces_(std::move(faces)) {
-  // Counting sort of the faces by kind.
-  std::vector<std::uint32_t> group_of(library_->kinds().size(), UINT32_MAX), sizes;
-  for (const FaceId f : faces_) {
-    std::uint32_t& group = group_of[surface.kind(f).id().index()];
-    if (group == UINT32_MAX) {
-      group = static_cast<std::uint32_t>(groups_.size());
-      groups_.push_back({&surface.kind(f), nullptr, 0, 0});
-      sizes.push_back(0);
-    }
-    ++sizes[group];
-  }
-  std::size_t place = 0, control = 0;
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    groups_[g].first_place = place;
-    groups_[g].first_control = control;
-    place += sizes[g];
-    control += sizes[g] * groups_[g].kind->control_count();
-    for (std::size_t begin = groups_[g].first_place; begin < place; begin += chunk_size) {
-      chunks_.push_back({static_cast<std::uint32_t>(g), static_cast<std::uint32_t>(begin),
-                         static_cast<std::uint32_t>(std::min(place, begin + chunk_size))});
-    }
-  }
-  places_.resize(place);
-  control_.resize(control);
-  std::vector<bool> used(surface.mesh().vertex_count());
-  scaled_.resize(surface.mesh().vertex_count());
-  std::vector<std::size_t> next(groups_.size());
-  for (std::size_t g = 0; g < groups_.size(); ++g) next[g] = groups_[g].first_place;
-  std::vector<VertexId> vertices;
-  for (std::size_t i = 0; i < faces_.size(); ++i) {
-    const FaceId f = faces_[i];
-    const std::uint32_t g = group_of[surface.kind(f).id().index()];
-    const std::size_t at = next[g]++;
-    surface.control_vertices(f, vertices);
-    places_[at] = {static_cast<std::uint32_t>(i), surface.first(f)};
-    std::copy(
-        vertices.begin(), vertices.end(),
-        control_.begin() + static_cast<std::ptrdiff_t>(groups_[g].first_control +
-                                                       (at - groups_[g].first_place) * vertices.size()));
-    for (const VertexId v : vertices) used[v.index()] = true;
-  }
-  for (std::size_t v = 0; v < used.size(); ++v) {
-    if (!used[v]) unused_.push_back(VertexId(v));
-  }
-
+  sort_by_kind(surface);
+  collect_control(surface);
   parallel_for(groups_.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t g = begin; g < end; ++g) {
       Group& group = groups_[g];
@@ -141,6 +98,56 @@ PatchBounds::PatchBounds(const Surface& surface, std::vector<FaceId> faces, std:
       }
     }
   });
+}
+
+// Groups, chunks and places: a counting sort.
+void PatchBounds::sort_by_kind(const Surface& surface) {
+  constexpr std::uint32_t none = UINT32_MAX;
+  std::vector<std::uint32_t> group_of_kind(library_->kinds().size(), none), group_of(faces_.size()), sizes;
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    const Kind& kind = surface.kind(faces_[i]);
+    std::uint32_t& group = group_of_kind[kind.id().index()];
+    if (group == none) {
+      group = static_cast<std::uint32_t>(groups_.size());
+      groups_.push_back({&kind, nullptr, 0, 0});
+      sizes.push_back(0);
+    }
+    ++sizes[group];
+    group_of[i] = group;
+  }
+  std::size_t place = 0, control = 0;
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    groups_[g].first_place = place;
+    groups_[g].first_control = control;
+    control += sizes[g] * groups_[g].kind->control_count();
+    const std::size_t end = place + sizes[g];
+    for (; place < end; place = std::min(end, place + chunk_size)) {
+      chunks_.push_back({static_cast<std::uint32_t>(g), static_cast<std::uint32_t>(place),
+                         static_cast<std::uint32_t>(std::min(end, place + chunk_size))});
+    }
+  }
+  control_.resize(control);
+  places_.resize(place);
+  std::vector<std::size_t> next;
+  for (const Group& group : groups_) next.push_back(group.first_place);
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    places_[next[group_of[i]]++] = {static_cast<std::uint32_t>(i), surface.first(faces_[i])};
+  }
+}
+
+void PatchBounds::collect_control(const Surface& surface) {
+  std::vector<bool> used(surface.mesh().vertex_count());
+  std::vector<VertexId> vertices;
+  auto to = control_.begin();
+  for (const Place& place : places_) {
+    surface.control_vertices(faces_[place.position], vertices);
+    to = std::copy(vertices.begin(), vertices.end(), to);
+    for (const VertexId v : vertices) used[v.index()] = true;
+  }
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (!used[v]) unused_.push_back(VertexId(v));
+  }
+  scaled_.resize(surface.mesh().vertex_count());
 }
 
 void PatchBounds::update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads) {

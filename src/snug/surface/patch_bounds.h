@@ -54,6 +54,8 @@ class PatchBounds {
     std::uint32_t position;
     std::uint8_t first;
   };
+  void sort_by_kind(const Surface& surface);
+  void collect_control(const Surface& surface);
   void fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTriangle> out) const;
 
   BoundLibrary* library_;
