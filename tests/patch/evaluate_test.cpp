@@ -83,6 +83,7 @@ TEST(limit_evaluator, answers_alike_whatever_it_met_before) {
     Patches patches(twin);
     const Patch patch = patches[random() % twin.triangles.size()];
     reused.reset(patch);
+    const Patch* const kept = &reused.patch();
     std::vector<TriangleParameter> at{{0, 0}, {1, 0}, {0, 1}, {0.5, 0.5}, {0x1p-70, 0}, {0, 0x1p-30}};
     for (int i = 0; i < 60; ++i) {
       const double u = std::ldexp(unit(), -static_cast<int>(random() % 8));
@@ -97,6 +98,8 @@ TEST(limit_evaluator, answers_alike_whatever_it_met_before) {
       EXPECT_EQ(again.relative, fresh.relative);
     }
     EXPECT_LT(reused.bytes(), 2'000'000u);
+    EXPECT_EQ(kept, &reused.patch());
+    EXPECT_EQ(kept->points, patch.points);
   }
 }
 

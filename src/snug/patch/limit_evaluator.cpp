@@ -26,6 +26,7 @@ std::size_t kind_index(const Patch& patch, std::size_t i, std::size_t j) {
 void LimitEvaluator::reset(const Patch& patch) {
   inner_.clear();
   quartics_.clear();
+  patch_ = patch;
   inner_.push_back({patch, 0, {}});
   if (patch.kind->polynomial()) inner_[0].children[0] = make(Patch(patch), 0);
 }
@@ -71,9 +72,9 @@ LimitPoint LimitEvaluator::evaluate(const Quartic& quartic, TriangleParameter at
 LimitPoint LimitEvaluator::operator()(TriangleParameter parameter) {
   SNUG_EXPECT(!inner_.empty());
   TriangleParameter at = checked(parameter);
-  if (const std::size_t corner = corner_at(at); corner < 3) return corner_point(inner_[0].patch, corner);
+  if (const std::size_t corner = corner_at(at); corner < 3) return corner_point(patch_, corner);
   Child child = inner_[0].children[0];
-  if (inner_[0].patch.kind->polynomial()) return evaluate(quartics_[child.place], at);
+  if (patch_.kind->polynomial()) return evaluate(quartics_[child.place], at);
   std::uint32_t here = 0;
   while (true) {
     if (inner_[here].patch.path.level() >= PiecePath::max_level) {
@@ -102,6 +103,7 @@ void LimitEvaluator::operator()(std::span<const TriangleParameter> at, std::span
 std::size_t LimitEvaluator::bytes() const {
   std::size_t sum =
       sizeof(*this) + inner_.capacity() * sizeof(Inner) + quartics_.capacity() * sizeof(Quartic);
+  sum += patch_.points.capacity() * sizeof(Vector3);
   for (const Inner& inner : inner_) sum += inner.patch.points.capacity() * sizeof(Vector3);
   return sum;
 }

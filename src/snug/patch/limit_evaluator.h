@@ -23,7 +23,8 @@ class LimitEvaluator {
 
   /// Begins anew with another patch; keeps its memory.
   void reset(const Patch& patch);
-  [[nodiscard]] const Patch& patch() const { return inner_.front().patch; }
+  /// Stays where it is until reset().
+  [[nodiscard]] const Patch& patch() const { return patch_; }
 
   /// Requires:  a patch; at as in limit_point().
   [[nodiscard]] LimitPoint operator()(TriangleParameter at);
@@ -53,6 +54,7 @@ class LimitEvaluator {
   Child make(Patch&& piece, double drift);
   [[nodiscard]] static LimitPoint evaluate(const Quartic& quartic, TriangleParameter at);
 
+  Patch patch_;
   std::vector<Inner> inner_;  // the patch itself first, polynomial or not
   std::vector<Quartic> quartics_;
 };

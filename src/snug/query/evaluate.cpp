@@ -22,7 +22,8 @@ FaceEvaluator::FaceEvaluator(const Surface& surface, FaceId f)
     : evaluator_(surface.patch(f)), back_(surface.scale().inverse()) {}
 
 SurfacePosition FaceEvaluator::position(TriangleParameter at) {
-  return placed(evaluator_(at), evaluator_.patch().origin, back_);
+  const LimitPoint point = evaluator_(at);
+  return placed(point, evaluator_.patch().origin, back_);
 }
 
 SurfacePoint FaceEvaluator::operator()(TriangleParameter at) const {
