@@ -225,9 +225,8 @@ class Step {
     for (std::size_t k = 0; k < 3; ++k) fine_.edges.push_back({m[k], m[(k + 2) % 3], Quad(0)});
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t before = (k + 2) % 3;
-      PolygonNet::Face child{
-          {vertex_child(face.vertices[k]), m[k], m[before]},
-          {half(face, k, false), inner + static_cast<Id>(k), half(face, before, true)}};
+      PolygonNet::Face child{{vertex_child(face.vertices[k]), m[k], m[before]},
+                             {half(face, k, false), inner + static_cast<Id>(k), half(face, before, true)}};
       for (auto* ids : {&child.vertices, &child.edges})
         std::rotate(ids->begin(), ids->end() - static_cast<std::ptrdiff_t>(k), ids->end());
       fine_.faces.push_back(std::move(child));

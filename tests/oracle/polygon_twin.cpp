@@ -149,8 +149,7 @@ TaggedMesh refine(const TaggedMesh& mesh, const Rules& rules, int levels) {
   }
   TaggedMesh fine;
   for (const QuadPoint& p : net.points)
-    fine.points.push_back(
-        {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])});
+    fine.points.push_back({static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])});
   for (const auto& face : net.faces) fine.polygons.push_back(face.vertices);
   for (const auto& edge : net.edges)
     if (edge.sharpness > 0) fine.creases.push_back({edge.a, edge.b, static_cast<double>(edge.sharpness)});

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <oracle/polygon_twin.h>
+
+#include <cstddef>
+
+namespace oracle {
+
+/// The twin's meshes and limits against OpenSubdiv's; differences are relative to the largest coordinate.
+struct Compared {
+  struct Part {
+    std::size_t count = 0;
+    double worst = 0;
+  };
+  bool accepted = false;   ///< OpenSubdiv made a refiner
+  bool same_faces = true;  ///< numbers of faces and corners, holes
+  Part refined;            ///< corners of faces at all levels
+  Part limit;              ///< limit points where OpenSubdiv's mask is one
+  /// Where it is not: one sharp edge, Catmull-Clark with two faces, finite sharpness at the last level.
+  Part dart, valence_two, alive;
+};
+
+/// Sharpnesses are rounded to float first, as OpenSubdiv stores them.
+[[nodiscard]] Compared compare_with_opensubdiv(TaggedMesh mesh, const Rules& rules, int levels);
+
+}  // namespace oracle

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <oracle/tagged_mesh.h>
+
+#include <cstdint>
+#include <random>
+
+/// Small control meshes with tags or flaws.
+namespace oracle::meshes {
+
+[[nodiscard]] TaggedMesh cube();  ///< corner i + 2j + 4k at (i, j, k); faces seen from outside
+[[nodiscard]] TaggedMesh quad_grid(std::uint32_t columns, std::uint32_t rows);
+[[nodiscard]] TaggedMesh triangulated(const TaggedMesh& mesh);  ///< fans at each face's first corner
+[[nodiscard]] TaggedMesh prism(std::uint32_t n);                ///< two n-gons and n quads
+[[nodiscard]] TaggedMesh pyramid(std::uint32_t n);              ///< apex 0, triangles and an n-gon
+[[nodiscard]] TaggedMesh mixed_strip();  ///< open: triangle, quad, pentagon, triangle around one vertex
+[[nodiscard]] TaggedMesh book(std::uint32_t pages);  ///< quads on a common spine of two edges
+[[nodiscard]] TaggedMesh two_cubes_at_a_vertex();
+[[nodiscard]] TaggedMesh moebius(std::uint32_t n);  ///< n quads; one edge is crossed against its direction
+[[nodiscard]] TaggedMesh back_to_back();            ///< two quads with the same four corners: valence 2
+[[nodiscard]] TaggedMesh valence_two_inside();      ///< two quads share two edges in a row, others around
+
+/// Moves every point by up to `amount` along each axis, by amounts a float holds.
+[[nodiscard]] TaggedMesh shaken(TaggedMesh mesh, double amount, std::mt19937_64& random);
+
+}  // namespace oracle::meshes
