@@ -203,8 +203,7 @@ std::vector<DualSample> sample_dual(const TaggedMesh& mesh, DualScheme scheme, i
       sample.position[x] = static_cast<double>(centre[x]);
       worst = std::max(worst, magnitude(centre[x] - static_cast<Quad>(sample.position[x])));
     }
-    sample.error =
-        std::nextafter(static_cast<double>(worst + off), std::numeric_limits<double>::infinity());
+    sample.error = std::nextafter(static_cast<double>(worst + off), std::numeric_limits<double>::infinity());
     samples.push_back(std::move(sample));
   }
   return samples;
@@ -216,8 +215,7 @@ TaggedMesh refine_dual(const TaggedMesh& mesh, DualScheme scheme, int levels) {
   for (int level = 0; level < levels; ++level) net = Step(net, scheme).result();
   TaggedMesh fine;
   for (const QuadPoint& p : net.points)
-    fine.points.push_back(
-        {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])});
+    fine.points.push_back({static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])});
   fine.polygons = net.faces;
   return fine;
 }
