@@ -2,6 +2,7 @@
 #include <oracle/opensubdiv_comparison.h>
 #include <oracle/tagged_shapes.h>
 
+#include <algorithm>
 #include <random>
 #include <string>
 #include <vector>
@@ -84,6 +85,35 @@ TEST(polygon_twin_and_opensubdiv, agree_on_chaikin_sharpness) {
   }
 }
 
+/// Chaikin makes the edge smooth at one end at once, since 3/4 of 1.25 and 1/4 of 0.125 are less than one.
+TEST(polygon_twin_and_opensubdiv, weight_a_dart_edge_with_more_than_one) {
+  TaggedMesh mesh = cube();
+  mesh.creases = {{0, 1, 1.25}, {1, 3, 0.125}};
+  Rules rules;
+  rules.chaikin = true;
+  expect_same_in_both(mesh, rules, 3);
+  rules.clamp_dart_edges = true;
+  EXPECT_GT(compare_with_opensubdiv(mesh, rules, 3).refined.worst, 1e-2);
+}
+
+/// Its mask for a vertex with one sharp edge is the smooth one, and the vertex itself where two faces meet.
+TEST(polygon_twin_and_opensubdiv, differ_where_its_mask_is_not_the_limit) {
+  TaggedMesh dart = cube();
+  dart.creases = {{0, 1, 10}};
+  double before = 1;
+  for (int level = 1; level <= 4; ++level) {
+    const Compared c = expect_same(dart, {}, level);
+    EXPECT_EQ(c.dart.count, 6U);  // two vertices in three faces
+    EXPECT_GT(c.dart.worst, 1e-4);
+    EXPECT_LT(c.dart.worst, before);
+    before = c.dart.worst;
+  }
+  EXPECT_GT(expect_same(back_to_back(), {}, 2).valence_two.worst, 1e-3);
+  TaggedMesh sharp = cube();
+  sharp.corners = {{0, 5.5}};
+  EXPECT_GT(expect_same(sharp, {}, 2).alive.worst, 1e-3);
+}
+
 TEST(polygon_twin_and_opensubdiv, agree_on_boundaries_and_holes) {
   std::mt19937_64 random(24);
   for (const Boundary boundary : kBoundaries) {
@@ -157,6 +187,50 @@ TEST(polygon_twin_and_opensubdiv, agree_on_faces_with_repeated_corners) {
   }
   for (const TaggedMesh& m : broken)
     for (const Boundary boundary : kBoundaries) expect_same(m, with(boundary), 3);
+  Rules loop;
+  loop.scheme = PrimalScheme::loop;
+  for (const std::vector<std::uint32_t>& face :
+       std::vector<std::vector<std::uint32_t>>{{0, 0, 1}, {8, 8, 8}}) {
+    TaggedMesh m = triangulated(mesh);
+    m.polygons.push_back(face);
+    expect_same(m, loop, 3);
+  }
+}
+
+/// Random faces over few vertices, so that hardly anything is manifold, with random tags.
+TEST(polygon_twin_and_opensubdiv, agree_on_soup) {
+  std::mt19937_64 random(29);
+  const auto up_to = [&](std::uint32_t n) {
+    return std::uniform_int_distribution<std::uint32_t>(0, n)(random);
+  };
+  for (int trial = 0; trial < 400; ++trial) {
+    Rules rules;
+    rules.scheme = trial % 2 == 0 ? PrimalScheme::catmull_clark : PrimalScheme::loop;
+    rules.boundary = kBoundaries[up_to(2)];
+    rules.chaikin = up_to(3) == 0;
+    rules.smooth_triangles = up_to(1) == 0;
+    const std::uint32_t last = 3 + up_to(6);
+    TaggedMesh mesh;
+    mesh.points.resize(last + 1);
+    mesh = shaken(mesh, 1, random);
+    const std::uint32_t faces = 1 + up_to(9);
+    const bool repeat = up_to(2) == 0;
+    for (std::uint32_t f = 0; f < faces; ++f) {
+      std::vector<std::uint32_t> face;
+      const std::size_t corners = trial % 2 == 0 ? 3 + up_to(1) : 3;
+      while (face.size() < corners) {
+        const std::uint32_t v = up_to(last);
+        if (repeat || std::find(face.begin(), face.end(), v) == face.end()) face.push_back(v);
+      }
+      for (std::size_t k = 0; k < corners; ++k)
+        if (up_to(4) == 0) mesh.creases.push_back({face[k], face[(k + 1) % corners], up_to(88) / 8.0});
+      if (up_to(4) == 0) mesh.corners.push_back({face[0], up_to(88) / 8.0});
+      if (up_to(7) == 0) mesh.holes.push_back(f);
+      mesh.polygons.push_back(std::move(face));
+    }
+    expect_same(mesh, rules, 3, rules.chaikin ? 1e-6 : 1e-12);
+    if (HasFailure()) FAIL() << "trial " << trial;
+  }
 }
 
 }  // namespace
