@@ -1,3 +1,4 @@
+#include <opensubdiv/far/error.h>
 #include <opensubdiv/far/primvarRefiner.h>
 #include <opensubdiv/far/topologyDescriptor.h>
 #include <opensubdiv/far/topologyRefinerFactory.h>
@@ -68,6 +69,7 @@ std::unique_ptr<Far::TopologyRefiner> refiner_of(const TaggedMesh& mesh, const R
   description.cornerWeights = corner_weights.data();
   description.numHoles = static_cast<int>(holes.size());
   description.holeIndices = holes.data();
+  Far::SetWarningCallback([](const char*) {});  // tags for no edge are passed over
   using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
   const auto scheme = rules.scheme == PrimalScheme::loop ? Sdc::SCHEME_LOOP : Sdc::SCHEME_CATMARK;
   return std::unique_ptr<Far::TopologyRefiner>(

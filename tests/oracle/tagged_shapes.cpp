@@ -126,7 +126,7 @@ TaggedMesh moebius(std::uint32_t n) {
 
 TaggedMesh back_to_back() {
   TaggedMesh mesh = quad_grid(1, 1);
-  mesh.polygons.push_back({mesh.polygons[0].rbegin(), mesh.polygons[0].rend()});
+  mesh.polygons.emplace_back(mesh.polygons[0].rbegin(), mesh.polygons[0].rend());
   return mesh;
 }
 
