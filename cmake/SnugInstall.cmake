@@ -1,5 +1,6 @@
-# What others link, snug::snug: the layers base to io. find_package(snug) finds it after `cmake --install`; a project
-# that adds this folder as a sub-directory links the same name. The command installs itself, in apps/snug.
+# What others link, snug::snug: the layers base to io, and the headers of adapters. find_package(snug) finds it after
+# `cmake --install`; a project that adds this folder as a sub-directory links the same name. The command installs
+# itself, in apps/snug.
 
 set(snug_installed_layers base mesh scheme patch basis enclose tree surface query io)
 
@@ -8,6 +9,7 @@ add_library(snug::snug ALIAS snug_umbrella)
 set_target_properties(snug_umbrella PROPERTIES EXPORT_NAME snug)
 # Functions in headers are compiled by the user: there, too, every rounding is counted one by one.
 target_compile_options(snug_umbrella INTERFACE $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off>)
+target_link_libraries(snug_umbrella INTERFACE $<BUILD_INTERFACE:snug_adapters>)
 
 option(SNUG_INSTALL "Generate the install rules" ${PROJECT_IS_TOP_LEVEL})
 include(CMakePackageConfigHelpers)
@@ -26,6 +28,8 @@ foreach(layer IN LISTS snug_installed_layers)
 endforeach()
 
 if(SNUG_INSTALL)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/adapters DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/snug
+          FILES_MATCHING PATTERN "*.h")
   install(TARGETS ${snug_installed_targets} EXPORT snug-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT snug-targets NAMESPACE snug:: DESTINATION ${snug_package_dir})
 

@@ -25,8 +25,11 @@ LIBRARIES = {
     "picture": ("png.h",),
 }
 POSIX = ("fcntl.h", "unistd.h", "sys/")
-# Folders outside src/snug that must not lean on what they are there to check: the layers they may include.
-INDEPENDENT = {"tests/oracle": set(), "checker": {"base"}}
+# Folders outside src/snug, and the layers they may include: those that must not lean on what they are there to check, and
+# adapters, which is installed and so includes what is installed.
+INDEPENDENT = {"tests/oracle": set(), "checker": {"base"}, "adapters": set(ORDER) - {"picture"}}
+# Headers of this folder are included as <snug/adapters/...>; nothing of src/snug includes them.
+ADAPTERS = "adapters"
 # Folders whose headers are checked for #pragma once and whose includes of snug must exist.
 FOLDERS = ["src", "apps", "adapters", "tests", "examples", "bench", "tablegen", "checker"]
 
@@ -111,14 +114,15 @@ def check_tree(root):
             if path.suffix == ".h" and not re.search(r"^#pragma once$", path.read_text(encoding="utf-8"), re.MULTILINE):
                 faults.append(f"{where}:1: no #pragma once")
             for line, _, include in includes(path):
-                if include.startswith("snug/") and not (root / "src" / include).exists():
+                source = include.removeprefix("snug/") if layer_of(include) == ADAPTERS else f"src/{include}"
+                if include.startswith("snug/") and not (root / source).exists():
                     faults.append(f"{where}:{line}: <{include}> does not exist")
     for name, layers in INDEPENDENT.items():
         for path in cpp_files(root / name):
             if not path.stem.endswith("_test"):
-                faults += [f"{path.relative_to(root)}:{line}: {name} stands on its own and may not include <{include}>"
+                faults += [f"{path.relative_to(root)}:{line}: {name} may not include <{include}>"
                            for line, _, include in includes(path)
-                           if layer_of(include) and layer_of(include) not in layers]
+                           if layer_of(include) and layer_of(include) not in layers | {name}]
     return faults
 
 
@@ -135,6 +139,8 @@ GOOD_TREE = {
     "src/snug/io/r.h": "#pragma once\n",
     "src/snug/io/r.cpp": "#include <snug/base/a.h>\n#include <unistd.h>\n",
     "tests/oracle/o.h": "#pragma once\n#include <gmp.h>\n",
+    "adapters/d.h": "#pragma once\n#include <dear.h>\n#include <snug/mesh/m.h>\n",
+    "examples/e.cpp": "#include <snug/adapters/d.h>\n",
     "tests/oracle/o_test.cpp": "#include <snug/base/a.h>\n",
 }
 # Each: a file put in the place of one above, and a part of the fault that must be reported.
@@ -153,7 +159,11 @@ BAD_FILES = [
     ("src/snug/mesh/CMakeLists.txt", "snug_layer(mesh SOURCES m.cpp)", "USES lacks base"),
     ("src/snug/query/CMakeLists.txt", "snug_layer(query SOURCES q.cpp USES base mesh)", "lists base, which no file"),
     ("src/snug/extra/e.cpp", "\n", "src/snug/extra: not a layer"),
-    ("tests/oracle/o.h", "#pragma once\n#include <snug/base/a.h>\n", "tests/oracle stands on its own"),
+    ("tests/oracle/o.h", "#pragma once\n#include <snug/base/a.h>\n", "tests/oracle may not include"),
+    ("adapters/d.h", "#include <snug/base/a.h>\n", "d.h:1: no #pragma once"),
+    ("adapters/d.h", "#pragma once\n#include <snug/picture/p.h>\n", "adapters may not include <snug/picture/p.h>"),
+    ("examples/e.cpp", "#include <snug/adapters/gone.h>\n", "<snug/adapters/gone.h> does not exist"),
+    ("src/snug/mesh/m.cpp", "#include <snug/adapters/d.h>\n", "mesh may not include adapters"),
 ]
 
 

@@ -7,6 +7,13 @@
 #include <snug/query/bound.h>
 #include <snug/query/collide.h>
 
+// An adapter is there whether or not the library is that it adapts, and compiles wherever that is.
+#if !__has_include(<snug/adapters/opensubdiv.h>)
+#error "snug/adapters/opensubdiv.h is not installed"
+#elif __has_include(<opensubdiv/far/topologyRefiner.h>)
+#include <snug/adapters/opensubdiv.h>
+#endif
+
 int main() {
   const char* octahedron =
       "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
