@@ -21,7 +21,7 @@ namespace snug {
 /// Writes a control mesh, whole or not at all (atomic_file.h). The format follows the ending in any case: .obj,
 /// .off, .ply (binary, little endian), .stl (binary) or .glb; "-" is OBJ on standard output.
 ///
-/// Notes:     one line if the format has no tags but the mesh has; as the writer of the format.
+/// Notes:     one line if the format has no tags but the mesh has, one for polylines; as the writer of the format.
 /// Errors:    InputError as the writer of the format and AtomicFile; (unreadable) for another ending.
 ///            SNUG_EXPECT as format_obj.
 void write_mesh(const ControlMesh& mesh, const std::string& path, const Notes& notes = {});
