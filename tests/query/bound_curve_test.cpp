@@ -1,5 +1,6 @@
 #include <snug/base/error.h>
 #include <snug/base/quantile.h>
+#include <snug/enclose/curve_points.h>
 #include <snug/query/bound_curve.h>
 #include <snug/query/evaluate_curve.h>
 #include <snug/query/subdivide_curve.h>
@@ -92,6 +93,19 @@ TEST(bound_curve, stops_where_rounding_stands_in_the_way) {
   EXPECT_LT(deepest, 40u);
 }
 
+TEST(bound_curve, has_enclosures_at_the_last_level) {
+  for (const int degree : {2, 3}) {
+    CurvePiece piece = testing::curve_set(testing::assorted_polylines(3)[5], degree).piece(EdgeId(0));
+    while (piece.path.level() < PiecePath::max_level) piece = split(piece, 1);
+    HullPoints points;
+    hull_points(piece, points);
+    const auto limits = limit_ends(piece);
+    EXPECT_LT(offset_segment(points, {limits[0].relative, limits[1].relative}).radius, 1e-12);
+    control_points(piece, points);
+    EXPECT_LT(outer_box(points).longest_side(), 1e-12);
+  }
+}
+
 // Radius over the least radius of any translate of the same segment, from dense limit points.
 TEST(bound_curve, is_close_to_the_least_radius) {
   std::vector<double> ratios[2];
@@ -133,8 +147,8 @@ TEST(bound_curve, is_close_to_the_least_radius) {
     std::cout << "degree " << degree << ": " << r.size() << " pieces, radius over the least: median " << median
               << ", 95 % " << high << ", most " << most << '\n';
     EXPECT_LT(median, 1.02);
-    EXPECT_LT(high, 1.2);
-    EXPECT_LT(most, 1.6);
+    EXPECT_LT(high, 1.15);
+    EXPECT_LT(most, 3);  // curves that turn back: Bezier points stick out beyond the ends
   }
 }
 
@@ -207,16 +221,15 @@ TEST(subdivide_curve, keeps_the_curve) {
       const CurveDegree d = degree == 2 ? CurveDegree::quadratic : CurveDegree::cubic;
       const ControlMesh mesh = testing::control_mesh(std::vector{twin});
       const CurveSet curves(mesh, d);
+      BoundOptions how;
+      how.tolerance = 1e-5;
+      std::vector<OffsetSegment> pieces;
+      bound(curves, how, [&](const CurveEnclosure& piece) { pieces.push_back(*piece.offset); });
       const auto on_curve = [&](const Point3& p) {
-        BoundOptions how;
-        how.tolerance = 1e-6;
-        bool found = false;
-        bound(curves, how, [&](const CurveEnclosure& piece) {
-          found = found || testing::within_radius({p.x, p.y, p.z},
-                                                  {piece.offset->base[0], piece.offset->base[1], piece.offset->base[1]},
-                                                  piece.offset->radius + 1e-12);
+        return std::any_of(pieces.begin(), pieces.end(), [&](const OffsetSegment& piece) {
+          const Triangle flat{piece.base[0], piece.base[1], piece.base[1]};
+          return testing::distance_to_triangle({p.x, p.y, p.z}, flat) <= piece.radius + 1e-12;
         });
-        return found;
       };
       for (const unsigned level : {0u, 1u, 3u}) {
         for (const Point3& p : subdivide_curves(mesh, d, level, true).points) {

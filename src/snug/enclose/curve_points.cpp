@@ -26,9 +26,14 @@ void clear(const CurvePiece& piece, HullPoints& out) {
 
 void hull_points(const CurvePiece& piece, HullPoints& out) {
   clear(piece, out);
-  for (unsigned child = 0; child < 2; ++child) {
-    const CurveBezier bezier = bezier_points(split(piece, child));
-    append({bezier.points.data(), bezier.count}, bezier.error, out);
+  CurvePiece whole = piece;
+  whole.path = {};  // a path may have no room for two more digits
+  for (const unsigned half : {0u, 1u}) {
+    const CurvePiece parent = split(whole, half);
+    for (const unsigned child : {0u, 1u}) {
+      const CurveBezier bezier = bezier_points(split(parent, child));
+      append({bezier.points.data(), bezier.count}, bezier.error, out);
+    }
   }
 }
 
