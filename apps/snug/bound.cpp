@@ -112,8 +112,8 @@ ExitStatus run(const Options& options) {
     }
     return bound_curve(std::move(mesh), options.mesh, options, options.degree, how, tolerance);
   }
-  const Surface surface = make_surface(std::move(mesh), options.mesh, options, options.scheme,
-                                       std::make_shared<BoundLibrary>());
+  const Surface surface =
+      make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundLibrary>());
   BoundSummary summary;
   Polyhedra polyhedra(triangles);
   Report report("bound", options);
@@ -161,7 +161,8 @@ ExitStatus run(const Options& options) {
 
 Command add_bound(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("bound", "Enclosures that contain the limit surface, or limit curves");
+  CLI::App* command =
+      app.add_subcommand("bound", "Enclosures that contain the limit surface, or limit curves");
   command->add_option("MESH", options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)")
       ->required();
   CLI::Option* tolerance =

@@ -33,8 +33,8 @@ void write_piece(JsonWriter& json, const CurveEnclosure& piece) {
 
 }  // namespace
 
-ExitStatus bound_curve(ControlMesh mesh, const std::string& path, const CommonOptions& options, unsigned degree,
-                       BoundOptions how, const std::optional<Length>& tolerance) {
+ExitStatus bound_curve(ControlMesh mesh, const std::string& path, const CommonOptions& options,
+                       unsigned degree, BoundOptions how, const std::optional<Length>& tolerance) {
   if (how.method == BoundMethod::table) {
     throw UsageError("bound: --bounds table is for surfaces; " + path + " is answered as curves");
   }
@@ -59,8 +59,9 @@ ExitStatus bound_curve(ControlMesh mesh, const std::string& path, const CommonOp
     report.write().end_array().field("count", summary.count).field("max_radius", summary.max_radius);
     report.write().field("reached", summary.reached).field("splits", summary.splits);
   }
-  report.text(fmt::format("{}: {} enclosures of {} edges contain the limit curves of degree {}, largest radius {}", path,
-                          summary.count, edges, degree, text_at_most(summary.max_radius, true)));
+  report.text(
+      fmt::format("{}: {} enclosures of {} edges contain the limit curves of degree {}, largest radius {}",
+                  path, summary.count, edges, degree, text_at_most(summary.max_radius, true)));
   if (!summary.reached) {
     const bool spent = summary.splits >= options.budget;
     report.text(fmt::format("{} was not reached everywhere: {}; what is printed is still proved",

@@ -16,8 +16,9 @@
 namespace snug::command {
 
 void add_common_options(CLI::App& app, CommonOptions& options) {
-  app.add_option("--scheme", options.scheme,
-                 "Subdivision scheme; auto: loop for triangles alone, curve for polylines alone, else catmark")
+  app.add_option(
+         "--scheme", options.scheme,
+         "Subdivision scheme; auto: loop for triangles alone, curve for polylines alone, else catmark")
       ->check(CLI::IsMember({"auto", "loop", "catmark", "catmull-clark", "doo-sabin", "midedge", "curve"}))
       ->capture_default_str();
   app.add_option("--boundary", options.boundary,

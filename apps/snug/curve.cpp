@@ -11,13 +11,16 @@ bool is_curve(const ControlMesh& mesh, const std::string& scheme) {
 void refuse_curves(const ControlMesh& mesh, const std::string& scheme, const std::string& path) {
   const bool only_polylines = mesh.face_count() == 0 && mesh.polyline_count() > 0;
   if (scheme == "curve") {
-    throw InputError(InputProblem::refused,
-                     path + ": --scheme curve is answered by bound, eval and subdivide only; give another scheme");
+    throw InputError(
+        InputProblem::refused,
+        path + ": --scheme curve is answered by bound, eval and subdivide only; give another scheme");
   }
   if (only_polylines) {
-    throw InputError(InputProblem::refused,
-                     path + ": it has polylines and no faces; curves are answered by bound, eval and subdivide only, "
-                            "with --scheme curve or auto");
+    throw InputError(
+        InputProblem::refused,
+        path +
+            ": it has polylines and no faces; curves are answered by bound, eval and subdivide only, "
+            "with --scheme curve or auto");
   }
 }
 
@@ -27,7 +30,9 @@ void add_degree_option(CLI::App& app, unsigned& degree) {
       ->capture_default_str();
 }
 
-CurveDegree curve_degree(unsigned degree) { return degree == 2 ? CurveDegree::quadratic : CurveDegree::cubic; }
+CurveDegree curve_degree(unsigned degree) {
+  return degree == 2 ? CurveDegree::quadratic : CurveDegree::cubic;
+}
 
 void curve_heads(Report& report, const std::string& path, unsigned degree) {
   report.heads({path}, {"curve"});

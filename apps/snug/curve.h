@@ -26,8 +26,8 @@ void curve_heads(Report& report, const std::string& path, unsigned degree);
 
 /// bound, for curves.
 /// Errors:    UsageError for --bounds table.
-ExitStatus bound_curve(ControlMesh mesh, const std::string& path, const CommonOptions& options, unsigned degree,
-                       BoundOptions how, const std::optional<Length>& tolerance);
+ExitStatus bound_curve(ControlMesh mesh, const std::string& path, const CommonOptions& options,
+                       unsigned degree, BoundOptions how, const std::optional<Length>& tolerance);
 
 struct CurveSamples {
   unsigned degree;

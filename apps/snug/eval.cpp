@@ -94,9 +94,10 @@ void write_point(Report& report, const Request& request, const SurfacePoint& poi
 
 ExitStatus run(const Options& options) {
   ControlMesh mesh = load_mesh(options.mesh, options);
-  if (is_curve(mesh, options.scheme)) return eval_curve(std::move(mesh), options.mesh, options, {options.degree, options.samples, options.at});
-  const Surface surface = make_surface(std::move(mesh), options.mesh, options, options.scheme,
-                                       std::make_shared<BoundLibrary>());
+  if (is_curve(mesh, options.scheme))
+    return eval_curve(std::move(mesh), options.mesh, options, {options.degree, options.samples, options.at});
+  const Surface surface =
+      make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundLibrary>());
   std::vector<Request> requests;
   if (!options.at.empty()) requests = read_requests(options.at, surface);
   Report report("eval", options);
@@ -140,10 +141,14 @@ Command add_eval(CLI::App& app) {
   command->add_option("MESH", options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)")
       ->required();
   CLI::Option* samples =
-      command->add_option("--samples", options->samples, "A lattice of N steps along each edge of every face, or of every polyline")
+      command
+          ->add_option("--samples", options->samples,
+                       "A lattice of N steps along each edge of every face, or of every polyline")
           ->check(CLI::Range(1u, 1000u))
           ->capture_default_str();
-  command->add_option("--at", options->at, "File of lines 'face u v': p = (1-u-v) c0 + u c1 + v c2; of curves: 'edge t'")
+  command
+      ->add_option("--at", options->at,
+                   "File of lines 'face u v': p = (1-u-v) c0 + u c1 + v c2; of curves: 'edge t'")
       ->excludes(samples);
   add_degree_option(*command, options->degree);
   add_common_options(*command, *options);

@@ -41,7 +41,8 @@ std::vector<Request> read_requests(const std::string& path, const CurveSet& curv
     double t = 0;
     if (!parse(first, edge) || !parse(second, t) || !more.empty()) fail("a line is 'edge t'");
     if (edge >= curves.edge_count()) {
-      fail("edge " + std::to_string(edge) + " of " + std::to_string(curves.edge_count()) + " (they count from 0)");
+      fail("edge " + std::to_string(edge) + " of " + std::to_string(curves.edge_count()) +
+           " (they count from 0)");
     }
     if (!(t >= 0 && t <= 1)) fail("t must be from 0 to 1");
     requests.push_back({EdgeId(edge), t});
@@ -51,13 +52,16 @@ std::vector<Request> read_requests(const std::string& path, const CurveSet& curv
 
 void write_point(Report& report, const Request& request, const CurveSetPoint& point) {
   if (!report.json()) {
-    report.text(fmt::format("{} {}  {} {} {}", request.edge.index(), request.t, point.position.x, point.position.y,
-                            point.position.z));
+    report.text(fmt::format("{} {}  {} {} {}", request.edge.index(), request.t, point.position.x,
+                            point.position.y, point.position.z));
     return;
   }
   JsonWriter& json = report.write();
   json.begin_object().field("edge", request.edge.index()).field("t", request.t);
-  json.field("position", point.position).field("error", point.error).field("tangent", point.tangent).end_object();
+  json.field("position", point.position)
+      .field("error", point.error)
+      .field("tangent", point.tangent)
+      .end_object();
 }
 
 }  // namespace

@@ -155,9 +155,9 @@ ExitStatus curve_rates(const Options& options) {
   report.text("thickness of a curve's piece, the factor a level: measured (theory)");
   report.text(fmt::format("{:>6}  {:<6}  {:<8}", "degree", "place", "measure"));
   for (const CurveRateRow& row : rows) {
-    report.text(fmt::format("{:>6}  {:<6}  {:<8}  {} ({:.4f})", static_cast<int>(row.degree), name_of(row.place),
-                            name_of(row.measure), row.factor ? fmt::format("{:.4f}", *row.factor) : "straight",
-                            row.expected));
+    report.text(fmt::format("{:>6}  {:<6}  {:<8}  {} ({:.4f})", static_cast<int>(row.degree),
+                            name_of(row.place), name_of(row.measure),
+                            row.factor ? fmt::format("{:.4f}", *row.factor) : "straight", row.expected));
   }
   report.finish();
   return ExitStatus::answered;
@@ -249,7 +249,8 @@ Command add_experiment(CLI::App& app) {
   command
       ->add_option("NAME", options->name,
                    "pair-test: how often the pair test as printed misses a near pair; rates: how fast "
-                   "enclosures shrink at an extraordinary corner, or those of curves with --scheme curve; tightness: radii over the least possible")
+                   "enclosures shrink at an extraordinary corner, or those of curves with --scheme curve; "
+                   "tightness: radii over the least possible")
       ->required()
       ->check(CLI::IsMember({"pair-test", "rates", "tightness"}));
   command->add_option("--pairs", options->pairs, "pair-test: random pairs in all, over three families")

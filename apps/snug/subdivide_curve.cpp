@@ -12,7 +12,8 @@ namespace snug::command {
 
 ExitStatus subdivide_curve(const ControlMesh& mesh, const std::string& path, const CommonOptions& options,
                            const CurveLevel& which) {
-  std::string ending = options.output == "-" ? ".obj" : options.output.substr(options.output.find_last_of('.'));
+  std::string ending =
+      options.output == "-" ? ".obj" : options.output.substr(options.output.find_last_of('.'));
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   if (ending != ".obj") {

@@ -72,7 +72,8 @@ TEST(obj, reads_polylines_beside_faces_and_alone) {
 TEST(obj, bad_polylines_are_named) {
   EXPECT_EQ(message(triangle + "l 1 2\nl 1 2 0\n"),
             "mesh.obj:5: polyline 1: index 0 names no vertex: OBJ counts from 1");
-  EXPECT_EQ(message(triangle + "l 1 9\n"), "mesh.obj:4: polyline 0: index 9 is beyond the 3 vertices of the file");
+  EXPECT_EQ(message(triangle + "l 1 9\n"),
+            "mesh.obj:4: polyline 0: index 9 is beyond the 3 vertices of the file");
   EXPECT_EQ(message(triangle + "l -4 1\n"),
             "mesh.obj:4: polyline 0: index -4 reaches before the first of the 3 vertices above this line");
   EXPECT_EQ(message(triangle + "l\n"), "mesh.obj:4: polyline 0 has no vertices");

@@ -32,7 +32,8 @@ double largest_coordinate(const TwinPolyline& polyline) {
   return largest;
 }
 
-/// Weights and points of up to 4 times the largest coordinate, some twenty roundings a step: 400 u with u = 2^-113 holds.
+/// Weights and points of up to 4 times the largest coordinate, some twenty roundings a step: 400 u with u =
+/// 2^-113 holds.
 CurveSample sample(std::uint32_t edge, double t, const QuadPoint& p, double largest, int steps) {
   CurveSample result{edge, t, {}, 0};
   Quad worst = 0;
@@ -53,8 +54,8 @@ CurveSample sample(std::uint32_t edge, double t, const QuadPoint& p, double larg
 
 CurveSample curve_at(const TwinPolyline& polyline, int degree, std::uint32_t edge, double t) {
   const auto n = static_cast<std::int64_t>(polyline.points.size());
-  require((degree == 2 || degree == 3) && n >= (polyline.closed ? 1 : 2) && edge < polyline.edge_count() && t >= 0 &&
-          t <= 1);
+  require((degree == 2 || degree == 3) && n >= (polyline.closed ? 1 : 2) && edge < polyline.edge_count() &&
+          t >= 0 && t <= 1);
   const auto point = [&](std::int64_t i) {
     if (polyline.closed) return exact(polyline.points[static_cast<std::size_t>((i + n) % n)]);
     if (i < 0) return sum(2, exact(polyline.points[0]), -1, exact(polyline.points[1]));
@@ -66,16 +67,18 @@ CurveSample curve_at(const TwinPolyline& polyline, int degree, std::uint32_t edg
   if (degree == 3) {
     const auto i = static_cast<std::int64_t>(edge);
     const Quad x = t, xx = x * x, xxx = xx * x;
-    const QuadPoint first = sum((1 - 3 * x + 3 * xx - xxx) / 6, point(i - 1), (4 - 6 * xx + 3 * xxx) / 6, point(i));
-    const QuadPoint second =
-        sum((1 + 3 * x + 3 * xx - 3 * xxx) / 6, point(i + 1), xxx / 6, point(i + 2));
+    const QuadPoint first =
+        sum((1 - 3 * x + 3 * xx - xxx) / 6, point(i - 1), (4 - 6 * xx + 3 * xxx) / 6, point(i));
+    const QuadPoint second = sum((1 + 3 * x + 3 * xx - 3 * xxx) / 6, point(i + 1), xxx / 6, point(i + 2));
     return sample(edge, t, sum(1, first, 1, second), largest, 0);
   }
   // The segment of vertex i runs from -1/2 to 1/2.
   const auto i = static_cast<std::int64_t>(edge) + (t > 0.5 ? 1 : 0);
   const Quad x = static_cast<Quad>(t) + static_cast<Quad>(t > 0.5 ? -0.5 : 0.5), xx = x * x;
-  return sample(edge, t, sum((1 - 2 * x + xx) / 2, point(i - 1), (1 + 2 * x - 2 * xx) / 2, point(i), xx / 2, point(i + 1)),
-                largest, 0);
+  return sample(
+      edge, t,
+      sum((1 - 2 * x + xx) / 2, point(i - 1), (1 + 2 * x - 2 * xx) / 2, point(i), xx / 2, point(i + 1)),
+      largest, 0);
 }
 
 std::vector<CurveSample> subdivided_curve(const TwinPolyline& polyline, int degree, int levels) {
@@ -125,7 +128,8 @@ std::vector<CurveSample> subdivided_curve(const TwinPolyline& polyline, int degr
   for (std::size_t i = 0; i < n; ++i) {
     const Vertex &before = vertices[(i + n - 1) % n], &here = vertices[i], &after = vertices[(i + 1) % n];
     const bool end = !polyline.closed && (i == 0 || i + 1 == n);
-    const bool even = polyline.closed || (here.parameter - before.parameter == step && after.parameter - here.parameter == step);
+    const bool even = polyline.closed ||
+                      (here.parameter - before.parameter == step && after.parameter - here.parameter == step);
     if (!end && !even) continue;
     const double parameter = polyline.closed ? std::fmod(here.parameter, turn) : here.parameter;
     const double edge = std::min(std::floor(parameter), turn - 1);

@@ -16,7 +16,8 @@ TEST(curve_twin, polynomials_and_plain_subdivision_agree) {
     TwinPolyline polyline;
     polyline.closed = trial % 2 == 0;
     const int n = 1 + trial % 7 + (polyline.closed ? 0 : 1);
-    for (int i = 0; i < n; ++i) polyline.points.push_back({coordinate(random), coordinate(random), coordinate(random)});
+    for (int i = 0; i < n; ++i)
+      polyline.points.push_back({coordinate(random), coordinate(random), coordinate(random)});
     for (const int degree : {2, 3}) {
       for (const int levels : {0, 1, 2, 5}) {
         for (const CurveSample& s : subdivided_curve(polyline, degree, levels)) {

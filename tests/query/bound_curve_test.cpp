@@ -144,8 +144,8 @@ TEST(bound_curve, is_close_to_the_least_radius) {
   for (const int degree : {2, 3}) {
     const auto& r = ratios[degree - 2];
     const double median = quantile(r, 0.5), high = quantile(r, 0.95), most = quantile(r, 1);
-    std::cout << "degree " << degree << ": " << r.size() << " pieces, radius over the least: median " << median
-              << ", 95 % " << high << ", most " << most << '\n';
+    std::cout << "degree " << degree << ": " << r.size() << " pieces, radius over the least: median "
+              << median << ", 95 % " << high << ", most " << most << '\n';
     EXPECT_LT(median, 1.02);
     EXPECT_LT(high, 1.15);
     EXPECT_LT(most, 3);  // curves that turn back: Bezier points stick out beyond the ends
@@ -169,7 +169,9 @@ TEST(curve_set, refuses_what_has_no_curve_and_names_it) {
     EXPECT_EQ(refusal_of(line_of({{0, 0, 0}, {1, bad, 0}}, {0, 1})),
               "vertex 1 has a coordinate that is not finite; mend these elements");
   }
-  EXPECT_EQ(CurveSet(line_of({{0, 0, 0}, {1, 0, 0}, {std::nan(""), 0, 0}}, {0, 1}), CurveDegree::cubic).edge_count(), 1u);
+  EXPECT_EQ(CurveSet(line_of({{0, 0, 0}, {1, 0, 0}, {std::nan(""), 0, 0}}, {0, 1}), CurveDegree::cubic)
+                .edge_count(),
+            1u);
   ControlMesh cornered = line_of(two, {0, 1});
   cornered.tags.corners.push_back({VertexId(1), 2});
   EXPECT_NE(refusal_of(cornered).find("vertex 1 is tagged as a corner"), std::string::npos);
@@ -178,8 +180,13 @@ TEST(curve_set, refuses_what_has_no_curve_and_names_it) {
 TEST(curve_set, takes_two_vertices_repeated_ones_and_closed_ones_of_any_length) {
   const std::vector<Point3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   for (const CurveDegree degree : {CurveDegree::quadratic, CurveDegree::cubic}) {
-    for (const auto& [indices, edges] : std::vector<std::pair<std::vector<std::size_t>, std::size_t>>{
-             {{0, 1}, 1}, {{0, 0}, 1}, {{0, 1, 0}, 2}, {{0, 1, 2, 0}, 3}, {{0, 1, 1, 2}, 3}, {{1, 1, 1}, 2}}) {
+    for (const auto& [indices, edges] :
+         std::vector<std::pair<std::vector<std::size_t>, std::size_t>>{{{0, 1}, 1},
+                                                                       {{0, 0}, 1},
+                                                                       {{0, 1, 0}, 2},
+                                                                       {{0, 1, 2, 0}, 3},
+                                                                       {{0, 1, 1, 2}, 3},
+                                                                       {{1, 1, 1}, 2}}) {
       const CurveSet curves(line_of(points, indices), degree);
       EXPECT_EQ(curves.edge_count(), edges);
       const BoundSummary summary = bound(curves, {}, [](const CurveEnclosure&) {});
@@ -253,8 +260,9 @@ TEST(subdivide_curve, counts_as_it_says) {
   EXPECT_EQ(count({0, 1, 2, 3}, CurveDegree::quadratic), 8u);
   EXPECT_EQ(count({0, 1, 2, 0}, CurveDegree::cubic), 6u);
   EXPECT_EQ(count({0, 1, 2, 0}, CurveDegree::quadratic), 6u);
-  EXPECT_NE(refusal([&] { static_cast<void>(subdivide_curves(line_of(points, {0, 1}), CurveDegree::cubic, 31, false)); })
-                .find("take a lower level"),
+  EXPECT_NE(refusal([&] {
+              static_cast<void>(subdivide_curves(line_of(points, {0, 1}), CurveDegree::cubic, 31, false));
+            }).find("take a lower level"),
             std::string::npos);
 }
 

@@ -55,7 +55,8 @@ std::vector<Disguise> disguises() {
 
 // Both ends, next to them, dyadic and random.
 std::vector<double> parameters(std::mt19937_64& random, int count) {
-  std::vector<double> list{0, 1, 0.5, 0.25, 0.75, 0x1p-60, 1e-300, 1 - 0x1p-53, std::nextafter(0.5, 0), std::nextafter(0.5, 1)};
+  std::vector<double> list{
+      0, 1, 0.5, 0.25, 0.75, 0x1p-60, 1e-300, 1 - 0x1p-53, std::nextafter(0.5, 0), std::nextafter(0.5, 1)};
   for (int i = 0; i < count; ++i) list.push_back(static_cast<double>(random() >> 11) * 0x1p-53);
   return list;
 }
@@ -82,11 +83,12 @@ TEST(curves, lie_in_their_enclosures_at_a_hundred_thousand_adversarial_points) {
             for (const CurveSample& s : samples[piece.edge.index()]) {
               if (!range.holds(s.t)) continue;
               ++checks;
-              const bool inside =
-                  piece.box ? testing::contains(*piece.box, s) : testing::contains(*piece.offset, *piece.interval, s);
+              const bool inside = piece.box ? testing::contains(*piece.box, s)
+                                            : testing::contains(*piece.offset, *piece.interval, s);
               if (!inside) {
-                ADD_FAILURE() << disguise.name << ", degree " << degree << (twin.closed ? ", closed, " : ", open, ")
-                              << twin.points.size() << " vertices, edge " << s.edge << " at " << s.t << ", piece '"
+                ADD_FAILURE() << disguise.name << ", degree " << degree
+                              << (twin.closed ? ", closed, " : ", open, ") << twin.points.size()
+                              << " vertices, edge " << s.edge << " at " << s.t << ", piece '"
                               << piece.path.text() << "'" << (piece.box ? ", box" : "");
               }
             }
@@ -120,7 +122,8 @@ TEST(curves, lie_in_their_enclosures_after_fifty_splits) {
         const CurveSet curves = testing::curve_set(twin, degree);
         const PowerOfTwo back = curves.scale().inverse();
         const auto edge = static_cast<std::uint32_t>(random() % twin.edge_count());
-        for (const std::uint64_t turns : {std::uint64_t{0}, ~std::uint64_t{0}, static_cast<std::uint64_t>(random())}) {
+        for (const std::uint64_t turns :
+             {std::uint64_t{0}, ~std::uint64_t{0}, static_cast<std::uint64_t>(random())}) {
           CurvePiece piece = curves.piece(EdgeId(edge));
           HullPoints points;
           for (unsigned level = 0; level <= 50; ++level) {

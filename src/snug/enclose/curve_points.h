@@ -5,8 +5,8 @@
 
 namespace snug {
 
-/// Points whose convex hull contains a piece of a curve: the Bezier points of its four quarters, written over `out`,
-/// which keeps its memory.
+/// Points whose convex hull contains a piece of a curve: the Bezier points of its four quarters, written over
+/// `out`, which keeps its memory.
 ///
 /// Guarantee: the piece lies in the hull of points that differ from these by at most out.error a coordinate.
 void hull_points(const CurvePiece& piece, HullPoints& out);

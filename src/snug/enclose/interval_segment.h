@@ -9,8 +9,8 @@ struct IntervalSegment {
   std::array<Box3, 2> end;
 };
 
-/// Interval segment around a piece of a curve: the ends of its base segment, widened alike until every hull point is
-/// covered.
+/// Interval segment around a piece of a curve: the ends of its base segment, widened alike until every hull
+/// point is covered.
 ///
 /// Guarantee: contains every limit point of the piece, rounding included.
 /// Requires:  as offset_segment.

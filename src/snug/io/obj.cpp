@@ -59,9 +59,9 @@ class ObjParser {
     // Polylines alone are a mesh, too: that of curves.
     expect_elements(cursor_, mesh_.vertex_count(), mesh_.face_count() + mesh_.polyline_count());
     if (largest_.vertex >= mesh_.vertex_count()) {
-      cursor_.fail_at(largest_.line, largest_.owner + ": index " +
-                                         std::to_string(largest_.vertex + 1) + " is beyond the " +
-                                         std::to_string(mesh_.vertex_count()) + " vertices of the file");
+      cursor_.fail_at(largest_.line, largest_.owner + ": index " + std::to_string(largest_.vertex + 1) +
+                                         " is beyond the " + std::to_string(mesh_.vertex_count()) +
+                                         " vertices of the file");
     }
     mesh_.tags = tags_.finish(cursor_, mesh_.vertex_count(), mesh_.face_count());
     return std::move(mesh_);
@@ -84,9 +84,7 @@ class ObjParser {
     mesh_.points.push_back(point);
   }
 
-  void read_face() {
-    read_element("face", "faces", mesh_.face_vertices, mesh_.face_offsets);
-  }
+  void read_face() { read_element("face", "faces", mesh_.face_vertices, mesh_.face_offsets); }
 
   void read_polyline() {
     read_element("polyline", "polylines", mesh_.polyline_vertices, mesh_.polyline_offsets);

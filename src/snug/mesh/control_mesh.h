@@ -46,11 +46,12 @@ struct MeshTags {
   SmoothTriangles smooth_triangles = SmoothTriangles::catmark;
 };
 
-/// A polygonal control mesh: positions, faces as counter-clockwise vertex cycles, tags, and polylines, which are the
-/// control polygons of curves: closed if the last vertex is the first. A plain value.
+/// A polygonal control mesh: positions, faces as counter-clockwise vertex cycles, tags, and polylines, which
+/// are the control polygons of curves: closed if the last vertex is the first. A plain value.
 ///
 /// Guarantee: none beyond well-formed arrays: it holds defective meshes too, see validate.h.
-/// Requires:  face_offsets has face_count() + 1 entries, starting at 0, not decreasing; polyline_offsets likewise.
+/// Requires:  face_offsets has face_count() + 1 entries, starting at 0, not decreasing; polyline_offsets
+///            likewise.
 struct ControlMesh {
   std::vector<Point3> points;
   std::vector<std::uint32_t> face_offsets{0};

@@ -36,7 +36,8 @@ CurvePiece split(const CurvePiece& piece, unsigned child) {
   half.window = child_window(piece.window);
   half.path = piece.path.child(child);
   half.origin = piece.origin;
-  for (std::size_t r = 0; r < rows.row_count(); ++r) half.points[r] = rows.apply<Vector3>(r, piece.controls());
+  for (std::size_t r = 0; r < rows.row_count(); ++r)
+    half.points[r] = rows.apply<Vector3>(r, piece.controls());
   half.ghost = {child == 0 && piece.ghost[0], child == 1 && piece.ghost[1]};
   half.largest = largest_of(half.controls());
   half.error = rows.result_error(piece.largest, piece.error);
@@ -56,7 +57,8 @@ std::array<LimitPoint, 2> limit_ends(const CurvePiece& piece) {
     return {limit_ends(split(piece, 0))[0], limit_ends(split(piece, 1))[1]};
   }
   const CurveBezier bezier = bezier_points(piece);
-  return {LimitPoint{bezier.points[0], bezier.error}, LimitPoint{bezier.points[bezier.count - 1], bezier.error}};
+  return {LimitPoint{bezier.points[0], bezier.error},
+          LimitPoint{bezier.points[bezier.count - 1], bezier.error}};
 }
 
 CurvePoint curve_point(const CurvePiece& piece, double t) {

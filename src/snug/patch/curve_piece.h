@@ -10,18 +10,19 @@
 
 namespace snug {
 
-/// A piece of a limit curve by its own control points, and the error they carry. Path digits are 0 and 1, the halves.
+/// A piece of a limit curve by its own control points, and the error they carry. Path digits are 0 and 1, the
+/// halves.
 ///
-/// At an open end the neighbour that is not there is a ghost, g = 2 p0 - p1: refinement keeps this relation, so that ends
-/// need no kinds of their own.
+/// At an open end the neighbour that is not there is a ghost, g = 2 p0 - p1: refinement keeps this relation,
+/// so that ends need no kinds of their own.
 struct CurvePiece {
   CurveWindow window{};
   PiecePath path;
   Point3 origin;
-  std::array<Vector3, 4> points;      ///< relative to origin; control_count(window) of them
-  std::array<bool, 2> ghost{};        ///< is the first, is the last of them a ghost?
-  double error = 0;                   ///< upper bound, a coordinate, of |points - exact control points|
-  double largest = 0;                 ///< largest |coordinate| of `points`
+  std::array<Vector3, 4> points;  ///< relative to origin; control_count(window) of them
+  std::array<bool, 2> ghost{};    ///< is the first, is the last of them a ghost?
+  double error = 0;               ///< upper bound, a coordinate, of |points - exact control points|
+  double largest = 0;             ///< largest |coordinate| of `points`
 
   [[nodiscard]] std::span<const Vector3> controls() const { return {points.data(), control_count(window)}; }
 };
@@ -29,8 +30,9 @@ struct CurvePiece {
 /// The piece of the edge from b to c; `before` and `after` are absent at open ends.
 ///
 /// Requires:  finite points of at most about 2 (base/scaling.h).
-[[nodiscard]] CurvePiece make_curve_piece(CurveDegree degree, const std::optional<Point3>& before, const Point3& b,
-                                          const Point3& c, const std::optional<Point3>& after);
+[[nodiscard]] CurvePiece make_curve_piece(CurveDegree degree, const std::optional<Point3>& before,
+                                          const Point3& b, const Point3& c,
+                                          const std::optional<Point3>& after);
 
 /// The first (child 0) or the second half.
 ///

@@ -19,10 +19,12 @@ struct CurveEnclosure {
   std::optional<Box3> box;                  ///< control_box only
 };
 
-/// Enclosures of all limit curves, passed to `sink` edge by edge, pieces of an edge from its first end to its last.
+/// Enclosures of all limit curves, passed to `sink` edge by edge, pieces of an edge from its first end to its
+/// last.
 ///
-/// Guarantee: every limit point of edge e lies in the union of its pieces' offset segments, of their interval segments,
-///            and of their boxes, each on its own, rounding included; also where `reached` is false.
+/// Guarantee: every limit point of edge e lies in the union of its pieces' offset segments, of their interval
+///            segments, and of their boxes, each on its own, rounding included; also where `reached` is
+///            false.
 /// Requires:  options.method is not table. `threads` and `layout` change nothing.
 /// Errors:    InputError if a result does not fit a double; whatever `sink` or the monitor throws.
 /// Cost:      about a microsecond a piece, on one thread. Memory does not grow with the output.

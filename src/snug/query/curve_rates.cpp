@@ -52,8 +52,8 @@ std::array<Thicknesses, 2> thicknesses(const CurveSet& curves, EdgeId edge, unsi
   return result;
 }
 
-// A curve's radius is its curvature times the square of the length. At an open end there is no curvature: what is left is
-// the third derivative for degree 3, and nothing for degree 2.
+// A curve's radius is its curvature times the square of the length. At an open end there is no curvature:
+// what is left is the third derivative for degree 3, and nothing for degree 2.
 double expected_factor(CurveDegree degree, CurvePlace place) {
   if (place != CurvePlace::end) return 0.25;
   return degree == CurveDegree::cubic ? 0.125 : 0;

@@ -7,7 +7,8 @@
 #include <snug/query/convergence.h>
 #include <snug/scheme/curve_masks.h>
 
-/// How fast enclosures of curves shrink as a piece is split towards its first end. An experiment, as convergence.h.
+/// How fast enclosures of curves shrink as a piece is split towards its first end. An experiment, as
+/// convergence.h.
 namespace snug {
 
 /// Which end of a piece.
@@ -28,8 +29,8 @@ struct CurveRateRow {
   double expected;               ///< of theory; 0 where the curve is straight
 };
 
-/// Rows of both degrees, all places and measures, in this order. `nets` are polylines of seven vertices on random cubic
-/// curves.
+/// Rows of both degrees, all places and measures, in this order. `nets` are polylines of seven vertices on
+/// random cubic curves.
 ///
 /// Requires:  as measure_rates.
 /// Source:    docs/derivations/curves.md.

@@ -10,13 +10,13 @@ namespace snug {
 
 ControlMesh subdivide_curves(const ControlMesh& mesh, CurveDegree degree, unsigned level, bool limit,
                              const WorkMonitor& monitor) {
-  require_curves(mesh);
+  const CurveSet curves(mesh, degree);  // refuses what has no curves
   if (level > 30 || (2 * mesh.polyline_vertices.size() << level) > (std::size_t{1} << 31)) {
     throw InputError(InputProblem::refused, "level " + std::to_string(level) + " of polylines with " +
                                                 std::to_string(mesh.polyline_vertices.size()) +
                                                 " vertices is more than 2^31 vertices: take a lower level");
   }
-  const PowerOfTwo scale = CurveSet(mesh, degree).scale();
+  const PowerOfTwo scale = curves.scale();
   ControlMesh result;
   for (std::size_t p = 0; p < mesh.polyline_count(); ++p) {
     monitor.report(static_cast<double>(p) / static_cast<double>(mesh.polyline_count()));

@@ -86,14 +86,16 @@ const Stencils& child_rows(CurveWindow window, unsigned child) {
   SNUG_EXPECT(child < 2);
   using Halves = std::array<Stencils, 2>;
   const auto halves = [](CurveWindow w) { return Halves{make_child_rows(w, 0), make_child_rows(w, 1)}; };
-  static const std::array<Halves, 3> rows{halves(CurveWindow::cubic_edge), halves(CurveWindow::quadratic_edge),
+  static const std::array<Halves, 3> rows{halves(CurveWindow::cubic_edge),
+                                          halves(CurveWindow::quadratic_edge),
                                           halves(CurveWindow::quadratic_vertex)};
   return rows[static_cast<std::size_t>(window)][child];
 }
 
 const Stencils& bezier_rows(CurveWindow window) {
   SNUG_EXPECT(window != CurveWindow::quadratic_edge);
-  static const Stencils cubic = rows_of({{0, cubic_limit}, {1, first_third}, {1, second_third}, {1, cubic_limit}});
+  static const Stencils cubic =
+      rows_of({{0, cubic_limit}, {1, first_third}, {1, second_third}, {1, cubic_limit}});
   static const Stencils quadratic = rows_of({{0, edge_middle}, {1, vertex_itself}, {1, edge_middle}});
   return window == CurveWindow::cubic_edge ? cubic : quadratic;
 }
@@ -146,8 +148,9 @@ void require_curves(const ControlMesh& mesh) {
   for (std::size_t p = 0; p < mesh.polyline_count(); ++p) {
     const auto vertices = mesh.polyline(PolylineId(p));
     if (vertices.size() < 2) {
-      found.push_back({DefectKind::too_few_vertices, "polyline " + number(p) + " has " + number(vertices.size()) +
-                                                         " vertices, a polyline needs 2"});
+      found.push_back(
+          {DefectKind::too_few_vertices,
+           "polyline " + number(p) + " has " + number(vertices.size()) + " vertices, a polyline needs 2"});
     }
     for (const VertexId v : vertices) {
       if (v.index() < mesh.vertex_count()) {
@@ -161,8 +164,8 @@ void require_curves(const ControlMesh& mesh) {
   }
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
     if (used[v] && !is_finite(mesh.points[v])) {
-      found.push_back(
-          {DefectKind::coordinate_not_finite, "vertex " + number(v) + " has a coordinate that is not finite"});
+      found.push_back({DefectKind::coordinate_not_finite,
+                       "vertex " + number(v) + " has a coordinate that is not finite"});
     }
   }
   if (!found.empty()) refuse(summary(found) + "; mend these elements");

@@ -14,15 +14,15 @@ enum class CurveDegree : std::uint8_t {
   cubic = 3,      ///< vertices 1/8 6/8 1/8, edges 1/2 1/2
 };
 
-/// The control points that a piece of a curve depends on. Parameters run as on the polyline: a vertex at 0, the next
-/// one at 1.
+/// The control points that a piece of a curve depends on. Parameters run as on the polyline: a vertex at 0,
+/// the next one at 1.
 ///
 ///     cubic_edge          a   b===c   d     between the limits of b and c
 ///     quadratic_edge      a   b===c   d     the same; two parabolas that meet in the middle of bc
 ///     quadratic_vertex    a --=b=-- c       one parabola, from the middle of ab to the middle of bc
 ///
-/// Both children of a cubic_edge are of that kind; those of the others are quadratic_vertex, since corner cutting puts
-/// its new vertices at 1/4 and 3/4 of an edge.
+/// Both children of a cubic_edge are of that kind; those of the others are quadratic_vertex, since corner
+/// cutting puts its new vertices at 1/4 and 3/4 of an edge.
 enum class CurveWindow : std::uint8_t { cubic_edge, quadratic_edge, quadratic_vertex };
 
 [[nodiscard]] constexpr std::size_t control_count(CurveWindow window) {
@@ -32,7 +32,8 @@ enum class CurveWindow : std::uint8_t { cubic_edge, quadratic_edge, quadratic_ve
   return window == CurveWindow::cubic_edge ? CurveWindow::cubic_edge : CurveWindow::quadratic_vertex;
 }
 
-/// The control points of the first (child 0) or the second half of a piece, a row each. The weights are exact.
+/// The control points of the first (child 0) or the second half of a piece, a row each. The weights are
+/// exact.
 [[nodiscard]] const Stencils& child_rows(CurveWindow window, unsigned child);
 
 /// The Bezier points of a piece that is one polynomial: all but quadratic_edge.
@@ -57,8 +58,9 @@ struct ControlPolygon {
 /// The limit position of every vertex, in double precision.
 [[nodiscard]] ControlPolygon limit_positions(const ControlPolygon& polygon, CurveDegree degree);
 
-/// Throws InputError (refused) unless every polyline has a limit curve: at least one polyline, two vertices each (twice
-/// the same is legal), all of them there and finite, none tagged as a corner. The message names the elements.
+/// Throws InputError (refused) unless every polyline has a limit curve: at least one polyline, two vertices
+/// each (twice the same is legal), all of them there and finite, none tagged as a corner. The message names
+/// the elements.
 void require_curves(const ControlMesh& mesh);
 
 }  // namespace snug

@@ -11,13 +11,13 @@
 
 namespace snug {
 
-/// The limit curves of a mesh's polylines. Immutable; may be read by many threads. Edges are counted along the polylines,
-/// one polyline after the other; the closing edge of a closed one is its last.
+/// The limit curves of a mesh's polylines. Immutable; may be read by many threads. Edges are counted along
+/// the polylines, one polyline after the other; the closing edge of a closed one is its last.
 ///
 /// Inside, coordinates are scaled as those of a Surface.
 ///
 /// Errors:    InputError (refused) from require_curves.
-/// Cost:      linear; 20 bytes an edge beside the mesh.
+/// Cost:      linear; 16 bytes an edge beside the mesh.
 class CurveSet {
  public:
   CurveSet(ControlMesh mesh, CurveDegree degree);
