@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common.h"
+#include "curve.h"
 #include "length.h"
 #include "progress_bar.h"
 
@@ -16,6 +17,7 @@ constexpr std::size_t most_facets = 4'000'000;
 
 struct Options : CommonOptions {
   std::string mesh;
+  unsigned degree = 3;
   std::string tolerance;
   std::string polyhedra;
   unsigned level = 0;
@@ -103,8 +105,15 @@ ExitStatus run(const Options& options) {
   how.threads = options.threads;
   std::optional<Length> tolerance;
   if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--tolerance");
+  ControlMesh mesh = load_mesh(options.mesh, options);
+  if (is_curve(mesh, options.scheme)) {
+    if (!options.polyhedra.empty()) {
+      throw UsageError("bound: --polyhedra is for surfaces; " + options.mesh + " is answered as curves");
+    }
+    return bound_curve(std::move(mesh), options.mesh, options, options.degree, how, tolerance);
+  }
   const Surface surface =
-      load_surface(options.mesh, options, options.scheme, std::make_shared<BoundLibrary>());
+      make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundLibrary>());
   BoundSummary summary;
   Polyhedra polyhedra(triangles);
   Report report("bound", options);
@@ -152,7 +161,8 @@ ExitStatus run(const Options& options) {
 
 Command add_bound(CLI::App& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("bound", "Enclosures that contain the limit surface");
+  CLI::App* command =
+      app.add_subcommand("bound", "Enclosures that contain the limit surface, or limit curves");
   command->add_option("MESH", options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)")
       ->required();
   CLI::Option* tolerance =
@@ -164,6 +174,7 @@ Command add_bound(CLI::App& app) {
   command->add_option(
       "--polyhedra", options->polyhedra,
       "The hulls of the enclosures' boxes as one mesh, for pictures: .obj, .off, .ply, .stl or .glb");
+  add_degree_option(*command, options->degree);
   add_common_options(*command, *options);
   return {command, [options] { return run(*options); }};
 }

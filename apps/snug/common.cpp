@@ -9,15 +9,17 @@
 #include <snug/io/mesh_file.h>
 #include <CLI/CLI.hpp>
 
+#include "curve.h"
 #include "progress_bar.h"
 #include "version.h"
 
 namespace snug::command {
 
 void add_common_options(CLI::App& app, CommonOptions& options) {
-  app.add_option("--scheme", options.scheme,
-                 "Subdivision scheme; auto: loop for triangles alone, else catmark")
-      ->check(CLI::IsMember({"auto", "loop", "catmark", "catmull-clark", "doo-sabin", "midedge"}))
+  app.add_option(
+         "--scheme", options.scheme,
+         "Subdivision scheme; auto: loop for triangles alone, curve for polylines alone, else catmark")
+      ->check(CLI::IsMember({"auto", "loop", "catmark", "catmull-clark", "doo-sabin", "midedge", "curve"}))
       ->capture_default_str();
   app.add_option("--boundary", options.boundary,
                  "What the boundary does; default: the file's tag, else edge-and-corner")
@@ -91,7 +93,12 @@ void naming(const std::string& path, const std::function<void()>& work) {
 
 Surface load_surface(const std::string& path, const CommonOptions& options, const std::string& scheme,
                      const std::shared_ptr<BoundLibrary>& library) {
-  ControlMesh mesh = load_mesh(path, options);
+  return make_surface(load_mesh(path, options), path, options, scheme, library);
+}
+
+Surface make_surface(ControlMesh mesh, const std::string& path, const CommonOptions& options,
+                     const std::string& scheme, const std::shared_ptr<BoundLibrary>& library) {
+  refuse_curves(mesh, scheme, path);
   std::optional<Surface> surface;
   naming(path, [&] {
     const SchemeOptions rules = choose_rules(options, scheme, mesh);

@@ -61,6 +61,9 @@ struct Command {
 /// Reads a mesh and makes its surface. Refusals name the file.
 [[nodiscard]] Surface load_surface(const std::string& path, const CommonOptions& options,
                                    const std::string& scheme, const std::shared_ptr<BoundLibrary>& library);
+/// The same for a mesh that has been read from `path`.
+[[nodiscard]] Surface make_surface(ControlMesh mesh, const std::string& path, const CommonOptions& options,
+                                   const std::string& scheme, const std::shared_ptr<BoundLibrary>& library);
 /// Calls `work` and puts the name of the file in front of refusals it throws.
 void naming(const std::string& path, const std::function<void()>& work);
 

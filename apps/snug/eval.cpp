@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common.h"
+#include "curve.h"
 #include "progress_bar.h"
 
 namespace snug::command {
@@ -14,6 +15,7 @@ namespace {
 
 struct Options : CommonOptions {
   std::string mesh;
+  unsigned degree = 3;
   unsigned samples = 4;
   std::string at;
 };
@@ -91,8 +93,11 @@ void write_point(Report& report, const Request& request, const SurfacePoint& poi
 }
 
 ExitStatus run(const Options& options) {
+  ControlMesh mesh = load_mesh(options.mesh, options);
+  if (is_curve(mesh, options.scheme))
+    return eval_curve(std::move(mesh), options.mesh, options, {options.degree, options.samples, options.at});
   const Surface surface =
-      load_surface(options.mesh, options, options.scheme, std::make_shared<BoundLibrary>());
+      make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundLibrary>());
   std::vector<Request> requests;
   if (!options.at.empty()) requests = read_requests(options.at, surface);
   Report report("eval", options);
@@ -136,11 +141,16 @@ Command add_eval(CLI::App& app) {
   command->add_option("MESH", options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)")
       ->required();
   CLI::Option* samples =
-      command->add_option("--samples", options->samples, "A lattice of N steps along each edge of every face")
+      command
+          ->add_option("--samples", options->samples,
+                       "A lattice of N steps along each edge of every face, or of every polyline")
           ->check(CLI::Range(1u, 1000u))
           ->capture_default_str();
-  command->add_option("--at", options->at, "File of lines 'face u v': p = (1-u-v) c0 + u c1 + v c2")
+  command
+      ->add_option("--at", options->at,
+                   "File of lines 'face u v': p = (1-u-v) c0 + u c1 + v c2; of curves: 'edge t'")
       ->excludes(samples);
+  add_degree_option(*command, options->degree);
   add_common_options(*command, *options);
   return {command, [options] { return run(*options); }};
 }

@@ -1,4 +1,5 @@
 #include <snug/query/convergence.h>
+#include <snug/query/curve_rates.h>
 #include <snug/query/printed_pair_test.h>
 #include <snug/query/tightness.h>
 
@@ -120,13 +121,51 @@ std::string text_of(const BoundSource& source) {
   return source ? fmt::format("table, {}", layout_of(source)) : "rows";
 }
 
-ExitStatus rates(const Options& options) {
-  Report report("experiment", options);
+RateOptions rate_options(const Options& options) {
   RateOptions wanted;
   wanted.nets = options.nets.value_or(wanted.nets);
   wanted.levels = options.levels;
   wanted.seed = options.seed;
   wanted.threads = options.threads;
+  return wanted;
+}
+
+// rates --scheme curve.
+ExitStatus curve_rates(const Options& options) {
+  Report report("experiment", options);
+  const RateOptions wanted = rate_options(options);
+  std::vector<CurveRateRow> rows;
+  {
+    ProgressBar bar("splitting polylines", options.quiet);
+    rows = measure_curve_rates(wanted, bar.monitor());
+  }
+  if (report.json()) {
+    JsonWriter& json = begin_rows(report, options);
+    json.field("nets", wanted.nets).field("levels", wanted.levels).key("rows").begin_array();
+    for (const CurveRateRow& row : rows) {
+      json.begin_object().field("degree", static_cast<int>(row.degree)).field("place", name_of(row.place));
+      json.field("measure", name_of(row.measure)).key("thickness").begin_array();
+      for (const double t : row.thickness) json.value(t);
+      json.end_array().key("factor");
+      row.factor ? json.value(*row.factor) : json.null();
+      json.field("expected", row.expected).end_object();
+    }
+    json.end_array();
+  }
+  report.text("thickness of a curve's piece, the factor a level: measured (theory)");
+  report.text(fmt::format("{:>6}  {:<6}  {:<8}", "degree", "place", "measure"));
+  for (const CurveRateRow& row : rows) {
+    report.text(fmt::format("{:>6}  {:<6}  {:<8}  {} ({:.4f})", static_cast<int>(row.degree),
+                            name_of(row.place), name_of(row.measure),
+                            row.factor ? fmt::format("{:.4f}", *row.factor) : "straight", row.expected));
+  }
+  report.finish();
+  return ExitStatus::answered;
+}
+
+ExitStatus rates(const Options& options) {
+  Report report("experiment", options);
+  const RateOptions wanted = rate_options(options);
   std::vector<RateRow> rows;
   {
     ProgressBar bar("splitting nets", options.quiet);
@@ -197,7 +236,7 @@ ExitStatus tightness(const Options& options) {
 }
 
 ExitStatus run(const Options& options) {
-  if (options.name == "rates") return rates(options);
+  if (options.name == "rates") return options.scheme == "curve" ? curve_rates(options) : rates(options);
   return options.name == "tightness" ? tightness(options) : pair_test(options);
 }
 
@@ -210,7 +249,8 @@ Command add_experiment(CLI::App& app) {
   command
       ->add_option("NAME", options->name,
                    "pair-test: how often the pair test as printed misses a near pair; rates: how fast "
-                   "enclosures shrink at an extraordinary corner; tightness: radii over the least possible")
+                   "enclosures shrink at an extraordinary corner, or those of curves with --scheme curve; "
+                   "tightness: radii over the least possible")
       ->required()
       ->check(CLI::IsMember({"pair-test", "rates", "tightness"}));
   command->add_option("--pairs", options->pairs, "pair-test: random pairs in all, over three families")

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common.h"
+#include "curve.h"
 
 namespace snug::command {
 namespace {
@@ -16,6 +17,7 @@ std::size_t regular_valence(Scheme scheme) { return scheme == Scheme::loop ? 6 :
 
 ExitStatus run(const Options& options) {
   const ControlMesh mesh = load_mesh(options.mesh, options);
+  refuse_curves(mesh, options.scheme, options.mesh);
   const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
   const MeshStatistics counts = statistics(mesh, regular_valence(rules.scheme));
   const std::vector<Defect> found = defects(mesh);

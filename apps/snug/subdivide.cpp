@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common.h"
+#include "curve.h"
 #include "length.h"
 #include "progress_bar.h"
 
@@ -12,6 +13,7 @@ namespace {
 
 struct Options : CommonOptions {
   std::string mesh;
+  unsigned degree = 3;
   unsigned level = 1;
   bool limit = false;
 };
@@ -22,6 +24,10 @@ ExitStatus run(const Options& options) {
     throw UsageError("subdivide: --json and -o - both want standard output");
   require_writable_ending(options.output);
   ControlMesh mesh = load_mesh(options.mesh, options);
+  if (is_curve(mesh, options.scheme)) {
+    return subdivide_curve(mesh, options.mesh, options, {options.degree, options.level, options.limit});
+  }
+  refuse_curves(mesh, options.scheme, options.mesh);
   ControlMesh result;
   Scheme scheme{};
   naming(options.mesh, [&] {
@@ -58,6 +64,7 @@ Command add_subdivide(CLI::App& app) {
       ->check(CLI::Range(0u, 12u))
       ->capture_default_str();
   command->add_flag("--limit", options->limit, "Move every vertex to its limit position");
+  add_degree_option(*command, options->degree);
   add_common_options(*command, *options);
   return {command, [options] { return run(*options); }};
 }

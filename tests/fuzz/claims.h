@@ -21,7 +21,8 @@ inline void claim(bool holds, const char* what) {
 
 /// What every reader promises of a mesh.
 inline void claim_well_formed(const ControlMesh& mesh) {
-  claim(!mesh.points.empty() && mesh.face_count() > 0, "there are vertices and faces");
+  claim(!mesh.points.empty() && mesh.face_count() + mesh.polyline_count() > 0,
+        "there are vertices, and faces or polylines");
   for (const Point3& point : mesh.points) claim(is_finite(point), "coordinates are finite");
   claim(mesh.face_offsets.front() == 0 && mesh.face_offsets.back() == mesh.face_vertices.size(),
         "offsets span the corners");
@@ -30,6 +31,14 @@ inline void claim_well_formed(const ControlMesh& mesh) {
   }
   for (const VertexId vertex : mesh.face_vertices) {
     claim(vertex.index() < mesh.vertex_count(), "corners name vertices");
+  }
+  claim(mesh.polyline_offsets.front() == 0 && mesh.polyline_offsets.back() == mesh.polyline_vertices.size(),
+        "offsets span the polylines");
+  for (std::size_t p = 0; p < mesh.polyline_count(); ++p) {
+    claim(mesh.polyline_offsets[p] < mesh.polyline_offsets[p + 1], "polylines have vertices");
+  }
+  for (const VertexId vertex : mesh.polyline_vertices) {
+    claim(vertex.index() < mesh.vertex_count(), "polylines name vertices");
   }
 }
 
@@ -44,6 +53,8 @@ inline void claim_same(const ControlMesh& a, const ControlMesh& b) {
     }
   }
   claim(a.face_offsets == b.face_offsets && a.face_vertices == b.face_vertices, "a round trip keeps faces");
+  claim(a.polyline_offsets == b.polyline_offsets && a.polyline_vertices == b.polyline_vertices,
+        "a round trip keeps polylines");
 }
 
 /// The message of bad input is one printable line.

@@ -49,6 +49,8 @@ inline void expect_same_arrays(const ControlMesh& a, const ControlMesh& b) {
   }
   EXPECT_EQ(a.face_offsets, b.face_offsets);
   EXPECT_EQ(a.face_vertices, b.face_vertices);
+  EXPECT_EQ(a.polyline_offsets, b.polyline_offsets);
+  EXPECT_EQ(a.polyline_vertices, b.polyline_vertices);
 }
 
 /// An empty folder that vanishes with its contents.

@@ -55,6 +55,31 @@ TEST(obj, ignores_weights_colours_and_what_is_no_surface) {
   EXPECT_EQ(mesh.face_count(), 1u);
 }
 
+TEST(obj, reads_polylines_beside_faces_and_alone) {
+  const ControlMesh mesh = parse("l 1 2/7\n" + triangle + "f 1 2 3\nl 1 2 -1 1\nl 3\n" + "v 9 9 9\n");
+  ASSERT_EQ(mesh.polyline_count(), 3u);
+  EXPECT_EQ(mesh.polyline(PolylineId(1)).size(), 4u);
+  EXPECT_EQ(mesh.polyline(PolylineId(1))[2], VertexId(2));
+  EXPECT_EQ(mesh.polyline(PolylineId(2)).size(), 1u);
+  EXPECT_EQ(mesh.face_count(), 1u);
+  expect_same_arrays(mesh, parse(format_obj(mesh)));
+  const ControlMesh curve = parse(triangle + "l 1 2 3\n");
+  EXPECT_EQ(curve.face_count(), 0u);
+  EXPECT_EQ(curve.polyline_count(), 1u);
+  expect_same_arrays(curve, parse(format_obj(curve)));
+}
+
+TEST(obj, bad_polylines_are_named) {
+  EXPECT_EQ(message(triangle + "l 1 2\nl 1 2 0\n"),
+            "mesh.obj:5: polyline 1: index 0 names no vertex: OBJ counts from 1");
+  EXPECT_EQ(message(triangle + "l 1 9\n"),
+            "mesh.obj:4: polyline 0: index 9 is beyond the 3 vertices of the file");
+  EXPECT_EQ(message(triangle + "l -4 1\n"),
+            "mesh.obj:4: polyline 0: index -4 reaches before the first of the 3 vertices above this line");
+  EXPECT_EQ(message(triangle + "l\n"), "mesh.obj:4: polyline 0 has no vertices");
+  EXPECT_NE(message(triangle + "l 1 2.5\n").find("polyline 0: '2.5' is not a corner"), std::string::npos);
+}
+
 TEST(obj, reads_the_old_name_of_faces) { EXPECT_EQ(parse(triangle + "fo 1 2 3\n").face_count(), 1u); }
 
 TEST(obj, continues_faces_but_not_comments) {

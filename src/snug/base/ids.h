@@ -26,6 +26,7 @@ class Id {
 using VertexId = Id<struct VertexTag>;
 using EdgeId = Id<struct EdgeTag>;
 using FaceId = Id<struct FaceTag>;
+using PolylineId = Id<struct PolylineTag>;
 /// A patch kind in a KindLibrary (patch/kind_library.h).
 using KindId = Id<struct KindTag>;
 

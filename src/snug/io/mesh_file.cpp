@@ -87,6 +87,9 @@ void write_mesh(const ControlMesh& mesh, const std::string& path, const Notes& n
   if (ending != ".obj" && notes && changes_surface(mesh.tags)) {
     notes(path + ": this format has no tags: creases and rules are left out");
   }
+  if (ending != ".obj" && notes && mesh.polyline_count() > 0) {
+    notes(path + ": this format has no polylines: they are left out");
+  }
   AtomicFile file(path);
   file.write(formatted(mesh, ending, path, notes));
   file.commit();

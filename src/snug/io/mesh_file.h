@@ -10,18 +10,19 @@
 namespace snug {
 
 /// The control mesh in a file. The format follows the ending, .obj, .off, .ply or .stl in any case. Standard
-/// input ("-") and files without an ending are PLY or OFF if they begin like that, else OBJ. `weld` is for STL
-/// alone.
+/// input ("-") and files without an ending are PLY or OFF if they begin like that, else OBJ. `weld` is for
+/// STL alone.
 ///
 /// Errors:    InputError as read_file and the parser of the format; (unreadable) for another ending.
 ///            Interrupted as read_file.
 [[nodiscard]] ControlMesh read_mesh(const std::string& path, const Notes& notes = {},
                                     const WorkMonitor& monitor = {}, const WeldDistance& weld = {});
 
-/// Writes a control mesh, whole or not at all (atomic_file.h). The format follows the ending in any case: .obj,
-/// .off, .ply (binary, little endian), .stl (binary) or .glb; "-" is OBJ on standard output.
+/// Writes a control mesh, whole or not at all (atomic_file.h). The format follows the ending in any case:
+/// .obj, .off, .ply (binary, little endian), .stl (binary) or .glb; "-" is OBJ on standard output.
 ///
-/// Notes:     one line if the format has no tags but the mesh has; as the writer of the format.
+/// Notes:     one line if the format has no tags but the mesh has, one for polylines; as the writer of the
+///            format.
 /// Errors:    InputError as the writer of the format and AtomicFile; (unreadable) for another ending.
 ///            SNUG_EXPECT as format_obj.
 void write_mesh(const ControlMesh& mesh, const std::string& path, const Notes& notes = {});

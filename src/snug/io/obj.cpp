@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <snug/base/contract.h>
 #include <snug/io/element_text.h>
@@ -46,17 +48,20 @@ class ObjParser {
         read_vertex();
       } else if (keyword == "f" || keyword == "fo") {
         read_face();
+      } else if (keyword == "l") {
+        read_polyline();
       } else if (keyword == "t") {
         tags_.read(cursor_);
       } else if (is_smf_statement(keyword)) {
         read_smf_statement(keyword);
       }
     }
-    expect_elements(cursor_, mesh_.vertex_count(), mesh_.face_count());
+    // Polylines alone are a mesh, too: that of curves.
+    expect_elements(cursor_, mesh_.vertex_count(), mesh_.face_count() + mesh_.polyline_count());
     if (largest_.vertex >= mesh_.vertex_count()) {
-      cursor_.fail_at(largest_.line, "face " + std::to_string(largest_.face) + ": index " +
-                                         std::to_string(largest_.vertex + 1) + " is beyond the " +
-                                         std::to_string(mesh_.vertex_count()) + " vertices of the file");
+      cursor_.fail_at(largest_.line, largest_.owner + ": index " + std::to_string(largest_.vertex + 1) +
+                                         " is beyond the " + std::to_string(mesh_.vertex_count()) +
+                                         " vertices of the file");
     }
     mesh_.tags = tags_.finish(cursor_, mesh_.vertex_count(), mesh_.face_count());
     return std::move(mesh_);
@@ -65,8 +70,8 @@ class ObjParser {
  private:
   struct Reference {
     std::uint64_t vertex = 0;
-    std::size_t face = 0;
     std::size_t line = 0;
+    std::string owner;  // "face 3"
   };
 
   void read_vertex() {
@@ -79,40 +84,50 @@ class ObjParser {
     mesh_.points.push_back(point);
   }
 
-  void read_face() {
-    const std::size_t face = mesh_.face_count();
-    expect_room(cursor_, face, "faces");
+  void read_face() { read_element("face", "faces", mesh_.face_vertices, mesh_.face_offsets); }
+
+  void read_polyline() {
+    read_element("polyline", "polylines", mesh_.polyline_vertices, mesh_.polyline_offsets);
+  }
+
+  void read_element(const char* sort, const char* plural, std::vector<VertexId>& vertices,
+                    std::vector<std::uint32_t>& offsets) {
+    const std::size_t number = offsets.size() - 1;
+    expect_room(cursor_, number, plural);
+    sort_ = sort;
+    number_ = number;
     std::string_view corner = cursor_.word();
-    if (corner.empty()) cursor_.fail("face " + std::to_string(face) + " has no vertices");
+    if (corner.empty()) cursor_.fail(element() + " has no vertices");
     for (; !corner.empty(); corner = cursor_.word()) {
-      expect_room(cursor_, mesh_.face_vertices.size(), "face corners");
-      mesh_.face_vertices.push_back(read_corner(corner));
+      expect_room(cursor_, vertices.size(), "corners of elements");
+      vertices.push_back(read_corner(corner));
     }
-    mesh_.face_offsets.push_back(static_cast<std::uint32_t>(mesh_.face_vertices.size()));
+    offsets.push_back(static_cast<std::uint32_t>(vertices.size()));
   }
 
   VertexId read_corner(std::string_view corner) {
     const std::size_t slash = std::min(corner.find('/'), corner.size());
     const auto index = parse_integer(corner.substr(0, slash));
     if (!index || !is_corner_suffix(corner.substr(slash))) {
-      fail_in_face(in_quotes(corner) + " is not a corner: write a, a/b, a//c or a/b/c with whole numbers");
+      fail_in_element(in_quotes(corner) + " is not a corner: write a, a/b, a//c or a/b/c with whole numbers");
     }
-    if (*index == 0) fail_in_face("index 0 names no vertex: OBJ counts from 1");
+    if (*index == 0) fail_in_element("index 0 names no vertex: OBJ counts from 1");
     if (*index < 0) {
       const auto above = static_cast<std::int64_t>(mesh_.vertex_count());
       if (*index < -above) {
-        fail_in_face("index " + std::to_string(*index) + " reaches before the first of the " +
-                     std::to_string(above) + " vertices above this line");
+        fail_in_element("index " + std::to_string(*index) + " reaches before the first of the " +
+                        std::to_string(above) + " vertices above this line");
       }
       return VertexId(static_cast<std::size_t>(above + *index));
     }
     const auto vertex = static_cast<std::uint64_t>(*index) - 1;
     if (vertex >= most_elements) {
-      fail_in_face("index " + std::string(corner.substr(0, slash)) + " is larger than a vertex count can be");
+      fail_in_element("index " + std::string(corner.substr(0, slash)) +
+                      " is larger than a vertex count can be");
     }
     // A larger index is legal here: its vertex may come later in the file.
     if (vertex >= mesh_.vertex_count() && vertex > largest_.vertex) {
-      largest_ = {vertex, mesh_.face_count(), cursor_.line()};
+      largest_ = {vertex, cursor_.line(), element()};
     }
     return VertexId(vertex);
   }
@@ -124,14 +139,19 @@ class ObjParser {
                  " is a statement of the SMF format that OBJ does not have: convert the file to OBJ");
   }
 
-  [[noreturn]] void fail_in_face(const std::string& message) const {
-    cursor_.fail("face " + std::to_string(mesh_.face_count()) + ": " + message);
+  /// What is being read: "face 3".
+  [[nodiscard]] std::string element() const { return sort_ + (' ' + std::to_string(number_)); }
+
+  [[noreturn]] void fail_in_element(const std::string& message) const {
+    cursor_.fail(element() + ": " + message);
   }
 
   TextCursor cursor_;
   ObjTagReader tags_;
   ControlMesh mesh_;
   Reference largest_;
+  const char* sort_ = "face";
+  std::size_t number_ = 0;
 };
 
 }  // namespace
@@ -140,23 +160,31 @@ ControlMesh parse_obj(std::string_view text, const std::string& name, const Note
   return ObjParser(plain_text(text, name), name, notes).parse();
 }
 
+namespace {
+
+void append_element(std::string& text, char keyword, std::span<const VertexId> vertices) {
+  SNUG_EXPECT(!vertices.empty());
+  text += keyword;
+  for (const VertexId vertex : vertices) {
+    text += ' ';
+    append_integer(text, std::uint64_t{vertex.value()} + 1);
+  }
+  text += '\n';
+}
+
+}  // namespace
+
 std::string format_obj(const ControlMesh& mesh) {
   std::string text;
-  text.reserve(mesh.vertex_count() * 48 + mesh.face_vertices.size() * 9);
+  text.reserve(mesh.vertex_count() * 48 + (mesh.face_vertices.size() + mesh.polyline_vertices.size()) * 9);
   for (const Point3& point : mesh.points) {
     text += "v ";
     append_point(text, point);
     text += '\n';
   }
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const auto corners = mesh.face(FaceId(face));
-    SNUG_EXPECT(!corners.empty());
-    text += 'f';
-    for (const VertexId vertex : corners) {
-      text += ' ';
-      append_integer(text, std::uint64_t{vertex.value()} + 1);
-    }
-    text += '\n';
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) append_element(text, 'f', mesh.face(FaceId(f)));
+  for (std::size_t p = 0; p < mesh.polyline_count(); ++p) {
+    append_element(text, 'l', mesh.polyline(PolylineId(p)));
   }
   append_obj_tags(text, mesh.tags);
   return text;

@@ -46,15 +46,19 @@ struct MeshTags {
   SmoothTriangles smooth_triangles = SmoothTriangles::catmark;
 };
 
-/// A polygonal control mesh: positions, faces as counter-clockwise vertex cycles, tags. A plain value.
+/// A polygonal control mesh: positions, faces as counter-clockwise vertex cycles, tags, and polylines, which
+/// are the control polygons of curves: closed if the last vertex is the first. A plain value.
 ///
 /// Guarantee: none beyond well-formed arrays: it holds defective meshes too, see validate.h.
-/// Requires:  face_offsets has face_count() + 1 entries, starting at 0, not decreasing.
+/// Requires:  face_offsets has face_count() + 1 entries, starting at 0, not decreasing; polyline_offsets
+///            likewise.
 struct ControlMesh {
   std::vector<Point3> points;
   std::vector<std::uint32_t> face_offsets{0};
   std::vector<VertexId> face_vertices;
   MeshTags tags;
+  std::vector<std::uint32_t> polyline_offsets{0};
+  std::vector<VertexId> polyline_vertices;
 
   [[nodiscard]] std::size_t vertex_count() const { return points.size(); }
   [[nodiscard]] std::size_t face_count() const { return face_offsets.size() - 1; }
@@ -65,6 +69,15 @@ struct ControlMesh {
   void add_face(std::span<const VertexId> vertices) {
     face_vertices.insert(face_vertices.end(), vertices.begin(), vertices.end());
     face_offsets.push_back(static_cast<std::uint32_t>(face_vertices.size()));
+  }
+  [[nodiscard]] std::size_t polyline_count() const { return polyline_offsets.size() - 1; }
+  [[nodiscard]] std::span<const VertexId> polyline(PolylineId p) const {
+    return {polyline_vertices.data() + polyline_offsets[p.index()],
+            polyline_vertices.data() + polyline_offsets[p.index() + 1]};
+  }
+  void add_polyline(std::span<const VertexId> vertices) {
+    polyline_vertices.insert(polyline_vertices.end(), vertices.begin(), vertices.end());
+    polyline_offsets.push_back(static_cast<std::uint32_t>(polyline_vertices.size()));
   }
 };
 

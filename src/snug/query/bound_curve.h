@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+
+#include <snug/query/bound.h>
+#include <snug/surface/curve_set.h>
+
+namespace snug {
+
+/// What encloses one piece of a limit curve, in mesh units.
+struct CurveEnclosure {
+  EdgeId edge;
+  PiecePath path;
+  Segment corners;                          ///< limit points at both ends, in double precision
+  std::optional<OffsetSegment> offset;      ///< absent for control_box
+  std::optional<IntervalSegment> interval;  ///< absent for control_box
+  std::optional<Box3> box;                  ///< control_box only
+};
+
+/// Enclosures of all limit curves, passed to `sink` edge by edge, pieces of an edge from its first end to its
+/// last.
+///
+/// Guarantee: every limit point of edge e lies in the union of its pieces' offset segments, of their interval
+///            segments, and of their boxes, each on its own, rounding included; also where `reached` is
+///            false.
+/// Requires:  options.method is not table. `threads` and `layout` change nothing.
+/// Errors:    InputError if a result does not fit a double; whatever `sink` or the monitor throws.
+/// Cost:      about a microsecond a piece, on one thread. Memory does not grow with the output.
+BoundSummary bound(const CurveSet& curves, const BoundOptions& options,
+                   const std::function<void(const CurveEnclosure&)>& sink, const WorkMonitor& monitor = {});
+
+}  // namespace snug

@@ -1,0 +1,57 @@
+#include <snug/surface/curve_set.h>
+
+#include <algorithm>
+#include <utility>
+
+#include <snug/base/contract.h>
+#include <snug/base/rounding.h>
+#include <snug/surface/unscale.h>
+
+namespace snug {
+
+CurveSet::CurveSet(ControlMesh mesh, CurveDegree degree) : mesh_(std::move(mesh)), degree_(degree) {
+  require_curves(mesh_);
+  Box3 box;
+  for (const VertexId v : mesh_.polyline_vertices) box.add(mesh_.points[v.index()]);
+  size_ = box.longest_side();
+  scale_ = PowerOfTwo::normalising(std::max(max_abs(box.lower - Point3{}), max_abs(box.upper - Point3{})));
+  for (std::size_t p = 0; p < mesh_.polyline_count(); ++p) {
+    const auto line = mesh_.polyline(PolylineId(p));
+    const std::size_t last = line.size() - 1;
+    const bool closed = line.front() == line.back();
+    for (std::size_t i = 0; i < last; ++i) {
+      const VertexId before = i > 0 ? line[i - 1] : closed ? line[last - 1] : VertexId();
+      const VertexId after = i + 1 < last ? line[i + 2] : closed ? line[1] : VertexId();
+      edges_.push_back({before, line[i], line[i + 1], after});
+    }
+  }
+}
+
+CurvePiece CurveSet::piece(EdgeId edge) const {
+  SNUG_EXPECT(edge.index() < edges_.size());
+  const Window& window = edges_[edge.index()];
+  const auto point = [&](VertexId v) { return scale_.apply(mesh_.points[v.index()]); };
+  const auto neighbour = [&](VertexId v) { return v.valid() ? std::optional(point(v)) : std::nullopt; };
+  return make_curve_piece(degree_, neighbour(window.before), point(window.from), point(window.to),
+                          neighbour(window.after));
+}
+
+OffsetSegment unscaled(const OffsetSegment& segment, PowerOfTwo back) {
+  OffsetSegment result;
+  bool exact = true;
+  for (std::size_t k = 0; k < 2; ++k) {
+    result.base[k] = require_representable(back.apply(segment.base[k]));
+    for (std::size_t a = 0; a < 3; ++a) exact = exact && back.exact(segment.base[k][a]);
+  }
+  result.radius = unscaled_up(segment.radius, back);
+  result.rounding = unscaled_up(segment.rounding, back);
+  if (!exact) result.radius = enlarged(result.radius + underflow_error);
+  require_representable(result.radius);
+  return result;
+}
+
+IntervalSegment unscaled(const IntervalSegment& segment, PowerOfTwo back) {
+  return {{unscaled(segment.end[0], back), unscaled(segment.end[1], back)}};
+}
+
+}  // namespace snug
