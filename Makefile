@@ -70,11 +70,14 @@ format:  ## rewrite C++ files in the project's format
 tidy: build  ## clang-tidy over the library
 	@run-clang-tidy -quiet -j $(JOBS) -p build/release 'src/snug/.*\.cpp$$'
 
-docs: install-packages  ## plots and tables of docs/convergence.md; links and citations of pages and comments
+docs: install-packages  ## plots and tables of docs/convergence.md, pictures of docs/schemes.md; links and citations
 	@$(call build,release,snug_command)
 	@mkdir -p build/docs
 	@for name in rates tightness; do build/release/bin/snug experiment $$name -o build/docs/$$name.json > /dev/null; done
-	@scripts/plot_experiments.py build/docs/rates.json build/docs/tightness.json docs/convergence.md docs/pictures
+	@for scheme in catmark doo-sabin midedge; do \
+	  build/release/bin/snug experiment rates --scheme $$scheme -o build/docs/$$scheme.json > /dev/null; done
+	@scripts/plot_experiments.py build/docs/{rates,tightness,catmark,doo-sabin,midedge}.json docs/convergence.md docs/pictures
+	@scripts/draw_schemes build/release/bin/snug docs/pictures
 	@scripts/check_docs.py
 
 tables:  ## make the rows and tables again that are compiled in, then prove them

@@ -25,7 +25,7 @@ void bench_patches(const char* title, ControlMesh mesh, std::shared_ptr<BoundLib
   Subject subject(std::move(mesh), std::move(library));
   std::printf("%s: %zu patches, %zu kinds\n", title, subject.surface().face_count(),
               subject.surface().kind_count());
-  const std::vector<FaceId> faces = all_faces(subject.surface().face_count());
+  const std::vector<PatchId> faces = all_faces(subject.surface().face_count());
   const auto count = static_cast<double>(faces.size());
   std::vector<Box3> boxes;
   std::vector<OffsetTriangle> triangles;

@@ -35,7 +35,7 @@ std::vector<TriangleParameter> random_parameters(std::size_t count) {
 
 void bench_faces(const ControlMesh& mesh, Subject& subject, std::size_t corners, std::size_t per_face,
                  const Options& options) {
-  std::vector<FaceId> faces = faces_with(subject.surface(), corners);
+  std::vector<PatchId> faces = faces_with(subject.surface(), corners);
   faces.resize(std::min(faces.size(), options.size<std::size_t>(128'000, 6'400) / per_face));
   const auto points = static_cast<double>(faces.size() * per_face);
   const std::vector<TriangleParameter> at = random_parameters(per_face);
@@ -45,14 +45,14 @@ void bench_faces(const ControlMesh& mesh, Subject& subject, std::size_t corners,
               "point", options);
   group.add("snug: limit points with error bounds", points, [&] {
     double sum = 0;
-    for (const FaceId f : faces) {
+    for (const PatchId f : faces) {
       static_cast<void>(subject.evaluate(f, at, out));
       sum += out.back().x;
     }
     return sum;
   });
   std::vector<LimitEvaluator> kept;
-  for (const FaceId f : faces) kept.emplace_back(subject.surface().patch(f));
+  for (const PatchId f : faces) kept.emplace_back(subject.surface().patch(f));
   group.add("snug: the same, pieces kept", points, [&] {
     double sum = 0;
     for (LimitEvaluator& face : kept) {

@@ -135,17 +135,106 @@ ControlMesh irregular_mesh(std::size_t faces, const Irregularity& options) {
   return mesh;
 }
 
+namespace {
+
+// A torus of columns * rows vertices; vertex (c, r) at c + columns * r, quad (c, r) from there to (c + 1, r + 1).
+struct QuadTorus {
+  std::size_t columns, rows;
+  [[nodiscard]] VertexId vertex(std::size_t c, std::size_t r) const {
+    return VertexId(c % columns + columns * (r % rows));
+  }
+  [[nodiscard]] std::array<VertexId, 4> quad(std::size_t c, std::size_t r) const {
+    return {vertex(c, r), vertex(c + 1, r), vertex(c + 1, r + 1), vertex(c, r + 1)};
+  }
+  [[nodiscard]] std::vector<Point3> points(double jitter, std::uint64_t seed) const {
+    std::mt19937_64 random(seed);
+    const auto noise = [&] { return jitter * (static_cast<double>(random() >> 11) * 0x1p-52 - 1); };
+    std::vector<Point3> result;
+    for (std::size_t r = 0; r < rows; ++r) {
+      for (std::size_t c = 0; c < columns; ++c) {
+        const double s = 2 * std::numbers::pi * static_cast<double>(c) / static_cast<double>(columns);
+        const double t = 2 * std::numbers::pi * static_cast<double>(r) / static_cast<double>(rows);
+        const double ring = 3 + std::cos(t);
+        result.push_back({ring * std::cos(s) + noise(), ring * std::sin(s) + noise(), std::sin(t) + noise()});
+      }
+    }
+    return result;
+  }
+};
+
+QuadTorus torus_of(std::size_t faces) {
+  const auto rows =
+      std::max<std::size_t>(4, static_cast<std::size_t>(std::sqrt(static_cast<double>(faces) / 2)));
+  return {std::max<std::size_t>(4, faces / rows), rows};
+}
+
+}  // namespace
+
+ControlMesh quad_torus(std::size_t faces) {
+  const QuadTorus torus = torus_of(faces);
+  ControlMesh mesh;
+  mesh.points = torus.points(0, 0);
+  for (std::size_t r = 0; r < torus.rows; ++r) {
+    for (std::size_t c = 0; c < torus.columns; ++c) mesh.add_face(torus.quad(c, r));
+  }
+  return mesh;
+}
+
+ControlMesh character_mesh(std::size_t faces, std::size_t creases) {
+  const QuadTorus torus = torus_of(faces);
+  std::mt19937_64 random(7);
+  ControlMesh mesh;
+  mesh.points = torus.points(0.01, 8);
+  for (std::size_t r = 0; r < torus.rows; ++r) {
+    for (std::size_t c = 0; c < torus.columns; ++c) {
+      const auto q = torus.quad(c, r);
+      const std::size_t lot = random() % 8;
+      if (lot == 0) {
+        mesh.add_face(std::array{q[0], q[1], q[2]});
+        mesh.add_face(std::array{q[0], q[2], q[3]});
+      } else if (lot == 1 && c + 1 < torus.columns) {
+        const auto next = torus.quad(++c, r);
+        mesh.add_face(std::array{q[0], q[1], next[1], next[2], q[2], q[3]});
+      } else {
+        mesh.add_face(q);
+      }
+    }
+  }
+  for (std::size_t count = 0; count < creases;) {
+    const std::size_t kind = random() % 8, length = 5 + random() % 40;
+    const double sharpness = kind == 0 ? infinite_sharpness : 0.5 * static_cast<double>(kind);
+    std::size_t c = random() % torus.columns, r = random() % torus.rows;
+    for (std::size_t step = 0; step < length; ++step, ++count) {
+      const VertexId from = torus.vertex(c, r);
+      (random() % 4 == 0 ? r : c) += 1;
+      mesh.tags.creases.push_back({from, torus.vertex(c, r), sharpness});
+    }
+  }
+  return mesh;
+}
+
+ControlMesh many_sharpnesses(std::size_t count) {
+  ControlMesh mesh = quad_torus(count);
+  const QuadTorus torus = torus_of(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t c = i % torus.columns, r = i / torus.columns;
+    const double sharpness = 4 * static_cast<double>(i + 1) / static_cast<double>(count + 1);
+    mesh.tags.creases.push_back({torus.vertex(c, r), torus.vertex(c + 1, r), sharpness});
+  }
+  return mesh;
+}
+
 std::size_t extraordinary_corners(const Kind& kind) {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < 3; ++i) count += !kind.corner(i).regular();
+  for (std::size_t i = 0; i < 3; ++i) count += !kind.regular_corner(i);
   return count;
 }
 
-std::vector<FaceId> faces_with(const Surface& surface, std::size_t corners) {
-  std::vector<FaceId> faces;
+std::vector<PatchId> faces_with(const Surface& surface, std::size_t corners) {
+  std::vector<PatchId> faces;
   for (std::size_t f = 0; f < surface.face_count(); ++f) {
-    if (surface.has_patch(FaceId(f)) && extraordinary_corners(surface.kind(FaceId(f))) == corners) {
-      faces.push_back(FaceId(f));
+    if (surface.has_patch(PatchId(f)) && extraordinary_corners(surface.kind(PatchId(f))) == corners) {
+      faces.push_back(PatchId(f));
     }
   }
   return faces;

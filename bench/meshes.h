@@ -16,6 +16,17 @@ namespace snug::bench {
 /// A torus grid of about `faces` triangles.
 [[nodiscard]] ControlMesh regular_mesh(std::size_t faces);
 
+/// Closed torus of about `faces` quads, every vertex of valence 4.
+[[nodiscard]] ControlMesh quad_torus(std::size_t faces);
+
+/// A torus of about `faces` faces, a quarter of them triangles and hexagons, after random moves, with about `creases`
+/// creased edges in curves of one sharpness each: 0.5 to 3.5 in halves, some infinite.
+/// Guarantee: the same mesh for the same arguments on every machine.
+[[nodiscard]] ControlMesh character_mesh(std::size_t faces, std::size_t creases);
+
+/// A torus of quads with `count` creased edges, no two of the same sharpness, from 0 to 4.
+[[nodiscard]] ControlMesh many_sharpnesses(std::size_t count);
+
 struct Irregularity {
   double flips = 0.1;    ///< flipped edges, of all edges: 0.1 leaves a third of the vertices regular
   double jitter = 0.15;  ///< vertices move by at most this part of a grid edge a coordinate
@@ -31,7 +42,7 @@ struct Irregularity {
 /// Corners of a face's patch that are not regular.
 [[nodiscard]] std::size_t extraordinary_corners(const Kind& kind);
 /// Faces with `corners` extraordinary corners.
-[[nodiscard]] std::vector<FaceId> faces_with(const Surface& surface, std::size_t corners);
+[[nodiscard]] std::vector<PatchId> faces_with(const Surface& surface, std::size_t corners);
 
 /// Prints sizes, the histogram of valences, the number of kinds, the shares of faces by extraordinary corners.
 void print_statistics(const char* name, const Surface& surface);

@@ -90,7 +90,7 @@ struct OsdSurfaces::Impl {
   std::vector<double> scratch;
 };
 
-OsdSurfaces::OsdSurfaces(const OsdMesh& mesh, std::span<const FaceId> faces, bool cache)
+OsdSurfaces::OsdSurfaces(const OsdMesh& mesh, std::span<const PatchId> faces, bool cache)
     : impl_(new Impl(mesh, cache)) {
   impl_->surfaces.resize(faces.size());
   for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -254,7 +254,7 @@ std::vector<OsdLimitSample> osd_limit_samples(const ControlMesh& mesh, int level
     for (const auto& [face, corners] : leaves) {
       const auto vertices = refiner->GetLevel(level).GetFaceVertices(face);
       for (int k = 0; k < 3; ++k) {
-        samples.push_back({FaceId(f), corners[static_cast<std::size_t>(k)],
+        samples.push_back({PatchId(f), corners[static_cast<std::size_t>(k)],
                            limit[static_cast<std::size_t>(vertices[k])].value});
       }
     }

@@ -7,6 +7,7 @@
 
 #include <snug/mesh/control_mesh.h>
 #include <snug/patch/piece_path.h>
+#include <snug/surface/surface.h>
 
 namespace snug::bench {
 
@@ -31,7 +32,7 @@ class OsdSurfaces {
  public:
   /// `cache`: with the factory's cache of topologies, which Bfr's default is.
   /// Requires:  the mesh outlives the surfaces.
-  OsdSurfaces(const OsdMesh& mesh, std::span<const FaceId> faces, bool cache);
+  OsdSurfaces(const OsdMesh& mesh, std::span<const PatchId> faces, bool cache);
   ~OsdSurfaces();
   OsdSurfaces(const OsdSurfaces&) = delete;
   OsdSurfaces& operator=(const OsdSurfaces&) = delete;
@@ -81,7 +82,7 @@ class OsdStencils {
 
 /// A limit point by uniform refinement: exact but for the rounding of double precision.
 struct OsdLimitSample {
-  FaceId face;
+  PatchId face;
   TriangleParameter at;
   Point3 point;
 };

@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
 
   Subject subject(mesh);
   print_statistics("irregular", subject.surface());
-  const std::vector<FaceId> faces = all_faces(mesh.face_count());
+  const std::vector<PatchId> faces = all_faces(mesh.face_count());
   std::vector<OffsetTriangle> triangles;
   std::vector<Box3> boxes;
   Group group("new positions", "patch", options);

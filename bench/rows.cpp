@@ -14,7 +14,7 @@ namespace {
 using namespace snug;
 using namespace snug::bench;
 
-void bench_faces(const std::string& title, Subject& subject, const std::vector<FaceId>& faces,
+void bench_faces(const std::string& title, Subject& subject, const std::vector<PatchId>& faces,
                  const Options& options) {
   const auto count = static_cast<double>(faces.size());
   std::vector<Box3> boxes;

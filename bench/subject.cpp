@@ -10,7 +10,7 @@ Subject::Subject(ControlMesh mesh, std::shared_ptr<BoundLibrary> library)
     : library_(std::move(library)),
       surface_(std::make_unique<Surface>(std::move(mesh), SchemeOptions{}, library_, 1)) {}
 
-double Subject::enclose(std::span<const FaceId> faces, std::vector<OffsetTriangle>& out) {
+double Subject::enclose(std::span<const PatchId> faces, std::vector<OffsetTriangle>& out) {
   out.resize(faces.size());
   double sum = 0;
   for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -22,14 +22,14 @@ double Subject::enclose(std::span<const FaceId> faces, std::vector<OffsetTriangl
 
 std::size_t Subject::hull_point_count() {
   std::size_t sum = 0;
-  for (const FaceId f : all_faces(surface_->face_count())) {
+  for (const PatchId f : all_faces(surface_->face_count())) {
     hull_points(*library_, surface_->patch(f), scratch_);
     sum += scratch_.size();
   }
   return sum;
 }
 
-PatchBounds Subject::bounds(std::span<const FaceId> faces, std::optional<TableLayout> table) const {
+PatchBounds Subject::bounds(std::span<const PatchId> faces, std::optional<TableLayout> table) const {
   return PatchBounds(*surface_, {faces.begin(), faces.end()}, table, 1);
 }
 
@@ -38,7 +38,7 @@ double Subject::enclose_all(std::vector<OffsetTriangle>& out) {
   return update(bounds, surface_->mesh().points, out);
 }
 
-double Subject::box(std::span<const FaceId> faces, std::vector<Box3>& out) {
+double Subject::box(std::span<const PatchId> faces, std::vector<Box3>& out) {
   out.resize(faces.size());
   double sum = 0;
   for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -49,7 +49,7 @@ double Subject::box(std::span<const FaceId> faces, std::vector<Box3>& out) {
   return sum;
 }
 
-double Subject::evaluate(FaceId face, std::span<const TriangleParameter> at, std::span<Point3> out) {
+double Subject::evaluate(PatchId face, std::span<const TriangleParameter> at, std::span<Point3> out) {
   evaluator_.reset(surface_->patch(face));
   return evaluate(evaluator_, at, out);
 }
@@ -68,17 +68,17 @@ double Subject::evaluate(LimitEvaluator& face, std::span<const TriangleParameter
 }
 
 double update(PatchBounds& bounds, std::span<const Point3> points, std::vector<OffsetTriangle>& out) {
-  out.resize(bounds.faces().size());
+  out.resize(bounds.patches().size());
   bounds.update(points, out, 1);
   double sum = 0;
   for (const OffsetTriangle& triangle : out) sum += triangle.radius;
   return sum;
 }
 
-std::vector<FaceId> all_faces(std::size_t count) {
-  std::vector<FaceId> faces;
+std::vector<PatchId> all_faces(std::size_t count) {
+  std::vector<PatchId> faces;
   faces.reserve(count);
-  for (std::size_t f = 0; f < count; ++f) faces.push_back(FaceId(f));
+  for (std::size_t f = 0; f < count; ++f) faces.push_back(PatchId(f));
   return faces;
 }
 

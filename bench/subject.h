@@ -25,21 +25,21 @@ class Subject {
 
   /// Offset triangles of some faces, in scaled units, a patch at a time as queries make them.
   /// Returns:   the sum of the radii.
-  double enclose(std::span<const FaceId> faces, std::vector<OffsetTriangle>& out);
+  double enclose(std::span<const PatchId> faces, std::vector<OffsetTriangle>& out);
   /// Of all faces together.
   [[nodiscard]] std::size_t hull_point_count();
   /// Bounds of some faces at once, their kinds' rows or tables made.
-  [[nodiscard]] PatchBounds bounds(std::span<const FaceId> faces,
+  [[nodiscard]] PatchBounds bounds(std::span<const PatchId> faces,
                                    std::optional<TableLayout> table = {}) const;
   /// Offset triangles of all faces, with all that it takes to make them.
   /// Returns:   the sum of the radii.
   double enclose_all(std::vector<OffsetTriangle>& out);
   /// The baseline: least boxes of the control points.
   /// Returns:   the sum of their longest sides.
-  double box(std::span<const FaceId> faces, std::vector<Box3>& out);
+  double box(std::span<const PatchId> faces, std::vector<Box3>& out);
 
   /// Limit points of one face, in mesh units, with the sum of their error bounds.
-  double evaluate(FaceId face, std::span<const TriangleParameter> at, std::span<Point3> out);
+  double evaluate(PatchId face, std::span<const TriangleParameter> at, std::span<Point3> out);
   /// The same for a face whose evaluator keeps the pieces it met before.
   double evaluate(LimitEvaluator& face, std::span<const TriangleParameter> at, std::span<Point3> out) const;
 
@@ -55,6 +55,6 @@ class Subject {
 double update(PatchBounds& bounds, std::span<const Point3> points, std::vector<OffsetTriangle>& out);
 
 /// Ids 0 to count - 1.
-[[nodiscard]] std::vector<FaceId> all_faces(std::size_t count);
+[[nodiscard]] std::vector<PatchId> all_faces(std::size_t count);
 
 }  // namespace snug::bench

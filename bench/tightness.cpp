@@ -25,7 +25,7 @@ struct Ratios {
   std::vector<double> all;
 
   // Skips patches so flat that rounding makes up the radius.
-  void add(Subject& subject, FaceId face, const OffsetTriangle& enclosure, int side) {
+  void add(Subject& subject, PatchId face, const OffsetTriangle& enclosure, int side) {
     if (enclosure.radius <= 1000 * enclosure.rounding) return;
     const Patch patch = subject.surface().patch(face);
     all.push_back(enclosure.radius / LimitLattice(patch, side).least_radius(enclosure.base));
@@ -44,7 +44,7 @@ void several_corners(const Options& options, int side) {
   std::printf("irregular mesh, by extraordinary corners\n");
   Subject subject(irregular_mesh(2'000));
   for (std::size_t corners = 0; corners <= 3; ++corners) {
-    std::vector<FaceId> faces = faces_with(subject.surface(), corners);
+    std::vector<PatchId> faces = faces_with(subject.surface(), corners);
     faces.resize(std::min(faces.size(), options.size<std::size_t>(200, 5)));
     std::vector<OffsetTriangle> out;
     static_cast<void>(subject.enclose(faces, out));
@@ -62,8 +62,8 @@ void model(const std::string& path, const Options& options, int side) {
     // At most about 300 patches, spread over the whole mesh.
     const std::size_t most = options.size<std::size_t>(300, 5);
     const std::size_t stride = (subject.surface().face_count() + most - 1) / most;
-    std::vector<FaceId> faces;
-    for (std::size_t f = 0; f < subject.surface().face_count(); f += stride) faces.push_back(FaceId(f));
+    std::vector<PatchId> faces;
+    for (std::size_t f = 0; f < subject.surface().face_count(); f += stride) faces.push_back(PatchId(f));
     std::vector<OffsetTriangle> out;
     static_cast<void>(subject.enclose(faces, out));
     Ratios regular, other;

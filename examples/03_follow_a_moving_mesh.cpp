@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
                                 std::make_shared<snug::BoundLibrary>());
     // What connectivity decides is done here, once.
     snug::PatchBounds bounds(surface);
-    std::vector<snug::OffsetTriangle> triangles(bounds.faces().size());
+    std::vector<snug::OffsetTriangle> triangles(bounds.patches().size());
 
     std::vector<snug::Point3> points = surface.mesh().points;
     for (int frame = 0; frame < 4; ++frame) {

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Plots and tables of docs/convergence.md from the documents of `snug experiment rates` and `snug experiment tightness`.
 
-usage: plot_experiments.py RATES.json TIGHTNESS.json PAGE.md PICTURES
-Writes PICTURES/rates.svg, factors.svg and tightness.svg, and puts the tables between the marks `<!-- table: NAME -->` and
+usage: plot_experiments.py RATES.json TIGHTNESS.json SCHEME_RATES.json... PAGE.md PICTURES
+SCHEME_RATES: rates of schemes other than Loop.
+Writes PICTURES/rates.svg, factors.svg, schemes.svg and tightness.svg, and puts the tables between the marks `<!-- table: NAME -->` and
 `<!-- end -->` of the page. Plain SVG, no packages.
 """
 
@@ -18,6 +19,8 @@ SOURCES = {
     ("table", "ngon"): ("table, n-gon", "#d55e00", "square"),
     ("table", "characteristic"): ("table, characteristic", "#009e73", "triangle"),
 }
+SCHEMES = {"catmark": "Catmull-Clark", "doo-sabin": "Doo-Sabin", "midedge": "Midedge"}
+MEASURES = {"radius": ("radius", "#0072b2", "circle"), "normal": ("slab along the normal", "#d55e00", "square")}
 GREY, BLACK = "#777777", "#222222"
 PANELS = (3, 5, 6, 8, 12, 50)
 
@@ -201,6 +204,31 @@ def plot_factors(rows, path):
     picture.save(path)
 
 
+def plot_schemes(documents, path):
+    picture = Picture(940, 420, "Factor a level by which enclosures shrink, over the valence, for three schemes")
+    for i, rows in enumerate(documents):
+        valences = sorted({row["valence"] for row in rows})
+        axes = Axes(picture, (65 + 295 * i, 75, 275, 285), (-0.5, len(valences) - 0.5), (0.1, 1), False)
+        axes.ticks_y([(k / 10, f"{k / 10:.1f}") for k in range(1, 11)], i == 0)
+        axes.ticks_x([(k, str(v)) for k, v in enumerate(valences)])
+        axes.title(SCHEMES[rows[0]["scheme"]])
+        axes.label_x("valence")
+        first = [next(row for row in rows if row["valence"] == v) for v in valences]
+        for field, dash in (("subdominant", "7 4"), ("next", "2 3")):
+            picture.path([axes.at(k, row[field]) for k, row in enumerate(first)], GREY, 1.3, dash)
+        for s, (measure, (_, colour, shape)) in enumerate(MEASURES.items()):
+            for row in rows:
+                if row["measure"] == measure:
+                    picture.mark(shape, *axes.at(valences.index(row["valence"]) + 0.2 * s - 0.1, row["factor"]), colour)
+        if i == 0:
+            axes.label_y("factor a level", 40)
+    entries = [((lambda x, y, look=look: picture.mark(look[2], x + 18, y, look[1])), look[0])
+               for look in MEASURES.values()]
+    entries += [(plain_entry(picture, "7 4"), "subdominant"), (plain_entry(picture, "2 3"), "next eigenvalue")]
+    legend(picture, 65, 25, entries, 200)
+    picture.save(path)
+
+
 def plot_tightness(rows, path):
     picture = Picture(940, 420, "Radius over the least possible, by valence")
     valences = sorted({row["valence"] for row in rows})
@@ -247,6 +275,20 @@ def factor_table(rows, measure):
     return table(["valence"] + [words for key in SOURCES for words in (SOURCES[key][0], "theory")], lines)
 
 
+def scheme_table(documents):
+    lines = []
+    for valence in sorted({row["valence"] for row in documents[0]}):
+        cells = [str(valence)]
+        for rows in documents:
+            mine = {row["measure"]: row for row in rows if row["valence"] == valence}
+            cells += [f"{mine['radius']['factor']:.3f}", f"{mine['normal']['factor']:.3f}",
+                      f"{mine['normal']['expected']:.3f}"]
+        lines.append(cells)
+    head = [f"{SCHEMES[rows[0]['scheme']]}: radius" if k == 0 else words
+            for rows in documents for k, words in enumerate(("radius", "normal", "theory"))]
+    return table(["valence"] + head, lines)
+
+
 def tightness_table(rows, shape):
     lines = []
     for valence in sorted({row["valence"] for row in rows}):
@@ -264,15 +306,18 @@ def tightness_table(rows, shape):
 
 
 def main():
-    if len(sys.argv) != 5:
+    if len(sys.argv) < 6:
         sys.exit(__doc__)
-    rates, tightness = (json.loads(pathlib.Path(name).read_text(encoding="utf-8"))["rows"] for name in sys.argv[1:3])
-    page, pictures = pathlib.Path(sys.argv[3]), pathlib.Path(sys.argv[4])
+    rates, tightness, *schemes = (json.loads(pathlib.Path(name).read_text(encoding="utf-8"))["rows"]
+                                  for name in sys.argv[1:-2])
+    page, pictures = pathlib.Path(sys.argv[-2]), pathlib.Path(sys.argv[-1])
     plot_rates(rates, pictures / "rates.svg")
     plot_factors(rates, pictures / "factors.svg")
+    plot_schemes(schemes, pictures / "schemes.svg")
     plot_tightness(tightness, pictures / "tightness.svg")
     tables = {f"factors {measure}": factor_table(rates, measure) for measure in ("radius", "interval", "normal")}
     tables |= {f"tightness {shape}": tightness_table(tightness, shape) for shape in ("bent", "bumpy", "flat")}
+    tables["factors schemes"] = scheme_table(schemes)
     text = page.read_text(encoding="utf-8")
     for name, lines in tables.items():
         mark = f"<!-- table: {name} -->"

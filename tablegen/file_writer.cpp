@@ -45,7 +45,8 @@ void add_kind(const KindBounds& kind, Bytes& out) {
   const std::size_t begin = out.size();
   out.add(std::uint64_t{0});
   out.add(static_cast<std::uint64_t>(kind.key.scheme));
-  for (const snug::CornerFan& fan : kind.key.corners) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const snug::CornerFan& fan = kind.key.corners[i];
     out.add(fan.before);
     out.add(fan.after);
     out.add(static_cast<std::uint8_t>(fan.closed));

@@ -20,7 +20,7 @@ snug::KindKey least_turn(const std::array<CornerFan, 3>& fans) {
     best =
         std::min(best, std::array<CornerFan, 3>{fans[first], fans[(first + 1) % 3], fans[(first + 2) % 3]});
   }
-  return {snug::Scheme::loop, best};
+  return {snug::Scheme::loop, {best[0], best[1], best[2]}};
 }
 
 // The next corner and the last one around `fan`, regular, at the boundary where an edge they share with it is.

@@ -38,9 +38,14 @@ void write_triangle(JsonWriter& json, const char* key, const Triangle& triangle)
   json.end_array();
 }
 
-void write_piece(JsonWriter& json, const PieceEnclosure& piece) {
+void write_piece(JsonWriter& json, const Surface& surface, const PieceEnclosure& piece) {
+  const Scheme scheme = surface.options().scheme;
+  const Surface::PatchPlace place = surface.place(piece.patch);
   json.begin_object();
-  json.field("face", piece.face.index()).field("piece", piece.path.text()).field("level", piece.path.level());
+  json.field(is_primal(scheme) ? "face" : "vertex", place.owner);
+  if (scheme != Scheme::loop) json.field("part", place.part);
+  json.field("piece", piece.path.text());
+  json.field("level", piece.path.level() + (surface.after_first_split(piece.patch) ? 1 : 0));
   write_box_corners(json, "lower", piece, &Box3::lower);
   write_box_corners(json, "upper", piece, &Box3::upper);
   if (piece.offset) {
@@ -125,7 +130,7 @@ ExitStatus run(const Options& options) {
     summary = bound(
         surface, how,
         [&](const PieceEnclosure& piece) {
-          if (report.json()) write_piece(report.write(), piece);
+          if (report.json()) write_piece(report.write(), surface, piece);
           if (!options.polyhedra.empty()) polyhedra.add(piece);
         },
         bar.monitor());
@@ -134,14 +139,15 @@ ExitStatus run(const Options& options) {
     report.write().end_array().field("count", summary.count).field("max_radius", summary.max_radius);
     report.write().field("reached", summary.reached).field("splits", summary.splits);
   }
-  report.text(fmt::format("{}: {} enclosures of {} faces contain the limit surface, largest radius {}",
-                          options.mesh, summary.count, surface.face_count(),
+  report.text(fmt::format("{}: {} enclosures of {} {} contain the limit surface, largest radius {}",
+                          options.mesh, summary.count, surface.owner_count(),
+                          is_primal(surface.options().scheme) ? "faces" : "vertices",
                           text_at_most(summary.max_radius, true)));
   if (!summary.reached) {
     const bool spent = summary.splits >= options.budget;
     report.text(fmt::format("{} was not reached everywhere: {}; what is printed is still proved",
                             tolerance ? "the tolerance" : "the level",
-                            spent ? "the budget was spent, face by face; give a larger --budget"
+                            spent ? "the budget was spent, patch by patch; give a larger --budget"
                                   : "rounding stands in the way; give a larger --tolerance"));
   }
   if (!options.polyhedra.empty()) {
@@ -168,7 +174,9 @@ Command add_bound(CLI::App& app) {
   CLI::Option* tolerance =
       command->add_option("--tolerance", options->tolerance,
                           "Split until each radius is at most half of this: mesh units, or 1%");
-  command->add_option("--level", options->level, "Split every patch this often")
+  command
+      ->add_option("--level", options->level,
+                   "Split every patch this often; the first split of a polygon counts")
       ->check(CLI::Range(0u, 12u))
       ->excludes(tolerance);
   command->add_option(

@@ -64,7 +64,7 @@ SchemeOptions choose_rules(const CommonOptions& options, const std::string& sche
   } else if (options.boundary.empty() && mesh.tags.boundary) {
     rules.boundary = *mesh.tags.boundary;
   }
-  return rules;
+  return with_tags(rules, mesh.tags);
 }
 
 Notes notes_for(const CommonOptions& options) {

@@ -20,11 +20,6 @@ struct Options : CommonOptions {
   std::string at;
 };
 
-struct Request {
-  FaceId face;
-  TriangleParameter at;
-};
-
 // The next blank-separated word of a line, or an empty one.
 std::string_view next_word(std::string_view& line) {
   const auto begin = line.find_first_not_of(" \t\r");
@@ -41,10 +36,21 @@ bool parse(std::string_view word, Number& number) {
   return error == std::errc() && end == word.data() + word.size() && !word.empty();
 }
 
+// The words that name a place on this surface.
+const char* place_words(Scheme scheme) {
+  return scheme == Scheme::loop ? "face u v"
+         : is_primal(scheme)    ? "face u v [corner]"
+                                : "vertex u v [corner]";
+}
+
+const char* owner_word(Scheme scheme) { return is_primal(scheme) ? "face" : "vertex"; }
+
 // Lines "face u v"; blank lines and those that begin with # are passed over.
-std::vector<Request> read_requests(const std::string& path, const Surface& surface) {
+std::vector<SurfaceParameter> read_requests(const std::string& path, const Surface& surface) {
   const std::string text = read_file(path);
-  std::vector<Request> requests;
+  const Scheme scheme = surface.options().scheme;
+  const std::string owner = owner_word(scheme);
+  std::vector<SurfaceParameter> requests;
   std::size_t line_number = 0;
   for (std::string_view rest = text; !rest.empty();) {
     const auto end = std::min(rest.find('\n'), rest.size());
@@ -52,44 +58,82 @@ std::vector<Request> read_requests(const std::string& path, const Surface& surfa
     rest.remove_prefix(std::min(end + 1, rest.size()));
     ++line_number;
     const std::string where = path + ":" + std::to_string(line_number) + ": ";
+    const auto unreadable = [&](const std::string& why) {
+      return InputError(InputProblem::unreadable, where + why);
+    };
     const std::string_view first = next_word(line);
     if (first.empty() || first.front() == '#') continue;
-    std::uint32_t face = 0;
-    double u = 0, v = 0;
-    if (!parse(first, face) || !parse(next_word(line), u) || !parse(next_word(line), v) ||
-        !next_word(line).empty()) {
-      throw InputError(InputProblem::unreadable, where + "a line is 'face u v'");
+    SurfaceParameter at{};
+    bool good = parse(first, at.owner) && parse(next_word(line), at.u) && parse(next_word(line), at.v);
+    if (const std::string_view corner = next_word(line); good && !corner.empty()) {
+      good = scheme != Scheme::loop && parse(corner, at.corner) && next_word(line).empty();
     }
-    if (face >= surface.face_count()) {
-      throw InputError(InputProblem::unreadable, where + "face " + std::to_string(face) + " of " +
-                                                     std::to_string(surface.face_count()) +
-                                                     " (they count from 0)");
+    if (!good) throw unreadable(std::string("a line is '") + place_words(scheme) + "'");
+    if (at.owner >= surface.owner_count()) {
+      throw unreadable(owner + " " + std::to_string(at.owner) + " of " +
+                       std::to_string(surface.owner_count()) + " (they count from 0)");
     }
-    if (!(u >= 0 && v >= 0 && u + v <= 1)) {
-      throw InputError(InputProblem::unreadable, where + "u and v must be >= 0, and u + v <= 1");
+    if (scheme == Scheme::loop ? !(at.u >= 0 && at.v >= 0 && at.u + at.v <= 1)
+                               : !(at.u >= 0 && at.v >= 0 && at.u <= 1 && at.v <= 1)) {
+      throw unreadable(scheme == Scheme::loop ? "u and v must be >= 0, and u + v <= 1"
+                                              : "u and v must be from 0 to 1");
     }
-    if (!surface.has_patch(FaceId(face))) {
+    const Surface::PatchRange range = surface.patches_of(at.owner);
+    const std::size_t corners = std::max<std::size_t>(1, (range.end - range.begin) / 2);
+    if (at.corner >= corners) {
+      throw unreadable("corner " + std::to_string(at.corner) + " of " + owner + " " +
+                       std::to_string(at.owner) + ", which counts from 0 to " + std::to_string(corners - 1));
+    }
+    if (!patch_at(surface, at)) {
       throw InputError(InputProblem::refused,
-                       where + "face " + std::to_string(face) +
-                           " has no limit surface: it touches the boundary, whose rule is none");
+                       where + owner + " " + std::to_string(at.owner) +
+                           " has no limit surface: it lies at the boundary, or is a hole");
     }
-    requests.push_back({FaceId(face), {u, v}});
+    requests.push_back(at);
   }
   return requests;
 }
 
-void write_point(Report& report, const Request& request, const SurfacePoint& point) {
+void write_point(Report& report, const Surface& surface, const SurfaceParameter& at,
+                 const SurfacePoint& point) {
+  const Scheme scheme = surface.options().scheme;
   if (!report.json()) {
-    report.text(fmt::format("{} {} {}  {} {} {}", request.face.index(), request.at.u, request.at.v,
-                            point.position.x, point.position.y, point.position.z));
+    report.text(fmt::format("{} {} {}{}  {} {} {}", at.owner, at.u, at.v,
+                            scheme == Scheme::loop ? "" : fmt::format(" {}", at.corner), point.position.x,
+                            point.position.y, point.position.z));
     return;
   }
   JsonWriter& json = report.write();
-  json.begin_object().field("face", request.face.index()).field("u", request.at.u).field("v", request.at.v);
+  json.begin_object().field(owner_word(scheme), at.owner).field("u", at.u).field("v", at.v);
+  if (scheme != Scheme::loop) json.field("corner", at.corner);
   json.field("position", point.position).field("error", point.error).key("normal");
   point.normal ? json.value(*point.normal) : json.null();
   json.key("tangents").begin_array().value(point.tangents[0]).value(point.tangents[1]).end_array();
   json.field("differentiable", point.differentiable).end_object();
+}
+
+// Calls visit(place) for a lattice of `steps` on a face, or on each quad of its first split.
+template <class Visit>
+void for_each_place(const Surface& surface, std::uint32_t owner, unsigned steps, Visit&& visit) {
+  if (surface.options().scheme == Scheme::loop) {
+    for (unsigned j = 0; j <= steps; ++j) {
+      for (unsigned i = 0; i + j <= steps; ++i) {
+        // The far edge is met exactly: u + v rounds to at most 1.
+        const double v = static_cast<double>(j) / steps, u = std::fmin(static_cast<double>(i) / steps, 1 - v);
+        visit(SurfaceParameter{owner, 0, u, v});
+      }
+    }
+    return;
+  }
+  const Surface::PatchRange range = surface.patches_of(owner);
+  for (std::uint32_t corner = 0; corner < (range.end - range.begin) / 2; ++corner) {
+    for (unsigned j = 0; j <= steps; ++j) {
+      for (unsigned i = 0; i <= steps; ++i) {
+        visit(
+            SurfaceParameter{owner, corner, static_cast<double>(i) / steps, static_cast<double>(j) / steps});
+      }
+    }
+  }
 }
 
 ExitStatus run(const Options& options) {
@@ -98,7 +142,7 @@ ExitStatus run(const Options& options) {
     return eval_curve(std::move(mesh), options.mesh, options, {options.degree, options.samples, options.at});
   const Surface surface =
       make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundLibrary>());
-  std::vector<Request> requests;
+  std::vector<SurfaceParameter> requests;
   if (!options.at.empty()) requests = read_requests(options.at, surface);
   Report report("eval", options);
   report.heads({options.mesh}, {name_of(surface.options().scheme)});
@@ -106,26 +150,24 @@ ExitStatus run(const Options& options) {
   std::size_t count = 0;
   naming(options.mesh, [&] {
     if (!options.at.empty()) {
-      for (const Request& request : requests)
-        write_point(report, request, evaluate(surface, request.face, request.at));
+      for (const SurfaceParameter& at : requests) write_point(report, surface, at, evaluate(surface, at));
       count = requests.size();
       return;
     }
     ProgressBar bar("evaluating " + options.mesh, options.quiet);
     const WorkMonitor monitor = bar.monitor();
-    const double steps = options.samples;
-    for (std::size_t f = 0; f < surface.face_count(); ++f) {
-      if (!surface.has_patch(FaceId(f))) continue;
-      const FaceEvaluator evaluator(surface, FaceId(f));
-      for (unsigned j = 0; j <= options.samples; ++j) {
-        for (unsigned i = 0; i + j <= options.samples; ++i) {
-          // The far edge is met exactly: u + v rounds to at most 1.
-          const double v = j / steps, u = std::fmin(i / steps, 1 - v);
-          write_point(report, {FaceId(f), {u, v}}, evaluator({u, v}));
-          ++count;
-        }
-      }
-      monitor.report(static_cast<double>(f + 1) / static_cast<double>(surface.face_count()));
+    for (std::uint32_t owner = 0; owner < surface.owner_count(); ++owner) {
+      std::optional<PatchEvaluator> evaluator;
+      std::optional<PatchId> last;
+      for_each_place(surface, owner, options.samples, [&](const SurfaceParameter& at) {
+        const std::optional<PatchId> patch = patch_at(surface, at);
+        if (!patch) return;
+        if (patch != last) evaluator.emplace(surface, *patch);
+        last = patch;
+        write_point(report, surface, at, (*evaluator)(at));
+        ++count;
+      });
+      monitor.report(static_cast<double>(owner + 1) / static_cast<double>(surface.owner_count()));
     }
   });
   if (report.json()) report.write().end_array().field("count", count);
@@ -148,7 +190,9 @@ Command add_eval(CLI::App& app) {
           ->capture_default_str();
   command
       ->add_option("--at", options->at,
-                   "File of lines 'face u v': p = (1-u-v) c0 + u c1 + v c2; of curves: 'edge t'")
+                   "File of lines 'face u v' (Loop: p = (1-u-v) c0 + u c1 + v c2; quads: u from c0 towards "
+                   "c1), a corner "
+                   "after it for the quads of other faces; of curves: 'edge t'")
       ->excludes(samples);
   add_degree_option(*command, options->degree);
   add_common_options(*command, *options);

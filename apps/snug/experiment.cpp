@@ -127,6 +127,10 @@ RateOptions rate_options(const Options& options) {
   wanted.levels = options.levels;
   wanted.seed = options.seed;
   wanted.threads = options.threads;
+  for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
+    if (options.scheme == name_of(scheme)) wanted.scheme = scheme;
+  }
+  if (options.scheme == "catmull-clark") wanted.scheme = Scheme::catmark;
   return wanted;
 }
 
@@ -175,8 +179,8 @@ ExitStatus rates(const Options& options) {
     JsonWriter& json = begin_rows(report, options);
     json.field("nets", wanted.nets).field("levels", wanted.levels).key("rows").begin_array();
     for (const RateRow& row : rows) {
-      const CornerEigenvalues eigenvalues = corner_eigenvalues(row.valence);
-      json.begin_object().field("valence", row.valence);
+      const CornerEigenvalues eigenvalues = corner_eigenvalues(row.valence, wanted.scheme);
+      json.begin_object().field("scheme", name_of(wanted.scheme)).field("valence", row.valence);
       write_source(json, row.source);
       json.field("measure", name_of(row.measure)).key("thickness").begin_array();
       for (const double t : row.thickness) json.value(t);

@@ -15,11 +15,25 @@ struct Options : CommonOptions {
 
 std::size_t regular_valence(Scheme scheme) { return scheme == Scheme::loop ? 6 : 4; }
 
+// Vertices unlike those of a regular lattice; with a dual scheme faces.
+std::size_t extraordinary(const ControlMesh& mesh, const MeshStatistics& counts, Scheme scheme) {
+  if (is_primal(scheme)) return counts.extraordinary;
+  std::size_t found = 0;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) found += mesh.face(FaceId(f)).size() != 4;
+  return found;
+}
+
+// Does the scheme answer a mesh with this defect all the same?
+bool is_answered(DefectKind kind, Scheme scheme) {
+  return is_legal(kind) || (is_primal(scheme) && is_non_manifold(kind));
+}
+
 ExitStatus run(const Options& options) {
   const ControlMesh mesh = load_mesh(options.mesh, options);
   refuse_curves(mesh, options.scheme, options.mesh);
   const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
   const MeshStatistics counts = statistics(mesh, regular_valence(rules.scheme));
+  const std::size_t odd_ones = extraordinary(mesh, counts, rules.scheme);
   const std::vector<Defect> found = defects(mesh);
   std::optional<std::size_t> kinds;
   std::string refusal;
@@ -38,7 +52,7 @@ ExitStatus run(const Options& options) {
         .field("edges", counts.edges);
     json.field("closed", counts.closed).field("components", counts.components);
     json.key("valence").begin_array().value(counts.min_valence).value(counts.max_valence).end_array();
-    json.field("extraordinary", counts.extraordinary).field("boundary_edges", counts.boundary_edges);
+    json.field("extraordinary", odd_ones).field("boundary_edges", counts.boundary_edges);
     json.field("creases", mesh.tags.creases.size()).field("corners", mesh.tags.corners.size());
     json.field("holes", mesh.tags.holes.size());
     json.key("kinds");
@@ -48,7 +62,7 @@ ExitStatus run(const Options& options) {
     json.key("defects").begin_array();
     for (const Defect& defect : found) {
       json.begin_object().field("kind", name_of(defect.kind)).field("text", defect.text);
-      json.field("legal", is_legal(defect.kind)).end_object();
+      json.field("legal", is_answered(defect.kind, rules.scheme)).end_object();
     }
     json.end_array();
   }
@@ -56,8 +70,9 @@ ExitStatus run(const Options& options) {
                           mesh.vertex_count(), counts.edges, mesh.face_count(),
                           counts.closed ? "closed" : "open", counts.components,
                           counts.components == 1 ? "" : "s"));
-  report.text(fmt::format("valence {} to {}, {} extraordinary vertices, {} boundary edges, {} creases",
-                          counts.min_valence, counts.max_valence, counts.extraordinary, counts.boundary_edges,
+  report.text(fmt::format("valence {} to {}, {} extraordinary {}, {} boundary edges, {} creases",
+                          counts.min_valence, counts.max_valence, odd_ones,
+                          is_primal(rules.scheme) ? "vertices" : "faces", counts.boundary_edges,
                           mesh.tags.creases.size()));
   if (kinds) {
     report.text(fmt::format("scheme {}: {} kinds of patches", name_of(rules.scheme), *kinds));
@@ -65,7 +80,8 @@ ExitStatus run(const Options& options) {
     report.text(fmt::format("scheme {}: refused: {}", name_of(rules.scheme), refusal));
   }
   for (std::size_t i = 0; i < found.size() && i < 10; ++i) {
-    report.text(fmt::format("{}: {}", is_legal(found[i].kind) ? "note" : "defect", found[i].text));
+    report.text(
+        fmt::format("{}: {}", is_answered(found[i].kind, rules.scheme) ? "note" : "defect", found[i].text));
   }
   if (found.size() > 10) report.text(fmt::format("and {} more", found.size() - 10));
   report.finish();

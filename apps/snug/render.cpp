@@ -112,7 +112,7 @@ struct Enclosures {
 std::uint64_t drawable_budget(const Options& options, const std::vector<Surface>& surfaces) {
   std::uint64_t pieces = 0;
   for (const Surface& surface : surfaces) {
-    for (std::size_t f = 0; f < surface.face_count(); ++f) pieces += surface.has_patch(FaceId(f)) ? 1 : 0;
+    for (std::size_t p = 0; p < surface.patch_count(); ++p) pieces += surface.has_patch(PatchId(p)) ? 1 : 0;
   }
   if (pieces > most_enclosures >> (2 * options.level)) {
     throw InputError(

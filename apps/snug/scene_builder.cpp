@@ -9,8 +9,6 @@
 namespace snug::command {
 namespace {
 
-constexpr std::uint32_t no_rank = UINT32_MAX;
-
 // A point as the camera sees it, in pixels from the middle of the picture.
 struct Pixel {
   double x, y;
@@ -50,35 +48,35 @@ PictureUnits::PictureUnits(std::span<const PlacedSurface> parts) {
 
 Tessellation::Tessellation(const PlacedSurface& part, const PictureUnits& units, std::uint32_t steps,
                            int threads, const WorkMonitor& monitor)
-    : topology_(&part.surface->topology()),
-      steps_(steps),
-      points_a_face_(std::size_t{steps + 1} * (steps + 2) / 2) {
+    : steps_(steps), points_a_patch_(std::size_t{steps + 1} * (steps + 2) / 2) {
   const Surface& surface = *part.surface;
-  rank_.assign(surface.face_count(), no_rank);
-  vertex_owner_.assign(topology_->vertex_count(), no_half_edge);
-  for (std::size_t f = 0; f < surface.face_count(); ++f) {
-    if (!surface.has_patch(FaceId(f))) continue;
-    rank_[f] = static_cast<std::uint32_t>(faces_.size());
-    faces_.emplace_back(f);
-    const HalfEdge first = topology_->first_of(FaceId(f));
-    for (HalfEdge h = first; h < first + 3; ++h) {
-      HalfEdge& owner = vertex_owner_[topology_->from(h).index()];
-      if (owner == no_half_edge) owner = h;
-    }
+  std::vector<std::uint32_t> offsets{0};
+  std::vector<VertexId> corners;
+  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+    if (!surface.has_patch(PatchId(p))) continue;
+    patches_.emplace_back(p);
+    for (const std::uint32_t name : surface.corner_names(PatchId(p))) corners.emplace_back(name);
+    offsets.push_back(static_cast<std::uint32_t>(corners.size()));
   }
-  positions_.resize(faces_.size() * points_a_face_);
-  normals_.resize(faces_.size() * points_a_face_);
-  parallel_for(faces_.size(), threads, [&](std::size_t begin, std::size_t end) {
+  topology_ = Topology(std::move(offsets), std::move(corners), surface.corner_name_count());
+  vertex_owner_.assign(topology_.vertex_count(), no_half_edge);
+  for (HalfEdge h = 0; h < topology_.half_edge_count(); ++h) {
+    HalfEdge& owner = vertex_owner_[topology_.from(h).index()];
+    if (owner == no_half_edge) owner = h;
+  }
+  positions_.resize(patches_.size() * points_a_patch_);
+  normals_.resize(patches_.size() * points_a_patch_);
+  parallel_for(patches_.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t rank = begin; rank < end; ++rank) {
       monitor.checkpoint();
-      const FaceEvaluator evaluate_at(surface, faces_[rank]);
-      std::size_t at = rank * points_a_face_;
+      const PatchEvaluator evaluate_at(surface, patches_[rank]);
+      std::size_t at = rank * points_a_patch_;
       for (std::uint32_t j = 0; j <= steps_; ++j) {
         for (std::uint32_t i = 0; i + j <= steps_; ++i, ++at) {
           // The far edge is met exactly: u + v rounds to at most 1.
           const double v = static_cast<double>(j) / steps_,
                        u = std::fmin(static_cast<double>(i) / steps_, 1 - v);
-          const SurfacePoint point = evaluate_at({u, v});
+          const SurfacePoint point = evaluate_at(TriangleParameter{u, v});
           positions_[at] = units(part.placement, point.position);
           if (point.normal) normals_[at] = units(part.placement, *point.normal);
         }
@@ -88,14 +86,14 @@ Tessellation::Tessellation(const PlacedSurface& part, const PictureUnits& units,
 }
 
 std::vector<double> Tessellation::longest_edges(const Camera& camera, int height) const {
-  std::vector<double> longest(faces_.size(), 0);
-  for (std::size_t rank = 0; rank < faces_.size(); ++rank) {
+  std::vector<double> longest(patches_.size(), 0);
+  for (std::size_t rank = 0; rank < patches_.size(); ++rank) {
     for (std::size_t side = 0; side < 3; ++side) {
       double sum = 0;
       Pixel last{};
       for (std::uint32_t along = 0; along <= steps_; ++along) {
         const Pixel next =
-            seen(camera, height, positions_[rank * points_a_face_ + number(on_side(side, along))]);
+            seen(camera, height, positions_[rank * points_a_patch_ + number(on_side(side, along))]);
         if (along > 0) sum += distance(last, next);
         last = next;
       }
@@ -124,31 +122,29 @@ Tessellation::LatticePoint Tessellation::on_side(std::size_t side, std::uint32_t
 
 Point3 Tessellation::shared_position(std::size_t rank, LatticePoint p) const {
   const auto lent_by = [&](HalfEdge h, std::uint32_t steps_along) {
-    const FaceId f = topology_->face_of(h);
-    return positions_[rank_[f.index()] * points_a_face_ +
-                      number(on_side(h - topology_->first_of(f), steps_along))];
+    const FaceId f = topology_.face_of(h);
+    return positions_[f.index() * points_a_patch_ + number(on_side(h - topology_.first_of(f), steps_along))];
   };
-  const HalfEdge first = topology_->first_of(faces_[rank]);
+  const HalfEdge first = topology_.first_of(FaceId(rank));
   for (std::uint32_t side = 0; side < 3; ++side) {
     const std::uint32_t k = steps_ - p.i - p.j;
     const std::uint32_t across = side == 0 ? p.j : side == 1 ? k : p.i;
     if (across > 0) continue;
     const std::uint32_t along = side == 0 ? p.i : side == 1 ? p.j : k;
     const HalfEdge h = first + side;
-    if (along == 0) return lent_by(vertex_owner_[topology_->from(h).index()], 0);
-    if (along == steps_) return lent_by(vertex_owner_[topology_->to(h).index()], 0);
-    const HalfEdge twin = topology_->twin(h);
-    const bool twin_lends =
-        twin != no_half_edge && twin < h && rank_[topology_->face_of(twin).index()] != no_rank;
+    if (along == 0) return lent_by(vertex_owner_[topology_.from(h).index()], 0);
+    if (along == steps_) return lent_by(vertex_owner_[topology_.to(h).index()], 0);
+    const HalfEdge twin = topology_.twin(h);
+    const bool twin_lends = twin != no_half_edge && twin < h;
     return twin_lends ? lent_by(twin, steps_ - along) : lent_by(h, along);
   }
-  return positions_[rank * points_a_face_ + number(p)];
+  return positions_[rank * points_a_patch_ + number(p)];
 }
 
 void Tessellation::add_to(Scene& scene, std::uint32_t material, int threads) const {
   const std::size_t before = scene.triangles.size(), triangles_a_face = std::size_t{steps_} * steps_;
   scene.triangles.resize(before + triangle_count());
-  parallel_for(faces_.size(), threads, [&](std::size_t begin, std::size_t end) {
+  parallel_for(patches_.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t rank = begin; rank < end; ++rank) {
       std::size_t next = before + rank * triangles_a_face;
       const auto add = [&](LatticePoint a, LatticePoint b, LatticePoint c) {
@@ -157,7 +153,7 @@ void Tessellation::add_to(Scene& scene, std::uint32_t material, int threads) con
         std::size_t corner = 0;
         for (const LatticePoint p : {a, b, c}) {
           triangle.corner[corner] = shared_position(rank, p);
-          triangle.normal[corner++] = normals_[rank * points_a_face_ + number(p)];
+          triangle.normal[corner++] = normals_[rank * points_a_patch_ + number(p)];
         }
       };
       for (std::uint32_t j = 0; j < steps_; ++j) {

@@ -51,19 +51,19 @@ class PictureUnits {
   double zoom_ = 1;
 };
 
-/// Limit points of every face on the same lattice. Points on edges and at vertices are taken from one of the
-/// faces there, so that triangles of neighbours share them exactly.
+/// Limit points of every patch on the same lattice. Points on edges and at corners are taken from one of the
+/// patches there, so that triangles of neighbours share them exactly; not beside polygons that split first.
 class Tessellation {
  public:
   /// Errors:    InputError if a coordinate does not fit a double; Interrupted.
-  /// Cost:      steps^2 / 2 evaluations a face; 48 bytes each.
+  /// Cost:      steps^2 / 2 evaluations a patch; 48 bytes each.
   Tessellation(const PlacedSurface& part, const PictureUnits& units, std::uint32_t steps, int threads,
                const WorkMonitor& monitor);
 
-  /// All the points, face by face, in picture units.
+  /// All the points, patch by patch, in picture units.
   [[nodiscard]] std::span<const Point3> points() const { return positions_; }
-  [[nodiscard]] std::size_t triangle_count() const { return faces_.size() * steps_ * steps_; }
-  /// Of each face, the length on the picture of its longest edge, in pixels.
+  [[nodiscard]] std::size_t triangle_count() const { return patches_.size() * steps_ * steps_; }
+  /// Of each patch, the length on the picture of its longest edge, in pixels.
   [[nodiscard]] std::vector<double> longest_edges(const Camera& camera, int height) const;
   /// Adds its triangles to the scene.
   void add_to(Scene& scene, std::uint32_t material, int threads) const;
@@ -80,12 +80,11 @@ class Tessellation {
   [[nodiscard]] LatticePoint on_side(std::size_t side, std::uint32_t steps_along) const;
   [[nodiscard]] Point3 shared_position(std::size_t rank, LatticePoint p) const;
 
-  const Topology* topology_;
   std::uint32_t steps_;
-  std::size_t points_a_face_;
-  std::vector<FaceId> faces_;           // those that have a patch
-  std::vector<std::uint32_t> rank_;     // of a face among them, or no_rank
-  std::vector<HalfEdge> vertex_owner_;  // the corner that lends a vertex its point
+  std::size_t points_a_patch_;
+  std::vector<PatchId> patches_;        // those that are there
+  Topology topology_;                   // their corners, a triangle each
+  std::vector<HalfEdge> vertex_owner_;  // the corner of a patch that lends a name its point
   std::vector<Point3> positions_;
   std::vector<Vector3> normals_;
 };

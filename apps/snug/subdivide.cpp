@@ -16,7 +16,15 @@ struct Options : CommonOptions {
   unsigned degree = 3;
   unsigned level = 1;
   bool limit = false;
+  std::string vertex_rule = "standard";
 };
+
+CatmarkVertexRule older_rule(Scheme scheme, bool limit) {
+  if (scheme != Scheme::catmark || limit) {
+    throw UsageError("subdivide: --vertex-rule older is for the control meshes of --scheme catmark");
+  }
+  return CatmarkVertexRule::older;
+}
 
 ExitStatus run(const Options& options) {
   if (options.output.empty()) throw UsageError("subdivide: -o FILE is missing: where the refined mesh goes");
@@ -31,7 +39,8 @@ ExitStatus run(const Options& options) {
   ControlMesh result;
   Scheme scheme{};
   naming(options.mesh, [&] {
-    const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
+    SchemeOptions rules = choose_rules(options, options.scheme, mesh);
+    if (options.vertex_rule == "older") rules.vertex_rule = older_rule(rules.scheme, options.limit);
     scheme = rules.scheme;
     ProgressBar bar("subdividing " + options.mesh, options.quiet);
     result = subdivide(std::move(mesh), rules, options.level, options.limit, bar.monitor());
@@ -64,6 +73,11 @@ Command add_subdivide(CLI::App& app) {
       ->check(CLI::Range(0u, 12u))
       ->capture_default_str();
   command->add_flag("--limit", options->limit, "Move every vertex to its limit position");
+  command
+      ->add_option("--vertex-rule", options->vertex_rule,
+                   "Catmull-Clark's new place of a vertex: (Q + 2R + (n-3)S)/n, or the older (Q + 2R + S)/4")
+      ->check(CLI::IsMember({"standard", "older"}))
+      ->capture_default_str();
   add_degree_option(*command, options->degree);
   add_common_options(*command, *options);
   return {command, [options] { return run(*options); }};

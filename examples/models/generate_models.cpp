@@ -27,6 +27,13 @@ constexpr std::array<Model, 7> kModels = {{
     {"figure", "Low-polygon game character", models::make_figure},
 }};
 
+void write(const std::filesystem::path& folder, const std::string& name, const std::string& text) {
+  std::ofstream file(folder / (name + ".obj"), std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) throw std::runtime_error("cannot write " + name + ".obj");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -40,13 +47,11 @@ int main(int argc, char** argv) {
     for (const Model& model : kModels) {
       models::TriangleMesh mesh = model.make();
       models::finish(mesh, model.name);
-      std::ofstream file(folder / (std::string(model.name) + ".obj"), std::ios::binary);
-      file << models::obj_text(mesh, model.title);
-      file.close();
-      if (!file) throw std::runtime_error(std::string("cannot write ") + model.name + ".obj");
+      write(folder, model.name, models::obj_text(mesh, model.title));
       std::cout << model.name << ": " << mesh.points.size() << " vertices, " << mesh.faces.size()
                 << " faces\n";
     }
+    write(folder, "bracket", models::bracket_text());
   } catch (const std::exception& error) {
     std::cerr << "generate_models: " << error.what() << "\n";
     return 1;

@@ -1,5 +1,5 @@
 #pragma once
-// The example models; each function returns a finished control mesh.
+// The example models; each make function returns a finished control mesh.
 
 #include "triangle_mesh.h"
 
@@ -12,5 +12,8 @@ TriangleMesh make_head();
 TriangleMesh make_bust();
 TriangleMesh make_demon();
 TriangleMesh make_figure();
+
+/// Text of the OBJ file of the one model of quads.
+std::string bracket_text();
 
 }  // namespace models

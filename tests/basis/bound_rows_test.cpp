@@ -48,9 +48,10 @@ TEST(bound_rows, end_with_the_control_nets_of_the_tips) {
       const Patch patch = make_patch(kind, 0, points);
       std::size_t row = rows.tips_begin(), tip = 0;
       for (unsigned corner = 0; corner < 3; ++corner) {
-        if (kind.corner(corner).regular()) continue;
+        if (kind.regular_corner(corner)) continue;
         Patch piece = patch;
-        for (unsigned level = 0; level < std::min(most, tip_depth(kind.corner(corner))); ++level)
+        for (unsigned level = 0; level < std::min(most, tip_depth(kind.corner(corner), Scheme::loop));
+             ++level)
           piece = split(piece, corner);
         ASSERT_EQ(rows.tips()[tip].kind, piece.kind);
         ASSERT_EQ(rows.tips()[tip].begin, row);
@@ -87,12 +88,10 @@ TEST(bound_rows, bound_random_functionals_of_the_patch) {
   for (const KindKey& key : assorted_kinds()) {
     const Kind& kind = library.find(key);
     const BoundRows rows = make_bound_rows(kind);
-    const Topology around = neighbourhood(key);
+    const Topology around = neighbourhood(key).topology;
     for (int trial = 0; trial < 12; ++trial) {
       oracle::TwinMesh twin;
-      twin.boundary = neighbourhood_options(key).boundary == BoundaryRule::edge_and_corner
-                          ? oracle::Boundary::edge_and_corner
-                          : oracle::Boundary::edge_only;
+      twin.boundary = testing::boundary_of(key);
       for (std::size_t i = 0; i < kind.control_count(); ++i) {
         // Three functionals at once; sometimes a single basis function.
         const bool single = trial < 3;
@@ -139,9 +138,9 @@ TEST(bound_rows, bound_random_functionals_of_the_patch) {
 }
 
 TEST(tip_depth, grows_with_the_valence_and_stays_bounded) {
-  EXPECT_LE(tip_depth(inside(3)), tip_depth(inside(8)));
-  EXPECT_LE(tip_depth(inside(8)), tip_depth(inside(50)));
-  EXPECT_LE(tip_depth(inside(1000)), 24u);
+  EXPECT_LE(tip_depth(inside(3), Scheme::loop), tip_depth(inside(8), Scheme::loop));
+  EXPECT_LE(tip_depth(inside(8), Scheme::loop), tip_depth(inside(50), Scheme::loop));
+  EXPECT_LE(tip_depth(inside(1000), Scheme::loop), 24u);
 }
 
 }  // namespace

@@ -20,11 +20,9 @@ constexpr TableLayout both_layouts[] = {TableLayout::ngon, TableLayout::characte
 // The kind's neighbourhood for the twin: points are (s, t) of the layout and one basis function. As a mesh it
 // has a rim, but the patch of face 0 does not see it.
 oracle::TwinMesh twin_of(const KindKey& key, const std::vector<LayoutPoint>& layout, std::size_t function) {
-  const Topology around = neighbourhood(key);
+  const Topology around = neighbourhood(key).topology;
   oracle::TwinMesh twin;
-  twin.boundary = neighbourhood_options(key).boundary == BoundaryRule::edge_and_corner
-                      ? oracle::Boundary::edge_and_corner
-                      : oracle::Boundary::edge_only;
+  twin.boundary = testing::boundary_of(key);
   for (std::size_t i = 0; i < layout.size(); ++i)
     twin.points.push_back({layout[i][0], layout[i][1], i == function ? 1.0 : 0.0});
   for (std::size_t f = 0; f < around.face_count(); ++f) {
@@ -186,12 +184,65 @@ TEST(layout, of_regular_kinds_is_the_regular_lattice) {
   }
 }
 
+// Of Catmull-Clark with a corner or boundary too; dual schemes have corners between control points.
+TEST(fair_layout, of_regular_kinds_is_the_regular_lattice) {
+  KindLibrary library;
+  const CornerFan in = inside(4), lone{0, 0, false, true}, before{1, 0, false}, after{0, 1, false};
+  for (const std::array<CornerFan, 4>& fans :
+       {std::array{in, in, in, in}, std::array{after, before, in, in}, std::array{in, in, after, before},
+        std::array{lone, before, in, after}, std::array{in, after, lone, before}}) {
+    const auto layout = make_layout(library.find({Scheme::catmark, fans}), TableLayout::ngon);
+    EXPECT_EQ(layout[0], (LayoutPoint{0, 0}));
+    EXPECT_EQ(layout[1], (LayoutPoint{1, 0}));
+    EXPECT_EQ(layout[2], (LayoutPoint{0, 1}));
+    EXPECT_EQ(layout[3], (LayoutPoint{-1, 1}));
+    for (const LayoutPoint& p : layout) {
+      EXPECT_EQ(p[0], std::round(p[0]));
+      EXPECT_EQ(p[1], std::round(p[1]));
+    }
+  }
+  for (const Scheme scheme : {Scheme::doo_sabin, Scheme::midedge}) {
+    const auto layout = make_layout(library.find({scheme, {in, in, in, in}}), TableLayout::ngon);
+    ASSERT_EQ(layout.size(), 9u);
+    EXPECT_EQ(layout[0], (LayoutPoint{0, 0.5}));  // the middle of the edge 02
+    for (const LayoutPoint& p : layout) {
+      EXPECT_EQ(2 * p[0], std::round(2 * p[0]));
+      EXPECT_EQ(2 * p[1], std::round(2 * p[1]));
+    }
+  }
+}
+
+TEST(fair_layout, has_its_limit_corners_at_the_corners_and_stays_near) {
+  KindLibrary library;
+  for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
+    for (const std::size_t n : {3u, 5u, 7u, 12u, 40u}) {
+      for (const std::size_t m : {3u, 4u, 9u}) {
+        const Kind& kind = library.find({scheme, {inside(n), inside(m), inside(4), inside(5)}});
+        const auto layout = make_layout(kind, TableLayout::ngon);
+        EXPECT_EQ(layout, make_layout(kind, TableLayout::characteristic));
+        for (const LayoutPoint& p : layout)
+          EXPECT_LT(std::fabs(p[0]) + std::fabs(p[1]), 30) << name_of(scheme) << n << m;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const auto row = kind.corner_limits().row(k);
+          LayoutPoint limit{0, 0};
+          for (std::size_t i = 0; i < row.sources.size(); ++i) {
+            limit[0] += row.weights[i] * layout[row.sources[i]][0];
+            limit[1] += row.weights[i] * layout[row.sources[i]][1];
+          }
+          EXPECT_NEAR(limit[0], k == 1, 1e-12);
+          EXPECT_NEAR(limit[1], k == 2, 1e-12);
+        }
+      }
+    }
+  }
+}
+
 TEST(layout, of_other_kinds_has_its_limit_corners_at_the_corners) {
   KindLibrary library;
   for (const KindKey& key : testing::assorted_kinds()) {
-    const bool one =
-        std::all_of(key.corners.begin(), key.corners.end(), [](auto& f) { return f.closed; }) &&
-        std::count_if(key.corners.begin(), key.corners.end(), [](auto& f) { return !f.regular(); }) <= 1;
+    const bool one = std::all_of(key.corners.begin(), key.corners.end(), [](auto& f) { return f.closed; }) &&
+                     std::count_if(key.corners.begin(), key.corners.end(),
+                                   [](auto& f) { return !f.regular(Scheme::loop); }) <= 1;
     if (one) continue;
     const Kind& kind = library.find(key);
     const auto layout = make_layout(kind, TableLayout::ngon);

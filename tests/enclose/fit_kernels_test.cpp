@@ -411,7 +411,7 @@ oracle::TwinMesh net_on_a_line(Random& random) {
 // Many nets behind each other, as the batch reads them.
 class Nets {
  public:
-  Nets() : surface_(testing::surface_of(regular_net())) { surface_.control_vertices(FaceId(0), order_); }
+  Nets() : surface_(testing::surface_of(regular_net())) { surface_.control_vertices(PatchId(0), order_); }
 
   void add(const oracle::TwinMesh& mesh) {
     for (const VertexId v : order_) control_.push_back(VertexId(points_.size() + v.index()));
@@ -429,7 +429,7 @@ class Nets {
 
   // The general way: rows of the kind, points, fit.
   [[nodiscard]] OffsetTriangle offset(std::size_t i) const {
-    const Kind& kind = surface_.kind(FaceId(0));
+    const Kind& kind = surface_.kind(PatchId(0));
     const std::size_t n = order_.size();
     const Patch patch = make_patch(kind, 0, points_, std::span(control_).subspan(i * n, n));
     HullPoints hull;

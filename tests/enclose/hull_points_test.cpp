@@ -27,8 +27,8 @@ TEST(outer_box_and_slab, contain_the_limit_patch) {
     const Surface surface = testing::surface_of(twin);
     HullPoints points;
     for (std::size_t f = 0; f < surface.face_count(); ++f) {
-      if (!surface.has_patch(FaceId(f))) continue;
-      const Patch patch = surface.patch(FaceId(f));
+      if (!surface.has_patch(PatchId(f))) continue;
+      const Patch patch = surface.patch(PatchId(f));
       for (const bool rows : {true, false}) {
         rows ? hull_points(surface.library().rows(*patch.kind), patch, points)
              : control_points(patch, points);
@@ -54,7 +54,7 @@ TEST(outer_box_and_slab, contain_the_limit_patch) {
 TEST(hull_rows, are_far_tighter_than_the_control_points) {
   const Surface surface = testing::surface_of(oracle::meshes::quartered(oracle::meshes::icosahedron()));
   HullPoints rows, control;
-  const Patch patch = surface.patch(FaceId(0));
+  const Patch patch = surface.patch(PatchId(0));
   hull_points(surface.library().rows(*patch.kind), patch, rows);
   control_points(patch, control);
   EXPECT_LT(2 * outer_box(rows).longest_side(), outer_box(control).longest_side());
@@ -65,7 +65,7 @@ TEST(refine_tips, leaves_the_patch_inside_and_cuts_what_lies_behind_its_corner) 
   for (const std::uint32_t n : {3u, 5u, 7u, 9u, 30u}) {
     const Surface surface = testing::surface_of(oracle::meshes::bipyramid(n));
     BoundLibrary& library = surface.library();
-    const Patch patch = surface.patch(FaceId(0));
+    const Patch patch = surface.patch(PatchId(0));
     HullPoints points;
     hull_points(library.rows(*patch.kind), patch, points);
     std::size_t tips = 0;

@@ -21,7 +21,7 @@ TEST(kobbelt_prism, misses_a_strongly_curved_patch_that_our_enclosures_contain) 
   double worst = 0;
   HullPoints points;
   for (std::size_t f = 0; f < surface.face_count(); ++f) {
-    const Patch patch = surface.patch(FaceId(f));
+    const Patch patch = surface.patch(PatchId(f));
     const auto corners = limit_corners(patch);
     hull_points(surface.library().rows(*patch.kind), patch, points);
     const Prism prism = kobbelt_prism(points, corners);
@@ -42,7 +42,7 @@ TEST(kobbelt_prism, misses_a_strongly_curved_patch_that_our_enclosures_contain) 
 TEST(kobbelt_prism, contains_a_flat_patch) {
   const Surface surface = testing::surface_of(oracle::meshes::grid(5, 5));
   HullPoints points;
-  const Patch patch = surface.patch(FaceId(24));
+  const Patch patch = surface.patch(PatchId(24));
   hull_points(surface.library().rows(*patch.kind), patch, points);
   const Prism prism = kobbelt_prism(points, limit_corners(patch));
   EXPECT_LT(distance_outside(prism, patch.origin + limit_point(patch, {0.25, 0.25}).relative), 1e-14);

@@ -41,8 +41,8 @@ TEST(table_triangle, is_the_formula_rounded_outwards_by_little) {
   for (const oracle::TwinMesh& twin : testing::assorted_meshes(41)) {
     const Surface surface = testing::surface_of(twin);
     for (std::size_t f = 0; f < surface.face_count(); ++f) {
-      if (!surface.has_patch(FaceId(f))) continue;
-      const Patch patch = surface.patch(FaceId(f));
+      if (!surface.has_patch(PatchId(f))) continue;
+      const Patch patch = surface.patch(PatchId(f));
       for (const TableLayout layout : {TableLayout::ngon, TableLayout::characteristic}) {
         const BoundTable& table = surface.library().table(*patch.kind, layout);
         const Exact exact(table, patch);
@@ -84,7 +84,7 @@ TEST(table_triangle, has_the_corners_of_the_patch_whatever_corner_its_kind_begin
   const Surface surface =
       testing::surface_of(oracle::meshes::disturbed(oracle::meshes::grid(5, 5), 6, 0.1, random));
   for (std::size_t f = 0; f < surface.face_count(); ++f) {
-    const Patch patch = surface.patch(FaceId(f));
+    const Patch patch = surface.patch(PatchId(f));
     const TableTriangle found = table_triangle(surface.library().table(*patch.kind), patch);
     const OffsetTriangle offset = offset_triangle(found);
     const auto corners = limit_corners(patch);

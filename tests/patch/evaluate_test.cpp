@@ -16,7 +16,7 @@ class Patches {
   [[nodiscard]] Patch operator[](std::size_t face) {
     const TurnedKey key = kind_key(topology_, FaceId(face), options_);
     std::vector<VertexId> control;
-    control_vertices(topology_, FaceId(face), key.first, control);
+    control_vertices(topology_, FaceId(face), key.first, key.key, control);
     return make_patch(library_.find(key.key), key.first, mesh_.points, control);
   }
 

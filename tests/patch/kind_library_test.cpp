@@ -45,7 +45,7 @@ TEST(kind_library, needs_few_kinds_after_one_refinement) {
   for (std::size_t c = 0; c < 3; ++c) {
     const Kind& child = *irregular.children()[c].kind;
     std::size_t extraordinary = 0;
-    for (std::size_t k = 0; k < 3; ++k) extraordinary += !child.corner(k).regular();
+    for (std::size_t k = 0; k < 3; ++k) extraordinary += !child.regular_corner(k);
     EXPECT_EQ(extraordinary, 1u);
     // The corner's own child is of the child's own kind.
     const std::size_t own = (3 + c - irregular.children()[c].first) % 3;
@@ -62,13 +62,13 @@ TEST(kind_library, key_and_control_points_turn_together) {
     std::vector<VertexId> control;
     for (std::size_t f = 0; f < topology.face_count(); ++f) {
       const TurnedKey key = kind_key(topology, FaceId(f), testing::rules(twin));
-      control_vertices(topology, FaceId(f), key.first, control);
+      control_vertices(topology, FaceId(f), key.first, key.key, control);
       const Kind& kind = library.find(key.key);
       ASSERT_EQ(control.size(), kind.control_count());
       for (std::size_t k = 0; k < 3; ++k)
         EXPECT_EQ(control[k], topology.face(FaceId(f))[(k + key.first) % 3]);
       // Every face of the kind's neighbourhood is a face of the mesh.
-      const Topology around = neighbourhood(key.key);
+      const Topology around = neighbourhood(key.key).topology;
       std::set<std::set<VertexId>> faces;
       for (std::size_t g = 0; g < topology.face_count(); ++g) {
         const auto face = topology.face(FaceId(g));

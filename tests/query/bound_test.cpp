@@ -25,7 +25,7 @@ bool same(const Collected& a, const Collected& b) {
   if (a.pieces.size() != b.pieces.size() || a.summary.splits != b.summary.splits) return false;
   for (std::size_t i = 0; i < a.pieces.size(); ++i) {
     const PieceEnclosure &x = a.pieces[i], &y = b.pieces[i];
-    if (x.face != y.face || !(x.path == y.path) || x.offset->base != y.offset->base ||
+    if (x.patch != y.patch || !(x.path == y.path) || x.offset->base != y.offset->base ||
         x.offset->radius != y.offset->radius || x.interval->corner != y.interval->corner) {
       return false;
     }
@@ -62,7 +62,7 @@ TEST(bound, meets_its_tolerance_with_pieces_that_tile_every_face) {
   EXPECT_LE(result.summary.max_radius, 0.005);
   std::vector<double> area(surface.face_count(), 0);
   for (const PieceEnclosure& piece : result.pieces)
-    area[piece.face.index()] += std::ldexp(1.0, -2 * static_cast<int>(piece.path.level()));
+    area[piece.patch.index()] += std::ldexp(1.0, -2 * static_cast<int>(piece.path.level()));
   for (const double a : area) EXPECT_EQ(a, 1);
 }
 

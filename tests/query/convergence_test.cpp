@@ -66,7 +66,7 @@ double factor_of_heights(std::size_t n, double centre, int block) {
         std::cos(2 * std::numbers::pi * block * static_cast<double>(i) / static_cast<double>(n));
   }
   const Surface surface(std::move(mesh), {}, std::make_shared<BoundLibrary>(), 1);
-  const Patch patch = surface.patch(FaceId(0)), child = split(patch, 0);
+  const Patch patch = surface.patch(PatchId(0)), child = split(patch, 0);
   const auto height = [](const Patch& p) { return p.origin.z + p.points[p.to_kind(1)].z; };
   return height(child) / height(patch);
 }
@@ -88,7 +88,7 @@ TEST(convergence, eigenvalues_are_those_of_the_subdivision) {
 TEST(convergence, the_characteristic_layout_is_as_the_page_says) {
   for (const std::size_t n : experiment_valences) {
     const Surface surface(fan_mesh(n, 2), {}, std::make_shared<BoundLibrary>(), 1);
-    const Kind& kind = surface.kind(FaceId(0));
+    const Kind& kind = surface.kind(PatchId(0));
     const double g = std::cos(2 * std::numbers::pi / static_cast<double>(n));
     const double b = (13 + 2 * g) / (5 + 4 * g), c = 3 / (2 + 2 * g);
     std::size_t on_spoke = 0, between = 0;
@@ -116,7 +116,7 @@ TEST(convergence, fits_the_second_half_of_a_sequence) {
 TEST(convergence, stops_where_rounding_shows) {
   const Surface surface(corner_net(NetShape::bent, 3, 1), {}, std::make_shared<BoundLibrary>(), 1);
   for (const BoundSource source : all_bound_sources) {
-    for (const Thicknesses& thickness : corner_thicknesses(surface, FaceId(0), source, 40)) {
+    for (const Thicknesses& thickness : corner_thicknesses(surface, PatchId(0), source, 40)) {
       ASSERT_GT(thickness.size(), 8u);
       EXPECT_LT(thickness.size(), 30u);
       for (std::size_t i = 1; i < thickness.size(); ++i) EXPECT_LT(thickness[i], thickness[i - 1]);
@@ -128,7 +128,7 @@ TEST(convergence, stops_where_rounding_shows) {
 TEST(convergence, slabs_along_the_normal_hold_limit_points) {
   for (const std::size_t n : {3u, 6u, 9u}) {
     const Surface surface(corner_net(NetShape::bent, n, 5), {}, std::make_shared<BoundLibrary>(), 1);
-    Patch patch = surface.patch(FaceId(0));
+    Patch patch = surface.patch(PatchId(0));
     const Vector3 normal = *limit_frame(patch, {0, 0}).normal;
     const double back = surface.scale().inverse().apply(1.0);
     std::vector<double> widths;
@@ -145,7 +145,7 @@ TEST(convergence, slabs_along_the_normal_hold_limit_points) {
       patch = split(patch, 0);
     }
     for (const BoundSource source : all_bound_sources) {
-      const Thicknesses across = corner_thicknesses(surface, FaceId(0), source, 6)[2];
+      const Thicknesses across = corner_thicknesses(surface, PatchId(0), source, 6)[2];
       ASSERT_EQ(across.size(), widths.size());
       for (std::size_t i = 0; i < widths.size(); ++i) EXPECT_GE(across[i], widths[i]) << n << " " << i;
     }
@@ -162,6 +162,31 @@ TEST(convergence, does_not_depend_on_threads) {
   const std::vector<RateRow> two = measure_rates(options);
   ASSERT_EQ(one.size(), two.size());
   for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].thickness, two[i].thickness);
+}
+
+TEST(convergence, other_schemes_shrink_along_the_normal_by_the_next_eigenvalue) {
+  for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
+    RateOptions options;
+    options.scheme = scheme;
+    options.nets = 5;
+    for (const RateRow& row : measure_rates(options)) {
+      if (row.measure != ThicknessMeasure::normal) continue;
+      // j/4^j where the matrix has too few eigenvectors.
+      const double most = scheme == Scheme::catmark ? 1.05 : 1.15;
+      EXPECT_GT(row.factor, 0.9 * row.expected) << name_of(scheme) << row.valence;
+      EXPECT_LT(row.factor, most * row.expected) << name_of(scheme) << row.valence;
+    }
+  }
+}
+
+TEST(convergence, regular_corners_of_every_scheme_shrink_by_a_quarter) {
+  for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
+    EXPECT_DOUBLE_EQ(corner_eigenvalues(4, scheme).subdominant, 0.5);
+    EXPECT_DOUBLE_EQ(corner_eigenvalues(4, scheme).next, 0.25);
+    for (const ThicknessMeasure measure : all_thickness_measures) {
+      EXPECT_DOUBLE_EQ(expected_factor(4, {}, measure, scheme), 0.25);
+    }
+  }
 }
 
 }  // namespace

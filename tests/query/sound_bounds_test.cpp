@@ -151,7 +151,7 @@ TEST(bounds, contain_a_million_adversarial_limit_points) {
           options.level = level;
           options.threads = 1;
           bound(surface, options, [&](const PieceEnclosure& e) {
-            pieces[{e.face.index(), e.path.text()}] = e;
+            pieces[{e.patch.index(), e.path.text()}] = e;
           });
           for (const oracle::LimitSample& s : samples) {
             const auto it = pieces.find({s.face, piece_at(s.u, s.v, level)});
@@ -183,7 +183,7 @@ TEST(bounds, hold_for_a_grain_beside_a_boulder) {
     const auto samples = oracle::sample_uniform(twin, 3);
     for (const Source& source : sources) {
       for (const oracle::LimitSample& s : samples) {
-        const Enclosures e = enclosures_of(surface, surface.patch(FaceId(s.face)), source);
+        const Enclosures e = enclosures_of(surface, surface.patch(PatchId(s.face)), source);
         checker.check(e.offset, e.interval, s,
                       std::string(source.name) + ", grain of " + std::to_string(std::log10(size)));
       }
@@ -205,7 +205,7 @@ TEST(bounds, hold_after_thirty_splits_at_valences_3_to_500) {
     for (std::uint32_t face = 0; face < 2; ++face) {
       for (std::uint32_t corner = 0; corner < 3; ++corner) {
         const auto samples = oracle::sample_near_corner(twin, face, corner, 42);
-        Patch patch = surface.patch(FaceId(face));
+        Patch patch = surface.patch(PatchId(face));
         std::string path;
         for (unsigned level = 0; level <= 30; ++level) {
           for (const Source& source : sources) {
@@ -239,7 +239,7 @@ TEST(bounds, hold_after_thirty_splits_along_random_paths) {
       const double u = static_cast<double>(random() >> 24) * 0x1p-41,
                    v = static_cast<double>(random() >> 24) * 0x1p-41;
       const auto samples = oracle::sample_near_point(twin, face, u, v, 36);
-      Patch patch = surface.patch(FaceId(face));
+      Patch patch = surface.patch(PatchId(face));
       const std::string whole = piece_at(u, v, 30);
       for (unsigned level = 0; level <= 30; ++level) {
         for (const Source& source : sources) {

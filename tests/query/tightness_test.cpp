@@ -23,10 +23,10 @@ TEST(corner_nets, have_one_extraordinary_vertex) {
       const Surface surface = surface_of_net(mesh);
       for (std::size_t f = 0; f < n; ++f) {
         EXPECT_EQ(mesh.face(FaceId(f))[0], VertexId(0));
-        const Kind& kind = surface.kind(FaceId(f));
+        const Kind& kind = surface.kind(PatchId(f));
         std::size_t irregular = 0, of_valence_n = 0;
         for (std::size_t k = 0; k < 3; ++k) {
-          irregular += !kind.corner(k).regular();
+          irregular += !kind.regular_corner(k);
           of_valence_n += kind.corner(k).closed && kind.corner(k).faces() == n;
         }
         EXPECT_EQ(irregular, n == 6 ? 0u : 1u);
@@ -42,11 +42,11 @@ TEST(tightness, no_radius_is_below_the_least) {
     for (const std::size_t n : experiment_valences) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         const Surface surface = surface_of_net(corner_net(shape, n, seed));
-        const Patch patch = surface.patch(FaceId(0));
+        const Patch patch = surface.patch(PatchId(0));
         const LimitLattice lattice(patch, 24);
         for (const BoundSource source : all_bound_sources) {
           const OffsetTriangle offset =
-              make_piece(surface.library(), FaceId(0), patch, scratch, source).offset;
+              make_piece(surface.library(), PatchId(0), patch, scratch, source).offset;
           EXPECT_GE(offset.radius, lattice.least_radius(offset.base)) << name_of(shape) << n;
         }
       }
@@ -57,7 +57,7 @@ TEST(tightness, no_radius_is_below_the_least) {
 // In the regular flat net the limit is the triangle of its corners, wherever a base hovers over it.
 TEST(tightness, finds_the_height_of_a_triangle_over_a_flat_patch) {
   const Surface surface = surface_of_net(fan_mesh(6, 2));
-  const Patch patch = surface.patch(FaceId(0));
+  const Patch patch = surface.patch(PatchId(0));
   const LimitLattice lattice(patch, 8);
   const auto corners = limit_corners(patch);
   Triangle base;
@@ -73,10 +73,10 @@ TEST(tightness, finds_the_height_of_a_triangle_over_a_flat_patch) {
 TEST(tightness, searches_between_the_points_of_the_lattice) {
   for (const std::size_t n : {5u, 7u}) {
     const Surface surface = surface_of_net(corner_net(NetShape::bent, n, 2));
-    const Patch patch = surface.patch(FaceId(0));
+    const Patch patch = surface.patch(PatchId(0));
     const OffsetTriangle offset = [&] {
       HullPoints scratch;
-      return make_piece(surface.library(), FaceId(0), patch, scratch).offset;
+      return make_piece(surface.library(), PatchId(0), patch, scratch).offset;
     }();
     EXPECT_NEAR(LimitLattice(patch, 8).least_radius(offset.base),
                 LimitLattice(patch, 200).least_radius(offset.base), 1e-7);
@@ -88,11 +88,11 @@ TEST(tightness, flat_patches_bulge_beyond_their_corners_below_valence_six_and_no
   HullPoints scratch;
   for (const std::size_t n : experiment_valences) {
     const Surface surface = surface_of_net(fan_mesh(n, 2));
-    Patch patch = surface.patch(FaceId(0));
+    Patch patch = surface.patch(PatchId(0));
     for (int level = 0; level < 6; ++level) patch = split(patch, 0);
     const auto corners = limit_corners(patch);
     const double edge = length(corners[1] - corners[0]);
-    const OffsetTriangle offset = make_piece(surface.library(), FaceId(0), patch, scratch).offset;
+    const OffsetTriangle offset = make_piece(surface.library(), PatchId(0), patch, scratch).offset;
     const double bulge = LimitLattice(patch, 64).least_radius(offset.base) / edge;
     const double radius = offset.radius / edge;
     if (n < 6) {

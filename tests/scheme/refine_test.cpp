@@ -1,3 +1,4 @@
+#include <snug/scheme/limits.h>
 #include <snug/scheme/refine.h>
 
 #include <gtest/gtest.h>

@@ -32,31 +32,39 @@ TEST(require_subdividable, refuses_valences_out_of_range) {
             std::string::npos);
 }
 
-TEST(require_subdividable, refuses_polygons_and_other_schemes) {
+TEST(require_subdividable, takes_polygons_but_for_loop) {
   ControlMesh quad;
   quad.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   const VertexId corners[4] = {VertexId(0), VertexId(1), VertexId(2), VertexId(3)};
   quad.add_face(corners);
   EXPECT_NE(refusal(quad, {Scheme::loop, BoundaryRule::edge_only}).find("face 0 has 4 vertices"),
             std::string::npos);
-  EXPECT_NE(refusal(quad, {Scheme::catmark, BoundaryRule::edge_only}).find("not supported yet"),
-            std::string::npos);
+  for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
+    EXPECT_EQ(refusal(quad, {scheme, BoundaryRule::edge_only}), "");
+  }
   EXPECT_EQ(natural_scheme(quad), Scheme::catmark);
 }
 
-TEST(require_subdividable, refuses_only_tags_that_change_the_surface) {
-  ControlMesh mesh = testing::control_mesh(oracle::meshes::grid(2, 2));
-  mesh.tags.creases = {{VertexId(0), VertexId(1), 10}, {VertexId(4), VertexId(8), 0}};  // boundary; zero
-  mesh.tags.corners = {{VertexId(2), 10}, {VertexId(4), 0}};
-  // Of the four corners of this grid two have one face; vertex 2 is one of them.
-  EXPECT_EQ(refusal(mesh), "");
-  EXPECT_NE(refusal(mesh, {Scheme::loop, BoundaryRule::edge_only}).find("vertex 2 is tagged"),
-            std::string::npos);
-  mesh.tags.creases[1].sharpness = 0.5;
-  EXPECT_NE(refusal(mesh).find("edge (4, 8)"), std::string::npos);
-  mesh.tags.creases.clear();
-  mesh.tags.holes = {FaceId(1)};
-  EXPECT_NE(refusal(mesh).find("face 1 is tagged as a hole"), std::string::npos);
+TEST(require_subdividable, takes_non_manifold_meshes_but_for_dual_schemes) {
+  ControlMesh book = testing::control_mesh(oracle::meshes::grid(2, 2));
+  const VertexId page[3] = {VertexId(0), VertexId(1), VertexId(8)};
+  book.add_face(page);
+  book.add_face(page);
+  EXPECT_EQ(refusal(book), "");
+  EXPECT_EQ(refusal(book, {Scheme::catmark}), "");
+  EXPECT_NE(refusal(book, {Scheme::doo_sabin}).find("has the same vertices"), std::string::npos);
+  EXPECT_NE(refusal(book, {Scheme::midedge}).find("an oriented manifold mesh is needed"), std::string::npos);
+}
+
+TEST(require_subdividable, refuses_faces_that_are_too_large) {
+  ControlMesh mesh;
+  std::vector<VertexId> face;
+  for (std::size_t i = 0; i <= max_face_size; ++i) {
+    mesh.points.push_back({static_cast<double>(i), 0, 0});
+    face.emplace_back(i);
+  }
+  mesh.add_face(face);
+  EXPECT_NE(refusal(mesh, {Scheme::catmark}).find("face 0 has 1001 vertices"), std::string::npos);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(allocation, patch_bounds_take_none_after_their_first_update) {
   for (const std::optional<TableLayout> table :
        {std::optional<TableLayout>(), std::optional(TableLayout::ngon)}) {
     PatchBounds bounds(surface, table);
-    std::vector<OffsetTriangle> out(bounds.faces().size());
+    std::vector<OffsetTriangle> out(bounds.patches().size());
     bounds.update(surface.mesh().points, out);
     std::vector<Point3> points = surface.mesh().points;
     for (Point3& p : points) p.z += p.x * p.x;

@@ -39,11 +39,11 @@ TEST(patch_bounds, are_those_of_single_patches) {
          {std::optional<TableLayout>(), std::optional(TableLayout::ngon),
           std::optional(TableLayout::characteristic)}) {
       PatchBounds bounds(surface, table);
-      std::vector<OffsetTriangle> out(bounds.faces().size());
+      std::vector<OffsetTriangle> out(bounds.patches().size());
       bounds.update(surface.mesh().points, out);
       HullPoints scratch;
       for (std::size_t i = 0; i < out.size(); ++i) {
-        const FaceId f = bounds.faces()[i];
+        const PatchId f = bounds.patches()[i];
         const Piece piece = make_piece(surface.library(), f, surface.patch(f), scratch, table);
         expect_near(out[i], unscaled(piece.offset, surface.scale().inverse()), surface.size());
       }
@@ -60,10 +60,10 @@ TEST(patch_bounds, cover_the_limit_points_at_every_scale_and_place) {
       for (const std::optional<TableLayout> table :
            {std::optional<TableLayout>(), std::optional(TableLayout::ngon)}) {
         PatchBounds bounds(surface, table);
-        std::vector<OffsetTriangle> out(bounds.faces().size());
+        std::vector<OffsetTriangle> out(bounds.patches().size());
         bounds.update(surface.mesh().points, out);
         std::vector<const OffsetTriangle*> of(surface.face_count(), nullptr);
-        for (std::size_t i = 0; i < out.size(); ++i) of[bounds.faces()[i].index()] = &out[i];
+        for (std::size_t i = 0; i < out.size(); ++i) of[bounds.patches()[i].index()] = &out[i];
         for (const oracle::LimitSample& s : oracle::sample_uniform(twin, 2)) {
           if (!of[s.face]) continue;
           const testing::Extended p{s.position[0], s.position[1], s.position[2]};
@@ -78,8 +78,8 @@ TEST(patch_bounds, cover_the_limit_points_at_every_scale_and_place) {
 
 TEST(patch_bounds, of_chosen_faces_come_in_their_order) {
   const Surface surface = testing::surface_of(oracle::meshes::grid(9, 7));
-  PatchBounds all(surface), some(surface, {FaceId(50), FaceId(3), FaceId(51)});
-  std::vector<OffsetTriangle> of_all(all.faces().size()), of_some(3);
+  PatchBounds all(surface), some(surface, {PatchId(50), PatchId(3), PatchId(51)});
+  std::vector<OffsetTriangle> of_all(all.patches().size()), of_some(3);
   all.update(surface.mesh().points, of_all);
   some.update(surface.mesh().points, of_some);
   EXPECT_EQ(of_some[0].base, of_all[50].base);
@@ -92,7 +92,7 @@ TEST(patch_bounds, follow_the_control_points_and_do_not_depend_on_threads) {
   oracle::TwinMesh twin = oracle::meshes::disturbed(oracle::meshes::grid(30, 30), 60, 0.2, random);
   const Surface surface = testing::surface_of(twin);
   PatchBounds bounds(surface);
-  std::vector<OffsetTriangle> one(bounds.faces().size()), two = one, fresh = one;
+  std::vector<OffsetTriangle> one(bounds.patches().size()), two = one, fresh = one;
   bounds.update(surface.mesh().points, one);
   for (oracle::Point& p : twin.points) p = {p[1] * 5, p[2] + 0.1 * p[0], p[0]};
   const Surface moved = testing::surface_of(twin);
@@ -110,7 +110,7 @@ TEST(patch_bounds, follow_the_control_points_and_do_not_depend_on_threads) {
 TEST(patch_bounds, refuse_points_that_are_not_finite) {
   const Surface surface = testing::surface_of(oracle::meshes::grid(3, 3));
   PatchBounds bounds(surface);
-  std::vector<OffsetTriangle> out(bounds.faces().size());
+  std::vector<OffsetTriangle> out(bounds.patches().size());
   std::vector<Point3> points = surface.mesh().points;
   points[5].y = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(bounds.update(points, out), InputError);

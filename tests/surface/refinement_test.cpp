@@ -12,7 +12,7 @@ TEST(refinement, by_tables_has_the_offset_triangles_of_the_tables) {
   const Surface surface = testing::surface_of(oracle::meshes::icosahedron());
   for (const TableLayout layout : {TableLayout::ngon, TableLayout::characteristic}) {
     Refinement refinement(surface, layout);
-    const PieceId first = refinement.split(refinement.root(FaceId(0)));
+    const PieceId first = refinement.split(refinement.root(PatchId(0)));
     for (unsigned child = 0; child < 4; ++child) {
       const Piece& piece = refinement[PieceId(first.index() + child)];
       const BoundTable& table = surface.library().table(*piece.patch.kind, layout);
@@ -26,9 +26,9 @@ TEST(refinement, by_tables_has_the_offset_triangles_of_the_tables) {
 TEST(refinement, does_not_depend_on_the_order_of_calls) {
   const Surface surface = testing::surface_of(oracle::meshes::icosahedron());
   Refinement first(surface), second(surface);
-  static_cast<void>(first.split(first.root(FaceId(3))));
-  const PieceId a = first.split(first.root(FaceId(0)));
-  const PieceId b = second.split(second.root(FaceId(0)));
+  static_cast<void>(first.split(first.root(PatchId(3))));
+  const PieceId a = first.split(first.root(PatchId(0)));
+  const PieceId b = second.split(second.root(PatchId(0)));
   for (unsigned child = 0; child < 4; ++child) {
     const Piece& x = first[PieceId(a.index() + child)];
     const Piece& y = second[PieceId(b.index() + child)];
@@ -36,13 +36,13 @@ TEST(refinement, does_not_depend_on_the_order_of_calls) {
     EXPECT_EQ(x.offset.radius, y.offset.radius);
     EXPECT_EQ(x.offset.base[1], y.offset.base[1]);
   }
-  EXPECT_EQ(first.split(first.root(FaceId(0))), a);  // made once
+  EXPECT_EQ(first.split(first.root(PatchId(0))), a);  // made once
 }
 
 TEST(refinement, shrinks_radii_until_rounding_stops_it) {
   const Surface surface = testing::surface_of(oracle::meshes::icosahedron());
   Refinement refinement(surface);
-  PieceId id = refinement.root(FaceId(0));
+  PieceId id = refinement.root(PatchId(0));
   double before = refinement[id].offset.radius;
   unsigned levels = 0;
   while (refinement.can_split(id)) {

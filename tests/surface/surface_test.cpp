@@ -18,7 +18,7 @@ TEST(surface, scales_its_largest_coordinate_to_about_one) {
     }
     EXPECT_GE(largest, 1);
     EXPECT_LT(largest, 2);
-    const Patch patch = surface.patch(FaceId(0));
+    const Patch patch = surface.patch(PatchId(0));
     EXPECT_LT(patch.error, 1e-15);
     EXPECT_GT(patch.largest, 0.1);
   }
@@ -27,7 +27,7 @@ TEST(surface, scales_its_largest_coordinate_to_about_one) {
 TEST(surface, has_no_patches_at_the_boundary_with_rule_none) {
   const Surface surface = testing::surface_of(oracle::meshes::grid(4, 4, oracle::Boundary::none));
   std::size_t patches = 0;
-  for (std::size_t f = 0; f < surface.face_count(); ++f) patches += surface.has_patch(FaceId(f));
+  for (std::size_t f = 0; f < surface.face_count(); ++f) patches += surface.has_patch(PatchId(f));
   EXPECT_EQ(patches, 8u);  // of the inner 2 x 2 squares
   EXPECT_EQ(surface.kind_count(), 1u);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <oracle/twin_mesh.h>
 #include <snug/patch/neighbourhood.h>
 
 #include <vector>
@@ -8,6 +9,14 @@ namespace snug::testing {
 
 [[nodiscard]] inline CornerFan inside(std::size_t n) {
   return {0, static_cast<std::uint16_t>(n - 1), true, false};
+}
+
+/// The rule under which a twin of the kind's neighbourhood refines as the kind does.
+[[nodiscard]] inline oracle::Boundary boundary_of(const KindKey& key) {
+  for (const CornerFan& fan : key.corners) {
+    if (fan.sharp) return oracle::Boundary::edge_and_corner;
+  }
+  return oracle::Boundary::edge_only;
 }
 
 /// Kinds with one and three extraordinary corners, at boundaries, with sharp corners.

@@ -9,8 +9,9 @@ namespace snug {
 namespace {
 
 bool has_several_tips(const Kind& kind) {
+  if (!has_lasting_tips(kind)) return false;
   int irregular = 0;
-  for (std::size_t i = 0; i < 3; ++i) irregular += !kind.corner(i).regular();
+  for (std::size_t i = 0; i < 3; ++i) irregular += !kind.regular_corner(i);
   return irregular > 1;
 }
 

@@ -4,9 +4,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <snug/base/contract.h>
 #include <snug/base/rounding.h>
+#include <snug/scheme/catmark_masks.h>
+#include <snug/scheme/dual_masks.h>
 #include <snug/scheme/loop_masks.h>
 
 namespace snug {
@@ -79,43 +82,48 @@ void multiply(const Stencils& stencils, const DenseRows& net, DenseRows& out) {
 // the hull already: this piece's own there are convex combinations of those, as rows.
 using CoveredEdges = std::array<bool, 3>;
 
-// Place (i, j) of 15 lies on the edge that faces corner k when its k-th barycentric index is 0.
-bool on_covered_edge(std::size_t i, std::size_t j, const CoveredEdges& covered) {
-  return (covered[0] && i + j == 4) || (covered[1] && i == 0) || (covered[2] && j == 0);
+// Place (i, j) lies on the edge that faces corner k when its k-th barycentric index is 0.
+bool on_covered_edge(std::size_t degree, std::size_t i, std::size_t j, const CoveredEdges& covered) {
+  return (covered[0] && i + j == degree) || (covered[1] && i == 0) || (covered[2] && j == 0);
 }
 
-constexpr unsigned deepest = 24;
+// Levels of what passes: beyond them the nets of its pieces are small enough.
+constexpr unsigned passing_levels = 3;
 
 class Collector {
  public:
   Collector(const Kind& kind, unsigned most_levels) : most_levels_(most_levels) {
     rows_.width = kind.control_count();
     // At most: four pieces, three a ring, the nets of the tips.
-    std::size_t most = 60;
+    std::size_t most = 112;
     for (std::size_t i = 0; i < 3; ++i) {
-      const CornerFan& fan = kind.corner(i);
-      if (!fan.regular()) most += 36 * std::size_t{levels(fan)} + fan.faces() + 8;
+      if (!kind.regular_corner(i)) most += 70 * std::size_t{levels(kind, i)} + kind.corner(i).faces() + 20;
     }
-    rows_.entries.reserve(most * rows_.width);
+    if (!kind.passing()) rows_.entries.reserve(most * rows_.width);
   }
 
   // Rows of one piece; `covered` counts corners as the kind does.
   void collect(const Kind& kind, const DenseRows& net, unsigned depth, const CoveredEdges& covered) {
     if (kind.polynomial() && depth > 0) {
-      for (std::size_t j = 0; j < 5; ++j) {
-        for (std::size_t i = 0; i + j < 5; ++i) {
-          if (!on_covered_edge(i, j, covered)) append_product(kind.bezier(), bezier_index(i, j), net, rows_);
+      const PolynomialForm& form = kind.form();
+      const std::size_t count = bezier_count(form.degree);
+      for (std::size_t part = 0; part < form.parts; ++part) {
+        const CoveredEdges& own = form.parts == 1 ? covered : CoveredEdges{false, false, false};
+        for (std::size_t j = 0; j <= form.degree; ++j) {
+          for (std::size_t i = 0; i + j <= form.degree; ++i) {
+            if (on_covered_edge(form.degree, i, j, own)) continue;
+            append_product(form.rows, part * count + bezier_index(form.degree, i, j), net, rows_);
+          }
         }
       }
       return;
     }
-    if (depth >= depth_limit(kind)) {
+    if (depth >= depth_limit(kind, depth)) {
       append_all(net, tips_);
       return;
     }
     const auto& children = kind.children();
     const bool middle_polynomial = children[3].kind->polynomial();
-    // What is no polynomial comes last: below the first level that is one tip, and nothing needs this net after it.
     for (const bool polynomial : {true, false}) {
       for (const std::size_t c : {std::size_t{3}, std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
         const KindChild& child = children[c];
@@ -129,7 +137,7 @@ class Collector {
         }
         CoveredEdges own;
         for (std::size_t k = 0; k < 3; ++k) own[k] = inherited[(k + child.first) % 3];
-        DenseRows& child_net = nets_[depth % 2];
+        DenseRows& child_net = nets_[depth];
         multiply(child.stencils, net, child_net);
         collect(*child.kind, child_net, depth + 1, own);
       }
@@ -143,19 +151,39 @@ class Collector {
   }
 
  private:
-  [[nodiscard]] unsigned levels(const CornerFan& fan) const { return std::min(most_levels_, tip_depth(fan)); }
-  [[nodiscard]] unsigned depth_limit(const Kind& kind) const {
-    unsigned depth = 1;
+  [[nodiscard]] unsigned levels(const Kind& kind, std::size_t corner) const {
+    return std::min(most_levels_, tip_depth(kind.corner(corner), kind.scheme()));
+  }
+  [[nodiscard]] unsigned depth_limit(const Kind& kind, unsigned depth) const {
+    if (kind.passing()) return std::min(most_levels_, passing_levels);
+    unsigned limit = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      if (!kind.corner(i).regular()) depth = std::max(depth, levels(kind.corner(i)));
+      if (!kind.regular_corner(i)) limit = std::max(limit, levels(kind, i));
     }
-    return depth;
+    // Half a quad whose far corner alone is irregular: its children are polynomial.
+    return limit > 0 ? limit : depth + 1;
   }
 
   unsigned most_levels_;
   DenseRows rows_, tips_;
-  std::array<DenseRows, 2> nets_;  // of pieces at odd depths and at even ones
+  std::array<DenseRows, deepest_tip + 2> nets_;  // of the piece at work, a depth each
 };
+
+// Kinds of the first pieces at a corner, one a level. All others are as the last one: their other corners are regular, and
+// vertices of the ring that are the same by accident of few faces have come apart. None: they have not.
+using TipKinds = std::array<const Kind*, 3>;
+std::optional<TipKinds> tip_kinds(const KindChild& child, std::size_t corner) {
+  TipKinds kinds;
+  const KindChild* piece = &child;
+  std::size_t own = corner;
+  for (const Kind*& kind : kinds) {
+    kind = piece->kind;
+    own = (3 + own - piece->first) % 3;
+    piece = &kind->children()[own];
+  }
+  if (piece->kind != kinds.back()) return {};
+  return kinds;
+}
 
 }  // namespace
 
@@ -165,33 +193,67 @@ double BoundRows::result_error(double largest, double error) const {
          3 * static_cast<double>(control_count_) * underflow_error;
 }
 
-void BoundRows::find_tips(const Kind& kind) {
+void BoundRows::find_tips(const Kind& kind, unsigned levels) {
   tips_ = {};
-  if (kind.polynomial()) return;
+  if (kind.polynomial() || !has_lasting_tips(kind)) return;
   std::size_t found = 0, end = 0;
   for (std::size_t corner = 0; corner < 3; ++corner) {
-    // A tip's corners but this one are regular: its own tip is of the same kind.
-    const Kind& tip = *kind.children()[corner].kind;
-    if (tip.polynomial()) continue;
-    tips_[found++] = {&tip, end};
-    end += tip.control_count();
+    const KindChild& child = kind.children()[corner];
+    if (child.kind->polynomial()) continue;
+    const std::optional<TipKinds> tip = tip_kinds(child, corner);
+    if (!tip) {
+      tips_ = {};
+      return;
+    }
+    const Kind* const there = (*tip)[std::clamp(levels, 1u, unsigned{TipKinds{}.size()}) - 1];
+    tips_[found++] = {there, end};
+    end += there->control_count();
   }
   for (std::size_t i = 0; i < found; ++i) tips_[i].begin += count_ - end;
 }
 
-unsigned tip_depth(const CornerFan& fan) {
-  if (fan.sharp && fan.faces() == 1)
+bool has_lasting_tips(const Kind& kind) {
+  if (kind.key().plain()) return true;
+  if (kind.passing()) return false;
+  for (unsigned corner = 0; corner < 3; ++corner) {
+    if (kind.regular_corner(corner)) continue;
+    const KindChild& tip = kind.children()[corner];
+    const unsigned own = (3 + corner - tip.first) % 3;
+    if (tip.kind->children()[own].kind != tip.kind) return false;
+  }
+  return true;
+}
+
+unsigned tip_depth(const CornerFan& fan, Scheme scheme) {
+  if (fan.sharp && !fan.closed && fan.faces() == 1)
     return 4;  // the net of a lone corner is the corner of a polygon: no overhang
   const std::size_t n = fan.closed ? fan.faces() : 2 * fan.faces();
-  const double shrink =
-      fan.closed ? loop::subdominant(n) : std::max(0.5, loop::subdominant_across_boundary(fan.faces()));
+  double shrink = 0.5;
+  switch (scheme) {
+    case Scheme::loop:
+      shrink =
+          fan.closed ? loop::subdominant(n) : std::max(0.5, loop::subdominant_across_boundary(fan.faces()));
+      break;
+    case Scheme::catmark:
+      shrink = catmark::subdominant(n);
+      break;
+    case Scheme::doo_sabin:
+      shrink = dual::doo_sabin_subdominant(n);
+      break;
+    case Scheme::midedge:
+      shrink = dual::midedge_subdominant(n);
+      break;
+  }
+  // Corners that are sharp or darts shrink by 1/2 and more along their edges, and by up to 2/3 within.
+  if (fan.sharp || fan.odd) shrink = std::max(shrink, 2.0 / 3);
   const double width =
       std::min(1.0, 2 * std::sin(std::numbers::pi / static_cast<double>(std::max<std::size_t>(n, 3))));
   const double levels = std::log(0.01 * width) / std::log(shrink);
-  return std::clamp(static_cast<unsigned>(std::ceil(levels)), 3u, deepest);
+  return std::clamp(static_cast<unsigned>(std::ceil(levels)), 3u, deepest_tip);
 }
 
 BoundRows make_bound_rows(const Kind& kind, unsigned most_levels) {
+  SNUG_EXPECT(!kind.key().polygon);
   Collector collector(kind, most_levels);
   collector.collect(kind, identity(kind.control_count()), 0, {false, false, false});
   const DenseRows rows = collector.take();
@@ -205,7 +267,7 @@ BoundRows make_bound_rows(const Kind& kind, unsigned most_levels) {
     result.entry_error_ = std::max(result.entry_error_, rows.errors[r]);
     result.abs_sum_ = std::max(result.abs_sum_, rows.abs_sums[r]);
   }
-  result.find_tips(kind);
+  result.find_tips(kind, most_levels);
   return result;
 }
 

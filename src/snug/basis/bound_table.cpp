@@ -101,7 +101,7 @@ BoundTable make_bound_table(const Kind& kind, const BoundRows& rows, TableLayout
   table.triangle = triangle_around(points);
   const PlaneFitter fitter(points, table.triangle, rows.entry_error());
   std::vector<double> negative(rows.count());
-  for (std::size_t i = 3; i < rows.control_count(); ++i) {
+  for (std::size_t i = laid_by_rings(kind.key()) ? 3 : 0; i < rows.control_count(); ++i) {
     const std::span<const double> values(rows.column(i), rows.count());
     table.upper.push_back(fitter.above(values));
     std::transform(values.begin(), values.end(), negative.begin(), [](double v) { return -v; });

@@ -7,6 +7,7 @@
 
 #include <snug/base/contract.h>
 #include <snug/base/interval.h>
+#include <snug/basis/fair_layout.h>
 #include <snug/scheme/loop_masks.h>
 #include <snug/scheme/refine.h>
 
@@ -77,7 +78,7 @@ std::optional<std::size_t> lone_centre(const Kind& kind) {
   std::size_t centre = 0, extraordinary = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     if (!kind.corner(i).closed) return {};
-    if (kind.corner(i).regular()) continue;
+    if (kind.regular_corner(i)) continue;
     centre = i;
     ++extraordinary;
   }
@@ -108,11 +109,12 @@ std::vector<LayoutPoint> ngon_layout(const Kind& kind, const Topology& topology,
 // iteration, for their own eigenvalues are at most 1/8.
 void relax_to_characteristic(const Kind& kind, std::size_t centre, std::vector<LayoutPoint>& layout) {
   std::vector<bool> fixed(kind.control_count(), false);
-  const Topology topology = neighbourhood(kind.key());
+  const Neighbourhood around = neighbourhood(kind.key());
+  const Topology& topology = around.topology;
   // The quarter at the corner has the kind again, and here in the same order.
-  const RefinedTopology refined = refine(topology, neighbourhood_options(kind.key()));
+  const RefinedTopology refined = refine(topology, around.options, around.sharpness);
   std::vector<VertexId> control;
-  control_vertices(refined.topology, FaceId(centre), 0, control);
+  control_vertices(refined.topology, FaceId(centre), 0, kind.key(), control);
   SNUG_EXPECT(control.size() == layout.size());
   fixed[centre] = true;
   for (const std::size_t v : ring_of(topology, centre).after) fixed[v] = true;
@@ -197,8 +199,11 @@ double outer_spoke(std::size_t n) {
   return n >= 6 ? (6 - 2 * c) / (2 + c) : (36 - 6 * c) / (16 + c);
 }
 
+bool laid_by_rings(const KindKey& key) { return key.scheme == Scheme::loop && key.plain(); }
+
 std::vector<LayoutPoint> make_layout(const Kind& kind, TableLayout layout) {
-  const Topology topology = neighbourhood(kind.key());
+  if (!laid_by_rings(kind.key())) return fair_layout(kind);
+  const Topology topology = neighbourhood(kind.key()).topology;
   const std::optional<std::size_t> centre = lone_centre(kind);
   if (!centre) return blended_layout(kind, topology);
   std::vector<LayoutPoint> result = ngon_layout(kind, topology, *centre);

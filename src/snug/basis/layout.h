@@ -17,12 +17,18 @@ enum class TableLayout : std::uint8_t {
   characteristic,  ///< the control net of the characteristic map
 };
 
-/// The layout of a kind's control points; the corners lie at (0, 0), (1, 0) and (0, 1).
+/// Is a kind laid out by the rings of its corners? Loop where the valences say everything.
+[[nodiscard]] bool laid_by_rings(const KindKey& key);
+
+/// The layout of a kind's control points.
 ///
-/// At most one extraordinary corner, inside the mesh: the layout asked for. Others have neither; then both
-/// names give the same one: each control point in the mean of the places that the corners it is next to give
-/// it, an affine image of a regular fan around each, moved as little as brings the limit corners of the
-/// layout to its corners (but for a corner with one face, whose ring is the other corners).
+/// By rings: corners, the first three control points, lie at (0, 0), (1, 0) and (0, 1). Other kinds:
+/// fair_layout(), whatever is asked for; the limits of the corners lie there.
+///
+/// By rings, at most one extraordinary corner, inside the mesh: the layout asked for. Others have neither;
+/// then both names give the same one: each control point in the mean of the places that the corners it is
+/// next to give it, an affine image of a regular fan around each, moved as little as brings the limit corners
+/// of the layout to its corners (but for a corner with one face, whose ring is the other corners).
 ///
 /// Guarantee: finite numbers, the same for the same kind. A bound needs no more: any layout is sound.
 /// Cost:      linear in the valences, but for `characteristic`: some 200 products with the stencils of a

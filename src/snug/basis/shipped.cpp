@@ -73,7 +73,8 @@ std::uint64_t hash_of(std::span<const std::byte> bytes) {
 KindKey next_key(Fields& fields) {
   KindKey key;
   key.scheme = static_cast<Scheme>(fields.next<std::uint64_t>());
-  for (CornerFan& fan : key.corners) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    CornerFan& fan = key.corners[i];
     fan.before = fields.next<std::uint16_t>();
     fan.after = fields.next<std::uint16_t>();
     fan.closed = fields.next<std::uint8_t>() != 0;
@@ -131,7 +132,7 @@ std::optional<BoundRows> ShippedBounds::rows(const Kind& kind) const {
   result.entry_error_ = head.entry_error;
   result.abs_sum_ = head.abs_sum;
   fields.fill(result.weights_, std::uint64_t{head.rows} * head.controls);
-  result.find_tips(kind);
+  result.find_tips(kind, deepest_tip);
   return result;
 }
 

@@ -313,7 +313,7 @@ bool Farthest(const Coordinates& points, std::size_t split, const Vector3& a, co
 
 // ---- regular patches, one a lane ----
 
-constexpr std::size_t controls = 12, bezier_count = 15, split_count = 45, of_edge = 8;
+constexpr std::size_t bezier_count = 15;
 
 template <class V>
 HWY_INLINE V mean(V half, V a, V b) {
@@ -403,6 +403,7 @@ HWY_INLINE void split_once(D d, const V* b, V* out) {
     const Pyramid<V, 5 - k> p(half, [&](auto j) HWY_ATTR { return b[row_start[j] + k]; });
     unrolled<5 - k>([&](auto i) HWY_ATTR { upper[i][k] = p.at[i][4 - k - i]; });
   });
+  constexpr std::size_t of_edge = 8;
   std::array<V*, 3> next{out + 1, out + of_edge + 1, out + 2 * of_edge + 1};
   V* inner = out + 3 * of_edge;
   unrolled<3>([&](auto child) HWY_ATTR {
@@ -435,15 +436,100 @@ HWY_INLINE void split_once(D d, const V* b, V* out) {
       mean(half, blossom2(once[0][1], once[1][1], once[2][1]), blossom2(once[1][0], once[2][0], once[3][0]));
 }
 
-template <class D, class V = hn::Vec<D>>
+// A regular Loop patch inside the surface. First come, for edges 01, 12, 20 in turn, the first corner and the points
+// inside the edge.
+struct LoopShape {
+  static constexpr std::size_t controls = 12, hull_count = 45, of_edge = 8;
+  template <class D, class V = hn::Vec<D>>
+  static HWY_INLINE void hull(D d, const V* c, V* out) {
+    V b[bezier_count];
+    bezier(d, c, b);
+    split_once(d, b, out);
+  }
+};
+
+// Half a bicubic quad: its 28 Bezier points as a triangle of degree 6, derivations/tensor_bezier.md.
+struct BicubicShape {
+  static constexpr std::size_t controls = 16, hull_count = 28, of_edge = 6;
+
+  // Place of each control point in the lattice of 4 x 4, as patch/neighbourhood.h draws it.
+  static constexpr std::array<std::size_t, 16> place{5, 6, 10, 9, 1, 2, 7, 11, 14, 13, 8, 4, 0, 3, 15, 12};
+
+  struct Weights {
+    double of[hull_count][16];  // of the bicubic Bezier points (i, j) at i + 4 j
+  };
+  static constexpr Weights make_weights() {
+    constexpr int binomial[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
+    constexpr int factorial[7] = {1, 1, 2, 6, 24, 120, 720};
+    int sums[7][7][16] = {};
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) {
+        for (int p = 0; p <= i; ++p) {
+          for (int q = 0; q <= 3 - j; ++q) {
+            sums[p + q][i - p + j][i + 4 * j] +=
+                binomial[3][i] * binomial[3][j] * binomial[i][p] * binomial[3 - j][q];
+          }
+        }
+      }
+    }
+    Weights weights{};
+    std::size_t inner = 3 * of_edge;
+    for (int v = 0; v <= 6; ++v) {
+      for (int u = 0; u + v <= 6; ++u) {
+        const int w = 6 - u - v;
+        const std::size_t at = v == 0 && u < 6   ? static_cast<std::size_t>(u)
+                               : w == 0 && v < 6 ? of_edge + static_cast<std::size_t>(v)
+                               : u == 0 && v > 0 ? 2 * of_edge + static_cast<std::size_t>(w)
+                                                 : inner++;
+        const double multinomial = factorial[6] / (factorial[u] * factorial[v] * factorial[w]);
+        for (std::size_t b = 0; b < 16; ++b) weights.of[at][b] = sums[u][v][b] / multinomial;
+      }
+    }
+    return weights;
+  }
+
+  template <class V>
+  static HWY_INLINE void segment(V four, V two, const V& a, const V& b, const V& c, const V& e, V* out,
+                                 std::size_t stride) {
+    out[0] = hn::Add(hn::Add(a, c), hn::Mul(four, b));
+    out[stride] = hn::Add(hn::Mul(four, b), hn::Mul(two, c));
+    out[2 * stride] = hn::Add(hn::Mul(two, b), hn::Mul(four, c));
+    out[3 * stride] = hn::Add(hn::Add(b, e), hn::Mul(four, c));
+  }
+
+  template <class D, class V = hn::Vec<D>>
+  static HWY_INLINE void hull(D d, const V* control, V* out) {
+    static constexpr Weights weights = make_weights();
+    const V four = hn::Set(d, 4.0), two = hn::Set(d, 2.0), part = hn::Set(d, 1.0 / 36);
+    V c[16], along[16], b[16];
+    unrolled<16>([&](auto k) HWY_ATTR { c[place[k]] = control[k]; });
+    unrolled<4>([&](auto y) HWY_ATTR {
+      segment(four, two, c[4 * y], c[4 * y + 1], c[4 * y + 2], c[4 * y + 3], along + 4 * y, 1);
+    });
+    unrolled<4>([&](auto x) HWY_ATTR {
+      segment(four, two, along[x], along[4 + x], along[8 + x], along[12 + x], b + x, 4);
+    });
+    unrolled<16>([&](auto k) HWY_ATTR { b[k] = hn::Mul(part, b[k]); });
+    unrolled<hull_count>([&](auto p) HWY_ATTR {
+      V sum = hn::Zero(d);
+      unrolled<16>([&](auto k) HWY_ATTR {
+        if constexpr (weights.of[p][k] != 0) sum = hn::Add(sum, hn::Mul(hn::Set(d, weights.of[p][k]), b[k]));
+      });
+      out[p] = sum;
+    });
+  }
+};
+
+template <class Shape, class D, class V = hn::Vec<D>>
 HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* out) {
+  constexpr std::size_t controls = Shape::controls, hull_count = Shape::hull_count, of_edge = Shape::of_edge;
   const std::size_t lanes = hn::Lanes(d);
-  V hull[3][split_count];
+  V hull[3][hull_count];
   Vec3<V> origin;
   V* const origins[3] = {&origin.x, &origin.y, &origin.z};
   V largest = hn::Zero(d);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    V c[controls], b[bezier_count];
+    V c[controls];
     const double* from = gathered + axis * lanes;
     const V o = hn::Load(d, from);
     *origins[axis] = o;
@@ -451,8 +537,7 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
       c[k] = hn::Sub(hn::Load(d, from + 3 * k * lanes), o);
       largest = hn::Max(largest, hn::Abs(c[k]));
     }
-    bezier(d, c, b);
-    split_once(d, b, hull[axis]);
+    Shape::hull(d, c, hull[axis]);
   }
   const auto at = [&](std::size_t i) HWY_ATTR { return Vec3<V>{hull[0][i], hull[1][i], hull[2][i]}; };
 
@@ -461,7 +546,7 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
   PlanarTriangle<V> t = planar_triangle(d, corner[0], corner[1], corner[2]);
   V lower = hn::Zero(d), upper = lower;
   const V from = dot(t.n, corner[0]);
-  for (std::size_t i = 1; i < split_count; ++i) {
+  for (std::size_t i = 1; i < hull_count; ++i) {
     const V height = hn::Sub(dot(t.n, at(i)), from);
     lower = hn::Min(lower, height);
     upper = hn::Max(upper, height);
@@ -484,7 +569,7 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
     meet(distance_sq_by_edge<1>(d, t, at(of_edge + i)));
     meet(distance_sq_by_edge<2>(d, t, at(2 * of_edge + i)));
   }
-  for (std::size_t i = 3 * of_edge; i < split_count; ++i) meet(distance_sq(d, t, at(i)));
+  for (std::size_t i = 3 * of_edge; i < hull_count; ++i) meet(distance_sq(d, t, at(i)));
   const ReachV<V> reach = reach_of(d, t, farthest);
 
   // What control points, hull points and the placed base are off by, a coordinate.
@@ -519,7 +604,9 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
   }
 }
 
-void FitRegular(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
+template <class Shape>
+void FitAll(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
+  constexpr std::size_t controls = Shape::controls;
   const hn::ScalableTag<double> d;
   const std::size_t lanes = hn::Lanes(d);
   HWY_ALIGN double gathered[3 * controls * HWY_MAX_BYTES / sizeof(double)];
@@ -529,12 +616,20 @@ void FitRegular(std::span<const Point3> points, std::span<const VertexId> contro
     const std::size_t here = std::min(lanes, out.size() - begin);
     gather_lanes(points, control.data() + controls * begin, controls, 0, controls, here, lanes, gathered);
     if (here == lanes) {
-      fit_group(d, gathered, out.data() + begin);
+      fit_group<Shape>(d, gathered, out.data() + begin);
     } else {
-      fit_group(d, gathered, answers);
+      fit_group<Shape>(d, gathered, answers);
       std::copy_n(answers, here, out.data() + begin);
     }
   }
+}
+
+void FitRegular(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
+  FitAll<LoopShape>(points, control, out);
+}
+
+void FitBicubic(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
+  FitAll<BicubicShape>(points, control, out);
 }
 
 const char* InstructionSet() { return hwy::TargetName(HWY_TARGET); }
@@ -550,6 +645,7 @@ HWY_EXPORT(ApplyRows);
 HWY_EXPORT(Heights);
 HWY_EXPORT(Farthest);
 HWY_EXPORT(FitRegular);
+HWY_EXPORT(FitBicubic);
 HWY_EXPORT(InstructionSet);
 
 const char* instruction_set() { return HWY_DYNAMIC_DISPATCH(InstructionSet)(); }
@@ -579,6 +675,10 @@ std::optional<Reach> farthest(const Coordinates& points, const Vector3& a, const
 
 void fit_regular(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
   HWY_DYNAMIC_DISPATCH(FitRegular)(points, control, out);
+}
+
+void fit_bicubic(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
+  HWY_DYNAMIC_DISPATCH(FitBicubic)(points, control, out);
 }
 
 }  // namespace snug::kernels

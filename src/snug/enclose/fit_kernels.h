@@ -79,4 +79,11 @@ struct BatchFit {
 /// Cost:      about 0.15 to 0.2 microseconds a patch with four lanes.
 void fit_regular(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out);
 
+/// The same of regular Catmull-Clark patches inside the surface, halves of bicubic quads: their Bezier points without a
+/// split, sixteen control points a patch.
+///
+/// Guarantee: the patch lies in the offset triangle; its radius is at least that of fits to points after a split.
+/// Cost:      about 0.15 microseconds a half with four lanes.
+void fit_bicubic(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out);
+
 }  // namespace snug::kernels

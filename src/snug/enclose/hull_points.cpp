@@ -62,7 +62,58 @@ void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out) {
   out.tips = rows.tips();
 }
 
+namespace {
+
+// Levels that a passing patch is split before the nets of its pieces do.
+constexpr unsigned passing_levels = 5;
+
+// Adds points whose hull holds the patch; `scratch` has a patch a level.
+void collect(BoundLibrary& library, const Patch& patch, std::span<Patch> scratch, HullPoints& out) {
+  const Kind& kind = *patch.kind;
+  if (kind.polynomial()) {
+    const Stencils& rows = kind.bezier();
+    std::size_t at = out.size();
+    out.resize(at + rows.row_count());
+    for (std::size_t r = 0; r < rows.row_count(); ++r) out.set(at++, rows.apply<Vector3>(r, patch.points));
+    out.error = std::max(out.error, rows.result_error(patch.largest, patch.error));
+    out.largest = std::max(out.largest, enlarged(rows.max_abs_sum() * patch.largest));
+  } else if (!kind.passing()) {
+    apply(library.rows(kind), patch, out.size(), out);
+  } else if (scratch.empty()) {
+    std::size_t at = out.size();
+    out.resize(at + patch.points.size());
+    for (const Vector3& p : patch.points) out.set(at++, p);
+    out.error = std::max(out.error, patch.error);
+    out.largest = std::max(out.largest, patch.largest);
+  } else {
+    for (unsigned child = 0; child < 4; ++child) {
+      split(patch, child, scratch[0]);
+      collect(library, scratch[0], scratch.subspan(1), out);
+    }
+  }
+}
+
+void prepare(BoundLibrary& library, const Kind& kind, unsigned levels) {
+  if (kind.polynomial()) return;
+  if (!kind.passing()) {
+    static_cast<void>(library.rows(kind));
+  } else if (levels > 0) {
+    for (const KindChild& child : kind.children()) prepare(library, *child.kind, levels - 1);
+  }
+}
+
+}  // namespace
+
 void hull_points(BoundLibrary& library, const Patch& patch, HullPoints& out) {
+  if (patch.kind->passing()) {
+    thread_local std::array<Patch, passing_levels> scratch;
+    out.origin = patch.origin;
+    out.error = out.largest = 0;
+    out.tips = {};
+    out.resize(0);
+    collect(library, patch, scratch, out);
+    return;
+  }
   hull_points(library.rows(*patch.kind), patch, out);
   std::size_t most = out.size();
   for (std::size_t i = 0; i < 3 && out.tips[i].kind; ++i) {
@@ -73,8 +124,15 @@ void hull_points(BoundLibrary& library, const Patch& patch, HullPoints& out) {
 }
 
 void prepare_hull_points(BoundLibrary& library, const Kind& kind) {
+  if (kind.passing()) {
+    prepare(library, kind, passing_levels);
+    return;
+  }
   for (const BoundRows::Tip& tip : library.rows(kind).tips()) {
-    if (tip.kind) static_cast<void>(library.rows(*tip.kind));
+    if (!tip.kind) continue;
+    for (const BoundRows::Tip& deeper : library.rows(*tip.kind).tips()) {
+      if (deeper.kind) static_cast<void>(library.rows(*deeper.kind));
+    }
   }
 }
 
@@ -89,13 +147,14 @@ void refine_tips(BoundLibrary& library, const std::array<bool, 3>& which, HullPo
   for (std::size_t i = 0; i < tips; ++i) {
     if (!which[i]) continue;
     const BoundRows& rows = library.rows(*nets[i].kind);
-    SNUG_EXPECT(rows.tips()[0].kind == nets[i].kind && !rows.tips()[1].kind);
+    const Kind* const deeper = rows.tips()[0].kind;
+    SNUG_EXPECT(deeper && !rows.tips()[1].kind);
     apply(rows, nets[i], count, points);
     count += rows.tips_begin();
-    take_net(points, *nets[i].kind, count, nets[i]);
+    take_net(points, *deeper, count, nets[i]);
   }
   for (std::size_t i = 0; i < tips; ++i) {
-    points.tips[i].begin = count;
+    points.tips[i] = {nets[i].kind, count};
     points.resize(count + nets[i].points.size());
     for (const Vector3& p : nets[i].points) points.set(count++, p);
   }

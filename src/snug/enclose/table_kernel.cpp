@@ -11,6 +11,7 @@
 #include <cmath>
 #include <vector>
 
+#include <snug/base/contract.h>
 #include <snug/base/rounding.h>
 #include <snug/enclose/lanes.h>
 #include <snug/enclose/table_kernel.h>
@@ -196,6 +197,7 @@ HWY_EXPORT(FitTable);
 
 void fit_table(const BoundTable& table, std::span<const Point3> points, std::span<const VertexId> control,
                std::span<BatchFit> out) {
+  SNUG_EXPECT(table.first_bounded() == 3);
   thread_local std::vector<TableColumn> memory;
   HWY_DYNAMIC_DISPATCH(FitTable)(flatten(table, memory), points, control.data(), out);
 }

@@ -12,8 +12,8 @@ namespace snug::kernels {
 ///
 /// Guarantee: as offset_triangle(table_triangle()); base in the kind's order of corners. The radius is
 ///            infinite where a point is not finite. Results are the same on every instruction set, bit by bit.
-/// Requires:  control: table.control_count() vertices of `points` a patch, in the kind's order; out.size()
-///            patches; coordinates of at most about 2 (base/scaling.h).
+/// Requires:  table.first_bounded() == 3; control: table.control_count() vertices of `points` a patch, in the
+///            kind's order; out.size() patches; coordinates of at most about 2 (base/scaling.h).
 /// Cost:      about 20 operations a control point and coordinate, four to eight patches at once.
 void fit_table(const BoundTable& table, std::span<const Point3> points, std::span<const VertexId> control,
                std::span<BatchFit> out);

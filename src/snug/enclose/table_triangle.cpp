@@ -9,15 +9,27 @@
 namespace snug {
 namespace {
 
-// The linear function through the control points of the corners.
+// The linear function through three points: control points of the corners, or about their limits.
 struct Linear {
   Vector3 at_zero, along_one, along_two;
-  explicit Linear(const std::vector<Vector3>& points)
-      : at_zero(points[0]), along_one(points[1] - points[0]), along_two(points[2] - points[0]) {}
+  double largest;  // coordinate of the three
+  Linear(const Vector3& zero, const Vector3& one, const Vector3& two)
+      : at_zero(zero),
+        along_one(one - zero),
+        along_two(two - zero),
+        largest(std::max({max_abs(zero), max_abs(one), max_abs(two)})) {}
   [[nodiscard]] Vector3 operator()(const LayoutPoint& u) const {
     return at_zero + u[0] * along_one + u[1] * along_two;
   }
 };
+
+Linear linear_of(const BoundTable& table, const Patch& patch) {
+  if (table.first_bounded() > 0) return {patch.points[0], patch.points[1], patch.points[2]};
+  std::array<Vector3, 3> corner;
+  const Stencils& limits = patch.kind->corner_limits();
+  for (std::size_t k = 0; k < 3; ++k) corner[k] = limits.apply<Vector3>(k, patch.points);
+  return {corner[0], corner[1], corner[2]};
+}
 
 // Twice this, times `largest`, bounds |l(u)| and |c - l(u)|.
 double reach(const LayoutPoint& u) { return 1 + std::fabs(u[0]) + std::fabs(u[1]); }
@@ -27,17 +39,19 @@ double reach(const LayoutPoint& u) { return 1 + std::fabs(u[0]) + std::fabs(u[1]
 TableTriangle table_triangle(const BoundTable& table, const Patch& patch) {
   const std::size_t count = table.control_count();
   SNUG_EXPECT(patch.points.size() == count && patch.kind->control_count() == count);
-  const Linear linear(patch.points);
+  const std::size_t begin = table.first_bounded();
+  const Linear linear = linear_of(table, patch);
+  const double largest = std::max(patch.largest, linear.largest);
   std::array<Vector3, 3> lower, upper;
   std::array<double, 3> gain;  // sum of reach times the larger of |lower| and |upper|
   for (std::size_t k = 0; k < 3; ++k) {
     lower[k] = upper[k] = linear(table.triangle[k]);
     gain[k] = reach(table.triangle[k]);
   }
-  for (std::size_t i = 3; i < count; ++i) {
+  for (std::size_t i = begin; i < count; ++i) {
     const Vector3 d = patch.points[i] - linear(table.layout[i]);
     const double of_point = reach(table.layout[i]);
-    const BoundTable::CornerValues &low = table.lower[i - 3], &high = table.upper[i - 3];
+    const BoundTable::CornerValues &low = table.lower[i - begin], &high = table.upper[i - begin];
     for (std::size_t k = 0; k < 3; ++k) {
       for (std::size_t a = 0; a < 3; ++a) {
         const double by_low = d[a] * low[k], by_high = d[a] * high[k];
@@ -48,10 +62,10 @@ TableTriangle table_triangle(const BoundTable& table, const Patch& patch) {
     }
   }
   const double most = *std::max_element(gain.begin(), gain.end());
-  const double error = enlarged(2 * most *
-                                (patch.error + (8 * unit_roundoff + gamma_bound(count + 4)) * patch.largest +
-                                 8 * underflow_error)) +
-                       8 * static_cast<double>(count) * underflow_error;
+  const double error =
+      enlarged(2 * most *
+               (patch.error + (8 * unit_roundoff + gamma_bound(count + 4)) * largest + 8 * underflow_error)) +
+      8 * static_cast<double>(count) * underflow_error;
 
   TableTriangle result;
   double placing = 0;

@@ -16,7 +16,8 @@ struct TableTriangle {
 /// At corner k of the table's triangle the patch is between
 ///   l(t_k) + sum max(d_i, 0) lower_i[k] + min(d_i, 0) upper_i[k]   and
 ///   l(t_k) + sum max(d_i, 0) upper_i[k] + min(d_i, 0) lower_i[k],  a coordinate, where
-/// l is linear through the control points of the corners and d_i = c_i - l(layout_i).
+/// l is linear through the control points of the corners and d_i = c_i - l(layout_i). A table that bounds all
+/// of its functions takes an l through the limits of the corners as computed: any l will do.
 ///
 /// Guarantee: contains every limit point of the patch, rounding and the control points' own error included.
 /// Requires:  the table of the patch's kind.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <snug/mesh/control_mesh.h>
@@ -8,7 +9,12 @@
 
 namespace snug {
 
-/// Neighbour relations of an oriented manifold mesh, closed or with boundary. Knows no positions.
+/// Neighbour relations of a mesh, closed or with boundary. Knows no positions.
+///
+/// Half-edges are twins where an edge has two faces that run along it in opposite directions. All other edges end
+/// the fans of faces at both of their vertices: those of the boundary, and non-manifold ones, which have three
+/// faces or more, or two that run along them in the same direction, or one face twice, or the same vertex at both
+/// ends. A vertex has one fan if it is manifold.
 ///
 /// Around vertex v, counter-clockwise:
 ///
@@ -18,7 +24,7 @@ namespace snug {
 ///     face    v --> a      ccw(h): v -> b       the next half-edge that leaves v
 ///                h
 ///
-/// Requires:  defects(mesh) holds nothing that refuses (validate.h); isolated vertices are legal.
+/// Requires:  faces of three vertices or more, in range; isolated vertices are legal.
 /// Cost:      linear time; 20 bytes a half-edge.
 class Topology {
  public:
@@ -58,20 +64,53 @@ class Topology {
 
   /// One half-edge of an edge; the lower-numbered one.
   [[nodiscard]] HalfEdge half_of(EdgeId e) const { return edge_half_[e.index()]; }
-  /// A half-edge that leaves v: at a boundary vertex the clockwise-most one, so that ccw() walks the whole
+  /// A half-edge that leaves v: in an open fan the clockwise-most one, so that ccw() walks the whole
   /// fan. no_half_edge for an isolated vertex.
   [[nodiscard]] HalfEdge leaving(VertexId v) const { return leaving_[v.index()]; }
+  /// Other half-edges that leave v, one a further fan of a non-manifold vertex, each as leaving() has it.
+  [[nodiscard]] std::vector<HalfEdge> more_fans(VertexId v) const;
+  /// The half-edges on a non-manifold edge beside half_of(e).
+  [[nodiscard]] std::vector<HalfEdge> more_halves(EdgeId e) const;
 
-  [[nodiscard]] bool on_boundary(EdgeId e) const { return twins_[half_of(e)] == no_half_edge; }
-  [[nodiscard]] bool isolated(VertexId v) const { return leaving(v) == no_half_edge; }
-  [[nodiscard]] bool on_boundary(VertexId v) const {
-    return !isolated(v) && twins_[leaving(v)] == no_half_edge;
+  /// Has the edge one face?
+  [[nodiscard]] bool on_boundary(EdgeId e) const {
+    if (!ends_fans(e)) return false;
+    return is_manifold() || (more_halves(e).empty() && from(half_of(e)) != to(half_of(e)));
   }
+  /// Is the edge on the boundary or non-manifold?
+  [[nodiscard]] bool ends_fans(EdgeId e) const { return twins_[half_of(e)] == no_half_edge; }
+  [[nodiscard]] bool is_manifold(EdgeId e) const { return !ends_fans(e) || on_boundary(e); }
+  [[nodiscard]] bool isolated(VertexId v) const { return leaving(v) == no_half_edge; }
+  /// Is one of the vertex's edges on the boundary?
+  [[nodiscard]] bool on_boundary(VertexId v) const;
+  /// One fan at most, and no non-manifold edge.
+  [[nodiscard]] bool is_manifold(VertexId v) const;
+  /// All edges and vertices are.
+  [[nodiscard]] bool is_manifold() const { return more_halves_.empty() && more_fans_.empty(); }
   /// Number of faces around a vertex.
   [[nodiscard]] std::size_t face_valence(VertexId v) const;
 
+  /// Calls visit(h) for the half-edges that leave v in the fan of `start`, counter-clockwise from there.
+  template <class Visit>
+  void walk_fan(HalfEdge start, Visit&& visit) const {
+    HalfEdge h = start;
+    do {
+      visit(h);
+      h = ccw(h);
+    } while (h != no_half_edge && h != start);
+  }
+  /// Calls visit(start) for each fan of v.
+  template <class Visit>
+  void for_each_fan(VertexId v, Visit&& visit) const {
+    if (isolated(v)) return;
+    visit(leaving(v));
+    if (more_fans_.empty()) return;
+    for (const HalfEdge h : more_fans(v)) visit(h);
+  }
+
  private:
   void connect(std::size_t vertex_count);
+  void find_fans();
 
   std::vector<std::uint32_t> face_offsets_{0};
   std::vector<VertexId> face_vertices_;
@@ -80,6 +119,9 @@ class Topology {
   std::vector<EdgeId> edges_;
   std::vector<HalfEdge> edge_half_;
   std::vector<HalfEdge> leaving_;
+  // Both in rising order.
+  std::vector<std::pair<EdgeId, HalfEdge>> more_halves_;
+  std::vector<std::pair<VertexId, HalfEdge>> more_fans_;
 };
 
 }  // namespace snug

@@ -33,12 +33,18 @@ struct Defect {
 [[nodiscard]] constexpr bool is_legal(DefectKind kind) {
   return kind == DefectKind::isolated_vertex || kind == DefectKind::zero_area_face;
 }
+/// Defects that Loop and Catmull-Clark answer all the same, the elements infinitely sharp.
+[[nodiscard]] constexpr bool is_non_manifold(DefectKind kind) {
+  return kind == DefectKind::repeated_vertex || kind == DefectKind::duplicate_face ||
+         kind == DefectKind::edge_of_many_faces || kind == DefectKind::inconsistent_orientation ||
+         kind == DefectKind::pinched_vertex;
+}
 [[nodiscard]] const char* name_of(DefectKind kind);
 
 /// All defects of a mesh, by kind, then by element.
 ///
 /// Guarantee: a mesh without defects that are not legal is an oriented manifold, closed or with boundary, of
-///            finite coordinates: Topology accepts it. zero_area_face is found in double precision.
+///            finite coordinates. zero_area_face is found in double precision.
 /// Requires:  well-formed arrays; else nothing. Indices out of range hide the defects that depend on
 ///            neighbours.
 /// Cost:      linear, times the logarithm of the largest valence.

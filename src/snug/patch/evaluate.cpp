@@ -10,28 +10,36 @@
 namespace snug {
 namespace {
 
+constexpr std::size_t most_points = bezier_count(max_degree);
+using BezierPoints = std::array<Vector3, most_points>;
+
+// One polynomial of a piece.
 struct Polynomial {
-  std::array<Vector3, 15> points;
+  std::size_t degree;
+  BezierPoints points;
   double error;
   double largest;
 };
 
-Polynomial bezier_points(const Patch& patch) {
+Polynomial bezier_points(const Patch& patch, std::size_t part) {
+  const PolynomialForm& form = patch.kind->form();
   Polynomial result;
-  const Stencils& rows = patch.kind->bezier();
+  result.degree = form.degree;
   result.largest = 0;
-  for (std::size_t r = 0; r < 15; ++r) {
-    result.points[r] = rows.apply<Vector3>(r, patch.points);
+  const std::size_t count = bezier_count(form.degree);
+  for (std::size_t r = 0; r < count; ++r) {
+    result.points[r] = form.rows.apply<Vector3>(part * count + r, patch.points);
     result.largest = std::max(result.largest, max_abs(result.points[r]));
   }
-  result.error = rows.result_error(patch.largest, patch.error);
+  result.error = form.rows.result_error(patch.largest, patch.error);
   return result;
 }
 
-// De Casteljau on a triangle of degree 4 down to degree 1, whose three points give position and derivatives.
-std::array<Vector3, 3> reduce_to_plane(std::array<Vector3, 15> b, double u, double v) {
+// De Casteljau on a triangle down to degree 1, whose three points give position and derivatives.
+std::array<Vector3, 3> reduce_to_plane(const Polynomial& polynomial, double u, double v) {
+  BezierPoints b = polynomial.points;
   const double w = 1 - u - v;
-  std::size_t degree = 4;
+  std::size_t degree = polynomial.degree;
   while (degree > 1) {
     std::size_t to = 0, row = 0;
     for (std::size_t j = 0; j < degree; ++j) {
@@ -61,6 +69,16 @@ KindParameter to_kind(const Patch& patch, TriangleParameter p) {
   return {{w, p.u}, 4 * unit_roundoff};
 }
 
+// The same in the half of a triangle that form() splits at the middle of its edge 02:
+// w c0 + u c1 + v c2 = (w - v) c0 + u c1 + 2 v m = 2 w m + u c1 + (v - w) c2.
+KindParameter to_part(const KindParameter& p, std::size_t& part) {
+  const double w = std::fmax(0.0, 1 - p.at.u - p.at.v);
+  part = p.at.v <= w ? 0 : 1;
+  const double drift = 4 * p.drift + 8 * unit_roundoff;
+  if (part == 0) return {{p.at.u, 2 * p.at.v}, drift};
+  return {{p.at.u, p.at.v - w}, drift};
+}
+
 struct Located {
   Patch piece;  // polynomial, unless stopped
   TriangleParameter at;
@@ -86,16 +104,36 @@ Located locate(const Patch& patch, TriangleParameter at) {
   return here;
 }
 
-LimitPoint point_of(const Polynomial& polynomial, const std::array<Vector3, 3>& plane, double u, double v,
-                    double drift) {
-  const double w = 1 - u - v;
-  const Vector3 p = w * plane[0] + u * plane[1] + v * plane[2];
-  // Twelve roundings through four levels, each weight off by two more; a parameter off by d moves the point
-  // by at most 4 * 2 largest * 2 d, the derivative of a quartic being four times a difference of Bezier
-  // points.
-  const double error = (gamma_bound(32) + 16 * (drift + 2 * unit_roundoff)) * polynomial.largest +
-                       polynomial.error + 64 * underflow_error;
-  return {p, enlarged(error)};
+// Position and derivatives along the kind's u and v in a polynomial piece.
+struct Evaluated {
+  LimitPoint point;
+  std::array<Vector3, 2> derivatives;
+};
+
+Evaluated evaluate_polynomial(const Patch& piece, KindParameter p) {
+  const PolynomialForm& form = piece.kind->form();
+  std::size_t part = 0;
+  if (form.parts == 2) p = to_part(p, part);
+  const Polynomial polynomial = bezier_points(piece, part);
+  const double u = p.at.u, v = p.at.v, w = 1 - u - v;
+  const auto degree = static_cast<double>(form.degree);
+  const std::array<Vector3, 3> plane = reduce_to_plane(polynomial, u, v);
+  Evaluated result;
+  // Three roundings a level, each weight off by two more; a parameter off by d moves the point by at most
+  // degree * 2 largest * 2 d, the derivative being the degree times a difference of Bezier points.
+  const double error =
+      (gamma_bound(8 * form.degree) + 4 * degree * (p.drift + 2 * unit_roundoff)) * polynomial.largest +
+      polynomial.error + 64 * underflow_error;
+  result.point = {w * plane[0] + u * plane[1] + v * plane[2], enlarged(error)};
+  const Vector3 along_u = degree * (plane[1] - plane[0]), along_v = degree * (plane[2] - plane[0]);
+  if (form.parts == 1) {
+    result.derivatives = {along_u, along_v};
+  } else if (part == 0) {  // (u, 2 v)
+    result.derivatives = {along_u, 2.0 * along_v};
+  } else {  // (u, 1 - u - 2 w), w = 1 - u - v:  (u, u + 2 v - 1)
+    result.derivatives = {along_u + along_v, 2.0 * along_v};
+  }
+  return result;
 }
 
 LimitPoint stopped_point(const Located& here) {
@@ -153,35 +191,35 @@ LimitPoint limit_point(const Patch& patch, TriangleParameter parameter) {
     point.error += enlarged(16 * here.drift * here.piece.largest);
     return point;
   }
-  const Polynomial polynomial = bezier_points(here.piece);
-  const KindParameter p = to_kind(here.piece, here.at);
-  return point_of(polynomial, reduce_to_plane(polynomial.points, p.at.u, p.at.v), p.at.u, p.at.v,
-                  here.drift + p.drift);
+  KindParameter p = to_kind(here.piece, here.at);
+  p.drift += here.drift;
+  return evaluate_polynomial(here.piece, p).point;
 }
 
 LimitFrame limit_frame(const Patch& patch, TriangleParameter parameter) {
   const TriangleParameter at = checked(parameter);
   if (const std::size_t corner = corner_at(at);
-      corner < 3 && !patch.kind->corner(patch.to_kind(corner)).regular()) {
+      corner < 3 && !patch.kind->regular_corner(patch.to_kind(corner))) {
     return corner_frame(patch, corner);
   }
   Located here = locate(patch, at);
   if (here.stopped) {
     std::size_t corner = 0;
-    while (corner < 2 && here.piece.kind->corner(here.piece.to_kind(corner)).regular()) ++corner;
+    while (corner < 2 && here.piece.kind->regular_corner(here.piece.to_kind(corner))) ++corner;
     LimitFrame frame = corner_frame(here.piece, corner);
     frame.point = stopped_point(here);
     return frame;
   }
-  const Polynomial polynomial = bezier_points(here.piece);
-  const KindParameter p = to_kind(here.piece, here.at);
-  const std::array<Vector3, 3> plane = reduce_to_plane(polynomial.points, p.at.u, p.at.v);
+  KindParameter p = to_kind(here.piece, here.at);
+  p.drift += here.drift;
+  const Evaluated evaluated = evaluate_polynomial(here.piece, p);
   LimitFrame frame;
-  frame.point = point_of(polynomial, plane, p.at.u, p.at.v, here.drift + p.drift);
-  // The plane's corners follow the kind's; corner k of the piece is to_kind(k).
-  const std::array<Vector3, 3> corner{plane[here.piece.to_kind(0)], plane[here.piece.to_kind(1)],
-                                      plane[here.piece.to_kind(2)]};
-  frame.tangents = {4 * here.turned * (corner[1] - corner[0]), 4 * here.turned * (corner[2] - corner[0])};
+  frame.point = evaluated.point;
+  // Derivatives along the kind's edges 01 and 02; those along the patch's are differences of these.
+  const std::array<Vector3, 3> towards{Vector3{}, evaluated.derivatives[0], evaluated.derivatives[1]};
+  const auto corner_at_plane = [&](std::size_t corner) { return towards[here.piece.to_kind(corner)]; };
+  frame.tangents = {here.turned * (corner_at_plane(1) - corner_at_plane(0)),
+                    here.turned * (corner_at_plane(2) - corner_at_plane(0))};
   frame.differentiable = true;
   frame.normal = unit_normal(frame.tangents);
   return frame;

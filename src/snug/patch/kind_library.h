@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <mutex>
 #include <shared_mutex>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include <snug/patch/neighbourhood.h>
+#include <snug/patch/polynomial.h>
 #include <snug/scheme/stencils.h>
 
 namespace snug {
@@ -15,7 +15,7 @@ namespace snug {
 class Kind;
 class KindLibrary;
 
-/// A quarter of a patch after one step of subdivision.
+/// A quarter of a patch after one step of subdivision; of a polygon half a quad.
 struct KindChild {
   const Kind* kind;
   std::uint8_t
@@ -33,39 +33,44 @@ class Kind {
 
   [[nodiscard]] KindId id() const { return id_; }
   [[nodiscard]] const KindKey& key() const { return key_; }
+  [[nodiscard]] Scheme scheme() const { return key_.scheme; }
   [[nodiscard]] std::size_t control_count() const { return control_count_; }
   [[nodiscard]] const CornerFan& corner(std::size_t i) const { return key_.corners[i]; }
+  /// Is the surface near corner 0, 1 or 2 as on a regular lattice, at least a few levels down?
+  [[nodiscard]] bool regular_corner(std::size_t i) const { return key_.corners[i].regular(key_.scheme); }
+  /// Not for ever: sharpness decays, or polygons that are no quads lie around it.
+  [[nodiscard]] bool passing() const { return passing_; }
 
-  /// Is the patch one quartic polynomial? Then bezier() gives it.
-  [[nodiscard]] bool polynomial() const { return polynomial_; }
-  /// Bezier points of the patch: 15 rows, point (i, j) of degree 4 (u^i v^j) at bezier_index(i, j).
+  /// Is the patch polynomial, or made of two polynomials (Midedge)? Then bezier() gives them.
+  [[nodiscard]] bool polynomial() const { return form_.has_value(); }
   /// Requires:  polynomial().
-  [[nodiscard]] const Stencils& bezier() const { return bezier_; }
+  [[nodiscard]] const PolynomialForm& form() const { return *form_; }
+  /// Bezier points of the patch, as form() counts them.
+  /// Requires:  polynomial().
+  [[nodiscard]] const Stencils& bezier() const { return form_->rows; }
 
   /// Limit positions of the corners: three rows.
+  /// Requires:  a patch, no polygon; so do the tangents.
   [[nodiscard]] const Stencils& corner_limits() const { return corner_limits_; }
-  /// Two tangent rows a corner, those of corner i at 2 i and 2 i + 1 (scheme/refine.h).
+  /// Two tangent rows a corner, those of corner i at 2 i and 2 i + 1 (scheme/limits.h).
   [[nodiscard]] const Stencils& corner_tangents() const;
 
-  /// The four children; 0 to 2 keep that corner, 3 is the middle one.
-  [[nodiscard]] const std::array<KindChild, 4>& children() const;
+  /// The four children of a patch; 0 to 2 keep that corner, 3 is the middle one. Of a polygon with n corners 2 n: at
+  /// corner k the half of its quad that begins there, then the other one, which begins at the centre.
+  [[nodiscard]] const std::vector<KindChild>& children() const;
 
  private:
   KindLibrary& library_;
   KindId id_;
   KindKey key_;
+  bool passing_ = false;
   std::size_t control_count_ = 0;
-  bool polynomial_ = false;
-  Stencils bezier_, corner_limits_;
+  std::optional<PolynomialForm> form_;
+  Stencils corner_limits_;
   mutable std::once_flag tangents_made_, children_made_;
   mutable Stencils corner_tangents_;
-  mutable std::unique_ptr<std::array<KindChild, 4>> children_;
+  mutable std::vector<KindChild> children_;
 };
-
-/// Place of the Bezier point u^i v^j among the 15 of a quartic triangle.
-[[nodiscard]] constexpr std::size_t bezier_index(std::size_t i, std::size_t j) {
-  return i + j * 5 - j * (j - 1) / 2;
-}
 
 /// All kinds met so far. Grows, never forgets; kinds stay where they are as long as the library lives.
 ///

@@ -1,6 +1,7 @@
 #include <snug/patch/limit_evaluator.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <snug/base/contract.h>
@@ -10,22 +11,62 @@
 namespace snug {
 namespace {
 
-// 4! / (i! j! k!) in the order of bezier_index().
-constexpr std::array<double, 15> multinomial{1, 4, 6, 4, 1, 4, 12, 12, 4, 6, 12, 6, 4, 4, 1};
+// degree! / (i! j! k!) in the order of bezier_index().
+template <std::size_t degree>
+constexpr std::array<double, bezier_count(degree)> make_multinomials() {
+  constexpr auto factorial = [](std::size_t n) {
+    double product = 1;
+    for (std::size_t i = 2; i <= n; ++i) product *= static_cast<double>(i);
+    return product;
+  };
+  std::array<double, bezier_count(degree)> result{};
+  for (std::size_t j = 0; j <= degree; ++j) {
+    for (std::size_t i = 0; i + j <= degree; ++i) {
+      result[bezier_index(degree, i, j)] =
+          factorial(degree) / (factorial(i) * factorial(j) * factorial(degree - i - j));
+    }
+  }
+  return result;
+}
+template <std::size_t degree>
+constexpr std::array<double, bezier_count(degree)> multinomials = make_multinomials<degree>();
+
+double multinomial(std::size_t degree, std::size_t place) {
+  return degree == 2 ? multinomials<2>[place] : degree == 4 ? multinomials<4>[place] : multinomials<6>[place];
+}
 
 // Where the kind counts the Bezier point that the patch counts as u^i v^j.
-std::size_t kind_index(const Patch& patch, std::size_t i, std::size_t j) {
-  const std::array<std::size_t, 3> powers{4 - i - j, i, j};
+std::size_t kind_index(const Patch& patch, std::size_t degree, std::size_t i, std::size_t j) {
+  const std::array<std::size_t, 3> powers{degree - i - j, i, j};
   std::array<std::size_t, 3> kind_powers;
   for (std::size_t corner = 0; corner < 3; ++corner) kind_powers[patch.to_kind(corner)] = powers[corner];
-  return bezier_index(kind_powers[1], kind_powers[2]);
+  return bezier_index(degree, kind_powers[1], kind_powers[2]);
+}
+
+// Sum of monomials times weights. Powers are products, the last factor last: as good as repeated ones.
+template <std::size_t degree>
+std::array<double, 4> sum_of(const std::array<double, 4>* weights, double u, double v) {
+  const double w = 1 - u - v;
+  std::array<double, degree + 1> us{1}, vs{1}, ws{1};
+  for (std::size_t k = 1; k <= degree; ++k)
+    us[k] = us[k - 1] * u, vs[k] = vs[k - 1] * v, ws[k] = ws[k - 1] * w;
+  std::array<double, 4> sum{};
+  std::size_t place = 0;
+  for (std::size_t j = 0; j <= degree; ++j) {
+    for (std::size_t i = 0; i + j <= degree; ++i, ++place) {
+      const double monomial = ws[degree - i - j] * us[i] * vs[j];
+      for (std::size_t a = 0; a < 4; ++a) sum[a] += monomial * weights[place][a];
+    }
+  }
+  return sum;
 }
 
 }  // namespace
 
 void LimitEvaluator::reset(const Patch& patch) {
   inner_.clear();
-  quartics_.clear();
+  polynomials_.clear();
+  weights_.clear();
   patch_ = patch;
   inner_.push_back({patch, 0, {}});
   if (patch.kind->polynomial()) inner_[0].children[0] = make(Patch(patch), 0);
@@ -36,37 +77,48 @@ LimitEvaluator::Child LimitEvaluator::make(Patch&& piece, double drift) {
     inner_.push_back({std::move(piece), drift, {}});
     return {Child::inner, static_cast<std::uint32_t>(inner_.size() - 1)};
   }
-  const Stencils& rows = piece.kind->bezier();
-  Quartic quartic{};
+  const PolynomialForm& form = piece.kind->form();
+  SNUG_EXPECT(form.parts == 1 || piece.first == 0);
+  const std::size_t d = form.degree, count = bezier_count(d);
+  Polynomial polynomial{static_cast<std::uint32_t>(weights_.size()), static_cast<std::uint16_t>(d),
+                        static_cast<std::uint16_t>(form.parts), 0};
   double largest = 0;
-  for (std::size_t j = 0; j < 5; ++j) {
-    for (std::size_t i = 0; i + j < 5; ++i) {
-      const std::size_t place = bezier_index(i, j);
-      const Vector3 p = rows.apply<Vector3>(kind_index(piece, i, j), piece.points);
-      largest = std::max(largest, max_abs(p));
-      quartic.weights[place] = {multinomial[place] * p.x, multinomial[place] * p.y, multinomial[place] * p.z,
-                                0};
+  for (std::size_t part = 0; part < form.parts; ++part) {
+    for (std::size_t j = 0; j <= d; ++j) {
+      for (std::size_t i = 0; i + j <= d; ++i) {
+        const double factor = multinomial(d, bezier_index(d, i, j));
+        const Vector3 p = form.rows.apply<Vector3>(part * count + kind_index(piece, d, i, j), piece.points);
+        largest = std::max(largest, max_abs(p));
+        weights_.push_back({factor * p.x, factor * p.y, factor * p.z, 0});
+      }
     }
   }
-  // Monomials, their products with the weights and the sum: at most 24 roundings. w = 1 - u - v is off by 2 u, and the
-  // parameters by `drift`; the derivative of a quartic is four times a difference of Bezier points.
-  quartic.error = enlarged((gamma_bound(32) + 16 * (drift + 2 * unit_roundoff)) * largest +
-                           rows.result_error(piece.largest, piece.error) + 64 * underflow_error);
-  quartics_.push_back(quartic);
-  return {Child::quartic, static_cast<std::uint32_t>(quartics_.size() - 1)};
+  // Monomials, their products with the weights and the sum: at most 3 degree + 28 roundings. w = 1 - u - v is off by 2 u,
+  // and the parameters by `drift`, in a part by four times that and 8 u more; the derivative is the degree times a
+  // difference of Bezier points.
+  const double off = form.parts == 1 ? drift + 2 * unit_roundoff : 4 * drift + 10 * unit_roundoff;
+  polynomial.error = enlarged((gamma_bound(3 * d + 32) + 4 * static_cast<double>(d) * off) * largest +
+                              form.rows.result_error(piece.largest, piece.error) + 64 * underflow_error);
+  polynomials_.push_back(polynomial);
+  return {Child::polynomial, static_cast<std::uint32_t>(polynomials_.size() - 1)};
 }
 
-LimitPoint LimitEvaluator::evaluate(const Quartic& quartic, TriangleParameter at) {
-  const double u = at.u, v = at.v, w = 1 - u - v;
-  const double uu = u * u, vv = v * v, ww = w * w, uv = u * v;
-  const std::array<double, 15> monomial{ww * ww,      ww * (w * u), ww * uu,      uu * (w * u), uu * uu,
-                                        ww * (w * v), ww * uv,      uu * (w * v), uu * uv,      ww * vv,
-                                        vv * (w * u), uu * vv,      vv * (w * v), vv * uv,      vv * vv};
-  std::array<double, 4> sum{};
-  for (std::size_t k = 0; k < 15; ++k) {
-    for (std::size_t a = 0; a < 4; ++a) sum[a] += monomial[k] * quartic.weights[k][a];
+LimitPoint LimitEvaluator::evaluate(const Polynomial& polynomial, TriangleParameter at) const {
+  const std::array<double, 4>* weights = weights_.data() + polynomial.first;
+  double u = at.u, v = at.v;
+  if (polynomial.parts == 2) {  // as in evaluate.cpp
+    const double w = std::fmax(0.0, 1 - u - v);
+    if (v <= w) {
+      v = 2 * v;
+    } else {
+      v = v - w;
+      weights += bezier_count(polynomial.degree);
+    }
   }
-  return {{sum[0], sum[1], sum[2]}, quartic.error};
+  const std::array<double, 4> sum = polynomial.degree == 4   ? sum_of<4>(weights, u, v)
+                                    : polynomial.degree == 6 ? sum_of<6>(weights, u, v)
+                                                             : sum_of<2>(weights, u, v);
+  return {{sum[0], sum[1], sum[2]}, polynomial.error};
 }
 
 LimitPoint LimitEvaluator::operator()(TriangleParameter parameter) {
@@ -74,7 +126,7 @@ LimitPoint LimitEvaluator::operator()(TriangleParameter parameter) {
   TriangleParameter at = checked(parameter);
   if (const std::size_t corner = corner_at(at); corner < 3) return corner_point(patch_, corner);
   Child child = inner_[0].children[0];
-  if (patch_.kind->polynomial()) return evaluate(quartics_[child.place], at);
+  if (patch_.kind->polynomial()) return evaluate(polynomials_[child.place], at);
   std::uint32_t here = 0;
   while (true) {
     if (inner_[here].patch.path.level() >= PiecePath::max_level) {
@@ -90,7 +142,7 @@ LimitPoint LimitEvaluator::operator()(TriangleParameter parameter) {
       child = make(split(inner_[here].patch, step.child), drift);
       inner_[here].children[step.child] = child;
     }
-    if (child.sort == Child::quartic) return evaluate(quartics_[child.place], at);
+    if (child.sort == Child::polynomial) return evaluate(polynomials_[child.place], at);
     here = child.place;
   }
 }
@@ -101,8 +153,8 @@ void LimitEvaluator::operator()(std::span<const TriangleParameter> at, std::span
 }
 
 std::size_t LimitEvaluator::bytes() const {
-  std::size_t sum =
-      sizeof(*this) + inner_.capacity() * sizeof(Inner) + quartics_.capacity() * sizeof(Quartic);
+  std::size_t sum = sizeof(*this) + inner_.capacity() * sizeof(Inner) +
+                    polynomials_.capacity() * sizeof(Polynomial) + weights_.capacity() * sizeof(weights_[0]);
   sum += patch_.points.capacity() * sizeof(Vector3);
   for (const Inner& inner : inner_) sum += inner.patch.points.capacity() * sizeof(Vector3);
   return sum;

@@ -10,11 +10,11 @@
 namespace snug {
 
 /// Limit points of one patch at many parameters: polynomial pieces once met are kept, so that a point costs a
-/// walk down to its piece and one quartic.
+/// walk down to its piece and one polynomial.
 ///
 /// Guarantee: as limit_point(); a result does not depend on earlier ones.
 /// Cost:      about 30 ns a point in a regular patch, 10 ns a level more near an extraordinary corner
-///            (bench/); a piece met for the first time about 300 ns. Memory: 0.5 KB a polynomial piece, at most
+///            (bench/); a piece met for the first time about 300 ns. Memory: 0.5 to 0.9 KB a polynomial piece, at most
 ///            some 700 others.
 class LimitEvaluator {
  public:
@@ -34,14 +34,16 @@ class LimitEvaluator {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  // A quartic in the patch's order of corners: weights of w^k u^i v^j, four doubles a point, the last one 0.
-  struct Quartic {
-    std::array<std::array<double, 4>, 15> weights;
+  // A polynomial in the patch's order of corners: its weights of w^k u^i v^j are those from `first` on.
+  struct Polynomial {
+    std::uint32_t first;
+    std::uint16_t degree;
+    std::uint16_t parts;  // 2: another one follows, and the patch's corner that faces their common edge is 1
     double error;
   };
-  // Child `place` of a piece: not met yet, a piece of inner_, or one of quartics_.
+  // Child `place` of a piece: not met yet, a piece of inner_, or one of polynomials_.
   struct Child {
-    enum : std::uint8_t { unknown, inner, quartic } sort = unknown;
+    enum : std::uint8_t { unknown, inner, polynomial } sort = unknown;
     std::uint32_t place = 0;
   };
   // A piece that is no polynomial, or the whole patch.
@@ -52,11 +54,12 @@ class LimitEvaluator {
   };
 
   Child make(Patch&& piece, double drift);
-  [[nodiscard]] static LimitPoint evaluate(const Quartic& quartic, TriangleParameter at);
+  [[nodiscard]] LimitPoint evaluate(const Polynomial& polynomial, TriangleParameter at) const;
 
   Patch patch_;
   std::vector<Inner> inner_;  // the patch itself first, polynomial or not
-  std::vector<Quartic> quartics_;
+  std::vector<Polynomial> polynomials_;
+  std::vector<std::array<double, 4>> weights_;  // four doubles a point, the last one 0
 };
 
 }  // namespace snug

@@ -1,22 +1,218 @@
 #include <snug/patch/neighbourhood.h>
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include <snug/base/contract.h>
-#include <snug/scheme/refine.h>
+#include <snug/scheme/limits.h>
 
 namespace snug {
 namespace {
 
-CornerFan fan_of(const Topology& topology, HalfEdge corner, const SchemeOptions& options) {
-  std::uint16_t after = 0, before = 0;
-  HalfEdge h = topology.ccw(corner);
-  for (; h != no_half_edge && h != corner; h = topology.ccw(h)) ++after;
-  if (h == corner) return {0, after, true, false};
-  for (h = topology.cw(corner); h != no_half_edge; h = topology.cw(h)) ++before;
-  return {before, after, false, is_sharp_corner(topology, topology.from(corner), options)};
+// A corner as its patch sees it.
+struct CornerView {
+  CornerFan fan;  // when all that decays has decayed
+  bool plain;     // the fan says everything
+};
+
+CornerView view_of(const Topology& topology, const Sharpness& sharpness, HalfEdge corner,
+                   const SchemeOptions& options) {
+  const bool loop = options.scheme == Scheme::loop;
+  CornerView view{{0, 0, false, false, false}, true};
+  CornerFan& fan = view.fan;
+  const auto is_standard = [&](HalfEdge h) { return loop || topology.face(topology.face_of(h)).size() == 4; };
+  bool cutting = false;
+  const VertexId v = topology.from(corner);
+  if (!sharpness.none() || !topology.is_manifold()) {
+    thread_local Star star;
+    gather_star(topology, sharpness, v, options.boundary, star);
+    view.plain = is_stationary(star);
+    const auto infinite = std::count_if(star.spokes.begin(), star.spokes.end(), [](const Spoke& spoke) {
+      return spoke.sharpness >= infinite_sharpness;
+    });
+    fan.sharp = star.sharpness >= infinite_sharpness || infinite > 2;
+    cutting = fan.sharp || infinite == 2;
+    fan.odd = !cutting && infinite == 1;
+  }
+  const auto ends = [&](HalfEdge h) {  // may the fan not go on across this half-edge?
+    const EdgeId e = topology.edge_of(h);
+    return topology.ends_fans(e) ||
+           (cutting && !sharpness.edges.empty() && sharpness.edges[e.index()] >= infinite_sharpness);
+  };
+  HalfEdge h = corner;
+  bool standard = is_standard(h);
+  while (!ends(topology.prev(h))) {
+    h = topology.ccw(h);
+    if (h == corner) {
+      fan.closed = true;
+      break;
+    }
+    ++fan.after;
+    standard = standard && is_standard(h);
+  }
+  if (fan.closed) {
+    fan.odd = fan.odd || (cutting && !fan.sharp);
+    view.plain = view.plain && standard && !fan.odd && fan.faces() >= 3;
+    return view;
+  }
+  for (h = corner; !ends(h);) {
+    h = topology.cw(h);
+    ++fan.before;
+    standard = standard && is_standard(h);
+  }
+  if (!cutting && !fan.odd) {  // the short way: nothing is sharp but what connectivity makes so
+    fan.sharp = vertex_sharpness(topology, sharpness, v, options.boundary) >= infinite_sharpness;
+  }
+  view.plain = view.plain && standard && !fan.odd;
+  return view;
 }
+
+CornerFan dual_fan(const Topology& topology, HalfEdge corner) {
+  const std::size_t size = topology.face(topology.face_of(corner)).size();
+  return {0, static_cast<std::uint16_t>(size - 1), true, false, false};
+}
+
+KindKey dual_key(const Topology& topology, HalfEdge start, Scheme scheme) {
+  KindKey key;
+  key.scheme = scheme;
+  std::vector<std::uint32_t> sizes;
+  topology.walk_fan(start, [&](HalfEdge h) {
+    if (sizes.size() < 4) key.corners[sizes.size()] = dual_fan(topology, h);
+    sizes.push_back(static_cast<std::uint32_t>(topology.face(topology.face_of(h)).size()));
+  });
+  if (sizes.size() == 4) return key;
+  key.polygon = true;
+  key.corners = {};
+  key.details = std::move(sizes);
+  return key;
+}
+
+// The faces around the corners of a face, its own first, each as the half-edge that leaves the corner where it was met.
+std::vector<HalfEdge> faces_around(const Topology& topology, HalfEdge start) {
+  std::vector<HalfEdge> found{start};
+  std::vector<FaceId> met{topology.face_of(start)};
+  const auto add = [&](HalfEdge h) {
+    const FaceId f = topology.face_of(h);
+    if (std::find(met.begin(), met.end(), f) != met.end()) return;
+    met.push_back(f);
+    found.push_back(h);
+  };
+  HalfEdge corner = start;
+  do {
+    topology.walk_fan(corner, add);
+    if (topology.twin(corner) != no_half_edge) {
+      for (HalfEdge h = topology.cw(corner); h != no_half_edge && h != corner; h = topology.cw(h)) add(h);
+    }
+    topology.for_each_fan(topology.from(corner), [&](HalfEdge first) { topology.walk_fan(first, add); });
+    corner = topology.next(corner);
+  } while (corner != start);
+  return found;
+}
+
+// Details of a primal kind: rules; faces; sharpness of vertices and edges.
+class DetailWriter {
+ public:
+  std::vector<std::uint32_t> words;
+  void add(std::size_t word) { words.push_back(static_cast<std::uint32_t>(word)); }
+  void add(double value) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    words.push_back(static_cast<std::uint32_t>(bits));
+    words.push_back(static_cast<std::uint32_t>(bits >> 32));
+  }
+};
+
+std::vector<std::uint32_t> primal_details(const Topology& topology, HalfEdge start,
+                                          const SchemeOptions& options, const Sharpness& sharpness) {
+  const PartOfMesh part = part_of(topology, sharpness, options.boundary, faces_around(topology, start));
+  // The corners are the first vertices; fewer than the face has if it names one twice.
+  std::size_t corners = 0;
+  for (const VertexId v : part.topology.face(FaceId(0))) corners = std::max(corners, v.index() + 1);
+  DetailWriter out;
+  out.add(static_cast<std::size_t>(options.creases) | static_cast<std::size_t>(options.triangles) << 1);
+  out.add(part.names.size());
+  out.add(part.topology.face_count());
+  for (std::size_t f = 0; f < part.topology.face_count(); ++f) {
+    const auto face = part.topology.face(FaceId(f));
+    out.add(face.size());
+    for (const VertexId v : face) out.add(v.index());
+  }
+  // Nothing beyond the edges and vertices of the face's corners counts.
+  std::vector<std::pair<std::size_t, double>> sharp;
+  if (!part.sharpness.vertices.empty()) {
+    for (std::size_t v = 0; v < corners; ++v) {
+      if (part.sharpness.vertices[v] > 0) sharp.emplace_back(v, part.sharpness.vertices[v]);
+    }
+  }
+  out.add(sharp.size());
+  for (const auto& [v, s] : sharp) {
+    out.add(v);
+    out.add(s);
+  }
+  sharp.clear();
+  for (std::size_t e = 0; e < part.sharpness.edges.size(); ++e) {
+    const HalfEdge h = part.topology.half_of(EdgeId(e));
+    const bool counts = part.topology.from(h).index() < corners || part.topology.to(h).index() < corners;
+    if (counts && part.sharpness.edges[e] > 0 && !part.topology.ends_fans(EdgeId(e))) {
+      sharp.emplace_back(e, part.sharpness.edges[e]);
+    }
+  }
+  out.add(sharp.size());
+  for (const auto& [e, s] : sharp) {
+    out.add(e);
+    out.add(s);
+  }
+  return std::move(out.words);
+}
+
+Neighbourhood from_details(const KindKey& key) {
+  std::size_t at = 0;
+  const auto next = [&] { return key.details[at++]; };
+  const auto next_double = [&] {
+    const std::uint64_t low = next(), high = next();
+    return std::bit_cast<double>(low | high << 32);
+  };
+  Neighbourhood result;
+  const std::uint32_t rules = next();
+  result.options = {key.scheme, BoundaryRule::edge_only, static_cast<CreaseMethod>(rules & 1u),
+                    static_cast<SmoothTriangles>(rules >> 1), CatmarkVertexRule::standard};
+  const std::size_t vertices = next(), faces = next();
+  std::vector<std::uint32_t> offsets{0};
+  std::vector<VertexId> corners;
+  for (std::size_t f = 0; f < faces; ++f) {
+    for (std::size_t left = next(); left > 0; --left) corners.emplace_back(next());
+    offsets.push_back(static_cast<std::uint32_t>(corners.size()));
+  }
+  result.topology = Topology(std::move(offsets), std::move(corners), vertices);
+  if (std::size_t left = next(); left > 0) {
+    result.sharpness.vertices.assign(vertices, 0.0);
+    for (; left > 0; --left) {
+      const std::size_t v = next();
+      result.sharpness.vertices[v] = next_double();
+    }
+  }
+  if (std::size_t left = next(); left > 0) {
+    result.sharpness.edges.assign(result.topology.edge_count(), 0.0);
+    for (; left > 0; --left) {
+      const std::size_t e = next();
+      result.sharpness.edges[e] = next_double();
+    }
+  }
+  return result;
+}
+
+// Faces in the making.
+struct FaceList {
+  std::vector<std::uint32_t> offsets{0};
+  std::vector<VertexId> corners;
+  void add(std::initializer_list<std::size_t> face) {
+    for (const std::size_t v : face) corners.emplace_back(v);
+    offsets.push_back(static_cast<std::uint32_t>(corners.size()));
+  }
+  Topology finish(std::size_t vertices) && {
+    return Topology(std::move(offsets), std::move(corners), vertices);
+  }
+};
 
 // Which of the vertices across the edges 01, 12, 20 are there, and which are the same by structure: entry i
 // is the place among the distinct ones, or absent.
@@ -25,7 +221,7 @@ struct AcrossEdges {
   std::array<std::uint8_t, 3> place{absent, absent, absent};
   std::uint8_t count = 0;
 
-  explicit AcrossEdges(const std::array<CornerFan, 3>& corners) {
+  explicit AcrossEdges(const std::array<CornerFan, 4>& corners) {
     const auto merges = [&](std::size_t i) { return corners[i].closed && corners[i].faces() == 3; };
     for (std::size_t i = 0; i < 3; ++i) {
       if (!corners[i].closed && corners[i].before == 0) continue;
@@ -40,77 +236,14 @@ struct AcrossEdges {
   }
 };
 
-}  // namespace
-
-std::size_t KindKeyHash::operator()(const KindKey& key) const noexcept {
-  std::uint64_t hash = static_cast<std::uint64_t>(key.scheme);
-  for (const CornerFan& fan : key.corners) {
-    const std::uint64_t code = std::uint64_t{fan.before} << 18 | std::uint64_t{fan.after} << 2 |
-                               std::uint64_t{fan.closed} << 1 | std::uint64_t{fan.sharp};
-    hash = (hash ^ code) * 0x9e3779b97f4a7c15u;
-    hash ^= hash >> 31;
-  }
-  return hash;
-}
-
-TurnedKey kind_key(const Topology& topology, FaceId face, const SchemeOptions& options) {
-  const HalfEdge base = topology.first_of(face);
-  std::array<CornerFan, 3> fans;
-  for (std::size_t i = 0; i < 3; ++i) fans[i] = fan_of(topology, base + static_cast<HalfEdge>(i), options);
-  TurnedKey best{{options.scheme, fans}, 0};
-  for (std::uint8_t first = 1; first < 3; ++first) {
-    const std::array<CornerFan, 3> turned{fans[first], fans[(first + 1) % 3], fans[(first + 2) % 3]};
-    if (turned < best.key.corners) best = {{options.scheme, turned}, first};
-  }
-  return best;
-}
-
-void control_vertices(const Topology& topology, FaceId face, std::uint8_t first, std::vector<VertexId>& out) {
-  out.clear();
-  const HalfEdge base = topology.first_of(face);
-  std::array<HalfEdge, 3> corner;
-  std::array<bool, 3> three;  // an interior vertex of valence 3: its two outer edges face the same vertex
-  for (std::size_t i = 0; i < 3; ++i) {
-    corner[i] = base + static_cast<HalfEdge>((first + i) % 3);
-    out.push_back(topology.from(corner[i]));
-    HalfEdge h = corner[i];
-    for (int step = 0; step < 3 && h != no_half_edge; ++step) h = topology.ccw(h);
-    three[i] = h == corner[i];
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    const HalfEdge across = topology.twin(corner[i]);
-    if (across == no_half_edge || (i > 0 && three[i]) || (i == 2 && three[0])) continue;
-    out.push_back(topology.from(topology.prev(across)));
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t already = out.size();
-    HalfEdge h = topology.ccw(corner[i]);  // its face lies across edge i + 2
-    if (h != no_half_edge) {
-      for (h = topology.ccw(h); h != no_half_edge && h != corner[i]; h = topology.ccw(h)) {
-        out.push_back(topology.from(topology.prev(h)));
-      }
-    }
-    if (h != no_half_edge) {  // round a closed fan: the last two are across edge i, and corner i + 1
-      out.resize(out.size() - std::min<std::size_t>(2, out.size() - already));
-      continue;
-    }
-    h = topology.cw(corner[i]);  // leaves for the vertex across edge i
-    if (h == no_half_edge) continue;
-    for (h = topology.cw(h); h != no_half_edge; h = topology.cw(h)) out.push_back(topology.to(h));
-  }
-}
-
-Topology neighbourhood(const KindKey& key) {
-  const std::array<CornerFan, 3>& fans = key.corners;
+Topology loop_neighbourhood(const std::array<CornerFan, 4>& fans) {
   for (std::size_t i = 0; i < 3; ++i) {  // both ends of an edge agree whether it is a boundary
     const CornerFan &here = fans[i], &there = fans[(i + 1) % 3];
     SNUG_EXPECT((!here.closed && here.before == 0) == (!there.closed && there.after == 0));
   }
   const AcrossEdges across(fans);
-  std::vector<VertexId> corners;  // of faces
-  const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
-    corners.insert(corners.end(), {VertexId(a), VertexId(b), VertexId(c)});
-  };
+  FaceList faces;
+  const auto add = [&](std::size_t a, std::size_t b, std::size_t c) { faces.add({a, b, c}); };
   const auto outer = [&](std::size_t edge) { return std::size_t{3} + across.place[edge]; };
   add(0, 1, 2);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -144,15 +277,247 @@ Topology neighbourhood(const KindKey& key) {
       }
     }
   }
-  std::vector<std::uint32_t> offsets(corners.size() / 3 + 1);
-  for (std::size_t f = 0; f < offsets.size(); ++f) offsets[f] = static_cast<std::uint32_t>(3 * f);
-  return Topology(std::move(offsets), std::move(corners), count);
+  return std::move(faces).finish(count);
 }
 
-SchemeOptions neighbourhood_options(const KindKey& key) {
-  const bool sharp =
-      std::any_of(key.corners.begin(), key.corners.end(), [](const CornerFan& f) { return f.sharp; });
-  return {key.scheme, sharp ? BoundaryRule::edge_and_corner : BoundaryRule::edge_only};
+// The two vertices across an edge of a quad: at its first corner and at its second one; absent at a boundary.
+struct AcrossQuad {
+  std::array<std::size_t, 4> near{}, far{};
+  std::array<bool, 4> there{};
+  std::size_t end = 4;
+
+  explicit AcrossQuad(const std::array<CornerFan, 4>& fans) {
+    const auto merges = [&](std::size_t i) { return fans[i].closed && fans[i].faces() == 3; };
+    for (std::size_t i = 0; i < 4; ++i) {
+      there[i] = fans[i].closed || fans[i].before > 0;
+      if (!there[i]) continue;
+      near[i] = i > 0 && merges(i) ? far[i - 1] : end++;
+      far[i] = i == 3 && merges(0) ? near[0] : end++;
+    }
+  }
+};
+
+Topology catmark_neighbourhood(const std::array<CornerFan, 4>& fans) {
+  for (std::size_t i = 0; i < 4; ++i) {  // both ends of an edge agree whether it is a boundary
+    const CornerFan &here = fans[i], &there = fans[(i + 1) % 4];
+    SNUG_EXPECT((!here.closed && here.before == 0) == (!there.closed && there.after == 0));
+  }
+  const AcrossQuad across(fans);
+  FaceList faces;
+  faces.add({0, 1, 2, 3});
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (across.there[i]) faces.add({(i + 1) % 4, i, across.near[i], across.far[i]});
+  }
+  std::size_t count = across.end;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const CornerFan& fan = fans[i];
+    const std::size_t faces_before = fan.closed ? 2 : 1;  // of the patch and across its edges
+    if (fan.after > 0) {
+      std::size_t last = across.far[(i + 3) % 4];
+      for (std::size_t k = faces_before; k < fan.after; ++k) {
+        const std::size_t diagonal = count++;
+        const std::size_t spoke = fan.closed && k + 1 == fan.after ? across.near[i] : count++;
+        faces.add({i, last, diagonal, spoke});
+        last = spoke;
+      }
+    }
+    if (fan.before > 0) {
+      std::size_t last = across.near[i];
+      for (std::size_t k = 1; k < fan.before; ++k) {
+        const std::size_t diagonal = count++, spoke = count++;
+        faces.add({i, spoke, diagonal, last});
+        last = spoke;
+      }
+    }
+  }
+  return std::move(faces).finish(count);
+}
+
+Topology dual_neighbourhood(std::span<const std::size_t> sizes) {
+  FaceList faces;
+  const std::size_t n = sizes.size();
+  std::size_t count = n + 1;
+  for (std::size_t k = 0; k < n; ++k) {
+    faces.corners.emplace_back(0u);
+    faces.corners.emplace_back(1 + k);
+    for (std::size_t i = 3; i < sizes[k]; ++i) faces.corners.emplace_back(count++);
+    faces.corners.emplace_back(1 + (k + 1) % n);
+    faces.offsets.push_back(static_cast<std::uint32_t>(faces.corners.size()));
+  }
+  return std::move(faces).finish(count);
+}
+
+// The half-edges that leave the corners of a face, from `start` on.
+template <std::size_t n>
+std::array<HalfEdge, n> corners_from(const Topology& topology, HalfEdge start) {
+  std::array<HalfEdge, n> corner;
+  for (HalfEdge& h : corner) {
+    h = start;
+    start = topology.next(start);
+  }
+  return corner;
+}
+
+bool merges(const CornerFan& fan) { return fan.closed && fan.faces() == 3; }
+
+void loop_control(const Topology& topology, HalfEdge start, const std::array<CornerFan, 4>& fans,
+                  std::vector<VertexId>& out) {
+  const auto corner = corners_from<3>(topology, start);
+  for (const HalfEdge h : corner) out.push_back(topology.from(h));
+  for (std::size_t i = 0; i < 3; ++i) {
+    const bool there = fans[i].closed || fans[i].before > 0;
+    // At an interior vertex of valence 3 both outer edges face the same vertex.
+    if (!there || (i > 0 && merges(fans[i])) || (i == 2 && merges(fans[0]))) continue;
+    out.push_back(topology.from(topology.prev(topology.twin(corner[i]))));
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const CornerFan& fan = fans[i];
+    const std::size_t last = fan.closed ? (fan.after < 2 ? 0 : fan.after - 2u) : fan.after;
+    HalfEdge h = corner[i];
+    for (std::size_t step = 1; step <= last; ++step) {
+      h = topology.ccw(h);
+      if (step > 1) out.push_back(topology.from(topology.prev(h)));
+    }
+    h = corner[i];
+    for (std::size_t step = 1; step <= fan.before; ++step) {
+      h = topology.cw(h);
+      if (step > 1) out.push_back(topology.to(h));
+    }
+  }
+}
+
+void catmark_control(const Topology& topology, HalfEdge start, const std::array<CornerFan, 4>& fans,
+                     std::vector<VertexId>& out) {
+  const auto corner = corners_from<4>(topology, start);
+  for (const HalfEdge h : corner) out.push_back(topology.from(h));
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (!fans[i].closed && fans[i].before == 0) continue;
+    const HalfEdge across = topology.twin(corner[i]);
+    if (i == 0 || !merges(fans[i])) out.push_back(topology.to(topology.next(across)));
+    if (i < 3 || !merges(fans[0])) out.push_back(topology.from(topology.prev(across)));
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const CornerFan& fan = fans[i];
+    const std::size_t last = fan.closed ? fan.after - 1u : fan.after;
+    HalfEdge h = corner[i];
+    for (std::size_t step = 1; step <= last; ++step) {
+      h = topology.ccw(h);
+      if (step == 1) continue;
+      out.push_back(topology.to(topology.next(h)));
+      if (!fan.closed || step < last) out.push_back(topology.from(topology.prev(h)));
+    }
+    h = corner[i];
+    for (std::size_t step = 1; step <= fan.before; ++step) {
+      h = topology.cw(h);
+      if (step == 1) continue;
+      out.push_back(topology.to(topology.next(h)));
+      out.push_back(topology.to(h));
+    }
+  }
+}
+
+void dual_control(const Topology& topology, HalfEdge start, std::vector<VertexId>& out) {
+  out.push_back(topology.from(start));
+  topology.walk_fan(start, [&](HalfEdge h) { out.push_back(topology.to(h)); });
+  topology.walk_fan(start, [&](HalfEdge h) {
+    for (HalfEdge g = topology.next(h); topology.to(g) != topology.from(topology.prev(h));
+         g = topology.next(g))
+      out.push_back(topology.to(g));
+  });
+}
+
+}  // namespace
+
+std::size_t KindKeyHash::operator()(const KindKey& key) const noexcept {
+  std::uint64_t hash = static_cast<std::uint64_t>(key.scheme) << 1 | std::uint64_t{key.polygon};
+  const auto mix = [&](std::uint64_t code) {
+    hash = (hash ^ code) * 0x9e3779b97f4a7c15u;
+    hash ^= hash >> 31;
+  };
+  for (const CornerFan& fan : key.corners) {
+    mix(std::uint64_t{fan.before} << 19 | std::uint64_t{fan.after} << 3 | std::uint64_t{fan.closed} << 2 |
+        std::uint64_t{fan.sharp} << 1 | std::uint64_t{fan.odd});
+  }
+  for (const std::uint32_t word : key.details) mix(word);
+  return hash;
+}
+
+KindKey kind_key_from(const Topology& topology, HalfEdge start, const SchemeOptions& options,
+                      const Sharpness& sharpness) {
+  if (!is_primal(options.scheme)) return dual_key(topology, start, options.scheme);
+  KindKey key;
+  key.scheme = options.scheme;
+  const std::size_t size = topology.face(topology.face_of(start)).size();
+  key.polygon = size != (options.scheme == Scheme::loop ? 3u : 4u);
+  bool plain = !key.polygon;
+  if (!key.polygon) {
+    HalfEdge h = start;
+    for (std::size_t i = 0; i < size; ++i, h = topology.next(h)) {
+      const CornerView view = view_of(topology, sharpness, h, options);
+      key.corners[i] = view.fan;
+      plain = plain && view.plain;
+    }
+  }
+  if (!plain) key.details = primal_details(topology, start, options, sharpness);
+  return key;
+}
+
+TurnedKey kind_key(const Topology& topology, FaceId face, const SchemeOptions& options,
+                   const Sharpness& sharpness) {
+  SNUG_EXPECT(options.scheme == Scheme::loop);
+  const HalfEdge base = topology.first_of(face);
+  const auto turned = [&](std::uint8_t first) {
+    return kind_key_from(topology, base + first, options, sharpness);
+  };
+  TurnedKey best{turned(0), 0};
+  if (!best.key.plain()) return best;
+  const std::array<CornerFan, 4> fans = best.key.corners;
+  for (std::uint8_t first = 1; first < 3; ++first) {
+    const std::array<CornerFan, 4> other{fans[first], fans[(first + 1) % 3], fans[(first + 2) % 3], fans[3]};
+    if (other < best.key.corners) best.key.corners = other, best.first = first;
+  }
+  return best;
+}
+
+void control_vertices(const Topology& topology, HalfEdge start, const KindKey& key,
+                      std::vector<VertexId>& out) {
+  out.clear();
+  if (!is_primal(key.scheme)) {
+    dual_control(topology, start, out);
+  } else if (!key.plain()) {
+    out = part_of(topology, {}, BoundaryRule::edge_only, faces_around(topology, start)).names;
+  } else if (key.scheme == Scheme::loop) {
+    loop_control(topology, start, key.corners, out);
+  } else {
+    catmark_control(topology, start, key.corners, out);
+  }
+}
+
+void control_vertices(const Topology& topology, FaceId face, std::uint8_t first, const KindKey& key,
+                      std::vector<VertexId>& out) {
+  control_vertices(topology, topology.first_of(face) + first, key, out);
+}
+
+Neighbourhood neighbourhood(const KindKey& key) {
+  if (!is_primal(key.scheme)) {
+    std::vector<std::size_t> sizes(key.details.begin(), key.details.end());
+    if (!key.polygon) {
+      for (const CornerFan& fan : key.corners) sizes.push_back(fan.faces());
+    }
+    return {dual_neighbourhood(sizes), {}, {key.scheme, BoundaryRule::edge_only}};
+  }
+  if (!key.plain()) return from_details(key);
+  const bool loop = key.scheme == Scheme::loop;
+  Neighbourhood result{loop ? loop_neighbourhood(key.corners) : catmark_neighbourhood(key.corners),
+                       {},
+                       {key.scheme, BoundaryRule::edge_only}};
+  for (std::size_t i = 0; i < (loop ? 3u : 4u); ++i) {
+    if (!key.corners[i].sharp) continue;
+    if (result.sharpness.vertices.empty())
+      result.sharpness.vertices.assign(result.topology.vertex_count(), 0.0);
+    result.sharpness.vertices[i] = infinite_sharpness;
+  }
+  return result;
 }
 
 }  // namespace snug

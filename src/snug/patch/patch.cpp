@@ -31,6 +31,18 @@ void gather(const Kind& kind, std::uint8_t first, const PointAt& at, Patch& out)
   out.error = enlarged(unit_roundoff * out.largest + 4 * underflow_error);
 }
 
+// The control points of a child from those of the whole.
+void apply(const Patch& patch, const KindChild& step, Patch& piece) {
+  piece.kind = step.kind;
+  piece.origin = patch.origin;
+  piece.points.resize(step.stencils.row_count());
+  for (std::size_t r = 0; r < piece.points.size(); ++r) {
+    piece.points[r] = step.stencils.apply<Vector3>(r, patch.points);
+  }
+  measure(piece);
+  piece.error = step.stencils.result_error(patch.largest, patch.error);
+}
+
 }  // namespace
 
 Patch make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> points) {
@@ -64,16 +76,17 @@ Patch split(const Patch& patch, unsigned child) {
 void split(const Patch& patch, unsigned child, Patch& piece) {
   SNUG_EXPECT(child < 4 && patch.points.size() == patch.kind->control_count() && &piece != &patch);
   const KindChild& step = patch.kind->children()[child < 3 ? patch.to_kind(child) : 3];
-  piece.kind = step.kind;
+  apply(patch, step, piece);
   piece.first = static_cast<std::uint8_t>((step.first + patch.first) % 3);
   piece.path = patch.path.child(child);
-  piece.origin = patch.origin;
-  piece.points.resize(step.stencils.row_count());
-  for (std::size_t r = 0; r < piece.points.size(); ++r) {
-    piece.points[r] = step.stencils.apply<Vector3>(r, patch.points);
-  }
-  measure(piece);
-  piece.error = step.stencils.result_error(patch.largest, patch.error);
+}
+
+Patch patch_of_polygon(const Patch& polygon, std::size_t part) {
+  SNUG_EXPECT(polygon.kind->key().polygon && polygon.points.size() == polygon.kind->control_count());
+  Patch piece;
+  apply(polygon, polygon.kind->children().at(part), piece);
+  piece.path = polygon.path;
+  return piece;
 }
 
 }  // namespace snug

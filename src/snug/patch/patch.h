@@ -38,6 +38,10 @@ struct Patch {
 void make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> all,
                 std::span<const VertexId> which, Patch& out);
 
+/// Half a quad of a polygon that is no patch itself (KindKey), as Kind::children() counts them. Its path is that of the
+/// polygon.
+[[nodiscard]] Patch patch_of_polygon(const Patch& polygon, std::size_t part);
+
 /// Piece `child` (0 to 3) of a patch after one step of subdivision.
 ///
 /// Guarantee: `error` of the result covers the parent's, the rounding of this step and of the masks.

@@ -1,19 +1,35 @@
 #pragma once
 
+#include <optional>
+
 #include <snug/patch/neighbourhood.h>
 #include <snug/scheme/stencils.h>
 
 namespace snug {
 
-/// Is the limit patch of this kind one quartic polynomial? So it is if every corner is regular.
-[[nodiscard]] bool is_polynomial(const KindKey& key);
+/// Place of the Bezier point u^i v^j among those of a triangle of some degree; j outermost.
+[[nodiscard]] constexpr std::size_t bezier_index(std::size_t degree, std::size_t i, std::size_t j) {
+  return i + j * (degree + 1) - j * (j - 1) / 2;
+}
+[[nodiscard]] constexpr std::size_t bezier_count(std::size_t degree) {
+  return (degree + 1) * (degree + 2) / 2;
+}
+inline constexpr std::size_t max_degree = 6;
 
-/// Bezier points of a polynomial kind from its control points: 15 rows. Smooth boundaries are completed by
-/// one row of ghost points, which reproduce them exactly.
+/// A patch as one polynomial on its triangle, or as two: of the corners 0, 1 and m, and of m, 1 and 2, m being the middle
+/// of the edge 02.
+struct PolynomialForm {
+  std::size_t degree = 0;  ///< of each
+  std::size_t parts = 1;
+  Stencils rows;  ///< bezier_count(degree) Bezier points a part, from control points
+};
+
+/// The polynomial form of a kind, if every corner is regular: degree 4 for Loop and Doo-Sabin, 6 for the half of a
+/// bicubic Catmull-Clark quad, two quadratic parts for Midedge. Smooth boundaries and sharp corners of the regular sort
+/// are completed by ghost points, which reproduce them exactly.
 ///
-/// Guarantee: entries are multiples of 1/24, each rounded once.
-/// Requires:  is_polynomial(key).
-/// Source:    derivations/loop_bezier.md; [Stam98] gives the same basis.
-[[nodiscard]] Stencils bezier_rows(const KindKey& key);
+/// Guarantee: entries are small fractions, each rounded once.
+/// Source:    derivations/loop_bezier.md, tensor_bezier.md, midedge_bezier.md; [Stam98] gives the same basis for Loop.
+[[nodiscard]] std::optional<PolynomialForm> polynomial_form(const KindKey& key);
 
 }  // namespace snug

@@ -14,27 +14,28 @@
 namespace snug {
 namespace {
 
-// The pieces of one face, and how many splits they took.
-struct FaceBounds {
+// The pieces of one patch, and how many splits they took.
+struct PatchPieces {
   std::vector<PieceEnclosure> pieces;
   std::uint64_t splits = 0;
   bool reached = true;
 };
 
-class FaceBounder {
+class PatchBounder {
  public:
-  FaceBounder(const Surface& surface, const BoundOptions& options, double target, const WorkMonitor& monitor)
+  PatchBounder(const Surface& surface, const BoundOptions& options, double target, const WorkMonitor& monitor)
       : surface_(surface),
         options_(options),
         target_(target),
         monitor_(monitor),
         back_(surface.scale().inverse()) {}
 
-  FaceBounds run(FaceId face, std::uint64_t budget) {
+  PatchPieces run(PatchId root, std::uint64_t budget) {
     result_ = {};
-    face_ = face;
+    root_ = root;
+    level_ = surface_.after_first_split(root) ? 1 : 0;
     budget_ = budget;
-    if (surface_.has_patch(face)) visit(surface_.patch(face));
+    if (surface_.has_patch(root)) visit(surface_.patch(root));
     return std::move(result_);
   }
 
@@ -42,7 +43,7 @@ class FaceBounder {
   void visit(const Patch& patch) {
     PieceEnclosure piece;
     const bool fine = fit(patch, piece);
-    const bool more = options_.tolerance ? !fine : patch.path.level() < options_.level;
+    const bool more = options_.tolerance ? !fine : level_ + patch.path.level() < options_.level;
     const bool useful = !options_.tolerance || !stuck_;
     if (more && useful && result_.splits < budget_ && patch.path.level() < PiecePath::max_level) {
       ++result_.splits;
@@ -56,7 +57,7 @@ class FaceBounder {
 
   // Fits the enclosures of a piece; true if they meet the target.
   bool fit(const Patch& patch, PieceEnclosure& piece) {
-    piece.face = face_;
+    piece.patch = root_;
     piece.path = patch.path;
     const std::array<Vector3, 3> corners = limit_corners(patch);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -92,11 +93,12 @@ class FaceBounder {
   double target_;
   const WorkMonitor& monitor_;
   PowerOfTwo back_;
-  FaceId face_;
+  PatchId root_;
+  unsigned level_ = 0;  // of the whole patch
   std::uint64_t budget_ = 0;
   bool stuck_ = false;  // rounding alone makes up the last fit: splitting does not help
   HullPoints points_;
-  FaceBounds result_;
+  PatchPieces result_;
 };
 
 }  // namespace
@@ -106,28 +108,28 @@ BoundSummary bound(const Surface& surface, const BoundOptions& options,
   SNUG_EXPECT(!options.tolerance || *options.tolerance > 0);
   SNUG_EXPECT(options.level <= PiecePath::max_level);
   const double target = options.tolerance ? surface.scale().apply(*options.tolerance / 2) : INFINITY;
-  // Faces worked on at once: as many as their pieces are few, so that memory stays small and threads are busy.
-  constexpr std::size_t most_faces = 256, most_pieces = 1 << 16;
+  // Patches worked on at once: as many as their pieces are few, so that memory stays small and threads are busy.
+  constexpr std::size_t most_patches = 256, most_pieces = 1 << 16;
   std::size_t chunk = 1;
   BoundSummary summary;
-  std::vector<FaceBounds> results;
-  for (std::size_t begin = 0, count = 0; begin < surface.face_count(); begin += count) {
-    count = std::min(chunk, surface.face_count() - begin);
-    // A face that needs more than its share of the memory is done again, alone.
+  std::vector<PatchPieces> results;
+  for (std::size_t begin = 0, count = 0; begin < surface.patch_count(); begin += count) {
+    count = std::min(chunk, surface.patch_count() - begin);
+    // A patch that needs more than its share of the memory is done again, alone.
     const std::uint64_t left = std::min<std::uint64_t>(
         options.budget - summary.splits, std::max<std::uint64_t>(64, most_pieces / (3 * count)));
     results.assign(count, {});
     parallel_for(count, options.threads, [&](std::size_t from, std::size_t to) {
-      FaceBounder bounder(surface, options, target, monitor);
+      PatchBounder bounder(surface, options, target, monitor);
       for (std::size_t i = from; i < to; ++i) {
-        results[i] = bounder.run(FaceId(begin + i), left);
+        results[i] = bounder.run(PatchId(begin + i), left);
       }
     });
     for (std::size_t i = 0; i < count; ++i) {
-      // The budget is spent in the order of faces, whatever the threads did.
+      // The budget is spent in the order of patches, whatever the threads did.
       const std::uint64_t rest = options.budget - summary.splits;
       if (results[i].splits > rest || (results[i].splits == left && left < rest)) {
-        results[i] = FaceBounder(surface, options, target, monitor).run(FaceId(begin + i), rest);
+        results[i] = PatchBounder(surface, options, target, monitor).run(PatchId(begin + i), rest);
       }
       summary.splits += results[i].splits;
       summary.reached = summary.reached && results[i].reached;
@@ -139,9 +141,9 @@ BoundSummary bound(const Surface& surface, const BoundOptions& options,
       }
     }
     std::size_t pieces = 0;
-    for (const FaceBounds& face : results) pieces += face.pieces.size();
-    chunk = std::clamp<std::size_t>(most_pieces * count / (pieces + 1), 1, std::min(4 * count, most_faces));
-    monitor.report(static_cast<double>(begin + count) / static_cast<double>(surface.face_count()));
+    for (const PatchPieces& patch : results) pieces += patch.pieces.size();
+    chunk = std::clamp<std::size_t>(most_pieces * count / (pieces + 1), 1, std::min(4 * count, most_patches));
+    monitor.report(static_cast<double>(begin + count) / static_cast<double>(surface.patch_count()));
   }
   return summary;
 }

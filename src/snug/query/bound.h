@@ -23,15 +23,15 @@ struct BoundOptions {
   /// Split until each radius is at most half of this, in mesh units; with control_box, until half the box's
   /// longest side is.
   std::optional<double> tolerance;
-  /// Without a tolerance: split every patch this often.
+  /// Without a tolerance: split every patch this often; the first split of a polygon that is no patch counts.
   unsigned level = 0;
-  std::uint64_t budget = 10'000'000;  ///< most splits in all; spent face by face
+  std::uint64_t budget = 10'000'000;  ///< most splits in all; spent patch by patch
   int threads = 0;
 };
 
 /// What encloses one piece of the limit surface, in mesh units.
 struct PieceEnclosure {
-  FaceId face;
+  PatchId patch;
   PiecePath path;
   Triangle corners;                          ///< limit corners, in double precision
   std::optional<OffsetTriangle> offset;      ///< absent for control_box
@@ -46,10 +46,10 @@ struct BoundSummary {
   bool reached = true;  ///< every piece meets the tolerance; else budget, levels or rounding stood in the way
 };
 
-/// Enclosures of the whole limit surface, passed to `sink` face by face, pieces of a face in the order of
+/// Enclosures of the whole limit surface, passed to `sink` patch by patch, pieces of one in the order of
 /// their paths.
 ///
-/// Guarantee: every limit point of face f lies in the union of its pieces' offset triangles, of their
+/// Guarantee: every limit point of a patch lies in the union of its pieces' offset triangles, of their
 ///            interval triangles, and of their boxes, each on its own, rounding included; also where
 ///            `reached` is false. Same output for any number of threads.
 /// Errors:    InputError if a result does not fit a double; whatever `sink` or the monitor throws.

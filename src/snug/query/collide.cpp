@@ -136,7 +136,7 @@ class Query {
     const NearestTriangles near =
         test(placed(model_[0]->offset(leaf_a), frame_[0]), placed(model_[1]->offset(leaf_b), frame_[1]));
     if (dropped_) return;
-    refine(refinement_[0]->root(model_[0]->face(leaf_a)), refinement_[1]->root(model_[1]->face(leaf_b)),
+    refine(refinement_[0]->root(model_[0]->patch(leaf_a)), refinement_[1]->root(model_[1]->patch(leaf_b)),
            near);
   }
 
@@ -288,20 +288,21 @@ const char* name_of(Verdict verdict) {
 CollisionModel::CollisionModel(const Surface& surface, int threads, const WorkMonitor& monitor,
                                std::optional<TableLayout> table)
     : surface_(&surface), table_(table) {
-  for (std::size_t f = 0; f < surface.face_count(); ++f) {
-    if (surface.has_patch(FaceId(f))) faces_.push_back(FaceId(f));
+  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+    if (surface.has_patch(PatchId(p))) patches_.push_back(PatchId(p));
   }
-  if (faces_.empty()) {
-    throw InputError(
-        InputProblem::refused,
-        "no face has a limit surface: all touch the boundary, whose rule is none; take another rule");
+  if (patches_.empty()) {
+    throw InputError(InputProblem::refused,
+                     "nothing here has a limit surface: all touches the boundary or is a hole; take another "
+                     "boundary rule");
   }
-  offsets_.resize(faces_.size());
-  parallel_for(faces_.size(), threads, [&](std::size_t begin, std::size_t end) {
+  offsets_.resize(patches_.size());
+  parallel_for(patches_.size(), threads, [&](std::size_t begin, std::size_t end) {
     monitor.checkpoint();
     HullPoints points;
     for (std::size_t i = begin; i < end; ++i) {
-      offsets_[i] = make_piece(surface.library(), faces_[i], surface.patch(faces_[i]), points, table_).offset;
+      offsets_[i] =
+          make_piece(surface.library(), patches_[i], surface.patch(patches_[i]), points, table_).offset;
     }
   });
   tree_ = ObbTree(offsets_);

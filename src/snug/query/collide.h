@@ -21,7 +21,7 @@ enum class Verdict : std::uint8_t {
 /// A surface made ready for queries: offset triangles of its patches, from hull rows or from the tables of a
 /// layout, and a tree over them. Immutable.
 ///
-/// Cost:      about 10 microseconds a face, n log n for the tree; some 500 bytes a face.
+/// Cost:      about 10 microseconds a patch, n log n for the tree; some 500 bytes a patch.
 class CollisionModel {
  public:
   /// Requires:  the surface outlives the model.
@@ -32,14 +32,14 @@ class CollisionModel {
   [[nodiscard]] const Surface& surface() const { return *surface_; }
   [[nodiscard]] std::optional<TableLayout> table() const { return table_; }
   [[nodiscard]] const ObbTree& tree() const { return tree_; }
-  /// Face and offset triangle of a leaf.
-  [[nodiscard]] FaceId face(std::uint32_t leaf) const { return faces_[leaf]; }
+  /// Patch and offset triangle of a leaf.
+  [[nodiscard]] PatchId patch(std::uint32_t leaf) const { return patches_[leaf]; }
   [[nodiscard]] const OffsetTriangle& offset(std::uint32_t leaf) const { return offsets_[leaf]; }
 
  private:
   const Surface* surface_;
   std::optional<TableLayout> table_;
-  std::vector<FaceId> faces_;
+  std::vector<PatchId> patches_;
   std::vector<OffsetTriangle> offsets_;
   ObbTree tree_;
 };

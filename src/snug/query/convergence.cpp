@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 #include <snug/base/contract.h>
 #include <snug/base/parallel.h>
@@ -10,6 +11,8 @@
 #include <snug/enclose/interval_triangle.h>
 #include <snug/enclose/table_triangle.h>
 #include <snug/patch/evaluate.h>
+#include <snug/scheme/catmark_masks.h>
+#include <snug/scheme/dual_masks.h>
 #include <snug/scheme/loop_masks.h>
 
 namespace snug {
@@ -64,10 +67,40 @@ PieceThickness by_table(const BoundTable& table, const Patch& patch, const Vecto
   return {{offset.radius, thickness(triangle.interval), upper - lower}, offset.rounding};
 }
 
+CornerEigenvalues catmark_eigenvalues(std::size_t n) {
+  // The Fourier block of index 0 has two eigenvalues beside 1, of sum 3/4 - 7/(4n) and product (1 - 3/n)/16;
+  // the larger of index 2 is found as that of index 1.
+  const auto valence = static_cast<double>(n);
+  const double sum = 0.75 - 1.75 / valence, product = (1 - 3 / valence) / 16;
+  const double symmetric = (sum + std::sqrt(sum * sum - 4 * product)) / 2;
+  if (n == 3) return {catmark::subdominant(n), symmetric};
+  const double c = std::cos(4 * std::numbers::pi / valence);
+  return {catmark::subdominant(n), std::max(symmetric, (5 + c + std::sqrt((1 + c) * (9 + c))) / 16)};
+}
+
+CornerEigenvalues midedge_eigenvalues(std::size_t n) {
+  // 1/4 comes with the next ring of quads.
+  const double c = n == 3 ? -1 : std::cos(4 * std::numbers::pi / static_cast<double>(n));
+  return {dual::midedge_subdominant(n), std::max(0.25, 0.5 + 0.5 * c)};
+}
+
+std::span<const BoundSource> sources_of(Scheme scheme) {
+  const std::span<const BoundSource> all = all_bound_sources;
+  return scheme == Scheme::loop ? all : all.first(1);
+}
+
+std::span<const std::size_t> valences_of(Scheme scheme) {
+  const std::span<const std::size_t> all = experiment_valences;
+  return scheme == Scheme::loop ? all : all.first(10);
+}
+
 }  // namespace
 
-CornerEigenvalues corner_eigenvalues(std::size_t n) {
+CornerEigenvalues corner_eigenvalues(std::size_t n, Scheme scheme) {
   SNUG_EXPECT(n >= 3);
+  if (scheme == Scheme::catmark) return catmark_eigenvalues(n);
+  if (scheme == Scheme::doo_sabin) return {dual::doo_sabin_subdominant(n), 0.25};
+  if (scheme == Scheme::midedge) return midedge_eigenvalues(n);
   const double subdominant = loop::subdominant(n);
   if (n == 3) return {subdominant, 0.125};  // the Fourier block of index 2 is that of index 1
   // cos 2x = 2 cos(x)^2 - 1
@@ -86,9 +119,9 @@ const char* name_of(ThicknessMeasure measure) {
   }
 }
 
-std::array<Thicknesses, 3> corner_thicknesses(const Surface& surface, FaceId f, BoundSource source,
+std::array<Thicknesses, 3> corner_thicknesses(const Surface& surface, PatchId p, BoundSource source,
                                               unsigned levels) {
-  Patch patch = surface.patch(f);
+  Patch patch = surface.patch(p);
   const std::optional<Vector3> normal = limit_frame(patch, {0, 0}).normal;
   SNUG_EXPECT(normal.has_value());
   const PowerOfTwo back = surface.scale().inverse();
@@ -121,8 +154,12 @@ double fitted_factor(std::span<const double> values) {
   return std::exp(sum / squares);
 }
 
-double expected_factor(std::size_t n, BoundSource source, ThicknessMeasure measure) {
-  const CornerEigenvalues eigenvalues = corner_eigenvalues(n);
+double expected_factor(std::size_t n, BoundSource source, ThicknessMeasure measure, Scheme scheme) {
+  const CornerEigenvalues eigenvalues = corner_eigenvalues(n, scheme);
+  if (scheme != Scheme::loop) {
+    // Below valence 4 the limit leaves the triangle of its corners sideways.
+    return measure == ThicknessMeasure::normal || n >= 4 ? eigenvalues.next : eigenvalues.subdominant;
+  }
   // Hull rows: below valence 6 the limit leaves the triangle of its corners sideways.
   const bool affine_part_vanishes = n == 6 || measure == ThicknessMeasure::normal ||
                                     source == TableLayout::characteristic || (!source && n > 6);
@@ -133,23 +170,28 @@ std::vector<RateRow> measure_rates(const RateOptions& options, const WorkMonitor
   SNUG_EXPECT(options.nets >= 1 && options.levels >= 4);
   const auto library = std::make_shared<BoundLibrary>();
   std::vector<RateRow> rows;
-  for (std::size_t v = 0; v < experiment_valences.size(); ++v) {
-    monitor.report(static_cast<double>(v) / static_cast<double>(experiment_valences.size()));
-    const std::size_t n = experiment_valences[v];
+  const std::span<const BoundSource> sources = sources_of(options.scheme);
+  const std::span<const std::size_t> valences = valences_of(options.scheme);
+  SchemeOptions rules;
+  rules.scheme = options.scheme;
+  for (std::size_t v = 0; v < valences.size(); ++v) {
+    monitor.report(static_cast<double>(v) / static_cast<double>(valences.size()));
+    const std::size_t n = valences[v];
     // A net, a source, a measure.
     std::vector<std::array<std::array<Thicknesses, 3>, 3>> all(options.nets);
     parallel_for(options.nets, options.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t net = begin; net < end; ++net) {
         monitor.checkpoint();
-        const Surface surface(corner_net(NetShape::bent, n, options.seed + net), {}, library, 1);
-        for (std::size_t s = 0; s < all_bound_sources.size(); ++s) {
-          all[net][s] = corner_thicknesses(surface, FaceId(0), all_bound_sources[s], options.levels);
+        const Surface surface(bent_net(options.scheme, n, options.seed + net), rules, library, 1);
+        const PatchId patch(surface.patches_of(0).begin);
+        for (std::size_t s = 0; s < sources.size(); ++s) {
+          all[net][s] = corner_thicknesses(surface, patch, sources[s], options.levels);
         }
       }
     });
-    for (std::size_t s = 0; s < all_bound_sources.size(); ++s) {
+    for (std::size_t s = 0; s < sources.size(); ++s) {
       for (std::size_t m = 0; m < all_thickness_measures.size(); ++m) {
-        RateRow row{n, all_bound_sources[s], all_thickness_measures[m], {}, 0, 0};
+        RateRow row{n, sources[s], all_thickness_measures[m], {}, 0, 0};
         std::size_t levels = options.levels + 1;
         for (const auto& net : all) levels = std::min(levels, net[s][m].size());
         for (std::size_t level = 0; level < levels; ++level) {
@@ -158,7 +200,7 @@ std::vector<RateRow> measure_rates(const RateOptions& options, const WorkMonitor
           row.thickness.push_back(quantile(std::move(values), 0.5));
         }
         row.factor = fitted_factor(row.thickness);
-        row.expected = expected_factor(n, row.source, row.measure);
+        row.expected = expected_factor(n, row.source, row.measure, options.scheme);
         rows.push_back(std::move(row));
       }
     }

@@ -14,13 +14,14 @@
 /// enclosures are sound, what is said of their speed is measured.
 namespace snug {
 
-/// Eigenvalues of Loop's subdivision matrix at an interior vertex.
+/// Eigenvalues of the subdivision matrix at an interior vertex, of a dual scheme at a face.
 struct CornerEigenvalues {
-  double subdominant;  ///< lambda = 3/8 + cos(2 pi/n)/4, twice: the tangent plane
-  double next;         ///< the largest after these: max(lambda^2, 3/8 + cos(4 pi/n)/4), 1/8 for n = 3
+  double subdominant;  ///< Loop: lambda = 3/8 + cos(2 pi/n)/4, twice: the tangent plane
+  double next;         ///< the largest after these; Loop: max(lambda^2, 3/8 + cos(4 pi/n)/4), 1/8 for n = 3
 };
 /// Requires:  n >= 3.
-[[nodiscard]] CornerEigenvalues corner_eigenvalues(std::size_t n);
+/// Source:    derivations/loop_limits.md, catmark_limits.md, midedge_bezier.md; docs/convergence.md.
+[[nodiscard]] CornerEigenvalues corner_eigenvalues(std::size_t n, Scheme scheme = Scheme::loop);
 
 /// Three thicknesses of an enclosure.
 enum class ThicknessMeasure : std::uint8_t {
@@ -36,11 +37,11 @@ inline constexpr std::array all_thickness_measures{ThicknessMeasure::radius, Thi
 /// A thickness level by level, in mesh units; ends where rounding makes up more than a thousandth.
 using Thicknesses = std::vector<double>;
 
-/// Thicknesses of the piece that keeps corner 0 of face f, at level 0, 1, ..., `levels`; in the order of
+/// Thicknesses of the piece that keeps corner 0 of patch p, at level 0, 1, ..., `levels`; in the order of
 /// ThicknessMeasure.
 ///
-/// Requires:  surface.has_patch(f); a normal at the corner; levels <= PiecePath::max_level.
-[[nodiscard]] std::array<Thicknesses, 3> corner_thicknesses(const Surface& surface, FaceId f,
+/// Requires:  surface.has_patch(p); a normal at the corner; levels <= PiecePath::max_level.
+[[nodiscard]] std::array<Thicknesses, 3> corner_thicknesses(const Surface& surface, PatchId p,
                                                             BoundSource source, unsigned levels);
 
 /// The factor a level of the geometric sequence nearest to the second half of `values`: least squares of
@@ -49,11 +50,15 @@ using Thicknesses = std::vector<double>;
 [[nodiscard]] double fitted_factor(std::span<const double> values);
 
 /// The factor that theory gives: 1/4 at a regular corner. Else the `next` eigenvalue for the normal measure
-/// and for tables of the characteristic layout; the subdominant one for the others.
+/// and for tables of the characteristic layout; for the others this or the subdominant one.
 /// Source:    docs/convergence.md.
-[[nodiscard]] double expected_factor(std::size_t n, BoundSource source, ThicknessMeasure measure);
+[[nodiscard]] double expected_factor(std::size_t n, BoundSource source, ThicknessMeasure measure,
+                                     Scheme scheme = Scheme::loop);
 
+/// Loop: hull rows and tables of both layouts, all experiment_valences. Other schemes: hull rows alone, valences
+/// up to 12.
 struct RateOptions {
+  Scheme scheme = Scheme::loop;
   std::size_t nets = 25;  ///< bent nets a valence
   unsigned levels = 12;
   std::uint64_t seed = 1;

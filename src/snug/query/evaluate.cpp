@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include <snug/base/contract.h>
 #include <snug/base/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <snug/patch/quad_parameter.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {
@@ -18,16 +20,26 @@ SurfacePosition placed(const LimitPoint& point, const Point3& origin, PowerOfTwo
 
 }  // namespace
 
-FaceEvaluator::FaceEvaluator(const Surface& surface, FaceId f)
-    : evaluator_(surface.patch(f)), back_(surface.scale().inverse()) {}
+PatchEvaluator::PatchEvaluator(const Surface& surface, PatchId p)
+    : evaluator_(surface.patch(p)),
+      back_(surface.scale().inverse()),
+      loop_(surface.options().scheme == Scheme::loop) {}
 
-SurfacePosition FaceEvaluator::position(TriangleParameter at) {
+SurfacePosition PatchEvaluator::position(TriangleParameter at) {
   const LimitPoint point = evaluator_(at);
   return placed(point, evaluator_.patch().origin, back_);
 }
 
-SurfacePoint FaceEvaluator::operator()(TriangleParameter at) const {
-  const LimitFrame frame = limit_frame(evaluator_.patch(), at);
+SurfacePoint PatchEvaluator::operator()(TriangleParameter at) const {
+  return placed_frame(limit_frame(evaluator_.patch(), at));
+}
+
+SurfacePoint PatchEvaluator::operator()(const SurfaceParameter& at) const {
+  return placed_frame(loop_ ? limit_frame(evaluator_.patch(), TriangleParameter{at.u, at.v})
+                            : limit_frame(evaluator_.patch(), QuadParameter{at.u, at.v}));
+}
+
+SurfacePoint PatchEvaluator::placed_frame(const LimitFrame& frame) const {
   SurfacePoint result;
   static_cast<SurfacePosition&>(result) = placed(frame.point, evaluator_.patch().origin, back_);
   for (std::size_t t = 0; t < 2; ++t) {
@@ -39,8 +51,24 @@ SurfacePoint FaceEvaluator::operator()(TriangleParameter at) const {
   return result;
 }
 
-SurfacePoint evaluate(const Surface& surface, FaceId f, TriangleParameter at) {
-  return FaceEvaluator(surface, f)(at);
+std::optional<PatchId> patch_at(const Surface& surface, const SurfaceParameter& at) {
+  const auto [u, v] = QuadParameter{at.u, at.v};
+  if (at.owner >= surface.owner_count() || !(u >= 0 && v >= 0 && u <= 1 && v <= 1)) return {};
+  const Surface::PatchRange range = surface.patches_of(at.owner);
+  std::size_t patch = range.begin;
+  if (surface.options().scheme == Scheme::loop) {
+    if (!(u + v <= 1) || at.corner != 0) return {};
+  } else {
+    patch += 2 * std::size_t{at.corner} + part_of(QuadParameter{u, v});
+  }
+  if (patch >= range.end || !surface.has_patch(PatchId(patch))) return {};
+  return PatchId(patch);
+}
+
+SurfacePoint evaluate(const Surface& surface, const SurfaceParameter& at) {
+  const std::optional<PatchId> patch = patch_at(surface, at);
+  SNUG_EXPECT(patch.has_value());
+  return PatchEvaluator(surface, *patch)(at);
 }
 
 }  // namespace snug

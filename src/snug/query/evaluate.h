@@ -22,29 +22,49 @@ struct SurfacePoint : SurfacePosition {
   std::optional<Vector3> normal;  ///< of length 1; absent where there is none
 };
 
-/// The limit point of face f at (u, v):  (1 - u - v) c0 + u c1 + v c2 in the control triangle's parameters.
+/// A place on the surface as people name it. Loop: (u, v) is (1 - u - v) c0 + u c1 + v c2 of a face. Else it is a place on
+/// a quad, from corner 0 with u towards corner 1: of the owner if that is one (of a dual scheme: the faces around the
+/// vertex, from topology().leaving() on), else of the quad that its first split makes at `corner`, from there with u along
+/// the edge that follows.
+struct SurfaceParameter {
+  std::uint32_t owner;  ///< face, or vertex of a dual scheme
+  std::uint32_t corner = 0;
+  double u = 0, v = 0;
+};
+
+/// The patch that a place lies on.
+/// Errors:    nothing where there is no such owner, corner or parameter, or no surface.
+[[nodiscard]] std::optional<PatchId> patch_at(const Surface& surface, const SurfaceParameter& at);
+
+/// The limit point at a place, with derivatives along its u and v.
 ///
 /// Guarantee: as SurfacePoint says; tangents and normal are in double precision without a bound.
-/// Requires:  surface.has_patch(f); u, v >= 0 and u + v <= 1.
+/// Requires:  patch_at(surface, at).
 /// Errors:    InputError if a coordinate does not fit a double.
-[[nodiscard]] SurfacePoint evaluate(const Surface& surface, FaceId f, TriangleParameter at);
+[[nodiscard]] SurfacePoint evaluate(const Surface& surface, const SurfaceParameter& at);
 
-/// Evaluates many points of one face with a single set-up. For one thread.
+/// Evaluates many points of one patch with a single set-up. For one thread.
 ///
 /// Errors:    InputError if a coordinate does not fit a double.
-class FaceEvaluator {
+class PatchEvaluator {
  public:
-  /// Requires:  surface.has_patch(f).
-  FaceEvaluator(const Surface& surface, FaceId f);
-  /// As evaluate().
+  /// Requires:  surface.has_patch(p).
+  PatchEvaluator(const Surface& surface, PatchId p);
+  /// The point at a place of its owner that lies on this patch.
+  [[nodiscard]] SurfacePoint operator()(const SurfaceParameter& at) const;
+  /// The point at a parameter of the patch, with derivatives along its own u and v.
+  /// Requires:  u, v >= 0 and u + v <= 1.
   [[nodiscard]] SurfacePoint operator()(TriangleParameter at) const;
   /// The position alone; keeps the polynomial pieces that it meets.
   /// Cost:      see LimitEvaluator.
   [[nodiscard]] SurfacePosition position(TriangleParameter at);
 
  private:
+  [[nodiscard]] SurfacePoint placed_frame(const LimitFrame& frame) const;
+
   LimitEvaluator evaluator_;
   PowerOfTwo back_;
+  bool loop_;
 };
 
 }  // namespace snug

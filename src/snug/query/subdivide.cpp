@@ -1,22 +1,25 @@
 #include <snug/query/subdivide.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
 #include <snug/base/scaling.h>
+#include <snug/scheme/limits.h>
 #include <snug/scheme/refine.h>
 
 namespace snug {
 namespace {
 
-// Keeps the descendants of the faces that are `kept`, 4^level a face in a row, then drops vertices without a face.
-ControlMesh only_descendants(const ControlMesh& mesh, const std::vector<bool>& kept, unsigned level) {
+// The mesh with some of its faces, and the vertices of these.
+ControlMesh only(const ControlMesh& mesh, const std::vector<bool>& kept) {
   ControlMesh result;
   std::vector<VertexId> renamed(mesh.vertex_count());
+  std::vector<VertexId> corners;
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    if (!kept[f >> (2 * level)]) continue;
-    std::vector<VertexId> corners;
+    if (!kept[f]) continue;
+    corners.clear();
     for (const VertexId v : mesh.face(FaceId(f))) {
       if (!renamed[v.index()].valid()) {
         renamed[v.index()] = VertexId(result.points.size());
@@ -26,32 +29,63 @@ ControlMesh only_descendants(const ControlMesh& mesh, const std::vector<bool>& k
     }
     result.add_face(corners);
   }
-  result.tags = mesh.tags;
+  result.tags.boundary = mesh.tags.boundary;
   return result;
 }
 
-// The faces that have a limit surface with BoundaryRule::none.
-std::vector<bool> away_from_boundary(const Topology& topology) {
-  std::vector<bool> away(topology.face_count());
-  for (std::size_t f = 0; f < away.size(); ++f) {
-    const auto face = topology.face(FaceId(f));
-    away[f] = std::none_of(face.begin(), face.end(), [&](VertexId v) { return topology.on_boundary(v); });
+bool touches_boundary(const Topology& topology, FaceId f) {
+  const auto face = topology.face(f);
+  return std::any_of(face.begin(), face.end(), [&](VertexId v) { return topology.on_boundary(v); });
+}
+
+// Turns the faces at the boundary into holes, which their descendants inherit.
+void drop_boundary(ControlMesh& mesh, const Topology& topology) {
+  const Sharpness sharpness = sharpness_of(mesh, topology);
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    if (loses_surface(topology, sharpness, FaceId(f))) mesh.tags.holes.emplace_back(f);
   }
-  return away;
+}
+
+// Faces of a refined mesh that have limit positions at all corners. Empty: all.
+std::vector<bool> faces_with_limit(const ControlMesh& mesh, const Topology& topology, Scheme scheme) {
+  std::vector<bool> kept;
+  if (!is_primal(scheme)) {
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+      if (!touches_boundary(topology, FaceId(f))) continue;
+      if (kept.empty()) kept.assign(mesh.face_count(), true);
+      kept[f] = false;
+    }
+    return kept;
+  }
+  for (const FaceId hole : mesh.tags.holes) {
+    if (kept.empty()) kept.assign(mesh.face_count(), true);
+    kept[hole.index()] = false;
+  }
+  return kept;
+}
+
+// Faces after `level` steps, about.
+double face_count_after(const ControlMesh& mesh, Scheme scheme, unsigned level) {
+  if (level == 0) return static_cast<double>(mesh.face_count());
+  const double first = scheme == Scheme::loop ? 4.0 * static_cast<double>(mesh.face_count())
+                       : is_primal(scheme)    ? static_cast<double>(mesh.face_vertices.size())
+                                              : 2.0 * static_cast<double>(mesh.face_vertices.size());
+  return first * std::ldexp(1.0, 2 * static_cast<int>(level - 1));
 }
 
 }  // namespace
 
 ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned level, bool limit,
                       const WorkMonitor& monitor) {
-  require_subdividable(mesh, options);
-  if (level > 15 || (mesh.face_count() << (2 * level)) > (std::size_t{1} << 31)) {
+  const SchemeOptions rules = with_tags(options, mesh.tags);
+  require_subdividable(mesh, rules);
+  if (level > 60 || face_count_after(mesh, rules.scheme, level) > 0x1p31) {
     throw InputError(InputProblem::refused, "level " + std::to_string(level) + " of " +
                                                 std::to_string(mesh.face_count()) +
                                                 " faces is more than 2^31 faces: take a lower level");
   }
-  std::vector<bool> kept;
-  if (limit && options.boundary == BoundaryRule::none) kept = away_from_boundary(Topology(mesh));
+  const bool primal = is_primal(rules.scheme);
+  if (limit && primal && rules.boundary == BoundaryRule::none) drop_boundary(mesh, Topology(mesh));
   const Box3 box = used_box(mesh);
   const PowerOfTwo scale =
       PowerOfTwo::normalising(std::max(max_abs(box.lower - Point3{}), max_abs(box.upper - Point3{})));
@@ -65,20 +99,26 @@ ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned l
   for (Point3& p : mesh.points) p = scale.apply(p);
   for (unsigned step = 0; step < level; ++step) {
     monitor.report(static_cast<double>(step) / (level + 1.0));
-    mesh = refine(mesh, options);
+    mesh = refine(mesh, rules);
   }
+  bool dropped = !primal && level > 0;
   if (limit) {
     const Topology topology(mesh);
-    const Stencils rows = limit_stencils(topology, options);
+    const Stencils rows =
+        limit_stencils(topology, rules, primal ? sharpness_of(mesh, topology) : Sharpness{});
     std::vector<Point3> positions;
     positions.reserve(mesh.points.size());
     for (std::size_t v = 0; v < mesh.points.size(); ++v)
       positions.push_back(rows.apply<Point3>(v, mesh.points));
     mesh.points = std::move(positions);
-    if (!kept.empty()) mesh = only_descendants(mesh, kept, level);
+    const std::vector<bool> kept = faces_with_limit(mesh, topology, rules.scheme);
+    if (!kept.empty()) {
+      mesh = only(mesh, kept);
+      dropped = true;
+    }
   }
   for (Point3& p : mesh.points) p = require_representable(scale.inverse().apply(p));
-  if (kept.empty()) {
+  if (!dropped) {
     for (const auto& [v, point] : isolated) mesh.points[v] = point;
   }
   return mesh;

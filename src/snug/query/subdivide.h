@@ -8,11 +8,12 @@ namespace snug {
 
 /// The control mesh after `level` steps of subdivision, or the limit positions of its vertices.
 ///
-/// With BoundaryRule::none, `limit` leaves out the faces at boundary vertices and with them the vertices that
-/// no face uses any more: what is left is the part of the mesh that has a limit surface.
+/// With `limit`, faces without a limit surface are left out: holes, with BoundaryRule::none those at boundary vertices, and
+/// of dual schemes those that touch a boundary vertex of the refined mesh; and with them the vertices that no face uses
+/// any more. Of a dual scheme the limit position of a vertex is the middle of its patch.
 ///
 /// Guarantee: connectivity and numbering as in scheme/refine.h; positions in double precision, within a few
-///            units in the last place of the largest coordinate a level.
+///            units in the last place of the largest coordinate a level. Tags are decayed by as many steps.
 /// Errors:    InputError (refused) from require_subdividable, and if the result has more than 2^31 faces or a
 ///            coordinate that does not fit a double.
 /// Cost:      linear in the result.

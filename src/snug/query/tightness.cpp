@@ -68,7 +68,7 @@ std::vector<TightnessRow> measure_tightness(const TightnessOptions& options, con
       for (std::size_t i = begin; i < end; ++i) {
         monitor.checkpoint();
         const Surface surface(corner_net(shape, n, options.seed + i / 2), {}, library, 1);
-        const FaceId face(i % 2 == 0 ? 0 : n / 2);
+        const PatchId face(i % 2 == 0 ? 0 : n / 2);
         const Patch patch = surface.patch(face);
         const LimitLattice lattice(patch, options.steps);
         double of_rows = 0;

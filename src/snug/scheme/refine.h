@@ -1,8 +1,7 @@
 #pragma once
 
-#include <vector>
-
 #include <snug/mesh/topology.h>
+#include <snug/scheme/creases.h>
 #include <snug/scheme/scheme.h>
 #include <snug/scheme/stencils.h>
 
@@ -19,36 +18,34 @@ namespace snug {
 ///       / \  3  / \         Isolated vertices stay, and keep their place.
 ///      / 0 \   / 1 \        .
 ///    c0 --- m01 --- c1
+///
+/// Catmull-Clark: further the centre of face f is vertex_count + edge_count + f; the corner that half-edge h leaves
+/// becomes face h: of a quad with all corners in their places, so that it is a quarter of the square; of other faces
+/// from that corner on.
+///
+///    c3 -- m -- c2
+///    |  3  | 2  |
+///    m --- f -- m
+///    |  0  | 1  |
+///    c0 -- m -- c1
+///
+/// Dual schemes: half-edge h makes the new vertex h, in its face near the vertex it leaves. Faces are first those of the
+/// faces, then quads for the edges between two faces, then those of the vertices inside. Rows of points that lie in a
+/// face only depend on that face.
 struct RefinedTopology {
   Topology topology;
+  Sharpness sharpness;
   Stencils stencils;  ///< row r makes new vertex r
 };
 
 /// Requires:  a topology that require_subdividable accepts, or a part of one: rules at its rim are those of a
 ///            boundary.
 /// Cost:      linear.
-[[nodiscard]] RefinedTopology refine(const Topology& topology, const SchemeOptions& options);
+[[nodiscard]] RefinedTopology refine(const Topology& topology, const SchemeOptions& options,
+                                     const Sharpness& sharpness = {});
 
-/// Limit position of every vertex; rows of isolated vertices and, with BoundaryRule::none, of boundary
-/// vertices give the vertex itself.
-[[nodiscard]] Stencils limit_stencils(const Topology& topology, const SchemeOptions& options);
-
-/// Adds the limit row of one vertex to `out`.
-void add_limit_row(const Topology& topology, VertexId v, const SchemeOptions& options, Stencils& out);
-
-/// Two rows whose images span the tangent plane at the limit of v, wherever there is one: the limits of the
-/// directions, of no particular length. Counter-clockwise: their cross product points to the side from which
-/// faces look counter-clockwise. At a boundary the first runs along it.
-/// Source:    left eigenvectors of the local subdivision matrix, derivations/loop_limits.md.
-struct TangentRows {
-  Stencils rows;  ///< two rows; their weights sum to 0, not 1
-};
-[[nodiscard]] TangentRows tangent_rows(const Topology& topology, VertexId v, const SchemeOptions& options);
-
-/// Does the rule make this vertex an infinitely sharp corner?
-[[nodiscard]] bool is_sharp_corner(const Topology& topology, VertexId v, const SchemeOptions& options);
-
-/// A refined control mesh. Tags that do not change the surface are left out of it, but for the boundary rule.
+/// A refined control mesh, its tags decayed; tags that do not change the surface are left out of it.
+/// Requires:  options as with_tags() makes them.
 [[nodiscard]] ControlMesh refine(const ControlMesh& mesh, const SchemeOptions& options);
 
 }  // namespace snug

@@ -1,9 +1,7 @@
 #include <snug/scheme/scheme.h>
 
 #include <algorithm>
-#include <set>
 #include <string>
-#include <utility>
 
 #include <snug/base/error.h>
 #include <snug/mesh/topology.h>
@@ -16,11 +14,17 @@ std::string number(std::size_t n) { return std::to_string(n); }
 
 [[noreturn]] void refuse(const std::string& why) { throw InputError(InputProblem::refused, why); }
 
-void require_manifold(const ControlMesh& mesh) {
+// Primal schemes keep what is not manifold, infinitely sharp; dual ones have no faces to make there.
+void require_sound(const ControlMesh& mesh, bool primal) {
   std::vector<Defect> refusing = defects(mesh);
-  std::erase_if(refusing, [](const Defect& defect) { return is_legal(defect.kind); });
+  std::erase_if(refusing, [&](const Defect& defect) {
+    return is_legal(defect.kind) || (primal && is_non_manifold(defect.kind));
+  });
   if (refusing.empty()) return;
-  refuse(summary(refusing) + "; an oriented manifold mesh is needed: mend these elements");
+  const bool sound = std::all_of(refusing.begin(), refusing.end(),
+                                 [](const Defect& defect) { return is_non_manifold(defect.kind); });
+  refuse(summary(refusing) +
+         (sound ? "; an oriented manifold mesh is needed: mend these elements" : "; mend these elements"));
 }
 
 void require_triangles(const ControlMesh& mesh) {
@@ -35,54 +39,32 @@ void require_triangles(const ControlMesh& mesh) {
          " faces are not triangles); Loop subdivision needs triangles: triangulate the mesh");
 }
 
-void require_valences(const Topology& topology) {
+void require_valences(const Topology& topology, Scheme scheme) {
+  const std::size_t least = min_interior_valence(scheme);
   std::string text;
   std::size_t bad = 0;
   for (std::size_t i = 0; i < topology.vertex_count(); ++i) {
     const VertexId v(i);
     const std::size_t faces = topology.face_valence(v);
-    const bool boundary = topology.on_boundary(v);
-    if (faces == 0 || (boundary ? faces <= max_boundary_faces
-                                : faces >= min_interior_valence && faces <= max_interior_valence)) {
-      continue;
-    }
+    const bool inside = !topology.isolated(v) && topology.is_manifold(v) && !topology.on_boundary(v);
+    if (inside ? faces >= least && faces <= max_interior_valence : faces <= max_boundary_faces) continue;
     if (++bad <= 10) {
-      text += (bad > 1 ? "; " : "") + std::string(boundary ? "boundary" : "interior") + " vertex " +
-              number(i) + " has " + number(faces) + " faces";
+      text += (bad > 1 ? "; " : "") + std::string(inside ? "interior" : "boundary") + " vertex " + number(i) +
+              " has " + number(faces) + " faces";
     }
   }
   if (bad == 0) return;
   if (bad > 10) text += "; and " + number(bad - 10) + " more";
-  refuse(text + "; interior vertices need 3 to 1000 faces, boundary ones at most 1000: split faces there");
+  refuse(text + "; interior vertices need " + number(least) +
+         " to 1000 faces, boundary ones at most 1000: split faces there");
 }
 
-// Tags that leave the surface as it is: zero sharpness; edges that are no edges of the mesh; the boundary's
-// own edges and corners, which the boundary rule makes infinitely sharp already.
-void require_no_effective_tags(const ControlMesh& mesh, const Topology& topology,
-                               const SchemeOptions& options) {
-  const std::string until = "; creases, corners and holes are not supported yet: remove the tags";
-  if (!mesh.tags.holes.empty()) {
-    refuse("face " + number(mesh.tags.holes.front().index()) + " is tagged as a hole" + until);
-  }
-  std::set<std::pair<VertexId, VertexId>> inner;
-  if (std::any_of(mesh.tags.creases.begin(), mesh.tags.creases.end(),
-                  [](const CreaseTag& t) { return t.sharpness > 0; })) {
-    for (std::size_t e = 0; e < topology.edge_count(); ++e) {
-      const HalfEdge h = topology.half_of(EdgeId(e));
-      if (!topology.on_boundary(EdgeId(e))) inner.insert(std::minmax(topology.from(h), topology.to(h)));
-    }
-  }
-  for (const CreaseTag& tag : mesh.tags.creases) {
-    if (tag.sharpness > 0 && inner.contains(std::minmax(tag.a, tag.b))) {
-      refuse("edge (" + number(tag.a.index()) + ", " + number(tag.b.index()) +
-             ") is tagged as a crease of sharpness " + std::to_string(tag.sharpness) + until);
-    }
-  }
-  for (const CornerTag& tag : mesh.tags.corners) {
-    const bool corner_already = options.boundary == BoundaryRule::edge_and_corner &&
-                                topology.on_boundary(tag.vertex) && topology.face_valence(tag.vertex) == 1;
-    if (tag.sharpness > 0 && !corner_already && !topology.isolated(tag.vertex)) {
-      refuse("vertex " + number(tag.vertex.index()) + " is tagged as a corner" + until);
+void require_small_faces(const ControlMesh& mesh) {
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const std::size_t n = mesh.face(FaceId(f)).size();
+    if (n > max_face_size) {
+      refuse("face " + number(f) + " has " + number(n) + " vertices; at most " + number(max_face_size) +
+             " are taken: split it");
     }
   }
 }
@@ -110,17 +92,20 @@ Scheme natural_scheme(const ControlMesh& mesh) {
   return Scheme::loop;
 }
 
+SchemeOptions with_tags(SchemeOptions options, const MeshTags& tags) {
+  options.creases = tags.crease_method;
+  options.triangles = tags.smooth_triangles;
+  return options;
+}
+
 void require_subdividable(const ControlMesh& mesh, const SchemeOptions& options) {
   if (mesh.face_count() == 0) refuse("the mesh has no faces");
-  require_manifold(mesh);
-  if (options.scheme != Scheme::loop) {
-    refuse(std::string("the scheme ") + name_of(options.scheme) +
-           " is not supported yet: Loop on triangle meshes is; triangulate the mesh or give --scheme loop");
-  }
-  require_triangles(mesh);
+  const bool primal = is_primal(options.scheme);
+  require_sound(mesh, primal);
+  if (options.scheme == Scheme::loop) require_triangles(mesh);
+  require_small_faces(mesh);
   const Topology topology(mesh);
-  require_valences(topology);
-  require_no_effective_tags(mesh, topology, options);
+  require_valences(topology, options.scheme);
 }
 
 }  // namespace snug

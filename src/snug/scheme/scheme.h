@@ -10,25 +10,48 @@ enum class Scheme : std::uint8_t { loop, catmark, doo_sabin, midedge };
 
 [[nodiscard]] const char* name_of(Scheme scheme);
 
+/// Does a patch belong to a face, and do vertices stay vertices? Dual schemes: a patch belongs to a vertex.
+[[nodiscard]] constexpr bool is_primal(Scheme scheme) {
+  return scheme == Scheme::loop || scheme == Scheme::catmark;
+}
+
+/// How Catmull-Clark moves an interior vertex.
+enum class CatmarkVertexRule : std::uint8_t {
+  standard,  ///< (Q + 2 R + (n - 3) S) / n
+  older,     ///< (Q + 2 R + S) / 4, of Doo and Sabin's paper: for whole meshes only
+};
+
 /// Rules that turn a mesh into a surface, beside the scheme itself.
 struct SchemeOptions {
   Scheme scheme = Scheme::loop;
   BoundaryRule boundary = BoundaryRule::edge_and_corner;
+  CreaseMethod creases = CreaseMethod::uniform;
+  SmoothTriangles triangles = SmoothTriangles::catmark;
+  CatmarkVertexRule vertex_rule = CatmarkVertexRule::standard;
   friend bool operator==(const SchemeOptions&, const SchemeOptions&) = default;
 };
 
-/// Largest and least valence of an interior vertex that is answered.
-inline constexpr std::size_t min_interior_valence = 3;
+/// The rules for this mesh: its tags name the crease method and the treatment of triangles.
+[[nodiscard]] SchemeOptions with_tags(SchemeOptions options, const MeshTags& tags);
+
+/// Least and largest valence of an interior vertex that is answered. Loop takes no 2: one step makes two edges between the
+/// same two vertices there.
+[[nodiscard]] constexpr std::size_t min_interior_valence(Scheme scheme) {
+  return scheme == Scheme::catmark ? 2 : 3;
+}
 inline constexpr std::size_t max_interior_valence = 1000;
-/// Most faces around a boundary vertex.
+/// Most faces around a boundary or non-manifold vertex.
 inline constexpr std::size_t max_boundary_faces = 1000;
+/// Most vertices of a face.
+inline constexpr std::size_t max_face_size = 1000;
 
 /// The scheme of a mesh that names none: Loop for triangles alone, else Catmull-Clark.
 [[nodiscard]] Scheme natural_scheme(const ControlMesh& mesh);
 
 /// Throws InputError (refused) unless the limit surface of this mesh under these rules is one that snug
-/// answers questions about: no refusing defect (mesh/validate.h), Loop on triangles, valences in range, no
-/// tag that would change the surface. The message names elements and the next step.
+/// answers questions about: no refusing defect (mesh/validate.h), Loop on triangles, valences in range. Non-manifold
+/// edges and vertices and faces of inconsistent orientation are kept by Loop and Catmull-Clark, infinitely sharp, as
+/// OpenSubdiv has them; dual schemes refuse them. The message names elements and the next step.
 void require_subdividable(const ControlMesh& mesh, const SchemeOptions& options);
 
 }  // namespace snug

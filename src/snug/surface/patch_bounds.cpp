@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <utility>
 
 #include <snug/base/contract.h>
@@ -10,6 +11,7 @@
 #include <snug/base/rounding.h>
 #include <snug/enclose/fit_kernels.h>
 #include <snug/enclose/table_kernel.h>
+#include <snug/enclose/table_triangle.h>
 #include <snug/patch/evaluate.h>
 #include <snug/surface/unscale.h>
 
@@ -27,8 +29,8 @@ struct Scratch {
 
 bool regular_inside(const Kind& kind) {
   const auto& corners = kind.key().corners;
-  return kind.polynomial() && std::all_of(corners.begin(), corners.end(),
-                                          [](const CornerFan& fan) { return fan.closed && fan.regular(); });
+  return kind.polynomial() &&
+         std::all_of(corners.begin(), corners.end(), [](const CornerFan& fan) { return fan.closed; });
 }
 
 OffsetTriangle turned(const kernels::BatchFit& fit, std::uint8_t first) {
@@ -53,12 +55,12 @@ void turn_and_scale(const kernels::BatchFit& fit, std::uint8_t first, double fac
   out.rounding = enlarged(factor * fit.rounding + 4 * underflow_error);
 }
 
-std::vector<FaceId> faces_with_patch(const Surface& surface) {
-  std::vector<FaceId> faces;
-  for (std::size_t f = 0; f < surface.face_count(); ++f) {
-    if (surface.has_patch(FaceId(f))) faces.push_back(FaceId(f));
+std::vector<PatchId> all_patches(const Surface& surface) {
+  std::vector<PatchId> patches;
+  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+    if (surface.has_patch(PatchId(p))) patches.push_back(PatchId(p));
   }
-  return faces;
+  return patches;
 }
 
 // `unused`: vertices to pass over, in increasing order.
@@ -80,12 +82,16 @@ PowerOfTwo normalising(std::span<const Point3> points, std::span<const VertexId>
 
 }  // namespace
 
-PatchBounds::PatchBounds(const Surface& surface, std::optional<TableLayout> table, int threads)
-    : PatchBounds(surface, faces_with_patch(surface), table, threads) {}
+std::size_t PatchBounds::control_count(const Group& group) {
+  return (group.polygon ? group.polygon : group.kind)->control_count();
+}
 
-PatchBounds::PatchBounds(const Surface& surface, std::vector<FaceId> faces, std::optional<TableLayout> table,
-                         int threads)
-    : library_(&surface.library()), faces_(std::move(faces)) {
+PatchBounds::PatchBounds(const Surface& surface, std::optional<TableLayout> table, int threads)
+    : PatchBounds(surface, all_patches(surface), table, threads) {}
+
+PatchBounds::PatchBounds(const Surface& surface, std::vector<PatchId> patches,
+                         std::optional<TableLayout> table, int threads)
+    : library_(&surface.library()), patches_(std::move(patches)) {
   sort_by_kind(surface);
   collect_control(surface);
   parallel_for(groups_.size(), threads, [&](std::size_t begin, std::size_t end) {
@@ -103,13 +109,17 @@ PatchBounds::PatchBounds(const Surface& surface, std::vector<FaceId> faces, std:
 // Groups, chunks and places: a counting sort.
 void PatchBounds::sort_by_kind(const Surface& surface) {
   constexpr std::uint32_t none = UINT32_MAX;
-  std::vector<std::uint32_t> group_of_kind(library_->kinds().size(), none), group_of(faces_.size()), sizes;
-  for (std::size_t i = 0; i < faces_.size(); ++i) {
-    const Kind& kind = surface.kind(faces_[i]);
-    std::uint32_t& group = group_of_kind[kind.id().index()];
+  std::vector<std::uint32_t> group_of_kind(library_->kinds().size(), none), group_of(patches_.size()), sizes;
+  std::map<std::pair<KindId, std::uint32_t>, std::uint32_t> group_of_part;
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    const Kind& kind = surface.kind(patches_[i]);
+    const Kind* const polygon = surface.polygon_of(patches_[i]);
+    const std::uint32_t part = polygon ? surface.place(patches_[i]).part : 0;
+    std::uint32_t& group = polygon ? group_of_part.try_emplace({polygon->id(), part}, none).first->second
+                                   : group_of_kind[kind.id().index()];
     if (group == none) {
       group = static_cast<std::uint32_t>(groups_.size());
-      groups_.push_back({&kind, nullptr, 0, 0});
+      groups_.push_back({&kind, polygon, part, nullptr, 0, 0});
       sizes.push_back(0);
     }
     ++sizes[group];
@@ -119,7 +129,7 @@ void PatchBounds::sort_by_kind(const Surface& surface) {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     groups_[g].first_place = place;
     groups_[g].first_control = control;
-    control += sizes[g] * groups_[g].kind->control_count();
+    control += sizes[g] * control_count(groups_[g]);
     const std::size_t end = place + sizes[g];
     for (; place < end; place = std::min(end, place + chunk_size)) {
       chunks_.push_back({static_cast<std::uint32_t>(g), static_cast<std::uint32_t>(place),
@@ -130,8 +140,8 @@ void PatchBounds::sort_by_kind(const Surface& surface) {
   places_.resize(place);
   std::vector<std::size_t> next;
   for (const Group& group : groups_) next.push_back(group.first_place);
-  for (std::size_t i = 0; i < faces_.size(); ++i) {
-    places_[next[group_of[i]]++] = {static_cast<std::uint32_t>(i), surface.first(faces_[i])};
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    places_[next[group_of[i]]++] = {static_cast<std::uint32_t>(i), surface.first(patches_[i])};
   }
 }
 
@@ -140,7 +150,7 @@ void PatchBounds::collect_control(const Surface& surface) {
   std::vector<VertexId> vertices;
   auto to = control_.begin();
   for (const Place& place : places_) {
-    surface.control_vertices(faces_[place.position], vertices);
+    surface.control_vertices(patches_[place.position], vertices);
     to = std::copy(vertices.begin(), vertices.end(), to);
     for (const VertexId v : vertices) used[v.index()] = true;
   }
@@ -151,7 +161,7 @@ void PatchBounds::collect_control(const Surface& surface) {
 }
 
 void PatchBounds::update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads) {
-  SNUG_EXPECT(points.size() == scaled_.size() && out.size() == faces_.size());
+  SNUG_EXPECT(points.size() == scaled_.size() && out.size() == patches_.size());
   const PowerOfTwo scale = normalising(points, unused_), back = scale.inverse();
   for (std::size_t v = 0; v < points.size(); ++v) scaled_[v] = scale.apply(points[v]);
   const auto work = [&](std::size_t begin, std::size_t end) {
@@ -168,14 +178,16 @@ void PatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
   thread_local Scratch scratch;
   const Group& group = groups_[chunk.group];
   const Kind& kind = *group.kind;
-  const std::size_t count = chunk.end - chunk.begin, controls = kind.control_count();
+  const std::size_t count = chunk.end - chunk.begin, controls = control_count(group);
   const std::span<const VertexId> control(
       control_.data() + group.first_control + (chunk.begin - group.first_place) * controls, count * controls);
   const std::span<kernels::BatchFit> answers(scratch.answers.data(), count);
-  if (group.table) {
+  if (group.table && !group.polygon && group.table->first_bounded() == 3) {
     kernels::fit_table(*group.table, scaled_, control, answers);
-  } else if (regular_inside(kind)) {
+  } else if (!group.table && !group.polygon && kind.scheme() == Scheme::loop && regular_inside(kind)) {
     kernels::fit_regular(scaled_, control, answers);
+  } else if (!group.table && !group.polygon && kind.scheme() == Scheme::catmark && regular_inside(kind)) {
+    kernels::fit_bicubic(scaled_, control, answers);
   } else {
     for (kernels::BatchFit& answer : answers) answer.radius = -1;
   }
@@ -190,14 +202,23 @@ void PatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
       continue;
     }
     Patch& patch = scratch.patch;
-    make_patch(kind, place.first, scaled_, control.subspan(i * controls, controls), patch);
+    const std::span<const VertexId> own = control.subspan(i * controls, controls);
+    if (group.polygon) {
+      patch = patch_of_polygon(make_patch(*group.polygon, 0, scaled_, own), group.part);
+    } else {
+      make_patch(kind, place.first, scaled_, own, patch);
+    }
+    if (group.table) {
+      out[place.position] = unscaled(offset_triangle(table_triangle(*group.table, patch)), back);
+      continue;
+    }
     hull_points(*library_, patch, scratch.hull);
     out[place.position] = unscaled(offset_triangle(*library_, scratch.hull, limit_corners(patch)), back);
   }
 }
 
 std::size_t PatchBounds::bytes() const {
-  return sizeof(*this) + faces_.size() * sizeof(FaceId) + unused_.size() * sizeof(VertexId) +
+  return sizeof(*this) + patches_.size() * sizeof(PatchId) + unused_.size() * sizeof(VertexId) +
          groups_.size() * sizeof(Group) + chunks_.size() * sizeof(Chunk) + places_.size() * sizeof(Place) +
          control_.size() * sizeof(VertexId) + scaled_.size() * sizeof(Point3);
 }

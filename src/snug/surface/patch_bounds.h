@@ -19,19 +19,19 @@ class PatchBounds {
   /// Makes what the kinds of the surface need: their rows, or their tables in a layout.
   /// Requires:  the surface outlives the bounds.
   explicit PatchBounds(const Surface& surface, std::optional<TableLayout> table = {}, int threads = 0);
-  /// The same for some of the faces, in any order.
-  /// Requires:  each has a patch.
-  PatchBounds(const Surface& surface, std::vector<FaceId> faces, std::optional<TableLayout> table = {},
+  /// The same for some of the patches, in any order.
+  /// Requires:  each is there.
+  PatchBounds(const Surface& surface, std::vector<PatchId> patches, std::optional<TableLayout> table = {},
               int threads = 0);
 
-  /// The faces that update() answers for, in this order; all with a patch unless chosen.
-  [[nodiscard]] std::span<const FaceId> faces() const { return faces_; }
+  /// The patches that update() answers for, in this order; all that are there unless chosen.
+  [[nodiscard]] std::span<const PatchId> patches() const { return patches_; }
 
   /// Bounds of all patches for these control points, in mesh units.
   ///
   /// Guarantee: every limit point of a patch is within its radius of its base, rounding included; results do
   ///            not depend on threads. One thread allocates nothing after its first call.
-  /// Requires:  points: one for each vertex of the mesh; out.size() == faces().size().
+  /// Requires:  points: one for each vertex of the mesh; out.size() == patches().size().
   /// Errors:    InputError (refused) if a point that a face uses is not finite, or a result no double. Then
   ///            `out` is in no particular state.
   void update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads = 1);
@@ -39,9 +39,12 @@ class PatchBounds {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  // Patches of one kind, in the order of faces.
+  // Patches of one kind, in the order of patches_. A polygon's are apart, part by part: their control points are
+  // those of the polygon.
   struct Group {
     const Kind* kind;
+    const Kind* polygon;  // none: from control points
+    std::uint32_t part;
     const BoundTable* table;                 // none: from rows
     std::size_t first_place, first_control;  // in places_ and control_
   };
@@ -49,17 +52,18 @@ class PatchBounds {
   struct Chunk {
     std::uint32_t group, begin, end;
   };
-  // Where in faces_ and in the answer, and the corner that the kind calls 0.
+  // Where in patches_ and in the answer, and the corner that the kind calls 0.
   struct Place {
     std::uint32_t position;
     std::uint8_t first;
   };
+  [[nodiscard]] static std::size_t control_count(const Group& group);
   void sort_by_kind(const Surface& surface);
   void collect_control(const Surface& surface);
   void fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTriangle> out) const;
 
   BoundLibrary* library_;
-  std::vector<FaceId> faces_;
+  std::vector<PatchId> patches_;
   std::vector<Group> groups_;
   std::vector<Chunk> chunks_;
   std::vector<Place> places_;

@@ -8,10 +8,10 @@
 
 namespace snug {
 
-Piece make_piece(BoundLibrary& library, FaceId face, Patch patch, HullPoints& scratch,
+Piece make_piece(BoundLibrary& library, PatchId root, Patch patch, HullPoints& scratch,
                  std::optional<TableLayout> table) {
   Piece piece;
-  piece.face = face;
+  piece.root = root;
   piece.corners = limit_corners(patch);
   if (table) {
     piece.offset = offset_triangle(table_triangle(library.table(*patch.kind, *table), patch));
@@ -24,12 +24,12 @@ Piece make_piece(BoundLibrary& library, FaceId face, Patch patch, HullPoints& sc
 }
 
 Refinement::Refinement(const Surface& surface, std::optional<TableLayout> table)
-    : surface_(surface), table_(table), roots_(surface.face_count()) {}
+    : surface_(surface), table_(table), roots_(surface.patch_count()) {}
 
-PieceId Refinement::root(FaceId face) {
-  PieceId& id = roots_[face.index()];
+PieceId Refinement::root(PatchId patch) {
+  PieceId& id = roots_[patch.index()];
   if (!id.valid()) {
-    pieces_.push_back(make_piece(surface_.library(), face, surface_.patch(face), scratch_, table_));
+    pieces_.push_back(make_piece(surface_.library(), patch, surface_.patch(patch), scratch_, table_));
     id = PieceId(pieces_.size() - 1);
   }
   return id;
@@ -47,7 +47,7 @@ PieceId Refinement::split(PieceId id) {
   for (unsigned child = 0; child < 4; ++child) {
     const Piece& parent = pieces_[id.index()];
     pieces_.push_back(
-        make_piece(surface_.library(), parent.face, snug::split(parent.patch, child), scratch_, table_));
+        make_piece(surface_.library(), parent.root, snug::split(parent.patch, child), scratch_, table_));
   }
   pieces_[id.index()].first_child = first;
   return first;

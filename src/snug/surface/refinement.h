@@ -16,7 +16,7 @@ using PieceId = Id<struct PieceTag>;
 
 /// A piece of a limit surface with its offset triangle, in scaled units.
 struct Piece {
-  FaceId face;
+  PatchId root;
   Patch patch;
   std::array<Vector3, 3> corners;  ///< limit corners, relative to patch.origin
   OffsetTriangle offset;
@@ -25,7 +25,7 @@ struct Piece {
 
 /// A piece with its offset triangle, made from a patch: fitted to hull rows, for which `scratch` is used, or
 /// from the tables of a layout.
-[[nodiscard]] Piece make_piece(BoundLibrary& library, FaceId face, Patch patch, HullPoints& scratch,
+[[nodiscard]] Piece make_piece(BoundLibrary& library, PatchId root, Patch patch, HullPoints& scratch,
                                std::optional<TableLayout> table = {});
 
 /// Patches of one surface, split lazily and in place. Scratch memory of a query: one a thread.
@@ -39,9 +39,9 @@ class Refinement {
   explicit Refinement(const Surface& surface, std::optional<TableLayout> table = {});
 
   [[nodiscard]] const Surface& surface() const { return surface_; }
-  /// The whole patch of a face.
-  /// Requires:  surface().has_patch(face).
-  [[nodiscard]] PieceId root(FaceId face);
+  /// A whole patch.
+  /// Requires:  surface().has_patch(patch).
+  [[nodiscard]] PieceId root(PatchId patch);
   [[nodiscard]] const Piece& operator[](PieceId id) const { return pieces_[id.index()]; }
   /// First of the four children, making them if need be.
   /// Requires:  can_split(id).

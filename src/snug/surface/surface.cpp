@@ -8,19 +8,10 @@
 #include <snug/base/parallel.h>
 
 namespace snug {
-namespace {
-
-bool touches_boundary(const Topology& topology, FaceId f) {
-  const auto corners = topology.face(f);
-  return std::any_of(corners.begin(), corners.end(), [&](VertexId v) { return topology.on_boundary(v); });
-}
-
-}  // namespace
-
 Surface::Surface(ControlMesh mesh, const SchemeOptions& options, std::shared_ptr<BoundLibrary> library,
                  int threads, const WorkMonitor& monitor)
-    : mesh_(std::move(mesh)), options_(options), library_(std::move(library)) {
-  SNUG_EXPECT(library_ != nullptr);
+    : mesh_(std::move(mesh)), options_(with_tags(options, mesh_.tags)), library_(std::move(library)) {
+  SNUG_EXPECT(library_ != nullptr && options_.vertex_rule == CatmarkVertexRule::standard);
   require_subdividable(mesh_, options_);
   monitor.checkpoint();
   topology_ = Topology(mesh_);
@@ -30,28 +21,148 @@ Surface::Surface(ControlMesh mesh, const SchemeOptions& options, std::shared_ptr
   scaled_.reserve(mesh_.points.size());
   for (const Point3& p : mesh_.points) scaled_.push_back(scale_.apply(p));
 
-  kinds_.assign(topology_.face_count(), nullptr);
-  firsts_.assign(topology_.face_count(), 0);
-  parallel_for(topology_.face_count(), threads, [&](std::size_t begin, std::size_t end) {
+  const bool primal = is_primal(options_.scheme);
+  const Sharpness sharpness = primal ? sharpness_of(mesh_, topology_) : Sharpness{};
+  std::vector<bool> holes;
+  if (primal && !mesh_.tags.holes.empty()) {
+    holes.assign(mesh_.face_count(), false);
+    for (const FaceId f : mesh_.tags.holes) holes[f.index()] = true;
+  }
+  lay_out_patches();
+  parallel_for(owner_count(), threads, [&](std::size_t begin, std::size_t end) {
     monitor.checkpoint();
-    for (std::size_t f = begin; f < end; ++f) {
-      if (options_.boundary == BoundaryRule::none && touches_boundary(topology_, FaceId(f))) continue;
-      const TurnedKey key = kind_key(topology_, FaceId(f), options_);
-      kinds_[f] = &library_->kinds().find(key.key);
-      firsts_[f] = key.first;
+    for (std::size_t owner = begin; owner < end; ++owner) {
+      if (has_surface(owner, sharpness, holes)) find_kinds(owner, sharpness);
     }
   });
 }
 
-void Surface::control_vertices(FaceId f, std::vector<VertexId>& out) const {
-  SNUG_EXPECT(has_patch(f));
-  snug::control_vertices(topology_, f, firsts_[f.index()], out);
+void Surface::lay_out_patches() {
+  if (options_.scheme == Scheme::loop) {
+    kinds_.assign(topology_.face_count(), nullptr);
+    firsts_.assign(topology_.face_count(), 0);
+    return;
+  }
+  const bool primal = is_primal(options_.scheme);
+  begins_.push_back(0);
+  for (std::size_t owner = 0; owner < owner_count(); ++owner) {
+    const std::size_t n =
+        primal ? topology_.face(FaceId(owner)).size() : topology_.face_valence(VertexId(owner));
+    const std::size_t parts = n == 4 ? 2 : 2 * n;
+    owners_.insert(owners_.end(), parts, static_cast<std::uint32_t>(owner));
+    begins_.push_back(static_cast<std::uint32_t>(owners_.size()));
+    if (n != 4 && n > 0 && polygons_.empty()) polygons_.assign(owner_count(), nullptr);
+  }
+  kinds_.assign(owners_.size(), nullptr);
 }
 
-Patch Surface::patch(FaceId f) const {
+bool Surface::has_surface(std::size_t owner, const Sharpness& sharpness,
+                          const std::vector<bool>& holes) const {
+  if (!is_primal(options_.scheme)) {
+    const VertexId v(owner);
+    return !topology_.isolated(v) && !topology_.on_boundary(v);
+  }
+  if (!holes.empty() && holes[owner]) return false;
+  return options_.boundary != BoundaryRule::none || !loses_surface(topology_, sharpness, FaceId(owner));
+}
+
+HalfEdge Surface::start_of(std::size_t owner) const {
+  return is_primal(options_.scheme) ? topology_.first_of(FaceId(owner)) : topology_.leaving(VertexId(owner));
+}
+
+void Surface::find_kinds(std::size_t owner, const Sharpness& sharpness) {
+  if (options_.scheme == Scheme::loop) {
+    const TurnedKey key = kind_key(topology_, FaceId(owner), options_, sharpness);
+    kinds_[owner] = &library_->kinds().find(key.key);
+    firsts_[owner] = key.first;
+    return;
+  }
+  const HalfEdge start = start_of(owner);
+  const std::size_t begin = begins_[owner];
+  const KindKey key = kind_key_from(topology_, start, options_, sharpness);
+  const Kind& whole = library_->kinds().find(key);
+  if (key.polygon) {
+    polygons_[owner] = &whole;
+    const auto& children = whole.children();
+    for (std::size_t part = 0; part < children.size(); ++part) kinds_[begin + part] = children[part].kind;
+    return;
+  }
+  kinds_[begin] = &whole;
+  const HalfEdge other = is_primal(options_.scheme) ? start + 2 : topology_.ccw(topology_.ccw(start));
+  kinds_[begin + 1] = &library_->kinds().find(kind_key_from(topology_, other, options_, sharpness));
+}
+
+Surface::PatchRange Surface::patches_of(std::size_t owner) const {
+  if (begins_.empty()) return {owner, owner + 1};
+  return {begins_[owner], begins_[owner + 1]};
+}
+
+Surface::PatchPlace Surface::place(PatchId p) const {
+  if (owners_.empty()) return {p.value(), 0};
+  const std::uint32_t owner = owners_[p.index()];
+  return {owner, p.value() - begins_[owner]};
+}
+
+const Kind* Surface::polygon_of(PatchId p) const {
+  return polygons_.empty() ? nullptr : polygons_[owners_[p.index()]];
+}
+
+void Surface::control_vertices(PatchId p, std::vector<VertexId>& out) const {
+  SNUG_EXPECT(has_patch(p));
+  const PatchPlace at = place(p);
+  HalfEdge start = start_of(at.owner);
+  if (const Kind* polygon = polygon_of(p)) {
+    snug::control_vertices(topology_, start, polygon->key(), out);
+    return;
+  }
+  if (at.part == 1) start = is_primal(options_.scheme) ? start + 2 : topology_.ccw(topology_.ccw(start));
+  snug::control_vertices(topology_, start + first(p), kind(p).key(), out);
+}
+
+Patch Surface::patch(PatchId p) const {
   thread_local std::vector<VertexId> control;
-  control_vertices(f, control);
-  return make_patch(*kinds_[f.index()], firsts_[f.index()], scaled_, control);
+  control_vertices(p, control);
+  if (const Kind* polygon = polygon_of(p)) {
+    return patch_of_polygon(make_patch(*polygon, 0, scaled_, control), place(p).part);
+  }
+  return make_patch(kind(p), first(p), scaled_, control);
+}
+
+std::size_t Surface::corner_name_count() const {
+  if (options_.scheme == Scheme::loop) return topology_.vertex_count();
+  return topology_.vertex_count() + topology_.edge_count() + topology_.face_count();
+}
+
+// Vertices, then edges, then faces.
+std::array<std::uint32_t, 3> Surface::corner_names(PatchId p) const {
+  const auto [owner, part] = place(p);
+  const bool primal = is_primal(options_.scheme);
+  const std::size_t vertices = topology_.vertex_count(), edges = topology_.edge_count();
+  const auto name = [](std::size_t n) { return static_cast<std::uint32_t>(n); };
+  // The half-edge of corner k: of the face from there, or from the vertex in face k.
+  const HalfEdge start = start_of(owner);
+  const auto corner_at = [&](std::size_t k) {
+    HalfEdge h = start;
+    for (; k > 0; --k) h = primal ? topology_.next(h) : topology_.ccw(h);
+    return h;
+  };
+  const auto corner = [&](std::size_t k) {
+    const HalfEdge h = corner_at(k);
+    return primal ? topology_.from(h).value() : name(vertices + edges + topology_.face_of(h).index());
+  };
+  if (options_.scheme == Scheme::loop) return {corner(0), corner(1), corner(2)};
+  if (!after_first_split(p)) {
+    return part == 0 ? std::array{corner(0), corner(1), corner(2)}
+                     : std::array{corner(2), corner(3), corner(0)};
+  }
+  const std::size_t k = part / 2;
+  const HalfEdge h = corner_at(k);
+  const std::uint32_t centre = primal ? name(vertices + edges + owner) : owner;
+  const auto edge = [&](HalfEdge g) { return name(vertices + topology_.edge_of(g).index()); };
+  // Between corners k and k + 1, and between k - 1 and k.
+  const std::uint32_t after = edge(primal ? h : topology_.prev(h)),
+                      before = edge(primal ? topology_.prev(h) : h);
+  return part % 2 == 0 ? std::array{corner(k), after, centre} : std::array{centre, before, corner(k)};
 }
 
 std::size_t Surface::kind_count() const {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <memory>
+#include <unordered_map>
 #include <vector>
 
 #include <snug/base/progress.h>
@@ -8,21 +10,32 @@
 #include <snug/basis/bound_library.h>
 #include <snug/mesh/topology.h>
 #include <snug/patch/patch.h>
+#include <snug/scheme/creases.h>
 #include <snug/scheme/scheme.h>
 
 namespace snug {
 
-/// The limit surface of a control mesh: one patch a face. Immutable; may be read by many threads.
+/// A root patch of a surface. Loop: of face f it is number f.
+using PatchId = Id<struct PatchTag>;
+
+/// The limit surface of a control mesh, in triangular patches. Immutable; may be read by many threads.
+///
+/// A patch belongs to an owner: a face, or with a dual scheme a vertex. Loop: one a face. Catmull-Clark: two a quad with
+/// corners c0 to c3, part 0 from c0 by c1 to c2 and part 1 from c2 by c3 to c0; of another face with n corners 2 n after
+/// its first split: parts 2 k and 2 k + 1 those of the quad at corner k, from that corner and from the face's centre.
+/// Dual schemes likewise, with the faces around the vertex, from topology().leaving() on, as corners.
 ///
 /// Inside, coordinates are scaled by a power of two so that the largest lies in [1, 2); `scale()` leads there
 /// from mesh units. Everything below surface/ works in scaled units, everything that questions answer with is
 /// in mesh units.
 ///
 /// Errors:    InputError (refused) from require_subdividable.
-/// Cost:      linear; 9 bytes a face beside mesh and topology. Rows of kinds are made when a patch is first
+/// Cost:      linear; 9 bytes a patch beside mesh and topology. Rows of kinds are made when a patch is first
 ///            bounded.
 class Surface {
  public:
+  /// The mesh's tags name creases, corners, holes, the crease method and how triangles are treated; options.boundary
+  /// alone counts for the boundary.
   Surface(ControlMesh mesh, const SchemeOptions& options, std::shared_ptr<BoundLibrary> library,
           int threads = 0, const WorkMonitor& monitor = {});
 
@@ -37,24 +50,57 @@ class Surface {
   [[nodiscard]] double size() const { return size_; }
 
   [[nodiscard]] std::size_t face_count() const { return topology_.face_count(); }
-  /// Has the face a limit patch? Not at a boundary with BoundaryRule::none.
-  [[nodiscard]] bool has_patch(FaceId f) const { return kinds_[f.index()] != nullptr; }
-  /// Requires:  has_patch(f).
-  [[nodiscard]] const Kind& kind(FaceId f) const { return *kinds_[f.index()]; }
-  /// Which corner of the face its kind calls corner 0.
-  /// Requires:  has_patch(f).
-  [[nodiscard]] std::uint8_t first(FaceId f) const { return firsts_[f.index()]; }
-  /// The control vertices of a face's patch, in the order of its kind.
-  /// Requires:  has_patch(f).
-  void control_vertices(FaceId f, std::vector<VertexId>& out) const;
-  /// The whole patch of a face, in scaled units.
-  /// Requires:  has_patch(f).
-  /// Cost:      a walk around its corners.
-  [[nodiscard]] Patch patch(FaceId f) const;
+  /// Faces, or vertices of a dual scheme.
+  [[nodiscard]] std::size_t owner_count() const {
+    return is_primal(options_.scheme) ? topology_.face_count() : topology_.vertex_count();
+  }
+  /// Number of patches, those that are not there included.
+  [[nodiscard]] std::size_t patch_count() const { return kinds_.size(); }
+  /// The patches of an owner: begin, begin + 1, ... end - 1.
+  struct PatchRange {
+    std::size_t begin, end;
+  };
+  [[nodiscard]] PatchRange patches_of(std::size_t owner) const;
+  struct PatchPlace {
+    std::uint32_t owner;
+    std::uint32_t part;
+  };
+  [[nodiscard]] PatchPlace place(PatchId p) const;
+  /// Is the patch half a quad that the first split of its owner made? Then it lies one level down.
+  [[nodiscard]] bool after_first_split(PatchId p) const { return polygon_of(p) != nullptr; }
+
+  /// Is there a limit patch? Not in a hole, not at a boundary with BoundaryRule::none, and with a dual scheme not of a
+  /// boundary vertex.
+  [[nodiscard]] bool has_patch(PatchId p) const { return kinds_[p.index()] != nullptr; }
+  /// Requires:  has_patch(p).
+  [[nodiscard]] const Kind& kind(PatchId p) const { return *kinds_[p.index()]; }
+  /// Which corner of the face its kind calls corner 0; Loop alone.
+  /// Requires:  has_patch(p).
+  [[nodiscard]] std::uint8_t first(PatchId p) const {
+    return firsts_.empty() ? std::uint8_t{0} : firsts_[p.index()];
+  }
+  /// The kind of the polygon that a patch is made of in a first split; none for others.
+  [[nodiscard]] const Kind* polygon_of(PatchId p) const;
+  /// The control vertices of a patch, or of its polygon, in the order of its kind.
+  /// Requires:  has_patch(p).
+  void control_vertices(PatchId p, std::vector<VertexId>& out) const;
+  /// The whole patch, in scaled units.
+  /// Requires:  has_patch(p).
+  /// Cost:      a walk around its corners; of a polygon a product with its stencils.
+  [[nodiscard]] Patch patch(PatchId p) const;
+  /// Names of the patch's three corners: equal names, equal limit points. Below corner_name_count().
+  [[nodiscard]] std::array<std::uint32_t, 3> corner_names(PatchId p) const;
+  [[nodiscard]] std::size_t corner_name_count() const;
   /// Number of different kinds among its patches.
   [[nodiscard]] std::size_t kind_count() const;
 
  private:
+  void lay_out_patches();
+  [[nodiscard]] bool has_surface(std::size_t owner, const Sharpness& sharpness,
+                                 const std::vector<bool>& holes) const;
+  void find_kinds(std::size_t owner, const Sharpness& sharpness);
+  [[nodiscard]] HalfEdge start_of(std::size_t owner) const;
+
   ControlMesh mesh_;
   SchemeOptions options_;
   std::shared_ptr<BoundLibrary> library_;
@@ -64,6 +110,9 @@ class Surface {
   std::vector<Point3> scaled_;
   std::vector<const Kind*> kinds_;
   std::vector<std::uint8_t> firsts_;
+  std::vector<std::uint32_t> begins_;  // first patch of each owner and the end; empty for Loop
+  std::vector<std::uint32_t> owners_;  // of each patch; empty for Loop
+  std::vector<const Kind*> polygons_;  // of each owner; empty where there are none
 };
 
 }  // namespace snug

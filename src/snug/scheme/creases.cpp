@@ -1,0 +1,168 @@
+#include <snug/scheme/creases.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace snug {
+namespace {
+
+// The edge between two vertices, if there is one.
+EdgeId edge_between(const Topology& topology, VertexId a, VertexId b) {
+  EdgeId found;
+  topology.for_each_fan(a, [&](HalfEdge start) {
+    topology.walk_fan(start, [&](HalfEdge h) {
+      if (topology.to(h) == b) found = topology.edge_of(h);
+      const HalfEdge in = topology.prev(h);
+      if (topology.from(in) == b) found = topology.edge_of(in);
+    });
+  });
+  return found;
+}
+
+bool is_topological_corner(const Topology& topology, VertexId v) {
+  const HalfEdge h = topology.leaving(v);
+  return topology.more_fans(v).empty() && topology.on_boundary(topology.edge_of(h)) &&
+         topology.on_boundary(topology.edge_of(topology.prev(h)));
+}
+
+// Does a crease of non-manifold edges run through the vertex?
+bool on_non_manifold_curve(const Topology& topology, VertexId v) {
+  std::vector<EdgeId> edges;
+  std::size_t faces = 0;
+  topology.for_each_fan(v, [&](HalfEdge start) {
+    topology.walk_fan(start, [&](HalfEdge h) {
+      edges.push_back(topology.edge_of(h));
+      edges.push_back(topology.edge_of(topology.prev(h)));
+      ++faces;
+    });
+  });
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  const auto odd =
+      std::count_if(edges.begin(), edges.end(), [&](EdgeId e) { return !topology.is_manifold(e); });
+  const bool boundary =
+      std::any_of(edges.begin(), edges.end(), [&](EdgeId e) { return topology.on_boundary(e); });
+  return odd == 2 && !boundary && faces > edges.size();
+}
+
+}  // namespace
+
+Sharpness sharpness_of(const ControlMesh& mesh, const Topology& topology) {
+  Sharpness result;
+  for (const CreaseTag& tag : mesh.tags.creases) {
+    const EdgeId e = edge_between(topology, tag.a, tag.b);
+    if (!e.valid() || (topology.ends_fans(e) && tag.sharpness < infinite_sharpness)) continue;
+    if (result.edges.empty()) result.edges.assign(topology.edge_count(), 0.0);
+    result.edges[e.index()] = tag.sharpness;
+  }
+  for (const CornerTag& tag : mesh.tags.corners) {
+    if (result.vertices.empty()) result.vertices.assign(topology.vertex_count(), 0.0);
+    result.vertices[tag.vertex.index()] = tag.sharpness;
+  }
+  const auto nothing = [](const std::vector<double>& all) {
+    return std::all_of(all.begin(), all.end(), [](double s) { return s == 0; });
+  };
+  if (nothing(result.edges)) result.edges.clear();
+  if (nothing(result.vertices)) result.vertices.clear();
+  return result;
+}
+
+bool loses_surface(const Topology& topology, const Sharpness& sharpness, FaceId f) {
+  const auto opens = [&](EdgeId e) {
+    return topology.on_boundary(e) &&
+           (sharpness.edges.empty() || sharpness.edges[e.index()] < infinite_sharpness);
+  };
+  for (const VertexId v : topology.face(f)) {
+    bool open = false;
+    topology.for_each_fan(v, [&](HalfEdge start) {
+      topology.walk_fan(start, [&](HalfEdge h) {
+        open = open || opens(topology.edge_of(h)) || opens(topology.edge_of(topology.prev(h)));
+      });
+    });
+    if (open) return true;
+  }
+  return false;
+}
+
+double edge_sharpness(const Topology& topology, const Sharpness& sharpness, EdgeId e) {
+  if (topology.ends_fans(e)) return infinite_sharpness;
+  return sharpness.edges.empty() ? 0 : sharpness.edges[e.index()];
+}
+
+double vertex_sharpness(const Topology& topology, const Sharpness& sharpness, VertexId v,
+                        BoundaryRule boundary) {
+  if (topology.isolated(v)) return infinite_sharpness;
+  const HalfEdge h = topology.leaving(v);
+  const bool open = topology.twin(h) == no_half_edge;
+  if (open && boundary == BoundaryRule::edge_and_corner && topology.ccw(h) == no_half_edge &&
+      is_topological_corner(topology, v)) {
+    return infinite_sharpness;
+  }
+  if (!topology.is_manifold() && !topology.is_manifold(v) && !on_non_manifold_curve(topology, v)) {
+    return infinite_sharpness;
+  }
+  return sharpness.vertices.empty() ? 0 : sharpness.vertices[v.index()];
+}
+
+void gather_star(const Topology& topology, const Sharpness& sharpness, VertexId v, BoundaryRule boundary,
+                 Star& out) {
+  out.spokes.clear();
+  out.faces.clear();
+  const auto add = [&](EdgeId e, VertexId end) {
+    out.spokes.push_back({e, end, edge_sharpness(topology, sharpness, e)});
+  };
+  topology.for_each_fan(v, [&](HalfEdge start) {
+    HalfEdge last = start;
+    topology.walk_fan(start, [&](HalfEdge h) {
+      out.faces.push_back(h);
+      add(topology.edge_of(h), topology.to(h));
+      last = h;
+    });
+    if (topology.twin(start) == no_half_edge) {
+      const HalfEdge in = topology.prev(last);
+      add(topology.edge_of(in), topology.from(in));
+    }
+  });
+  if (!topology.is_manifold()) {  // an edge may end several fans
+    std::vector<Spoke> once;
+    for (const Spoke& spoke : out.spokes) {
+      const auto same = [&](const Spoke& other) { return other.edge == spoke.edge; };
+      if (std::none_of(once.begin(), once.end(), same)) once.push_back(spoke);
+    }
+    out.spokes = std::move(once);
+  }
+  out.sharpness = vertex_sharpness(topology, sharpness, v, boundary);
+}
+
+VertexRule vertex_rule(double own, std::span<const Spoke> spokes) {
+  if (own > 0) return VertexRule::corner;
+  const auto sharp =
+      std::count_if(spokes.begin(), spokes.end(), [](const Spoke& s) { return s.sharpness > 0; });
+  return sharp > 2 ? VertexRule::corner : sharp == 2 ? VertexRule::crease : VertexRule::smooth;
+}
+
+double decayed(double sharpness) {
+  return sharpness >= infinite_sharpness ? sharpness : std::max(0.0, sharpness - 1);
+}
+
+double decayed(const Star& star, const Spoke& spoke, CreaseMethod method) {
+  if (method == CreaseMethod::uniform || !is_semi_sharp(spoke.sharpness)) return decayed(spoke.sharpness);
+  double sum = 0;
+  int count = 0;
+  for (const Spoke& other : star.spokes) {
+    if (!is_semi_sharp(other.sharpness)) continue;
+    sum += other.sharpness;
+    ++count;
+  }
+  if (count < 2) return decayed(spoke.sharpness);
+  const double others = (sum - spoke.sharpness) / (count - 1);
+  return std::max(0.0, 0.75 * spoke.sharpness + 0.25 * others - 1);
+}
+
+bool is_stationary(const Star& star) {
+  return !is_semi_sharp(star.sharpness) &&
+         std::none_of(star.spokes.begin(), star.spokes.end(),
+                      [](const Spoke& s) { return is_semi_sharp(s.sharpness); });
+}
+
+}  // namespace snug

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <vector>
+
+#include <snug/mesh/topology.h>
+#include <snug/scheme/scheme.h>
+
+namespace snug {
+
+/// Sharpness of edges and vertices beyond what connectivity alone makes infinitely sharp. Empty: 0 everywhere.
+struct Sharpness {
+  std::vector<double> edges, vertices;
+  [[nodiscard]] bool none() const { return edges.empty() && vertices.empty(); }
+  friend bool operator==(const Sharpness&, const Sharpness&) = default;
+};
+
+[[nodiscard]] constexpr bool is_semi_sharp(double s) { return s > 0 && s < infinite_sharpness; }
+
+/// The tags of a mesh. Tags on edges that are no edges of it, and of sharpness 0, are passed over; the last tag of an
+/// edge or vertex counts.
+/// Requires:  tags without defects (mesh/validate.h).
+[[nodiscard]] Sharpness sharpness_of(const ControlMesh& mesh, const Topology& topology);
+
+/// With BoundaryRule::none: does a face lose its surface? So it is at a vertex with a boundary edge, unless that is tagged
+/// infinitely sharp.
+[[nodiscard]] bool loses_surface(const Topology& topology, const Sharpness& sharpness, FaceId f);
+
+/// Sharpness that the rules go by: infinite on the boundary and on non-manifold edges.
+[[nodiscard]] double edge_sharpness(const Topology& topology, const Sharpness& sharpness, EdgeId e);
+/// Infinite at corners of the boundary, where its rule makes them, and at non-manifold vertices, but those on a curve: of
+/// two non-manifold edges, no boundary edge, and more faces than edges.
+/// Source:    OpenSubdiv's Far::TopologyRefinerFactory.
+[[nodiscard]] double vertex_sharpness(const Topology& topology, const Sharpness& sharpness, VertexId v,
+                                      BoundaryRule boundary);
+
+/// An edge as one of its vertices sees it.
+struct Spoke {
+  EdgeId edge;
+  VertexId end;
+  double sharpness;
+};
+
+/// What the rules at a vertex look at. In a fan spokes come counter-clockwise, those of an open one from its first to its
+/// last; each edge once.
+struct Star {
+  std::vector<Spoke> spokes;
+  std::vector<HalfEdge> faces;  ///< half-edges that leave the vertex, one a face
+  double sharpness = 0;         ///< of the vertex
+};
+
+/// Writes the star over `out`, which keeps its memory.
+void gather_star(const Topology& topology, const Sharpness& sharpness, VertexId v, BoundaryRule boundary,
+                 Star& out);
+
+enum class VertexRule : std::uint8_t { corner, crease, smooth };
+
+/// Corner: own sharpness, or three sharp edges and more; crease: two; smooth: fewer, a dart being smooth.
+[[nodiscard]] VertexRule vertex_rule(double own, std::span<const Spoke> spokes);
+
+/// Sharpness after one step: less by 1. Infinite ones stay.
+[[nodiscard]] double decayed(double sharpness);
+/// Of a spoke, on the half of the edge at the star's vertex. Chaikin first mixes in a quarter of the mean of the other
+/// semi-sharp spokes. These sums are meant in doubles, as OpenSubdiv means them in single precision.
+/// Source:    [DeRose98, sec. 3]; OpenSubdiv's Sdc::Crease.
+[[nodiscard]] double decayed(const Star& star, const Spoke& spoke, CreaseMethod method);
+
+/// Is everything here at rest: no sharpness that decays?
+[[nodiscard]] bool is_stationary(const Star& star);
+
+}  // namespace snug
