@@ -40,8 +40,8 @@ bench: build  ## the measurements of bench/
 	@bench/run
 
 asan: install-packages  ## the fast tests under address and undefined-behaviour sanitizer
-	@$(call build,asan)
-	@$(ctest) --preset asan
+	@$(call build,asan,tests_fast)
+	@$(ctest) --preset asan -L fast
 
 tsan: install-packages  ## the tests labelled threads under thread sanitizer
 	@$(call build,tsan,tests_threads)

@@ -14,6 +14,7 @@ find_package(GTest REQUIRED)
 
 # All executables with tests for the thread sanitizer.
 add_custom_target(tests_threads)
+add_custom_target(tests_fast)
 
 function(snug_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINK;LABELS" ${ARGN})
@@ -46,9 +47,11 @@ function(snug_test name)
     target_link_libraries(${name} PRIVATE snug_${folder})
   endif()
   target_link_libraries(${name} PRIVATE snug_flags snug_warnings GTest::gtest_main)
-  if("threads" IN_LIST ARG_LABELS)
-    add_dependencies(tests_threads ${name})
-  endif()
+  foreach(label IN ITEMS threads fast)
+    if(label IN_LIST ARG_LABELS)
+      add_dependencies(tests_${label} ${name})
+    endif()
+  endforeach()
 
   set(properties TIMEOUT ${ARG_TIMEOUT})
   if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=thread")

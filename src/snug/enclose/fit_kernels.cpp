@@ -455,10 +455,13 @@ struct BicubicShape {
   // Place of each control point in the lattice of 4 x 4, as patch/neighbourhood.h draws it.
   static constexpr std::array<std::size_t, 16> place{5, 6, 10, 9, 1, 2, 7, 11, 14, 13, 8, 4, 0, 3, 15, 12};
 
-  struct Weights {
-    double of[hull_count][16];  // of the bicubic Bezier points (i, j) at i + 4 j
+  // The bicubic Bezier points (i, j), at i + 4 j, that each hull point is a sum of.
+  struct Sums {
+    std::size_t begin[hull_count + 1] = {};
+    std::size_t point[8 * hull_count] = {};
+    double weight[8 * hull_count] = {};
   };
-  static constexpr Weights make_weights() {
+  static constexpr Sums make_sums() {
     constexpr int binomial[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
     constexpr int factorial[7] = {1, 1, 2, 6, 24, 120, 720};
     int sums[7][7][16] = {};
@@ -472,7 +475,7 @@ struct BicubicShape {
         }
       }
     }
-    Weights weights{};
+    int u_of[hull_count] = {}, v_of[hull_count] = {};
     std::size_t inner = 3 * of_edge;
     for (int v = 0; v <= 6; ++v) {
       for (int u = 0; u + v <= 6; ++u) {
@@ -481,11 +484,23 @@ struct BicubicShape {
                                : w == 0 && v < 6 ? of_edge + static_cast<std::size_t>(v)
                                : u == 0 && v > 0 ? 2 * of_edge + static_cast<std::size_t>(w)
                                                  : inner++;
-        const double multinomial = factorial[6] / (factorial[u] * factorial[v] * factorial[w]);
-        for (std::size_t b = 0; b < 16; ++b) weights.of[at][b] = sums[u][v][b] / multinomial;
+        u_of[at] = u;
+        v_of[at] = v;
       }
     }
-    return weights;
+    Sums result{};
+    std::size_t count = 0;
+    for (std::size_t at = 0; at < hull_count; ++at) {
+      const int u = u_of[at], v = v_of[at];
+      const double multinomial = factorial[6] / (factorial[u] * factorial[v] * factorial[6 - u - v]);
+      for (std::size_t b = 0; b < 16; ++b) {
+        if (sums[u][v][b] == 0) continue;
+        result.point[count] = b;
+        result.weight[count++] = sums[u][v][b] / multinomial;
+      }
+      result.begin[at + 1] = count;
+    }
+    return result;
   }
 
   template <class V>
@@ -499,24 +514,23 @@ struct BicubicShape {
 
   template <class D, class V = hn::Vec<D>>
   static HWY_INLINE void hull(D d, const V* control, V* out) {
-    static constexpr Weights weights = make_weights();
+    static constexpr Sums sums = make_sums();
     const V four = hn::Set(d, 4.0), two = hn::Set(d, 2.0), part = hn::Set(d, 1.0 / 36);
     V c[16], along[16], b[16];
-    unrolled<16>([&](auto k) HWY_ATTR { c[place[k]] = control[k]; });
-    unrolled<4>([&](auto y) HWY_ATTR {
-      segment(four, two, c[4 * y], c[4 * y + 1], c[4 * y + 2], c[4 * y + 3], along + 4 * y, 1);
-    });
-    unrolled<4>([&](auto x) HWY_ATTR {
+    for (std::size_t k = 0; k < 16; ++k) c[place[k]] = control[k];
+    for (std::size_t y = 0; y < 16; y += 4)
+      segment(four, two, c[y], c[y + 1], c[y + 2], c[y + 3], along + y, 1);
+    for (std::size_t x = 0; x < 4; ++x) {
       segment(four, two, along[x], along[4 + x], along[8 + x], along[12 + x], b + x, 4);
-    });
-    unrolled<16>([&](auto k) HWY_ATTR { b[k] = hn::Mul(part, b[k]); });
-    unrolled<hull_count>([&](auto p) HWY_ATTR {
+    }
+    for (V& point : b) point = hn::Mul(part, point);
+    for (std::size_t p = 0; p < hull_count; ++p) {
       V sum = hn::Zero(d);
-      unrolled<16>([&](auto k) HWY_ATTR {
-        if constexpr (weights.of[p][k] != 0) sum = hn::Add(sum, hn::Mul(hn::Set(d, weights.of[p][k]), b[k]));
-      });
+      for (std::size_t t = sums.begin[p]; t < sums.begin[p + 1]; ++t) {
+        sum = hn::Add(sum, hn::Mul(hn::Set(d, sums.weight[t]), b[sums.point[t]]));
+      }
       out[p] = sum;
-    });
+    }
   }
 };
 
