@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
+#include <oracle/polygon_twin.h>
 #include <snug/base/error.h>
 #include <snug/enclose/table_triangle.h>
 #include <snug/surface/refinement.h>
 #include <snug/surface/unscale.h>
 #include <testing/containment.h>
 #include <testing/patches.h>
+#include <testing/tagged.h>
 
 #include <cmath>
 #include <limits>
@@ -130,6 +132,45 @@ TEST(patch_bounds, pass_over_vertices_without_faces) {
   std::vector<OffsetTriangle> out(20);
   bounds.update(mesh.points, out);
   EXPECT_LT(out[7].radius, 0.2);
+}
+
+// Regular quads come in batches, without the split that single patches have.
+TEST(patch_bounds, of_quads_contain_the_limit_and_are_a_little_wider_than_of_single_patches) {
+  std::mt19937_64 random(3);
+  std::size_t points = 0, wider = 0, patches = 0;
+  for (const double amount : {0.0, 0.05, 0.3}) {
+    for (const double size : {1e-300, 1.0, 1e300}) {
+      oracle::TaggedMesh twin = oracle::meshes::shaken(oracle::meshes::quad_grid(9, 8), amount, random);
+      for (oracle::Point& p : twin.points) {
+        for (double& x : p) x *= size;
+      }
+      const oracle::Rules rules;
+      const Surface surface(testing::control_mesh(twin), testing::options_of(rules),
+                            std::make_shared<BoundLibrary>(), 1);
+      PatchBounds bounds(surface);
+      std::vector<OffsetTriangle> out(bounds.patches().size());
+      bounds.update(surface.mesh().points, out);
+      HullPoints scratch;
+      for (std::size_t i = 0; i < out.size(); ++i) {
+        const PatchId p = bounds.patches()[i];
+        const OffsetTriangle single = unscaled(
+            make_piece(surface.library(), p, surface.patch(p), scratch).offset, surface.scale().inverse());
+        EXPECT_GE(out[i].radius, single.radius * (1 - 1e-9) - 1e-13 * surface.size());
+        EXPECT_LE(out[i].radius, 3 * single.radius + 1e-12 * surface.size());
+        wider += out[i].radius > 1.0001 * single.radius;
+        ++patches;
+      }
+      for (const oracle::FaceSample& s : oracle::sample_faces(twin, rules, 3)) {
+        const std::size_t patch = 2 * s.face + (s.v <= s.u ? 0 : 1);
+        const testing::Extended p{s.position[0], s.position[1], s.position[2]};
+        EXPECT_TRUE(testing::within_radius(p, out[patch].base, out[patch].radius + 2 * s.error))
+            << s.face << " at " << s.u << ", " << s.v;
+        ++points;
+      }
+    }
+  }
+  EXPECT_GT(points, 40'000u);
+  EXPECT_GT(wider, patches / 10);  // the batch was there
 }
 
 }  // namespace
