@@ -216,4 +216,41 @@ Compared compare_with_opensubdiv(TaggedMesh mesh, const Rules& rules, int levels
   return compared;
 }
 
+OpenSubdivMesh refine_with_opensubdiv(const TaggedMesh& mesh, const Rules& rules, int levels) {
+  OpenSubdivMesh result;
+  const auto refiner = refiner_of(mesh, rules);
+  if (!refiner) return result;
+  result.accepted = true;
+  Far::TopologyRefiner::UniformOptions uniform(levels);
+  uniform.fullTopologyInLastLevel = true;
+  refiner->RefineUniform(uniform);
+  std::vector<Primvar> values(mesh.points.size());
+  for (std::size_t v = 0; v < values.size(); ++v) values[v].value = mesh.points[v];
+  const Far::PrimvarRefinerReal<double> primvars(*refiner);
+  for (int level = 1; level <= levels; ++level) {
+    std::vector<Primvar> fine(static_cast<std::size_t>(refiner->GetLevel(level).GetNumVertices()));
+    primvars.Interpolate(level, values, fine);
+    values = std::move(fine);
+  }
+  std::vector<Primvar> limit(values.size());
+  primvars.Limit(values, limit);
+  const Far::TopologyLevel& last = refiner->GetLevel(levels);
+  Compared parts;
+  for (int f = 0; f < last.GetNumFaces(); ++f) {
+    auto& face = result.faces.emplace_back();
+    result.holes.push_back(last.IsFaceHole(f));
+    const auto corners = last.GetFaceVertices(f);
+    for (int k = 0; k < corners.size(); ++k) {
+      const Compared::Part* const part = &part_of(*refiner, corners[k], levels, parts);
+      const auto v = static_cast<std::size_t>(corners[k]);
+      face.push_back({values[v].value, limit[v].value,
+                      part == &parts.dart          ? OpenSubdivMesh::Limit::dart
+                      : part == &parts.valence_two ? OpenSubdivMesh::Limit::valence_two
+                      : part == &parts.alive       ? OpenSubdivMesh::Limit::alive
+                                                   : OpenSubdivMesh::Limit::exact});
+    }
+  }
+  return result;
+}
+
 }  // namespace oracle

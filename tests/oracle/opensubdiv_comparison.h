@@ -3,6 +3,8 @@
 #include <oracle/polygon_twin.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 namespace oracle {
 
@@ -22,5 +24,18 @@ struct Compared {
 
 /// Sharpnesses are rounded to float first, as OpenSubdiv stores them.
 [[nodiscard]] Compared compare_with_opensubdiv(TaggedMesh mesh, const Rules& rules, int levels);
+
+/// OpenSubdiv's own mesh after uniform refinement, face by face in its order, in double precision.
+struct OpenSubdivMesh {
+  enum class Limit : std::uint8_t { exact, dart, valence_two, alive };  ///< as the parts of Compared
+  struct Corner {
+    Point refined, limit;
+    Limit sort;
+  };
+  bool accepted = false;
+  std::vector<std::vector<Corner>> faces;
+  std::vector<bool> holes;
+};
+[[nodiscard]] OpenSubdivMesh refine_with_opensubdiv(const TaggedMesh& mesh, const Rules& rules, int levels);
 
 }  // namespace oracle

@@ -86,6 +86,16 @@ std::vector<HalfEdge> of_key(const std::vector<std::pair<Id, HalfEdge>>& pairs, 
 std::vector<HalfEdge> Topology::more_halves(EdgeId e) const { return of_key(more_halves_, e); }
 std::vector<HalfEdge> Topology::more_fans(VertexId v) const { return of_key(more_fans_, v); }
 
+bool Topology::has_lone_face(EdgeId e) const {
+  std::vector<HalfEdge> halves = more_halves(e);
+  if (halves.empty() || from(half_of(e)) == to(half_of(e))) return true;
+  halves.push_back(half_of(e));
+  std::sort(halves.begin(), halves.end(), [&](HalfEdge g, HalfEdge h) { return face_of(g) < face_of(h); });
+  return std::adjacent_find(halves.begin(), halves.end(), [&](HalfEdge g, HalfEdge h) {
+           return face_of(g) == face_of(h);
+         }) != halves.end();
+}
+
 bool Topology::on_boundary(VertexId v) const {
   if (isolated(v)) return false;
   if (is_manifold()) return twins_[leaving(v)] == no_half_edge;

@@ -72,14 +72,14 @@ class Topology {
   /// The half-edges on a non-manifold edge beside half_of(e).
   [[nodiscard]] std::vector<HalfEdge> more_halves(EdgeId e) const;
 
-  /// Has the edge one face?
-  [[nodiscard]] bool on_boundary(EdgeId e) const {
-    if (!ends_fans(e)) return false;
-    return is_manifold() || (more_halves(e).empty() && from(half_of(e)) != to(half_of(e)));
-  }
+  /// Has the edge one face? What a face makes of an edge from a vertex to itself, or of one that it runs along a second
+  /// time, counts as an edge of its own.
+  [[nodiscard]] bool on_boundary(EdgeId e) const { return ends_fans(e) && (is_manifold() || has_lone_face(e)); }
   /// Is the edge on the boundary or non-manifold?
   [[nodiscard]] bool ends_fans(EdgeId e) const { return twins_[half_of(e)] == no_half_edge; }
-  [[nodiscard]] bool is_manifold(EdgeId e) const { return !ends_fans(e) || on_boundary(e); }
+  [[nodiscard]] bool is_manifold(EdgeId e) const {
+    return !ends_fans(e) || is_manifold() || (more_halves(e).empty() && from(half_of(e)) != to(half_of(e)));
+  }
   [[nodiscard]] bool isolated(VertexId v) const { return leaving(v) == no_half_edge; }
   /// Is one of the vertex's edges on the boundary?
   [[nodiscard]] bool on_boundary(VertexId v) const;
@@ -110,6 +110,7 @@ class Topology {
 
  private:
   void connect(std::size_t vertex_count);
+  [[nodiscard]] bool has_lone_face(EdgeId e) const;
   void find_fans();
 
   std::vector<std::uint32_t> face_offsets_{0};
