@@ -41,5 +41,27 @@ TEST(topology, walks_the_whole_fan_of_every_vertex) {
   }
 }
 
+TEST(topology, edges_that_a_face_makes_twice_are_apart) {
+  // Two triangles at an edge, and one that runs along it there and back.
+  const std::vector<VertexId> corners{VertexId(0u), VertexId(1u), VertexId(2u), VertexId(1u), VertexId(0u),
+                                      VertexId(3u), VertexId(0u), VertexId(1u), VertexId(1u)};
+  const Topology topology({0, 3, 6, 9}, corners, 4);
+  ASSERT_EQ(topology.edge_count(), 7u);
+  const EdgeId shared = topology.edge_of(0), loop = topology.edge_of(7), back = topology.edge_of(8);
+  EXPECT_EQ(topology.edge_of(3), shared);
+  EXPECT_EQ(topology.edge_of(6), shared);
+  EXPECT_EQ(topology.more_halves(shared), (std::vector<HalfEdge>{3, 6}));
+  EXPECT_NE(back, shared);
+  EXPECT_TRUE(topology.more_halves(back).empty());
+  for (const EdgeId odd : {shared, loop, back}) {
+    EXPECT_TRUE(topology.ends_fans(odd));
+    EXPECT_FALSE(topology.is_manifold(odd));
+  }
+  EXPECT_FALSE(topology.on_boundary(shared));
+  EXPECT_TRUE(topology.on_boundary(loop));
+  EXPECT_TRUE(topology.on_boundary(back));
+  for (const HalfEdge h : {1u, 2u, 4u, 5u}) EXPECT_TRUE(topology.is_manifold(topology.edge_of(h)));
+}
+
 }  // namespace
 }  // namespace snug

@@ -139,6 +139,29 @@ TaggedMesh valence_two_inside() {
   return mesh;
 }
 
+TaggedMesh vertices_twice() {
+  TaggedMesh mesh = quad_grid(3, 3);
+  for (const std::vector<std::uint32_t>& face :
+       {std::vector<std::uint32_t>{5, 6, 6}, {9, 9, 10}, {6, 6, 6}}) {
+    mesh.polygons.push_back(face);
+  }
+  return mesh;
+}
+
+TaggedMesh pole(std::uint32_t n, bool open) {
+  TaggedMesh mesh;
+  mesh.points.push_back({0, 0, 0.5});
+  const std::uint32_t around = 2 * n + (open ? 1 : 0);
+  for (std::uint32_t i = 0; i < around; ++i) {
+    const double angle = 6.283185307179586 * i / (2 * n + (open ? 4 : 0));
+    mesh.points.push_back({std::cos(angle), std::sin(angle), 0.2 * std::sin(3 * angle)});
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    mesh.polygons.push_back({0, 1 + 2 * i, 2 + 2 * i, open ? 3 + 2 * i : 1 + (2 * i + 2) % around});
+  }
+  return mesh;
+}
+
 TaggedMesh shaken(TaggedMesh mesh, double amount, std::mt19937_64& random) {
   std::uniform_real_distribution<float> step(-1, 1);
   for (Point& p : mesh.points)

@@ -18,7 +18,10 @@ namespace oracle::meshes {
 [[nodiscard]] TaggedMesh two_cubes_at_a_vertex();
 [[nodiscard]] TaggedMesh moebius(std::uint32_t n);  ///< n quads; one edge is crossed against its direction
 [[nodiscard]] TaggedMesh back_to_back();            ///< two quads with the same four corners: valence 2
-[[nodiscard]] TaggedMesh valence_two_inside();      ///< two quads share two edges in a row, others around
+[[nodiscard]] TaggedMesh
+vertices_twice();  ///< faces that name a vertex twice or three times, in a row and not
+[[nodiscard]] TaggedMesh pole(std::uint32_t n, bool open);  ///< n quads around vertex 0
+[[nodiscard]] TaggedMesh valence_two_inside();  ///< two quads share two edges in a row, others around
 
 /// Moves every point by up to `amount` along each axis, by amounts a float holds.
 [[nodiscard]] TaggedMesh shaken(TaggedMesh mesh, double amount, std::mt19937_64& random);

@@ -21,7 +21,7 @@ using oracle::OpenSubdivMesh;
 
 // Largest differences, relative to the largest coordinate.
 struct Differences {
-  double refined = 0, limit = 0;             // where OpenSubdiv's mask is the limit
+  double refined = 0, limit = 0;                // where OpenSubdiv's mask is the limit
   double dart = 0, valence_two = 0, alive = 0;  // where it is not
   bool same_faces = true;
 };
@@ -95,7 +95,9 @@ unsigned level_for(const oracle::TaggedMesh& mesh, std::size_t most) {
 
 // Do doubles and floats hold the same sharpnesses?
 bool sharpness_fits_float(const oracle::TaggedMesh& mesh) {
-  const auto fits = [](const auto& c) { return static_cast<double>(static_cast<float>(c.sharpness)) == c.sharpness; };
+  const auto fits = [](const auto& c) {
+    return static_cast<double>(static_cast<float>(c.sharpness)) == c.sharpness;
+  };
   return std::all_of(mesh.creases.begin(), mesh.creases.end(), fits) &&
          std::all_of(mesh.corners.begin(), mesh.corners.end(), fits);
 }
@@ -104,12 +106,14 @@ constexpr oracle::Boundary all_boundaries[] = {oracle::Boundary::edge_and_corner
                                                oracle::Boundary::none};
 
 TEST(subdivide, agrees_with_opensubdiv_on_tagged_shapes) {
-  for (const oracle::PrimalScheme scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
+  for (const oracle::PrimalScheme scheme :
+       {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 31)) {
       const Differences d = compare(c.mesh, c.rules, level_for(c.mesh, 20'000));
       const bool exact = sharpness_fits_float(c.mesh) && !c.rules.chaikin;
       EXPECT_TRUE(d.same_faces) << c.name << ", " << testing::text_of(c.rules);
-      if (c.rules.chaikin) continue;  // an edge of sharpness 1 and more that ends at one side only is another thing there
+      if (c.rules.chaikin)
+        continue;  // an edge of sharpness 1 and more that ends at one side only is another thing there
       EXPECT_LE(d.refined, exact ? 1e-12 : 1e-6) << c.name << ", " << testing::text_of(c.rules);
       EXPECT_LE(d.limit, exact ? 1e-12 : 1e-6) << c.name << ", " << testing::text_of(c.rules);
     }
@@ -128,8 +132,9 @@ TEST(subdivide, agrees_with_opensubdiv_on_its_regression_shapes) {
   }
   std::sort(paths.begin(), paths.end());
   ASSERT_FALSE(paths.empty());
-  std::printf("%-28s %-10s %5s %9s %9s | where OpenSubdiv's mask is not the limit: dart, two faces, still sharp\n",
-              "shape", "boundary", "level", "refined", "limit");
+  std::printf(
+      "%-28s %-10s %5s %9s %9s | where OpenSubdiv's mask is not the limit: dart, two faces, still sharp\n",
+      "shape", "boundary", "level", "refined", "limit");
   for (const auto& path : paths) {
     const oracle::TaggedFile file = oracle::read_tagged_obj(path);
     const std::string name = path.stem().string();
@@ -139,19 +144,21 @@ TEST(subdivide, agrees_with_opensubdiv_on_its_regression_shapes) {
       rules.chaikin = file.chaikin;
       rules.smooth_triangles = file.smooth_triangles;
       if (name.starts_with("loop")) rules.scheme = oracle::PrimalScheme::loop;
-      const unsigned level = level_for(file.mesh, 60'000);
+      const unsigned level =
+          level_for(file.mesh, 4'000) + 1;  // one more: tags of the last one are kept right
       const char* const names[] = {"corner", "edge", "none"};
       try {
         const Differences d = compare(file.mesh, rules, level);
         std::printf("%-28s %-10s %5u %9.1e %9.1e | %.1e %.1e %.1e%s\n", name.c_str(),
-                    names[static_cast<int>(boundary)], level, d.refined, d.limit, d.dart, d.valence_two, d.alive,
-                    d.same_faces ? "" : "  OTHER FACES");
+                    names[static_cast<int>(boundary)], level, d.refined, d.limit, d.dart, d.valence_two,
+                    d.alive, d.same_faces ? "" : "  OTHER FACES");
         const double tolerance = rules.chaikin || !sharpness_fits_float(file.mesh) ? 1e-6 : 1e-12;
         EXPECT_TRUE(d.same_faces) << name;
         EXPECT_LE(d.refined, tolerance) << name;
         EXPECT_LE(d.limit, tolerance) << name;
       } catch (const std::exception& refusal) {
-        std::printf("%-28s %-10s refused: %s\n", name.c_str(), names[static_cast<int>(boundary)], refusal.what());
+        std::printf("%-28s %-10s refused: %s\n", name.c_str(), names[static_cast<int>(boundary)],
+                    refusal.what());
         // Two edges between the same vertices after one step: Loop's valence 2.
         EXPECT_NE(std::string(refusal.what()).find("interior vertex"), std::string::npos) << name;
       }

@@ -72,6 +72,7 @@ struct TaggedCase {
           {"cubes at a vertex", meshes::two_cubes_at_a_vertex()},
           {"moebius", meshes::moebius(5)},
           {"back to back", meshes::back_to_back()},
+          {"vertices twice", meshes::vertices_twice()},
           {"valence two", meshes::valence_two_inside()}};
 }
 

@@ -21,18 +21,38 @@ void Topology::connect(std::size_t vertex_count) {
   twins_.assign(face_vertices_.size(), no_half_edge);
   edges_.resize(face_vertices_.size());
   edge_half_.resize(groups.edge_count());
+  std::vector<HalfEdge> apart;  // edges of their own
   for (std::size_t e = 0; e < groups.edge_count(); ++e) {
     const auto members = groups.of_edge(EdgeId(e));
     edge_half_[e] = members[0];
-    for (const HalfEdge h : members) edges_[h] = EdgeId(e);
+    edges_[members[0]] = EdgeId(e);
     if (members.size() == 2 && face_vertices_[members[0]] != face_vertices_[members[1]] &&
         groups.face(members[0]) != groups.face(members[1])) {
+      edges_[members[1]] = EdgeId(e);
       twins_[members[0]] = members[1];
       twins_[members[1]] = members[0];
-    } else {
-      for (const HalfEdge h : members.subspan(1)) more_halves_.emplace_back(EdgeId(e), h);
+      continue;
+    }
+    const bool loop = face_vertices_[members[0]] ==
+                      face_vertices_[next_in_face(face_offsets_, groups.face(members[0]), members[0])];
+    if (loop) odd_.emplace_back(e);
+    for (std::size_t i = 1; i < members.size(); ++i) {  // in the order of faces
+      const HalfEdge h = members[i];
+      if (!loop && groups.face(h) != groups.face(members[i - 1])) {
+        edges_[h] = EdgeId(e);
+        more_halves_.emplace_back(EdgeId(e), h);
+      } else {
+        apart.push_back(h);
+        odd_.emplace_back(e);
+      }
     }
   }
+  for (const HalfEdge h : apart) {
+    edges_[h] = EdgeId(edge_half_.size());
+    odd_.push_back(edges_[h]);
+    edge_half_.push_back(h);
+  }
+  odd_.erase(std::unique(odd_.begin(), odd_.end()), odd_.end());
   faces_ = groups.take_faces();
   leaving_.assign(vertex_count, no_half_edge);
   find_fans();
@@ -86,14 +106,9 @@ std::vector<HalfEdge> of_key(const std::vector<std::pair<Id, HalfEdge>>& pairs, 
 std::vector<HalfEdge> Topology::more_halves(EdgeId e) const { return of_key(more_halves_, e); }
 std::vector<HalfEdge> Topology::more_fans(VertexId v) const { return of_key(more_fans_, v); }
 
-bool Topology::has_lone_face(EdgeId e) const {
-  std::vector<HalfEdge> halves = more_halves(e);
-  if (halves.empty() || from(half_of(e)) == to(half_of(e))) return true;
-  halves.push_back(half_of(e));
-  std::sort(halves.begin(), halves.end(), [&](HalfEdge g, HalfEdge h) { return face_of(g) < face_of(h); });
-  return std::adjacent_find(halves.begin(), halves.end(), [&](HalfEdge g, HalfEdge h) {
-           return face_of(g) == face_of(h);
-         }) != halves.end();
+bool Topology::is_manifold(EdgeId e) const {
+  if (!ends_fans(e) || is_manifold()) return true;
+  return more_halves(e).empty() && !std::binary_search(odd_.begin(), odd_.end(), e);
 }
 
 bool Topology::on_boundary(VertexId v) const {

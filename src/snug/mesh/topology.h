@@ -13,8 +13,9 @@ namespace snug {
 ///
 /// Half-edges are twins where an edge has two faces that run along it in opposite directions. All other edges end
 /// the fans of faces at both of their vertices: those of the boundary, and non-manifold ones, which have three
-/// faces or more, or two that run along them in the same direction, or one face twice, or the same vertex at both
-/// ends. A vertex has one fan if it is manifold.
+/// faces or more, or two that run along them in the same direction. Where a face runs along an edge again, and where
+/// it names a vertex twice in a row, that is an edge of its own, with one face, and non-manifold; and so is the edge
+/// that it runs along again. A vertex has one fan if it is manifold.
 ///
 /// Around vertex v, counter-clockwise:
 ///
@@ -72,21 +73,22 @@ class Topology {
   /// The half-edges on a non-manifold edge beside half_of(e).
   [[nodiscard]] std::vector<HalfEdge> more_halves(EdgeId e) const;
 
-  /// Has the edge one face? What a face makes of an edge from a vertex to itself, or of one that it runs along a second
-  /// time, counts as an edge of its own.
-  [[nodiscard]] bool on_boundary(EdgeId e) const { return ends_fans(e) && (is_manifold() || has_lone_face(e)); }
+  /// Has the edge one face?
+  [[nodiscard]] bool on_boundary(EdgeId e) const {
+    return ends_fans(e) && (is_manifold() || more_halves(e).empty());
+  }
   /// Is the edge on the boundary or non-manifold?
   [[nodiscard]] bool ends_fans(EdgeId e) const { return twins_[half_of(e)] == no_half_edge; }
-  [[nodiscard]] bool is_manifold(EdgeId e) const {
-    return !ends_fans(e) || is_manifold() || (more_halves(e).empty() && from(half_of(e)) != to(half_of(e)));
-  }
+  [[nodiscard]] bool is_manifold(EdgeId e) const;
   [[nodiscard]] bool isolated(VertexId v) const { return leaving(v) == no_half_edge; }
   /// Is one of the vertex's edges on the boundary?
   [[nodiscard]] bool on_boundary(VertexId v) const;
   /// One fan at most, and no non-manifold edge.
   [[nodiscard]] bool is_manifold(VertexId v) const;
   /// All edges and vertices are.
-  [[nodiscard]] bool is_manifold() const { return more_halves_.empty() && more_fans_.empty(); }
+  [[nodiscard]] bool is_manifold() const {
+    return more_halves_.empty() && more_fans_.empty() && odd_.empty();
+  }
   /// Number of faces around a vertex.
   [[nodiscard]] std::size_t face_valence(VertexId v) const;
 
@@ -110,7 +112,6 @@ class Topology {
 
  private:
   void connect(std::size_t vertex_count);
-  [[nodiscard]] bool has_lone_face(EdgeId e) const;
   void find_fans();
 
   std::vector<std::uint32_t> face_offsets_{0};
@@ -120,9 +121,10 @@ class Topology {
   std::vector<EdgeId> edges_;
   std::vector<HalfEdge> edge_half_;
   std::vector<HalfEdge> leaving_;
-  // Both in rising order.
+  // All in rising order.
   std::vector<std::pair<EdgeId, HalfEdge>> more_halves_;
   std::vector<std::pair<VertexId, HalfEdge>> more_fans_;
+  std::vector<EdgeId> odd_;  // non-manifold for what a face does with them
 };
 
 }  // namespace snug

@@ -232,6 +232,23 @@ std::array<HalfEdge, 2> halves_of(const Topology& topology, Scheme scheme, HalfE
   return {place(h, 0), place(next, 3)};
 }
 
+// Where a face names a vertex twice in a row, the two halves of that edge meet: what was open there closes, and is kept
+// infinitely sharp. The middle stays where the vertex is.
+void keep_closed_edges_sharp(const Topology& topology, const SchemeOptions& options, const Topology& refined,
+                             Sharpness& result) {
+  for (std::size_t e = 0; e < topology.edge_count(); ++e) {
+    const HalfEdge h = topology.half_of(EdgeId(e));
+    if (topology.from(h) != topology.to(h)) continue;
+    if (result.edges.empty()) result.edges.assign(refined.edge_count(), 0.0);
+    if (result.vertices.empty()) result.vertices.assign(refined.vertex_count(), 0.0);
+    for (const HalfEdge half : halves_of(topology, options.scheme, h)) {
+      result.edges[refined.edge_of(half).index()] = infinite_sharpness;
+    }
+    result.vertices[topology.from(h).index()] = infinite_sharpness;
+    result.vertices[topology.vertex_count() + e] = infinite_sharpness;
+  }
+}
+
 Sharpness sharpness_left(const Topology& topology, const SchemeOptions& options, const Sharpness& sharpness,
                          const Topology& refined) {
   Sharpness result;
@@ -263,6 +280,7 @@ Sharpness sharpness_left(const Topology& topology, const SchemeOptions& options,
     if (result.vertices.empty()) result.vertices.assign(refined.vertex_count(), 0.0);
     result.vertices[v] = s;
   }
+  if (!topology.is_manifold()) keep_closed_edges_sharp(topology, options, refined, result);
   return result;
 }
 
