@@ -82,11 +82,18 @@ void split(const Patch& patch, unsigned child, Patch& piece) {
 }
 
 Patch patch_of_polygon(const Patch& polygon, std::size_t part) {
-  SNUG_EXPECT(polygon.kind->key().polygon && polygon.points.size() == polygon.kind->control_count());
   Patch piece;
-  apply(polygon, polygon.kind->children().at(part), piece);
-  piece.path = polygon.path;
+  patch_of_polygon(polygon, part, piece);
   return piece;
+}
+
+void patch_of_polygon(const Patch& polygon, std::size_t part, Patch& piece) {
+  const auto& children = polygon.kind->children();
+  SNUG_EXPECT(polygon.kind->key().polygon && polygon.points.size() == polygon.kind->control_count());
+  SNUG_EXPECT(part < children.size() && &piece != &polygon);
+  apply(polygon, children[part], piece);
+  piece.first = children[part].first;
+  piece.path = polygon.path;
 }
 
 }  // namespace snug

@@ -41,6 +41,8 @@ void make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> al
 /// Half a quad of a polygon that is no patch itself (KindKey), as Kind::children() counts them. Its path is that of the
 /// polygon.
 [[nodiscard]] Patch patch_of_polygon(const Patch& polygon, std::size_t part);
+/// The same, written over `piece`, which keeps its memory.
+void patch_of_polygon(const Patch& polygon, std::size_t part, Patch& piece);
 
 /// Piece `child` (0 to 3) of a patch after one step of subdivision.
 ///

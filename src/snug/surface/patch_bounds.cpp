@@ -22,7 +22,7 @@ constexpr std::size_t chunk_size = 256;
 
 // One a thread; keeps its memory from call to call.
 struct Scratch {
-  Patch patch;
+  Patch patch, polygon;
   HullPoints hull;
   std::array<kernels::BatchFit, chunk_size> answers;
 };
@@ -204,7 +204,8 @@ void PatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
     Patch& patch = scratch.patch;
     const std::span<const VertexId> own = control.subspan(i * controls, controls);
     if (group.polygon) {
-      patch = patch_of_polygon(make_patch(*group.polygon, 0, scaled_, own), group.part);
+      make_patch(*group.polygon, 0, scaled_, own, scratch.polygon);
+      patch_of_polygon(scratch.polygon, group.part, patch);
     } else {
       make_patch(kind, place.first, scaled_, own, patch);
     }
