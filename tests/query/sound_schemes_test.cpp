@@ -211,6 +211,36 @@ TEST(catmark, limit_points_of_disguised_meshes_lie_inside_their_enclosures) {
   print("disguised catmark", counted);
 }
 
+// Many faces between creases or boundaries: kinds that have no rows of their own.
+TEST(crowded_corners, limit_points_lie_inside_their_enclosures) {
+  Counted counted;
+  std::mt19937_64 random(74);
+  for (const oracle::PrimalScheme scheme :
+       {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
+    const auto library = std::make_shared<BoundLibrary>();
+    const auto check = [&](std::string name, oracle::TaggedMesh mesh) {
+      if (scheme == oracle::PrimalScheme::loop) mesh = oracle::meshes::triangulated(mesh);
+      oracle::Rules rules;
+      rules.scheme = scheme;
+      check_primal({std::move(name), oracle::meshes::shaken(mesh, 0.1, random), rules}, 3, library, counted);
+    };
+    check("open", oracle::meshes::pole(19, true));
+    oracle::TaggedMesh mesh = oracle::meshes::pole(18, false);
+    mesh.creases = {{0, 1, 10}};
+    check("dart", mesh);
+    mesh = oracle::meshes::pole(36, false);
+    check("smooth", mesh);
+    mesh.creases = {{0, 1, 10}, {0, 37, 10}};
+    check("crease", mesh);
+    mesh.creases = {{0, 1, 10}, {0, 37, 10}, {0, 39, 1.5}};
+    check("crease, and an edge that will be smooth", mesh);
+    mesh.creases = {{0, 1, 10}, {0, 3, 10}, {0, 37, 10}};
+    check("corner", mesh);
+    if (HasFailure()) return;
+  }
+  print("crowded corners", counted);
+}
+
 // Samples of a dual scheme name their patch, no parameter: each lies in one of the pieces; and the grid of parameters meets
 // the samples of the patch, all of them.
 void check_dual(const std::string& name, const oracle::TaggedMesh& mesh, Scheme scheme, int levels,

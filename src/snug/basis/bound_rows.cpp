@@ -87,8 +87,11 @@ bool on_covered_edge(std::size_t degree, std::size_t i, std::size_t j, const Cov
   return (covered[0] && i + j == degree) || (covered[1] && i == 0) || (covered[2] && j == 0);
 }
 
-// Levels of what passes: beyond them the nets of its pieces are small enough.
-constexpr unsigned passing_levels = 3;
+// Levels of the rows of passing and crowded kinds, which tables alone are made of: patches are split instead
+// (enclose/hull_points.h).
+constexpr unsigned levels_of_unshared_rows = 3;
+
+bool is_shared(const Kind& kind) { return !kind.passing() && !kind.crowded(); }
 
 class Collector {
  public:
@@ -99,7 +102,7 @@ class Collector {
     for (std::size_t i = 0; i < 3; ++i) {
       if (!kind.regular_corner(i)) most += 70 * std::size_t{levels(kind, i)} + kind.corner(i).faces() + 20;
     }
-    if (!kind.passing()) rows_.entries.reserve(most * rows_.width);
+    if (is_shared(kind)) rows_.entries.reserve(most * rows_.width);
   }
 
   // Rows of one piece; `covered` counts corners as the kind does.
@@ -155,7 +158,7 @@ class Collector {
     return std::min(most_levels_, tip_depth(kind.corner(corner), kind.scheme()));
   }
   [[nodiscard]] unsigned depth_limit(const Kind& kind, unsigned depth) const {
-    if (kind.passing()) return std::min(most_levels_, passing_levels);
+    if (!is_shared(kind)) return std::min(most_levels_, levels_of_unshared_rows);
     unsigned limit = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       if (!kind.regular_corner(i)) limit = std::max(limit, levels(kind, i));
@@ -200,12 +203,8 @@ void BoundRows::find_tips(const Kind& kind, unsigned levels) {
   for (std::size_t corner = 0; corner < 3; ++corner) {
     const KindChild& child = kind.children()[corner];
     if (child.kind->polynomial()) continue;
-    const std::optional<TipKinds> tip = tip_kinds(child, corner);
-    if (!tip) {
-      tips_ = {};
-      return;
-    }
-    const Kind* const there = (*tip)[std::clamp(levels, 1u, unsigned{TipKinds{}.size()}) - 1];
+    const Kind* const there =
+        (*tip_kinds(child, corner))[std::clamp(levels, 1u, unsigned{TipKinds{}.size()}) - 1];
     tips_[found++] = {there, end};
     end += there->control_count();
   }
@@ -213,13 +212,10 @@ void BoundRows::find_tips(const Kind& kind, unsigned levels) {
 }
 
 bool has_lasting_tips(const Kind& kind) {
-  if (kind.key().plain()) return true;
-  if (kind.passing()) return false;
-  for (unsigned corner = 0; corner < 3; ++corner) {
-    if (kind.regular_corner(corner)) continue;
-    const KindChild& tip = kind.children()[corner];
-    const unsigned own = (3 + corner - tip.first) % 3;
-    if (tip.kind->children()[own].kind != tip.kind) return false;
+  if (!is_shared(kind)) return false;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    const KindChild& child = kind.children()[corner];
+    if (!child.kind->polynomial() && !tip_kinds(child, corner)) return false;
   }
   return true;
 }

@@ -63,7 +63,9 @@ class BoundRows {
 /// Cost:      up to valence 12 well below a millisecond; for valence n about 20 n^2 multiply-adds a level.
 [[nodiscard]] BoundRows make_bound_rows(const Kind& kind, unsigned most_levels = deepest_tip);
 
-/// Is the quarter at each extraordinary corner of a kind that comes again at every level? Only such tips are kept apart.
+/// Is the quarter at each extraordinary corner, after a few levels, of a kind that comes again at every level? Only such
+/// tips are kept apart.
+/// Requires:  a kind that is no polynomial.
 [[nodiscard]] bool has_lasting_tips(const Kind& kind);
 
 /// Levels of rings around an extraordinary corner until the control net of the tip sticks out behind the

@@ -64,11 +64,16 @@ void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out) {
 
 namespace {
 
-// Levels that a passing patch is split before the nets of its pieces do.
-constexpr unsigned passing_levels = 5;
+// Levels that a patch is split, before the nets of its pieces do: one of a passing kind, and at a crowded corner.
+constexpr unsigned passing_levels = 5, crowded_levels = 12;
 
-// Adds points whose hull holds the patch; `scratch` has a patch a level.
-void collect(BoundLibrary& library, const Patch& patch, std::span<Patch> scratch, HullPoints& out) {
+bool is_split(const Kind& kind) { return kind.passing() || kind.crowded(); }
+
+unsigned levels_of(const Kind& kind) { return kind.passing() ? passing_levels : crowded_levels; }
+
+// Adds points whose hull holds the patch, which `level` splits have made; `scratch` has a patch for each of the next ones.
+void collect(BoundLibrary& library, const Patch& patch, unsigned level, std::span<Patch> scratch,
+             HullPoints& out) {
   const Kind& kind = *patch.kind;
   if (kind.polynomial()) {
     const Stencils& rows = kind.bezier();
@@ -77,9 +82,9 @@ void collect(BoundLibrary& library, const Patch& patch, std::span<Patch> scratch
     for (std::size_t r = 0; r < rows.row_count(); ++r) out.set(at++, rows.apply<Vector3>(r, patch.points));
     out.error = std::max(out.error, rows.result_error(patch.largest, patch.error));
     out.largest = std::max(out.largest, enlarged(rows.max_abs_sum() * patch.largest));
-  } else if (!kind.passing()) {
+  } else if (!is_split(kind)) {
     apply(library.rows(kind), patch, out.size(), out);
-  } else if (scratch.empty()) {
+  } else if (level >= levels_of(kind)) {
     std::size_t at = out.size();
     out.resize(at + patch.points.size());
     for (const Vector3& p : patch.points) out.set(at++, p);
@@ -88,30 +93,32 @@ void collect(BoundLibrary& library, const Patch& patch, std::span<Patch> scratch
   } else {
     for (unsigned child = 0; child < 4; ++child) {
       split(patch, child, scratch[0]);
-      collect(library, scratch[0], scratch.subspan(1), out);
+      collect(library, scratch[0], level + 1, scratch.subspan(1), out);
     }
   }
 }
 
-void prepare(BoundLibrary& library, const Kind& kind, unsigned levels) {
+void prepare(BoundLibrary& library, const Kind& kind, unsigned level) {
   if (kind.polynomial()) return;
-  if (!kind.passing()) {
+  if (!is_split(kind)) {
     static_cast<void>(library.rows(kind));
-  } else if (levels > 0) {
-    for (const KindChild& child : kind.children()) prepare(library, *child.kind, levels - 1);
+  } else if (level < levels_of(kind)) {
+    for (const KindChild& child : kind.children()) {
+      if (child.kind != &kind) prepare(library, *child.kind, level + 1);
+    }
   }
 }
 
 }  // namespace
 
 void hull_points(BoundLibrary& library, const Patch& patch, HullPoints& out) {
-  if (patch.kind->passing()) {
-    thread_local std::array<Patch, passing_levels> scratch;
+  if (is_split(*patch.kind)) {
+    thread_local std::array<Patch, crowded_levels> scratch;
     out.origin = patch.origin;
     out.error = out.largest = 0;
     out.tips = {};
     out.resize(0);
-    collect(library, patch, scratch, out);
+    collect(library, patch, 0, scratch, out);
     return;
   }
   hull_points(library.rows(*patch.kind), patch, out);
@@ -124,8 +131,8 @@ void hull_points(BoundLibrary& library, const Patch& patch, HullPoints& out) {
 }
 
 void prepare_hull_points(BoundLibrary& library, const Kind& kind) {
-  if (kind.passing()) {
-    prepare(library, kind, passing_levels);
+  if (is_split(kind)) {
+    prepare(library, kind, 0);
     return;
   }
   for (const BoundRows::Tip& tip : library.rows(kind).tips()) {

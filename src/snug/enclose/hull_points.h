@@ -52,8 +52,8 @@ inline constexpr std::size_t most_tip_refinements = 3;
 void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out);
 
 /// The same from the rows that a library keeps; the tips of a kind with several are refined, its own rows being
-/// for one level only. Takes memory for all refinements to come. A passing kind, which few patches share, has no rows: the
-/// patch is split, and its pieces have theirs.
+/// for one level only. Takes memory for all refinements to come. Passing and crowded kinds, which few patches share, have
+/// no rows: the patch is split, and its pieces have theirs.
 void hull_points(BoundLibrary& library, const Patch& patch, HullPoints& out);
 /// Makes the rows that the call above will need for patches of this kind.
 void prepare_hull_points(BoundLibrary& library, const Kind& kind);

@@ -125,6 +125,12 @@ Kind::Kind(KindLibrary& library, KindId id, const KindKey& key)
   }
 }
 
+bool Kind::crowded() const {
+  constexpr std::size_t many = 16;
+  return std::any_of(key_.corners.begin(), key_.corners.end(),
+                     [](const CornerFan& fan) { return fan.faces() > many && (!fan.closed || fan.odd); });
+}
+
 const Stencils& Kind::corner_tangents() const {
   SNUG_EXPECT(!key_.polygon);
   std::call_once(tangents_made_, [&] {

@@ -40,6 +40,9 @@ class Kind {
   [[nodiscard]] bool regular_corner(std::size_t i) const { return key_.corners[i].regular(key_.scheme); }
   /// Not for ever: sharpness decays, or polygons that are no quads lie around it.
   [[nodiscard]] bool passing() const { return passing_; }
+  /// Is a corner one of very many faces between creases or boundaries? All its patches are of kinds of their own, and the
+  /// matrix of points that bound one would be as large as the fan for each of many levels.
+  [[nodiscard]] bool crowded() const;
 
   /// Is the patch polynomial, or made of two polynomials (Midedge)? Then bezier() gives them.
   [[nodiscard]] bool polynomial() const { return form_.has_value(); }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <numbers>
 #include <utility>
 
@@ -189,8 +191,14 @@ double sum_of_sizes(const std::vector<double>& row) {
   return sum;
 }
 
-// The limit of a dart has no formula: the left eigenvector of 1 by iteration, its error by the decay of what is left.
-void add_dart_row(const DartStep& step, Stencils& out) {
+// Limit position of a dart: weights of its places, and how far off they all may be together.
+struct DartRow {
+  std::vector<double> weights;
+  double error;
+};
+
+// It has no formula: the left eigenvector of 1 by iteration, its error by the decay of what is left.
+DartRow make_dart_row(const DartStep& step) {
   std::vector<double> row(step.size(), 1.0 / static_cast<double>(step.size())), next;
   double change = 1;
   for (int i = 0; i < 400 && change > 1e-17; ++i) {
@@ -205,7 +213,26 @@ void add_dart_row(const DartStep& step, Stencils& out) {
   for (std::size_t c = 0; c < row.size(); ++c) next[c] -= row[c];
   const double residual = sum_of_sizes(next) + 2 * step.row_error();
   const double error = enlarged(2 * step.decay() * residual + std::fabs(sum - 1) + gamma_bound(row.size()));
-  for (std::size_t c = 0; c < row.size(); ++c) out.add(step.names()[c].value(), row[c], c == 0 ? error : 0.0);
+  return {std::move(row), error};
+}
+
+// Rows of darts whose places are all different depend on scheme and valence alone, and cost the square of it: made once.
+const DartRow& shared_dart_row(Scheme scheme, const DartStep& step) {
+  static std::mutex mutex;
+  static std::map<std::pair<Scheme, std::size_t>, DartRow> rows;
+  const std::lock_guard lock(mutex);
+  const std::pair key(scheme, step.spokes().size());
+  auto place = rows.find(key);
+  if (place == rows.end()) place = rows.emplace(key, make_dart_row(step)).first;
+  return place->second;
+}
+
+void add_dart_row(Scheme scheme, const DartStep& step, Stencils& out) {
+  const std::size_t places = 1 + step.spokes().size() * (scheme == Scheme::loop ? 1 : 2);
+  const DartRow row = step.size() == places ? shared_dart_row(scheme, step) : make_dart_row(step);
+  for (std::size_t c = 0; c < row.weights.size(); ++c) {
+    out.add(step.names()[c].value(), row.weights[c], c == 0 ? row.error : 0.0);
+  }
   out.end_row();
 }
 
@@ -459,7 +486,7 @@ void add_limit_row(const Topology& topology, VertexId v, const SchemeOptions& op
   gather_star(topology, sharpness, v, options.boundary, star);
   if (is_settled(topology, star, options.scheme)) {
     if (is_dart(star)) {
-      add_dart_row(DartStep(topology, sharpness, options, star), out);
+      add_dart_row(options.scheme, DartStep(topology, sharpness, options, star), out);
       return;
     }
     add_settled_row(topology, v, options.scheme, star, out);
