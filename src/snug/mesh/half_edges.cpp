@@ -3,6 +3,21 @@
 #include <algorithm>
 
 namespace snug {
+namespace {
+
+// Few elements are inserted one by one: std::stable_sort takes memory for as few as two.
+template <class Iterator, class Less>
+void stable_sort_few(Iterator begin, Iterator end, Less less) {
+  if (end - begin > 16) {
+    std::stable_sort(begin, end, less);
+    return;
+  }
+  for (Iterator it = begin; it != end; ++it) {
+    std::rotate(std::upper_bound(begin, it, *it, less), it, it + 1);
+  }
+}
+
+}  // namespace
 
 HalfEdgeGroups::HalfEdgeGroups(std::span<const std::uint32_t> face_offsets,
                                std::span<const VertexId> face_vertices, std::size_t vertex_count) {
@@ -33,7 +48,7 @@ HalfEdgeGroups::HalfEdgeGroups(std::span<const std::uint32_t> face_offsets,
   for (std::size_t v = 0; v < vertex_count; ++v) {
     const auto begin = buckets.begin() + bucket_start[v], end = buckets.begin() + bucket_start[v + 1];
     // Half-edges come in rising order; a stable sort by the far end keeps that order inside an edge.
-    std::stable_sort(begin, end, [&](HalfEdge g, HalfEdge h) { return far[g] < far[h]; });
+    stable_sort_few(begin, end, [&](HalfEdge g, HalfEdge h) { return far[g] < far[h]; });
     for (auto it = begin; it != end; ++it) {
       if (it != begin && far[*it] != far[*(it - 1)])
         offsets_.push_back(static_cast<std::uint32_t>(members_.size()));

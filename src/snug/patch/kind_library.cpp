@@ -7,6 +7,7 @@
 #include <snug/base/contract.h>
 #include <snug/scheme/limits.h>
 #include <snug/scheme/refine.h>
+#include <snug/scheme/row_builder.h>
 
 namespace snug {
 namespace {
@@ -71,6 +72,9 @@ std::vector<KindChild> make_children(KindLibrary& library, const KindKey& key) {
     control_vertices(refined.topology, starts[k] + child.first, child.key, control);
     children[k].kind = &library.find(child.key);
     children[k].first = child.first;
+    std::size_t entries = 0;
+    for (const VertexId v : control) entries += refined.stencils.row(v.index()).sources.size();
+    children[k].stencils.reserve(control.size(), entries);
     for (const VertexId v : control) children[k].stencils.append(refined.stencils.row(v.index()), same_names);
   }
   return children;
@@ -114,15 +118,30 @@ Kind::Kind(KindLibrary& library, KindId id, const KindKey& key)
   const Neighbourhood around = neighbourhood(key);
   control_count_ = around.topology.vertex_count();
   passing_ = is_passing(around, key);
-  if (key.polygon) return;
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (is_primal(key.scheme)) {
-      add_limit_row(around.topology, around.topology.face(FaceId(0))[i], around.options, around.sharpness,
+}
+
+const Stencils& Kind::corner_limits() const {
+  SNUG_EXPECT(!key_.polygon);
+  std::call_once(limits_made_, [&] {
+    const Neighbourhood around = neighbourhood(key_);
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!is_primal(key_.scheme)) {
+        add_mean(around.topology, FaceId(i), corner_limits_);
+        continue;
+      }
+      const VertexId v = around.topology.face(FaceId(0))[i];
+      if (add_settled_limit_row(around.topology, v, around.options, around.sharpness, corner_limits_))
+        continue;
+      if (passing_) {  // the child at the corner shares the work with other patches
+        const KindChild& child = children()[i];
+        add_product(child.kind->corner_limits().row((3 + i - child.first) % 3), child.stencils, {},
                     corner_limits_);
-    } else {
-      add_mean(around.topology, FaceId(i), corner_limits_);
+      } else {
+        add_limit_row(around.topology, v, around.options, around.sharpness, corner_limits_);
+      }
     }
-  }
+  });
+  return corner_limits_;
 }
 
 bool Kind::crowded() const {

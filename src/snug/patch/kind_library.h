@@ -54,7 +54,7 @@ class Kind {
 
   /// Limit positions of the corners: three rows.
   /// Requires:  a patch, no polygon; so do the tangents.
-  [[nodiscard]] const Stencils& corner_limits() const { return corner_limits_; }
+  [[nodiscard]] const Stencils& corner_limits() const;
   /// Two tangent rows a corner, those of corner i at 2 i and 2 i + 1 (scheme/limits.h).
   [[nodiscard]] const Stencils& corner_tangents() const;
 
@@ -69,9 +69,8 @@ class Kind {
   bool passing_ = false;
   std::size_t control_count_ = 0;
   std::optional<PolynomialForm> form_;
-  Stencils corner_limits_;
-  mutable std::once_flag tangents_made_, children_made_;
-  mutable Stencils corner_tangents_;
+  mutable std::once_flag limits_made_, tangents_made_, children_made_;
+  mutable Stencils corner_limits_, corner_tangents_;
   mutable std::vector<KindChild> children_;
 };
 

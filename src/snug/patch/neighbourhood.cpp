@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <snug/base/contract.h>
+#include <snug/base/first_met.h>
 #include <snug/scheme/limits.h>
 
 namespace snug {
@@ -90,14 +91,13 @@ KindKey dual_key(const Topology& topology, HalfEdge start, Scheme scheme) {
 
 // The faces around the corners of a face, its own first, each as the half-edge that leaves the corner where it was met.
 std::vector<HalfEdge> faces_around(const Topology& topology, HalfEdge start) {
-  std::vector<HalfEdge> found{start};
-  std::vector<FaceId> met{topology.face_of(start)};
+  thread_local FirstMet met;
+  met.begin(topology.face_count());
+  std::vector<HalfEdge> found;
   const auto add = [&](HalfEdge h) {
-    const FaceId f = topology.face_of(h);
-    if (std::find(met.begin(), met.end(), f) != met.end()) return;
-    met.push_back(f);
-    found.push_back(h);
+    if (met.number(topology.face_of(h).index()) == found.size()) found.push_back(h);
   };
+  add(start);
   HalfEdge corner = start;
   do {
     topology.walk_fan(corner, add);
@@ -485,7 +485,7 @@ void control_vertices(const Topology& topology, HalfEdge start, const KindKey& k
   if (!is_primal(key.scheme)) {
     dual_control(topology, start, out);
   } else if (!key.plain()) {
-    out = part_of(topology, {}, BoundaryRule::edge_only, faces_around(topology, start)).names;
+    vertices_of(topology, faces_around(topology, start), out);
   } else if (key.scheme == Scheme::loop) {
     loop_control(topology, start, key.corners, out);
   } else {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <snug/base/contract.h>
+#include <snug/base/first_met.h>
 #include <snug/base/rounding.h>
 #include <snug/scheme/catmark_masks.h>
 #include <snug/scheme/loop_masks.h>
@@ -90,26 +91,6 @@ void add_settled_row(const Topology& topology, VertexId v, Scheme scheme, const 
         for (const Spoke& spoke : star.spokes) out.add(spoke.end.value(), mask.edge);
         for (const HalfEdge h : star.faces) out.add(topology.to(topology.next(h)).value(), mask.diagonal);
       }
-  }
-  out.end_row();
-}
-
-// outer * inner, with sources renamed.
-void add_product(const Stencils::Row& outer, const Stencils& inner, std::span<const VertexId> names,
-                 Stencils& out) {
-  RowBuilder row;
-  for (std::size_t i = 0; i < outer.sources.size(); ++i) {
-    row.add(Interval(outer.weights[i]), inner.row(outer.sources[i]));
-  }
-  Stencils one;
-  row.end_row(one);
-  double largest = 0;
-  for (const std::uint32_t s : outer.sources)
-    largest = std::max(largest, inner.row(s).abs_sum + inner.row(s).error);
-  const Stencils::Row product = one.row(0);
-  for (std::size_t i = 0; i < product.sources.size(); ++i) {
-    out.add(names[product.sources[i]].value(), product.weights[i],
-            i == 0 ? enlarged(product.error + outer.error * largest) : 0.0);
   }
   out.end_row();
 }
@@ -407,45 +388,32 @@ void add_corner_tangents(const Topology& topology, const Sharpness& sharpness, V
 
 }  // namespace
 
+void vertices_of(const Topology& topology, std::span<const HalfEdge> firsts, std::vector<VertexId>& names,
+                 std::vector<VertexId>* corners) {
+  thread_local FirstMet met;
+  met.begin(topology.vertex_count());
+  names.clear();
+  for (const HalfEdge first : firsts) {
+    HalfEdge h = first;
+    do {
+      const VertexId v = topology.from(h), own(met.number(v.index()));
+      if (own.index() == names.size()) names.push_back(v);
+      if (corners) corners->push_back(own);
+      h = topology.next(h);
+    } while (h != first);
+  }
+}
+
 PartOfMesh part_of(const Topology& topology, const Sharpness& sharpness, BoundaryRule boundary,
                    std::span<const HalfEdge> firsts) {
   PartOfMesh part;
   std::vector<std::uint32_t> offsets{0};
   std::vector<VertexId> corners;
-  // A few vertices are found by looking through all, many by a table.
-  std::vector<std::pair<VertexId, std::uint32_t>> table;
-  std::size_t total = 0;
-  for (const HalfEdge first : firsts) total += topology.face(topology.face_of(first)).size();
-  const bool many = total > 200;
-  if (many) {
-    for (const HalfEdge first : firsts) {
-      for (const VertexId v : topology.face(topology.face_of(first))) table.emplace_back(v, UINT32_MAX);
-    }
-    std::sort(table.begin(), table.end());
-  }
-  const auto name_of = [&](VertexId v) {
-    if (many) {
-      auto& entry = *std::lower_bound(table.begin(), table.end(), std::pair(v, std::uint32_t{0}),
-                                      [](const auto& a, const auto& b) { return a.first < b.first; });
-      if (entry.second == UINT32_MAX) {
-        entry.second = static_cast<std::uint32_t>(part.names.size());
-        part.names.push_back(v);
-      }
-      return VertexId(entry.second);
-    }
-    const auto found = std::find(part.names.begin(), part.names.end(), v);
-    if (found != part.names.end()) return VertexId(static_cast<std::size_t>(found - part.names.begin()));
-    part.names.push_back(v);
-    return VertexId(part.names.size() - 1);
-  };
+  vertices_of(topology, firsts, part.names, &corners);
   for (const HalfEdge first : firsts) {
-    part.faces.push_back(topology.face_of(first));
-    HalfEdge h = first;
-    do {
-      corners.push_back(name_of(topology.from(h)));
-      h = topology.next(h);
-    } while (h != first);
-    offsets.push_back(static_cast<std::uint32_t>(corners.size()));
+    const FaceId f = topology.face_of(first);
+    part.faces.push_back(f);
+    offsets.push_back(offsets.back() + static_cast<std::uint32_t>(topology.face(f).size()));
   }
   part.topology = Topology(std::move(offsets), std::move(corners), part.names.size());
 
@@ -471,6 +439,19 @@ PartOfMesh part_of(const Topology& topology, const Sharpness& sharpness, Boundar
   return part;
 }
 
+bool add_settled_limit_row(const Topology& topology, VertexId v, const SchemeOptions& options,
+                           const Sharpness& sharpness, Stencils& out) {
+  Star star;
+  gather_star(topology, sharpness, v, options.boundary, star);
+  if (!is_settled(topology, star, options.scheme)) return false;
+  if (is_dart(star)) {
+    add_dart_row(options.scheme, DartStep(topology, sharpness, options, star), out);
+  } else {
+    add_settled_row(topology, v, options.scheme, star, out);
+  }
+  return true;
+}
+
 void add_limit_row(const Topology& topology, VertexId v, const SchemeOptions& options,
                    const Sharpness& sharpness, Stencils& out) {
   if (!is_primal(options.scheme)) {
@@ -482,16 +463,9 @@ void add_limit_row(const Topology& topology, VertexId v, const SchemeOptions& op
     out.end_row();
     return;
   }
+  if (add_settled_limit_row(topology, v, options, sharpness, out)) return;
   Star star;
   gather_star(topology, sharpness, v, options.boundary, star);
-  if (is_settled(topology, star, options.scheme)) {
-    if (is_dart(star)) {
-      add_dart_row(options.scheme, DartStep(topology, sharpness, options, star), out);
-      return;
-    }
-    add_settled_row(topology, v, options.scheme, star, out);
-    return;
-  }
   const NextStar next = next_star(topology, sharpness, options, star);
   SchemeOptions inside = options;
   inside.boundary = BoundaryRule::edge_only;

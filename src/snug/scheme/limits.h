@@ -11,6 +11,12 @@ namespace snug {
 [[nodiscard]] Stencils limit_stencils(const Topology& topology, const SchemeOptions& options,
                                       const Sharpness& sharpness = {});
 
+/// Adds the limit row of one vertex to `out`, if it can be read off the star of the vertex: where nothing decays any more,
+/// and with Catmull-Clark among quads. Returns whether it could.
+/// Requires:  a primal scheme and a vertex that is not isolated.
+[[nodiscard]] bool add_settled_limit_row(const Topology& topology, VertexId v, const SchemeOptions& options,
+                                         const Sharpness& sharpness, Stencils& out);
+
 /// Adds the limit row of one vertex to `out`.
 /// Cost:      where sharpness decays, or among polygons that are no quads, the star is refined until that ends.
 void add_limit_row(const Topology& topology, VertexId v, const SchemeOptions& options,
@@ -38,5 +44,9 @@ struct PartOfMesh {
 /// `firsts`: half-edges, one a face, that the part's faces begin with.
 [[nodiscard]] PartOfMesh part_of(const Topology& topology, const Sharpness& sharpness, BoundaryRule boundary,
                                  std::span<const HalfEdge> firsts);
+
+/// The vertices of such a part alone, and, if asked for, the corners of its faces by their new numbers.
+void vertices_of(const Topology& topology, std::span<const HalfEdge> firsts, std::vector<VertexId>& names,
+                 std::vector<VertexId>* corners = nullptr);
 
 }  // namespace snug

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include <snug/mesh/control_mesh.h>
 #include <snug/scheme/stencils.h>
 
 namespace snug {
@@ -43,5 +45,9 @@ class RowBuilder {
   };
   std::vector<Entry> entries_;
 };
+
+/// Adds the product of a row and a matrix to `out`, sources renamed; without names they keep their own.
+void add_product(const Stencils::Row& outer, const Stencils& inner, std::span<const VertexId> names,
+                 Stencils& out);
 
 }  // namespace snug

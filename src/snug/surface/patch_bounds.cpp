@@ -102,6 +102,7 @@ PatchBounds::PatchBounds(const Surface& surface, std::vector<PatchId> patches,
       } else {
         prepare_hull_points(*library_, *group.kind);
       }
+      static_cast<void>(group.kind->corner_limits());
     }
   });
 }

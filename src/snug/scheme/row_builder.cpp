@@ -1,0 +1,29 @@
+#include <snug/scheme/row_builder.h>
+
+#include <algorithm>
+
+#include <snug/base/rounding.h>
+
+namespace snug {
+
+void add_product(const Stencils::Row& outer, const Stencils& inner, std::span<const VertexId> names,
+                 Stencils& out) {
+  RowBuilder builder;
+  double largest = 0;
+  for (std::size_t i = 0; i < outer.sources.size(); ++i) {
+    const Stencils::Row row = inner.row(outer.sources[i]);
+    builder.add(Interval(outer.weights[i]), row);
+    largest = std::max(largest, row.abs_sum + row.error);
+  }
+  Stencils one;
+  builder.end_row(one);
+  const Stencils::Row product = one.row(0);
+  for (std::size_t i = 0; i < product.sources.size(); ++i) {
+    const std::uint32_t source = product.sources[i];
+    out.add(names.empty() ? source : names[source].value(), product.weights[i],
+            i == 0 ? enlarged(product.error + outer.error * largest) : 0.0);
+  }
+  out.end_row();
+}
+
+}  // namespace snug
