@@ -71,16 +71,18 @@ class Reader {
   std::size_t place_ = 0;
 };
 
-StoredTable read_table(Reader& reader, std::uint32_t controls) {
+StoredTable read_table(Reader& reader, Scheme scheme, std::uint32_t controls) {
   StoredTable table;
   table.name = reader.whole(8);
-  require(table.name <= 1, "a layout that has no name");
-  reader.expect_reals(std::uint64_t{8} * controls - 12);
+  require(scheme == Scheme::loop ? table.name <= 1 : table.name == 2, "a layout that has no name");
+  reader.expect_reals(std::uint64_t{2} * controls);
   table.layout.resize(controls);
   for (auto& place : table.layout) reader.reals(place);
   for (auto& corner : table.triangle) reader.reals(corner);
-  table.lower.resize(controls - 3);
-  table.upper.resize(controls - 3);
+  const std::size_t planes = controls - first_bounded(scheme);
+  reader.expect_reals(std::uint64_t{6} * planes);
+  table.lower.resize(planes);
+  table.upper.resize(planes);
   for (auto& plane : table.lower) reader.reals(plane);
   for (auto& plane : table.upper) reader.reals(plane);
   return table;
@@ -90,7 +92,9 @@ StoredKind read_kind(Reader& reader) {
   const std::size_t begin = reader.place();
   const std::uint64_t size = reader.whole(8);
   StoredKind kind;
-  kind.scheme = static_cast<std::uint8_t>(reader.whole(1));
+  const std::uint64_t scheme = reader.whole(1);
+  require(scheme < schemes.size(), "a scheme that is not known");
+  kind.scheme = schemes[scheme];
   reader.zeros(7);
   for (Fan& fan : kind.key) {
     fan.before = static_cast<std::uint16_t>(reader.whole(2));
@@ -109,7 +113,8 @@ StoredKind read_kind(Reader& reader) {
   kind.weights.resize(count);
   for (double& weight : kind.weights) weight = reader.real();
   const std::uint64_t tables = reader.whole(8);
-  for (std::uint64_t i = 0; i < tables; ++i) kind.tables.push_back(read_table(reader, kind.controls));
+  for (std::uint64_t i = 0; i < tables; ++i)
+    kind.tables.push_back(read_table(reader, kind.scheme, kind.controls));
   require(reader.place() - begin == size, "a record is not as long as it says");
   return kind;
 }
@@ -140,7 +145,7 @@ class Writer {
 void write_kind(const StoredKind& kind, Writer& out) {
   const std::size_t begin = out.bytes().size();
   out.whole(0, 8);
-  out.whole(kind.scheme, 8);
+  out.whole(static_cast<std::uint64_t>(kind.scheme), 8);
   for (const Fan& fan : kind.key) {
     out.whole(fan.before, 2);
     out.whole(fan.after, 2);
@@ -166,15 +171,43 @@ void write_kind(const StoredKind& kind, Writer& out) {
 
 }  // namespace
 
-std::string to_text(const Key& key) {
+const char* name_of(Scheme scheme) {
+  switch (scheme) {
+    case Scheme::loop:
+      return "Loop";
+    case Scheme::catmark:
+      return "Catmull-Clark";
+    case Scheme::doo_sabin:
+      return "Doo-Sabin";
+    case Scheme::midedge:
+      break;
+  }
+  return "Midedge";
+}
+
+bool Fan::regular(Scheme scheme) const {
+  switch (scheme) {
+    case Scheme::loop:
+      return !sharp && (closed ? faces() == 6 : faces() == 3);
+    case Scheme::catmark:
+      return closed ? !sharp && faces() == 4 : faces() == (sharp ? 1u : 2u);
+    case Scheme::doo_sabin:
+    case Scheme::midedge:
+      break;
+  }
+  return !sharp && closed && faces() == 4;
+}
+
+std::string to_text(Scheme scheme, const Key& key) {
   std::string text;
-  for (const Fan& fan : key) {
+  for (std::size_t k = 0; k < (scheme == Scheme::loop ? 3u : 4u); ++k) {
+    const Fan& fan = key[k];
     if (!text.empty()) text += ", ";
     text += fan.closed ? std::to_string(fan.faces())
                        : std::to_string(fan.before) + "+1+" + std::to_string(fan.after);
     if (fan.sharp) text += " sharp";
   }
-  return "(" + text + ")";
+  return name_of(scheme) + std::string(" (") + text + ")";
 }
 
 BoundsFile parse(std::span<const std::byte> bytes) {
@@ -182,7 +215,7 @@ BoundsFile parse(std::span<const std::byte> bytes) {
   require(bytes.size() >= sizeof magic && std::memcmp(bytes.data(), magic, sizeof magic) == 0,
           "not a file of bounds: the first bytes are others");
   static_cast<void>(reader.whole(8));
-  require(reader.whole(4) == 1, "another version of the format");
+  require(reader.whole(4) == 2, "another version of the format");
   const std::uint64_t kinds = reader.whole(4);
   require(reader.whole(8) == bytes.size() && bytes.size() % 8 == 0, "the file is not as long as it says");
   const std::uint64_t hash = reader.whole(8);
@@ -200,7 +233,7 @@ BoundsFile parse(std::span<const std::byte> bytes) {
 std::vector<std::byte> to_bytes(const BoundsFile& file) {
   Writer out;
   for (const char c : magic) out.whole(static_cast<unsigned char>(c), 1);
-  out.whole(1, 4);
+  out.whole(2, 4);
   out.whole(file.kinds.size(), 4);
   out.whole(0, 8);
   out.whole(0, 8);

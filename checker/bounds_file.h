@@ -9,29 +9,40 @@
 
 namespace checker {
 
+enum class Scheme : std::uint8_t { loop, catmark, doo_sabin, midedge };
+inline constexpr std::array<Scheme, 4> schemes{Scheme::loop, Scheme::catmark, Scheme::doo_sabin,
+                                               Scheme::midedge};
+[[nodiscard]] const char* name_of(Scheme scheme);
+
 /// Faces around a corner of a patch, as snug/patch/neighbourhood.h names them: `after` counter-clockwise from the
-/// patch, `before` clockwise; all in `after` if the fan is closed.
+/// patch, `before` clockwise; all in `after` if the fan is closed. Dual schemes: vertices of the face at the corner.
 struct Fan {
   std::uint16_t before = 0, after = 0;
   bool closed = false, sharp = false;
   [[nodiscard]] unsigned faces() const { return 1u + before + after; }
-  [[nodiscard]] bool regular() const { return !sharp && (closed ? faces() == 6 : faces() == 3); }
-  friend bool operator==(const Fan&, const Fan&) = default;
+  /// Where all corners are so the patch is polynomial.
+  [[nodiscard]] bool regular(Scheme scheme) const;
+  friend auto operator<=>(const Fan&, const Fan&) = default;
 };
 
-using Key = std::array<Fan, 3>;
-[[nodiscard]] std::string to_text(const Key& key);
+/// Loop has three corners; the last one is then `no_corner`.
+using Key = std::array<Fan, 4>;
+inline constexpr Fan no_corner{0, 5, true, false};
+[[nodiscard]] std::string to_text(Scheme scheme, const Key& key);
 
 struct StoredTable {
   using Plane = std::array<double, 3>;
   std::uint64_t name = 0;
   std::vector<std::array<double, 2>> layout;
   std::array<std::array<double, 2>, 3> triangle{};
-  std::vector<Plane> lower, upper;  // of control points 3, 4, ...
+  std::vector<Plane> lower, upper;  // of control points first_bounded(), ...
 };
 
+/// The first control point that a table has planes of: Loop's corners need none.
+[[nodiscard]] constexpr std::size_t first_bounded(Scheme scheme) { return scheme == Scheme::loop ? 3 : 0; }
+
 struct StoredKind {
-  std::uint8_t scheme = 0;
+  Scheme scheme = Scheme::loop;
   Key key;
   std::uint32_t rows = 0, controls = 0;
   double entry_error = 0, abs_sum = 0;
@@ -48,7 +59,7 @@ struct BoundsFile {
   std::vector<StoredKind> kinds;
 };
 
-/// Reads a file of the format in snug/basis/shipped.h, version 1. Any bytes may come.
+/// Reads a file of the format in snug/basis/shipped.h, version 2. Any bytes may come.
 /// Errors:    Rejected if it is not one: magic, version, sizes, hash, flags that are neither 0 nor 1, padding
 ///            that is not zero, numbers that are not finite.
 [[nodiscard]] BoundsFile parse(std::span<const std::byte> bytes);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "rejected.h"
@@ -37,6 +38,37 @@ void remove_row(StoredKind& kind, std::size_t row) {
   kind = smaller;
 }
 
+// A row and all its copies: pieces that share a corner may each have stored it.
+template <class Spoil>
+void with_copies(StoredKind& kind, std::size_t row, const Spoil& spoil) {
+  std::vector<std::size_t> copies;
+  for (std::size_t r = 0; r < kind.rows; ++r) {
+    double distance = 0;
+    for (std::size_t c = 0; c < kind.controls; ++c)
+      distance += std::fabs(kind.weight(r, c) - kind.weight(row, c));
+    if (distance <= 4 * kind.entry_error) copies.push_back(r);
+  }
+  for (std::size_t i = copies.size(); i-- > 0;) spoil(copies[i]);
+}
+
+// Takes from the largest entry of a row and gives to the next: the sum stays, and that of absolute values.
+void move(StoredKind& kind, std::size_t row, double weight) {
+  std::vector<std::size_t> order(kind.controls);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::partial_sort(order.begin(), order.begin() + 2, order.end(),
+                    [&](std::size_t a, std::size_t b) { return kind.weight(row, a) > kind.weight(row, b); });
+  with_copies(kind, row, [&](std::size_t r) {
+    kind.weight(r, order[0]) -= weight;
+    kind.weight(r, order[1]) += weight;
+  });
+}
+
+void remove(StoredKind& kind, std::size_t row) {
+  with_copies(kind, row, [&](std::size_t r) { remove_row(kind, r); });
+}
+
+Scheme another(Scheme scheme) { return schemes[(static_cast<std::size_t>(scheme) + 1) % schemes.size()]; }
+
 StoredTable& first_table(BoundsFile& file) {
   for (StoredKind& kind : file.kinds) {
     if (!kind.tables.empty()) return kind.tables.front();
@@ -54,22 +86,18 @@ std::vector<Fault> faults(const BoundsFile& file) {
   std::vector<Fault> all{
       of_contents("an entry off by 1e-9", [](BoundsFile& f) { f.kinds[0].weight(7, 1) += 1e-9; }),
       of_contents("two entries off by 1e-9 each, the sum right",
-                  [](BoundsFile& f) {
-                    f.kinds[0].weight(7, 1) += 1e-9;
-                    f.kinds[0].weight(7, 2) -= 1e-9;
-                  }),
+                  [](BoundsFile& f) { move(f.kinds[0], 7, 1e-9); }),
       of_contents("a row of the last kind off by 1e-13, the sum right",
-                  [](BoundsFile& f) {
-                    f.kinds.back().weight(f.kinds.back().rows - 1, 0) += 1e-13;
-                    f.kinds.back().weight(f.kinds.back().rows - 1, 1) -= 1e-13;
-                  }),
-      of_contents("the first row missing", [](BoundsFile& f) { remove_row(f.kinds[0], 0); }),
+                  [](BoundsFile& f) { move(f.kinds.back(), f.kinds.back().rows - 1, 1e-13); }),
+      of_contents("the first row missing", [](BoundsFile& f) { remove(f.kinds[0], 0); }),
       of_contents("the last row missing",
-                  [](BoundsFile& f) { remove_row(f.kinds.back(), f.kinds.back().rows - 1); }),
+                  [](BoundsFile& f) { remove(f.kinds.back(), f.kinds.back().rows - 1); }),
       of_contents("two keys swapped", [](BoundsFile& f) { std::swap(f.kinds[0].key, f.kinds[1].key); }),
-      of_contents("a key turned by a third",
+      of_contents("a key turned by a corner",
                   [](BoundsFile& f) {
-                    std::rotate(f.kinds[0].key.begin(), f.kinds[0].key.begin() + 1, f.kinds[0].key.end());
+                    Key& key = f.kinds[0].key;
+                    std::rotate(key.begin(), key.begin() + 1,
+                                key.end() - (f.kinds[0].scheme == Scheme::loop ? 1 : 0));
                   }),
       of_contents("a key mirrored", [](BoundsFile& f) { std::swap(f.kinds[0].key[0], f.kinds[0].key[1]); }),
       of_contents("two control points swapped",
@@ -77,10 +105,10 @@ std::vector<Fault> faults(const BoundsFile& file) {
                     for (std::size_t r = 0; r < f.kinds[0].rows; ++r)
                       std::swap(f.kinds[0].weight(r, 3), f.kinds[0].weight(r, 4));
                   }),
-      of_contents("entry_error too small", [](BoundsFile& f) { f.kinds[0].entry_error = 0; }),
       of_contents("abs_sum too small", [](BoundsFile& f) { f.kinds[0].abs_sum = 1 - 1e-12; }),
       of_contents("a kind twice", [](BoundsFile& f) { f.kinds.push_back(f.kinds[0]); }),
-      of_contents("another scheme", [](BoundsFile& f) { f.kinds[0].scheme = 1; }),
+      of_contents("another scheme", [](BoundsFile& f) { f.kinds[0].scheme = another(f.kinds[0].scheme); }),
+      of_contents("a scheme that is none", [](BoundsFile& f) { f.kinds[0].scheme = static_cast<Scheme>(9); }),
       of_contents("corners that do not fit",
                   [](BoundsFile& f) {
                     f.kinds[0].key[0] = {0, 2, false, false};
@@ -99,6 +127,9 @@ std::vector<Fault> faults(const BoundsFile& file) {
                }),
       of_bytes("nothing left", [](auto& bytes) { bytes.clear(); }),
   };
+  if (file.kinds[0].scheme != Scheme::midedge) {  // whose masks are multiples of 1/8: rows are exact
+    all.push_back(of_contents("entry_error too small", [](BoundsFile& f) { f.kinds[0].entry_error = 0; }));
+  }
   const bool tables = std::any_of(file.kinds.begin(), file.kinds.end(),
                                   [](const StoredKind& k) { return !k.tables.empty(); });
   if (!tables) return all;
@@ -106,7 +137,7 @@ std::vector<Fault> faults(const BoundsFile& file) {
                             of_contents("an upper plane lowered by 1e-10",
                                         [](BoundsFile& f) { shift(first_table(f).upper[0], -1e-10); }),
                             of_contents("a lower plane raised by 1e-10",
-                                        [](BoundsFile& f) { shift(first_table(f).lower.back(), 1e-10); }),
+                                        [](BoundsFile& f) { shift(first_table(f).lower[0], 1e-10); }),
                             of_contents("a corner of the triangle drawn in",
                                         [](BoundsFile& f) { first_table(f).triangle[1][0] -= 1e-6; }),
                             of_contents("the triangle turned over",
@@ -115,26 +146,42 @@ std::vector<Fault> faults(const BoundsFile& file) {
                                         }),
                             of_contents("a place of the layout moved",
                                         [](BoundsFile& f) { first_table(f).layout[4][0] += 1e-6; }),
-                            of_contents("a corner of the layout moved",
-                                        [](BoundsFile& f) { first_table(f).layout[1][0] += 1e-15; }),
                         });
+  if (file.kinds[0].scheme == Scheme::loop) {
+    all.push_back(of_contents("a corner of the layout moved",
+                              [](BoundsFile& f) { first_table(f).layout[1][0] += 1e-15; }));
+  }
   return all;
 }
 
-BoundsFile excerpt(const BoundsFile& file) {
+BoundsFile excerpt(const BoundsFile& file, Scheme scheme) {
   BoundsFile result;
   result.text = file.text;
-  for (const bool closed : {true, false}) {
+  const auto add_least = [&](const auto& suits) {
     const StoredKind* least = nullptr;
     for (const StoredKind& kind : file.kinds) {
-      const auto& key = kind.key;
-      const bool inside = std::all_of(key.begin(), key.end(), [](const Fan& f) { return f.closed; });
-      const bool regular = std::all_of(key.begin(), key.end(), [](const Fan& f) { return f.regular(); });
-      if (inside == closed && !regular && (!least || kind.weights.size() < least->weights.size()))
+      if (kind.scheme == scheme && suits(kind.key) && (!least || kind.weights.size() < least->weights.size()))
         least = &kind;
     }
-    if (!least) throw Rejected("no kind to plant faults in");
+    if (!least) throw Rejected(std::string("no kind to plant faults in: ") + name_of(scheme));
     result.kinds.push_back(*least);
+  };
+  const auto inside = [](const Key& key) {
+    return std::all_of(key.begin(), key.end(), [](const Fan& f) { return f.closed; });
+  };
+  const auto regular = [&](const Fan& f) { return f.regular(scheme); };
+  if (scheme == Scheme::loop) {
+    add_least(
+        [&](const Key& key) { return inside(key) && !std::all_of(key.begin(), key.end() - 1, regular); });
+    add_least(
+        [&](const Key& key) { return !inside(key) && !std::all_of(key.begin(), key.end() - 1, regular); });
+    return result;
+  }
+  add_least([&](const Key& key) { return !regular(key[0]) && inside(key); });
+  if (scheme == Scheme::catmark) {
+    add_least([&](const Key& key) { return !inside(key); });
+  } else {
+    add_least([&](const Key& key) { return !regular(key[3]); });
   }
   return result;
 }

@@ -15,20 +15,24 @@
 namespace {
 
 int self_test(const std::vector<std::byte>& bytes) {
-  const checker::BoundsFile file = checker::excerpt(checker::parse(bytes));
-  static_cast<void>(checker::prove_file(checker::to_bytes(file)));
-  const std::vector<checker::Fault> faults = checker::faults(file);
-  int overlooked = 0;
-  for (const checker::Fault& fault : faults) {
-    try {
-      static_cast<void>(checker::prove_file(fault.spoil(file)));
-      std::fprintf(stderr, "checker: self test: overlooked: %s\n", fault.name.c_str());
-      ++overlooked;
-    } catch (const checker::Rejected& rejected) {
-      std::printf("%s: %s\n", fault.name.c_str(), rejected.what());
+  const checker::BoundsFile whole = checker::parse(bytes);
+  std::size_t planted = 0, overlooked = 0;
+  for (const checker::Scheme scheme : checker::schemes) {
+    const checker::BoundsFile file = checker::excerpt(whole, scheme);
+    static_cast<void>(checker::prove_file(checker::to_bytes(file)));
+    for (const checker::Fault& fault : checker::faults(file)) {
+      ++planted;
+      try {
+        static_cast<void>(checker::prove_file(fault.spoil(file)));
+        std::fprintf(stderr, "checker: self test: overlooked: %s, %s\n", checker::name_of(scheme),
+                     fault.name.c_str());
+        ++overlooked;
+      } catch (const checker::Rejected& rejected) {
+        std::printf("%s, %s: %s\n", checker::name_of(scheme), fault.name.c_str(), rejected.what());
+      }
     }
   }
-  std::printf("checker: self test: %zu faults planted, %d overlooked\n", faults.size(), overlooked);
+  std::printf("checker: self test: %zu faults planted, %zu overlooked\n", planted, overlooked);
   return overlooked == 0 ? 0 : 1;
 }
 

@@ -140,6 +140,7 @@ std::array<std::optional<std::size_t>, 3> across_edges(const Key& key) {
 }
 
 void require_sensible(const Key& key) {
+  if (key[3] != no_corner) throw Rejected("a triangle with four corners");
   bool any_sharp = false, any_smooth_lone = false;
   for (std::size_t i = 0; i < 3; ++i) {
     const Fan &here = key[i], &there = key[(i + 1) % 3];
@@ -178,7 +179,7 @@ Piece::Ring Piece::ring(std::size_t k) const {
 
 bool Piece::polynomial() const {
   for (std::size_t k = 0; k < 3; ++k) {
-    if (!ring(k).fan(sharp[k]).regular()) return false;
+    if (!ring(k).fan(sharp[k]).regular(Scheme::loop)) return false;
   }
   return true;
 }
@@ -294,7 +295,7 @@ std::array<Piece, 4> split(const Piece& piece) {
       const Fan fan = child.ring(k).fan(child.sharp[k]);
       if (c == k) {
         if (!(fan == piece.ring(k).fan(piece.sharp[k]))) throw Rejected("a corner whose fan changed");
-      } else if (!fan.regular()) {
+      } else if (!fan.regular(Scheme::loop)) {
         throw Rejected("a new vertex that is not regular");
       }
     }

@@ -10,71 +10,17 @@
 #include <string>
 #include <utility>
 
+#include "bezier.h"
+#include "half_quad.h"
 #include "rejected.h"
 
 namespace checker {
 namespace {
 
 constexpr unsigned depth_limit = 26;
-constexpr std::size_t point_count = 15;
-
-// The exponents (i, j, k) of a quartic triangle's Bezier points, i + j + k = 4; corner 1 is u, corner 2 is v.
-using Exponents = std::array<unsigned, 3>;  // of corners 0, 1, 2
-constexpr std::array<Exponents, point_count> exponents = [] {
-  std::array<Exponents, point_count> all{};
-  std::size_t count = 0;
-  for (unsigned j = 0; j < 5; ++j) {
-    for (unsigned i = 0; i + j < 5; ++i) all[count++] = {4 - i - j, i, j};
-  }
-  return all;
-}();
-
-double factorial(unsigned n) { return n < 2 ? 1 : n * factorial(n - 1); }
-
-// Value at the lattice point q/4 of the Bernstein polynomial p; exact in doubles.
-double bernstein(const Exponents& p, const Exponents& q) {
-  double value = factorial(4) / (factorial(p[0]) * factorial(p[1]) * factorial(p[2]));
-  for (std::size_t k = 0; k < 3; ++k) value *= std::pow(q[k] / 4.0, static_cast<double>(p[k]));
-  return value;
-}
-
-using Square = std::array<std::array<Real, point_count>, point_count>;
-
-// From values at the 15 lattice points to Bezier points: the inverse of the matrix of Bernstein polynomials.
-Square invert_bernstein() {
-  Square left, right;
-  for (std::size_t q = 0; q < point_count; ++q) {
-    for (std::size_t p = 0; p < point_count; ++p) left[q][p] = bernstein(exponents[p], exponents[q]);
-    right[q][q] = 1;
-  }
-  for (std::size_t c = 0; c < point_count; ++c) {
-    std::size_t pivot = c;
-    for (std::size_t r = c; r < point_count; ++r) {
-      if (left[r][c].magnitude().approximately() > left[pivot][c].magnitude().approximately()) pivot = r;
-    }
-    std::swap(left[c], left[pivot]);
-    std::swap(right[c], right[pivot]);
-    if (!left[c][c].magnitude().certainly_positive()) throw Rejected("the Bernstein matrix was not inverted");
-    const Real scale = Real(1) / left[c][c];
-    for (std::size_t k = 0; k < point_count; ++k) {
-      left[c][k] = left[c][k] * scale;
-      right[c][k] = right[c][k] * scale;
-    }
-    for (std::size_t r = 0; r < point_count; ++r) {
-      if (r == c) continue;
-      const Real factor = left[r][c];
-      for (std::size_t k = 0; k < point_count; ++k) {
-        left[r][k] = left[r][k] - factor * left[c][k];
-        right[r][k] = right[r][k] - factor * right[c][k];
-      }
-    }
-  }
-  return right;
-}
-
 // The quartic's Bezier points, from its limits at the 15 points of a lattice of step 1/4.
-std::array<Row, point_count> bezier_rows(const Piece& piece) {
-  static const Square from_values = invert_bernstein();
+std::vector<BezierTriangle> bezier_triangles(const Piece& piece) {
+  constexpr unsigned degree = 4;
   std::map<Place, Row> limits;
   const auto add = [&](const Piece& p) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -86,23 +32,24 @@ std::array<Row, point_count> bezier_rows(const Piece& piece) {
     add(half);
     for (const Piece& quarter : split(half)) add(quarter);
   }
-  std::array<const Row*, point_count> values{};
-  for (std::size_t q = 0; q < point_count; ++q) {
+  const std::vector<Exponents>& lattice = exponents(degree);
+  std::vector<const Row*> values;
+  for (const Exponents& q : lattice) {
     Place place{0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t x = 0; x < 2; ++x) place[x] += exponents[q][k] * (piece.places[k][x] / 4);
+      for (std::size_t x = 0; x < 2; ++x) place[x] += q[k] * (piece.places[k][x] / 4);
     }
-    values[q] = &limits.at(place);
+    values.push_back(&limits.at(place));
   }
-  std::array<Row, point_count> rows;
-  for (std::size_t p = 0; p < point_count; ++p) {
-    rows[p].resize(values[0]->size());
-    for (std::size_t q = 0; q < point_count; ++q) {
-      for (std::size_t c = 0; c < rows[p].size(); ++c)
-        rows[p][c].add_product(from_values[p][q], (*values[q])[c]);
+  BezierTriangle triangle{degree, piece.places, std::vector<Row>(lattice.size())};
+  for (std::size_t p = 0; p < lattice.size(); ++p) {
+    triangle.points[p].resize(values[0]->size());
+    for (std::size_t q = 0; q < lattice.size(); ++q) {
+      for (std::size_t c = 0; c < triangle.points[p].size(); ++c)
+        triangle.points[p][c].add_product(bezier_from_values(degree)[p][q], (*values[q])[c]);
     }
   }
-  return rows;
+  return {std::move(triangle)};
 }
 
 // Finds the stored row that an exact row is.
@@ -155,7 +102,9 @@ class RowsProver {
  public:
   explicit RowsProver(const StoredKind& kind) : stored_(kind) {}
 
-  void prove(const Piece& piece) {
+  // A Piece of Loop, or a HalfQuad.
+  template <class AnyPiece>
+  void prove(const AnyPiece& piece) {
     const bool proved = piece.polynomial() ? prove_polynomial(piece) : prove_net(piece);
     if (proved) {
       ++proof_.pieces;
@@ -163,7 +112,7 @@ class RowsProver {
       return;
     }
     if (piece.depth >= depth_limit) throw Rejected("a piece is in no hull of stored rows at any level");
-    for (const Piece& child : split(piece)) prove(child);
+    for (const AnyPiece& child : split(piece)) prove(child);
   }
 
   // After all pieces: what is missing on edges must be covered.
@@ -180,7 +129,8 @@ class RowsProver {
   }
 
  private:
-  bool prove_net(const Piece& piece) {
+  template <class AnyPiece>
+  bool prove_net(const AnyPiece& piece) {
     const bool all = std::all_of(piece.rows.begin(), piece.rows.end(),
                                  [&](const auto& row) { return stored_.match(*row); });
     if (!all) return false;
@@ -188,34 +138,45 @@ class RowsProver {
     return true;
   }
 
-  // The inner points must be stored; those on edges may be covered, which is decided in the end.
-  bool prove_polynomial(const Piece& piece) {
-    const std::array<Row, point_count> rows = bezier_rows(piece);
-    std::array<bool, point_count> found{};
-    for (std::size_t p = 0; p < point_count; ++p) found[p] = stored_.match(rows[p]);
-    std::array<bool, 3> whole{true, true, true};  // edges, by the corner they face
-    for (std::size_t p = 0; p < point_count; ++p) {
-      if (found[p]) continue;
-      if (exponents[p][0] > 0 && exponents[p][1] > 0 && exponents[p][2] > 0) return false;
-      for (std::size_t k = 0; k < 3; ++k) whole[k] = whole[k] && exponents[p][k] > 0;
+  // The inner points must be stored, and all where there are none. Those on edges may else be covered, which is decided in
+  // the end.
+  template <class AnyPiece>
+  bool prove_polynomial(const AnyPiece& piece) {
+    const std::vector<BezierTriangle> triangles = bezier_triangles(piece);
+    std::vector<std::vector<bool>> found;
+    for (const BezierTriangle& triangle : triangles) {
+      const std::vector<Exponents>& all = exponents(triangle.degree);
+      found.emplace_back();
+      for (std::size_t p = 0; p < all.size(); ++p) {
+        found.back().push_back(stored_.match(triangle.points[p]));
+        const bool inner = all[p][0] > 0 && all[p][1] > 0 && all[p][2] > 0;
+        if ((inner || triangle.degree < 3) && !found.back().back()) return false;
+      }
     }
-    const auto edge = [&](std::size_t k) {
-      return Segment{piece.places[(k + 1) % 3], piece.places[(k + 2) % 3]};
+    for (std::size_t t = 0; t < triangles.size(); ++t) keep_polynomial(triangles[t], found[t]);
+    return true;
+  }
+
+  void keep_polynomial(const BezierTriangle& triangle, const std::vector<bool>& found) {
+    const std::vector<Exponents>& all = exponents(triangle.degree);
+    const auto edge = [&](std::size_t k) {  // that faces corner k
+      return Segment{triangle.places[(k + 1) % 3], triangle.places[(k + 2) % 3]};
     };
     for (std::size_t k = 0; k < 3; ++k) {
-      if (whole[k]) whole_edges_.push_back(edge(k));
+      bool whole = true;
+      for (std::size_t p = 0; p < all.size(); ++p) whole = whole && (all[p][k] > 0 || found[p]);
+      if (whole) whole_edges_.push_back(edge(k));
     }
-    for (std::size_t p = 0; p < point_count; ++p) {
+    for (std::size_t p = 0; p < all.size(); ++p) {
       if (found[p]) {
-        keep(rows[p]);
+        keep(triangle.points[p]);
         continue;
       }
       missing_.emplace_back();
       for (std::size_t k = 0; k < 3; ++k) {
-        if (exponents[p][k] == 0) missing_.back().push_back(edge(k));
+        if (all[p][k] == 0) missing_.back().push_back(edge(k));
       }
     }
-    return true;
   }
 
   void keep(const Row& row) {
@@ -227,7 +188,7 @@ class RowsProver {
 
   StoredRows stored_;
   RowsProof proof_;
-  std::vector<Segment> whole_edges_;           // all five Bezier points stored
+  std::vector<Segment> whole_edges_;           // all Bezier points along them stored
   std::vector<std::vector<Segment>> missing_;  // for each point not stored, the edges it lies on
 };
 
@@ -255,19 +216,27 @@ Real cross(const Planar& origin, const Planar& a, const Planar& b) {
 }  // namespace
 
 RowsProof prove_rows(const StoredKind& kind) {
-  if (kind.scheme != 0) throw Rejected("a scheme that is not Loop's");
-  const Piece root = root_piece(kind.key);
-  if (root.rows.size() != kind.controls)
-    throw Rejected("another number of control points than the key gives");
-  prove_sums(kind);
   RowsProver prover(kind);
-  prover.prove(root);
+  const auto prove = [&](const auto& root) {
+    if (root.rows.size() != kind.controls)
+      throw Rejected("another number of control points than the key gives");
+    prove_sums(kind);
+    prover.prove(root);
+  };
+  Shapes shapes;
+  if (kind.scheme == Scheme::loop) {
+    prove(root_piece(kind.key));
+  } else {
+    prove(root_half(shapes, kind.scheme, kind.key));
+  }
   return prover.take();
 }
 
-void prove_table(const StoredTable& table, const RowsProof& rows) {
+void prove_table(const StoredTable& table, Scheme scheme, const RowsProof& rows) {
+  const std::size_t first = first_bounded(scheme);
   const std::vector<std::array<double, 2>> corners{{0, 0}, {1, 0}, {0, 1}};
-  if (!std::equal(corners.begin(), corners.end(), table.layout.begin()))
+  if (!std::equal(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(first),
+                  table.layout.begin()))
     throw Rejected("a layout whose corners are not (0,0), (1,0), (0,1)");
   std::array<Planar, 3> triangle;
   for (std::size_t k = 0; k < 3; ++k) triangle[k] = {table.triangle[k][0], table.triangle[k][1]};
@@ -286,10 +255,10 @@ void prove_table(const StoredTable& table, const RowsProof& rows) {
     const auto plane = [&](const StoredTable::Plane& values) {
       return part[0] * Real(values[0]) + part[1] * Real(values[1]) + part[2] * Real(values[2]);
     };
-    for (std::size_t c = 3; c < row.size(); ++c) {
+    for (std::size_t c = first; c < row.size(); ++c) {
       const Real value = row[c] * area;
-      if (!plane(table.upper[c - 3]).certainly_at_least(value) ||
-          !value.certainly_at_least(plane(table.lower[c - 3])))
+      if (!plane(table.upper[c - first]).certainly_at_least(value) ||
+          !value.certainly_at_least(plane(table.lower[c - first])))
         throw Rejected("a plane of control point " + std::to_string(c) + " that cuts its function's hull");
     }
   }
@@ -307,10 +276,11 @@ FileProof prove_file(std::span<const std::byte> bytes) {
       const StoredKind& kind = file.kinds[i];
       try {
         outcomes[i].rows = prove_rows(kind);
-        for (const StoredTable& table : kind.tables) prove_table(table, outcomes[i].rows);
+        for (const StoredTable& table : kind.tables) prove_table(table, kind.scheme, outcomes[i].rows);
         outcomes[i].rows.hull.clear();
       } catch (const Rejected& rejected) {
-        outcomes[i].failure = "kind " + std::to_string(i) + " " + to_text(kind.key) + ": " + rejected.what();
+        outcomes[i].failure =
+            "kind " + std::to_string(i) + ", " + to_text(kind.scheme, kind.key) + ": " + rejected.what();
       }
     }
   });
@@ -319,8 +289,8 @@ FileProof prove_file(std::span<const std::byte> bytes) {
     const Outcome& outcome = outcomes[i];
     if (outcome.failure) throw Rejected(*outcome.failure);
     for (std::size_t k = 0; k < i; ++k) {
-      if (file.kinds[k].key == file.kinds[i].key)
-        throw Rejected("a key that comes twice: " + to_text(file.kinds[i].key));
+      if (file.kinds[k].scheme == file.kinds[i].scheme && file.kinds[k].key == file.kinds[i].key)
+        throw Rejected("a key that comes twice: " + to_text(file.kinds[i].scheme, file.kinds[i].key));
     }
     ++proof.kinds;
     proof.tables += file.kinds[i].tables.size();

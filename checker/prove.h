@@ -25,7 +25,7 @@ struct RowsProof {
 
 /// Proves the table, as BoundTable (snug/basis/bound_table.h) promises, from the rows' proof of its kind.
 /// Errors:    Rejected if that could not be proved.
-void prove_table(const StoredTable& table, const RowsProof& rows);
+void prove_table(const StoredTable& table, Scheme scheme, const RowsProof& rows);
 
 /// What the proof of a whole file found.
 struct FileProof {

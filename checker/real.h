@@ -34,11 +34,11 @@ class Real {
   }
   ~Real() { mpfi_clear(ends_); }
 
-  /// cos(2 pi / n).
-  [[nodiscard]] static Real cos_of_turn(unsigned n) {
+  /// cos(2 pi times / n).
+  [[nodiscard]] static Real cos_of_turn(unsigned n, unsigned times = 1) {
     Real x;
     mpfi_const_pi(x.ends_);
-    mpfi_mul_ui(x.ends_, x.ends_, 2);
+    mpfi_mul_ui(x.ends_, x.ends_, 2 * times);
     mpfi_div_ui(x.ends_, x.ends_, n);
     mpfi_cos(x.ends_, x.ends_);
     return x;

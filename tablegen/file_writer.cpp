@@ -45,8 +45,7 @@ void add_kind(const KindBounds& kind, Bytes& out) {
   const std::size_t begin = out.size();
   out.add(std::uint64_t{0});
   out.add(static_cast<std::uint64_t>(kind.key.scheme));
-  for (std::size_t i = 0; i < 3; ++i) {
-    const snug::CornerFan& fan = kind.key.corners[i];
+  for (const snug::CornerFan& fan : kind.key.corners) {
     out.add(fan.before);
     out.add(fan.after);
     out.add(static_cast<std::uint8_t>(fan.closed));
@@ -60,7 +59,8 @@ void add_kind(const KindBounds& kind, Bytes& out) {
   for (std::size_t c = 0; c < kind.rows.control_count(); ++c) out.add(kind.rows.column(c), kind.rows.count());
   out.add(std::uint64_t{kind.tables.size()});
   for (const NamedTable& named : kind.tables) {
-    out.add(static_cast<std::uint64_t>(named.layout));
+    constexpr std::uint64_t fair = 2;
+    out.add(snug::laid_by_rings(kind.key) ? static_cast<std::uint64_t>(named.layout) : fair);
     out.add(named.table.layout.data(), named.table.layout.size());
     out.add(named.table.triangle);
     out.add(named.table.lower.data(), named.table.lower.size());
@@ -76,7 +76,7 @@ std::vector<std::byte> file_of(const std::vector<KindBounds>& kinds, std::string
   constexpr std::size_t size_place = 16, hash_place = 24, hashed = 32;
   Bytes out;
   out.add(magic, 8);
-  out.add(std::uint32_t{1});
+  out.add(std::uint32_t{2});
   out.add(static_cast<std::uint32_t>(kinds.size()));
   out.add(std::uint64_t{0});
   out.add(std::uint64_t{0});

@@ -10,7 +10,7 @@
 namespace tablegen {
 
 struct NamedTable {
-  snug::TableLayout layout;
+  snug::TableLayout layout;  ///< all the same where the kind is not laid by rings
   snug::BoundTable table;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 
 namespace tablegen {
 namespace {
@@ -30,9 +31,7 @@ snug::KindKey with_regular_others(const CornerFan& fan) {
       {fan, first_edge ? at_boundary(2, 0) : inside(6), last_edge ? at_boundary(0, 2) : inside(6)});
 }
 
-}  // namespace
-
-std::vector<snug::KindKey> shipped_kinds() {
+std::vector<snug::KindKey> loop_kinds() {
   std::vector<snug::KindKey> keys;
   const CornerFan touching = at_boundary(1, 1);  // regular, with no boundary edge on the patch
   keys.push_back(with_regular_others(inside(6)));
@@ -49,6 +48,44 @@ std::vector<snug::KindKey> shipped_kinds() {
       keys.push_back(with_regular_others(at_boundary(before, faces - 1 - before)));
   }
   keys.push_back(with_regular_others({0, 0, false, true}));
+  return keys;
+}
+
+// Half quads: regular inside, and with one corner of each of these sizes in each place.
+void add_inside(snug::Scheme scheme, std::initializer_list<std::uint16_t> sizes,
+                std::vector<snug::KindKey>& keys) {
+  const snug::KindKey regular{scheme, {inside(4), inside(4), inside(4), inside(4)}};
+  keys.push_back(regular);
+  for (const std::uint16_t n : sizes) {
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      keys.push_back(regular);
+      keys.back().corners[corner] = inside(n);
+    }
+  }
+}
+
+// Catmull-Clark's half quads with a boundary, or an infinitely sharp crease: along one edge, or two that meet in a lone
+// sharp corner.
+void add_at_boundary(std::vector<snug::KindKey>& keys) {
+  for (const bool lone : {false, true}) {
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+      snug::KindKey key{snug::Scheme::catmark, {inside(4), inside(4), inside(4), inside(4)}};
+      key.corners[corner] = lone ? CornerFan{0, 0, false, true} : at_boundary(0, 1);
+      key.corners[(corner + 1) % 4] = at_boundary(1, 0);
+      if (lone) key.corners[(corner + 3) % 4] = at_boundary(0, 1);
+      keys.push_back(key);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<snug::KindKey> shipped_kinds() {
+  std::vector<snug::KindKey> keys = loop_kinds();
+  add_inside(snug::Scheme::catmark, {3, 5, 6}, keys);
+  add_at_boundary(keys);
+  add_inside(snug::Scheme::doo_sabin, {3, 5, 6}, keys);
+  add_inside(snug::Scheme::midedge, {3, 5, 6}, keys);
   return keys;
 }
 

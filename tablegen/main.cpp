@@ -20,8 +20,10 @@ int run(const char* name) {
   for (const snug::KindKey& key : tablegen::shipped_kinds()) {
     const snug::Kind& kind = library.find(key);
     tablegen::KindBounds bounds{key, snug::make_bound_rows(kind), {}};
-    for (const snug::TableLayout layout : {snug::TableLayout::ngon, snug::TableLayout::characteristic})
+    for (const snug::TableLayout layout : {snug::TableLayout::ngon, snug::TableLayout::characteristic}) {
+      if (layout != snug::TableLayout::ngon && !snug::laid_by_rings(key)) continue;  // the same one again
       bounds.tables.push_back({layout, snug::make_bound_table(kind, bounds.rows, layout)});
+    }
     kinds.push_back(std::move(bounds));
   }
   const std::vector<std::byte> bytes = tablegen::file_of(kinds, provenance);

@@ -1,4 +1,5 @@
 #include <checker/faults.h>
+#include <checker/half_quad.h>
 #include <checker/piece.h>
 #include <checker/prove.h>
 #include <checker/rejected.h>
@@ -18,9 +19,12 @@ std::vector<std::byte> shipped_bytes() {
   return {file.begin(), file.end()};
 }
 
+Key of_loop(Fan a, Fan b, Fan c) { return {a, b, c, no_corner}; }
+
 StoredKind stored(const snug::KindKey& key, const snug::BoundRows& rows) {
   StoredKind kind;
-  for (std::size_t i = 0; i < 3; ++i) {
+  kind.scheme = schemes.at(static_cast<std::size_t>(key.scheme));
+  for (std::size_t i = 0; i < 4; ++i) {
     const snug::CornerFan& fan = key.corners[i];
     kind.key[i] = {fan.before, fan.after, fan.closed, fan.sharp};
   }
@@ -42,10 +46,15 @@ snug::CornerFan inside(std::size_t n) { return {0, static_cast<std::uint16_t>(n 
 snug::KindKey loop_key(snug::CornerFan a, snug::CornerFan b, snug::CornerFan c) {
   return {snug::Scheme::loop, {a, b, c}};
 }
+snug::KindKey quad_key(snug::Scheme scheme, snug::CornerFan a, snug::CornerFan b, snug::CornerFan c,
+                       snug::CornerFan d) {
+  return {scheme, {a, b, c, d}};
+}
 
 // A table that holds and is not tight: constant planes over a triangle far too large, in some layout.
 StoredTable crude_table(const StoredKind& kind) {
   StoredTable table;
+  table.name = kind.scheme == Scheme::loop ? 0 : 2;
   table.layout = {{0, 0}, {1, 0}, {0, 1}};
   for (std::size_t c = 3; c < kind.controls; ++c) {
     const double turn = 2.0 * static_cast<double>(c);
@@ -62,7 +71,7 @@ StoredTable crude_table(const StoredKind& kind) {
   }
   x -= 1e-9, y -= 1e-9, sum += 1e-9;
   table.triangle = {{{x, y}, {sum - y, y}, {x, sum - x}}};
-  for (std::size_t c = 3; c < kind.controls; ++c) {
+  for (std::size_t c = first_bounded(kind.scheme); c < kind.controls; ++c) {
     const auto begin = kind.weights.begin() + static_cast<std::ptrdiff_t>(c * kind.rows);
     const auto [low, high] = std::minmax_element(begin, begin + kind.rows);
     table.lower.push_back({*low - 1e-11, *low - 1e-11, *low - 1e-11});
@@ -71,13 +80,17 @@ StoredTable crude_table(const StoredKind& kind) {
   return table;
 }
 
-void expect_every_fault_found(const BoundsFile& file, std::size_t at_least) {
+void expect_every_one_found(const std::vector<Fault>& planted, const BoundsFile& file, std::size_t at_least) {
   ASSERT_NO_THROW(static_cast<void>(prove_file(to_bytes(file))));
-  const std::vector<Fault> planted = faults(file);
   EXPECT_GE(planted.size(), at_least);
   for (const Fault& fault : planted) {
     EXPECT_THROW(static_cast<void>(prove_file(fault.spoil(file))), Rejected) << fault.name;
   }
+}
+
+BoundsFile without_tables(BoundsFile file) {
+  for (StoredKind& kind : file.kinds) kind.tables.clear();
+  return file;
 }
 
 TEST(checker, writes_the_compiled_in_file_as_it_reads_it) {
@@ -88,38 +101,53 @@ TEST(checker, writes_the_compiled_in_file_as_it_reads_it) {
 }
 
 TEST(checker, and_library_read_the_same_tables) {
-  BoundsFile file = excerpt(parse(shipped_bytes()));
-  for (StoredKind& kind : file.kinds) {
-    kind.tables = {crude_table(kind), crude_table(kind)};
-    kind.tables[0].name = 1;
-    kind.tables[1].name = 0;
-    kind.tables[1].upper[0][2] += 1;
-  }
-  const std::vector<std::byte> bytes = to_bytes(file);
-  const snug::ShippedBounds read(bytes);
-  ASSERT_EQ(read.keys().size(), file.kinds.size());
-  for (std::size_t i = 0; i < file.kinds.size(); ++i) {
-    for (const StoredTable& table : file.kinds[i].tables) {
-      const auto seen = read.table(read.keys()[i], static_cast<snug::TableLayout>(table.name));
-      ASSERT_TRUE(seen);
-      EXPECT_EQ(seen->layout, table.layout);
-      EXPECT_EQ(seen->triangle, table.triangle);
-      EXPECT_EQ(seen->lower, table.lower);
-      EXPECT_EQ(seen->upper, table.upper);
+  const BoundsFile shipped = parse(shipped_bytes());
+  for (const Scheme scheme : schemes) {
+    BoundsFile file = excerpt(shipped, scheme);
+    for (StoredKind& kind : file.kinds) {
+      kind.tables = {crude_table(kind)};
+      if (scheme != Scheme::loop) continue;
+      kind.tables.push_back(kind.tables[0]);
+      kind.tables[0].name = 1;
+      kind.tables[1].upper[0][2] += 1;
+    }
+    const std::vector<std::byte> bytes = to_bytes(file);
+    const snug::ShippedBounds read(bytes);
+    ASSERT_EQ(read.keys().size(), file.kinds.size());
+    for (std::size_t i = 0; i < file.kinds.size(); ++i) {
+      for (const std::uint64_t layout : {0u, 1u}) {
+        const auto& tables = file.kinds[i].tables;
+        const StoredTable& table = layout == 1 ? tables.front() : tables.back();
+        const auto seen = read.table(read.keys()[i], static_cast<snug::TableLayout>(layout));
+        ASSERT_TRUE(seen);
+        EXPECT_EQ(seen->layout, table.layout);
+        EXPECT_EQ(seen->triangle, table.triangle);
+        EXPECT_EQ(seen->lower, table.lower);
+        EXPECT_EQ(seen->upper, table.upper);
+      }
     }
   }
 }
 
 TEST(checker, finds_every_fault_planted_in_compiled_in_rows) {
-  BoundsFile file = excerpt(parse(shipped_bytes()));
-  for (StoredKind& kind : file.kinds) kind.tables.clear();
-  expect_every_fault_found(file, 20);
+  const BoundsFile shipped = parse(shipped_bytes());
+  for (const Scheme scheme : schemes) {
+    SCOPED_TRACE(name_of(scheme));
+    const BoundsFile file = without_tables(excerpt(shipped, scheme));
+    expect_every_one_found(faults(file), file, 20);
+  }
 }
 
-TEST(checker, finds_every_fault_planted_in_tables) {
-  BoundsFile file = excerpt(parse(shipped_bytes()));
-  for (StoredKind& kind : file.kinds) kind.tables = {crude_table(kind)};
-  expect_every_fault_found(file, 26);
+TEST(checker, finds_every_fault_planted_in_compiled_in_tables) {
+  const BoundsFile shipped = parse(shipped_bytes());
+  for (const Scheme scheme : schemes) {
+    SCOPED_TRACE(name_of(scheme));
+    const BoundsFile file = excerpt(shipped, scheme);
+    std::vector<Fault> planted = faults(file);
+    for (const Fault& of_rows : faults(without_tables(file)))
+      std::erase_if(planted, [&](const Fault& fault) { return fault.name == of_rows.name; });
+    expect_every_one_found(planted, file, 5);
+  }
 }
 
 TEST(checker, proves_rows_of_kinds_that_are_not_shipped) {
@@ -130,7 +158,33 @@ TEST(checker, proves_rows_of_kinds_that_are_not_shipped) {
         loop_key(lone, lone, lone), loop_key(lone, {2, 0, false, false}, {0, 4, false, false}),
         loop_key({1, 3, false, false}, inside(3), {2, 2, false, false}),
         loop_key({0, 3, false, false}, {1, 0, false, false}, inside(4))}) {
-    EXPECT_NO_THROW(static_cast<void>(prove_rows(made(key)))) << to_text(made(key).key);
+    EXPECT_NO_THROW(static_cast<void>(prove_rows(made(key)))) << to_text(Scheme::loop, made(key).key);
+  }
+}
+
+TEST(checker, proves_rows_of_half_quads_that_are_not_shipped) {
+  using enum snug::Scheme;
+  const snug::CornerFan lone{0, 0, false, true}, smooth{0, 0, false, false};
+  const snug::CornerFan first{0, 1, false, false},
+      last{1, 0, false, false};  // of the boundary edge beside them
+  std::vector<snug::KindKey> keys{
+      quad_key(catmark, inside(5), inside(3), inside(4), inside(7)),
+      quad_key(catmark, inside(3), inside(3), inside(3), inside(3)),
+      quad_key(catmark, inside(4), inside(3), inside(3), inside(9)),
+      quad_key(catmark, first, last, first, last),
+      quad_key(catmark, lone, lone, lone, lone),
+      quad_key(catmark, smooth, last, inside(4), first),
+      quad_key(catmark, inside(4), {2, 3, false, false}, inside(5), inside(4)),
+      quad_key(catmark, {0, 2, false, false}, {3, 0, false, false}, inside(3), inside(4)),
+  };
+  for (const snug::Scheme dual : {doo_sabin, midedge}) {
+    keys.push_back(quad_key(dual, inside(3), inside(5), inside(4), inside(6)));
+    keys.push_back(quad_key(dual, inside(3), inside(3), inside(3), inside(3)));
+    keys.push_back(quad_key(dual, inside(4), inside(7), inside(4), inside(4)));
+  }
+  for (const snug::KindKey& key : keys) {
+    const StoredKind kind = made(key);
+    EXPECT_NO_THROW(static_cast<void>(prove_rows(kind))) << to_text(kind.scheme, kind.key);
   }
 }
 
@@ -151,7 +205,7 @@ TEST(checker, proves_a_control_net_alone_and_together_with_rows) {
 
 // The limits of a regular patch's corners, and of the whole lattice by precision of linear functions.
 TEST(checker, has_masks_that_keep_linear_functions_on_the_regular_lattice) {
-  const Piece root = root_piece({Fan{0, 5, true, false}, Fan{0, 5, true, false}, Fan{0, 5, true, false}});
+  const Piece root = root_piece(of_loop({0, 5, true, false}, {0, 5, true, false}, {0, 5, true, false}));
   const std::vector<std::array<double, 2>> lattice{{0, 0},  {1, 0},  {0, 1},  {1, -1}, {1, 1}, {-1, 1},
                                                    {-1, 0}, {0, -1}, {2, -1}, {2, 0},  {0, 2}, {-1, 2}};
   ASSERT_EQ(root.rows.size(), lattice.size());
@@ -173,19 +227,70 @@ TEST(checker, has_masks_that_keep_linear_functions_on_the_regular_lattice) {
   }
 }
 
+// Bezier points of regular half quads, by precision of linear functions: the net as neighbourhood.h draws it.
+TEST(checker, has_bezier_points_that_keep_linear_functions_on_the_regular_lattice) {
+  using Lattice = std::vector<std::array<double, 2>>;
+  const Lattice quads{{0, 0}, {1, 0}, {1, 1},  {0, 1},  {0, -1},  {1, -1}, {2, 0}, {2, 1},
+                      {1, 2}, {0, 2}, {-1, 1}, {-1, 0}, {-1, -1}, {2, -1}, {2, 2}, {-1, 2}};
+  const Lattice around{{.5, .5},   {-.5, .5},  {.5, -.5},  {1.5, .5}, {.5, 1.5},
+                       {-.5, -.5}, {1.5, -.5}, {1.5, 1.5}, {-.5, 1.5}};
+  constexpr Fan four{0, 3, true, false};
+  for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
+    const Lattice& lattice = scheme == Scheme::catmark ? quads : around;
+    Shapes shapes;
+    const HalfQuad root = root_half(shapes, scheme, {four, four, four, four});
+    ASSERT_EQ(root.rows.size(), lattice.size());
+    std::vector<HalfQuad> pieces{root};
+    for (const HalfQuad& child : split(root)) pieces.push_back(child);
+    for (const HalfQuad& piece : pieces) {
+      for (const BezierTriangle& triangle : bezier_triangles(piece)) {
+        const std::vector<Exponents>& all = exponents(triangle.degree);
+        for (std::size_t p = 0; p < all.size(); ++p) {
+          std::array<Real, 2> expected, seen;  // weights of corners 1 and 2: x - y and y
+          for (std::size_t a = 0; a < 2; ++a) {
+            for (std::size_t k = 0; k < 3; ++k) {
+              expected[a] += Real(all[p][k]) * Real(static_cast<double>(triangle.places[k][a])) /
+                             Real(triangle.degree * std::ldexp(1, place_bits));
+            }
+            for (std::size_t c = 0; c < lattice.size(); ++c) {
+              const double weight = a == 0 ? lattice[c][0] - lattice[c][1] : lattice[c][1];
+              seen[a] += triangle.points[p][c] * Real(weight);
+            }
+            EXPECT_TRUE((seen[a] - expected[a]).may_be(0)) << name_of(scheme) << p;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(checker, refuses_keys_of_quads_that_no_patch_has) {
+  const Fan four{0, 3, true, false};
+  Shapes shapes;
+  for (const Key& key :
+       {Key{Fan{0, 1, true, false}, four, four, four}, Key{Fan{1, 2, true, false}, four, four, four},
+        Key{Fan{0, 3, true, true}, four, four, four}, Key{Fan{0, 1, false, false}, four, four, four},
+        Key{Fan{0, 65535, true, false}, four, four, four}, Key{Fan{1, 1, false, true}, four, four, four}}) {
+    for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge})
+      EXPECT_THROW(static_cast<void>(root_half(shapes, scheme, key)), Rejected) << to_text(scheme, key);
+  }
+}
+
 TEST(checker, refuses_keys_that_no_patch_has) {
   const Fan six{0, 5, true, false};
-  for (const Key& key : {Key{Fan{0, 1, true, false}, six, six}, Key{Fan{1, 4, true, false}, six, six},
-                         Key{Fan{0, 5, true, true}, six, six}, Key{Fan{0, 2, false, false}, six, six},
-                         Key{Fan{1, 1, false, true}, six, six}, Key{Fan{0, 65535, true, false}, six, six},
-                         Key{Fan{0, 0, false, true}, Fan{0, 0, false, false}, Fan{0, 0, false, false}},
-                         Key{Fan{0, 2, true, false}, Fan{0, 2, true, false}, six}}) {
-    EXPECT_THROW(static_cast<void>(root_piece(key)), Rejected) << to_text(key);
+  for (const Key& key :
+       {Key{six, six, six, Fan{0, 4, true, false}}, of_loop(Fan{0, 1, true, false}, six, six),
+        of_loop(Fan{1, 4, true, false}, six, six), of_loop(Fan{0, 5, true, true}, six, six),
+        of_loop(Fan{0, 2, false, false}, six, six), of_loop(Fan{1, 1, false, true}, six, six),
+        of_loop(Fan{0, 65535, true, false}, six, six),
+        of_loop(Fan{0, 0, false, true}, Fan{0, 0, false, false}, Fan{0, 0, false, false}),
+        of_loop(Fan{0, 2, true, false}, Fan{0, 2, true, false}, six)}) {
+    EXPECT_THROW(static_cast<void>(root_piece(key)), Rejected) << to_text(Scheme::loop, key);
   }
 }
 
 TEST(checker, reads_or_rejects_any_bytes) {
-  const BoundsFile file = excerpt(parse(shipped_bytes()));
+  const BoundsFile file = excerpt(parse(shipped_bytes()), Scheme::catmark);
   const std::vector<std::byte> whole = to_bytes(file);
   std::mt19937_64 random(5);
   std::size_t rejected = 0;
