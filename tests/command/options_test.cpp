@@ -60,6 +60,9 @@ TEST(usage, ends_with_2) {
            {"experiment", "rates", "--levels", "3"},
            {"experiment", "rates", "--levels", "41"},
            {"experiment", "rates", "--json", "-o", "rates.svg"},
+           {"experiment", "rates", "--at", "middle"},
+           {"experiment", "rates", "--at", "crease", "--scheme", "midedge"},
+           {"experiment", "rates", "--at", "boundary", "--scheme", "curve"},
            {"experiment", "tightness", "--samples", "0"},
            {"experiment", "tightness", "--seed", "x"}}) {
     const Outcome outcome = run_snug(arguments);
