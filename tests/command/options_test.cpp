@@ -48,6 +48,7 @@ TEST(usage, ends_with_2) {
            {"bound", star, "--bounds", "tables"},
            {"bound", star, "--bounds", "table", "--layout", "hexagon"},
            {"collide", star, star, "--tolerance", "1%", "--bounds", "control-box"},
+           {"bound", star, "--creases", "smooth"},
            {"bound", star, "--threads", "-1"},
            {"collide", star, star},
            {"collide", star, star, "--tolerance", "1%", "--place-b", "1 0 0"},
