@@ -222,7 +222,8 @@ TEST(convergence, boundaries_and_creases_shrink_by_the_eigenvalues_of_their_rule
       for (const RateRow& row : rows) {
         const std::string where = std::string(name_of(scheme)) + ", " + name_of(centre) + ", " +
                                   std::to_string(row.place.faces) + ", " + name_of(row.measure);
-        // One face of Catmull-Clark on a smooth boundary: j/4^j, and needles whose tips are refined no further.
+        // One face of Catmull-Clark on a smooth boundary: j/4^j, and needles whose tips are refined no
+        // further.
         const bool needle =
             scheme == Scheme::catmark && !row.source && row.measure != ThicknessMeasure::normal &&
             (row.place == NetPlace{NetCentre::boundary, 1} || row.place == NetPlace{NetCentre::crease, 3});
@@ -280,8 +281,8 @@ TEST(convergence, eigenvalues_may_be_complex) {
   EXPECT_EQ(eigenvalue_sizes({1, {-3}}), std::vector<double>{3});
 }
 
-// Along a boundary and across they shrink by different factors: the triangle of the corners becomes a needle. The fit
-// has another way for these, which did not refine tips: radii grew 65 times at level 9.
+// Along a boundary and across they shrink by different factors: the triangle of the corners becomes a needle.
+// The fit has another way for these, which did not refine tips: radii grew 65 times at level 9.
 TEST(convergence, needles_keep_their_rate) {
   RateOptions options;
   options.centre = NetCentre::boundary;

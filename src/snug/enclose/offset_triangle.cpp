@@ -9,8 +9,8 @@ namespace snug {
 
 namespace {
 
-// For triangles without a plane of their own, of the points `begin` to `end` - 1: the nearest points of the edges, each
-// found on its own.
+// For triangles without a plane of their own, of the points `begin` to `end` - 1: the nearest points of the
+// edges, each found on its own.
 kernels::Reach farthest_by_feet(const HullPoints& points, std::size_t begin, std::size_t end,
                                 const std::array<Vector3, 3>& corner) {
   const TriangleFoot foot(corner[0], corner[1], corner[2]);

@@ -50,8 +50,9 @@ struct BoundSummary {
   std::uint64_t count = 0;
   double max_radius = 0;
   std::uint64_t splits = 0;
-  bool reached =
-      true;  ///< every piece meets the tolerance, and has passed where that is asked for; else budget, levels or rounding stood in the way
+  /// Every piece meets the tolerance, and has passed where that is asked for; else budget, levels or rounding
+  /// stood in the way.
+  bool reached = true;
 };
 
 /// Enclosures of the whole limit surface, passed to `sink` patch by patch, pieces of one in the order of

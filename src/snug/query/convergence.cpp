@@ -205,8 +205,8 @@ double fitted_factor(std::span<const double> values) {
 double expected_factor(std::size_t n, BoundSource source, ThicknessMeasure measure, Scheme scheme) {
   const CornerEigenvalues eigenvalues = corner_eigenvalues(n, scheme);
   if (scheme != Scheme::loop) {
-    // Hull rows: below valence 4 the limit leaves the triangle of its corners sideways. The fair layout of tables is that
-    // of the characteristic map at regular corners alone.
+    // Hull rows: below valence 4 the limit leaves the triangle of its corners sideways. The fair layout of
+    // tables is that of the characteristic map at regular corners alone.
     const bool vanishes = measure == ThicknessMeasure::normal || n == 4 || (!source && n > 4);
     return vanishes ? eigenvalues.next : eigenvalues.subdominant;
   }
@@ -222,8 +222,8 @@ double expected_factor(Scheme scheme, const NetPlace& place, BoundSource source,
   if (is_regular(scheme, place)) return eigenvalues.next;
   const std::size_t n = place.faces;
   if (measure == ThicknessMeasure::normal) {
-    // The normal is that of the directions along, which shrinks by 1/2, and across: not the two slowest ones if two are
-    // slower than 1/2.
+    // The normal is that of the directions along, which shrinks by 1/2, and across: not the two slowest ones
+    // if two are slower than 1/2.
     const bool slow = place.centre != NetCentre::dart && eigenvalues.second > 0.5 + 1e-6;
     return slow ? eigenvalues.second : eigenvalues.next;
   }

@@ -82,8 +82,8 @@ class Fan {
     return VertexId(before + (open_ ? sector * i + j : (sector * i + j) % (n_ * i)));
   }
 
-  // Sector s holds the places (i, j) with i >= 1 and j >= 0; those with i = 0 belong to the next one. If it is open
-  // there is one more sector of a spoke alone.
+  // Sector s holds the places (i, j) with i >= 1 and j >= 0; those with i = 0 belong to the next one. If it
+  // is open there is one more sector of a spoke alone.
   [[nodiscard]] VertexId quad_vertex(std::size_t s, std::size_t i, std::size_t j) const {
     if (i == 0 && j == 0) return VertexId(0);
     if (i == 0) return quad_vertex(s + 1, j, 0);

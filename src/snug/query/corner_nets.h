@@ -26,8 +26,8 @@ namespace snug {
 /// Requires:  n >= 3; rings >= 1.
 [[nodiscard]] ControlMesh quad_fan_mesh(std::size_t n, std::size_t rings);
 
-/// The same with a boundary through the vertex: n faces touch it, from the first spoke to the last one, which are the boundary.
-/// Together they make half a turn, one face a quarter.
+/// The same with a boundary through the vertex: n faces touch it, from the first spoke to the last one, which
+/// are the boundary. Together they make half a turn, one face a quarter.
 ///
 /// Requires:  n >= 1; rings >= 1.
 [[nodiscard]] ControlMesh open_fan_mesh(std::size_t n, std::size_t rings);
@@ -78,8 +78,8 @@ struct NetPlace {
   friend bool operator==(const NetPlace&, const NetPlace&) = default;
 };
 
-/// The bent net for a scheme. The first patch of owner 0 has its corner 0 in the middle; with creases it lies beside
-/// one.
+/// The bent net for a scheme. The first patch of owner 0 has its corner 0 in the middle; with creases it lies
+/// beside one.
 ///
 /// Requires:  n >= 3, on a boundary n >= 1; is_primal(scheme) for all but the interior.
 [[nodiscard]] ControlMesh bent_net(Scheme scheme, const NetPlace& place, std::uint64_t seed);

@@ -21,8 +21,8 @@ struct SquareMatrix {
 /// Source:    reduction to Hessenberg's form, then QR steps with Wilkinson's shift, in complex numbers.
 [[nodiscard]] std::vector<double> eigenvalue_sizes(const SquareMatrix& matrix);
 
-/// The matrix of the step at corner 0, after as many splits as what decays needs: from the control points of the
-/// piece that keeps the corner to those of the next one.
+/// The matrix of the step at corner 0, after as many splits as what decays needs: from the control points of
+/// the piece that keeps the corner to those of the next one.
 [[nodiscard]] SquareMatrix corner_matrix(Patch patch);
 
 }  // namespace snug

@@ -236,9 +236,9 @@ void add_dart_row(Scheme scheme, const DartStep& step, Stencils& out) {
   out.end_row();
 }
 
-// Left eigenvectors of the largest eigenvalues below 1, symmetric to the sharp edge and not; by iteration. The sine row
-// has no part but its own Fourier mode's, so 40 steps end it; in 300 its roundings would grow into the symmetric one,
-// whose eigenvalue is larger below five faces.
+// Left eigenvectors of the largest eigenvalues below 1, symmetric to the sharp edge and not; by iteration.
+// The sine row has no part but its own Fourier mode's, so 40 steps end it; in 300 its roundings would grow
+// into the symmetric one, whose eigenvalue is larger below five faces.
 void add_dart_tangents(const DartStep& step, Stencils& out) {
   const auto n = static_cast<double>(step.spokes().size());
   for (const bool symmetric : {true, false}) {
