@@ -76,7 +76,10 @@ docs: install-packages  ## plots and tables of docs/convergence.md, pictures of 
 	@for name in rates tightness; do build/release/bin/snug experiment $$name -o build/docs/$$name.json > /dev/null; done
 	@for scheme in catmark doo-sabin midedge; do \
 	  build/release/bin/snug experiment rates --scheme $$scheme -o build/docs/$$scheme.json > /dev/null; done
-	@scripts/plot_experiments.py build/docs/{rates,tightness,catmark,doo-sabin,midedge}.json docs/convergence.md docs/pictures
+	@for scheme in loop catmark; do for place in boundary corner crease dart; do \
+	  build/release/bin/snug experiment rates --scheme $$scheme --at $$place --levels 36 -o build/docs/$$scheme-$$place.json > /dev/null; done; \
+	  build/release/bin/snug experiment rates --scheme $$scheme --at semi-sharp -o build/docs/$$scheme-semi-sharp.json > /dev/null; done
+	@scripts/plot_experiments.py build/docs docs/convergence.md docs/pictures
 	@scripts/draw_schemes build/release/bin/snug docs/pictures
 	@scripts/check_docs.py
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Plots and tables of docs/convergence.md from the documents of `snug experiment rates` and `snug experiment tightness`.
 
-usage: plot_experiments.py RATES.json TIGHTNESS.json SCHEME_RATES.json... PAGE.md PICTURES
-SCHEME_RATES: rates of schemes other than Loop.
-Writes PICTURES/rates.svg, factors.svg, schemes.svg and tightness.svg, and puts the tables between the marks `<!-- table: NAME -->` and
-`<!-- end -->` of the page. Plain SVG, no packages.
+usage: plot_experiments.py DOCUMENTS PAGE.md PICTURES
+DOCUMENTS: a folder with rates.json, tightness.json, SCHEME.json of rates of schemes other than Loop, and SCHEME-PLACE.json of `rates --at PLACE`.
+Writes PICTURES/rates.svg, factors.svg, schemes.svg, places.svg, semi_sharp.svg and tightness.svg, and puts the tables between the marks
+`<!-- table: NAME -->` and `<!-- end -->` of the page. Plain SVG, no packages.
 """
 
 import json
@@ -19,8 +19,12 @@ SOURCES = {
     ("table", "ngon"): ("table, n-gon", "#d55e00", "square"),
     ("table", "characteristic"): ("table, characteristic", "#009e73", "triangle"),
 }
-SCHEMES = {"catmark": "Catmull-Clark", "doo-sabin": "Doo-Sabin", "midedge": "Midedge"}
-MEASURES = {"radius": ("radius", "#0072b2", "circle"), "normal": ("slab along the normal", "#d55e00", "square")}
+SCHEMES = {"loop": "Loop", "catmark": "Catmull-Clark", "doo-sabin": "Doo-Sabin", "midedge": "Midedge"}
+MEASURES = {("rows", "radius"): ("radius, hull rows", "#0072b2", "circle"),
+            ("rows", "normal"): ("slab, hull rows", "#d55e00", "square"),
+            ("table", "radius"): ("radius, table", "#009e73", "triangle")}
+PLACES = ("boundary", "corner", "crease", "dart")
+SHARPNESSES = {0.5: "#56b4e9", 1.5: "#009e73", 2.5: "#e69f00", 4.5: "#d55e00", None: "#222222"}
 GREY, BLACK = "#777777", "#222222"
 PANELS = (3, 5, 6, 8, 12, 50)
 
@@ -204,28 +208,74 @@ def plot_factors(rows, path):
     picture.save(path)
 
 
+def factor_panel(picture, box, rows, title, labels):
+    """Measured factors of MEASURES over the faces in the middle, with two eigenvalues."""
+    valences = sorted({row["valence"] for row in rows})
+    axes = Axes(picture, box, (-0.5, len(valences) - 0.5), (0.1, 1), False)
+    axes.ticks_y([(k / 10, f"{k / 10:.1f}") for k in range(1, 11)], labels)
+    axes.ticks_x([(k, str(v)) for k, v in enumerate(valences)])
+    axes.title(title)
+    first = [next(row for row in rows if row["valence"] == v) for v in valences]
+    for field, dash in (("subdominant", "7 4"), ("second", "3 3"), ("next", "1 3")):
+        picture.path([axes.at(k, row[field]) for k, row in enumerate(first)], GREY, 1.3, dash)
+    for s, (key, (_, colour, shape)) in enumerate(MEASURES.items()):
+        for row in rows:
+            if (row["bounds"], row["measure"]) == key:
+                picture.mark(shape, *axes.at(valences.index(row["valence"]) + 0.22 * (s - 1), row["factor"]), colour, 2.8)
+    if labels:
+        axes.label_y("factor a level", 40)
+    return axes
+
+
+def factor_legend(picture):
+    entries = [((lambda x, y, look=look: picture.mark(look[2], x + 18, y, look[1])), look[0])
+               for look in MEASURES.values()]
+    entries += [(plain_entry(picture, dash), words)
+                for dash, words in (("7 4", "largest eigenvalue"), ("3 3", "second"), ("1 3", "third"))]
+    legend(picture, 45, 25, entries, 155)
+
+
 def plot_schemes(documents, path):
     picture = Picture(940, 420, "Factor a level by which enclosures shrink, over the valence, for three schemes")
     for i, rows in enumerate(documents):
-        valences = sorted({row["valence"] for row in rows})
-        axes = Axes(picture, (65 + 295 * i, 75, 275, 285), (-0.5, len(valences) - 0.5), (0.1, 1), False)
-        axes.ticks_y([(k / 10, f"{k / 10:.1f}") for k in range(1, 11)], i == 0)
-        axes.ticks_x([(k, str(v)) for k, v in enumerate(valences)])
-        axes.title(SCHEMES[rows[0]["scheme"]])
-        axes.label_x("valence")
-        first = [next(row for row in rows if row["valence"] == v) for v in valences]
-        for field, dash in (("subdominant", "7 4"), ("next", "2 3")):
-            picture.path([axes.at(k, row[field]) for k, row in enumerate(first)], GREY, 1.3, dash)
-        for s, (measure, (_, colour, shape)) in enumerate(MEASURES.items()):
-            for row in rows:
-                if row["measure"] == measure:
-                    picture.mark(shape, *axes.at(valences.index(row["valence"]) + 0.2 * s - 0.1, row["factor"]), colour)
+        box = (65 + 295 * i, 75, 275, 285)
+        factor_panel(picture, box, rows, SCHEMES[rows[0]["scheme"]], i == 0).label_x("valence")
+    factor_legend(picture)
+    picture.save(path)
+
+
+def plot_places(documents, path):
+    picture = Picture(940, 720, "Factor a level by which enclosures shrink at boundaries and creases, over the faces there")
+    for k, scheme in enumerate(("loop", "catmark")):
+        for i, place in enumerate(("boundary", "corner", "dart")):
+            box = (65 + 295 * i, 75 + 320 * k, 275, 255)
+            axes = factor_panel(picture, box, documents[scheme, place], f"{SCHEMES[scheme]}: {place}", i == 0)
+            axes.label_x("faces" if k else "")
+    factor_legend(picture)
+    picture.save(path)
+
+
+def plot_semi_sharp(documents, path):
+    """Radius by level beside creases of several sharpnesses in a regular mesh; None: infinite."""
+    picture = Picture(940, 420, "Radius beside a semi-sharp crease, level by level")
+    for i, scheme in enumerate(("loop", "catmark")):
+        regular = 6 if scheme == "loop" else 4
+        axes = Axes(picture, (75 + 450 * i, 75, 390, 285), (0, 12), (1e-9, 1), True)
+        axes.ticks_y([(10.0 ** e, power(e)) for e in range(-9, 1)], i == 0)
+        axes.ticks_x([(k, str(k)) for k in range(0, 13, 2)])
+        axes.title(SCHEMES[scheme])
+        axes.label_x("level")
+        rows = [row for row in documents[scheme, "semi-sharp"] + documents[scheme, "crease"]
+                if row["bounds"] == "rows" and row["measure"] == "radius" and row["valence"] == regular]
+        for row in rows:
+            points = [axes.at(k, v) for k, v in enumerate(row["thickness"][:13])]
+            picture.path(points, SHARPNESSES[row["sharpness"]], 1.5)
+            for x, y in points:
+                picture.mark("circle", x, y, SHARPNESSES[row["sharpness"]], 2.4)
         if i == 0:
-            axes.label_y("factor a level", 40)
-    entries = [((lambda x, y, look=look: picture.mark(look[2], x + 18, y, look[1])), look[0])
-               for look in MEASURES.values()]
-    entries += [(plain_entry(picture, "7 4"), "subdominant"), (plain_entry(picture, "2 3"), "next eigenvalue")]
-    legend(picture, 65, 25, entries, 200)
+            axes.label_y("radius (spokes of length 1)")
+    entries = [(plain_entry(picture, None, colour), f"sharpness {s}" if s else "infinite") for s, colour in SHARPNESSES.items()]
+    legend(picture, 75, 25, entries, 172)
     picture.save(path)
 
 
@@ -275,18 +325,24 @@ def factor_table(rows, measure):
     return table(["valence"] + [words for key in SOURCES for words in (SOURCES[key][0], "theory")], lines)
 
 
-def scheme_table(documents):
+# Columns of a scheme: a heading, and what of (bounds, measure) it shows.
+COLUMNS = (("rows: radius", ("rows", "radius"), "factor"), ("theory", ("rows", "radius"), "expected"),
+           ("table: radius", ("table", "radius"), "factor"), ("theory", ("table", "radius"), "expected"),
+           ("slab", ("rows", "normal"), "factor"), ("theory", ("rows", "normal"), "expected"))
+
+
+def scheme_table(documents, first="valence"):
+    """One document a scheme."""
     lines = []
     for valence in sorted({row["valence"] for row in documents[0]}):
         cells = [str(valence)]
         for rows in documents:
-            mine = {row["measure"]: row for row in rows if row["valence"] == valence}
-            cells += [f"{mine['radius']['factor']:.3f}", f"{mine['normal']['factor']:.3f}",
-                      f"{mine['normal']['expected']:.3f}"]
+            mine = {(row["bounds"], row["measure"]): row for row in rows if row["valence"] == valence}
+            cells += [f"{mine[key][field]:.3f}" if key in mine else "" for _, key, field in COLUMNS]
         lines.append(cells)
-    head = [f"{SCHEMES[rows[0]['scheme']]}: radius" if k == 0 else words
-            for rows in documents for k, words in enumerate(("radius", "normal", "theory"))]
-    return table(["valence"] + head, lines)
+    head = [f"{SCHEMES[rows[0]['scheme']]}, {words}" if k == 0 else words
+            for rows in documents for k, (words, _, _) in enumerate(COLUMNS)]
+    return table([first] + head, lines)
 
 
 def tightness_table(rows, shape):
@@ -306,18 +362,28 @@ def tightness_table(rows, shape):
 
 
 def main():
-    if len(sys.argv) < 6:
+    if len(sys.argv) != 4:
         sys.exit(__doc__)
-    rates, tightness, *schemes = (json.loads(pathlib.Path(name).read_text(encoding="utf-8"))["rows"]
-                                  for name in sys.argv[1:-2])
-    page, pictures = pathlib.Path(sys.argv[-2]), pathlib.Path(sys.argv[-1])
+    folder, page, pictures = (pathlib.Path(name) for name in sys.argv[1:])
+
+    def rows_of(name):
+        return json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))["rows"]
+
+    rates, tightness = rows_of("rates"), rows_of("tightness")
+    schemes = [rows_of(name) for name in ("catmark", "doo-sabin", "midedge")]
+    places = {(scheme, place): rows_of(f"{scheme}-{place}")
+              for scheme in ("loop", "catmark") for place in (*PLACES, "semi-sharp")}
     plot_rates(rates, pictures / "rates.svg")
     plot_factors(rates, pictures / "factors.svg")
     plot_schemes(schemes, pictures / "schemes.svg")
+    plot_places(places, pictures / "places.svg")
+    plot_semi_sharp(places, pictures / "semi_sharp.svg")
     plot_tightness(tightness, pictures / "tightness.svg")
     tables = {f"factors {measure}": factor_table(rates, measure) for measure in ("radius", "interval", "normal")}
     tables |= {f"tightness {shape}": tightness_table(tightness, shape) for shape in ("bent", "bumpy", "flat")}
     tables["factors schemes"] = scheme_table(schemes)
+    for place in PLACES:
+        tables[f"factors {place}"] = scheme_table([places["loop", place], places["catmark", place]], "faces")
     text = page.read_text(encoding="utf-8")
     for name, lines in tables.items():
         mark = f"<!-- table: {name} -->"

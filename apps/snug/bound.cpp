@@ -20,6 +20,7 @@ struct Options : CommonOptions {
   unsigned degree = 3;
   std::string tolerance;
   std::string polyhedra;
+  std::string creases = "bound";
   unsigned level = 0;
 };
 
@@ -105,6 +106,7 @@ ExitStatus run(const Options& options) {
   BoundOptions how;
   how.method = bound_method(options);
   how.layout = table_layout(options);
+  how.passing = options.creases == "split" ? PassingMethod::split : PassingMethod::bound;
   how.level = options.level;
   how.budget = options.budget;
   how.threads = options.threads;
@@ -179,6 +181,13 @@ Command add_bound(CLI::App& app) {
                    "Split every patch this often; the first split of a polygon counts")
       ->check(CLI::Range(0u, 12u))
       ->excludes(tolerance);
+  command
+      ->add_option(
+          "--creases", options->creases,
+          "Where sharpness decays, or faces that are no quads split: bound the patches as they are, or "
+          "split them first until it has passed")
+      ->check(CLI::IsMember({"bound", "split"}))
+      ->capture_default_str();
   command->add_option(
       "--polyhedra", options->polyhedra,
       "The hulls of the enclosures' boxes as one mesh, for pictures: .obj, .off, .ply, .stl or .glb");

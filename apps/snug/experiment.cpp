@@ -25,6 +25,7 @@ struct Options : CommonOptions {
   std::optional<std::size_t> nets;  // each experiment has its own default
   unsigned levels = RateOptions{}.levels;
   int samples = TightnessOptions{}.steps;
+  std::string at = name_of(NetCentre::interior);
 };
 
 // The fields that all experiments begin with.
@@ -131,6 +132,18 @@ RateOptions rate_options(const Options& options) {
     if (options.scheme == name_of(scheme)) wanted.scheme = scheme;
   }
   if (options.scheme == "catmull-clark") wanted.scheme = Scheme::catmark;
+  for (const NetCentre centre : all_net_centres) {
+    if (options.at == name_of(centre)) wanted.centre = centre;
+  }
+  if (wanted.centre != NetCentre::interior && options.scheme == "curve") {
+    throw UsageError("experiment rates --at " + options.at +
+                     ": curves are measured inside and at their ends always");
+  }
+  if (wanted.centre != NetCentre::interior && !is_primal(wanted.scheme)) {
+    throw UsageError(
+        "experiment rates --at " + options.at + ": " + options.scheme +
+        " is dual: it has no patches at boundaries and no creases; give --scheme loop or catmark");
+  }
   return wanted;
 }
 
@@ -167,6 +180,38 @@ ExitStatus curve_rates(const Options& options) {
   return ExitStatus::answered;
 }
 
+// A line for each place and source.
+void write_rates(Report& report, const RateOptions& wanted, const std::vector<RateRow>& rows) {
+  const bool inside = wanted.centre == NetCentre::interior,
+             semi_sharp = wanted.centre == NetCentre::semi_sharp;
+  report.text(inside ? "thickness at an extraordinary corner, the factor a level: measured (theory)"
+                     : "thickness at a corner, the factor a level: measured (theory); eigenvalues after 1");
+  std::string line = fmt::format("{:>9}  {:<22}",
+                                 semi_sharp ? "sharpness"
+                                 : inside   ? "valence"
+                                            : "faces",
+                                 "bounds");
+  for (const ThicknessMeasure m : all_thickness_measures) line += fmt::format("  {:<17}", name_of(m));
+  report.text(line);
+  CornerEigenvalues eigenvalues{};
+  for (std::size_t i = 0; i < rows.size();) {
+    const NetPlace& place = rows[i].place;
+    if (i == 0 || rows[i - 1].place != place) eigenvalues = corner_eigenvalues(wanted.scheme, place);
+    line = semi_sharp ? fmt::format("{:>9}", place.sharpness) : fmt::format("{:>9}", place.faces);
+    line += fmt::format("  {:<22}", text_of(rows[i].source));
+    const std::size_t begin = i;
+    for (; i < rows.size() && rows[i].place == place && rows[i].source == rows[begin].source; ++i) {
+      line += fmt::format("  {:.4f} ({:.4f})  ", rows[i].factor, rows[i].expected);
+    }
+    if (i - begin < all_thickness_measures.size()) line += fmt::format("  {:<17}", "no normal");
+    if (!inside) {
+      line += fmt::format("  {:.4f} {:.4f} {:.4f}", eigenvalues.subdominant, eigenvalues.second,
+                          eigenvalues.next);
+    }
+    report.text(line);
+  }
+}
+
 ExitStatus rates(const Options& options) {
   Report report("experiment", options);
   const RateOptions wanted = rate_options(options);
@@ -178,28 +223,24 @@ ExitStatus rates(const Options& options) {
   if (report.json()) {
     JsonWriter& json = begin_rows(report, options);
     json.field("nets", wanted.nets).field("levels", wanted.levels).key("rows").begin_array();
-    for (const RateRow& row : rows) {
-      const CornerEigenvalues eigenvalues = corner_eigenvalues(row.valence, wanted.scheme);
-      json.begin_object().field("scheme", name_of(wanted.scheme)).field("valence", row.valence);
+    CornerEigenvalues eigenvalues{};
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const RateRow& row = rows[i];
+      if (i == 0 || rows[i - 1].place != row.place)
+        eigenvalues = corner_eigenvalues(wanted.scheme, row.place);
+      json.begin_object().field("scheme", name_of(wanted.scheme)).field("at", name_of(row.place.centre));
+      json.field("valence", row.place.faces).key("sharpness");
+      row.place.centre == NetCentre::semi_sharp ? json.value(row.place.sharpness) : json.null();
       write_source(json, row.source);
       json.field("measure", name_of(row.measure)).key("thickness").begin_array();
       for (const double t : row.thickness) json.value(t);
       json.end_array().field("factor", row.factor).field("expected", row.expected);
-      json.field("subdominant", eigenvalues.subdominant).field("next", eigenvalues.next).end_object();
+      json.field("subdominant", eigenvalues.subdominant).field("second", eigenvalues.second);
+      json.field("next", eigenvalues.next).end_object();
     }
     json.end_array();
   }
-  report.text("thickness at an extraordinary corner, the factor a level: measured (theory)");
-  std::string line = fmt::format("{:>7}  {:<22}", "valence", "bounds");
-  for (const ThicknessMeasure m : all_thickness_measures) line += fmt::format("  {:<17}", name_of(m));
-  report.text(line);
-  for (std::size_t i = 0; i < rows.size(); i += all_thickness_measures.size()) {
-    line = fmt::format("{:>7}  {:<22}", rows[i].valence, text_of(rows[i].source));
-    for (std::size_t m = 0; m < all_thickness_measures.size(); ++m) {
-      line += fmt::format("  {:.4f} ({:.4f})  ", rows[i + m].factor, rows[i + m].expected);
-    }
-    report.text(line);
-  }
+  write_rates(report, wanted, rows);
   report.finish();
   return ExitStatus::answered;
 }
@@ -271,6 +312,13 @@ Command add_experiment(CLI::App& app) {
       ->add_option("--samples", options->samples,
                    "tightness: steps of the lattice of limit points along an edge")
       ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--at", options->at,
+          "rates: what is in the middle of the nets; all but interior with --scheme loop or catmark, "
+          "for dual schemes have neither patches at boundaries nor creases")
+      ->check(CLI::IsMember({"interior", "boundary", "corner", "crease", "dart", "semi-sharp"}))
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of what is drawn")->capture_default_str();
   add_common_options(*command, *options);

@@ -161,6 +161,17 @@ TEST(experiment, rates_fits_a_factor_to_thicknesses) {
   }
 }
 
+TEST(experiment, rates_says_where_it_measured) {
+  const json document = answer({"experiment", "rates", "--nets", "1", "--levels", "6", "--at", "semi-sharp"});
+  ASSERT_EQ(document["rows"].size(), 4u * 2 * 3);
+  for (const json& row : document["rows"]) {
+    EXPECT_EQ(row["at"], "semi-sharp");
+    EXPECT_EQ(row["valence"], 6);
+    EXPECT_GT(row["sharpness"], 0);
+    EXPECT_NEAR(row["second"].get<double>(), 0.5, 1e-9);
+  }
+}
+
 TEST(experiment, tightness_has_quantiles_of_ratios) {
   const json document = answer({"experiment", "tightness", "--nets", "2", "--samples", "6"});
   expect_head(document, "experiment");

@@ -48,6 +48,7 @@ TEST(usage, ends_with_2) {
            {"bound", star, "--bounds", "tables"},
            {"bound", star, "--bounds", "table", "--layout", "hexagon"},
            {"collide", star, star, "--tolerance", "1%", "--bounds", "control-box"},
+           {"bound", star, "--creases", "smooth"},
            {"bound", star, "--threads", "-1"},
            {"collide", star, star},
            {"collide", star, star, "--tolerance", "1%", "--place-b", "1 0 0"},
@@ -60,6 +61,9 @@ TEST(usage, ends_with_2) {
            {"experiment", "rates", "--levels", "3"},
            {"experiment", "rates", "--levels", "41"},
            {"experiment", "rates", "--json", "-o", "rates.svg"},
+           {"experiment", "rates", "--at", "middle"},
+           {"experiment", "rates", "--at", "crease", "--scheme", "midedge"},
+           {"experiment", "rates", "--at", "boundary", "--scheme", "curve"},
            {"experiment", "tightness", "--samples", "0"},
            {"experiment", "tightness", "--seed", "x"}}) {
     const Outcome outcome = run_snug(arguments);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <snug/base/error.h>
+#include <snug/query/corner_nets.h>
 #include <testing/patches.h>
 
 #include <vector>
@@ -64,6 +65,37 @@ TEST(bound, meets_its_tolerance_with_pieces_that_tile_every_face) {
   for (const PieceEnclosure& piece : result.pieces)
     area[piece.patch.index()] += std::ldexp(1.0, -2 * static_cast<int>(piece.path.level()));
   for (const double a : area) EXPECT_EQ(a, 1);
+}
+
+// A crease of 2.5 through the middle of a regular mesh: after three splits it is smooth.
+TEST(bound, splits_until_sharpness_has_decayed) {
+  for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
+    const Surface surface(bent_net(scheme, {NetCentre::semi_sharp, scheme == Scheme::loop ? 6u : 4u, 2.5}, 1),
+                          {scheme}, std::make_shared<BoundLibrary>(), 1);
+    BoundOptions options;
+    const Collected whole = collect(surface, options);
+    options.passing = PassingMethod::split;
+    const Collected pieces = collect(surface, options);
+    EXPECT_TRUE(pieces.summary.reached);
+    std::vector<double> area(surface.patch_count(), 0);
+    for (const PieceEnclosure& piece : pieces.pieces) {
+      const unsigned level = piece.path.level();
+      EXPECT_LE(level, 3u);
+      area[piece.patch.index()] += std::ldexp(1.0, -2 * static_cast<int>(level));
+      Patch patch = surface.patch(piece.patch);
+      for (const char digit : piece.path.text()) {
+        EXPECT_TRUE(patch.kind->passing());
+        patch = split(patch, static_cast<unsigned>(digit - '0'));
+      }
+      EXPECT_FALSE(patch.kind->passing());
+    }
+    for (const double a : area) EXPECT_EQ(a, 1);
+    EXPECT_GT(pieces.summary.count, whole.summary.count);
+    options.budget = pieces.summary.splits - 1;
+    const Collected fewer = collect(surface, options);
+    EXPECT_FALSE(fewer.summary.reached);
+    EXPECT_EQ(fewer.summary.splits, options.budget);
+  }
 }
 
 TEST(bound, says_so_when_rounding_stops_it) {

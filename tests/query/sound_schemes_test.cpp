@@ -52,6 +52,12 @@ std::vector<BoundOptions> bound_options(const Surface& surface) {
   list[2].tolerance = surface.size() > 0 ? 0.2 * surface.size() : 1;
   list[3].level = 1;
   list[3].method = BoundMethod::control_box;
+  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+    if (!is_primal(surface.options().scheme) || !surface.has_patch(PatchId(p))) continue;
+    if (surface.kind(PatchId(p)).key().plain()) continue;
+    list.emplace_back().passing = PassingMethod::split;
+    break;
+  }
   for (BoundOptions& options : list) options.threads = 1;
   return list;
 }

@@ -9,12 +9,14 @@ namespace snug {
 
 namespace {
 
-// For triangles without a plane of their own: the nearest points of the edges, each found on its own.
-kernels::Reach farthest_by_feet(const HullPoints& points, const std::array<Vector3, 3>& corner) {
+// For triangles without a plane of their own, of the points `begin` to `end` - 1: the nearest points of the
+// edges, each found on its own.
+kernels::Reach farthest_by_feet(const HullPoints& points, std::size_t begin, std::size_t end,
+                                const std::array<Vector3, 3>& corner) {
   const TriangleFoot foot(corner[0], corner[1], corner[2]);
   bool finite = true;
   double farthest_sq = 0, reach = extent(corner[0], corner[1], corner[2]);
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (std::size_t i = begin; i < end; ++i) {
     const Vector3 p = points.at(i);
     const Vector3 d = p - corner[0];
     const Barycentric at = foot(p);
@@ -41,10 +43,10 @@ bool refine_what_sticks_out(BoundLibrary& library, const BaseTriangle& base, dou
   const double most = (base.tips_stick_out ? 1 - notable_excess : 1 + notable_excess) * rest;
   std::array<bool, 3> which{};
   for (std::size_t i = 0; i < 3 && points.tips[i].kind; ++i) {
-    const kernels::Coordinates net =
-        points.coordinates().from(points.tips[i].begin).first(points.tips[i].kind->control_count());
-    const auto reach = kernels::farthest(net, corner[0], corner[1], corner[2]);
-    which[i] = reach && reach->distance > most;
+    const std::size_t begin = points.tips[i].begin, count = points.tips[i].kind->control_count();
+    const auto reach =
+        kernels::farthest(points.coordinates().from(begin).first(count), corner[0], corner[1], corner[2]);
+    which[i] = (reach ? *reach : farthest_by_feet(points, begin, begin + count, corner)).distance > most;
   }
   if (which == std::array<bool, 3>{}) return false;
   refine_tips(library, which, points);
@@ -57,7 +59,8 @@ OffsetTriangle offset_triangle(const HullPoints& points, const std::array<Vector
   const BaseTriangle base = base_triangle(points, corners);
   const auto in_plane =
       kernels::farthest(points.coordinates(), base.relative[0], base.relative[1], base.relative[2]);
-  return finished(base, points, in_plane ? *in_plane : farthest_by_feet(points, base.relative));
+  return finished(base, points,
+                  in_plane ? *in_plane : farthest_by_feet(points, 0, points.size(), base.relative));
 }
 
 OffsetTriangle offset_triangle(BoundLibrary& library, HullPoints& points,
@@ -65,8 +68,11 @@ OffsetTriangle offset_triangle(BoundLibrary& library, HullPoints& points,
   for (std::size_t round = 0;; ++round) {
     const BaseTriangle base = base_triangle(points, corners);
     const auto& c = base.relative;
-    const auto reach = kernels::farthest(points.coordinates(), points.tips_begin(), c[0], c[1], c[2]);
-    if (!reach) return finished(base, points, farthest_by_feet(points, c));
+    const std::size_t begin = points.tips_begin();
+    auto reach = kernels::farthest(points.coordinates(), begin, c[0], c[1], c[2]);
+    if (!reach) {
+      reach = {farthest_by_feet(points, 0, begin, c), farthest_by_feet(points, begin, points.size(), c)};
+    }
     const auto& [rest, tips] = *reach;
     const bool tight = !base.tips_stick_out && tips.distance <= (1 + notable_excess) * rest.distance;
     if (tight || round == most_tip_refinements ||

@@ -41,18 +41,28 @@ class PatchBounder {
 
  private:
   void visit(const Patch& patch) {
+    const bool passes = options_.passing == PassingMethod::split && patch.kind->passing();
+    const bool room = result_.splits < budget_ && patch.path.level() < PiecePath::max_level;
+    if (passes && room) {
+      visit_children(patch);
+      return;
+    }
     PieceEnclosure piece;
     const bool fine = fit(patch, piece);
     const bool more = options_.tolerance ? !fine : level_ + patch.path.level() < options_.level;
     const bool useful = !options_.tolerance || !stuck_;
-    if (more && useful && result_.splits < budget_ && patch.path.level() < PiecePath::max_level) {
-      ++result_.splits;
-      monitor_.checkpoint();
-      for (unsigned child = 0; child < 4; ++child) visit(split(patch, child));
+    if (more && useful && room) {
+      visit_children(patch);
       return;
     }
-    if (more) result_.reached = false;
+    if (more || passes) result_.reached = false;
     result_.pieces.push_back(std::move(piece));
+  }
+
+  void visit_children(const Patch& patch) {
+    ++result_.splits;
+    monitor_.checkpoint();
+    for (unsigned child = 0; child < 4; ++child) visit(split(patch, child));
   }
 
   // Fits the enclosures of a piece; true if they meet the target.

@@ -17,9 +17,16 @@ enum class BoundMethod : std::uint8_t {
   control_box,  ///< the baseline: least box of the control points
 };
 
+/// What is done where sharpness decays, and where faces lie around that split into quads (Kind::passing()).
+enum class PassingMethod : std::uint8_t {
+  bound,  ///< bounds for the configuration as it is
+  split,  ///< split until it has passed, whatever tolerance and level ask for; then bounds of usual kinds
+};
+
 struct BoundOptions {
   BoundMethod method = BoundMethod::rows;
   TableLayout layout = TableLayout::ngon;  ///< table only
+  PassingMethod passing = PassingMethod::bound;
   /// Split until each radius is at most half of this, in mesh units; with control_box, until half the box's
   /// longest side is.
   std::optional<double> tolerance;
@@ -43,7 +50,9 @@ struct BoundSummary {
   std::uint64_t count = 0;
   double max_radius = 0;
   std::uint64_t splits = 0;
-  bool reached = true;  ///< every piece meets the tolerance; else budget, levels or rounding stood in the way
+  /// Every piece meets the tolerance, and has passed where that is asked for; else budget, levels or rounding
+  /// stood in the way.
+  bool reached = true;
 };
 
 /// Enclosures of the whole limit surface, passed to `sink` patch by patch, pieces of one in the order of

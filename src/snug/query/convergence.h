@@ -14,14 +14,19 @@
 /// enclosures are sound, what is said of their speed is measured.
 namespace snug {
 
-/// Eigenvalues of the subdivision matrix at an interior vertex, of a dual scheme at a face.
+/// The three largest eigenvalues after 1 of the subdivision matrix at a vertex, of a dual scheme at a face.
+/// Inside the mesh the first two are equal and belong to the tangent plane. Loop has there
+/// lambda = 3/8 + cos(2 pi/n)/4, and `next` is max(lambda^2, 3/8 + cos(4 pi/n)/4), 1/8 for n = 3.
 struct CornerEigenvalues {
-  double subdominant;  ///< Loop: lambda = 3/8 + cos(2 pi/n)/4, twice: the tangent plane
-  double next;         ///< the largest after these; Loop: max(lambda^2, 3/8 + cos(4 pi/n)/4), 1/8 for n = 3
+  double subdominant, second, next;
 };
+/// Inside the mesh, in closed form.
 /// Requires:  n >= 3.
 /// Source:    derivations/loop_limits.md, catmark_limits.md, midedge_bezier.md; docs/convergence.md.
 [[nodiscard]] CornerEigenvalues corner_eigenvalues(std::size_t n, Scheme scheme = Scheme::loop);
+/// In the middle of bent_net(). Elsewhere than inside: sizes of eigenvalues of the corner's matrix
+/// (eigenvalues.h).
+[[nodiscard]] CornerEigenvalues corner_eigenvalues(Scheme scheme, const NetPlace& place);
 
 /// Three thicknesses of an enclosure.
 enum class ThicknessMeasure : std::uint8_t {
@@ -38,9 +43,10 @@ inline constexpr std::array all_thickness_measures{ThicknessMeasure::radius, Thi
 using Thicknesses = std::vector<double>;
 
 /// Thicknesses of the piece that keeps corner 0 of patch p, at level 0, 1, ..., `levels`; in the order of
-/// ThicknessMeasure.
+/// ThicknessMeasure. Without a normal at the corner there are no values of
+/// ThicknessMeasure::normal.
 ///
-/// Requires:  surface.has_patch(p); a normal at the corner; levels <= PiecePath::max_level.
+/// Requires:  surface.has_patch(p); levels <= PiecePath::max_level.
 [[nodiscard]] std::array<Thicknesses, 3> corner_thicknesses(const Surface& surface, PatchId p,
                                                             BoundSource source, unsigned levels);
 
@@ -49,35 +55,47 @@ using Thicknesses = std::vector<double>;
 /// Requires:  at least three values, all positive.
 [[nodiscard]] double fitted_factor(std::span<const double> values);
 
-/// The factor that theory gives: 1/4 at a regular corner. Else the `next` eigenvalue for the normal measure
-/// and for tables of the characteristic layout; for the others this or the subdominant one.
+/// The factor that theory gives inside the mesh: 1/4 at a regular corner. Else the `next` eigenvalue for the
+/// normal measure, for Loop's tables of the characteristic layout, and for hull rows where the limit stays
+/// inside the triangle of its corners; the subdominant one for the others.
 /// Source:    docs/convergence.md.
 [[nodiscard]] double expected_factor(std::size_t n, BoundSource source, ThicknessMeasure measure,
                                      Scheme scheme = Scheme::loop);
+/// The same in the middle of bent_net(). Which eigenvalue it is was found by measuring, where
+/// docs/convergence.md says so.
+[[nodiscard]] double expected_factor(Scheme scheme, const NetPlace& place, BoundSource source,
+                                     ThicknessMeasure measure);
 
-/// Loop: hull rows and tables of both layouts, all experiment_valences. Other schemes: hull rows alone, valences
-/// up to 12.
+/// Loop inside: hull rows and tables of both layouts. Elsewhere: hull rows, and tables, whose two layouts are
+/// one there. Faces around the middle: inside Loop's experiment_valences, other schemes up to 12; boundaries
+/// and corners 1 to 12, creases and darts 3 to 12; semi-sharp creases on a regular mesh, with the sharpnesses
+/// experiment_sharpnesses.
 struct RateOptions {
   Scheme scheme = Scheme::loop;
-  std::size_t nets = 25;  ///< bent nets a valence
+  NetCentre centre = NetCentre::interior;
+  std::size_t nets = 25;  ///< bent nets a place
   unsigned levels = 12;
   std::uint64_t seed = 1;
   int threads = 0;
 };
 
+inline constexpr std::array experiment_sharpnesses{0.5, 1.5, 2.5, 4.5};
+
 /// One line of the experiment.
 struct RateRow {
-  std::size_t valence;
+  NetPlace place;
   BoundSource source;
   ThicknessMeasure measure;
   Thicknesses thickness;    ///< medians over the nets; levels that all nets have
   double factor, expected;  ///< fitted to the medians; of theory
 };
 
-/// Rows of all valences, sources and measures, in this order.
+/// Rows of all places, sources and measures, in this order; none of the normal measure where there is no
+/// normal.
 ///
 /// Guarantee: the same for any number of threads.
-/// Requires:  nets >= 1; 4 <= levels <= PiecePath::max_level.
+/// Requires:  nets >= 1; 4 <= levels <= PiecePath::max_level; is_primal(scheme) for all places but the
+///            interior.
 /// Cost:      some 0.2 ms a net at the default levels.
 [[nodiscard]] std::vector<RateRow> measure_rates(const RateOptions& options, const WorkMonitor& monitor = {});
 

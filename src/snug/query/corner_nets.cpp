@@ -47,76 +47,116 @@ void bend(ControlMesh& mesh, std::uint64_t seed, double extent = 2) {
   }
 }
 
-// p times spoke s of n and q times the next one.
-Point3 between_spokes(std::size_t n, std::size_t s, double p, double q) {
-  const double a = 2 * std::numbers::pi * static_cast<double>(s) / static_cast<double>(n);
-  const double b = 2 * std::numbers::pi * static_cast<double>(s + 1) / static_cast<double>(n);
+// The angle between spokes of a fan of n faces.
+double spoke_angle(std::size_t n, bool open) {
+  if (!open) return 2 * std::numbers::pi / static_cast<double>(n);
+  return std::numbers::pi / static_cast<double>(std::max<std::size_t>(n, 2));
+}
+
+// p times spoke s and q times the next one.
+Point3 between_spokes(double angle, std::size_t s, double p, double q) {
+  const double a = angle * static_cast<double>(s), b = angle * static_cast<double>(s + 1);
   return {p * std::cos(a) + q * std::cos(b), p * std::sin(a) + q * std::sin(b), 0};
 }
 
+// A fan of lattices around vertex 0, one of them a sector.
+class Fan {
+ public:
+  Fan(std::size_t n, std::size_t rings, bool quads, bool open)
+      : n_(n), rings_(rings), quads_(quads), open_(open) {
+    SNUG_EXPECT(n >= (open ? 1u : 3u) && rings >= 1);
+  }
+
+  [[nodiscard]] ControlMesh mesh() const { return quads_ ? of_quads() : of_triangles(); }
+
+  // Vertex i of a spoke, the middle being vertex 0.
+  [[nodiscard]] VertexId on_spoke(std::size_t spoke, std::size_t i) const {
+    return quads_ ? quad_vertex(spoke, i, 0) : triangle_vertex(i, spoke, 0);
+  }
+
+ private:
+  // Ring i has i vertices a sector, and one at the end if it is open.
+  [[nodiscard]] VertexId triangle_vertex(std::size_t i, std::size_t sector, std::size_t j) const {
+    if (i == 0) return VertexId(0);
+    const std::size_t before = 1 + n_ * i * (i - 1) / 2 + (open_ ? i - 1 : 0);
+    return VertexId(before + (open_ ? sector * i + j : (sector * i + j) % (n_ * i)));
+  }
+
+  // Sector s holds the places (i, j) with i >= 1 and j >= 0; those with i = 0 belong to the next one. If it
+  // is open there is one more sector of a spoke alone.
+  [[nodiscard]] VertexId quad_vertex(std::size_t s, std::size_t i, std::size_t j) const {
+    if (i == 0 && j == 0) return VertexId(0);
+    if (i == 0) return quad_vertex(s + 1, j, 0);
+    if (s == n_ && open_) return VertexId(n_ * rings_ * (rings_ + 1) + i);
+    return VertexId(1 + s % n_ * rings_ * (rings_ + 1) + (i - 1) * (rings_ + 1) + j);
+  }
+
+  [[nodiscard]] ControlMesh of_triangles() const {
+    const double angle = spoke_angle(n_, open_);
+    ControlMesh mesh;
+    mesh.points.push_back({});
+    for (std::size_t i = 1; i <= rings_; ++i) {
+      for (std::size_t s = 0; s < n_; ++s) {
+        for (std::size_t j = 0; j < i; ++j) {
+          mesh.points.push_back(between_spokes(angle, s, static_cast<double>(i - j), static_cast<double>(j)));
+        }
+      }
+      if (open_) mesh.points.push_back(between_spokes(angle, n_, static_cast<double>(i), 0));
+    }
+    const auto at = [&](std::size_t i, std::size_t s, std::size_t j) { return triangle_vertex(i, s, j); };
+    for (std::size_t i = 0; i < rings_; ++i) {
+      for (std::size_t s = 0; s < n_; ++s) {
+        for (std::size_t j = 0; j <= i; ++j) {
+          mesh.add_face(std::array{at(i, s, j), at(i + 1, s, j), at(i + 1, s, j + 1)});
+          if (j < i) mesh.add_face(std::array{at(i, s, j), at(i + 1, s, j + 1), at(i, s, j + 1)});
+        }
+      }
+    }
+    return mesh;
+  }
+
+  [[nodiscard]] ControlMesh of_quads() const {
+    const double angle = spoke_angle(n_, open_);
+    ControlMesh mesh;
+    mesh.points.push_back({});
+    for (std::size_t s = 0; s < n_; ++s) {
+      for (std::size_t i = 1; i <= rings_; ++i) {
+        for (std::size_t j = 0; j <= rings_; ++j) {
+          mesh.points.push_back(between_spokes(angle, s, static_cast<double>(i), static_cast<double>(j)));
+        }
+      }
+    }
+    for (std::size_t i = 1; open_ && i <= rings_; ++i) {
+      mesh.points.push_back(between_spokes(angle, n_, static_cast<double>(i), 0));
+    }
+    const auto at = [&](std::size_t s, std::size_t i, std::size_t j) { return quad_vertex(s, i, j); };
+    for (std::size_t s = 0; s < n_; ++s) {
+      for (std::size_t i = 0; i < rings_; ++i) {
+        for (std::size_t j = 0; j < rings_; ++j) {
+          mesh.add_face(std::array{at(s, i, j), at(s, i + 1, j), at(s, i + 1, j + 1), at(s, i, j + 1)});
+        }
+      }
+    }
+    return mesh;
+  }
+
+  std::size_t n_, rings_;
+  bool quads_, open_;
+};
+
 }  // namespace
 
-ControlMesh fan_mesh(std::size_t n, std::size_t rings) {
-  SNUG_EXPECT(n >= 3 && rings >= 1);
-  ControlMesh mesh;
-  mesh.points.push_back({});
-  // Ring i has i vertices a sector.
-  const auto at = [&](std::size_t i, std::size_t sector, std::size_t j) {
-    return i == 0 ? VertexId(0) : VertexId(1 + n * i * (i - 1) / 2 + (sector * i + j) % (n * i));
-  };
-  for (std::size_t i = 1; i <= rings; ++i) {
-    for (std::size_t s = 0; s < n; ++s) {
-      for (std::size_t j = 0; j < i; ++j) {
-        const double a = 2 * std::numbers::pi * static_cast<double>(s) / static_cast<double>(n);
-        const double b = 2 * std::numbers::pi * static_cast<double>(s + 1) / static_cast<double>(n);
-        const double p = static_cast<double>(i - j), q = static_cast<double>(j);
-        mesh.points.push_back({p * std::cos(a) + q * std::cos(b), p * std::sin(a) + q * std::sin(b), 0});
-      }
-    }
-  }
-  for (std::size_t i = 0; i < rings; ++i) {
-    for (std::size_t s = 0; s < n; ++s) {
-      for (std::size_t j = 0; j <= i; ++j) {
-        mesh.add_face(std::array{at(i, s, j), at(i + 1, s, j), at(i + 1, s, j + 1)});
-        if (j < i) mesh.add_face(std::array{at(i, s, j), at(i + 1, s, j + 1), at(i, s, j + 1)});
-      }
-    }
-  }
-  return mesh;
-}
-
-ControlMesh quad_fan_mesh(std::size_t n, std::size_t rings) {
-  SNUG_EXPECT(n >= 3 && rings >= 1);
-  ControlMesh mesh;
-  mesh.points.push_back({});
-  // Sector s holds the places (i, j) with i >= 1 and j >= 0; those with i = 0 belong to the next one.
-  for (std::size_t s = 0; s < n; ++s) {
-    for (std::size_t i = 1; i <= rings; ++i) {
-      for (std::size_t j = 0; j <= rings; ++j) {
-        mesh.points.push_back(between_spokes(n, s, static_cast<double>(i), static_cast<double>(j)));
-      }
-    }
-  }
-  const auto at = [&](std::size_t s, std::size_t i, std::size_t j) {
-    if (i == 0 && j == 0) return VertexId(0);
-    if (i == 0) return VertexId(1 + (s + 1) % n * rings * (rings + 1) + (j - 1) * (rings + 1));
-    return VertexId(1 + s * rings * (rings + 1) + (i - 1) * (rings + 1) + j);
-  };
-  for (std::size_t s = 0; s < n; ++s) {
-    for (std::size_t i = 0; i < rings; ++i) {
-      for (std::size_t j = 0; j < rings; ++j) {
-        mesh.add_face(std::array{at(s, i, j), at(s, i + 1, j), at(s, i + 1, j + 1), at(s, i, j + 1)});
-      }
-    }
-  }
-  return mesh;
-}
+ControlMesh fan_mesh(std::size_t n, std::size_t rings) { return Fan(n, rings, false, false).mesh(); }
+ControlMesh quad_fan_mesh(std::size_t n, std::size_t rings) { return Fan(n, rings, true, false).mesh(); }
+ControlMesh open_fan_mesh(std::size_t n, std::size_t rings) { return Fan(n, rings, false, true).mesh(); }
+ControlMesh open_quad_fan_mesh(std::size_t n, std::size_t rings) { return Fan(n, rings, true, true).mesh(); }
 
 ControlMesh polygon_mesh(std::size_t n) {
   SNUG_EXPECT(n >= 3);
+  const double angle = spoke_angle(n, false);
   ControlMesh mesh;
   for (const auto& [p, q] : {std::pair{0.5, 0.5}, {1.5, 0.5}, {1.5, 1.5}, {0.5, 1.5}}) {
-    for (std::size_t s = 0; s < n; ++s) mesh.points.push_back(between_spokes(n, s, p, q));
+    for (std::size_t s = 0; s < n; ++s) mesh.points.push_back(between_spokes(angle, s, p, q));
   }
   const auto at = [&](std::size_t place, std::size_t s) { return VertexId(place * n + s % n); };
   std::vector<VertexId> middle;
@@ -162,9 +202,39 @@ ControlMesh corner_net(NetShape shape, std::size_t n, std::uint64_t seed) {
   return mesh;
 }
 
-ControlMesh bent_net(Scheme scheme, std::size_t n, std::uint64_t seed) {
-  if (scheme == Scheme::loop) return corner_net(NetShape::bent, n, seed);
-  ControlMesh mesh = scheme == Scheme::catmark ? quad_fan_mesh(n, 2) : polygon_mesh(n);
+const char* name_of(NetCentre centre) {
+  constexpr std::array names{"interior", "boundary", "corner", "crease", "dart", "semi-sharp"};
+  return names[static_cast<std::size_t>(centre)];
+}
+
+ControlMesh bent_net(Scheme scheme, const NetPlace& place, std::uint64_t seed) {
+  const std::size_t n = place.faces;
+  if (place.centre == NetCentre::interior && scheme == Scheme::loop) {
+    return corner_net(NetShape::bent, n, seed);
+  }
+  ControlMesh mesh;
+  if (is_primal(scheme)) {
+    const bool open = place.centre == NetCentre::boundary || place.centre == NetCentre::corner;
+    const Fan fan(n, 2, scheme == Scheme::catmark, open);
+    mesh = fan.mesh();
+    const auto sharpen = [&](std::size_t spoke, double sharpness) {
+      for (std::size_t i = 0; i < 2; ++i) {
+        mesh.tags.creases.push_back({fan.on_spoke(spoke, i), fan.on_spoke(spoke, i + 1), sharpness});
+      }
+    };
+    // Else the middle of one face would be a corner.
+    if (place.centre == NetCentre::boundary) mesh.tags.boundary = BoundaryRule::edge_only;
+    if (place.centre == NetCentre::corner) mesh.tags.corners.push_back({VertexId(0), infinite_sharpness});
+    if (place.centre == NetCentre::crease || place.centre == NetCentre::semi_sharp) {
+      const double sharpness = place.centre == NetCentre::crease ? infinite_sharpness : place.sharpness;
+      sharpen(0, sharpness);
+      sharpen(n / 2, sharpness);
+    }
+    if (place.centre == NetCentre::dart) sharpen(0, infinite_sharpness);
+  } else {
+    SNUG_EXPECT(place.centre == NetCentre::interior);
+    mesh = polygon_mesh(n);
+  }
   double extent = 0;
   for (const Point3& p : mesh.points) extent = std::max(extent, std::hypot(p.x, p.y));
   bend(mesh, seed, extent);

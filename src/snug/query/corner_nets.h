@@ -26,6 +26,13 @@ namespace snug {
 /// Requires:  n >= 3; rings >= 1.
 [[nodiscard]] ControlMesh quad_fan_mesh(std::size_t n, std::size_t rings);
 
+/// The same with a boundary through the vertex: n faces touch it, from the first spoke to the last one, which
+/// are the boundary. Together they make half a turn, one face a quarter.
+///
+/// Requires:  n >= 1; rings >= 1.
+[[nodiscard]] ControlMesh open_fan_mesh(std::size_t n, std::size_t rings);
+[[nodiscard]] ControlMesh open_quad_fan_mesh(std::size_t n, std::size_t rings);
+
 /// A face of n vertices, which is face 0, in the middle of a ring of quads; its vertices are 0 to n - 1, of
 /// valence 4.
 ///
@@ -50,9 +57,32 @@ inline constexpr std::array all_net_shapes{NetShape::bent, NetShape::bumpy, NetS
 /// Requires:  n >= 3.
 [[nodiscard]] ControlMesh corner_net(NetShape shape, std::size_t n, std::uint64_t seed);
 
-/// The bent net for a scheme: with an extraordinary vertex, or for a dual scheme face, of valence n. The
-/// first patch of owner 0 has its corner 0 there.
-[[nodiscard]] ControlMesh bent_net(Scheme scheme, std::size_t n, std::uint64_t seed);
+/// What is in the middle of a net. All but the first are for Loop and Catmull-Clark.
+enum class NetCentre : std::uint8_t {
+  interior,    ///< an extraordinary vertex, for a dual scheme face
+  boundary,    ///< a vertex on a smooth boundary
+  corner,      ///< a boundary vertex that stays where it is
+  crease,      ///< an infinitely sharp crease along two spokes: the first and the one n / 2 later
+  dart,        ///< the end of an infinitely sharp crease along the first spoke
+  semi_sharp,  ///< a crease as above of a sharpness that decays
+};
+inline constexpr std::array all_net_centres{NetCentre::interior, NetCentre::boundary, NetCentre::corner,
+                                            NetCentre::crease,   NetCentre::dart,     NetCentre::semi_sharp};
+[[nodiscard]] const char* name_of(NetCentre centre);
+
+/// What is in the middle of a net, with n faces, and for semi_sharp its sharpness.
+struct NetPlace {
+  NetCentre centre = NetCentre::interior;
+  std::size_t faces = 6;
+  double sharpness = 0;
+  friend bool operator==(const NetPlace&, const NetPlace&) = default;
+};
+
+/// The bent net for a scheme. The first patch of owner 0 has its corner 0 in the middle; with creases it lies
+/// beside one.
+///
+/// Requires:  n >= 3, on a boundary n >= 1; is_primal(scheme) for all but the interior.
+[[nodiscard]] ControlMesh bent_net(Scheme scheme, const NetPlace& place, std::uint64_t seed);
 
 /// What bounds a patch: hull rows (no layout), or tables of a layout.
 using BoundSource = std::optional<TableLayout>;
