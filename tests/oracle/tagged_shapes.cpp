@@ -141,10 +141,27 @@ TaggedMesh valence_two_inside() {
 
 TaggedMesh vertices_twice() {
   TaggedMesh mesh = quad_grid(3, 3);
+  mesh.points.push_back({4, 4, 1});
   for (const std::vector<std::uint32_t>& face :
-       {std::vector<std::uint32_t>{5, 6, 6}, {9, 9, 10}, {6, 6, 6}}) {
+       {std::vector<std::uint32_t>{5, 6, 6}, {9, 9, 10}, {6, 6, 6}, {1, 16, 1}}) {
     mesh.polygons.push_back(face);
   }
+  return mesh;
+}
+
+TaggedMesh same_ways() {
+  TaggedMesh mesh = quad_grid(4, 1);
+  for (const std::vector<std::uint32_t>& face : {std::vector<std::uint32_t>{0, 3, 1},
+                                                 {1, 3, 2},
+                                                 {1, 4, 2},
+                                                 {0, 6, 1},
+                                                 {1, 6, 2},
+                                                 {2, 4, 1},
+                                                 {7, 8, 8},
+                                                 {8, 7, 9}}) {
+    mesh.polygons.push_back(face);
+  }
+  mesh.polygons.erase(mesh.polygons.begin(), mesh.polygons.begin() + 4);
   return mesh;
 }
 

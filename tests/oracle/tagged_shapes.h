@@ -19,7 +19,8 @@ namespace oracle::meshes {
 [[nodiscard]] TaggedMesh moebius(std::uint32_t n);  ///< n quads; one edge is crossed against its direction
 [[nodiscard]] TaggedMesh back_to_back();            ///< two quads with the same four corners: valence 2
 [[nodiscard]] TaggedMesh
-vertices_twice();  ///< faces that name a vertex twice or three times, in a row and not
+vertices_twice();                      ///< faces that name a vertex twice or three times, in a row and not
+[[nodiscard]] TaggedMesh same_ways();  ///< edges that faces run along in the same direction, among others
 [[nodiscard]] TaggedMesh pole(std::uint32_t n, bool open);  ///< n quads around vertex 0
 [[nodiscard]] TaggedMesh valence_two_inside();  ///< two quads share two edges in a row, others around
 

@@ -57,11 +57,14 @@ CornerView view_of(const Topology& topology, const Sharpness& sharpness, HalfEdg
     view.plain = view.plain && standard && !fan.odd && fan.faces() >= 3;
     return view;
   }
+  const EdgeId last = topology.edge_of(topology.prev(h));
   for (h = corner; !ends(h);) {
     h = topology.cw(h);
     ++fan.before;
     standard = standard && is_standard(h);
   }
+  // From an edge of many faces back to it: the crease goes on elsewhere.
+  fan.odd = fan.odd || (cutting && !fan.sharp && topology.edge_of(h) == last);
   if (!cutting && !fan.odd) {  // the short way: nothing is sharp but what connectivity makes so
     fan.sharp = vertex_sharpness(topology, sharpness, v, options.boundary) >= infinite_sharpness;
   }
@@ -184,6 +187,7 @@ Neighbourhood from_details(const KindKey& key) {
     offsets.push_back(static_cast<std::uint32_t>(corners.size()));
   }
   result.topology = Topology(std::move(offsets), std::move(corners), vertices);
+  result.sharpness.vertices_complete = true;
   if (std::size_t left = next(); left > 0) {
     result.sharpness.vertices.assign(vertices, 0.0);
     for (; left > 0; --left) {

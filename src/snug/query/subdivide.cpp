@@ -97,15 +97,18 @@ ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned l
     if (!used[v]) isolated.emplace_back(v, std::exchange(mesh.points[v], Point3{}));
   }
   for (Point3& p : mesh.points) p = scale.apply(p);
+  Topology topology(mesh);
+  Sharpness sharpness = primal ? sharpness_of(mesh, topology) : Sharpness{};
   for (unsigned step = 0; step < level; ++step) {
     monitor.report(static_cast<double>(step) / (level + 1.0));
-    mesh = refine(mesh, rules);
+    RefinedTopology refined = refine(topology, rules, sharpness);
+    mesh = refined_mesh(mesh, rules, topology, refined);
+    topology = std::move(refined.topology);
+    sharpness = std::move(refined.sharpness);
   }
   bool dropped = !primal && level > 0;
   if (limit) {
-    const Topology topology(mesh);
-    const Stencils rows =
-        limit_stencils(topology, rules, primal ? sharpness_of(mesh, topology) : Sharpness{});
+    const Stencils rows = limit_stencils(topology, rules, sharpness);
     std::vector<Point3> positions;
     positions.reserve(mesh.points.size());
     for (std::size_t v = 0; v < mesh.points.size(); ++v)

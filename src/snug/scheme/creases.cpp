@@ -92,6 +92,7 @@ double edge_sharpness(const Topology& topology, const Sharpness& sharpness, Edge
 double vertex_sharpness(const Topology& topology, const Sharpness& sharpness, VertexId v,
                         BoundaryRule boundary) {
   if (topology.isolated(v)) return infinite_sharpness;
+  if (sharpness.vertices_complete) return sharpness.vertices.empty() ? 0 : sharpness.vertices[v.index()];
   const HalfEdge h = topology.leaving(v);
   const bool open = topology.twin(h) == no_half_edge;
   if (open && boundary == BoundaryRule::edge_and_corner && topology.ccw(h) == no_half_edge &&

@@ -10,6 +10,9 @@ namespace snug {
 /// Sharpness of edges and vertices beyond what connectivity alone makes infinitely sharp. Empty: 0 everywhere.
 struct Sharpness {
   std::vector<double> edges, vertices;
+  /// Do `vertices` say all of their sharpness, and connectivity no more? So it is after a step from a non-manifold mesh:
+  /// what made a vertex sharp there may be gone, and the middle of a non-manifold edge is no corner, whatever lies around.
+  bool vertices_complete = false;
   [[nodiscard]] bool none() const { return edges.empty() && vertices.empty(); }
   friend bool operator==(const Sharpness&, const Sharpness&) = default;
 };

@@ -428,6 +428,7 @@ PartOfMesh part_of(const Topology& topology, const Sharpness& sharpness, Boundar
     keep(part.sharpness.vertices, part.names.size(), i,
          vertex_sharpness(topology, sharpness, part.names[i], boundary));
   }
+  part.sharpness.vertices_complete = true;
   HalfEdge own = 0;
   for (const HalfEdge first : firsts) {
     HalfEdge h = first;

@@ -232,19 +232,21 @@ std::array<HalfEdge, 2> halves_of(const Topology& topology, Scheme scheme, HalfE
   return {place(h, 0), place(next, 3)};
 }
 
-// Where a face names a vertex twice in a row, the two halves of that edge meet: what was open there closes, and is kept
-// infinitely sharp. The middle stays where the vertex is.
+// Where a face runs along an edge twice, or along one from a vertex to itself, pieces of what ended the fans may be twins
+// after a step: they are kept infinitely sharp. The middle of the latter stays where the vertex is.
 void keep_closed_edges_sharp(const Topology& topology, const SchemeOptions& options, const Topology& refined,
                              Sharpness& result) {
   for (std::size_t e = 0; e < topology.edge_count(); ++e) {
+    if (!topology.ends_fans(EdgeId(e))) continue;
     const HalfEdge h = topology.half_of(EdgeId(e));
-    if (topology.from(h) != topology.to(h)) continue;
-    if (result.edges.empty()) result.edges.assign(refined.edge_count(), 0.0);
-    if (result.vertices.empty()) result.vertices.assign(refined.vertex_count(), 0.0);
     for (const HalfEdge half : halves_of(topology, options.scheme, h)) {
-      result.edges[refined.edge_of(half).index()] = infinite_sharpness;
+      const EdgeId own = refined.edge_of(half);
+      if (refined.ends_fans(own)) continue;
+      if (result.edges.empty()) result.edges.assign(refined.edge_count(), 0.0);
+      result.edges[own.index()] = infinite_sharpness;
     }
-    result.vertices[topology.from(h).index()] = infinite_sharpness;
+    if (topology.from(h) != topology.to(h)) continue;
+    if (result.vertices.empty()) result.vertices.assign(refined.vertex_count(), 0.0);
     result.vertices[topology.vertex_count() + e] = infinite_sharpness;
   }
 }
@@ -274,8 +276,11 @@ Sharpness sharpness_left(const Topology& topology, const SchemeOptions& options,
       set_edge(halves[end], s);
     }
   }
-  for (std::size_t v = 0; v < sharpness.vertices.size(); ++v) {
-    const double s = decayed(sharpness.vertices[v]);
+  result.vertices_complete = sharpness.vertices_complete || !topology.is_manifold();
+  const bool derived = result.vertices_complete && !sharpness.vertices_complete;
+  for (std::size_t v = 0; v < (derived ? topology.vertex_count() : sharpness.vertices.size()); ++v) {
+    const double s = decayed(derived ? vertex_sharpness(topology, sharpness, VertexId(v), options.boundary)
+                                     : sharpness.vertices[v]);
     if (s == 0) continue;
     if (result.vertices.empty()) result.vertices.assign(refined.vertex_count(), 0.0);
     result.vertices[v] = s;
@@ -373,7 +378,11 @@ RefinedTopology refine(const Topology& topology, const SchemeOptions& options, c
 
 ControlMesh refine(const ControlMesh& mesh, const SchemeOptions& options) {
   const Topology topology(mesh);
-  const RefinedTopology refined = refine(topology, options, sharpness_of(mesh, topology));
+  return refined_mesh(mesh, options, topology, refine(topology, options, sharpness_of(mesh, topology)));
+}
+
+ControlMesh refined_mesh(const ControlMesh& mesh, const SchemeOptions& options, const Topology& topology,
+                         const RefinedTopology& refined) {
   ControlMesh result;
   result.points.reserve(refined.stencils.row_count());
   for (std::size_t r = 0; r < refined.stencils.row_count(); ++r) {

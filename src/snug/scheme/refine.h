@@ -47,5 +47,9 @@ struct RefinedTopology {
 /// A refined control mesh, its tags decayed; tags that do not change the surface are left out of it.
 /// Requires:  options as with_tags() makes them.
 [[nodiscard]] ControlMesh refine(const ControlMesh& mesh, const SchemeOptions& options);
+/// The same, of a step that refine() has made. Several steps of a non-manifold mesh need this one: connectivity and
+/// sharpness of the step know what the mesh cannot say (Sharpness::vertices_complete).
+[[nodiscard]] ControlMesh refined_mesh(const ControlMesh& mesh, const SchemeOptions& options,
+                                       const Topology& topology, const RefinedTopology& refined);
 
 }  // namespace snug
