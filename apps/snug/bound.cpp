@@ -68,6 +68,9 @@ class Polyhedra {
   void add(const PieceEnclosure& piece) {
     const IntervalTriangle boxes =
         piece.interval ? *piece.interval : IntervalTriangle{{*piece.box, *piece.box, *piece.box}};
+    Box3 all;
+    for (const Box3& box : boxes.corner) all.add(box);
+    require_representable(all.longest_side());
     const Polyhedron solid = hull_of_boxes(boxes);
     if (solid.facets.empty()) return;  // a segment or a point
     ++count_;

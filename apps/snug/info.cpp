@@ -23,11 +23,6 @@ std::size_t extraordinary(const ControlMesh& mesh, const MeshStatistics& counts,
   return found;
 }
 
-// Does the scheme answer a mesh with this defect all the same?
-bool is_answered(DefectKind kind, Scheme scheme) {
-  return is_legal(kind) || (is_primal(scheme) && is_non_manifold(kind));
-}
-
 ExitStatus run(const Options& options) {
   const ControlMesh mesh = load_mesh(options.mesh, options);
   refuse_curves(mesh, options.scheme, options.mesh);

@@ -13,6 +13,17 @@
 namespace snug::testing {
 namespace {
 
+// A side that is no double any more: the bounds are, the hull and the longest side are not.
+TEST(polyhedra, of_boxes_as_wide_as_doubles_go_are_refused) {
+  const std::string mesh = "v -1.7e308 0 0\nv 1.7e308 0 0\nv 0 1.7e308 0\nf 1 2 3\n";
+  TemporaryFolder folder;
+  const Outcome bounds = run_snug({"bound", "-", "--bounds", "control-box", "--json"}, mesh);
+  EXPECT_EQ(bounds.status, 0) << bounds.err;
+  const Outcome solids =
+      run_snug({"bound", "-", "--bounds", "control-box", "--polyhedra", folder.file("solids.obj")}, mesh);
+  EXPECT_EQ(solids.status, 4) << solids.err;
+}
+
 // The part of a mesh that belongs to one polyhedron: faces follow one another, and so do their vertices.
 struct Part {
   std::vector<FaceId> faces;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <testing/patches.h>
+#include <testing/tagged.h>
 
 namespace snug {
 namespace {
@@ -93,6 +94,28 @@ TEST(refine_tips, leaves_the_patch_inside_and_cuts_what_lies_behind_its_corner) 
     const double left = distance_behind(corners, points);
     EXPECT_LT(left, 1e-4) << n;
   }
+}
+
+// At a steep tip of a cone the net of the last piece alone reaches up to the corner.
+TEST(hull_points, of_crowded_patches_hold_their_corners) {
+  oracle::TaggedMesh mesh = oracle::meshes::pole(36, false);
+  mesh.creases = {{0, 1, 10}, {0, 3, 10}, {0, 37, 10}};
+  mesh.points[0] = {0, 0, 1};
+  const Surface surface(testing::control_mesh(mesh), {Scheme::catmark}, std::make_shared<BoundLibrary>(), 1);
+  std::size_t crowded = 0;
+  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+    if (!surface.has_patch(PatchId(p)) || !surface.kind(PatchId(p)).crowded()) continue;
+    ++crowded;
+    const Patch patch = surface.patch(PatchId(p));
+    HullPoints points;
+    hull_points(surface.library(), patch, points);
+    const Slab slab = outer_slab(points, {0, 0, 1});
+    for (const Vector3& corner : limit_corners(patch)) {
+      EXPECT_GE(corner.z, slab.lower) << p;
+      EXPECT_LE(corner.z, slab.upper) << p;
+    }
+  }
+  EXPECT_GT(crowded, 30u);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <snug/surface/refinement.h>
 #include <snug/surface/unscale.h>
 #include <testing/containment.h>
+#include <testing/disguises.h>
 #include <testing/patches.h>
 
 #include <functional>
@@ -18,44 +19,6 @@
 
 namespace snug {
 namespace {
-
-struct Disguise {
-  std::string name;
-  std::function<oracle::Point(oracle::Point)> change;
-};
-
-// Scales to the ends of the doubles, offsets that leave few digits, flat and needle shapes.
-std::vector<Disguise> disguises() {
-  std::vector<Disguise> list;
-  for (const double s : {1.0, 1e-300, 1e-155, 1e-77, 1e77, 1e155, 1e300}) {
-    list.push_back({"scaled by " + std::to_string(std::log10(s)), [s](oracle::Point p) {
-                      return oracle::Point{s * p[0], s * p[1], s * p[2]};
-                    }});
-  }
-  for (const double d : {1e3, 1e8, 3e14}) {
-    list.push_back({"moved by " + std::to_string(d), [d](oracle::Point p) {
-                      return oracle::Point{p[0] + d, p[1] - d / 3, p[2] + 0.1 * d};
-                    }});
-  }
-  list.push_back({"tiny and far", [](oracle::Point p) {
-                    return oracle::Point{1e-200 * (p[0] + 1e6), 1e-200 * p[1], 1e-200 * (p[2] - 2e6)};
-                  }});
-  list.push_back({"flat", [](oracle::Point p) { return oracle::Point{p[0], p[1], 0.0}; }});
-  list.push_back({"nearly flat", [](oracle::Point p) { return oracle::Point{p[0], p[1], 1e-12 * p[2]}; }});
-  list.push_back({"flat and tilted", [](oracle::Point p) {
-                    return oracle::Point{p[0], p[1], (p[0] + p[1]) / 3};
-                  }});
-  list.push_back({"needle", [](oracle::Point p) { return oracle::Point{p[0], 1e-7 * p[1], 1e-9 * p[2]}; }});
-  list.push_back({"line", [](oracle::Point p) { return oracle::Point{p[0], 0.3 * p[0], -p[0]}; }});
-  list.push_back({"snapped to a coarse grid", [](oracle::Point p) {
-                    return oracle::Point{std::round(2 * p[0]), std::round(2 * p[1]), std::round(2 * p[2])};
-                  }});
-  list.push_back({"a single point", [](oracle::Point) { return oracle::Point{0.1, 0.2, 0.3}; }});
-  list.push_back({"spiked", [](oracle::Point p) {
-                    return oracle::Point{p[0], p[1], p[0] * p[1] > 0.2 ? 1e6 * p[2] : p[2]};
-                  }});
-  return list;
-}
 
 // The piece of `level` digits that contains a parameter.
 std::string piece_at(double u, double v, unsigned level) {
@@ -131,7 +94,7 @@ TEST(bounds, contain_a_million_adversarial_limit_points) {
   Checker checker;
   std::size_t points = 0;
   const std::vector<oracle::TwinMesh> meshes = testing::assorted_meshes(26);
-  for (const Disguise& disguise : disguises()) {
+  for (const testing::Disguise& disguise : testing::disguises()) {
     for (const oracle::TwinMesh& plain : meshes) {
       oracle::TwinMesh twin = plain;
       for (oracle::Point& p : twin.points) p = disguise.change(p);

@@ -8,10 +8,10 @@
 #include <oracle/dual_twin.h>
 #include <oracle/polygon_twin.h>
 #include <testing/containment.h>
+#include <testing/disguises.h>
 #include <testing/tagged.h>
 
 #include <algorithm>
-#include <functional>
 #include <iostream>
 #include <map>
 #include <set>
@@ -173,34 +173,8 @@ TEST(loop_with_tags, limit_points_lie_inside_their_enclosures) {
 
 // Scales to the ends of the doubles, offsets that leave few digits, flat and needle shapes, for the same kinds.
 TEST(catmark, limit_points_of_disguised_meshes_lie_inside_their_enclosures) {
-  const std::vector<std::pair<std::string, std::function<oracle::Point(oracle::Point)>>> disguises{
-      {"tiny",
-       [](oracle::Point p) {
-         return oracle::Point{1e-300 * p[0], 1e-300 * p[1], 1e-300 * p[2]};
-       }},
-      {"huge",
-       [](oracle::Point p) {
-         return oracle::Point{1e300 * p[0], 1e300 * p[1], 1e300 * p[2]};
-       }},
-      {"far",
-       [](oracle::Point p) {
-         return oracle::Point{p[0] + 1e8, p[1] - 3e7, p[2] + 1e7};
-       }},
-      {"flat",
-       [](oracle::Point p) {
-         return oracle::Point{p[0], p[1], (p[0] + p[1]) / 3};
-       }},
-      {"needle",
-       [](oracle::Point p) {
-         return oracle::Point{p[0], 1e-7 * p[1], 1e-9 * p[2]};
-       }},
-      {"line",
-       [](oracle::Point p) {
-         return oracle::Point{p[0], 0.3 * p[0], -p[0]};
-       }},
-      {"spiked", [](oracle::Point p) {
-         return oracle::Point{p[0], p[1], p[0] * p[1] > 0.2 ? 1e6 * p[2] : p[2]};
-       }}};
+  const std::vector<testing::Disguise> disguises =
+      testing::disguises({"tiny", "huge", "far", "flat and tilted", "needle", "line", "spiked"});
   Counted counted;
   const auto library = std::make_shared<BoundLibrary>();
   const std::vector<testing::TaggedCase> cases =

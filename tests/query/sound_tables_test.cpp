@@ -7,6 +7,7 @@
 #include <snug/query/bound.h>
 #include <snug/surface/patch_bounds.h>
 #include <testing/containment.h>
+#include <testing/disguises.h>
 
 #include <algorithm>
 #include <cmath>
@@ -86,24 +87,10 @@ Pieces pieces_of(const Surface& surface, unsigned level) {
   return pieces;
 }
 
-using Disguise = std::function<oracle::Point(oracle::Point)>;
-
-// As they are; far away and tiny; flat; snapped to a grid, so that much is exactly on the sides of boxes;
-// spiked.
-std::vector<Disguise> disguises() {
-  return {[](oracle::Point p) { return p; },
-          [](oracle::Point p) {
-            return oracle::Point{1e-200 * (p[0] + 1e6), 1e-200 * p[1], 1e-200 * (p[2] - 2e6)};
-          },
-          [](oracle::Point p) {
-            return oracle::Point{p[0], p[1], (p[0] + p[1]) / 3};
-          },
-          [](oracle::Point p) {
-            return oracle::Point{std::round(2 * p[0]), std::round(2 * p[1]), std::round(2 * p[2])};
-          },
-          [](oracle::Point p) {
-            return oracle::Point{1e150 * p[0], 1e150 * p[1], 1e156 * p[2] * (p[0] > 0.3 ? 1 : 0)};
-          }};
+// As they are; far away and tiny; flat; snapped to a grid, so that much is exactly on the sides of boxes; spiked.
+std::vector<testing::Disguise> disguises() {
+  return testing::disguises(
+      {"plain", "tiny and far", "flat and tilted", "snapped to a coarse grid", "huge and spiked"});
 }
 
 struct Case {
@@ -159,9 +146,9 @@ OnTriangle on_triangle(const oracle::FaceSample& s, bool quad) {
 TEST(tables, contain_limit_points_of_faces) {
   std::size_t checked = 0;
   for (const Case& plain : primal_cases()) {
-    for (const Disguise& disguise : disguises()) {
+    for (const testing::Disguise& disguise : disguises()) {
       oracle::TaggedMesh twin = plain.mesh;
-      for (oracle::Point& p : twin.points) p = disguise(p);
+      for (oracle::Point& p : twin.points) p = disguise.change(p);
       const bool loop = plain.rules.scheme == oracle::PrimalScheme::loop;
       const SchemeOptions options =
           with_tags({loop ? Scheme::loop : Scheme::catmark, boundary_of(plain.rules)},
@@ -201,9 +188,9 @@ TEST(tables, contain_limit_points_of_dual_schemes) {
   }
   std::size_t checked = 0;
   for (const Case& plain : cases) {
-    for (const Disguise& disguise : disguises()) {
+    for (const testing::Disguise& disguise : disguises()) {
       oracle::TaggedMesh twin = plain.mesh;
-      for (oracle::Point& p : twin.points) p = disguise(p);
+      for (oracle::Point& p : twin.points) p = disguise.change(p);
       for (const bool midedge : {false, true}) {
         const Surface surface(control_mesh(twin, {}), {midedge ? Scheme::midedge : Scheme::doo_sabin},
                               std::make_shared<BoundLibrary>(), 1);

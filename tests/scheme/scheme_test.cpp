@@ -47,13 +47,25 @@ TEST(require_subdividable, takes_polygons_but_for_loop) {
 
 TEST(require_subdividable, takes_non_manifold_meshes_but_for_dual_schemes) {
   ControlMesh book = testing::control_mesh(oracle::meshes::grid(2, 2));
-  const VertexId page[3] = {VertexId(0), VertexId(1), VertexId(8)};
-  book.add_face(page);
-  book.add_face(page);
+  book.points.push_back({0, 0, 1});
+  for (const std::uint32_t v : {8u, 9u}) book.add_face(std::array{VertexId(0), VertexId(1), VertexId(v)});
   EXPECT_EQ(refusal(book), "");
   EXPECT_EQ(refusal(book, {Scheme::catmark}), "");
-  EXPECT_NE(refusal(book, {Scheme::doo_sabin}).find("has the same vertices"), std::string::npos);
+  EXPECT_NE(refusal(book, {Scheme::doo_sabin}).find("edge (0, 1)"), std::string::npos);
   EXPECT_NE(refusal(book, {Scheme::midedge}).find("an oriented manifold mesh is needed"), std::string::npos);
+}
+
+// Two triangles with the same corners share two edges, and their children all of what lies between these: no edge of three
+// faces, but two edges.
+TEST(require_subdividable, refuses_duplicate_faces_of_loop_and_dual_schemes) {
+  for (const bool turned : {false, true}) {
+    ControlMesh mesh = testing::control_mesh(oracle::meshes::octahedron());
+    const auto face = mesh.face(FaceId(0));
+    mesh.add_face(std::array{face[0], face[turned ? 2 : 1], face[turned ? 1 : 2]});
+    EXPECT_EQ(refusal(mesh, {Scheme::loop}), "face 8 has the same vertices as face 0; mend these elements");
+    EXPECT_EQ(refusal(mesh, {Scheme::catmark}), "");
+    EXPECT_NE(refusal(mesh, {Scheme::midedge}).find("has the same vertices"), std::string::npos);
+  }
 }
 
 TEST(require_subdividable, refuses_faces_that_are_too_large) {

@@ -33,7 +33,7 @@ struct Defect {
 [[nodiscard]] constexpr bool is_legal(DefectKind kind) {
   return kind == DefectKind::isolated_vertex || kind == DefectKind::zero_area_face;
 }
-/// Defects that Loop and Catmull-Clark answer all the same, the elements infinitely sharp.
+/// Defects that Catmull-Clark answers all the same, the elements infinitely sharp; and Loop, but for duplicate faces.
 [[nodiscard]] constexpr bool is_non_manifold(DefectKind kind) {
   return kind == DefectKind::repeated_vertex || kind == DefectKind::duplicate_face ||
          kind == DefectKind::edge_of_many_faces || kind == DefectKind::inconsistent_orientation ||

@@ -1,6 +1,7 @@
 #include <snug/query/bound.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -111,6 +112,12 @@ class PatchBounder {
   PatchPieces result_;
 };
 
+// The whole side may overflow.
+double half_longest_side(const Box3& box) {
+  if (const double side = box.longest_side(); std::isfinite(side)) return side / 2;
+  return Box3{PowerOfTwo(-1).apply(box.lower), PowerOfTwo(-1).apply(box.upper)}.longest_side();
+}
+
 }  // namespace
 
 BoundSummary bound(const Surface& surface, const BoundOptions& options,
@@ -145,7 +152,7 @@ BoundSummary bound(const Surface& surface, const BoundOptions& options,
       summary.reached = summary.reached && results[i].reached;
       for (const PieceEnclosure& piece : results[i].pieces) {
         ++summary.count;
-        const double radius = piece.offset ? piece.offset->radius : piece.box->longest_side() / 2;
+        const double radius = piece.offset ? piece.offset->radius : half_longest_side(*piece.box);
         summary.max_radius = std::max(summary.max_radius, radius);
         sink(piece);
       }

@@ -5,7 +5,6 @@
 
 #include <snug/base/error.h>
 #include <snug/mesh/topology.h>
-#include <snug/mesh/validate.h>
 
 namespace snug {
 namespace {
@@ -14,17 +13,15 @@ std::string number(std::size_t n) { return std::to_string(n); }
 
 [[noreturn]] void refuse(const std::string& why) { throw InputError(InputProblem::refused, why); }
 
-// Primal schemes keep what is not manifold, infinitely sharp; dual ones have no faces to make there.
-void require_sound(const ControlMesh& mesh, bool primal) {
+void require_sound(const ControlMesh& mesh, Scheme scheme) {
   std::vector<Defect> refusing = defects(mesh);
-  std::erase_if(refusing, [&](const Defect& defect) {
-    return is_legal(defect.kind) || (primal && is_non_manifold(defect.kind));
-  });
+  std::erase_if(refusing, [&](const Defect& defect) { return is_answered(defect.kind, scheme); });
   if (refusing.empty()) return;
   const bool sound = std::all_of(refusing.begin(), refusing.end(),
                                  [](const Defect& defect) { return is_non_manifold(defect.kind); });
-  refuse(summary(refusing) +
-         (sound ? "; an oriented manifold mesh is needed: mend these elements" : "; mend these elements"));
+  refuse(summary(refusing) + (sound && !is_primal(scheme)
+                                  ? "; an oriented manifold mesh is needed: mend these elements"
+                                  : "; mend these elements"));
 }
 
 void require_triangles(const ControlMesh& mesh) {
@@ -85,6 +82,13 @@ const char* name_of(Scheme scheme) {
   return "";
 }
 
+bool is_answered(DefectKind kind, Scheme scheme) {
+  if (is_legal(kind)) return true;
+  // Dual schemes have no faces to make there.
+  if (!is_primal(scheme) || !is_non_manifold(kind)) return false;
+  return scheme != Scheme::loop || kind != DefectKind::duplicate_face;
+}
+
 Scheme natural_scheme(const ControlMesh& mesh) {
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     if (mesh.face(FaceId(f)).size() != 3) return Scheme::catmark;
@@ -100,8 +104,7 @@ SchemeOptions with_tags(SchemeOptions options, const MeshTags& tags) {
 
 void require_subdividable(const ControlMesh& mesh, const SchemeOptions& options) {
   if (mesh.face_count() == 0) refuse("the mesh has no faces");
-  const bool primal = is_primal(options.scheme);
-  require_sound(mesh, primal);
+  require_sound(mesh, options.scheme);
   if (options.scheme == Scheme::loop) require_triangles(mesh);
   require_small_faces(mesh);
   const Topology topology(mesh);

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include <snug/mesh/control_mesh.h>
+#include <snug/mesh/validate.h>
 
 namespace snug {
 
@@ -44,6 +45,10 @@ inline constexpr std::size_t max_interior_valence = 1000;
 inline constexpr std::size_t max_boundary_faces = 1000;
 /// Most vertices of a face.
 inline constexpr std::size_t max_face_size = 1000;
+
+/// Does the scheme answer a mesh with such a defect all the same? Loop takes no duplicate faces: one step makes two edges
+/// between the same two vertices there, which are not one.
+[[nodiscard]] bool is_answered(DefectKind kind, Scheme scheme);
 
 /// The scheme of a mesh that names none: Loop for triangles alone, else Catmull-Clark.
 [[nodiscard]] Scheme natural_scheme(const ControlMesh& mesh);
