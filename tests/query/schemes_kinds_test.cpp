@@ -54,8 +54,9 @@ TEST(corner_names, that_are_equal_stand_for_equal_limit_points) {
 TEST(corner_names, are_equal_where_patches_meet) {
   testing::for_each_surface(102, [&](const NamedSurface& s) {
     if (s.name.starts_with("vertices twice") || s.name.starts_with("back to back") ||
-        s.name.starts_with("valence two"))
+        s.name.starts_with("valence two") || s.name.starts_with("same ways")) {
       return;
+    }
     const std::vector<Corner> corners = corners_of(s.surface);
     for (const Corner& a : corners) {
       for (const Corner& b : corners) {

@@ -267,6 +267,11 @@ void add_dual_row(const Topology& topology, VertexId v, const SchemeOptions& opt
 // lies between spokes i and i + 1.
 void add_smooth_tangents(const Topology& topology, Scheme scheme, const Star& star, Stencils& out) {
   const std::size_t n = star.spokes.size();
+  if (scheme == Scheme::catmark && n == 2) {  // the row of the cosine vanishes: no plane
+    out.end_row();
+    out.end_row();
+    return;
+  }
   const auto cosine = [&](std::size_t quarters) {
     return cos_of_turn(static_cast<unsigned>(quarters % (4 * n)), static_cast<unsigned>(4 * n));
   };
