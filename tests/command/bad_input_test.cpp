@@ -4,6 +4,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "run_snug.h"
 
@@ -36,6 +37,9 @@ void expect_one_line_error(const Outcome& outcome, const std::string& about) {
 TEST(bad_input, ends_with_the_status_of_the_index_for_every_command) {
   const std::map<std::string, int> files = corpus();
   ASSERT_GT(files.size(), 100u);
+  // Faces that name a vertex twice: refinement needs no patches.
+  const std::set<std::string> refined{"degenerate_facet.stl", "repeated_index.obj", "repeated_index.off",
+                                      "repeated_index.ply"};
   for (const auto& [name, listed] : files) {
     const std::string path = std::string(SNUG_CORPUS_DIR) + "/" + name;
     const Outcome info = run_snug({"info", path, "--json", "--quiet"});
@@ -57,8 +61,9 @@ TEST(bad_input, ends_with_the_status_of_the_index_for_every_command) {
         {"render", path, "--quiet", "--size", "40", "-o", folder.file("picture.png")}};
     for (const std::vector<std::string>& command : commands) {
       const Outcome outcome = run_snug(command);
-      EXPECT_EQ(outcome.status, expected) << command[0] << " " << name << ": " << outcome.err;
-      if (expected != 0) {
+      const int status = command[0] == "subdivide" && refined.contains(name) ? 0 : expected;
+      EXPECT_EQ(outcome.status, status) << command[0] << " " << name << ": " << outcome.err;
+      if (status != 0) {
         expect_one_line_error(outcome, name);
         EXPECT_TRUE(folder.empty()) << command[0] << " " << name << " left a file";
       } else {

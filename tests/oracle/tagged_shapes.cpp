@@ -157,7 +157,6 @@ TaggedMesh same_ways() {
                                                  {0, 6, 1},
                                                  {1, 6, 2},
                                                  {2, 4, 1},
-                                                 {7, 8, 8},
                                                  {8, 7, 9}}) {
     mesh.polygons.push_back(face);
   }

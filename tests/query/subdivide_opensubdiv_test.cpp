@@ -120,6 +120,26 @@ TEST(subdivide, agrees_with_opensubdiv_on_tagged_shapes) {
   }
 }
 
+TEST(subdivide, agrees_with_opensubdiv_on_faces_that_name_vertices_twice) {
+  std::mt19937_64 random(32);
+  for (const oracle::PrimalScheme scheme :
+       {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
+    oracle::TaggedMesh mesh = oracle::meshes::shaken(oracle::meshes::vertices_twice(), 0.3, random);
+    if (scheme == oracle::PrimalScheme::loop) mesh = oracle::meshes::triangulated(mesh);
+    for (const oracle::Boundary boundary : all_boundaries) {
+      oracle::Rules rules;
+      rules.scheme = scheme;
+      rules.boundary = boundary;
+      for (const unsigned level : {1u, 2u, 3u}) {
+        const Differences d = compare(mesh, rules, level);
+        EXPECT_TRUE(d.same_faces) << testing::text_of(rules);
+        EXPECT_LE(d.refined, 1e-12) << testing::text_of(rules);
+        EXPECT_LE(d.limit, 1e-12) << testing::text_of(rules);
+      }
+    }
+  }
+}
+
 /// OpenSubdiv's own regression shapes, where the environment says they are: SNUG_EXTRA_MODELS/osd.
 TEST(subdivide, agrees_with_opensubdiv_on_its_regression_shapes) {
   const char* folder = std::getenv("SNUG_EXTRA_MODELS");

@@ -55,6 +55,16 @@ TEST(require_subdividable, takes_non_manifold_meshes_but_for_dual_schemes) {
   EXPECT_NE(refusal(book, {Scheme::midedge}).find("an oriented manifold mesh is needed"), std::string::npos);
 }
 
+TEST(require_surface, refuses_faces_that_name_a_vertex_twice) {
+  ControlMesh mesh = testing::control_mesh(oracle::meshes::octahedron());
+  mesh.add_face(std::array{VertexId(0), VertexId(1), VertexId(1)});
+  for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
+    EXPECT_EQ(refusal(mesh, {scheme}), "");
+    EXPECT_THROW(require_surface(mesh, {scheme}), InputError);
+  }
+  EXPECT_NE(refusal(mesh, {Scheme::doo_sabin}), "");
+}
+
 // Two triangles with the same corners share two edges, and their children all of what lies between these: no edge of three
 // faces, but two edges.
 TEST(require_subdividable, refuses_duplicate_faces_of_loop_and_dual_schemes) {

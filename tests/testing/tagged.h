@@ -72,7 +72,6 @@ struct TaggedCase {
           {"cubes at a vertex", meshes::two_cubes_at_a_vertex()},
           {"moebius", meshes::moebius(5)},
           {"back to back", meshes::back_to_back()},
-          {"vertices twice", meshes::vertices_twice()},
           {"same ways", meshes::same_ways()},
           {"valence two", meshes::valence_two_inside()}};
 }

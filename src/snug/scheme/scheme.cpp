@@ -13,9 +13,14 @@ std::string number(std::size_t n) { return std::to_string(n); }
 
 [[noreturn]] void refuse(const std::string& why) { throw InputError(InputProblem::refused, why); }
 
-void require_sound(const ControlMesh& mesh, Scheme scheme) {
+enum class Purpose : std::uint8_t { refinement, surface };
+
+void require_sound(const ControlMesh& mesh, Scheme scheme, Purpose purpose) {
   std::vector<Defect> refusing = defects(mesh);
-  std::erase_if(refusing, [&](const Defect& defect) { return is_answered(defect.kind, scheme); });
+  std::erase_if(refusing, [&](const Defect& defect) {
+    return is_answered(defect.kind, scheme) || (purpose == Purpose::refinement && is_primal(scheme) &&
+                                                defect.kind == DefectKind::repeated_vertex);
+  });
   if (refusing.empty()) return;
   const bool sound = std::all_of(refusing.begin(), refusing.end(),
                                  [](const Defect& defect) { return is_non_manifold(defect.kind); });
@@ -85,7 +90,7 @@ const char* name_of(Scheme scheme) {
 bool is_answered(DefectKind kind, Scheme scheme) {
   if (is_legal(kind)) return true;
   // Dual schemes have no faces to make there.
-  if (!is_primal(scheme) || !is_non_manifold(kind)) return false;
+  if (!is_primal(scheme) || !is_non_manifold(kind) || kind == DefectKind::repeated_vertex) return false;
   return scheme != Scheme::loop || kind != DefectKind::duplicate_face;
 }
 
@@ -102,13 +107,25 @@ SchemeOptions with_tags(SchemeOptions options, const MeshTags& tags) {
   return options;
 }
 
-void require_subdividable(const ControlMesh& mesh, const SchemeOptions& options) {
+namespace {
+
+void require_fit_for(Purpose purpose, const ControlMesh& mesh, const SchemeOptions& options) {
   if (mesh.face_count() == 0) refuse("the mesh has no faces");
-  require_sound(mesh, options.scheme);
+  require_sound(mesh, options.scheme, purpose);
   if (options.scheme == Scheme::loop) require_triangles(mesh);
   require_small_faces(mesh);
   const Topology topology(mesh);
   require_valences(topology, options.scheme);
+}
+
+}  // namespace
+
+void require_subdividable(const ControlMesh& mesh, const SchemeOptions& options) {
+  require_fit_for(Purpose::refinement, mesh, options);
+}
+
+void require_surface(const ControlMesh& mesh, const SchemeOptions& options) {
+  require_fit_for(Purpose::surface, mesh, options);
 }
 
 }  // namespace snug

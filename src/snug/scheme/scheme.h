@@ -46,8 +46,9 @@ inline constexpr std::size_t max_boundary_faces = 1000;
 /// Most vertices of a face.
 inline constexpr std::size_t max_face_size = 1000;
 
-/// Does the scheme answer a mesh with such a defect all the same? Loop takes no duplicate faces: one step makes two edges
-/// between the same two vertices there, which are not one.
+/// Does the scheme answer questions about the surface of a mesh with such a defect all the same? Loop takes no duplicate faces:
+/// one step makes two edges between the same two vertices there, which are not one. Nor does a face that names a vertex
+/// twice have patches with corners that can be told apart.
 [[nodiscard]] bool is_answered(DefectKind kind, Scheme scheme);
 
 /// The scheme of a mesh that names none: Loop for triangles alone, else Catmull-Clark.
@@ -57,6 +58,8 @@ inline constexpr std::size_t max_face_size = 1000;
 /// answers questions about: no refusing defect (mesh/validate.h), Loop on triangles, valences in range. Non-manifold
 /// edges and vertices and faces of inconsistent orientation are kept by Loop and Catmull-Clark, infinitely sharp, as
 /// OpenSubdiv has them; dual schemes refuse them. The message names elements and the next step.
+void require_surface(const ControlMesh& mesh, const SchemeOptions& options);
+/// The same for refinement alone, which Loop and Catmull-Clark also do to faces that name a vertex twice.
 void require_subdividable(const ControlMesh& mesh, const SchemeOptions& options);
 
 }  // namespace snug

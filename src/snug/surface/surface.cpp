@@ -12,7 +12,7 @@ Surface::Surface(ControlMesh mesh, const SchemeOptions& options, std::shared_ptr
                  int threads, const WorkMonitor& monitor)
     : mesh_(std::move(mesh)), options_(with_tags(options, mesh_.tags)), library_(std::move(library)) {
   SNUG_EXPECT(library_ != nullptr && options_.vertex_rule == CatmarkVertexRule::standard);
-  require_subdividable(mesh_, options_);
+  require_surface(mesh_, options_);
   monitor.checkpoint();
   topology_ = Topology(mesh_);
   const Box3 box = used_box(mesh_);
