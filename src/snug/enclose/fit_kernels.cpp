@@ -524,8 +524,14 @@ struct BicubicShape {
       segment(four, two, along[x], along[4 + x], along[8 + x], along[12 + x], b + x, 4);
     }
     for (V& point : b) point = hn::Mul(part, point);
+#ifndef __SANITIZE_ADDRESS__  // whose checks take minutes to compile then
+#pragma GCC unroll 28
+#endif
     for (std::size_t p = 0; p < hull_count; ++p) {
       V sum = hn::Zero(d);
+#ifndef __SANITIZE_ADDRESS__
+#pragma GCC unroll 8
+#endif
       for (std::size_t t = sums.begin[p]; t < sums.begin[p + 1]; ++t) {
         sum = hn::Add(sum, hn::Mul(hn::Set(d, sums.weight[t]), b[sums.point[t]]));
       }
