@@ -29,8 +29,7 @@ const BoundTable& BoundLibrary::table(const Kind& kind, TableLayout layout) {
   return tables_[static_cast<std::size_t>(layout)].get(kind.id(), [&] {
     std::optional<BoundTable> shipped = ShippedBounds::compiled_in().table(kind.key(), layout);
     if (shipped) return *std::move(shipped);
-    const bool kept =
-        !has_several_tips(kind) && !kind.passing() && !kind.crowded();  // the rows that patches need
+    const bool kept = kind.shared() && !has_several_tips(kind);  // the rows that patches need
     return kept ? make_bound_table(kind, rows(kind), layout)
                 : make_bound_table(kind, make_bound_rows(kind), layout);
   });

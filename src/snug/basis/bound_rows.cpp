@@ -91,8 +91,6 @@ bool on_covered_edge(std::size_t degree, std::size_t i, std::size_t j, const Cov
 // (enclose/hull_points.h).
 constexpr unsigned levels_of_unshared_rows = 3;
 
-bool is_shared(const Kind& kind) { return !kind.passing() && !kind.crowded(); }
-
 class Collector {
  public:
   Collector(const Kind& kind, unsigned most_levels) : most_levels_(most_levels) {
@@ -102,7 +100,7 @@ class Collector {
     for (std::size_t i = 0; i < 3; ++i) {
       if (!kind.regular_corner(i)) most += 70 * std::size_t{levels(kind, i)} + kind.corner(i).faces() + 20;
     }
-    if (is_shared(kind)) rows_.entries.reserve(most * rows_.width);
+    if (kind.shared()) rows_.entries.reserve(most * rows_.width);
   }
 
   // Rows of one piece; `covered` counts corners as the kind does.
@@ -158,7 +156,7 @@ class Collector {
     return std::min(most_levels_, tip_depth(kind.corner(corner), kind.scheme()));
   }
   [[nodiscard]] unsigned depth_limit(const Kind& kind, unsigned depth) const {
-    if (!is_shared(kind)) return std::min(most_levels_, levels_of_unshared_rows);
+    if (!kind.shared()) return std::min(most_levels_, levels_of_unshared_rows);
     unsigned limit = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       if (!kind.regular_corner(i)) limit = std::max(limit, levels(kind, i));
@@ -212,7 +210,7 @@ void BoundRows::find_tips(const Kind& kind, unsigned levels) {
 }
 
 bool has_lasting_tips(const Kind& kind) {
-  if (!is_shared(kind)) return false;
+  if (!kind.shared()) return false;
   for (std::size_t corner = 0; corner < 3; ++corner) {
     const KindChild& child = kind.children()[corner];
     if (!child.kind->polynomial() && !tip_kinds(child, corner)) return false;

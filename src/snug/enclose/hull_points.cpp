@@ -67,8 +67,6 @@ namespace {
 // Levels that a patch is split, before the nets of its pieces do: one of a passing kind, and at a crowded corner.
 constexpr unsigned passing_levels = 5, crowded_levels = 12;
 
-bool is_split(const Kind& kind) { return kind.passing() || kind.crowded(); }
-
 unsigned levels_of(const Kind& kind) { return kind.passing() ? passing_levels : crowded_levels; }
 
 // Adds points whose hull holds the patch, which `level` splits have made; `scratch` has a patch for each of the next ones.
@@ -82,7 +80,7 @@ void collect(BoundLibrary& library, const Patch& patch, unsigned level, std::spa
     for (std::size_t r = 0; r < rows.row_count(); ++r) out.set(at++, rows.apply<Vector3>(r, patch.points));
     out.error = std::max(out.error, rows.result_error(patch.largest, patch.error));
     out.largest = std::max(out.largest, enlarged(rows.max_abs_sum() * patch.largest));
-  } else if (!is_split(kind)) {
+  } else if (kind.shared()) {
     apply(library.rows(kind), patch, out.size(), out);
   } else if (level >= levels_of(kind)) {
     std::size_t at = out.size();
@@ -100,7 +98,7 @@ void collect(BoundLibrary& library, const Patch& patch, unsigned level, std::spa
 
 void prepare(BoundLibrary& library, const Kind& kind, unsigned level) {
   if (kind.polynomial()) return;
-  if (!is_split(kind)) {
+  if (kind.shared()) {
     static_cast<void>(library.rows(kind));
   } else if (level < levels_of(kind)) {
     for (const KindChild& child : kind.children()) {
@@ -112,7 +110,7 @@ void prepare(BoundLibrary& library, const Kind& kind, unsigned level) {
 }  // namespace
 
 void hull_points(BoundLibrary& library, const Patch& patch, HullPoints& out) {
-  if (is_split(*patch.kind)) {
+  if (!patch.kind->shared()) {
     thread_local std::array<Patch, crowded_levels> scratch;
     out.origin = patch.origin;
     out.error = out.largest = 0;
@@ -131,7 +129,7 @@ void hull_points(BoundLibrary& library, const Patch& patch, HullPoints& out) {
 }
 
 void prepare_hull_points(BoundLibrary& library, const Kind& kind) {
-  if (is_split(kind)) {
+  if (!kind.shared()) {
     prepare(library, kind, 0);
     return;
   }
