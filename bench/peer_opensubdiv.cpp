@@ -262,4 +262,49 @@ std::vector<OsdLimitSample> osd_limit_samples(const ControlMesh& mesh, int level
   return samples;
 }
 
+TriangleMesh osd_uniform(const ControlMesh& mesh, int level, bool snapped) {
+  const auto refiner = make_refiner(mesh);
+  Far::TopologyRefiner::UniformOptions uniform(level);
+  uniform.fullTopologyInLastLevel = snapped;
+  refiner->RefineUniform(uniform);
+  const Far::PrimvarRefinerReal<double> interpolate(*refiner);
+  std::vector<Primvar> values = primvars(mesh.points);
+  for (int l = 1; l <= level; ++l) {
+    std::vector<Primvar> fine(static_cast<std::size_t>(refiner->GetLevel(l).GetNumVertices()));
+    interpolate.Interpolate(l, values, fine);
+    values = std::move(fine);
+  }
+  if (snapped) {
+    std::vector<Primvar> limit(values.size());
+    interpolate.Limit(values, limit);
+    values = std::move(limit);
+  }
+  TriangleMesh result;
+  result.points.reserve(values.size());
+  for (const Primvar& value : values) result.points.push_back(value.value);
+  const Far::TopologyLevel& last = refiner->GetLevel(level);
+  result.triangles.resize(static_cast<std::size_t>(last.GetNumFaces()));
+  for (int f = 0; f < last.GetNumFaces(); ++f) {
+    const auto vertices = last.GetFaceVertices(f);
+    for (int k = 0; k < 3; ++k) {
+      result.triangles[static_cast<std::size_t>(f)][static_cast<std::size_t>(k)] =
+          static_cast<std::uint32_t>(vertices[k]);
+    }
+  }
+  return result;
+}
+
+int osd_uniform_level(const ControlMesh& mesh, double tolerance) {
+  for (int level = 0; level <= 10; ++level) {
+    const std::vector<Point3> points = osd_uniform(mesh, level).points;
+    const std::vector<Point3> limit = osd_uniform(mesh, level, true).points;
+    double most_sq = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      most_sq = std::max(most_sq, length_sq(limit[i] - points[i]));
+    }
+    if (4 * most_sq <= tolerance * tolerance) return level;
+  }
+  throw std::runtime_error("uniform refinement does not reach the tolerance at level 10");
+}
+
 }  // namespace snug::bench
