@@ -26,11 +26,14 @@ TEST(leaves, are_as_many_as_bound_makes) {
   }
 }
 
-// Every corner of an icosahedron has valence 5: each face is split once, and then no more.
+// Each face is split once, and then no more: every corner of an icosahedron has valence 5, two of each face of this bipyramid
+// have valence 4.
 TEST(leaves, have_one_extraordinary_corner_on_request) {
   const Surface surface = testing::surface_of(oracle::meshes::icosahedron());
   EXPECT_EQ(leaves(surface, {100, TableLayout::ngon}).size(), 20u);
   EXPECT_EQ(leaves(surface, {100, TableLayout::ngon, true}).size(), 80u);
+  const Surface bipyramid = testing::surface_of(oracle::meshes::bipyramid(6));
+  EXPECT_EQ(leaves(bipyramid, {100, TableLayout::ngon, true}).size(), 48u);
 }
 
 TEST(leaves, refuse_what_rounding_forbids) {
