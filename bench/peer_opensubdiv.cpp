@@ -307,4 +307,26 @@ int osd_uniform_level(const ControlMesh& mesh, double tolerance) {
   throw std::runtime_error("uniform refinement does not reach the tolerance at level 10");
 }
 
+int osd_snapped_level(const ControlMesh& mesh, double tolerance) {
+  for (int level = 0; level <= 10; ++level) {
+    const std::vector<Point3> limit = osd_uniform(mesh, level + 1, true).points;
+    const auto refiner = make_refiner(mesh);
+    Far::TopologyRefiner::UniformOptions uniform(level + 1);
+    uniform.fullTopologyInLastLevel = true;
+    refiner->RefineUniform(uniform);
+    const Far::TopologyLevel& topology = refiner->GetLevel(level);
+    const auto at = [&](int vertex) { return limit[static_cast<std::size_t>(vertex)]; };
+    double most = 0;
+    for (int e = 0; e < topology.GetNumEdges(); ++e) {
+      const auto ends = topology.GetEdgeVertices(e);
+      const Point3 a = at(topology.GetVertexChildVertex(ends[0])),
+                   b = at(topology.GetVertexChildVertex(ends[1])), p = at(topology.GetEdgeChildVertex(e));
+      const double along = std::clamp(dot(p - a, b - a) / length_sq(b - a), 0.0, 1.0);
+      most = std::max(most, length(p - (a + along * (b - a))));
+    }
+    if (most <= tolerance / 2) return level;
+  }
+  throw std::runtime_error("snapped meshes do not reach the tolerance at level 10");
+}
+
 }  // namespace snug::bench

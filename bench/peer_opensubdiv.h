@@ -102,4 +102,9 @@ struct OsdLimitSample {
 /// Errors:    std::runtime_error if that is beyond level 10.
 [[nodiscard]] int osd_uniform_level(const ControlMesh& mesh, double tolerance);
 
+/// The first level at which the mesh snapped to the limit looks fine enough: the limit of the vertex that one more step puts on an edge is
+/// within tolerance / 2 of that edge. What somebody would take who knows limit positions; measured at these points, not proved.
+/// Errors:    std::runtime_error if that is beyond level 10.
+[[nodiscard]] int osd_snapped_level(const ControlMesh& mesh, double tolerance);
+
 }  // namespace snug::bench
