@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <snug/base/quantile.h>
@@ -163,6 +164,8 @@ void bench_memory(const Model& a, const Model& b, const Options& options) {
   std::printf("  surfaces                                       %8.3f MiB\n", surfaces);
   std::printf("  surfaces, models and scratch, first answer     %8.3f MiB\n", after_first);
   std::printf("  surfaces, models and scratch, %5zu queries    %8.3f MiB\n", at.size(), after_all);
+  std::printf("  of that models and scratch, as they count      %8.3f MiB\n",
+              static_cast<double>(pair->queries.bytes()) / mib);
   print_peak("snug, first answer", 1, "pair",
              peak_mib([&] { return first_answer(a, b, first, one_percent, library); }));
   print_peak("snug, all queries", 1, "pair", peak_mib([&] {
@@ -231,6 +234,37 @@ std::vector<Times> run_contest(Contest& contest, const std::string& title, const
   return group.run();
 }
 
+// The same queries with each volume that a tree may have: what the default rests on.
+void bench_volumes(const std::vector<Model>& models, const std::string& room, const PlacementsOfPairs& at,
+                   const Options& options) {
+  const Library library = std::make_shared<BoundLibrary>();
+  Group group("boolean query, 1 %, " + room + ", by volume", "query", options);
+  std::vector<std::vector<std::unique_ptr<SnugPair>>> pairs;
+  double items = 0;
+  for (const auto& list : at) items += static_cast<double>(list.size());
+  for (const auto& [name, volume] :
+       {std::pair{"obb", Volume::obb}, std::pair{"aabb", Volume::aabb}, std::pair{"dop14", Volume::dop14},
+        std::pair{"dop18", Volume::dop18}, std::pair{"dop26", Volume::dop26}}) {
+    QueryModelOptions model_options;
+    model_options.volume = volume;
+    auto& subjects = pairs.emplace_back();
+    for (const auto& [a, b] : model_pairs) {
+      subjects.push_back(
+          std::make_unique<SnugPair>(named(models, a), named(models, b), library, model_options));
+    }
+    group.add(name, items, [&at, &pairs, index = pairs.size() - 1] {
+      double sum = 0;
+      for (std::size_t p = 0; p < at.size(); ++p) {
+        for (const PlacedPair& placed : at[p]) {
+          sum += pairs[index][p]->queries.collide(placed, one_percent).verdict == Verdict::separated;
+        }
+      }
+      return sum;
+    });
+  }
+  static_cast<void>(group.run());
+}
+
 void bench_queries(const std::vector<Model>& models, const Options& options) {
   Contest contest(models);
   for (const double side : {3.0, 6.0}) {
@@ -261,6 +295,7 @@ void bench_queries(const std::vector<Model>& models, const Options& options) {
       static_cast<void>(
           run_contest(contest, "boolean query, 1 %, " + room + ", " + name_of(nearness), some, options));
     }
+    bench_volumes(models, room, all, options);
   }
 }
 

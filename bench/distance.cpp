@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
   for (std::size_t p = 0; p < placements.size(); ++p) {
     for (const Placed& placed : placements[p]) {
       if (placed.nearness == Nearness::colliding) continue;
-      const Queries::Interval surface = snug[p]->queries.distance(placed.at, precision);
+      const Distance surface = snug[p]->queries.distance(placed.at, precision);
       const double mesh = peers[p].distance(placed.at);
       const double off = std::max(surface.lower - mesh, mesh - surface.upper);
       ++count;

@@ -16,10 +16,10 @@ struct SnugPair {
   Surface a, b;
   Queries queries;
   SnugPair(const Model& model_a, const Model& model_b, const std::shared_ptr<BoundLibrary>& library,
-           std::optional<TableLayout> table = {})
+           const QueryModelOptions& options = {})
       : a(model_a.mesh, loop_rules(), library, 1),
         b(model_b.mesh, loop_rules(), library, 1),
-        queries(a, b, table) {}
+        queries(a, b, options) {}
 };
 
 #ifdef SNUG_BENCH_FCL

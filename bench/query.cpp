@@ -1,30 +1,49 @@
 #include "query.h"
 
 namespace snug::bench {
+namespace {
 
-Queries::Queries(const Surface& a, const Surface& b, std::optional<TableLayout> table)
-    : a_(a, 1, {}, table), b_(b, 1, {}, table), scratch_(a_, b_) {}
+QueryModelOptions one_thread(QueryModelOptions options) {
+  options.threads = 1;
+  return options;
+}
+
+}  // namespace
+
+Queries::Queries(const Surface& a, const Surface& b, const QueryModelOptions& options)
+    : a_(a, one_thread(options)), b_(b, one_thread(options)), scratch_a_(a_), scratch_b_(b_) {}
 
 Collision Queries::collide(const PlacedPair& at, double tolerance, double margin) {
-  return snug::collide(a_, at.a, b_, at.b, {tolerance, margin}, scratch_);
+  CollideOptions options;
+  options.tolerance = tolerance;
+  options.margin = margin;
+  return snug::collide({a_, scratch_a_, at.a}, {b_, scratch_b_, at.b}, options);
 }
 
 std::optional<bool> Queries::meet(const PlacedPair& at) {
-  const Collision answer = collide(at, 1e-7);
-  if (answer.verdict == Verdict::separated) return false;
-  return answer.verdict == Verdict::within ? std::optional<bool>(true) : std::nullopt;
+  CollideOptions options;
+  options.tolerance = 1e-7;
+  options.prove_contact = true;
+  switch (snug::collide({a_, scratch_a_, at.a}, {b_, scratch_b_, at.b}, options).verdict) {
+    case Verdict::separated:
+      return false;
+    case Verdict::intersecting:
+      return true;
+    case Verdict::within:
+    case Verdict::undecided:
+      break;
+  }
+  return {};
 }
 
-Queries::Interval Queries::distance(const PlacedPair& at, double precision) {
-  double low = 0, high = 16;
-  while (high - low > precision) {
-    const double middle = 0.5 * (low + high);
-    const Collision answer = collide(at, 0.25 * (high - low), middle);
-    if (answer.verdict == Verdict::separated) low = middle;
-    if (answer.upper && *answer.upper < high) high = *answer.upper;
-    if (answer.verdict == Verdict::undecided) break;
-  }
-  return {low, high};
+Distance Queries::distance(const PlacedPair& at, double precision) {
+  DistanceOptions options;
+  options.absolute = precision;
+  return snug::distance({a_, scratch_a_, at.a}, {b_, scratch_b_, at.b}, options);
+}
+
+std::size_t Queries::bytes() const {
+  return a_.bytes() + b_.bytes() + scratch_a_.bytes() + scratch_b_.bytes();
 }
 
 }  // namespace snug::bench

@@ -4,6 +4,8 @@
 #include <optional>
 
 #include <snug/query/collide.h>
+#include <snug/query/distance.h>
+#include <snug/query/query_model.h>
 #include <snug/query/rooms.h>
 
 namespace snug::bench {
@@ -11,20 +13,19 @@ namespace snug::bench {
 /// Two surfaces ready for queries on one thread. All calls of queries in bench/ are in here.
 class Queries {
  public:
-  Queries(const Surface& a, const Surface& b, std::optional<TableLayout> table = {});
+  Queries(const Surface& a, const Surface& b, const QueryModelOptions& options = {});
 
   [[nodiscard]] Collision collide(const PlacedPair& at, double tolerance, double margin = 0);
   /// Do the limit surfaces meet? Nothing where neither is certain.
   [[nodiscard]] std::optional<bool> meet(const PlacedPair& at);
-  /// Lower and upper bound of the distance, at most `precision` apart.
-  struct Interval {
-    double lower, upper;
-  };
-  [[nodiscard]] Interval distance(const PlacedPair& at, double precision);
+  /// With upper - lower at most `precision`.
+  [[nodiscard]] Distance distance(const PlacedPair& at, double precision);
+  /// Models and scratch, without the surfaces.
+  [[nodiscard]] std::size_t bytes() const;
 
  private:
-  CollisionModel a_, b_;
-  CollideScratch scratch_;
+  QueryModel a_, b_;
+  QueryScratch scratch_a_, scratch_b_;
 };
 
 }  // namespace snug::bench

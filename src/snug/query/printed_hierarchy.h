@@ -1,13 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include <snug/base/motion.h>
 #include <snug/enclose/offset_triangle.h>
 #include <snug/surface/surface.h>
-#include <snug/tree/obb_tree.h>
+#include <snug/tree/volume.h>
 
 namespace snug {
 
@@ -30,7 +31,7 @@ struct LeafOptions {
 /// The dissertation's hierarchy: all leaves made beforehand, a tree of oriented boxes over them, and its own pair test at two
 /// leaves. NOT a bound: kept as an experiment; no query may call it.
 ///
-/// Source:    [Wu05, sec. 5.1.1, 5.1.2].
+/// Source:    [Wu05, sec. 5.1.1, 5.1.2], [Gottschalk96]: binary, split along the longest axis at the mean.
 class PrintedHierarchy {
  public:
   PrintedHierarchy(const Surface& surface, const LeafOptions& options, const WorkMonitor& monitor = {});
@@ -46,8 +47,16 @@ class PrintedHierarchy {
                                            double epsilon);
 
  private:
+  struct Node {
+    Obb box;
+    std::uint32_t first_child = 0;  // its two children follow each other; 0 for a leaf
+    std::uint32_t leaf = 0;
+  };
+  [[nodiscard]] static bool apart(const Node& a, const Placement& place_a, const Node& b,
+                                  const Placement& place_b, double epsilon);
+
   std::vector<OffsetTriangle> leaves_;
-  ObbTree tree_;
+  std::vector<Node> nodes_;
 };
 
 }  // namespace snug

@@ -11,6 +11,7 @@
 #include <snug/base/quantile.h>
 #include <snug/query/collide.h>
 #include <snug/query/printed_hierarchy.h>
+#include <snug/query/query_model.h>
 #include <snug/query/rooms.h>
 
 namespace snug {
@@ -31,19 +32,29 @@ double seconds_of(const std::function<void()>& work) {
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
+QueryModelOptions model_options(std::optional<TableLayout> table) {
+  QueryModelOptions options;
+  options.table = table;
+  options.threads = 1;
+  return options;
+}
+
 // Two models and the memory of their queries.
 class QueryPair {
  public:
   QueryPair(const Surface& a, const Surface& b, std::optional<TableLayout> table)
-      : a_(a, 1, {}, table), b_(b, 1, {}, table), scratch_(a_, b_) {}
+      : a_(a, model_options(table)), b_(b, model_options(table)), scratch_a_(a_), scratch_b_(b_) {}
 
   Verdict ask(const PlacedPair& at, double tolerance, double margin = 0) {
-    return collide(a_, at.a, b_, at.b, {tolerance, margin}, scratch_).verdict;
+    CollideOptions options;
+    options.tolerance = tolerance;
+    options.margin = margin;
+    return collide({a_, scratch_a_, at.a}, {b_, scratch_b_, at.b}, options).verdict;
   }
 
  private:
-  CollisionModel a_, b_;
-  CollideScratch scratch_;
+  QueryModel a_, b_;
+  QueryScratch scratch_a_, scratch_b_;
 };
 
 }  // namespace
@@ -59,7 +70,10 @@ CreationTimes measure_creation(const ControlMesh& mesh, const SchemeOptions& rul
   SNUG_EXPECT(rounds >= 1);
   const auto library = std::make_shared<BoundLibrary>();
   const std::array<std::function<void()>, 3> works{
-      [&] { const CollisionModel model(Surface(mesh, rules, library, 1), 1); },
+      [&] {
+        const Surface surface(mesh, rules, library, 1);
+        const QueryModel model(surface, model_options({}));
+      },
       [&] { const PrintedHierarchy tree(Surface(mesh, rules, library, 1), with_rows(tolerance), monitor); },
       [&] { const PrintedHierarchy tree(Surface(mesh, rules, library, 1), as_printed(tolerance), monitor); }};
   std::array<double, 3> medians{};
