@@ -32,9 +32,10 @@ double seconds_of(const std::function<void()>& work) {
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
-QueryModelOptions model_options(std::optional<TableLayout> table) {
+QueryModelOptions model_options(std::optional<TableLayout> table, bool tight) {
   QueryModelOptions options;
   options.table = table;
+  options.tight = tight;
   options.threads = 1;
   return options;
 }
@@ -43,7 +44,10 @@ QueryModelOptions model_options(std::optional<TableLayout> table) {
 class QueryPair {
  public:
   QueryPair(const Surface& a, const Surface& b, std::optional<TableLayout> table)
-      : a_(a, model_options(table)), b_(b, model_options(table)), scratch_a_(a_), scratch_b_(b_) {}
+      : a_(a, model_options(table, true)),
+        b_(b, model_options(table, true)),
+        scratch_a_(a_),
+        scratch_b_(b_) {}
 
   Verdict ask(const PlacedPair& at, double tolerance, double margin = 0) {
     CollideOptions options;
@@ -69,21 +73,25 @@ CreationTimes measure_creation(const ControlMesh& mesh, const SchemeOptions& rul
                                unsigned rounds, const WorkMonitor& monitor) {
   SNUG_EXPECT(rounds >= 1);
   const auto library = std::make_shared<BoundLibrary>();
-  const std::array<std::function<void()>, 3> works{
+  const std::array<std::function<void()>, 4> works{
       [&] {
         const Surface surface(mesh, rules, library, 1);
-        const QueryModel model(surface, model_options({}));
+        const QueryModel model(surface, model_options({}, false));
+      },
+      [&] {
+        const Surface surface(mesh, rules, library, 1);
+        const QueryModel model(surface, model_options({}, true));
       },
       [&] { const PrintedHierarchy tree(Surface(mesh, rules, library, 1), with_rows(tolerance), monitor); },
       [&] { const PrintedHierarchy tree(Surface(mesh, rules, library, 1), as_printed(tolerance), monitor); }};
-  std::array<double, 3> medians{};
+  std::array<double, 4> medians{};
   for (std::size_t w = 0; w < works.size(); ++w) {
     works[w]();  // makes rows and tables of the kinds
     std::vector<double> times;
     for (unsigned round = 0; round < rounds; ++round) times.push_back(seconds_of(works[w]));
     medians[w] = quantile(times, 0.5);
   }
-  return {medians[0], medians[1], medians[2]};
+  return {medians[0], medians[1], medians[2], medians[3]};
 }
 
 RoomRow measure_room(const Surface& a, const Surface& b, const RoomOptions& options,

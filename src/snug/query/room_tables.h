@@ -27,7 +27,8 @@ struct LeafCounts {
 /// Table 5.2: processor time from a control mesh in memory until queries can be asked, in seconds, medians. Kinds are known
 /// beforehand, as tables were then.
 struct CreationTimes {
-  double model = 0;    ///< a query model as snug has it: pieces are bounded when a query touches them
+  double model = 0;    ///< a query model as it is by default: pieces are bounded when a query touches them
+  double tight = 0;    ///< one with a tight tree
   double rows = 0;     ///< all leaves by hull rows and a tree of oriented boxes
   double printed = 0;  ///< the same by the dissertation's tables, at most one extraordinary corner
 };
@@ -44,7 +45,7 @@ struct RoomOptions {
 };
 
 /// Table 5.3: queries for random placements in a room, and what they answered. Times are processor times a query, in seconds,
-/// of one thread, after a few hundred queries that are not timed.
+/// of one thread, after a few hundred queries that are not timed. Models have tight trees.
 ///
 /// The text adds an epsilon to the radii without saying which: the tolerance, which is timed, or Moeller's own.
 struct RoomRow {
