@@ -236,7 +236,17 @@ std::vector<Times> run_contest(Contest& contest, const std::string& title, const
   group.add("FCL OBB, uniform Loop", items, [&] { return peer(contest.obb); });
   group.add("FCL OBBRSS, uniform Loop", items, [&] { return peer(contest.obbrss); });
 #endif
-  return group.run();
+  const std::vector<Times> times = group.run();
+  for (const auto* pairs : {&contest.snug, &contest.tight}) {
+    Work work;
+    for (std::size_t p = 0; p < at.size(); ++p) {
+      for (const PlacedPair& placed : at[p]) {
+        work.add((*pairs)[p]->queries.collide(placed, one_percent).stats);
+      }
+    }
+    work.print(pairs == &contest.snug ? "snug" : "snug, tight trees");
+  }
+  return times;
 }
 
 // The same queries with each volume that a tree may have: what the default rests on.

@@ -73,6 +73,15 @@ int main(int argc, char** argv) {
     });
 #endif
     const std::vector<Times> times = group.run();
+    for (const auto* pairs : {&snug, &tight}) {
+      Work work;
+      for (std::size_t p = 0; p < at.size(); ++p) {
+        for (const PlacedPair& placed : at[p]) {
+          work.add((*pairs)[p]->queries.distance(placed, precision).stats);
+        }
+      }
+      work.print(pairs == &snug ? "snug" : "snug, tight trees");
+    }
     for (std::size_t subject = 0; subject < 2 && all && times.size() == 3; ++subject) {
       at_least("distance to 0.1 %, FCL over " + times[subject].name, times[2].median / times[subject].median,
                5);

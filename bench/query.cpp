@@ -1,5 +1,7 @@
 #include "query.h"
 
+#include <cstdio>
+
 namespace snug::bench {
 namespace {
 
@@ -44,6 +46,19 @@ Distance Queries::distance(const PlacedPair& at, double precision) {
 
 std::size_t Queries::bytes() const {
   return a_.bytes() + b_.bytes() + scratch_a_.bytes() + scratch_b_.bytes();
+}
+
+void Work::add(const QueryStats& stats) {
+  queries_ += 1;
+  box_tests_ += static_cast<double>(stats.box_tests);
+  triangle_tests_ += static_cast<double>(stats.triangle_tests);
+  evaluations_ += static_cast<double>(stats.evaluations);
+  splits_ += static_cast<double>(stats.splits);
+}
+
+void Work::print(const char* name) const {
+  std::printf("# %s, a query: %.1f box tests, %.2f triangle tests, %.2f evaluations, %.2f splits\n", name,
+              box_tests_ / queries_, triangle_tests_ / queries_, evaluations_ / queries_, splits_ / queries_);
 }
 
 }  // namespace snug::bench

@@ -28,4 +28,15 @@ class Queries {
   QueryScratch scratch_a_, scratch_b_;
 };
 
+/// What queries did, in all.
+class Work {
+ public:
+  void add(const QueryStats& stats);
+  /// Prints "# name, a query: ... box tests, ... triangle tests, ... evaluations, ... splits".
+  void print(const char* name) const;
+
+ private:
+  double queries_ = 0, box_tests_ = 0, triangle_tests_ = 0, evaluations_ = 0, splits_ = 0;
+};
+
 }  // namespace snug::bench
