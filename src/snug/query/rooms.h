@@ -24,7 +24,7 @@ struct PlacedPair {
 /// Guarantee: rigid within a few roundings; the same for the same state of `random` with any standard library.
 /// Requires:  side > 1.
 /// Source:    [Wu05, sec. 5.1] after [Klosowski98]; differs: the text does not say whether models may stick out of the room.
-///            With this choice the seven example models collide about as often as one reads there, see docs/tables.md.
+///            With this choice fewer of our models collide than its heads say, see docs/tables.md.
 [[nodiscard]] PlacedPair place_in_room(double side, std::mt19937_64& random);
 
 }  // namespace snug
