@@ -137,11 +137,13 @@ std::optional<PairOfPoints> middle_of_contact(const Triangle& first, const Trian
   const Corners a{Vector3{}, first[1] - origin, first[2] - origin};
   const Corners b{second[0] - origin, second[1] - origin, second[2] - origin};
   PairOfPoints sum;
-  int count = 0;
+  double weights = 0;
   const auto add = [&](Barycentric on_a, Barycentric on_b) {
-    sum.on_a = {sum.on_a.b + on_a.b, sum.on_a.c + on_a.c};
-    sum.on_b = {sum.on_b.b + on_b.b, sum.on_b.c + on_b.c};
-    ++count;
+    // Not quite the middle: that lies on lines where pieces are split more often than not.
+    const double weight = weights == 0 ? 1.0 : 1.1234567;
+    sum.on_a = {sum.on_a.b + weight * on_a.b, sum.on_a.c + weight * on_a.c};
+    sum.on_b = {sum.on_b.b + weight * on_b.b, sum.on_b.c + weight * on_b.c};
+    weights += weight;
   };
   for (std::size_t i = 0; i < 3; ++i) {
     double t = 0;
@@ -149,8 +151,8 @@ std::optional<PairOfPoints> middle_of_contact(const Triangle& first, const Trian
     if (pierces(a, b, i, t, inside)) add(on_edge(i, t), inside);
     if (pierces(b, a, i, t, inside)) add(inside, on_edge(i, t));
   }
-  if (count == 0) return std::nullopt;
-  const double share = 1.0 / count;
+  if (weights == 0) return std::nullopt;
+  const double share = 1.0 / weights;
   return PairOfPoints{{share * sum.on_a.b, share * sum.on_a.c}, {share * sum.on_b.b, share * sum.on_b.c}};
 }
 

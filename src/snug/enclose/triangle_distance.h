@@ -29,7 +29,7 @@ struct PairOfPoints {
   Barycentric on_a, on_b;
 };
 
-/// The middle of the segment in which two triangles cut each other, in double precision; nothing if they do not, or lie in
+/// About the middle of the segment in which two triangles cut each other, in double precision; nothing if they do not, or lie in
 /// one plane.
 [[nodiscard]] std::optional<PairOfPoints> middle_of_contact(const Triangle& a, const Triangle& b);
 

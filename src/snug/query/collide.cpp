@@ -168,7 +168,7 @@ Collision collide(const PlacedModel& a, const PlacedModel& b, const CollideOptio
   SNUG_EXPECT(rigidity_defect(a.placement) <= rigidity_tolerance &&
               rigidity_defect(b.placement) <= rigidity_tolerance);
   Collision answer;
-  if (const double gap = ball_gap(a, b); gap > options.margin) {
+  if (const double gap = outer_gap(a, b); gap > options.margin) {
     answer.verdict = Verdict::separated;
     answer.lower = gap;
     return answer;

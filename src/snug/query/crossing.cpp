@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include <snug/base/rounding.h>
 #include <snug/patch/descent.h>
@@ -13,7 +15,7 @@ namespace {
 // Levels that a piece near the border's extraordinary corners is split before its whole net stands for its edge.
 constexpr unsigned edge_levels = 8;
 // Levels from the piece that was asked about to one that is small enough to pass between the strips.
-constexpr unsigned probe_levels = 5;
+constexpr unsigned probe_levels = 16;
 
 // Bezier points of the polynomial `part` whose hull holds its edge from corner k to k + 1.
 template <class Visit>
@@ -96,55 +98,111 @@ Crossed::Crossed(const Piece& piece, const Heights& heights) {
   possible_ = true;
 }
 
-bool Crossed::crossed_by(const Triangle& around, double radius, const Triangle& points, double error) const {
+double Crossed::rounding(const Triangle& points) const {
   double largest = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    largest = std::max({largest, max_abs(around[i] - from_), max_abs(points[i] - from_)});
-  }
-  const double rounding = gamma_bound(16) * (largest + 4);
+  for (const Point3& p : points) largest = std::max(largest, max_abs(p - from_));
+  return gamma_bound(16) * (largest + 4);
+}
+
+bool Crossed::holds(const Triangle& around, double radius) const {
+  const double reach = enlarged(radius) + rounding(around);
   for (const Strip& strip : strips_) {
     for (const Point3& p : around) {
-      if (!(dot(strip.inward, p - strip.from) - enlarged(radius) - rounding > strip.width)) return false;
+      if (!(dot(strip.inward, p - strip.from) - reach > strip.width)) return false;
     }
   }
-  bool below = false, above = false;
+  return true;
+}
+
+Crossed::Sides Crossed::sides(const Triangle& points, double error) const {
+  const double reach = enlarged(error) + rounding(points);
+  Sides found;
   for (const Point3& p : points) {
     const double height = dot(normal_, p - from_);
-    below = below || height + enlarged(error) + rounding < lower_;
-    above = above || height - enlarged(error) - rounding > upper_;
+    found.below = found.below || height + reach < lower_;
+    found.above = found.above || height - reach > upper_;
   }
-  return below && above;
+  return found;
 }
+
+namespace {
+
+// A piece, and a parameter of it.
+struct Probe {
+  PieceId id;
+  TriangleParameter at;
+};
+
+// The parameter in the middle child; nothing if it rounds.
+std::optional<TriangleParameter> in_middle_child(TriangleParameter p) {
+  const TriangleParameter turned{1 - 2 * p.u, 1 - 2 * p.v};
+  // In [0, 1]; a difference that was rounded does not lead back.
+  if (1 - turned.u != 2 * p.u || 1 - turned.v != 2 * p.v) return std::nullopt;
+  return turned;
+}
+
+// Adds the children whose closed triangles hold the parameter: all have its limit point in common, so together they are
+// connected. False, with the child that descend() names alone, where its parameter there rounds: what holds that need not
+// hold the others'.
+bool add_children(Refinement& pieces, const Probe& probe, std::vector<Probe>& out) {
+  const std::uint32_t first = pieces.split(probe.id).value();
+  const auto [u, v] = probe.at;
+  const Descent certain = descend(probe.at);
+  if (certain.child == 3 && !in_middle_child(probe.at)) {
+    out.assign(1, {PieceId(first + 3), certain.at});
+    return false;
+  }
+  out.push_back({PieceId(first + certain.child), certain.at});
+  const auto add = [&](unsigned child, TriangleParameter at) {
+    if (child != certain.child) out.push_back({PieceId(first + child), at});
+  };
+  // Doubling and subtracting 1 from [1, 2] are exact.
+  if (sum_at_most(u, v, 0.5)) add(0, {2 * u, 2 * v});
+  if (u >= 0.5) add(1, {2 * u - 1, 2 * v});
+  if (v >= 0.5) add(2, {2 * u, 2 * v - 1});
+  const bool on_far_edge = sum_at_most(u, v, 0.5) && u + v == 0.5;
+  if (u <= 0.5 && v <= 0.5 && (on_far_edge || !sum_at_most(u, v, 0.5))) {
+    if (const auto at = in_middle_child(probe.at)) add(3, *at);
+  }
+  return true;
+}
+
+}  // namespace
 
 bool crosses_near(Refinement& pieces, PieceId id, TriangleParameter at, const Crossed& crossed,
                   const RelativeFrame& seen) {
   if (!seen.comparable) return false;
-  at = on_triangle(at);
+  std::vector<Probe> probes{{id, on_triangle(at)}}, children;
   for (unsigned level = 0;; ++level) {
-    const Piece& piece = pieces[id];
-    Triangle around, corners;
-    double error = 0, extent = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      around[k] = seen.apply(piece.offset.base[k]);
-      const Point3 corner = piece.patch.origin + piece.corners[k];
-      corners[k] = seen.apply(corner);
-      error =
-          std::max(error, corner_point(piece.patch, k).error + unit_roundoff * max_abs(corner - Point3{}));
-      extent = std::max(extent, length(corners[k] - corners[0]));
-    }
     // seen.slack covers the mapping; lengths grow by its scale.
     const double growth = seen.scale * (1 + 0x1p-20);
-    if (crossed.crossed_by(around, growth * piece.offset.radius + seen.slack, corners,
-                           growth * spatial_error(error) + seen.slack)) {
-      return true;
+    double extent = 0;
+    bool inside = true, below = false, above = false, last = false;
+    for (const Probe& probe : probes) {
+      const Piece& piece = pieces[probe.id];
+      Triangle around, corners;
+      double error = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        around[k] = seen.apply(piece.offset.base[k]);
+        const Point3 corner = piece.patch.origin + piece.corners[k];
+        corners[k] = seen.apply(corner);
+        error =
+            std::max(error, corner_point(piece.patch, k).error + unit_roundoff * max_abs(corner - Point3{}));
+        extent = std::max(extent, length(corners[k] - corners[0]));
+      }
+      inside = inside && crossed.holds(around, growth * piece.offset.radius + seen.slack);
+      const Crossed::Sides sides = crossed.sides(corners, growth * spatial_error(error) + seen.slack);
+      below = below || sides.below;
+      above = above || sides.above;
+      last = last || piece.patch.path.level() == PiecePath::max_level;
     }
-    if (2 * extent < crossed.thickness() || level == probe_levels ||
-        piece.patch.path.level() == PiecePath::max_level) {
-      return false;
+    if (inside && below && above) return true;
+    if (2 * extent < crossed.thickness() || level == probe_levels || last) return false;
+    children.clear();
+    for (const Probe& probe : probes) {
+      if (!add_children(pieces, probe, children)) break;
     }
-    const Descent next = descend(at);
-    at = next.at;
-    id = PieceId(pieces.split(id).index() + next.child);
+    probes.swap(children);
   }
 }
 

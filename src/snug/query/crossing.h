@@ -16,7 +16,7 @@ namespace snug {
 ///        /____|_________|____\     the map (point of the piece) - (point of the set) on the sphere around the product of
 ///              \ below /           both would be zero, and it is one.
 ///
-/// Guarantee: crossed_by() is true only if every connected set of which the given things hold meets the piece.
+/// Guarantee: a connected set meets the piece if holds() all its parts and some of its points are certainly on either side.
 /// Source:    derivations/contact.md.
 class Crossed {
  public:
@@ -24,14 +24,20 @@ class Crossed {
 
   /// False if the border leaves nothing free, or the piece has no normal.
   [[nodiscard]] bool possible() const { return possible_; }
-  /// The set lies within `radius` of the hull of `around`, and has points within `error` of each of `points`; all in the
-  /// frame of the piece's surface.
-  [[nodiscard]] bool crossed_by(const Triangle& around, double radius, const Triangle& points,
-                                double error) const;
-  /// Could a set so far apart along the normal be long enough?
+  /// Is all that lies within `radius` of the hull of `around` certainly inside of the strips? In the frame of the piece's
+  /// surface, and so below.
+  [[nodiscard]] bool holds(const Triangle& around, double radius) const;
+  struct Sides {
+    bool below = false, above = false;
+  };
+  /// Is one of three points, each known up to `error`, certainly below, is one above?
+  [[nodiscard]] Sides sides(const Triangle& points, double error) const;
+  /// How far apart the planes are.
   [[nodiscard]] double thickness() const { return upper_ - lower_; }
 
  private:
+  [[nodiscard]] double rounding(const Triangle& points) const;
+
   bool possible_ = false;
   Point3 from_;
   Vector3 normal_;
@@ -44,7 +50,7 @@ class Crossed {
   std::array<Strip, 3> strips_;
 };
 
-/// Do pieces of `id` around a parameter cross? Splits a few levels down.
+/// Do pieces of `id` around a parameter cross, those that meet there together? Splits some levels down.
 /// Requires:  seen: the pieces' frame as seen from that of the crossed piece.
 [[nodiscard]] bool crosses_near(Refinement& pieces, PieceId id, TriangleParameter at, const Crossed& crossed,
                                 const RelativeFrame& seen);

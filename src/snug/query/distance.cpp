@@ -67,7 +67,9 @@ class Query {
       monitor_.checkpoint();
       // The direction of the nearest points so far will do for most pairs.
       if (witness_.distance < INFINITY) {
-        gap = std::max(gap, search_.hull_gap(pair, witness_.points[1] - witness_.points[0]));
+        const Vector3 between = witness_.points[1] - witness_.points[0];
+        if (search_.corner_gap(pair, between) >= enough())
+          gap = std::max(gap, search_.hull_gap(pair, between));
       }
       if (gap < enough()) {
         const PairSearch::Pieces pieces = search_.nearest_pieces(pair);

@@ -39,19 +39,42 @@ TriangleParameter parameter(Barycentric p) {
 
 }  // namespace
 
-double ball_gap(const PlacedModel& a, const PlacedModel& b) {
+namespace {
+
+// Distance of a placed point to the box of a placed model, but for roundings.
+double distance_to_box(const PlacedModel& model, const Point3& p) {
+  const Vector3 d = p - model.placement.apply(model.model.box().centre);
+  const Vector3 local =
+      d.x * model.placement.row(0) + d.y * model.placement.row(1) + d.z * model.placement.row(2);
+  double sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double beyond = std::fabs(dot(model.model.box().axes[k], local)) - model.model.box().half[k];
+    if (beyond > 0) sum += beyond * beyond;
+  }
+  return std::sqrt(sum);
+}
+
+}  // namespace
+
+double outer_gap(const PlacedModel& a, const PlacedModel& b) {
   const Ball& ball_a = a.model.ball();
   const Ball& ball_b = b.model.ball();
   const Point3 centre_a = a.placement.apply(ball_a.centre), centre_b = b.placement.apply(ball_b.centre);
-  const double distance = length(centre_b - centre_a);
-  // Rotations within rigidity_tolerance, rows of at most 2 in their sums, products and sums of three.
-  const double reach = 2 * (max_abs(ball_a.centre - Point3{}) + max_abs(ball_b.centre - Point3{})) +
-                       max_abs(a.placement.translation()) + max_abs(b.placement.translation());
-  const double gap = distance * (1 - 8 * unit_roundoff) -
-                     (ball_a.radius + ball_b.radius) * (1 + 4 * rigidity_tolerance) -
-                     32 * unit_roundoff * reach;
-  // Squares are far from both ends of the range.
-  return distance > 0x1p-400 && distance < 0x1p400 ? gap : -INFINITY;
+  const double between = length(centre_b - centre_a);
+  if (!(between > 0x1p-400 && between < 0x1p400))
+    return -INFINITY;  // squares are far from both ends of the range
+  // Rotations within rigidity_tolerance: their inverses, which are their transposes but for that, and radii; products and
+  // sums of three, far below that.
+  const double reach = between + max_abs(ball_a.centre - Point3{}) + max_abs(ball_b.centre - Point3{}) +
+                       max_abs(a.placement.translation()) * 0x1p-20 +
+                       max_abs(b.placement.translation()) * 0x1p-20 + ball_a.radius + ball_b.radius;
+  const double doubt = 16 * rigidity_tolerance * reach;
+  const double balls = between - ball_a.radius - ball_b.radius - doubt;
+  if (balls > 0) return balls;
+  const double a_box = distance_to_box(a, centre_b) - ball_b.radius,
+               b_box = distance_to_box(b, centre_a) - ball_a.radius;
+  const double boxes = std::max(a_box, b_box) - doubt;
+  return boxes > 0 ? boxes : -INFINITY;
 }
 
 PairSearch::PairSearch(const PlacedModel& a, const PlacedModel& b)
@@ -207,6 +230,23 @@ double PairSearch::hull_gap(const NodePair& pair, const Vector3& direction) {
   const double gap =
       (end[1] - end[0]) * (1 - 16 * unit_roundoff) - 64 * unit_roundoff * reach - 16 * underflow_error;
   return gap > 0 ? gap : 0;
+}
+
+double PairSearch::corner_gap(const NodePair& pair, const Vector3& direction) const {
+  const Vector3 w = (1 / length(direction)) * direction;
+  double end[2] = {-INFINITY, INFINITY};
+  for (std::size_t s = 0; s < 2; ++s) {
+    const PlacedFrame& frame = frame_[s];
+    const Piece& piece_here = scratch_[s]->pieces()[piece(pair, s)];
+    const Vector3 local = w.x * frame.rows[0] + w.y * frame.rows[1] + w.z * frame.rows[2];
+    const double from =
+        frame.scale * dot(local, piece_here.patch.origin - Point3{}) + dot(w, frame.translation);
+    for (const Vector3& corner : piece_here.corners) {
+      const double height = from + frame.scale * dot(local, corner);
+      end[s] = s == 0 ? std::max(end[s], height) : std::min(end[s], height);
+    }
+  }
+  return end[1] - end[0];
 }
 
 Point3 PairSearch::placed(std::size_t side, const Point3& p, double& error) const {

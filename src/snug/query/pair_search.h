@@ -27,10 +27,10 @@ struct NodePair {
   float gap;
 };
 
-/// Lower bound, in mesh units, of the distance of the balls around two placed models: cheap. Not positive where none shows,
-/// or where doubles do not reach.
+/// Lower bound, in mesh units, of the distance of two placed models, by balls and boxes around them: cheap. Not positive
+/// where none shows, or where doubles do not reach.
 /// Requires:  rigid placements.
-[[nodiscard]] double ball_gap(const PlacedModel& a, const PlacedModel& b);
+[[nodiscard]] double outer_gap(const PlacedModel& a, const PlacedModel& b);
 
 /// What queries between two placed models share: frames, comparisons of nodes and of pieces, limit points. Lengths are in
 /// units of its own, powers of two away from mesh units, in which both placed models are at most about 2 large and far.
@@ -75,6 +75,8 @@ class PairSearch {
   /// Lower bound of the distance of two pieces: that of the planes across `direction` that hold their hulls apart. Any
   /// direction gives one; the best is that from the nearest point of A to that of B.
   [[nodiscard]] double hull_gap(const NodePair& pair, const Vector3& direction);
+  /// The same of their limit corners, in double precision: about the most that hull_gap() can find, and cheap.
+  [[nodiscard]] double corner_gap(const NodePair& pair, const Vector3& direction) const;
 
   /// Limit points, placed, and an upper bound of the distance of the exact ones.
   struct Witness {
@@ -102,19 +104,15 @@ class PairSearch {
   void find_gaps(std::size_t side, std::uint32_t block, const Blocks& blocks, Node other,
                  Blocks::Distances& out);
   [[nodiscard]] const View& view(std::size_t side) {
-    if (!seen_[side]) {
-      view_[side] = View(volume_, frame_[side], frame_[1 - side]);
-      seen_[side] = true;
-    }
-    return view_[side];
+    if (!view_[side]) view_[side].emplace(volume_, frame_[side], frame_[1 - side]);
+    return *view_[side];
   }
 
   PowerOfTwo world_;
   std::array<PlacedFrame, 2> frame_;
   std::array<float, 2> scale_{};
   Volume volume_;
-  std::array<bool, 2> seen_{};
-  std::array<View, 2> view_;  // made on first use
+  std::array<std::optional<View>, 2> view_;  // made on first use
 };
 
 }  // namespace snug

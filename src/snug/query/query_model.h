@@ -39,6 +39,7 @@ class QueryModel {
   [[nodiscard]] PatchId patch(std::uint32_t item) const { return patches_[item]; }
   /// Around the surface, in mesh units; infinite where that does not fit a double.
   [[nodiscard]] const Ball& ball() const { return ball_; }
+  [[nodiscard]] const Obb& box() const { return box_; }
   /// Without the surface.
   [[nodiscard]] std::size_t bytes() const;
 
@@ -48,6 +49,7 @@ class QueryModel {
   std::vector<PatchId> patches_;
   BoundingTree tree_;
   Ball ball_;
+  Obb box_;
 };
 
 /// A set in a model's tree: of the tree itself, or of a piece that queries made.

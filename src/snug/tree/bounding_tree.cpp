@@ -89,6 +89,7 @@ BoundingTree::BoundingTree(Volume volume, std::span<const Point3> centres, int t
   }
   blocks_.add(volumes, names);
   ball_ = ball_around(volume, volumes[0]);
+  box_ = box_around(volume, volumes[0]);
 }
 
 std::span<const std::uint32_t> BoundingTree::cluster(std::size_t i) const {

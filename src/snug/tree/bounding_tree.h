@@ -30,6 +30,8 @@ class BoundingTree {
   /// The root is the one lane of this block.
   [[nodiscard]] Lane root() const { return {static_cast<std::uint32_t>(blocks_.size() - 1), 0}; }
   [[nodiscard]] const Ball& ball() const { return ball_; }
+  /// A box around everything.
+  [[nodiscard]] const Obb& box() const { return box_; }
   [[nodiscard]] std::size_t cluster_count() const {
     return (items_.size() + cluster_size - 1) / cluster_size;
   }
@@ -42,6 +44,7 @@ class BoundingTree {
   std::vector<std::uint32_t> items_;
   Blocks blocks_;
   Ball ball_;
+  Obb box_;
 };
 
 }  // namespace snug

@@ -227,4 +227,15 @@ Ball ball_around(Volume volume, const BoundingVolume& set) {
   return {centre, enlarged(reach)};
 }
 
+Obb box_around(Volume volume, const BoundingVolume& set) {
+  if (volume == Volume::obb) return set.box;
+  Obb box;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double middle = (set.lower[k] + set.upper[k]) / 2;
+    box.centre[k] = std::isfinite(middle) ? middle : 0;
+    box.half[k] = enlarged(std::max(set.upper[k] - box.centre[k], box.centre[k] - set.lower[k]));
+  }
+  return box;
+}
+
 }  // namespace snug

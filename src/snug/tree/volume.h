@@ -84,5 +84,7 @@ struct Ball {
   double radius;
 };
 [[nodiscard]] Ball ball_around(Volume volume, const BoundingVolume& set);
+/// A box around a volume.
+[[nodiscard]] Obb box_around(Volume volume, const BoundingVolume& set);
 
 }  // namespace snug
