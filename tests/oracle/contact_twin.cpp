@@ -287,10 +287,16 @@ void find_ball(const Point* hull, Patch& patch) {
   patch.radius = std::sqrt(largest) * (1 + 1e-14);
 }
 
+/// Of all surfaces of a thread: they hold no coordinates.
+Connectivities& known_connectivities() {
+  thread_local Connectivities known;
+  return known;
+}
+
 }  // namespace
 
 struct ContactSurface::Tree {
-  Connectivities connectivities;
+  Connectivities& connectivities = known_connectivities();
   std::vector<Point> points;
   std::vector<Patch> patches;
   std::size_t root_count = 0, root_points = 0;

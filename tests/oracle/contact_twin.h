@@ -27,16 +27,16 @@ struct ContactBounds {
 };
 
 /// A Loop limit surface, or a single segment, for very many questions about distances: a fast sibling of SurfaceTwin that
-/// takes one-sided questions. Patches are split by matrices, one for each connectivity of a net, made once by the masks
-/// of loop_net.h.
+/// takes one-sided questions. Patches are split by matrices, one for each connectivity of a net, made once a thread by
+/// the masks of loop_net.h.
 ///
 /// Rounding:  plain doubles; a net after L splits is off by at most (L + 2) (K + 16) 2^-52 S a coordinate, K the largest
 ///            number of points in a net, S the largest |coordinate|. Every bound is moved outwards by that. A pair's frame
 ///            is that of the first surface without its translation, so far away pairs are as exact as near ones as
 ///            long as the difference of the translations is.
-/// Requires:  coordinates between 1e-140 and 1e140 in size, or zero.
 /// Errors:    std::invalid_argument, see TwinMesh; also if no face has a surface or a placement is not finite.
-/// Cost:      a split some 2 microseconds, a pair of patches about one; each surface is used by one thread.
+/// Requires:  coordinates between 1e-140 and 1e140 in size, or zero; each surface is used by the thread that made it.
+/// Cost:      a split some 4 microseconds, a pair of patches one or two.
 class ContactSurface {
  public:
   static constexpr std::size_t kLargestTree = 60'000;
