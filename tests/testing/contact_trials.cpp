@@ -523,6 +523,64 @@ struct Trials::Pool {
     trial.hair = true;
   }
 
+  /// Two half planes at right angles: z = 0, x >= 0 and x = g, z >= h, wide enough in y.
+  void borders(Trial& trial, Dice& dice) {
+    trial.family = "borders";
+    const double g = dice.one_in(3) ? 0.5 : hair(dice), h = hair(dice);
+    const auto rule = [&] { return dice.one_in(2) ? Boundary::edge_and_corner : Boundary::edge_only; };
+    TwinMesh a = meshes::grid(4, 4, rule()), b = meshes::grid(4, 4, rule());
+    if (dice.one_in(3)) a = meshes::disturbed(std::move(a), 3, 0, dice.random);
+    const double up = dice.below(3) / 8.0;
+    a = changed(a, [&](Point p) { return Point{p[0], p[1] - 2, 0}; });
+    b = changed(b, [&](Point p) { return Point{g, p[0] - 2 + up, p[1] + h}; });
+    const double over = std::max(h, 0.0), off = std::max(-g, 0.0);
+    trial.truth.meet = over == 0 && off == 0 && g < 2 && h > -2;
+    trial.truth.apart = over > 0 || off > 0;
+    trial.truth.crossing = g > 0.2 && g < 2 && h < -0.2 && h > -2;
+    if (trial.truth.meet) trial.truth.upper = 0;
+    trial.truth.lower = std::hypot(over, off) * (1 - stretch);
+    if (g < 2 && h > -2) trial.truth.upper = std::hypot(over, off) * (1 + stretch);
+    trial.pair = keep(std::move(a), std::move(b), dice);
+    place_together(trial, dice);
+    trial.hair = !trial.truth.crossing;
+  }
+
+  /// Extraordinary vertices whose limit points are known, against each other or against a plane: an octahedron with corners
+  /// at 55 / 64 has its tips at 24 / 64, two pyramids over a triangle with apexes at 5 / 8 at 2 / 8.
+  void tips(Trial& trial, Dice& dice) {
+    trial.family = "tips";
+    const double h = hair(dice);
+    TwinMesh a;
+    double tip;
+    if (dice.one_in(2)) {
+      tip = 24 / 64.0;
+      a = changed(meshes::octahedron(), [](Point p) {
+        return Point{p[0] * 55 / 64, p[1] * 55 / 64, p[2] * 55 / 64};
+      });
+    } else {
+      tip = 2 / 8.0;
+      a = changed(meshes::bipyramid(3), [](Point p) { return Point{p[0], p[1], p[2] * 5 / 8}; });
+    }
+    TwinMesh b = dice.one_in(2) ? changed(a,
+                                          [&](Point p) {
+                                            return Point{p[0], p[1], 2 * tip + h - p[2]};
+                                          })
+                                : changed(meshes::grid(4, 4, random_boundary(dice)), [&](Point p) {
+                                    return Point{p[0] - 2, p[1] - 2, tip + h};
+                                  });
+    trial.truth.apart = h > 0;
+    trial.truth.meet = h <= 0 && h > -tip;
+    trial.truth.crossing = h < -0.1 && h > -tip;
+    if (trial.truth.meet) trial.truth.upper = 0;
+    if (h > 0) {
+      trial.truth.lower = h * (1 - stretch);
+      trial.truth.upper = h * (1 + stretch);
+    }
+    trial.pair = keep(std::move(a), std::move(b), dice);
+    place_together(trial, dice);
+    trial.hair = !trial.truth.crossing;
+  }
+
   /// Components of single triangles: with corners as they are, each is its own limit surface.
   void triangles(Trial& trial, Dice& dice) {
     trial.family = "triangles";
@@ -671,9 +729,10 @@ Trial Trials::make(std::uint64_t number) {
   } else {
     using Family = void (Pool::*)(Trial&, Dice&);
     constexpr Family families[] = {
-        &Pool::sheets,     &Pool::graphs,   &Pool::grazing,     &Pool::nested,     &Pool::seams, &Pool::self,
-        &Pool::planes,     &Pool::mirrored, &Pool::triangles,   &Pool::triangles,  &Pool::mixed, &Pool::mixed,
-        &Pool::degenerate, &Pool::planes,   &Pool::shells_near, &Pool::shells_near};
+        &Pool::sheets,      &Pool::graphs,  &Pool::grazing,    &Pool::nested,    &Pool::seams,
+        &Pool::self,        &Pool::planes,  &Pool::mirrored,   &Pool::triangles, &Pool::triangles,
+        &Pool::mixed,       &Pool::mixed,   &Pool::degenerate, &Pool::planes,    &Pool::shells_near,
+        &Pool::shells_near, &Pool::borders, &Pool::tips};
     (pool_.get()->*families[dice.below(std::size(families))])(trial, dice);
     const double size = trial.pair->size();
     constexpr double tolerances[] = {0, 0, 1e-12, 1e-6, 1e-3, 2e-2};
@@ -688,7 +747,7 @@ Trial Trials::make(std::uint64_t number) {
   }
   trial.prove_contact = dice.one_in(3);
   // Where they are a hair apart, or touch, proofs may take for ever.
-  if (trial.hair) trial.budget = dice.one_in(50) ? 20'000 : 200 + dice.below(600);
+  if (trial.hair) trial.budget = dice.one_in(200) ? 20'000 : static_cast<std::uint64_t>(dice.size(30, 1000));
   return trial;
 }
 

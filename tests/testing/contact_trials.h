@@ -64,6 +64,8 @@ struct Truth {
   bool meet = false;                                       ///< there is one
   bool crossing = false;  ///< and the surfaces pass through each other, well away from their borders
   std::optional<bool> nested = {};  ///< of closed surfaces apart: does one lie inside the other?
+  /// Is the distance known, not only some bound of it?
+  [[nodiscard]] bool whole() const { return meet || (lower > 0 && upper <= 2 * lower); }
 };
 
 struct Trial {
@@ -82,8 +84,8 @@ struct Trial {
 /// The trials: the same number, the same trial, whichever were made before.
 ///
 /// Families of which the truth is known: parallel sheets, graphs over a square and the same graphs lifted, graphs that touch
-/// in one point, shells in shells, seams, a surface and itself, planes that cross, mirror images, single triangles with
-/// whole-numbered corners. Of the others the twin finds it: random surfaces, the same moved together until they are between
+/// in one point, shells in shells, seams, a surface and itself, planes that cross, borders of half planes, tips at
+/// extraordinary vertices, mirror images, single triangles with whole-numbered corners. Of the others the twin finds it: random surfaces, the same moved together until they are between
 /// half and twice the tolerance apart, closed shells that cross, needles and flat meshes, several components.
 class Trials {
  public:
