@@ -53,8 +53,8 @@ Placement random_placement(std::mt19937_64& random, double half_room) {
 }
 
 void bench_queries(const Surface& a, const Surface& b, const Options& options) {
-  const CollisionModel model_a(a, 1), model_b(b, 1);
-  CollideScratch scratch(model_a, model_b);
+  const QueryModel model_a(a, {.threads = 1}), model_b(b, {.threads = 1});
+  QueryScratch scratch_a(model_a), scratch_b(model_b);
   const double size = std::max(a.size(), b.size());
   const int count = options.size(5000, 200);
   for (const double room : {6.0, 3.0}) {
@@ -69,8 +69,9 @@ void bench_queries(const Surface& a, const Surface& b, const Options& options) {
         for (int i = 0; i < count; ++i) {
           const Placement place_a = random_placement(random, (room - 1) / 2 * size);
           const Placement place_b = random_placement(random, (room - 1) / 2 * size);
-          within += collide(model_a, place_a, model_b, place_b, {tolerance * size, 0}, scratch).verdict ==
-                    Verdict::within;
+          within +=
+              collide({model_a, scratch_a, place_a}, {model_b, scratch_b, place_b}, {tolerance * size, 0})
+                  .verdict == Verdict::within;
         }
         return within;
       });

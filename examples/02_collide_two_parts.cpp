@@ -20,14 +20,14 @@ int main(int argc, char** argv) {
     const snug::Surface b(snug::read_mesh(argv[2]), snug::SchemeOptions{}, library);
 
     // Trees are made once; the scratch memory is made once a thread and used again by every query.
-    const snug::CollisionModel model_a(a), model_b(b);
-    snug::CollideScratch scratch(model_a, model_b);
+    const snug::QueryModel model_a(a), model_b(b);
+    snug::QueryScratch scratch_a(model_a), scratch_b(model_b);
     const double size = a.size() > b.size() ? a.size() : b.size();
     for (int step = 4; step >= 0; --step) {
       snug::Placement place_b;
       place_b.m[3] = 0.5 * step * size;
       const snug::Collision answer =
-          snug::collide(model_a, {}, model_b, place_b, {.tolerance = 0.001 * size}, scratch);
+          snug::collide({model_a, scratch_a, {}}, {model_b, scratch_b, place_b}, {.tolerance = 0.001 * size});
       std::printf("moved by %g: %s, distance at least %g\n", place_b.m[3], snug::name_of(answer.verdict),
                   answer.lower);
     }

@@ -15,13 +15,14 @@ import tempfile
 # A folder includes itself and folders before it, but for the exceptions.
 ORDER = ["base", "mesh", "scheme", "patch", "basis", "enclose", "tree", "surface", "query", "io", "picture"]
 EXCEPTIONS = {
-    "tree": {"base", "enclose"},  # knows sets and ids, no surfaces
+    "tree": {"base"},  # knows sets and ids, no surfaces
     "io": {"base", "mesh"},
 }
 # What a layer may include besides the C++ standard library and snug; all others: nothing.
 LIBRARIES = {
     "base": ("oneapi/tbb/",),
     "enclose": ("hwy/",),
+    "tree": ("hwy/",),
     "picture": ("png.h",),
 }
 POSIX = ("fcntl.h", "unistd.h", "sys/")

@@ -17,6 +17,7 @@ struct Options : CommonOptions {
   std::string scheme_a, scheme_b;
   std::string place_a, place_b;
   std::string tolerance, margin = "0";
+  bool solid = false;
   bool exit_code = false;
 };
 
@@ -45,6 +46,9 @@ std::string sentence(const Collision& answer, double tolerance, double margin) {
     case Verdict::within:
       return fmt::format("within: two points of the limit surfaces are at most {} apart (asked: {:.6g})",
                          text_at_most(*answer.upper, true), margin + tolerance);
+    case Verdict::intersecting:
+      return answer.lower > 0 ? "intersecting: proved, one solid holds a part of the other"
+                              : "intersecting: proved, the limit surfaces have a point in common";
     case Verdict::undecided:
       break;
   }
@@ -58,6 +62,8 @@ ExitStatus status(Verdict verdict, bool exit_code) {
       return ExitStatus::answered;
     case Verdict::within:
       return exit_code ? ExitStatus::within : ExitStatus::answered;
+    case Verdict::intersecting:
+      return exit_code ? ExitStatus::intersecting : ExitStatus::answered;
     case Verdict::undecided:
       break;
   }
@@ -70,7 +76,7 @@ ExitStatus run(const Options& options) {
     throw UsageError("collide: --bounds control-box is not available; give rows or table");
   std::optional<TableLayout> table;
   if (method == BoundMethod::table) table = table_layout(options);
-  const Length tolerance_length = parse_length(options.tolerance, "--tolerance");
+  const Length tolerance_length = parse_length(options.tolerance, "--tolerance", true);
   const Length margin_length = parse_length(options.margin, "--margin", true);
   Placement place_a, place_b;
   if (!options.place_a.empty()) place_a = parse_placement(options.place_a, "--place-a");
@@ -84,12 +90,21 @@ ExitStatus run(const Options& options) {
 
   ProgressBar bar("colliding", options.quiet);
   const WorkMonitor monitor = bar.monitor();
-  std::optional<CollisionModel> model_a, model_b;
-  naming(options.mesh_a, [&] { model_a.emplace(a, options.threads, monitor, table); });
-  naming(options.mesh_b, [&] { model_b.emplace(b, options.threads, monitor, table); });
-  CollideScratch scratch(*model_a, *model_b);
+  QueryModelOptions model_options;
+  model_options.table = table;
+  model_options.threads = options.threads;
+  CollideOptions wanted;
+  wanted.tolerance = tolerance;
+  wanted.margin = margin;
+  wanted.budget = options.budget;
+  wanted.prove_contact = true;
+  wanted.solid = options.solid;
+  std::optional<QueryModel> model_a, model_b;
+  naming(options.mesh_a, [&] { model_a.emplace(a, model_options, monitor); });
+  naming(options.mesh_b, [&] { model_b.emplace(b, model_options, monitor); });
+  QueryScratch scratch_a(*model_a), scratch_b(*model_b);
   const Collision answer =
-      collide(*model_a, place_a, *model_b, place_b, {tolerance, margin, options.budget}, scratch, monitor);
+      collide({*model_a, scratch_a, place_a}, {*model_b, scratch_b, place_b}, wanted, monitor);
 
   Report report("collide", options);
   report.heads({options.mesh_a, options.mesh_b}, {name_of(a.options().scheme), name_of(b.options().scheme)});
@@ -117,6 +132,8 @@ Command add_collide(CLI::App& app) {
   const auto schemes = CLI::IsMember({"auto", "loop", "catmark", "catmull-clark", "doo-sabin", "midedge"});
   command->add_option("--scheme-a", options->scheme_a, "Scheme of A, before --scheme")->check(schemes);
   command->add_option("--scheme-b", options->scheme_b, "Scheme of B, before --scheme")->check(schemes);
+  command->add_flag("--solid", options->solid,
+                    "Closed surfaces bound solids: one inside of the other intersects it");
   command->add_flag("--exit-code", options->exit_code,
                     "Status 0 separated, 10 within, 11 intersecting, 12 undecided");
   add_common_options(*command, *options);

@@ -22,11 +22,12 @@ int main() {
   const snug::Surface surface(snug::parse_obj(octahedron, "octahedron"), snug::SchemeOptions{}, library);
   const snug::BoundSummary summary = snug::bound(surface, {}, [](const snug::PieceEnclosure&) {});
 
-  const snug::CollisionModel model(surface);
-  snug::CollideScratch scratch(model, model);
+  const snug::QueryModel model(surface);
+  snug::QueryScratch scratch(model), other(model);
   snug::Placement aside;
   aside.m[3] = 2;
-  const snug::Collision answer = snug::collide(model, {}, model, aside, {.tolerance = 0.01}, scratch);
+  const snug::Collision answer =
+      snug::collide({model, scratch, {}}, {model, other, aside}, {.tolerance = 0.01});
   std::printf("consumer: %llu enclosures, %s\n", static_cast<unsigned long long>(summary.count),
               name_of(answer.verdict));
   return summary.count == 8 && answer.verdict == snug::Verdict::separated ? 0 : 1;

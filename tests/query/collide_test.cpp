@@ -10,16 +10,17 @@ namespace {
 
 struct Pair {
   Surface a, b;
-  CollisionModel model_a, model_b;
-  CollideScratch scratch;
+  QueryModel model_a, model_b;
+  QueryScratch scratch_a, scratch_b;
   Pair(const oracle::TwinMesh& x, const oracle::TwinMesh& y, int threads = 1)
       : a(testing::surface_of(x)),
         b(testing::surface_of(y)),
-        model_a(a, threads),
-        model_b(b, threads),
-        scratch(model_a, model_b) {}
+        model_a(a, {.threads = threads}),
+        model_b(b, {.threads = threads}),
+        scratch_a(model_a),
+        scratch_b(model_b) {}
   Collision ask(const Placement& place, const CollideOptions& options) {
-    return collide(model_a, {}, model_b, place, options, scratch);
+    return collide({model_a, scratch_a, {}}, {model_b, scratch_b, place}, options);
   }
 };
 
@@ -108,7 +109,7 @@ TEST(collide, compares_meshes_of_very_different_size) {
 
 TEST(collide, refuses_a_model_without_surface) {
   const Surface nothing = testing::surface_of(oracle::meshes::grid(1, 1, oracle::Boundary::none));
-  EXPECT_THROW(CollisionModel{nothing}, InputError);
+  EXPECT_THROW(QueryModel{nothing}, InputError);
 }
 
 }  // namespace

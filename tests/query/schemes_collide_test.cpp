@@ -21,14 +21,16 @@ namespace {
 struct Body {
   std::string name;
   Surface surface;
-  CollisionModel model;
+  QueryModel model;
   std::vector<Point3> samples;
   double error = 0;    // of each coordinate of a sample
   double spacing = 0;  // about how far a limit point is from the nearest sample
 
   Body(std::string title, ControlMesh mesh, const SchemeOptions& options,
        const std::shared_ptr<BoundLibrary>& library)
-      : name(std::move(title)), surface(std::move(mesh), options, library, 1), model(surface, 1) {}
+      : name(std::move(title)),
+        surface(std::move(mesh), options, library, 1),
+        model(surface, {.threads = 1}) {}
 
   void add(const oracle::Point& p, double e) {
     samples.push_back({p[0], p[1], p[2]});
@@ -134,9 +136,10 @@ void check(const Body& a, const Body& b, const Placement& place_a, const Placeme
   const double slack = 2 * (a.error + b.error) + rounding;
   const double upper = nearest_pair(on_a, on_b).distance + slack;
   const double lower = upper - 2 * slack - a.spacing - b.spacing;
-  CollideScratch scratch(a.model, b.model);
+  QueryScratch scratch_a(a.model), scratch_b(b.model);
   const double tolerance = 1e-3 * size;
-  const Collision answer = collide(a.model, place_a, b.model, place_b, {tolerance, 0}, scratch);
+  const Collision answer =
+      collide({a.model, scratch_a, place_a}, {b.model, scratch_b, place_b}, {tolerance, 0});
   ++counts[name_of(answer.verdict)];
   ASSERT_NE(answer.verdict, Verdict::undecided) << where;
   EXPECT_LE(answer.lower, upper) << where;
@@ -149,7 +152,8 @@ void check(const Body& a, const Body& b, const Placement& place_a, const Placeme
     EXPECT_LE(nearest_sample((*answer.witness)[1], on_b), b.spacing + slack) << where;
   }
   // Two samples are not farther apart than this margin: no enclosure may leave either out.
-  const Collision beyond = collide(a.model, place_a, b.model, place_b, {tolerance, upper}, scratch);
+  const Collision beyond =
+      collide({a.model, scratch_a, place_a}, {b.model, scratch_b, place_b}, {tolerance, upper});
   EXPECT_EQ(beyond.verdict, Verdict::within) << where;
 }
 
@@ -180,8 +184,8 @@ void check_with_itself(const Body& a, const Body& smaller, std::map<std::string,
   for (const double hair : {0.0, 1e-15, 1e-9, 1e-4}) {
     Placement place;
     place.m[3] = hair * size;
-    CollideScratch scratch(a.model, a.model);
-    const Collision answer = collide(a.model, {}, a.model, place, {1e-3 * size, 0}, scratch);
+    QueryScratch scratch(a.model), other(a.model);
+    const Collision answer = collide({a.model, scratch, {}}, {a.model, other, place}, {1e-3 * size, 0});
     ++counts[name_of(answer.verdict)];
     EXPECT_EQ(answer.verdict, Verdict::within) << a.name << ", " << hair;
     EXPECT_EQ(answer.lower, 0) << a.name << ", " << hair;
@@ -265,9 +269,9 @@ TEST(collide, separates_nested_shells_of_every_scheme) {
     const auto library = std::make_shared<BoundLibrary>();
     const Surface a(testing::control_mesh(outer), {scheme}, library, 1),
         b(testing::control_mesh(inner), {scheme}, library, 1);
-    const CollisionModel model_a(a, 1), model_b(b, 1);
-    CollideScratch scratch(model_a, model_b);
-    const Collision answer = collide(model_a, {}, model_b, {}, {1e-4, 0}, scratch);
+    const QueryModel model_a(a, {.threads = 1}), model_b(b, {.threads = 1});
+    QueryScratch scratch_a(model_a), scratch_b(model_b);
+    const Collision answer = collide({model_a, scratch_a, {}}, {model_b, scratch_b, {}}, {1e-4, 0});
     EXPECT_EQ(answer.verdict, Verdict::separated) << name_of(scheme);
     EXPECT_GT(answer.lower, 0) << name_of(scheme);
   }

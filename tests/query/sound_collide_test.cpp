@@ -18,8 +18,8 @@ namespace {
 struct Contestants {
   oracle::TwinMesh twin_a, twin_b;
   Surface a, b;
-  CollisionModel model_a, model_b;
-  CollideScratch scratch;
+  QueryModel model_a, model_b;
+  QueryScratch scratch_a, scratch_b;
   oracle::DistanceTwin distance_twin;
   oracle::SurfaceTwin surface_a, surface_b;
 
@@ -28,9 +28,10 @@ struct Contestants {
         twin_b(std::move(y)),
         a(testing::surface_of(twin_a)),
         b(testing::surface_of(twin_b)),
-        model_a(a, 1),
-        model_b(b, 1),
-        scratch(model_a, model_b),
+        model_a(a, {.threads = 1}),
+        model_b(b, {.threads = 1}),
+        scratch_a(model_a),
+        scratch_b(model_b),
         distance_twin(twin_a, twin_b),
         surface_a(twin_a),
         surface_b(twin_b) {}
@@ -82,7 +83,8 @@ TEST(collide, agrees_with_brute_force) {
     }
     tuned += truth.upper >= 0.5 * tolerance && truth.lower <= 2 * tolerance;
     const CollideOptions options{tolerance, 0};
-    const Collision answer = collide(pair.model_a, place_a, pair.model_b, place_b, options, pair.scratch);
+    const Collision answer =
+        collide({pair.model_a, pair.scratch_a, place_a}, {pair.model_b, pair.scratch_b, place_b}, options);
     ++counts[name_of(answer.verdict)];
     ASSERT_NE(answer.verdict, Verdict::undecided) << trial;
     ASSERT_LE(answer.lower, truth.upper) << trial;
@@ -91,7 +93,8 @@ TEST(collide, agrees_with_brute_force) {
       ASSERT_GT(truth.upper, 0) << "false separated " << trial;
       // Once more with a margin: asked for 1e-3 more than the truth, it must not be called separated.
       const CollideOptions beyond{tolerance, truth.upper * 1.001};
-      const Collision again = collide(pair.model_a, place_a, pair.model_b, place_b, beyond, pair.scratch);
+      const Collision again =
+          collide({pair.model_a, pair.scratch_a, place_a}, {pair.model_b, pair.scratch_b, place_b}, beyond);
       ASSERT_EQ(again.verdict, Verdict::within) << trial;
       ASSERT_GE(*again.upper, truth.lower) << trial;
     }

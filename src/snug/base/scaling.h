@@ -1,6 +1,8 @@
 #pragma once
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 
 #include <snug/base/point.h>
@@ -17,8 +19,8 @@ class PowerOfTwo {
   PowerOfTwo() = default;
   explicit PowerOfTwo(int exponent) : exponent_(exponent) {
     const bool plain = std::abs(exponent) <= 1000;
-    factor_ = plain ? std::ldexp(1.0, exponent) : 0;
-    inverse_factor_ = plain ? std::ldexp(1.0, -exponent) : 0;
+    factor_ = plain ? normal_power(exponent) : 0;
+    inverse_factor_ = plain ? normal_power(-exponent) : 0;
   }
   /// The power that brings `largest` (> 0, finite) into [1, 2); 1 for zero.
   [[nodiscard]] static PowerOfTwo normalising(double largest);
@@ -44,6 +46,11 @@ class PowerOfTwo {
   }
 
  private:
+  // 2^exponent by its bits.
+  static double normal_power(int exponent) {
+    return std::bit_cast<double>(static_cast<std::uint64_t>(1023 + exponent) << 52);
+  }
+
   int exponent_ = 0;
   double factor_ = 1;  // 2^exponent, or 0 where that is near the ends of the range
   double inverse_factor_ = 1;

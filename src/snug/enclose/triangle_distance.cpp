@@ -120,4 +120,26 @@ NearestTriangles nearest(const Triangle& first, const Triangle& second) {
   return {best.on_a, best.on_b, std::max(0.0, gap - 4 * unit_roundoff * reach)};
 }
 
+std::optional<PairOfPoints> middle_of_contact(const Triangle& first, const Triangle& second) {
+  const Point3 origin = first[0];
+  const Corners a{Vector3{}, first[1] - origin, first[2] - origin};
+  const Corners b{second[0] - origin, second[1] - origin, second[2] - origin};
+  PairOfPoints sum;
+  int count = 0;
+  const auto add = [&](Barycentric on_a, Barycentric on_b) {
+    sum.on_a = {sum.on_a.b + on_a.b, sum.on_a.c + on_a.c};
+    sum.on_b = {sum.on_b.b + on_b.b, sum.on_b.c + on_b.c};
+    ++count;
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    double t = 0;
+    Barycentric inside;
+    if (pierces(a, b, i, t, inside)) add(on_edge(i, t), inside);
+    if (pierces(b, a, i, t, inside)) add(inside, on_edge(i, t));
+  }
+  if (count == 0) return std::nullopt;
+  const double share = 1.0 / count;
+  return PairOfPoints{{share * sum.on_a.b, share * sum.on_a.c}, {share * sum.on_b.b, share * sum.on_b.c}};
+}
+
 }  // namespace snug

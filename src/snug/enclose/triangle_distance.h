@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <snug/enclose/triangle.h>
 
 namespace snug {
@@ -21,5 +23,14 @@ struct NearestTriangles {
 /// Cost:      about half a microsecond.
 /// Source:    [Ericson05, sec. 5.1.9, 5.1.10]; differs: a supporting slab certifies the result.
 [[nodiscard]] NearestTriangles nearest(const Triangle& a, const Triangle& b);
+
+/// A point of each of two triangles.
+struct PairOfPoints {
+  Barycentric on_a, on_b;
+};
+
+/// The middle of the segment in which two triangles cut each other, in double precision; nothing if they do not, or lie in
+/// one plane.
+[[nodiscard]] std::optional<PairOfPoints> middle_of_contact(const Triangle& a, const Triangle& b);
 
 }  // namespace snug

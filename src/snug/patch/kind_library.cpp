@@ -120,6 +120,52 @@ Kind::Kind(KindLibrary& library, KindId id, const KindKey& key)
   passing_ = is_passing(around, key);
 }
 
+std::size_t Kind::inner_count() const {
+  if (!key_.plain()) return 0;
+  return !is_primal(key_.scheme) ? 1 : key_.scheme == Scheme::loop ? 3 : 4;
+}
+
+namespace {
+
+// Upper bound over the patch of the function with these control values, which are accurate to far less than what is added
+// in the end: in x, as stencils are applied to points.
+double largest_value(const Kind& kind, const std::vector<Vector3>& values, unsigned levels) {
+  double largest = 0;
+  if (kind.polynomial()) {
+    for (std::size_t r = 0; r < kind.bezier().row_count(); ++r) {
+      largest = std::max(largest, kind.bezier().apply<Vector3>(r, values).x);
+    }
+    return largest;
+  }
+  if (levels == 0) {
+    for (const Vector3& value : values) largest = std::max(largest, value.x);
+    return largest;
+  }
+  std::vector<Vector3> child_values;
+  for (const KindChild& child : kind.children()) {
+    child_values.resize(child.stencils.row_count());
+    for (std::size_t r = 0; r < child_values.size(); ++r) {
+      child_values[r] = child.stencils.apply<Vector3>(r, values);
+    }
+    largest = std::max(largest, largest_value(*child.kind, child_values, levels - 1));
+  }
+  return largest;
+}
+
+}  // namespace
+
+double Kind::outer_weight() const {
+  SNUG_EXPECT(!key_.polygon);
+  std::call_once(outer_weight_made_, [&] {
+    const std::size_t inner = inner_count();
+    if (inner == 0 || crowded()) return;
+    std::vector<Vector3> values(control_count_, Vector3{1, 0, 0});
+    std::fill_n(values.begin(), inner, Vector3{});
+    outer_weight_ = std::min(1.0, largest_value(*this, values, 4) + 1e-9);
+  });
+  return outer_weight_;
+}
+
 const Stencils& Kind::corner_limits() const {
   SNUG_EXPECT(!key_.polygon);
   std::call_once(limits_made_, [&] {

@@ -60,6 +60,15 @@ class Kind {
   /// Two tangent rows a corner, those of corner i at 2 i and 2 i + 1 (scheme/limits.h).
   [[nodiscard]] const Stencils& corner_tangents() const;
 
+  /// The control points 0 to inner_count() - 1 are the corners of the face, or the vertex, that the patch belongs to; none
+  /// where what surrounds the patch needs details.
+  [[nodiscard]] std::size_t inner_count() const;
+  /// Upper bound, over the patch, of the sum of the weights of all other control points: the patch lies in the sum of
+  /// 1 - outer_weight() times the hull of the inner ones and outer_weight() times the hull of all.
+  /// Requires:  a patch, no polygon.
+  /// Cost:      made on first use by some splits.
+  [[nodiscard]] double outer_weight() const;
+
   /// The four children of a patch; 0 to 2 keep that corner, 3 is the middle one. Of a polygon with n corners 2 n: at
   /// corner k the half of its quad that begins there, then the other one, which begins at the centre.
   [[nodiscard]] const std::vector<KindChild>& children() const;
@@ -71,7 +80,8 @@ class Kind {
   bool passing_ = false;
   std::size_t control_count_ = 0;
   std::optional<PolynomialForm> form_;
-  mutable std::once_flag limits_made_, tangents_made_, children_made_;
+  mutable std::once_flag limits_made_, tangents_made_, children_made_, outer_weight_made_;
+  mutable double outer_weight_ = 1;
   mutable Stencils corner_limits_, corner_tangents_;
   mutable std::vector<KindChild> children_;
 };

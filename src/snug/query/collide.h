@@ -3,55 +3,25 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
-#include <snug/base/motion.h>
-#include <snug/surface/refinement.h>
-#include <snug/tree/obb_tree.h>
+#include <snug/query/pair_search.h>
 
 namespace snug {
 
 enum class Verdict : std::uint8_t {
-  separated,  ///< proved: the limit surfaces are farther apart than the margin
-  within,     ///< two witness points on the limit surfaces are at most margin + tolerance apart
-  undecided,  ///< neither within the budget, or above the noise of rounding
+  separated,     ///< proved: the limit surfaces are farther apart than the margin
+  within,        ///< two witness points on the limit surfaces are at most margin + tolerance apart
+  intersecting,  ///< proved: the limit surfaces have a point in common, or as solids one holds some of the other
+  undecided,     ///< none of these within the budget, or above the noise of rounding
 };
 [[nodiscard]] const char* name_of(Verdict verdict);
 
-/// A surface made ready for queries: offset triangles of its patches, from hull rows or from the tables of a
-/// layout, and a tree over them. Immutable.
-///
-/// Cost:      about 10 microseconds a patch, n log n for the tree; some 500 bytes a patch.
-class CollisionModel {
- public:
-  /// Requires:  the surface outlives the model.
-  /// Errors:    InputError (refused) if no face has a patch.
-  explicit CollisionModel(const Surface& surface, int threads = 0, const WorkMonitor& monitor = {},
-                          std::optional<TableLayout> table = {});
-
-  [[nodiscard]] const Surface& surface() const { return *surface_; }
-  [[nodiscard]] std::optional<TableLayout> table() const { return table_; }
-  [[nodiscard]] const ObbTree& tree() const { return tree_; }
-  /// Patch and offset triangle of a leaf.
-  [[nodiscard]] PatchId patch(std::uint32_t leaf) const { return patches_[leaf]; }
-  [[nodiscard]] const OffsetTriangle& offset(std::uint32_t leaf) const { return offsets_[leaf]; }
-
- private:
-  const Surface* surface_;
-  std::optional<TableLayout> table_;
-  std::vector<PatchId> patches_;
-  std::vector<OffsetTriangle> offsets_;
-  ObbTree tree_;
-};
-
 struct CollideOptions {
-  double tolerance = 0;              ///< > 0, mesh units
+  double tolerance = 0;              ///< >= 0, mesh units; 0: nothing but proofs of contact and of separation
   double margin = 0;                 ///< >= 0, mesh units
-  std::uint64_t budget = 1'000'000;  ///< most splits of a pair
-};
-
-struct CollideStats {
-  std::uint64_t box_tests = 0, triangle_tests = 0, evaluations = 0, splits = 0;
+  std::uint64_t budget = 1'000'000;  ///< most pieces opened
+  bool prove_contact = false;        ///< where surfaces are within, try to prove that they intersect
+  bool solid = false;                ///< closed surfaces are solids: one inside of the other intersects it
 };
 
 /// Answer to "do these surfaces touch?", in mesh units and world coordinates.
@@ -59,34 +29,27 @@ struct Collision {
   Verdict verdict = Verdict::undecided;
   double lower = 0;                              ///< proved lower bound of the distance
   std::optional<double> upper;                   ///< proved upper bound, where a pair of points was evaluated
-  std::optional<std::array<Point3, 2>> witness;  ///< those points, on A and on B
+  std::optional<std::array<Point3, 2>> witness;  ///< two points as near as were found, on A and on B
   /// Upper bound, a coordinate, of how far a witness is from the limit point it stands for.
   double witness_error = 0;
-  CollideStats stats;
-};
-
-/// Scratch memory of queries between two models, to be used again by the next one: one a thread.
-struct CollideScratch {
-  Refinement a, b;
-  CollideScratch(const CollisionModel& model_a, const CollisionModel& model_b)
-      : a(model_a.surface(), model_a.table()), b(model_b.surface(), model_b.table()) {}
+  QueryStats stats;
 };
 
 /// Do two placed limit surfaces touch?
 ///
-/// A pair of pieces is (a) dropped once its offset triangles are farther apart than the margin; (b) a witness
-/// if the limit points at the nearest parameters of its base triangles are near enough; (c) else its larger
-/// piece is split, below half the tolerance too.
+/// Both trees are opened from their roots on, deepest overlap first. A pair of pieces is (a) dropped once sets around them
+/// are farther apart than the margin; (b) a witness if the limit points at the nearest parameters of its base triangles are
+/// near enough, or a proof that one crosses the other; (c) else its larger piece is split, below half the tolerance too.
 ///
-/// Guarantee: `separated` means distance > margin, `within` means distance <= margin + tolerance, both in
-///            exact arithmetic for these very doubles; lower and upper bound the distance. Where both
-///            verdicts are true the choice depends on the input alone, not on threads or earlier queries.
-/// Requires:  rigid placements (require_rigid); tolerance > 0.
-/// Errors:    InputError if a result does not fit a double; Interrupted.
-/// Cost:      a few microseconds for surfaces apart, tens of microseconds in contact.
+/// Guarantee: `separated` means distance > margin, `within` distance <= margin + tolerance, `intersecting` distance = 0 (or
+///            solids that overlap), all in exact arithmetic for these very doubles; lower and upper bound the distance of
+///            the surfaces. Where several verdicts are true the choice depends on the input alone, not on threads or
+///            earlier queries.
+/// Requires:  rigid placements (require_rigid); tolerance and margin >= 0; models with the same sort of volume.
+/// Errors:    InputError if a result does not fit a double, or with `solid` if a surface is not closed; Interrupted.
+/// Cost:      some 50 ns for surfaces far apart, microseconds in contact (bench/results/collide.txt).
 /// Source:    [Wu05, sec. 5.1]; differs: the printed pair test is not sound, see derivations/leaf_rule.md.
-[[nodiscard]] Collision collide(const CollisionModel& a, const Placement& place_a, const CollisionModel& b,
-                                const Placement& place_b, const CollideOptions& options,
-                                CollideScratch& scratch, const WorkMonitor& monitor = {});
+[[nodiscard]] Collision collide(const PlacedModel& a, const PlacedModel& b, const CollideOptions& options,
+                                const WorkMonitor& monitor = {});
 
 }  // namespace snug

@@ -1,8 +1,11 @@
 #include <snug/surface/refinement.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <snug/base/contract.h>
+#include <snug/base/rounding.h>
 #include <snug/enclose/table_triangle.h>
 #include <snug/patch/evaluate.h>
 
@@ -26,10 +29,56 @@ Piece make_piece(BoundLibrary& library, PatchId root, Patch patch, HullPoints& s
 Refinement::Refinement(const Surface& surface, std::optional<TableLayout> table)
     : surface_(surface), table_(table), roots_(surface.patch_count()) {}
 
+Vector3 unit_normal(const Triangle& triangle) {
+  const Vector3 a = triangle[1] - triangle[0], b = triangle[2] - triangle[0];
+  // Sides of about 1, so that the product neither underflows nor overflows.
+  const double size = std::max(max_abs(a), max_abs(b));
+  if (!(size > 0) || !std::isfinite(1 / size)) return {};
+  const Vector3 normal = cross((1 / size) * a, (1 / size) * b);
+  const double area = length(normal);
+  if (!(area > 1e-12)) return {};
+  return (1 / area) * normal;
+}
+
+namespace {
+
+// Of the points that the piece was fitted to.
+Heights heights_of(const Piece& piece, const HullPoints& points) {
+  const Vector3 normal = unit_normal(piece.offset.base);
+  const Vector3 from = piece.offset.base[0] - points.origin;
+  const kernels::Range range = kernels::heights(points.coordinates(), from, normal);
+  // Differences to `from`, which is rounded once, and a dot product of a vector of length 1.
+  const double error =
+      enlarged(2 * spatial_error(points.error) + gamma_bound(8) * 2 * (points.largest + max_abs(from))) +
+      8 * underflow_error;
+  return {rounded_down(range.lower - error), rounded_up(range.upper + error)};
+}
+
+}  // namespace
+
+void Refinement::add(PatchId root, Patch patch) {
+  pieces_.push_back(make_piece(surface_.library(), root, std::move(patch), scratch_, table_));
+  const Piece& piece = pieces_.back();
+  const double radius = enlarged(piece.offset.radius) + 64 * unit_roundoff;  // the normal is off by roundings
+  Heights heights = table_ ? Heights{-radius, radius} : heights_of(piece, scratch_);
+  if (!std::isfinite(radius) || !std::isfinite(heights.lower) || !std::isfinite(heights.upper)) {
+    heights = {-INFINITY, INFINITY};
+  }
+  heights_.push_back(heights);
+  bytes_ += sizeof(Piece) + sizeof(Heights) + piece.patch.points.capacity() * sizeof(Vector3);
+}
+
+void Refinement::clear() {
+  std::fill(roots_.begin(), roots_.end(), PieceId());
+  pieces_.clear();
+  heights_.clear();
+  bytes_ = 0;
+}
+
 PieceId Refinement::root(PatchId patch) {
   PieceId& id = roots_[patch.index()];
   if (!id.valid()) {
-    pieces_.push_back(make_piece(surface_.library(), patch, surface_.patch(patch), scratch_, table_));
+    add(patch, surface_.patch(patch));
     id = PieceId(pieces_.size() - 1);
   }
   return id;
@@ -42,12 +91,11 @@ bool Refinement::can_split(PieceId id) const {
 
 PieceId Refinement::split(PieceId id) {
   if (pieces_[id.index()].first_child.valid()) return pieces_[id.index()].first_child;
-  SNUG_EXPECT(can_split(id));
+  SNUG_EXPECT(pieces_[id.index()].patch.path.level() < PiecePath::max_level);
   const PieceId first(pieces_.size());
   for (unsigned child = 0; child < 4; ++child) {
     const Piece& parent = pieces_[id.index()];
-    pieces_.push_back(
-        make_piece(surface_.library(), parent.root, snug::split(parent.patch, child), scratch_, table_));
+    add(parent.root, snug::split(parent.patch, child));
   }
   pieces_[id.index()].first_child = first;
   return first;

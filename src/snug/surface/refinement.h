@@ -23,12 +23,21 @@ struct Piece {
   PieceId first_child;  ///< of four in a row; invalid while the piece is whole
 };
 
+/// The normal of a triangle, of length 1 up to a few roundings; zero if it has none.
+[[nodiscard]] Vector3 unit_normal(const Triangle& triangle);
+
+/// Bounds of dot(unit_normal(piece.offset.base), x - piece.offset.base[0]) over the piece, rounding included: narrower than
+/// its radius, which must cover what bulges sideways too.
+struct Heights {
+  double lower, upper;
+};
+
 /// A piece with its offset triangle, made from a patch: fitted to hull rows, for which `scratch` is used, or
 /// from the tables of a layout.
 [[nodiscard]] Piece make_piece(BoundLibrary& library, PatchId root, Patch patch, HullPoints& scratch,
                                std::optional<TableLayout> table = {});
 
-/// Patches of one surface, split lazily and in place. Scratch memory of a query: one a thread.
+/// Patches of one surface, split lazily and in place, pieces with their heights. Scratch memory of a query: one a thread.
 ///
 /// Guarantee: what it returns depends on the surface alone, not on the order of calls.
 /// Cost:      a piece about 1 KB; a split four small products and fits. Memory grows with what was touched; a
@@ -43,20 +52,28 @@ class Refinement {
   /// Requires:  surface().has_patch(patch).
   [[nodiscard]] PieceId root(PatchId patch);
   [[nodiscard]] const Piece& operator[](PieceId id) const { return pieces_[id.index()]; }
+  [[nodiscard]] const Heights& heights(PieceId id) const { return heights_[id.index()]; }
   /// First of the four children, making them if need be.
-  /// Requires:  can_split(id).
+  /// Requires:  below the last level, PiecePath::max_level.
   [[nodiscard]] PieceId split(PieceId id);
   /// False at the last level, and where rounding alone makes up the radius: children would be no smaller.
   [[nodiscard]] bool can_split(PieceId id) const;
 
   /// Pieces made so far.
   [[nodiscard]] std::size_t size() const { return pieces_.size(); }
+  [[nodiscard]] std::size_t bytes() const { return bytes_ + roots_.capacity() * sizeof(PieceId); }
+  /// Forgets all pieces.
+  void clear();
 
  private:
+  void add(PatchId root, Patch patch);
+
   const Surface& surface_;
   std::optional<TableLayout> table_;
   std::vector<PieceId> roots_;
   std::deque<Piece> pieces_;
+  std::vector<Heights> heights_;
+  std::size_t bytes_ = 0;  // of pieces
   HullPoints scratch_;
 };
 

@@ -119,6 +119,15 @@ void Surface::control_vertices(PatchId p, std::vector<VertexId>& out) const {
   snug::control_vertices(topology_, start + first(p), kind(p).key(), out);
 }
 
+Point3 Surface::middle(PatchId p) const {
+  const std::uint32_t owner = place(p).owner;
+  if (!is_primal(options_.scheme)) return scaled_[owner];
+  const std::span<const VertexId> corners = topology_.face(FaceId(owner));
+  Vector3 sum;
+  for (const VertexId v : corners) sum = sum + (scaled_[v.index()] - Point3{});
+  return Point3{} + (1.0 / static_cast<double>(corners.size())) * sum;
+}
+
 Patch Surface::patch(PatchId p) const {
   thread_local std::vector<VertexId> control;
   control_vertices(p, control);

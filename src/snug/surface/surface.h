@@ -84,6 +84,9 @@ class Surface {
   /// The control vertices of a patch, or of its polygon, in the order of its kind.
   /// Requires:  has_patch(p).
   void control_vertices(PatchId p, std::vector<VertexId>& out) const;
+  [[nodiscard]] const Point3& scaled_point(VertexId v) const { return scaled_[v.index()]; }
+  /// The middle of its owner's corners, in scaled units.
+  [[nodiscard]] Point3 middle(PatchId p) const;
   /// The whole patch, in scaled units.
   /// Requires:  has_patch(p).
   /// Cost:      a walk around its corners; of a polygon a product with its stencils.

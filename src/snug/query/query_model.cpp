@@ -1,0 +1,217 @@
+#include <snug/query/query_model.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <snug/base/contract.h>
+#include <snug/base/error.h>
+#include <snug/base/rounding.h>
+#include <snug/surface/control_hull.h>
+
+namespace snug {
+namespace {
+
+constexpr std::uint32_t none = UINT32_MAX;
+constexpr std::size_t most_bytes = std::size_t{256} << 20;
+
+// A piece: its offset triangle between its heights.
+class EnclosedPiece final : public Enclosed {
+ public:
+  EnclosedPiece(const Piece& piece, const Heights& heights)
+      : base_(piece.offset.base),
+        radius_(piece.offset.radius),
+        heights_(heights),
+        normal_(unit_normal(base_)) {}
+
+  [[nodiscard]] Extent extent(const Vector3& direction) const override {
+    Extent all{INFINITY, -INFINITY};
+    double largest = 0;
+    for (const Point3& p : base_) {
+      const double height = dot(direction, p - Point3{});
+      all.lower = std::min(all.lower, height);
+      all.upper = std::max(all.upper, height);
+      largest = std::max(largest, max_abs(p - Point3{}));
+    }
+    const double error = enlarged(16 * unit_roundoff * largest) + 8 * underflow_error;
+    if (direction == normal_) {
+      const double from = dot(direction, base_[0] - Point3{});
+      return {from + heights_.lower - error, from + heights_.upper + error};
+    }
+    const double reach = enlarged(radius_ * length(direction));
+    return {all.lower - reach - error, all.upper + reach + error};
+  }
+  [[nodiscard]] std::span<const Point3> points() const override { return base_; }
+
+  [[nodiscard]] BoundingVolume fitted(Volume volume) const {
+    if (volume != Volume::obb || normal_ == Vector3{}) return fit(volume, *this);
+    // Along the longest edge.
+    std::size_t longest = 0;
+    double size_sq = -1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double edge_sq = length_sq(base_[(k + 1) % 3] - base_[k]);
+      if (edge_sq > size_sq) {
+        size_sq = edge_sq;
+        longest = k;
+      }
+    }
+    Vector3 along = base_[(longest + 1) % 3] - base_[longest];
+    along = (1 / max_abs(along)) * along;
+    along = (1 / length(along)) * along;
+    along = along - dot(along, normal_) * normal_;
+    along = (1 / length(along)) * along;
+    BoundingVolume result;
+    result.box = fit({along, cross(normal_, along), normal_}, *this);
+    return result;
+  }
+
+ private:
+  Triangle base_;
+  double radius_;
+  Heights heights_;
+  Vector3 normal_;
+};
+
+// Several of them.
+class EnclosedPieces final : public Enclosed {
+ public:
+  void add(const Piece& piece, const Heights& heights) {
+    pieces_.emplace_back(piece, heights);
+    points_.insert(points_.end(), piece.offset.base.begin(), piece.offset.base.end());
+  }
+  [[nodiscard]] Extent extent(const Vector3& direction) const override {
+    Extent all{INFINITY, -INFINITY};
+    for (const EnclosedPiece& piece : pieces_) {
+      const Extent one = piece.extent(direction);
+      all = {std::min(all.lower, one.lower), std::max(all.upper, one.upper)};
+      if (std::isnan(one.lower) || std::isnan(one.upper)) return {-INFINITY, INFINITY};
+    }
+    return all;
+  }
+  [[nodiscard]] std::span<const Point3> points() const override { return points_; }
+
+ private:
+  std::vector<EnclosedPiece> pieces_;
+  std::vector<Point3> points_;
+};
+
+BoundingVolume tight_volume(const Surface& surface, std::span<const PatchId> patches,
+                            const QueryModelOptions& options) {
+  Refinement refinement(surface, options.table);
+  EnclosedPieces pieces;
+  for (const PatchId p : patches) {
+    const PieceId id = refinement.root(p);
+    pieces.add(refinement[id], refinement.heights(id));
+  }
+  return fit(options.volume, pieces);
+}
+
+std::vector<PatchId> existing_patches(const Surface& surface) {
+  std::vector<PatchId> patches;
+  patches.reserve(surface.patch_count());
+  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+    if (surface.has_patch(PatchId(p))) patches.emplace_back(p);
+  }
+  if (patches.empty()) {
+    throw InputError(InputProblem::refused,
+                     "nothing here has a limit surface: all touches the boundary or is a hole; take another "
+                     "boundary rule");
+  }
+  return patches;
+}
+
+BoundingTree make_tree(const Surface& surface, std::span<const PatchId> patches,
+                       const QueryModelOptions& options, const WorkMonitor& monitor) {
+  std::vector<Point3> centres;
+  centres.reserve(patches.size());
+  for (const PatchId p : patches) centres.push_back(surface.middle(p));
+  return {options.volume, centres, options.threads, [&](std::span<const std::uint32_t> items) {
+            monitor.checkpoint();
+            thread_local ControlHull hull;
+            std::array<PatchId, BoundingTree::cluster_size> members;
+            for (std::size_t i = 0; i < items.size(); ++i) members[i] = patches[items[i]];
+            const std::span<const PatchId> here = std::span(members).first(items.size());
+            if (options.tight) return tight_volume(surface, here, options);
+            hull.assign(surface, here);
+            return fit(options.volume, hull);
+          }};
+}
+
+}  // namespace
+
+QueryModel::QueryModel(const Surface& surface, const QueryModelOptions& options, const WorkMonitor& monitor)
+    : surface_(&surface),
+      table_(options.table),
+      patches_(existing_patches(surface)),
+      tree_(make_tree(surface, patches_, options, monitor)) {}
+
+std::size_t QueryModel::bytes() const { return patches_.capacity() * sizeof(PatchId) + tree_.bytes(); }
+
+QueryScratch::QueryScratch(const QueryModel& model)
+    : model_(&model),
+      refinement_(model.surface(), model.table()),
+      blocks_(model.tree().blocks().volume()),
+      cluster_blocks_(model.tree().cluster_count(), none) {}
+
+std::size_t QueryScratch::bytes() const {
+  return refinement_.bytes() + blocks_.bytes() +
+         (cluster_blocks_.capacity() + piece_blocks_.capacity() + stamps_.capacity()) * sizeof(std::uint32_t);
+}
+
+void QueryScratch::begin() {
+  touched_ = 0;
+  if (++query_ == 0 || bytes() > most_bytes) {
+    refinement_.clear();
+    blocks_.clear();
+    std::fill(cluster_blocks_.begin(), cluster_blocks_.end(), none);
+    piece_blocks_.clear();
+    stamps_.clear();
+    query_ = 1;
+  }
+}
+
+std::uint32_t QueryScratch::touch(std::uint32_t block) {
+  if (stamps_[block] != query_) {
+    stamps_[block] = query_;
+    ++touched_;
+  }
+  return block;
+}
+
+std::uint32_t QueryScratch::add_block(std::span<const PieceId> pieces) {
+  std::array<BoundingVolume, Blocks::lanes> volumes;
+  std::array<std::uint32_t, Blocks::lanes> names;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    volumes[i] =
+        EnclosedPiece(refinement_[pieces[i]], refinement_.heights(pieces[i])).fitted(blocks_.volume());
+    names[i] = pieces[i].value();
+  }
+  stamps_.push_back(0);
+  return blocks_.add(std::span(volumes).first(pieces.size()), std::span(names).first(pieces.size()));
+}
+
+QueryScratch::Opened QueryScratch::open(Node node) {
+  std::array<PieceId, Blocks::lanes> pieces;
+  if (node.piece) {
+    const std::size_t id = piece(node).index();
+    if (id >= piece_blocks_.size()) piece_blocks_.resize(refinement_.size(), none);
+    if (piece_blocks_[id] == none) {
+      const PieceId first = refinement_.split(PieceId(id));
+      for (std::size_t i = 0; i < 4; ++i) pieces[i] = PieceId(first.index() + i);
+      piece_blocks_[id] = add_block(std::span(pieces).first(4));
+    }
+    return {touch(piece_blocks_[id]), true};
+  }
+  const std::uint32_t name = model_->tree().blocks().name(node.lane());
+  if ((name & BoundingTree::cluster_bit) == 0) return {name, false};
+  const std::size_t cluster = name & ~BoundingTree::cluster_bit;
+  if (cluster_blocks_[cluster] == none) {
+    const std::span<const std::uint32_t> items = model_->tree().cluster(cluster);
+    for (std::size_t i = 0; i < items.size(); ++i) pieces[i] = refinement_.root(model_->patch(items[i]));
+    cluster_blocks_[cluster] = add_block(std::span(pieces).first(items.size()));
+  }
+  return {touch(cluster_blocks_[cluster]), true};
+}
+
+}  // namespace snug

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <snug/base/motion.h>
+#include <snug/base/progress.h>
+#include <snug/surface/refinement.h>
+#include <snug/tree/bounding_tree.h>
+
+namespace snug {
+
+struct QueryModelOptions {
+  Volume volume = Volume::obb;
+  std::optional<TableLayout> table{};  ///< pieces bounded by the dissertation's tables instead of hull rows
+  /// Bound all patches when the model is made, some microseconds each: a tighter tree, for models that are asked thousands
+  /// of times. Otherwise the tree is over the control net alone.
+  bool tight = false;
+  int threads = 0;  ///< that make it
+};
+
+/// A surface made ready for queries: a tree over its control net. Patches are bounded, and split, where and when a query
+/// comes near them (QueryScratch). Immutable; may be read by many threads.
+///
+/// Cost:      about 0.3 microseconds and 15 bytes a patch; see bench/results/collide.txt.
+class QueryModel {
+ public:
+  /// Requires:  the surface outlives the model.
+  /// Errors:    InputError (refused) if no face has a patch.
+  explicit QueryModel(const Surface& surface, const QueryModelOptions& options = {},
+                      const WorkMonitor& monitor = {});
+
+  [[nodiscard]] const Surface& surface() const { return *surface_; }
+  [[nodiscard]] std::optional<TableLayout> table() const { return table_; }
+  [[nodiscard]] const BoundingTree& tree() const { return tree_; }
+  /// The patch that the tree calls item i.
+  [[nodiscard]] PatchId patch(std::uint32_t item) const { return patches_[item]; }
+  /// Without the surface.
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  const Surface* surface_;
+  std::optional<TableLayout> table_;
+  std::vector<PatchId> patches_;
+  BoundingTree tree_;
+};
+
+/// A set in a model's tree: of the tree itself, or of a piece that queries made.
+struct Node {
+  std::uint32_t block;
+  std::uint8_t of_block;
+  bool piece;
+  [[nodiscard]] Lane lane() const { return {block, of_block}; }
+};
+
+/// What queries have touched of one model: its pieces, and their sets in blocks. Scratch memory, one a thread.
+///
+/// Guarantee: a node opens to the same sets whatever came before: no answer depends on earlier queries.
+/// Cost:      about 1 KB a piece that was touched; dropped between two queries when it has grown beyond 256 MiB.
+class QueryScratch {
+ public:
+  /// Requires:  the model outlives the scratch.
+  explicit QueryScratch(const QueryModel& model);
+
+  [[nodiscard]] const QueryModel& model() const { return *model_; }
+  [[nodiscard]] std::size_t bytes() const;
+
+  /// For queries: to be called first.
+  void begin();
+  [[nodiscard]] Node root() const { return {model_->tree().root().block, 0, false}; }
+  [[nodiscard]] const Blocks& blocks(bool of_pieces) const {
+    return of_pieces ? blocks_ : model_->tree().blocks();
+  }
+  [[nodiscard]] float size_of(Node node) const { return blocks(node.piece).size_of(node.lane()); }
+  [[nodiscard]] PieceId piece(Node node) const { return PieceId(blocks_.name(node.lane())); }
+  [[nodiscard]] Refinement& pieces() { return refinement_; }
+  /// False for a piece that cannot be split.
+  [[nodiscard]] bool can_open(Node node) const { return !node.piece || refinement_.can_split(piece(node)); }
+  /// The block that a node opens to, which is made if need be; of pieces or of the tree.
+  struct Opened {
+    std::uint32_t block;
+    bool piece;
+  };
+  /// Requires:  can_open(node).
+  [[nodiscard]] Opened open(Node node);
+  /// Different blocks of pieces that were opened since begin().
+  [[nodiscard]] std::size_t touched() const { return touched_; }
+
+ private:
+  std::uint32_t add_block(std::span<const PieceId> pieces);
+  std::uint32_t touch(std::uint32_t block);
+
+  const QueryModel* model_;
+  Refinement refinement_;
+  Blocks blocks_;
+  std::vector<std::uint32_t> cluster_blocks_,
+      piece_blocks_;                   // of clusters and pieces; `none` where not opened
+  std::vector<std::uint32_t> stamps_;  // of blocks: the query that opened them last
+  std::uint32_t query_ = 0;
+  std::size_t touched_ = 0;
+};
+
+/// A model where a query is to see it.
+struct PlacedModel {
+  const QueryModel& model;
+  QueryScratch& scratch;  ///< of this model and of no other one in the same query
+  Placement placement;
+};
+
+}  // namespace snug

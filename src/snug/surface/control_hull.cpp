@@ -1,0 +1,85 @@
+#include <snug/surface/control_hull.h>
+
+#include <algorithm>
+
+#include <snug/base/rounding.h>
+
+namespace snug {
+
+void ControlHull::assign(const Surface& surface, std::span<const PatchId> patches) {
+  const Topology& topology = surface.topology();
+  numbers_.begin(topology.vertex_count());
+  points_.clear();
+  corners_.clear();
+  ring_.clear();
+  ring_ends_.clear();
+  patch_.clear();
+  patch_ends_.clear();
+  weights_.clear();
+  largest_ = 0;
+  const bool primal = is_primal(surface.options().scheme);
+  const auto add = [&](VertexId v) {
+    const std::uint32_t number = numbers_.number(v.index());
+    if (number == points_.size()) points_.push_back(surface.scaled_point(v));
+    return number;
+  };
+  for (const PatchId p : patches) {
+    const std::uint32_t owner = surface.place(p).owner;
+    const auto add_corner = [&](VertexId v) {
+      patch_.push_back(add(v));
+      if (patch_.back() == corners_.size()) corners_.push_back(v);
+    };
+    if (primal) {
+      for (const VertexId v : topology.face(FaceId(owner))) add_corner(v);
+    } else {
+      add_corner(VertexId(owner));
+    }
+    patch_ends_.push_back(static_cast<std::uint32_t>(patch_.size()));
+    weights_.push_back(surface.polygon_of(p) ? 1.0 : surface.kind(p).outer_weight());
+  }
+  inner_count_ = points_.size();
+  for (const VertexId corner : corners_) {
+    topology.for_each_fan(corner, [&](HalfEdge start) {
+      topology.walk_fan(start, [&](HalfEdge h) {
+        // The vertices of this face that the next one does not have: all but the last, where the fan goes on.
+        const HalfEdge last = topology.prev(h);
+        for (HalfEdge g = topology.next(h); g != last; g = topology.next(g))
+          ring_.push_back(add(topology.from(g)));
+        if (topology.ccw(h) == no_half_edge) ring_.push_back(add(topology.from(last)));
+      });
+    });
+    ring_ends_.push_back(static_cast<std::uint32_t>(ring_.size()));
+  }
+  for (const Point3& p : points_) largest_ = std::max(largest_, max_abs(p - Point3{}));
+}
+
+Enclosed::Extent ControlHull::extent(const Vector3& direction) const {
+  heights_.resize(points_.size());
+  for (std::size_t i = 0; i < points_.size(); ++i) heights_[i] = dot(direction, points_[i] - Point3{});
+  rings_.resize(corners_.size());
+  std::size_t at = 0;
+  for (std::size_t c = 0; c < corners_.size(); ++c) {
+    Extent& ring = rings_[c] = {heights_[c], heights_[c]};
+    for (; at < ring_ends_[c]; ++at) {
+      ring.lower = std::min(ring.lower, heights_[ring_[at]]);
+      ring.upper = std::max(ring.upper, heights_[ring_[at]]);
+    }
+  }
+  Extent all{INFINITY, -INFINITY};
+  at = 0;
+  for (std::size_t p = 0; p < weights_.size(); ++p) {
+    Extent inner{INFINITY, -INFINITY}, outer = inner;
+    for (; at < patch_ends_[p]; ++at) {
+      const std::uint32_t c = patch_[at];
+      inner = {std::min(inner.lower, heights_[c]), std::max(inner.upper, heights_[c])};
+      outer = {std::min(outer.lower, rings_[c].lower), std::max(outer.upper, rings_[c].upper)};
+    }
+    const double w = weights_[p];
+    all.lower = std::min(all.lower, inner.lower + w * (outer.lower - inner.lower));
+    all.upper = std::max(all.upper, inner.upper + w * (outer.upper - inner.upper));
+  }
+  const double error = enlarged(32 * unit_roundoff * largest_) + 8 * underflow_error;
+  return {all.lower - error, all.upper + error};
+}
+
+}  // namespace snug

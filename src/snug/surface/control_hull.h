@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <snug/base/first_met.h>
+#include <snug/surface/surface.h>
+#include <snug/tree/volume.h>
+
+namespace snug {
+
+/// Some patches, known by their control points alone: a set that contains them and costs no rows. For each patch it is
+/// (1 - w) times the hull of its face's corners plus w times the hull of all control points, w being outer_weight() of its
+/// kind.
+///
+/// Guarantee: contains the patches, rounding included.
+/// Source:    derivations/boxes.md.
+class ControlHull final : public Enclosed {
+ public:
+  /// Keeps its memory from one set to the next.
+  void assign(const Surface& surface, std::span<const PatchId> patches);
+
+  [[nodiscard]] Extent extent(const Vector3& direction) const override;
+  /// The corners of the patches' faces.
+  [[nodiscard]] std::span<const Point3> points() const override { return {points_.data(), inner_count_}; }
+
+ private:
+  void add_ring(const Surface& surface, VertexId corner);
+
+  FirstMet numbers_;
+  std::vector<VertexId> corners_;
+  std::vector<Point3> points_;  // corners first
+  std::size_t inner_count_ = 0;
+  // Indices into points_ and where each list ends: of the faces around each corner, of the corners of each patch.
+  std::vector<std::uint32_t> ring_, ring_ends_, patch_, patch_ends_;
+  std::vector<double> weights_;  // of each patch
+  double largest_ = 0;
+  mutable std::vector<double> heights_;
+  mutable std::vector<Extent> rings_;
+};
+
+}  // namespace snug
