@@ -76,18 +76,15 @@ TEST_F(queries, bad_placements_are_refused_and_leave_no_file) {
 }
 
 TEST_F(queries, placements_off_by_less_than_1e_9_are_taken_as_they_stand) {
-  const std::string ball = write("ball.obj", octahedron(1, 1, 1));
-  // Tip to tip along x, at 24 / 55 each; the second is longer by 1e-10 of that, the margin asks for half as much.
-  const double tip = 24.0 / 55, margin = 3 - 2 * tip - 0.5e-10 * tip;
-  const std::vector<std::string> pair{"collide", ball,       ball,           "--tolerance",
-                                      "1e-12",   "--margin", number(margin), "--place-b"};
+  const std::string low = write("low.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+                    high = write("high.obj", "v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n");
+  // The second lies 1 above the first, or by 1e-10 more where z is stretched; the margin is half of that more.
   const auto verdict = [&](const char* placement) {
-    std::vector<std::string> arguments = pair;
-    arguments.emplace_back(placement);
-    return answer(arguments)["verdict"];
+    return answer({"collide", low, high, "--tolerance", "1e-12", "--margin", "1.00000000005", "--place-b",
+                   placement})["verdict"];
   };
-  EXPECT_EQ(verdict("1.0000000001 0 0 3 0 1 0 0 0 0 1 0"), "within");
-  EXPECT_EQ(verdict("1 0 0 3 0 1 0 0 0 0 1 0"), "separated");
+  EXPECT_EQ(verdict("1 0 0 0 0 1 0 0 0 0 1.0000000001 0"), "separated");
+  EXPECT_EQ(verdict("1 0 0 0 0 1 0 0 0 0 1 0"), "within");
 }
 
 TEST_F(queries, tolerance_zero_proves_separation_and_contact) {

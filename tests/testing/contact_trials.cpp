@@ -204,13 +204,13 @@ struct Heights {
 }  // namespace
 
 Contestants::Contestants(TwinMesh a, TwinMesh b, int exponent, const QueryModelOptions& options)
-    : exponent_(exponent), volume_(options.volume) {
+    : exponent_(exponent), options_(options) {
   make(0, std::move(a), options);
   make(1, std::move(b), options);
 }
 
 Contestants::Contestants(TwinMesh both, int exponent, const QueryModelOptions& options)
-    : exponent_(exponent), volume_(options.volume) {
+    : exponent_(exponent), options_(options) {
   make(0, std::move(both), options);
   sides_[1].mesh = sides_[0].mesh;
   sides_[1].surface = sides_[0].surface;
@@ -747,6 +747,7 @@ Trial Trials::make(std::uint64_t number) {
   }
   trial.prove_contact = dice.one_in(3);
   // Where they are a hair apart, or touch, proofs may take for ever.
+  trial.budget = 50'000;
   if (trial.hair) trial.budget = dice.one_in(200) ? 20'000 : static_cast<std::uint64_t>(dice.size(30, 1000));
   return trial;
 }
@@ -784,7 +785,11 @@ std::string describe(const Trial& trial) {
   number(" upper ", trial.truth.upper);
   text += std::string(trial.truth.apart ? " apart" : "") + (trial.truth.meet ? " meet" : "") +
           (trial.truth.crossing ? " crossing" : "");
-  text += "; volume " + std::to_string(static_cast<int>(trial.pair->volume()));
+  const QueryModelOptions& options = trial.pair->options();
+  text += std::string("; ") + name_of(options.volume) +
+          (!options.table                        ? ""
+           : *options.table == TableLayout::ngon ? ", n-gon tables"
+                                                 : ", characteristic tables");
   if (const char* folder = std::getenv("SNUG_DUMP")) {
     for (std::size_t side = 0; side < 2; ++side) {
       std::ofstream file(std::string(folder) + (side == 0 ? "/a.obj" : "/b.obj"));

@@ -28,7 +28,7 @@ class Contestants {
   [[nodiscard]] QueryScratch& scratch(std::size_t side) { return *sides_[side].scratch; }
   [[nodiscard]] oracle::ContactSurface& twin(std::size_t side);
   [[nodiscard]] const oracle::TwinMesh& mesh(std::size_t side) const { return *sides_[side].mesh; }
-  [[nodiscard]] Volume volume() const { return volume_; }
+  [[nodiscard]] const QueryModelOptions& options() const { return options_; }
   [[nodiscard]] int exponent() const { return exponent_; }
   [[nodiscard]] double size() const {
     return size_;
@@ -52,7 +52,7 @@ class Contestants {
 
   std::array<Side, 2> sides_;
   int exponent_;
-  Volume volume_;
+  QueryModelOptions options_;
   double size_ = 0;
 };
 
@@ -76,7 +76,7 @@ struct Trial {
   Truth truth;
   double tolerance = 0, margin = 0;  ///< in twin units
   bool solid = false, prove_contact = false;
-  std::uint64_t budget = 1'000'000;
+  std::uint64_t budget = 0;
   bool hair = false;       ///< a hair apart: may be undecided at any tolerance
   std::mt19937_64 random;  ///< for what the checks choose
 };
