@@ -672,7 +672,7 @@ bool ContactSurface::misses(const Placement& placement, const Point& p, const Po
   Tree segment({0, 0, 0}, along);
   ContactGoal goal;
   goal.threshold = 0;
-  goal.effort = 2000;
+  goal.effort = 300;
   return ContactSearch(*tree_, placement, segment, at, goal).run({}).lower > 0;
 }
 

@@ -61,6 +61,7 @@ class Checks {
     if (answer.witness)
       reply_.witness = {pair_->back((*answer.witness)[0]), pair_->back((*answer.witness)[1])};
     ++counts_[trial.family][static_cast<std::size_t>(reply_.verdict)];
+    seconds_[trial.family] += seconds;
     ++total_;
     check_itself();
     check_what_is_known();
@@ -86,12 +87,14 @@ class Checks {
 
   void report() const {
     constexpr const char* names[] = {"separated", "within", "intersecting", "undecided"};
-    std::cout << total_ << " placements, of which " << pulled_
-              << " were moved to between half and twice the tolerance\n";
+    std::printf("%zu placements, of which %zu were moved to between half and twice the tolerance\n", total_,
+                pulled_);
     for (const auto& [family, counts] : counts_) {
-      std::cout << "  " << family << ':';
-      for (std::size_t v = 0; v < 4; ++v) std::cout << "  " << names[v] << ' ' << counts[v];
-      std::cout << '\n';
+      std::printf("  %s:", family.c_str());
+      for (std::size_t v = 0; v < 4; ++v) std::printf("  %s %zu", names[v], counts[v]);
+      std::printf(
+          "  (%.2f ms each)\n",
+          1e3 * seconds_.at(family) / static_cast<double>(counts[0] + counts[1] + counts[2] + counts[3]));
     }
     std::printf("  undecided on transversal contacts at tolerance 0: %zu of %zu (%.2f %%)\n",
                 crossing_undecided_, crossing_,
@@ -249,6 +252,7 @@ class Checks {
   Contestants* pair_ = nullptr;
   Reply reply_{};
   std::map<std::string, std::array<std::size_t, 4>> counts_;
+  std::map<std::string, double> seconds_;
   std::size_t total_ = 0, crossing_ = 0, crossing_undecided_ = 0, pulled_ = 0, between_ = 0, missed_ = 0,
               more_undecided_ = 0, open_ = 0;
   double asked_ = 0, slowest_ = 0;
