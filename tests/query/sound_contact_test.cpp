@@ -280,5 +280,60 @@ TEST(contact, verdicts_and_bounds_are_true) {
   EXPECT_LE(100 * checks.crossing_undecided(), std::max<std::size_t>(checks.crossing(), 100));
 }
 
+// A triangle of size 2^a around the origin, another of size 2^b that lies h above it: the distance is h, whatever the sizes.
+TEST(contact, bounds_hold_for_sizes_from_one_end_of_the_doubles_to_the_other) {
+  const auto library = std::make_shared<BoundLibrary>();
+  const auto surface = [&](int exponent, double height) {
+    ControlMesh mesh;
+    for (const auto& [x, y] : {std::pair{-1, -1}, std::pair{2, -1}, std::pair{-1, 2}})
+      mesh.points.push_back({std::ldexp(x, exponent), std::ldexp(y, exponent), height});
+    const VertexId corners[3] = {VertexId(0u), VertexId(1u), VertexId(2u)};
+    mesh.add_face(corners);
+    return Surface(std::move(mesh), {Scheme::loop, BoundaryRule::edge_and_corner}, library, 1);
+  };
+  std::size_t apart = 0, near = 0, undecided = 0;
+  for (const int a : {-1060, -600, -100, -20, 0, 20, 100, 600, 1020}) {
+    for (const int b : {-1060, -600, -100, -20, 0, 20, 100, 600, 1020}) {
+      for (const int c : {-1070, -1000, -500, -100, -30, 0, 30, 100, 500, 1000, 0x10000}) {
+        const double h = c == 0x10000 ? 0 : std::ldexp(1.0, c);
+        for (const bool by_placement : {false, true}) {
+          const Surface low = surface(a, 0), high = surface(b, by_placement ? 0 : h);
+          const QueryModel model_a(low), model_b(high);
+          QueryScratch scratch_a(model_a), scratch_b(model_b);
+          Placement place;
+          if (by_placement) place.m[11] = h;
+          CollideOptions options;
+          options.budget = 300;
+          for (const double tolerance : {0.0, h / 4, 2 * h, std::ldexp(1e-3, std::max(a, b))}) {
+            options.tolerance = tolerance;
+            const Collision answer = collide({model_a, scratch_a, {}}, {model_b, scratch_b, place}, options);
+            const std::string what = "sizes 2^" + std::to_string(a) + ", 2^" + std::to_string(b) + ", h " +
+                                     std::to_string(c) + ": " + name_of(answer.verdict);
+            EXPECT_LE(answer.lower, h) << what;
+            if (answer.upper) {
+              EXPECT_GE(*answer.upper, h) << what;
+            }
+            if (h == 0) {
+              EXPECT_NE(answer.verdict, Verdict::separated) << what;
+            }
+            if (h > 0) {
+              EXPECT_NE(answer.verdict, Verdict::intersecting) << what;
+            }
+            if (tolerance < h) {
+              EXPECT_NE(answer.verdict, Verdict::within) << what;
+            }
+            apart += answer.verdict == Verdict::separated;
+            near += answer.verdict == Verdict::within;
+            undecided += answer.verdict == Verdict::undecided;
+          }
+        }
+      }
+    }
+  }
+  std::printf("  separated %zu, within %zu, undecided %zu\n", apart, near, undecided);
+  EXPECT_GT(apart, 1000u);
+  EXPECT_GT(near, 100u);
+}
+
 }  // namespace
 }  // namespace snug
