@@ -8,6 +8,7 @@
 // undecided.
 
 #include <snug/query/collide.h>
+#include <snug/query/containment.h>
 
 #include <gtest/gtest.h>
 #include <testing/contact_trials.h>
@@ -333,6 +334,47 @@ TEST(contact, bounds_hold_for_sizes_from_one_end_of_the_doubles_to_the_other) {
   std::printf("  separated %zu, within %zu, undecided %zu\n", apart, near, undecided);
   EXPECT_GT(apart, 1000u);
   EXPECT_GT(near, 100u);
+}
+
+// Shells that are star-shaped around the origin: a point is inside if the segment to the origin misses the surface, outside
+// if a ray away from it does.
+TEST(contact, winding_numbers_tell_inside_from_outside) {
+  testing::Trials trials;
+  std::size_t inside = 0, outside = 0, untold = 0;
+  const std::uint64_t count = testing::trial_count(1200);
+  for (std::uint64_t i = 0; i < count && !HasFailure(); ++i) {
+    Trial trial = trials.make(testing::first_trial() + i);
+    if (trial.family != "shells") continue;
+    for (std::size_t side = 0; side < 2; ++side) {
+      oracle::ContactSurface& twin = trial.pair->twin(side);
+      const Surface& surface = trial.pair->model(side).surface();
+      for (int k = 0; k < 8; ++k) {
+        // Up to a hair from the surface, along a ray from the origin through a limit point.
+        std::uniform_real_distribution<double> unit(-1, 1);
+        const Point on = twin.limit_point(static_cast<std::uint32_t>(trial.random() % 8), 0.3,
+                                          0.4 * std::abs(unit(trial.random)));
+        const double t = 1 + std::ldexp(unit(trial.random), -static_cast<int>(trial.random() % 30));
+        const Point p{t * on[0], t * on[1], t * on[2]}, far{9 * on[0], 9 * on[1], 9 * on[2]};
+        const bool is_inside = twin.misses(oracle::kUnmoved, p, {0, 0, 0}),
+                   is_outside = !is_inside && twin.misses(oracle::kUnmoved, p, far);
+        if (!is_inside && !is_outside) continue;
+        const PowerOfTwo scale = surface.scale();
+        const Point3 scaled{scale.apply(trial.pair->scaled(p[0])), scale.apply(trial.pair->scaled(p[1])),
+                            scale.apply(trial.pair->scaled(p[2]))};
+        const std::optional<int> found = winding_number(trial.pair->scratch(side), scaled, 1e-15);
+        untold += !found && std::abs(t - 1) > 1e-5;
+        inside += is_inside;
+        outside += is_outside;
+        if (found) {
+          EXPECT_EQ(*found, is_inside ? 1 : 0) << testing::describe(trial) << ", side " << side << ", " << t;
+        }
+      }
+    }
+  }
+  std::printf("  inside %zu, outside %zu, not told though not near %zu\n", inside, outside, untold);
+  EXPECT_GT(inside, 50u);
+  EXPECT_GT(outside, 50u);
+  EXPECT_LE(untold * 100, inside + outside);
 }
 
 }  // namespace
