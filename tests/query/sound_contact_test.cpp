@@ -66,6 +66,7 @@ class Checks {
     ++total_;
     check_itself();
     check_what_is_known();
+    if (trial.number % 16 == 5) check_same(options, answer);
     // Of what is known, every fourth trial.
     if (!trial.truth.whole() || trial.number % 4 == 0) check_with_twin();
     if (trial.solid) check_solids();
@@ -151,6 +152,18 @@ class Checks {
       expect(between <= *reply_.upper * (1 + 1e-12) + rounding(), "the witnesses are at most upper apart",
              between, *reply_.upper);
     }
+  }
+
+  /// No answer depends on what was asked before.
+  void check_same(const CollideOptions& options, const Collision& answer) {
+    QueryScratch a(pair_->model(0)), b(pair_->model(1));
+    const Collision fresh = collide({pair_->model(0), a, pair_->scaled(trial_->a)},
+                                    {pair_->model(1), b, pair_->scaled(trial_->b)}, options);
+    expect(fresh.verdict == answer.verdict && fresh.lower == answer.lower && fresh.upper == answer.upper &&
+               fresh.witness == answer.witness && fresh.witness_error == answer.witness_error &&
+               fresh.stats.splits == answer.stats.splits,
+           "the same answer from fresh scratch memory", pair_->back(fresh.lower),
+           fresh.upper ? pair_->back(*fresh.upper) : -1);
   }
 
   void check_what_is_known() {
