@@ -14,6 +14,7 @@
 #include <testing/contact_trials.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -70,7 +71,7 @@ class Checks {
     // Of what is known, every fourth trial.
     if (!trial.truth.whole() || trial.number % 4 == 0) check_with_twin();
     if (trial.solid) check_solids();
-    if (trial.truth.crossing && trial.tolerance == 0) {
+    if (trial.truth.crossing && trial.tolerance == 0 && trial.budget >= 1000) {
       ++crossing_;
       crossing_undecided_ += reply_.verdict == Verdict::undecided;
     }
@@ -106,9 +107,10 @@ class Checks {
         "  undecided on these at any tolerance, or on others that are not a hair apart: %zu;\n"
         "  within 1 %% not found with a budget of 2000: %zu\n",
         missed_, more_undecided_);
-    std::printf("  collide %.3f ms each, slowest %.0f ms (trial %llu); the twin left %zu open\n",
-                1e3 * asked_ / static_cast<double>(total_), 1e3 * slowest_,
-                static_cast<unsigned long long>(slowest_trial_), open_);
+    std::printf(
+        "  collide %.3f ms each, slowest %.0f ms (trial %llu); %zu interrupted; the twin left %zu open\n",
+        1e3 * asked_ / static_cast<double>(total_), 1e3 * slowest_,
+        static_cast<unsigned long long>(slowest_trial_), interrupted_, open_);
     std::fflush(stdout);
   }
   [[nodiscard]] std::size_t crossing() const { return crossing_; }
@@ -154,9 +156,16 @@ class Checks {
     }
   }
 
-  /// No answer depends on what was asked before.
+  /// No answer depends on what was asked before, nor on a question that was interrupted.
   void check_same(const CollideOptions& options, const Collision& answer) {
     QueryScratch a(pair_->model(0)), b(pair_->model(1));
+    const std::atomic<bool> stop = true;
+    try {
+      (void)collide({pair_->model(0), a, pair_->scaled(trial_->a)},
+                    {pair_->model(1), b, pair_->scaled(trial_->b)}, options, {{}, &stop});
+    } catch (const Interrupted&) {
+      ++interrupted_;
+    }
     const Collision fresh = collide({pair_->model(0), a, pair_->scaled(trial_->a)},
                                     {pair_->model(1), b, pair_->scaled(trial_->b)}, options);
     expect(fresh.verdict == answer.verdict && fresh.lower == answer.lower && fresh.upper == answer.upper &&
@@ -268,7 +277,7 @@ class Checks {
   std::map<std::string, std::array<std::size_t, 4>> counts_;
   std::map<std::string, double> seconds_;
   std::size_t total_ = 0, crossing_ = 0, crossing_undecided_ = 0, pulled_ = 0, between_ = 0, missed_ = 0,
-              more_undecided_ = 0, open_ = 0;
+              more_undecided_ = 0, open_ = 0, interrupted_ = 0;
   double asked_ = 0, slowest_ = 0;
   std::uint64_t slowest_trial_ = 0;
   int failures_ = 0;
