@@ -262,4 +262,71 @@ std::vector<OsdLimitSample> osd_limit_samples(const ControlMesh& mesh, int level
   return samples;
 }
 
+TriangleMesh osd_uniform(const ControlMesh& mesh, int level, bool snapped) {
+  const auto refiner = make_refiner(mesh);
+  Far::TopologyRefiner::UniformOptions uniform(level);
+  uniform.fullTopologyInLastLevel = snapped;
+  refiner->RefineUniform(uniform);
+  const Far::PrimvarRefinerReal<double> interpolate(*refiner);
+  std::vector<Primvar> values = primvars(mesh.points);
+  for (int l = 1; l <= level; ++l) {
+    std::vector<Primvar> fine(static_cast<std::size_t>(refiner->GetLevel(l).GetNumVertices()));
+    interpolate.Interpolate(l, values, fine);
+    values = std::move(fine);
+  }
+  if (snapped) {
+    std::vector<Primvar> limit(values.size());
+    interpolate.Limit(values, limit);
+    values = std::move(limit);
+  }
+  TriangleMesh result;
+  result.points.reserve(values.size());
+  for (const Primvar& value : values) result.points.push_back(value.value);
+  const Far::TopologyLevel& last = refiner->GetLevel(level);
+  result.triangles.resize(static_cast<std::size_t>(last.GetNumFaces()));
+  for (int f = 0; f < last.GetNumFaces(); ++f) {
+    const auto vertices = last.GetFaceVertices(f);
+    for (int k = 0; k < 3; ++k) {
+      result.triangles[static_cast<std::size_t>(f)][static_cast<std::size_t>(k)] =
+          static_cast<std::uint32_t>(vertices[k]);
+    }
+  }
+  return result;
+}
+
+int osd_uniform_level(const ControlMesh& mesh, double tolerance) {
+  for (int level = 0; level <= 10; ++level) {
+    const std::vector<Point3> points = osd_uniform(mesh, level).points;
+    const std::vector<Point3> limit = osd_uniform(mesh, level, true).points;
+    double most_sq = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      most_sq = std::max(most_sq, length_sq(limit[i] - points[i]));
+    }
+    if (4 * most_sq <= tolerance * tolerance) return level;
+  }
+  throw std::runtime_error("uniform refinement does not reach the tolerance at level 10");
+}
+
+int osd_snapped_level(const ControlMesh& mesh, double tolerance) {
+  for (int level = 0; level <= 10; ++level) {
+    const std::vector<Point3> limit = osd_uniform(mesh, level + 1, true).points;
+    const auto refiner = make_refiner(mesh);
+    Far::TopologyRefiner::UniformOptions uniform(level + 1);
+    uniform.fullTopologyInLastLevel = true;
+    refiner->RefineUniform(uniform);
+    const Far::TopologyLevel& topology = refiner->GetLevel(level);
+    const auto at = [&](int vertex) { return limit[static_cast<std::size_t>(vertex)]; };
+    double most = 0;
+    for (int e = 0; e < topology.GetNumEdges(); ++e) {
+      const auto ends = topology.GetEdgeVertices(e);
+      const Point3 a = at(topology.GetVertexChildVertex(ends[0])),
+                   b = at(topology.GetVertexChildVertex(ends[1])), p = at(topology.GetEdgeChildVertex(e));
+      const double along = std::clamp(dot(p - a, b - a) / length_sq(b - a), 0.0, 1.0);
+      most = std::max(most, length(p - (a + along * (b - a))));
+    }
+    if (most <= tolerance / 2) return level;
+  }
+  throw std::runtime_error("snapped meshes do not reach the tolerance at level 10");
+}
+
 }  // namespace snug::bench

@@ -9,6 +9,8 @@
 #include <snug/patch/piece_path.h>
 #include <snug/surface/surface.h>
 
+#include "triangle_mesh.h"
+
 namespace snug::bench {
 
 /// A mesh as OpenSubdiv's Far::TopologyRefiner: Loop, boundary edge and corner. One thread.
@@ -90,5 +92,19 @@ struct OsdLimitSample {
 /// Corners of all faces after `level` steps, at their limit positions, in the order of control faces. A corner
 /// that pieces of one face share is listed once for each.
 [[nodiscard]] std::vector<OsdLimitSample> osd_limit_samples(const ControlMesh& mesh, int level);
+
+/// The mesh after `level` uniform steps, as a user of Far writes it: a topology refiner, RefineUniform, PrimvarRefiner.
+/// `snapped`: its vertices at their limit positions.
+[[nodiscard]] TriangleMesh osd_uniform(const ControlMesh& mesh, int level, bool snapped = false);
+
+/// The first level at which every vertex is within tolerance / 2 of its limit position: what "uniform Loop" means in
+/// [Wu05, table 5.1]. Nothing says how near triangles are between their vertices.
+/// Errors:    std::runtime_error if that is beyond level 10.
+[[nodiscard]] int osd_uniform_level(const ControlMesh& mesh, double tolerance);
+
+/// The first level at which the mesh snapped to the limit looks fine enough: the limit of the vertex that one more step puts on an edge is
+/// within tolerance / 2 of that edge. What somebody would take who knows limit positions; measured at these points, not proved.
+/// Errors:    std::runtime_error if that is beyond level 10.
+[[nodiscard]] int osd_snapped_level(const ControlMesh& mesh, double tolerance);
 
 }  // namespace snug::bench

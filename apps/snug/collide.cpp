@@ -1,21 +1,16 @@
 #include <snug/query/collide.h>
 
-#include <algorithm>
-
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
 
-#include "common.h"
 #include "length.h"
+#include "placed_pair.h"
 #include "progress_bar.h"
 
 namespace snug::command {
 namespace {
 
-struct Options : CommonOptions {
-  std::string mesh_a, mesh_b;
-  std::string scheme_a, scheme_b;
-  std::string place_a, place_b;
+struct Options : PairOptions {
   std::string tolerance, margin = "0";
   bool solid = false;
   bool exit_code = false;
@@ -71,45 +66,24 @@ ExitStatus status(Verdict verdict, bool exit_code) {
 }
 
 ExitStatus run(const Options& options) {
-  const BoundMethod method = bound_method(options);
-  if (method == BoundMethod::control_box)
-    throw UsageError("collide: --bounds control-box is not available; give rows or table");
-  std::optional<TableLayout> table;
-  if (method == BoundMethod::table) table = table_layout(options);
-  const Length tolerance_length = parse_length(options.tolerance, "--tolerance", true);
-  const Length margin_length = parse_length(options.margin, "--margin", true);
-  Placement place_a, place_b;
-  if (!options.place_a.empty()) place_a = parse_placement(options.place_a, "--place-a");
-  if (!options.place_b.empty()) place_b = parse_placement(options.place_b, "--place-b");
-  const auto library = std::make_shared<BoundLibrary>();
-  const auto scheme = [&](const std::string& own) { return own.empty() ? options.scheme : own; };
-  const Surface a = load_surface(options.mesh_a, options, scheme(options.scheme_a), library);
-  const Surface b = load_surface(options.mesh_b, options, scheme(options.scheme_b), library);
-  const double size = std::max(a.size(), b.size());
-  const double tolerance = tolerance_length.in_mesh_units(size), margin = margin_length.in_mesh_units(size);
-
-  ProgressBar bar("colliding", options.quiet);
-  const WorkMonitor monitor = bar.monitor();
-  QueryModelOptions model_options;
-  model_options.table = table;
-  model_options.threads = options.threads;
+  const Length tolerance = parse_length(options.tolerance, "--tolerance", true);
+  const Length margin = parse_length(options.margin, "--margin", true);
+  PlacedPair pair(options, "collide");
   CollideOptions wanted;
-  wanted.tolerance = tolerance;
-  wanted.margin = margin;
+  wanted.tolerance = tolerance.in_mesh_units(pair.size());
+  wanted.margin = margin.in_mesh_units(pair.size());
   wanted.budget = options.budget;
   wanted.prove_contact = true;
   wanted.solid = options.solid;
-  std::optional<QueryModel> model_a, model_b;
-  naming(options.mesh_a, [&] { model_a.emplace(a, model_options, monitor); });
-  naming(options.mesh_b, [&] { model_b.emplace(b, model_options, monitor); });
-  QueryScratch scratch_a(*model_a), scratch_b(*model_b);
-  const Collision answer =
-      collide({*model_a, scratch_a, place_a}, {*model_b, scratch_b, place_b}, wanted, monitor);
+  ProgressBar bar("colliding", options.quiet);
+  const WorkMonitor monitor = bar.monitor();
+  pair.prepare(monitor);
+  const Collision answer = collide(pair.a(), pair.b(), wanted, monitor);
 
   Report report("collide", options);
-  report.heads({options.mesh_a, options.mesh_b}, {name_of(a.options().scheme), name_of(b.options().scheme)});
-  if (report.json()) write_answer(report.write(), answer, tolerance, margin);
-  report.text(sentence(answer, tolerance, margin));
+  pair.write_heads(report);
+  if (report.json()) write_answer(report.write(), answer, wanted.tolerance, wanted.margin);
+  report.text(sentence(answer, wanted.tolerance, wanted.margin));
   report.finish();
   return status(answer.verdict, options.exit_code);
 }
@@ -119,24 +93,16 @@ ExitStatus run(const Options& options) {
 Command add_collide(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("collide", "Do two limit surfaces touch? A verdict that is a proof");
-  command->add_option("A", options->mesh_a, "First control mesh (OBJ, OFF, PLY or STL)")->required();
-  command->add_option("B", options->mesh_b, "Second control mesh")->required();
   command
       ->add_option("--tolerance", options->tolerance,
                    "Surfaces this near may be called within: mesh units, or percent of the longer mesh (1%)")
       ->required();
   command->add_option("--margin", options->margin, "Distance that must be kept")->capture_default_str();
-  command->add_option("--place-a", options->place_a,
-                      "Placement of A: twelve numbers, a row-major 3x4 motion");
-  command->add_option("--place-b", options->place_b, "Placement of B");
-  const auto schemes = CLI::IsMember({"auto", "loop", "catmark", "catmull-clark", "doo-sabin", "midedge"});
-  command->add_option("--scheme-a", options->scheme_a, "Scheme of A, before --scheme")->check(schemes);
-  command->add_option("--scheme-b", options->scheme_b, "Scheme of B, before --scheme")->check(schemes);
   command->add_flag("--solid", options->solid,
                     "Closed surfaces bound solids: one inside of the other intersects it");
   command->add_flag("--exit-code", options->exit_code,
                     "Status 0 separated, 10 within, 11 intersecting, 12 undecided");
-  add_common_options(*command, *options);
+  add_pair_options(*command, *options);
   return {command, [options] { return run(*options); }};
 }
 

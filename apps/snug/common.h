@@ -108,6 +108,8 @@ class Report {
 [[nodiscard]] Command add_eval(CLI::App& app);
 [[nodiscard]] Command add_subdivide(CLI::App& app);
 [[nodiscard]] Command add_collide(CLI::App& app);
+[[nodiscard]] Command add_distance(CLI::App& app);
+[[nodiscard]] Command add_closest(CLI::App& app);
 [[nodiscard]] Command add_render(CLI::App& app);
 [[nodiscard]] Command add_experiment(CLI::App& app);
 

@@ -1,4 +1,3 @@
-#include <charconv>
 #include <cmath>
 
 #include <fmt/core.h>
@@ -9,6 +8,7 @@
 #include "common.h"
 #include "curve.h"
 #include "progress_bar.h"
+#include "words.h"
 
 namespace snug::command {
 namespace {
@@ -19,22 +19,6 @@ struct Options : CommonOptions {
   unsigned samples = 4;
   std::string at;
 };
-
-// The next blank-separated word of a line, or an empty one.
-std::string_view next_word(std::string_view& line) {
-  const auto begin = line.find_first_not_of(" \t\r");
-  if (begin == std::string_view::npos) return line = {};
-  const auto end = std::min(line.find_first_of(" \t\r", begin), line.size());
-  const std::string_view word = line.substr(begin, end - begin);
-  line.remove_prefix(end);
-  return word;
-}
-
-template <class Number>
-bool parse(std::string_view word, Number& number) {
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  return error == std::errc() && end == word.data() + word.size() && !word.empty();
-}
 
 // The words that name a place on this surface.
 const char* place_words(Scheme scheme) {
@@ -51,20 +35,14 @@ std::vector<SurfaceParameter> read_requests(const std::string& path, const Surfa
   const Scheme scheme = surface.options().scheme;
   const std::string owner = owner_word(scheme);
   std::vector<SurfaceParameter> requests;
-  std::size_t line_number = 0;
-  for (std::string_view rest = text; !rest.empty();) {
-    const auto end = std::min(rest.find('\n'), rest.size());
-    std::string_view line = rest.substr(0, end);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-    ++line_number;
+  for_each_line(text, [&](std::string_view line, std::size_t line_number) {
     const std::string where = path + ":" + std::to_string(line_number) + ": ";
     const auto unreadable = [&](const std::string& why) {
       return InputError(InputProblem::unreadable, where + why);
     };
-    const std::string_view first = next_word(line);
-    if (first.empty() || first.front() == '#') continue;
     SurfaceParameter at{};
-    bool good = parse(first, at.owner) && parse(next_word(line), at.u) && parse(next_word(line), at.v);
+    bool good =
+        parse(next_word(line), at.owner) && parse(next_word(line), at.u) && parse(next_word(line), at.v);
     if (const std::string_view corner = next_word(line); good && !corner.empty()) {
       good = scheme != Scheme::loop && parse(corner, at.corner) && next_word(line).empty();
     }
@@ -90,7 +68,7 @@ std::vector<SurfaceParameter> read_requests(const std::string& path, const Surfa
                            " has no limit surface: it lies at the boundary, or is a hole");
     }
     requests.push_back(at);
-  }
+  });
   return requests;
 }
 

@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common.h"
+#include "experiment_tables.h"
 #include "progress_bar.h"
 
 namespace snug::command {
@@ -26,6 +27,8 @@ struct Options : CommonOptions {
   unsigned levels = RateOptions{}.levels;
   int samples = TightnessOptions{}.steps;
   std::string at = name_of(NetCentre::interior);
+  std::vector<std::string> models;
+  std::size_t placements = TableExperiment{}.placements;
 };
 
 // The fields that all experiments begin with.
@@ -281,6 +284,11 @@ ExitStatus tightness(const Options& options) {
 }
 
 ExitStatus run(const Options& options) {
+  const bool table = options.name.starts_with("table-");
+  if (!table && !options.models.empty()) {
+    throw UsageError("experiment " + options.name + " takes no files: " + options.models.front());
+  }
+  if (table) return run_table({options.name, options.models, options.placements, options.seed}, options);
   if (options.name == "rates") return options.scheme == "curve" ? curve_rates(options) : rates(options);
   return options.name == "tightness" ? tightness(options) : pair_test(options);
 }
@@ -295,9 +303,16 @@ Command add_experiment(CLI::App& app) {
       ->add_option("NAME", options->name,
                    "pair-test: how often the pair test as printed misses a near pair; rates: how fast "
                    "enclosures shrink at an extraordinary corner, or those of curves with --scheme curve; "
-                   "tightness: radii over the least possible")
+                   "tightness: radii over the least possible; table-5-1, table-5-2, table-5-3: triangles, "
+                   "creation times and query times of the dissertation's tables")
       ->required()
-      ->check(CLI::IsMember({"pair-test", "rates", "tightness"}));
+      ->check(CLI::IsMember({"pair-test", "rates", "tightness", "table-5-1", "table-5-2", "table-5-3"}));
+  command->add_option("MODEL", options->models,
+                      "table-5-1 to 5-3: control meshes of triangles, for 5-3 two by two; default: six of "
+                      "examples/models");
+  command->add_option("--placements", options->placements, "table-5-3: random placements of a pair in a room")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}))
+      ->capture_default_str();
   command->add_option("--pairs", options->pairs, "pair-test: random pairs in all, over three families")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
       ->capture_default_str();

@@ -55,8 +55,8 @@ int main(int argc, char** argv) {
       "reached, "
       "130 interrupted.");
   const std::vector<Command> commands{add_info(app),      add_bound(app),   add_eval(app),
-                                      add_subdivide(app), add_collide(app), add_render(app),
-                                      add_experiment(app)};
+                                      add_subdivide(app), add_collide(app), add_distance(app),
+                                      add_closest(app),   add_render(app),  add_experiment(app)};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

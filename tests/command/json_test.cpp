@@ -190,6 +190,71 @@ TEST(experiment, tightness_has_quantiles_of_ratios) {
   }
 }
 
+// A column of the peers: null in all rows or in none.
+void expect_peer(const json& document, const json& value) {
+  EXPECT_EQ(document["peers"].get<bool>(), value.is_number()) << value;
+}
+
+TEST(experiment, table_5_1_counts_triangles) {
+  const json document = answer({"experiment", "table-5-1", model("star.obj"), model("pawn.obj")});
+  expect_head(document, "experiment");
+  ASSERT_EQ(document["rows"].size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const json& row = document["rows"][i];
+    EXPECT_EQ(row["model"], i < 3 ? "star" : "pawn");
+    EXPECT_EQ(row["faces"], i < 3 ? 24 : 262);
+    EXPECT_GE(row["rows"], row["faces"]);
+    EXPECT_GT(row["tables"], row["rows"]);
+    EXPECT_GE(row["printed"], row["tables"]);
+    expect_peer(document, row["uniform"]);
+    if (i % 3 != 0) {
+      EXPECT_LT(row["tolerance"], document["rows"][i - 1]["tolerance"]);
+      EXPECT_GE(row["rows"], document["rows"][i - 1]["rows"]);
+    }
+  }
+}
+
+TEST(experiment, table_5_2_times_creation) {
+  const json document = answer({"experiment", "table-5-2", model("star.obj")});
+  ASSERT_EQ(document["rows"].size(), 3u);
+  for (const json& row : document["rows"]) {
+    EXPECT_EQ(row["model"], "star");
+    for (const char* time : {"ready_ms", "tight_ms", "rows_ms", "printed_ms"})
+      EXPECT_GE(row[time], 0) << time;
+    EXPECT_GT(row["printed_ms"], row["ready_ms"]);
+    expect_peer(document, row["uniform_obb_ms"]);
+    expect_peer(document, row["uniform_obbrss_ms"]);
+  }
+}
+
+TEST(experiment, table_5_3_counts_the_same_whatever_the_threads) {
+  std::vector<json> rows;
+  for (const char* threads : {"1", "2"}) {
+    const json document = answer({"experiment", "table-5-3", model("star.obj"), model("pawn.obj"),
+                                  "--placements", "400", "--seed", "3", "--threads", threads});
+    ASSERT_EQ(document["rows"].size(), 12u);
+    for (const json& row : document["rows"]) expect_peer(document, row["uniform_hits"]);
+    rows.push_back(document["rows"]);
+  }
+  int hits_by_room[4]{};
+  for (std::size_t i = 0; i < 12; ++i) {
+    const json &row = rows[0][i], &again = rows[1][i];
+    for (const char* count : {"hits", "within", "printed_missed", "printed_missed_moeller",
+                              "printed_missed_hits", "printed_alarms"}) {
+      EXPECT_EQ(row[count], again[count]) << count;
+    }
+    EXPECT_EQ(row["hits"], rows[0][i - i % 3]["hits"]);  // whatever the tolerance
+    EXPECT_GE(row["within"], row["hits"]);
+    EXPECT_LE(row["printed_missed"], row["printed_missed_moeller"]);
+    hits_by_room[i / 3] = row["hits"];
+  }
+  // Rooms of side 6, 3, 4.5, 2.4.
+  EXPECT_LT(hits_by_room[0], hits_by_room[1]);
+  EXPECT_LT(hits_by_room[2], hits_by_room[1]);
+  EXPECT_LT(hits_by_room[1], hits_by_room[3]);
+  EXPECT_GT(hits_by_room[3], 20);
+}
+
 TEST(experiment, prints_a_table_for_people) {
   const Outcome rates = run_snug({"experiment", "rates", "--nets", "1", "--levels", "4"});
   EXPECT_EQ(rates.status, 0) << rates.err;

@@ -65,7 +65,11 @@ TEST(usage, ends_with_2) {
            {"experiment", "rates", "--at", "crease", "--scheme", "midedge"},
            {"experiment", "rates", "--at", "boundary", "--scheme", "curve"},
            {"experiment", "tightness", "--samples", "0"},
-           {"experiment", "tightness", "--seed", "x"}}) {
+           {"experiment", "tightness", "--seed", "x"},
+           {"experiment", "tightness", "star.obj"},
+           {"experiment", "table-5-3", model("star.obj")},
+           {"experiment", "table-5-1", model("star.obj"), "--scheme", "catmark"},
+           {"experiment", "table-5-3", "--placements", "0"}}) {
     const Outcome outcome = run_snug(arguments);
     EXPECT_EQ(outcome.status, 2) << (arguments.empty() ? "" : arguments[0]) << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;

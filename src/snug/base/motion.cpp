@@ -1,5 +1,6 @@
 #include <snug/base/motion.h>
 
+#include <algorithm>
 #include <string>
 
 #include <snug/base/error.h>
@@ -8,16 +9,13 @@
 namespace snug {
 
 double rigidity_defect(const Placement& placement) {
-  double worst = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vector3 a{placement.m[i], placement.m[4 + i], placement.m[8 + i]};
-    for (std::size_t j = i; j < 3; ++j) {
-      const Vector3 b{placement.m[j], placement.m[4 + j], placement.m[8 + j]};
-      const double defect = std::fabs(dot(a, b) - (i == j ? 1.0 : 0.0)) + 8 * unit_roundoff;
-      if (!(defect <= worst)) worst = std::isfinite(defect) ? defect : INFINITY;
-    }
-  }
-  return worst;
+  const auto& m = placement.m;
+  const Vector3 a{m[0], m[4], m[8]}, b{m[1], m[5], m[9]}, c{m[2], m[6], m[10]};
+  const double aa = std::fabs(dot(a, a) - 1), bb = std::fabs(dot(b, b) - 1), cc = std::fabs(dot(c, c) - 1);
+  const double ab = std::fabs(dot(a, b)), bc = std::fabs(dot(b, c)), ca = std::fabs(dot(c, a));
+  const double worst = std::max({aa, bb, cc, ab, bc, ca}) + 8 * unit_roundoff;
+  // A NaN may have been lost in the maximum, but not in a sum.
+  return std::isfinite(aa + bb + cc + ab + bc + ca) ? worst : INFINITY;
 }
 
 void require_rigid(const Placement& placement) {

@@ -128,6 +128,18 @@ void hull_points(BoundLibrary& library, const Patch& patch, HullPoints& out) {
   if (out.tips[1].kind) refine_tips(library, {true, true, true}, out);
 }
 
+void close_points(BoundLibrary& library, const Patch& patch, HullPoints& out) {
+  if (!patch.kind->polynomial()) {
+    hull_points(library, patch, out);
+    return;
+  }
+  out.origin = patch.origin;
+  out.error = out.largest = 0;
+  out.tips = {};
+  out.resize(0);
+  collect(library, patch, 0, {}, out);
+}
+
 void prepare_hull_points(BoundLibrary& library, const Kind& kind) {
   if (!kind.shared()) {
     prepare(library, kind, 0);
@@ -188,15 +200,11 @@ Box3 outer_box(const HullPoints& points) {
 }
 
 Slab outer_slab(const HullPoints& points, const Vector3& normal) {
-  double lower = INFINITY, upper = -INFINITY;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double height = dot(normal, points.at(i));
-    lower = std::min(lower, height);
-    upper = std::max(upper, height);
-  }
+  const kernels::Range range = kernels::heights(points.coordinates(), Vector3{}, normal);
   const double sum = std::fabs(normal.x) + std::fabs(normal.y) + std::fabs(normal.z);
-  const double error = enlarged(sum * (points.error + gamma_bound(5) * points.largest)) + 8 * underflow_error;
-  return {normal, rounded_down(lower - error), rounded_up(upper + error)};
+  const double error = enlarged(sum * (points.error + gamma_bound(8) * points.largest)) + 8 * underflow_error;
+  if (!std::isfinite(error)) return {normal, -INFINITY, INFINITY};
+  return {normal, range.lower - error, range.upper + error};
 }
 
 }  // namespace snug

@@ -58,6 +58,9 @@ void hull_points(BoundLibrary& library, const Patch& patch, HullPoints& out);
 /// Makes the rows that the call above will need for patches of this kind.
 void prepare_hull_points(BoundLibrary& library, const Kind& kind);
 
+/// Few points whose hull holds the patch closely: the Bezier points of a polynomial one, for others those above.
+void close_points(BoundLibrary& library, const Patch& patch, HullPoints& out);
+
 /// Replaces the control nets of some tips by the points that the rows of their own kinds make of them: the hull
 /// shrinks to the pieces around these corners, and nets some levels farther down.
 void refine_tips(BoundLibrary& library, const std::array<bool, 3>& which, HullPoints& points);
@@ -76,8 +79,8 @@ struct Slab {
   double lower, upper;
 };
 
-/// Slab along `normal`, which need not be of length 1, that contains the patch, rounding included. Bounds
-/// belong to points relative to points.origin.
+/// Slab along `normal`, which need not be of length 1, that contains the patch, rounding included; infinite where a point is
+/// not finite. Bounds belong to points relative to points.origin.
 [[nodiscard]] Slab outer_slab(const HullPoints& points, const Vector3& normal);
 
 }  // namespace snug

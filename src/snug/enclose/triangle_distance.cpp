@@ -62,9 +62,21 @@ bool pierces(const Corners& a, const Corners& b, std::size_t edge, double& t, Ba
   return t >= 0 && t <= 1 && on_b.b >= 0 && on_b.c >= 0 && on_b.b + on_b.c <= 1;
 }
 
+// Does a plane of one of them have the other one on one side? Then no edge pierces anything.
+bool apart_by_planes(const Corners& a, const Corners& b) {
+  const auto one_side = [](const Corners& plane, const Corners& other) {
+    const Vector3 normal = cross(plane[1] - plane[0], plane[2] - plane[0]);
+    const double x = dot(normal, other[0] - plane[0]), y = dot(normal, other[1] - plane[0]),
+                 z = dot(normal, other[2] - plane[0]);
+    return (x > 0 && y > 0 && z > 0) || (x < 0 && y < 0 && z < 0);
+  };
+  return one_side(a, b) || one_side(b, a);
+}
+
 Best search(const Corners& a, const Corners& b) {
   Best best;
-  for (std::size_t i = 0; i < 3; ++i) {
+  const bool apart = apart_by_planes(a, b);
+  for (std::size_t i = 0; i < 3 && !apart; ++i) {
     double t = 0;
     Barycentric inside;
     if (pierces(a, b, i, t, inside)) return {0, on_edge(i, t), inside};

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <snug/base/contract.h>
 #include <snug/base/rounding.h>
@@ -90,13 +91,15 @@ struct Located {
 // Splits until the parameter lies in a polynomial piece.
 Located locate(const Patch& patch, TriangleParameter at) {
   Located here{patch, at};
+  Patch child;
   while (!here.piece.kind->polynomial()) {
     if (here.piece.path.level() >= PiecePath::max_level) {
       here.stopped = true;
       return here;
     }
     const Descent step = descend(here.at);
-    here.piece = split(here.piece, step.child);
+    split(here.piece, step.child, child);
+    std::swap(here.piece, child);
     here.at = step.at;
     here.turned *= step.child == 3 ? -2 : 2;
     here.drift = 2 * here.drift + (step.child == 3 ? unit_roundoff : 0);
@@ -184,6 +187,7 @@ std::array<Vector3, 3> limit_corners(const Patch& patch) {
 LimitPoint limit_point(const Patch& patch, TriangleParameter parameter) {
   const TriangleParameter at = checked(parameter);
   if (const std::size_t corner = corner_at(at); corner < 3) return corner_point(patch, corner);
+  if (patch.kind->polynomial()) return evaluate_polynomial(patch, to_kind(patch, at)).point;
   const Located here = locate(patch, at);
   if (here.stopped) return stopped_point(here);
   if (const std::size_t corner = corner_at(here.at); corner < 3) {

@@ -22,16 +22,11 @@ class Query {
   Query(const PlacedModel& a, const PlacedModel& b, const CollideOptions& options, const WorkMonitor& monitor)
       : search_(a, b), options_(options), monitor_(monitor) {
     margin_ = search_.length_up(options.margin);
-    reach_ = search_.length_down(rounded_down(options.margin + options.tolerance));
+    reach_ = search_.length_down((options.margin + options.tolerance) * (1 - unit_roundoff));
   }
 
   Collision run() {
-    if (search_.ball_gap() > margin_) {
-      lower_ = search_.ball_gap();
-    } else {
-      search_.prepare();
-      descend();
-    }
+    descend();
     return result();
   }
 
@@ -41,10 +36,13 @@ class Query {
     thread_local std::vector<NodePair> stack;
     stack.clear();
     const NodePair roots = search_.roots();
-    if (roots.gap > margin_) {
-      lower_ = roots.gap;
+    if (static_cast<double>(roots.gap) > margin_) {
+      lower_ = static_cast<double>(roots.gap);
       return;
     }
+    // Points so near cannot be found sooner than a crossing is proved.
+    proving_ = options_.prove_contact ||
+               reach_ <= 0x1p-14 * static_cast<double>(std::max(roots.sizes[0], roots.sizes[1]));
     stack.push_back(roots);
     while (!stack.empty() && !finished()) {
       const NodePair pair = stack.back();
@@ -62,12 +60,10 @@ class Query {
         exhausted_ = true;
         break;
       }
-      lower_ = std::min(lower_, search_.open(pair, *side, margin_, stack));
+      lower_ = std::min(lower_, static_cast<double>(search_.open(pair, *side, margin_, stack)));
     }
     exhausted_ = exhausted_ || !stack.empty();
   }
-
-  [[nodiscard]] bool proving() const { return options_.tolerance == 0 || options_.prove_contact; }
 
   [[nodiscard]] bool finished() const {
     if (crossing_) return true;
@@ -79,15 +75,21 @@ class Query {
     const double radii = search_.radii(pair);
     if (!found_ && radii <= reach_) return true;
     // To prove a crossing both must be flat.
-    if (proving() && radii <= static_cast<double>(std::min(pair.sizes[0], pair.sizes[1])) / 16) return true;
-    return !search_.side_to_open(pair);
+    if (proving_ && radii <= static_cast<double>(std::min(pair.sizes[0], pair.sizes[1])) / 16) return true;
+    // Smaller ones gain more from planes between them than from more splitting.
+    const double smaller = static_cast<double>(std::min(pair.sizes[0], pair.sizes[1]));
+    return radii <= smaller / 64 || !search_.side_to_open(pair);
   }
 
   // Rules (a) and (b). False if the pair is done with.
   bool look_at(const NodePair& pair) {
     const PairSearch::Pieces pieces = search_.nearest_pieces(pair);
-    if (pieces.gap > margin_) {
-      lower_ = std::min(lower_, pieces.gap);
+    double gap = pieces.gap;
+    if (!(gap > margin_) && pieces.near.certain_distance > margin_) {
+      gap = search_.hull_gap(pair, pieces.direction());
+    }
+    if (gap > margin_) {
+      lower_ = std::min(lower_, gap);
       return false;
     }
     if (!found_ && (pieces.radii[0] + pieces.radii[1] < best_.distance)) {
@@ -95,7 +97,7 @@ class Query {
       if (witness.distance < best_.distance) best_ = witness;
       found_ = best_.distance <= reach_;
     }
-    if (proving()) {
+    if (proving_) {
       if (pieces.near.certain_distance == 0) {
         ++attempts_;
         crossing_ = search_.certainly_cross(pieces);
@@ -139,6 +141,7 @@ class Query {
   double lower_ = INFINITY;
   PairSearch::Witness best_;
   int attempts_ = 0;
+  bool proving_ = false;
   bool found_ = false, crossing_ = false, exhausted_ = false, unresolved_ = false;
 };
 
@@ -162,7 +165,15 @@ Collision collide(const PlacedModel& a, const PlacedModel& b, const CollideOptio
                   const WorkMonitor& monitor) {
   SNUG_EXPECT(options.tolerance >= 0 && std::isfinite(options.tolerance));
   SNUG_EXPECT(options.margin >= 0 && std::isfinite(options.margin));
-  Collision answer = Query(a, b, options, monitor).run();
+  SNUG_EXPECT(rigidity_defect(a.placement) <= rigidity_tolerance &&
+              rigidity_defect(b.placement) <= rigidity_tolerance);
+  Collision answer;
+  if (const double gap = ball_gap(a, b); gap > options.margin) {
+    answer.verdict = Verdict::separated;
+    answer.lower = gap;
+    return answer;
+  }
+  answer = Query(a, b, options, monitor).run();
   if (options.solid && answer.verdict == Verdict::separated) answer = as_solids(a, b, answer, monitor);
   return answer;
 }

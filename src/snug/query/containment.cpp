@@ -241,8 +241,6 @@ Collision as_solids(const PlacedModel& a, const PlacedModel& b, Collision apart,
   require_closed(b.model.surface());
   const std::array<const PlacedModel*, 2> side{&a, &b};
   PairSearch search(a, b);
-  if (search.ball_gap() > 0) return apart;
-  search.prepare();
   bool certain = true;
   for (std::size_t s = 0; s < 2; ++s) {
     const Surface& surface = side[s]->model.surface();

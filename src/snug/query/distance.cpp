@@ -25,19 +25,17 @@ class Query {
   }
 
   Distance run() {
-    search_.prepare();
     thread_local std::vector<NodePair> heap;
-    heap.assign(1, search_.roots());
+    const NodePair roots = search_.roots();
+    dive(roots, heap);
+    heap.assign(1, roots);
     while (!heap.empty() && best_ > 0) {
       std::pop_heap(heap.begin(), heap.end(), farther);
       const NodePair pair = heap.back();
       heap.pop_back();
-      const double gap = std::max(pair.gap, 0.0);
-      if (gap >= enough()) {
-        resolved_ = std::min(resolved_, gap);
-        break;
-      }
-      if (!visit(pair, heap)) {
+      // All others are as far or farther.
+      const double gap = std::max(static_cast<double>(pair.gap), 0.0);
+      if (gap >= enough() || !visit(pair, heap)) {
         resolved_ = std::min(resolved_, gap);
         break;
       }
@@ -51,38 +49,51 @@ class Query {
     return best_ == INFINITY ? INFINITY : best_ - std::max(absolute_, options_.relative * best_);
   }
 
+  // Straight down to two pieces that are near each other, so that there is an upper bound from the beginning.
+  void dive(NodePair pair, std::vector<NodePair>& scratch) {
+    while (!search_.pieces(pair)) {
+      scratch.clear();
+      static_cast<void>(search_.open(pair, *search_.side_to_open(pair), INFINITY, scratch));
+      pair = scratch.back();
+    }
+    improve(pair, search_.nearest_pieces(pair));
+  }
+
   // False when the budget ends.
-  bool visit(NodePair pair, std::vector<NodePair>& heap) {
+  bool visit(const NodePair& pair, std::vector<NodePair>& heap) {
+    const std::optional<std::size_t> side = search_.side_to_open(pair);
+    double gap = std::max(static_cast<double>(pair.gap), 0.0);
     if (search_.pieces(pair)) {
       monitor_.checkpoint();
-      const PairSearch::Pieces pieces = search_.nearest_pieces(pair);
-      improve(pair, pieces);
-      pair.gap = std::max(pair.gap, pieces.gap);
-      if (pieces.gap >= enough()) {
-        resolved_ = std::min(resolved_, pieces.gap);
-        return true;
+      // The direction of the nearest points so far will do for most pairs.
+      if (witness_.distance < INFINITY) {
+        gap = std::max(gap, search_.hull_gap(pair, witness_.points[1] - witness_.points[0]));
+      }
+      if (gap < enough()) {
+        const PairSearch::Pieces pieces = search_.nearest_pieces(pair);
+        improve(pair, pieces);
+        gap = std::max({gap, pieces.gap, search_.hull_gap(pair, pieces.direction())});
       }
     }
-    const std::optional<std::size_t> side = search_.side_to_open(pair);
-    if (!side) {
-      resolved_ = std::min(resolved_, std::max(pair.gap, 0.0));
+    if (!side || gap >= enough()) {
+      resolved_ = std::min(resolved_, gap);
       return true;
     }
     if (search_.stats.splits >= options_.budget || search_.scratch(*side).touched() >= most_touched)
       return false;
     std::size_t at = heap.size();
-    resolved_ = std::min(resolved_, search_.open(pair, *side, enough(), heap));
-    while (at < heap.size()) {
-      ++at;
-      std::push_heap(heap.begin(), heap.begin() + static_cast<std::ptrdiff_t>(at), farther);
-    }
+    NodePair parent = pair;
+    parent.gap = std::max(parent.gap, static_cast<float>(gap * (1 - 0x1p-23)));
+    resolved_ = std::min(resolved_, static_cast<double>(search_.open(parent, *side, enough(), heap)));
+    while (at < heap.size())
+      std::push_heap(heap.begin(), heap.begin() + static_cast<std::ptrdiff_t>(++at), farther);
     return true;
   }
 
   // The upper bound, by limit points or by a proof of contact.
   void improve(const NodePair& pair, const PairSearch::Pieces& pieces) {
     const double radii = pieces.radii[0] + pieces.radii[1];
-    if (pieces.near.certain_distance - radii < best_) {
+    if (pieces.near.certain_distance < best_) {
       const PairSearch::Witness witness = search_.witness(pieces);
       if (witness.distance < witness_.distance) witness_ = witness;
       best_ = std::min(best_, witness.distance);
@@ -126,6 +137,8 @@ Distance distance(const PlacedModel& a, const PlacedModel& b, const DistanceOpti
                   const WorkMonitor& monitor) {
   SNUG_EXPECT(options.absolute >= 0 && std::isfinite(options.absolute));
   SNUG_EXPECT(options.relative >= 0 && std::isfinite(options.relative));
+  SNUG_EXPECT(rigidity_defect(a.placement) <= rigidity_tolerance &&
+              rigidity_defect(b.placement) <= rigidity_tolerance);
   return Query(a, b, options, monitor).run();
 }
 

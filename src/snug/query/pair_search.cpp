@@ -23,10 +23,10 @@ PlacedFrame make_frame(const Surface& surface, const Placement& placement, Power
 // The power of two that brings both placed surfaces to about 1.
 PowerOfTwo joint_scale(const PlacedModel& a, const PlacedModel& b) {
   // Surfaces are at most 2 in their own scales.
-  int exponent = std::max(-a.model.surface().scale().exponent(), -b.model.surface().scale().exponent());
+  const int exponent = std::max(-a.model.surface().scale().exponent(), -b.model.surface().scale().exponent());
   const double t = std::max(max_abs(a.placement.translation()), max_abs(b.placement.translation()));
-  if (t > 0) exponent = std::max(exponent, std::ilogb(t));
-  return PowerOfTwo(-exponent);
+  const PowerOfTwo scale(-exponent);
+  return scale.apply(t) < 2 ? scale : PowerOfTwo(-std::max(exponent, std::ilogb(t)));
 }
 
 // Barycentric weights as a parameter that limit_point accepts.
@@ -39,75 +39,76 @@ TriangleParameter parameter(Barycentric p) {
 
 }  // namespace
 
-PairSearch::PairSearch(const PlacedModel& a, const PlacedModel& b) : scratch_{&a.scratch, &b.scratch} {
-  SNUG_EXPECT(&a.scratch != &b.scratch && &a.scratch.model() == &a.model && &b.scratch.model() == &b.model);
-  const double defect_a = rigidity_defect(a.placement), defect_b = rigidity_defect(b.placement);
-  SNUG_EXPECT(defect_a <= rigidity_tolerance && defect_b <= rigidity_tolerance);
-  world_ = joint_scale(a, b);
-  frame_[0] = make_frame(a.model.surface(), a.placement, world_, defect_a);
-  frame_[1] = make_frame(b.model.surface(), b.placement, world_, defect_b);
-  const Ball& ball_a = a.model.tree().ball();
-  const Ball& ball_b = b.model.tree().ball();
-  const Point3 centre_a = frame_[0].apply(ball_a.centre), centre_b = frame_[1].apply(ball_b.centre);
-  const double error = frame_[0].apply_error(ball_a.centre) + frame_[1].apply_error(ball_b.centre);
-  ball_gap_ = length(centre_b - centre_a) * (1 - 8 * unit_roundoff) -
-              enlarged(ball_a.radius * frame_[0].growth() + ball_b.radius * frame_[1].growth() +
-                       spatial_error(error));
+double ball_gap(const PlacedModel& a, const PlacedModel& b) {
+  const Ball& ball_a = a.model.ball();
+  const Ball& ball_b = b.model.ball();
+  const Point3 centre_a = a.placement.apply(ball_a.centre), centre_b = b.placement.apply(ball_b.centre);
+  const double distance = length(centre_b - centre_a);
+  // Rotations within rigidity_tolerance, rows of at most 2 in their sums, products and sums of three.
+  const double reach = 2 * (max_abs(ball_a.centre - Point3{}) + max_abs(ball_b.centre - Point3{})) +
+                       max_abs(a.placement.translation()) + max_abs(b.placement.translation());
+  const double gap = distance * (1 - 8 * unit_roundoff) -
+                     (ball_a.radius + ball_b.radius) * (1 + 4 * rigidity_tolerance) -
+                     32 * unit_roundoff * reach;
+  // Squares are far from both ends of the range.
+  return distance > 0x1p-400 && distance < 0x1p400 ? gap : -INFINITY;
 }
 
-void PairSearch::prepare() {
-  const Volume volume = scratch_[0]->blocks(false).volume();
-  SNUG_EXPECT(volume == scratch_[1]->blocks(false).volume());
+PairSearch::PairSearch(const PlacedModel& a, const PlacedModel& b)
+    : scratch_{&a.scratch, &b.scratch}, volume_(a.model.tree().blocks().volume()) {
+  SNUG_EXPECT(&a.scratch != &b.scratch && &a.scratch.model() == &a.model && &b.scratch.model() == &b.model);
+  SNUG_EXPECT(volume_ == b.model.tree().blocks().volume());
+  world_ = joint_scale(a, b);
+  const std::array<const PlacedModel*, 2> side{&a, &b};
   for (std::size_t s = 0; s < 2; ++s) {
-    view_[s] = View(volume, frame_[s], frame_[1 - s]);
+    frame_[s] =
+        make_frame(side[s]->model.surface(), side[s]->placement, world_, rigidity_defect(side[s]->placement));
     scale_[s] = static_cast<float>(frame_[s].scale);
     scratch_[s]->begin();
   }
 }
 
 double PairSearch::length_down(double mesh_units) const {
-  return rounded_down(world_.apply(mesh_units) - underflow_error);
+  return world_.apply(mesh_units) * (1 - 2 * unit_roundoff) - underflow_error;
 }
 
 double PairSearch::length_up(double mesh_units) const {
   const double x = world_.apply(mesh_units);
-  return world_.exact(mesh_units) ? x : rounded_up(x + underflow_error);
+  return world_.exact(mesh_units) ? x : x * (1 + 2 * unit_roundoff) + underflow_error;
 }
 
-Blocks::Distances PairSearch::gaps(std::size_t side, std::uint32_t block, const Blocks& blocks,
-                                   Node other) const {
-  Blocks::Distances gaps;
-  const RelativeFrame& frame = view_[side].frame;
+void PairSearch::find_gaps(std::size_t side, std::uint32_t block, const Blocks& blocks, Node other,
+                           Blocks::Distances& out) {
+  const View& seen_view = view(side);
+  const RelativeFrame& frame = seen_view.frame;
   if (!frame.comparable) {
-    gaps.fill(-INFINITY);
-    return gaps;
+    out.fill(-INFINITY);
+    return;
   }
   PlacedVolume seen;
-  scratch_[1 - side]->blocks(other.piece).placed(other.lane(), view_[side], seen);
-  blocks.distances(block, seen, frame.slack, gaps);
-  return gaps;
+  scratch_[1 - side]->blocks(other.piece).placed(other.lane(), seen_view, seen);
+  blocks.distances(block, seen, frame.slack, out);
 }
 
 namespace {
 
-// In the search's units. One rounding of the product, one of the single precision.
-double in_world(float gap, const RelativeFrame& frame) {
-  const double world = static_cast<double>(gap) * frame.to_world;
-  return world > 0 ? world * (1 - 4 * unit_roundoff) : world;
+// A gap in the search's units, rounded down: by one rounding of the factor, one of the product.
+float in_world(float gap, float to_world) {
+  return gap > 0 ? gap * to_world * (1 - 4 * 0x1p-24F) : gap * to_world;
 }
 
 }  // namespace
 
-NodePair PairSearch::roots() const {
+NodePair PairSearch::roots() {
   NodePair pair;
   for (std::size_t s = 0; s < 2; ++s) {
     pair.nodes[s] = scratch_[s]->root();
     pair.sizes[s] = scale_[s] * scratch_[s]->blocks(false).size_of(pair.nodes[s].lane());
   }
-  const std::size_t side = view_[0].frame.comparable ? 0 : 1;
-  pair.gap =
-      in_world(gaps(side, pair.nodes[side].block, scratch_[side]->blocks(false), pair.nodes[1 - side])[0],
-               view_[side].frame);
+  const std::size_t side = view(0).frame.comparable ? 0 : 1;
+  Blocks::Distances found;
+  find_gaps(side, pair.nodes[side].block, scratch_[side]->blocks(false), pair.nodes[1 - side], found);
+  pair.gap = in_world(found[0], static_cast<float>(view(side).frame.to_world));
   return pair;
 }
 
@@ -118,20 +119,22 @@ std::optional<std::size_t> PairSearch::side_to_open(const NodePair& pair) const 
   return std::nullopt;
 }
 
-double PairSearch::open(const NodePair& pair, std::size_t side, double most, std::vector<NodePair>& out) {
+float PairSearch::open(const NodePair& pair, std::size_t side, double most, std::vector<NodePair>& out) {
   const Node node = pair.nodes[side], other = pair.nodes[1 - side];
-  if (node.piece) ++stats.splits;
+  stats.splits += node.piece;
   const QueryScratch::Opened opened = scratch_[side]->open(node);
   const Blocks& blocks = scratch_[side]->blocks(opened.piece);
   const std::size_t count = blocks.count(opened.block);
   stats.box_tests += count;
-  const Blocks::Distances found = gaps(side, opened.block, blocks, other);
-  double least = INFINITY;
+  Blocks::Distances found;
+  find_gaps(side, opened.block, blocks, other, found);
+  const auto to_world = static_cast<float>(view(side).frame.to_world);
+  float least = INFINITY;
   const std::size_t before = out.size();
   for (std::size_t i = 0; i < count; ++i) {
-    double gap = in_world(found[i], view_[side].frame);
+    float gap = in_world(found[i], to_world);
     if (pair.gap > 0) gap = std::max(gap, pair.gap);
-    if (gap > most) {
+    if (static_cast<double>(gap) > most) {
       least = std::min(least, gap);
       continue;
     }
@@ -142,10 +145,10 @@ double PairSearch::open(const NodePair& pair, std::size_t side, double most, std
     next.sizes[1 - side] = pair.sizes[1 - side];
     next.gap = gap;
     // Insertion: a handful of pairs, equal ones in the order of their lanes.
+    std::size_t at = out.size();
     out.push_back(next);
-    for (std::size_t at = out.size() - 1; at > before && out[at - 1].gap < gap; --at) {
-      std::swap(out[at], out[at - 1]);
-    }
+    for (; at > before && out[at - 1].gap < gap; --at) out[at] = out[at - 1];
+    out[at] = next;
   }
   return least;
 }
@@ -156,6 +159,13 @@ double PairSearch::radii(const NodePair& pair) const {
     sum += frame_[s].growth() * scratch_[s]->pieces()[piece(pair, s)].offset.radius;
   }
   return sum;
+}
+
+Vector3 PairSearch::Pieces::direction() const {
+  const auto at = [](const Triangle& t, Barycentric p) {
+    return t[0] + (p.b * (t[1] - t[0]) + p.c * (t[2] - t[0]));
+  };
+  return at(base[1], near.on_b) - at(base[0], near.on_a);
 }
 
 PairSearch::Pieces PairSearch::nearest_pieces(const NodePair& pair) {
@@ -173,8 +183,30 @@ PairSearch::Pieces PairSearch::nearest_pieces(const NodePair& pair) {
   }
   pieces.near = nearest(pieces.base[0], pieces.base[1]);
   const double gap = rounded_down(pieces.near.certain_distance - enlarged(pieces.radii[0] + pieces.radii[1]));
-  pieces.gap = std::max(gap > 0 ? gap : 0.0, pair.gap > 0 ? pair.gap : 0.0);
+  pieces.gap = std::max({gap, static_cast<double>(pair.gap), 0.0});
   return pieces;
+}
+
+double PairSearch::hull_gap(const NodePair& pair, const Vector3& direction) {
+  const double size = length(direction);
+  if (!(size > 0) || !std::isfinite(1 / size)) return 0;
+  const Vector3 w = (1 / size) * direction;
+  double end[2] = {0, 0}, reach = 0;
+  for (std::size_t s = 0; s < 2; ++s) {
+    const PlacedFrame& frame = frame_[s];
+    const HullPoints& hull = scratch_[s]->pieces().hull(piece(pair, s));
+    // w . (scale R x + t) = scale (R' w) . x + w . t
+    const Vector3 local = w.x * frame.rows[0] + w.y * frame.rows[1] + w.z * frame.rows[2];
+    const Slab slab = outer_slab(hull, local);
+    const double from = frame.scale * dot(local, hull.origin - Point3{}) + dot(w, frame.translation);
+    end[s] = from + frame.scale * (s == 0 ? slab.upper : slab.lower);
+    reach = std::max(
+        reach, frame.scale * (max_abs(hull.origin - Point3{}) + hull.largest) + max_abs(frame.translation));
+  }
+  // |w| <= 1 + 4 u; R' w is off by 4 roundings of its rows' sums, which multiply coordinates.
+  const double gap =
+      (end[1] - end[0]) * (1 - 16 * unit_roundoff) - 64 * unit_roundoff * reach - 16 * underflow_error;
+  return gap > 0 ? gap : 0;
 }
 
 Point3 PairSearch::placed(std::size_t side, const Point3& p, double& error) const {
@@ -208,7 +240,7 @@ bool PairSearch::certainly_cross(const Pieces& pieces) {
     const Crossed crossed(scratch_[s]->pieces()[pieces.ids[s]], scratch_[s]->pieces().heights(pieces.ids[s]));
     if (!crossed.possible()) continue;
     if (crosses_near(scratch_[1 - s]->pieces(), pieces.ids[1 - s], parameter(at[1 - s]), crossed,
-                     view_[s].frame)) {
+                     view(s).frame)) {
       return true;
     }
   }

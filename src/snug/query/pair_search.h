@@ -24,13 +24,19 @@ struct NodePair {
   std::array<float, 2> sizes;  ///< upper bounds of the nodes' sizes, placed
   /// Lower bound of their distance where positive, in the search's units, and not below that of what they are parts of; else
   /// the more negative the deeper they overlap.
-  double gap;
+  float gap;
 };
+
+/// Lower bound, in mesh units, of the distance of the balls around two placed models: cheap. Not positive where none shows,
+/// or where doubles do not reach.
+/// Requires:  rigid placements.
+[[nodiscard]] double ball_gap(const PlacedModel& a, const PlacedModel& b);
 
 /// What queries between two placed models share: frames, comparisons of nodes and of pieces, limit points. Lengths are in
 /// units of its own, powers of two away from mesh units, in which both placed models are at most about 2 large and far.
 class PairSearch {
  public:
+  /// Requires:  rigid placements (require_rigid), models with the same sort of volume, two scratches.
   PairSearch(const PlacedModel& a, const PlacedModel& b);
 
   /// From mesh units; a lower bound and an upper bound of the exact length.
@@ -38,13 +44,8 @@ class PairSearch {
   [[nodiscard]] double length_up(double mesh_units) const;
   [[nodiscard]] PowerOfTwo to_mesh_units() const { return world_.inverse(); }
 
-  /// Lower bound of the distance of the balls around the models: cheap, and all there is before prepare().
-  [[nodiscard]] double ball_gap() const { return ball_gap_; }
-  /// To be called once before anything else.
-  void prepare();
   /// The whole models.
-  /// Requires:  prepare(); and so do all the others.
-  [[nodiscard]] NodePair roots() const;
+  [[nodiscard]] NodePair roots();
 
   [[nodiscard]] bool pieces(const NodePair& pair) const { return pair.nodes[0].piece && pair.nodes[1].piece; }
   /// The side whose node is larger among those that can be opened; nothing if neither can.
@@ -52,7 +53,7 @@ class PairSearch {
   /// What the node of one side opens to, against the other side's node: pairs with a gap of at most `most`, the smallest
   /// gap last, are added to `out`.
   /// Returns:   the smallest gap of the others; infinite if there are none.
-  double open(const NodePair& pair, std::size_t side, double most, std::vector<NodePair>& out);
+  float open(const NodePair& pair, std::size_t side, double most, std::vector<NodePair>& out);
 
   /// Two pieces, their base triangles as placed.
   struct Pieces {
@@ -61,6 +62,8 @@ class PairSearch {
     std::array<double, 2> radii;   ///< as placed
     NearestTriangles near;
     double gap;  ///< lower bound of their distance, zero if none shows
+    /// From the nearest point of A's base triangle to that of B's.
+    [[nodiscard]] Vector3 direction() const;
   };
   [[nodiscard]] PieceId piece(const NodePair& pair, std::size_t side) const {
     return scratch_[side]->piece(pair.nodes[side]);
@@ -68,6 +71,10 @@ class PairSearch {
   /// Sum of the two radii, placed.
   [[nodiscard]] double radii(const NodePair& pair) const;
   [[nodiscard]] Pieces nearest_pieces(const NodePair& pair);
+
+  /// Lower bound of the distance of two pieces: that of the planes across `direction` that hold their hulls apart. Any
+  /// direction gives one; the best is that from the nearest point of A to that of B.
+  [[nodiscard]] double hull_gap(const NodePair& pair, const Vector3& direction);
 
   /// Limit points, placed, and an upper bound of the distance of the exact ones.
   struct Witness {
@@ -85,21 +92,29 @@ class PairSearch {
   [[nodiscard]] QueryScratch& scratch(std::size_t side) const { return *scratch_[side]; }
   [[nodiscard]] const PlacedFrame& frame(std::size_t side) const { return frame_[side]; }
   /// How the other side is seen from the frame of `side`.
-  [[nodiscard]] const RelativeFrame& seen_from(std::size_t side) const { return view_[side].frame; }
+  [[nodiscard]] const RelativeFrame& seen_from(std::size_t side) { return view(side).frame; }
   QueryStats stats;
 
  private:
   [[nodiscard]] Point3 placed(std::size_t side, const Point3& p, double& error) const;
 
   std::array<QueryScratch*, 2> scratch_;
-  [[nodiscard]] Blocks::Distances gaps(std::size_t side, std::uint32_t block, const Blocks& blocks,
-                                       Node other) const;
+  void find_gaps(std::size_t side, std::uint32_t block, const Blocks& blocks, Node other,
+                 Blocks::Distances& out);
+  [[nodiscard]] const View& view(std::size_t side) {
+    if (!seen_[side]) {
+      view_[side] = View(volume_, frame_[side], frame_[1 - side]);
+      seen_[side] = true;
+    }
+    return view_[side];
+  }
 
   PowerOfTwo world_;
   std::array<PlacedFrame, 2> frame_;
   std::array<float, 2> scale_{};
-  std::array<View, 2> view_;
-  double ball_gap_ = 0;
+  Volume volume_;
+  std::array<bool, 2> seen_{};
+  std::array<View, 2> view_;  // made on first use
 };
 
 }  // namespace snug

@@ -144,7 +144,14 @@ QueryModel::QueryModel(const Surface& surface, const QueryModelOptions& options,
     : surface_(&surface),
       table_(options.table),
       patches_(existing_patches(surface)),
-      tree_(make_tree(surface, patches_, options, monitor)) {}
+      tree_(make_tree(surface, patches_, options, monitor)) {
+  const PowerOfTwo back = surface.scale().inverse();
+  ball_ = {back.apply(tree_.ball().centre), enlarged(back.apply(tree_.ball().radius))};
+  // Beyond these sizes products lose digits to the ends of the range.
+  if (!is_finite(ball_.centre) || !(ball_.radius < 0x1p500) || std::abs(back.exponent()) > 500) {
+    ball_ = {Point3{}, INFINITY};
+  }
+}
 
 std::size_t QueryModel::bytes() const { return patches_.capacity() * sizeof(PatchId) + tree_.bytes(); }
 

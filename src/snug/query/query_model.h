@@ -37,6 +37,8 @@ class QueryModel {
   [[nodiscard]] const BoundingTree& tree() const { return tree_; }
   /// The patch that the tree calls item i.
   [[nodiscard]] PatchId patch(std::uint32_t item) const { return patches_[item]; }
+  /// Around the surface, in mesh units; infinite where that does not fit a double.
+  [[nodiscard]] const Ball& ball() const { return ball_; }
   /// Without the surface.
   [[nodiscard]] std::size_t bytes() const;
 
@@ -45,6 +47,7 @@ class QueryModel {
   std::optional<TableLayout> table_;
   std::vector<PatchId> patches_;
   BoundingTree tree_;
+  Ball ball_;
 };
 
 /// A set in a model's tree: of the tree itself, or of a piece that queries made.

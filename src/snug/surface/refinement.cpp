@@ -72,7 +72,21 @@ void Refinement::clear() {
   std::fill(roots_.begin(), roots_.end(), PieceId());
   pieces_.clear();
   heights_.clear();
+  hulls_.clear();
+  hull_places_.clear();
   bytes_ = 0;
+}
+
+const HullPoints& Refinement::hull(PieceId id) {
+  if (id.index() >= hull_places_.size()) hull_places_.resize(pieces_.size(), 0);
+  std::uint32_t& place = hull_places_[id.index()];
+  if (place == 0) {
+    HullPoints& points = hulls_.emplace_back();
+    close_points(surface_.library(), pieces_[id.index()].patch, points);
+    place = static_cast<std::uint32_t>(hulls_.size());
+    bytes_ += sizeof(HullPoints) + 3 * points.size() * sizeof(double);
+  }
+  return hulls_[place - 1];
 }
 
 PieceId Refinement::root(PatchId patch) {

@@ -53,6 +53,8 @@ class Refinement {
   [[nodiscard]] PieceId root(PatchId patch);
   [[nodiscard]] const Piece& operator[](PieceId id) const { return pieces_[id.index()]; }
   [[nodiscard]] const Heights& heights(PieceId id) const { return heights_[id.index()]; }
+  /// Points whose hull holds the piece closely, kept once they are made.
+  [[nodiscard]] const HullPoints& hull(PieceId id);
   /// First of the four children, making them if need be.
   /// Requires:  below the last level, PiecePath::max_level.
   [[nodiscard]] PieceId split(PieceId id);
@@ -73,7 +75,9 @@ class Refinement {
   std::vector<PieceId> roots_;
   std::deque<Piece> pieces_;
   std::vector<Heights> heights_;
-  std::size_t bytes_ = 0;  // of pieces
+  std::deque<HullPoints> hulls_;
+  std::vector<std::uint32_t> hull_places_;  // in hulls_, from 1 on; 0 where there is none
+  std::size_t bytes_ = 0;                   // of pieces
   HullPoints scratch_;
 };
 

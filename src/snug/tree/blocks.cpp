@@ -97,10 +97,9 @@ class Decomposition {
 View::View(Volume volume, const PlacedFrame& target, const PlacedFrame& source) : frame(target, source) {
   if (volume == Volume::obb || !frame.comparable) return;
   const Decomposition decomposition(volume);
-  const auto directions = directions_of(volume);
-  for (std::size_t i = 0; i < directions.size(); ++i) {
-    const Vector3& d = all_directions[directions[i]];
-    sums[i] = decomposition(d.x * frame.rows[0] + d.y * frame.rows[1] + d.z * frame.rows[2]);
+  for (const std::uint8_t direction : directions_of(volume)) {
+    const Vector3& d = all_directions[direction];
+    sums.push_back(decomposition(d.x * frame.rows[0] + d.y * frame.rows[1] + d.z * frame.rows[2]));
   }
 }
 

@@ -24,7 +24,7 @@ struct View {
     std::array<std::uint8_t, 3> place;
     std::array<double, 3> weight;
   };
-  std::array<Sum, max_directions> sums;
+  std::vector<Sum> sums;
 
   View() = default;
   View(Volume volume, const PlacedFrame& target, const PlacedFrame& source);

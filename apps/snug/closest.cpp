@@ -1,0 +1,113 @@
+#include <snug/query/closest.h>
+
+#include <cmath>
+
+#include <fmt/core.h>
+#include <snug/io/read_file.h>
+#include <CLI/CLI.hpp>
+
+#include "length.h"
+#include "placed_pair.h"
+#include "progress_bar.h"
+#include "words.h"
+
+namespace snug::command {
+namespace {
+
+struct Options : ModelOptions {
+  std::string mesh, points;
+  std::string precision = "0.01%";
+  double relative = 0;
+};
+
+// Lines "x y z".
+std::vector<Point3> read_points(const std::string& path) {
+  const std::string text = read_file(path);
+  std::vector<Point3> points;
+  for_each_line(text, [&](std::string_view line, std::size_t number) {
+    Point3 p;
+    const bool good = parse(next_word(line), p.x) && parse(next_word(line), p.y) &&
+                      parse(next_word(line), p.z) && next_word(line).empty() && is_finite(p);
+    if (!good) {
+      throw InputError(InputProblem::unreadable,
+                       path + ":" + std::to_string(number) + ": a line is 'x y z', three finite numbers");
+    }
+    points.push_back(p);
+  });
+  return points;
+}
+
+void write_result(Report& report, const Surface& surface, const ClosestPoint& result) {
+  const bool primal = is_primal(surface.options().scheme), loop = surface.options().scheme == Scheme::loop;
+  if (!report.json()) {
+    report.text(fmt::format("{} {}  {} {} {}  {} {} {}{}", text_at_most(result.lower),
+                            text_at_most(result.upper, true), result.point.x, result.point.y, result.point.z,
+                            result.at.owner, result.at.u, result.at.v,
+                            loop ? "" : fmt::format(" {}", result.at.corner)));
+    return;
+  }
+  JsonWriter& json = report.write();
+  json.begin_object().key("distance").begin_array().value(result.lower).value(result.upper).end_array();
+  json.field("reached", result.reached).field("point", result.point).field("error", result.point_error);
+  json.field(primal ? "face" : "vertex", result.at.owner).field("u", result.at.u).field("v", result.at.v);
+  if (!loop) json.field("corner", result.at.corner);
+  json.end_object();
+}
+
+ExitStatus run(const Options& options) {
+  const Length precision = parse_length(options.precision, "--precision", true);
+  const std::vector<Point3> points = read_points(options.points);
+  const QueryModelOptions how = model_options(options, "closest");
+  const Surface surface =
+      load_surface(options.mesh, options, options.scheme, std::make_shared<BoundLibrary>());
+  ClosestOptions wanted;
+  wanted.absolute = precision.in_mesh_units(surface.size());
+  wanted.relative = options.relative;
+  wanted.budget = options.budget;
+  std::vector<ClosestPoint> results;
+  {
+    ProgressBar bar("closest points", options.quiet);
+    const WorkMonitor monitor = bar.monitor();
+    naming(options.mesh, [&] {
+      const QueryModel model(surface, how, monitor);
+      results = closest_points(model, points, wanted, options.threads, monitor);
+    });
+  }
+  Report report("closest", options);
+  report.heads({options.mesh}, {name_of(surface.options().scheme)});
+  if (report.json()) {
+    report.write().field("precision", wanted.absolute).field("relative", wanted.relative);
+    report.write().key("results").begin_array();
+  }
+  bool reached = true;
+  for (const ClosestPoint& result : results) {
+    write_result(report, surface, result);
+    reached = reached && result.reached;
+  }
+  if (report.json()) report.write().end_array();
+  report.finish();
+  return reached ? ExitStatus::answered : ExitStatus::not_reached;
+}
+
+}  // namespace
+
+Command add_closest(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("closest", "The limit points closest to given points");
+  command->add_option("MESH", options->mesh, "Control mesh (OBJ, OFF, PLY or STL)")->required();
+  command
+      ->add_option("--points", options->points,
+                   "File with a line 'x y z' for each point; - for standard input")
+      ->required();
+  command
+      ->add_option("--precision", options->precision,
+                   "How near the bounds of a distance must be: mesh units, or percent of the mesh")
+      ->capture_default_str();
+  command->add_option("--relative", options->relative, "Or as near as this share of the distance")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  add_model_options(*command, *options);
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace snug::command

@@ -1,0 +1,73 @@
+#include <snug/query/distance.h>
+
+#include <fmt/core.h>
+#include <CLI/CLI.hpp>
+
+#include "length.h"
+#include "placed_pair.h"
+#include "progress_bar.h"
+
+namespace snug::command {
+namespace {
+
+struct Options : PairOptions {
+  std::string precision = "0.01%";
+  double relative = 0;
+};
+
+void write_answer(JsonWriter& json, const Distance& answer, const DistanceOptions& wanted) {
+  json.field("precision", wanted.absolute)
+      .field("relative", wanted.relative)
+      .field("reached", answer.reached);
+  json.key("distance").begin_array().value(answer.lower).value(answer.upper).end_array();
+  json.key("witness").begin_array().value(answer.witness[0]).value(answer.witness[1]).end_array();
+  json.field("witness_error", answer.witness_error).key("stats").begin_object();
+  json.field("box_tests", answer.stats.box_tests).field("triangle_tests", answer.stats.triangle_tests);
+  json.field("evaluations", answer.stats.evaluations).field("splits", answer.stats.splits).end_object();
+}
+
+ExitStatus run(const Options& options) {
+  const Length precision = parse_length(options.precision, "--precision", true);
+  PlacedPair pair(options, "distance");
+  DistanceOptions wanted;
+  wanted.absolute = precision.in_mesh_units(pair.size());
+  wanted.relative = options.relative;
+  wanted.budget = options.budget;
+  ProgressBar bar("measuring", options.quiet);
+  const WorkMonitor monitor = bar.monitor();
+  pair.prepare(monitor);
+  const Distance answer = distance(pair.a(), pair.b(), wanted, monitor);
+
+  Report report("distance", options);
+  pair.write_heads(report);
+  if (report.json()) write_answer(report.write(), answer, wanted);
+  if (answer.upper == 0) {
+    report.text("the limit surfaces have a point in common: proved");
+  } else {
+    report.text(
+        fmt::format("the limit surfaces are at least {} and at most {} apart{}", text_at_most(answer.lower),
+                    text_at_most(answer.upper, true),
+                    answer.reached ? "" : "; that is not as precise as asked, give a larger --budget"));
+  }
+  report.finish();
+  return answer.reached ? ExitStatus::answered : ExitStatus::not_reached;
+}
+
+}  // namespace
+
+Command add_distance(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("distance", "How far are two limit surfaces apart? Bounds, and two points");
+  command
+      ->add_option("--precision", options->precision,
+                   "How near the bounds must be: mesh units, or percent of the longer mesh")
+      ->capture_default_str();
+  command->add_option("--relative", options->relative, "Or as near as this share of the distance")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  add_pair_options(*command, *options);
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace snug::command

@@ -1,0 +1,68 @@
+#include "placed_pair.h"
+
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "length.h"
+
+namespace snug::command {
+
+void add_model_options(CLI::App& app, ModelOptions& options) {
+  std::vector<std::string> names;
+  for (const Volume volume : all_volumes) names.emplace_back(name_of(volume));
+  app.add_option("--volume", options.volume,
+                 "Sets that trees are made of: aabb, obb, 14-dop, 18-dop or 26-dop")
+      ->check(CLI::IsMember(names))
+      ->capture_default_str();
+  add_common_options(app, options);
+}
+
+QueryModelOptions model_options(const ModelOptions& options, const std::string& command) {
+  QueryModelOptions result;
+  for (const Volume volume : all_volumes) {
+    if (options.volume == name_of(volume)) result.volume = volume;
+  }
+  const BoundMethod method = bound_method(options);
+  if (method == BoundMethod::control_box) {
+    throw UsageError(command + ": --bounds control-box is not available; give rows or table");
+  }
+  if (method == BoundMethod::table) result.table = table_layout(options);
+  result.threads = options.threads;
+  return result;
+}
+
+void add_pair_options(CLI::App& app, PairOptions& options) {
+  app.add_option("A", options.mesh_a, "First control mesh (OBJ, OFF, PLY or STL)")->required();
+  app.add_option("B", options.mesh_b, "Second control mesh")->required();
+  app.add_option("--place-a", options.place_a, "Placement of A: twelve numbers, a row-major 3x4 motion");
+  app.add_option("--place-b", options.place_b, "Placement of B");
+  const auto schemes = CLI::IsMember({"auto", "loop", "catmark", "catmull-clark", "doo-sabin", "midedge"});
+  app.add_option("--scheme-a", options.scheme_a, "Scheme of A, before --scheme")->check(schemes);
+  app.add_option("--scheme-b", options.scheme_b, "Scheme of B, before --scheme")->check(schemes);
+  add_model_options(app, options);
+}
+
+PlacedPair::PlacedPair(const PairOptions& options, const std::string& command)
+    : options_(options), model_options_(model_options(options, command)) {
+  if (!options.place_a.empty()) place_a_ = parse_placement(options.place_a, "--place-a");
+  if (!options.place_b.empty()) place_b_ = parse_placement(options.place_b, "--place-b");
+  const auto library = std::make_shared<BoundLibrary>();
+  const auto scheme = [&](const std::string& own) { return own.empty() ? options.scheme : own; };
+  surface_a_.emplace(load_surface(options.mesh_a, options, scheme(options.scheme_a), library));
+  surface_b_.emplace(load_surface(options.mesh_b, options, scheme(options.scheme_b), library));
+}
+
+void PlacedPair::prepare(const WorkMonitor& monitor) {
+  naming(options_.mesh_a, [&] { model_a_.emplace(*surface_a_, model_options_, monitor); });
+  naming(options_.mesh_b, [&] { model_b_.emplace(*surface_b_, model_options_, monitor); });
+  scratch_a_.emplace(*model_a_);
+  scratch_b_.emplace(*model_b_);
+}
+
+void PlacedPair::write_heads(Report& report) const {
+  report.heads({options_.mesh_a, options_.mesh_b},
+               {name_of(surface_a_->options().scheme), name_of(surface_b_->options().scheme)});
+}
+
+}  // namespace snug::command

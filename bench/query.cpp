@@ -1,0 +1,64 @@
+#include "query.h"
+
+#include <cstdio>
+
+namespace snug::bench {
+namespace {
+
+QueryModelOptions one_thread(QueryModelOptions options) {
+  options.threads = 1;
+  return options;
+}
+
+}  // namespace
+
+Queries::Queries(const Surface& a, const Surface& b, const QueryModelOptions& options)
+    : a_(a, one_thread(options)), b_(b, one_thread(options)), scratch_a_(a_), scratch_b_(b_) {}
+
+Collision Queries::collide(const PlacedPair& at, double tolerance, double margin) {
+  CollideOptions options;
+  options.tolerance = tolerance;
+  options.margin = margin;
+  return snug::collide({a_, scratch_a_, at.a}, {b_, scratch_b_, at.b}, options);
+}
+
+std::optional<bool> Queries::meet(const PlacedPair& at) {
+  CollideOptions options;
+  options.tolerance = 1e-7;
+  options.prove_contact = true;
+  switch (snug::collide({a_, scratch_a_, at.a}, {b_, scratch_b_, at.b}, options).verdict) {
+    case Verdict::separated:
+      return false;
+    case Verdict::intersecting:
+      return true;
+    case Verdict::within:
+    case Verdict::undecided:
+      break;
+  }
+  return {};
+}
+
+Distance Queries::distance(const PlacedPair& at, double precision) {
+  DistanceOptions options;
+  options.absolute = precision;
+  return snug::distance({a_, scratch_a_, at.a}, {b_, scratch_b_, at.b}, options);
+}
+
+std::size_t Queries::bytes() const {
+  return a_.bytes() + b_.bytes() + scratch_a_.bytes() + scratch_b_.bytes();
+}
+
+void Work::add(const QueryStats& stats) {
+  queries_ += 1;
+  box_tests_ += static_cast<double>(stats.box_tests);
+  triangle_tests_ += static_cast<double>(stats.triangle_tests);
+  evaluations_ += static_cast<double>(stats.evaluations);
+  splits_ += static_cast<double>(stats.splits);
+}
+
+void Work::print(const char* name) const {
+  std::printf("# %s, a query: %.1f box tests, %.2f triangle tests, %.2f evaluations, %.2f splits\n", name,
+              box_tests_ / queries_, triangle_tests_ / queries_, evaluations_ / queries_, splits_ / queries_);
+}
+
+}  // namespace snug::bench

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include <snug/query/collide.h>
+#include <snug/query/distance.h>
+#include <snug/query/query_model.h>
+#include <snug/query/rooms.h>
+
+namespace snug::bench {
+
+/// Two surfaces ready for queries on one thread. All calls of queries in bench/ are in here.
+class Queries {
+ public:
+  Queries(const Surface& a, const Surface& b, const QueryModelOptions& options = {});
+
+  [[nodiscard]] Collision collide(const PlacedPair& at, double tolerance, double margin = 0);
+  /// Do the limit surfaces meet? Nothing where neither is certain.
+  [[nodiscard]] std::optional<bool> meet(const PlacedPair& at);
+  /// With upper - lower at most `precision`.
+  [[nodiscard]] Distance distance(const PlacedPair& at, double precision);
+  /// Models and scratch, without the surfaces.
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  QueryModel a_, b_;
+  QueryScratch scratch_a_, scratch_b_;
+};
+
+/// What queries did, in all.
+class Work {
+ public:
+  void add(const QueryStats& stats);
+  /// Prints "# name, a query: ... box tests, ... triangle tests, ... evaluations, ... splits".
+  void print(const char* name) const;
+
+ private:
+  double queries_ = 0, box_tests_ = 0, triangle_tests_ = 0, evaluations_ = 0, splits_ = 0;
+};
+
+}  // namespace snug::bench

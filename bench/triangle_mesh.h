@@ -1,0 +1,17 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <snug/base/point.h>
+
+namespace snug::bench {
+
+/// What the peers work on: triangles as indices of points.
+struct TriangleMesh {
+  std::vector<Point3> points;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+}  // namespace snug::bench

@@ -1,0 +1,209 @@
+#include <snug/query/closest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include <snug/base/contract.h>
+#include <snug/base/error.h>
+#include <snug/base/parallel.h>
+#include <snug/base/rounding.h>
+#include <snug/enclose/triangle_distance.h>
+#include <snug/patch/evaluate.h>
+#include <snug/surface/unscale.h>
+
+namespace snug {
+namespace {
+
+constexpr std::size_t most_touched = 50'000;
+// Squares of the distance, in sizes of the surface, stay well inside single precision.
+constexpr double farthest_point = 0x1p40;
+
+struct Candidate {
+  Node node;
+  float gap;
+};
+
+bool farther(const Candidate& x, const Candidate& y) { return x.gap > y.gap; }
+
+// The parameter of a patch as one of its owner.
+SurfaceParameter owner_parameter(const Surface& surface, PatchId patch, TriangleParameter at) {
+  const auto [owner, part] = surface.place(patch);
+  if (surface.options().scheme == Scheme::loop) return {owner, 0, at.u, at.v};
+  // Half a quad: from (0,0) by (1,0) to (1,1), or from (1,1) by (0,1) to (0,0).
+  SurfaceParameter result{owner, part / 2, at.u + at.v, at.v};
+  if (part % 2 == 1) result = {owner, part / 2, 1 - at.u - at.v, 1 - at.v};
+  result.u = std::clamp(result.u, 0.0, 1.0);
+  result.v = std::clamp(result.v, 0.0, 1.0);
+  return result;
+}
+
+class Query {
+ public:
+  Query(QueryScratch& scratch, const Point3& to, const ClosestOptions& options, const WorkMonitor& monitor)
+      : scratch_(scratch),
+        surface_(scratch.model().surface()),
+        to_(surface_.scale().apply(to)),
+        options_(options),
+        monitor_(monitor) {
+    if (!(max_abs(to_ - Point3{}) <= farthest_point)) {
+      throw InputError(InputProblem::refused,
+                       "closest: a point is more than 10^12 sizes of the surface away; give nearer points");
+    }
+    absolute_ = surface_.scale().apply(options.absolute) * (1 - 2 * unit_roundoff) - underflow_error;
+    // Scaling a point to units of the surface loses something only where these are far from its own.
+    point_error_ =
+        surface_.scale().exact(to.x) && surface_.scale().exact(to.y) && surface_.scale().exact(to.z)
+            ? 0
+            : 2 * underflow_error;
+  }
+
+  ClosestPoint run() {
+    scratch_.begin();
+    thread_local std::vector<Candidate> heap;
+    heap.assign(1, {scratch_.root(), 0});
+    while (!heap.empty()) {
+      std::pop_heap(heap.begin(), heap.end(), farther);
+      const Candidate candidate = heap.back();
+      heap.pop_back();
+      const double gap = static_cast<double>(candidate.gap);
+      if (gap >= enough() || !visit(candidate, heap)) {
+        resolved_ = std::min(resolved_, gap);
+        break;
+      }
+    }
+    return result();
+  }
+
+ private:
+  [[nodiscard]] double enough() const {
+    return best_ == INFINITY ? INFINITY : best_ - std::max(absolute_, options_.relative * best_);
+  }
+
+  // False when the budget ends.
+  bool visit(const Candidate& candidate, std::vector<Candidate>& heap) {
+    const Node node = candidate.node;
+    double gap = static_cast<double>(candidate.gap);
+    if (node.piece) {
+      monitor_.checkpoint();
+      gap = std::max(gap, look_at(scratch_.piece(node)));
+      if (gap >= enough() || !scratch_.can_open(node)) {
+        resolved_ = std::min(resolved_, gap);
+        return true;
+      }
+    }
+    if (splits_ >= options_.budget || scratch_.touched() >= most_touched) return false;
+    splits_ += node.piece;
+    const QueryScratch::Opened opened = scratch_.open(node);
+    const Blocks& blocks = scratch_.blocks(opened.piece);
+    Blocks::Distances found;
+    blocks.distances(opened.block, to_, point_error_, found);
+    for (std::size_t i = 0; i < blocks.count(opened.block); ++i) {
+      const float least = std::max({found[i], static_cast<float>(gap * (1 - 0x1p-23)), 0.0F});
+      if (static_cast<double>(least) >= enough()) {
+        resolved_ = std::min(resolved_, static_cast<double>(least));
+        continue;
+      }
+      heap.push_back({{opened.block, static_cast<std::uint8_t>(i), opened.piece}, least});
+      std::push_heap(heap.begin(), heap.end(), farther);
+    }
+    return true;
+  }
+
+  // A lower bound of the distance of a piece; evaluates the limit point where its base triangle is nearest.
+  double look_at(PieceId id) {
+    const Piece& piece = scratch_.pieces()[id];
+    const NearestTriangles near = nearest({to_, to_, to_}, piece.offset.base);
+    double gap =
+        rounded_down(near.certain_distance - enlarged(piece.offset.radius + spatial_error(point_error_)));
+    if (near.certain_distance < best_) {
+      const double b = std::clamp(near.on_b.b, 0.0, 1.0);
+      double c = std::clamp(near.on_b.c, 0.0, 1.0 - b);
+      if (b + c > 1) c = 0;
+      const LimitPoint limit = limit_point(piece.patch, {b, c});
+      const Point3 point = piece.patch.origin + limit.relative;
+      const double error = limit.error + unit_roundoff * max_abs(point - Point3{});
+      const Vector3 between = point - to_;
+      const double upper =
+          enlarged(std::sqrt(length_sq(between) + 8 * underflow_error) + spatial_error(error + point_error_) +
+                   8 * unit_roundoff * max_abs(between));
+      if (upper < best_) {
+        best_ = upper;
+        point_ = point;
+        error_ = error;
+        at_ = owner_parameter(surface_, piece.root, to_face(piece.patch.path, {b, c}));
+      }
+    }
+    // A plane between the point and the piece's hull, across the direction of the closest point so far.
+    if (gap < enough()) gap = std::max(gap, plane_gap(id, point_ - to_));
+    return gap;
+  }
+
+  [[nodiscard]] double plane_gap(PieceId id, const Vector3& direction) {
+    const double size = length(direction);
+    if (!(size > 0) || !std::isfinite(1 / size)) return 0;
+    const Vector3 w = (1 / size) * direction;
+    const HullPoints& hull = scratch_.pieces().hull(id);
+    const Slab slab = outer_slab(hull, w);
+    const Vector3 from = hull.origin - to_;
+    const double reach = max_abs(from) + hull.largest;
+    return (slab.lower + dot(w, from)) * (1 - 16 * unit_roundoff) - 32 * unit_roundoff * reach -
+           spatial_error(point_error_) - 16 * underflow_error;
+  }
+
+  ClosestPoint result() const {
+    const PowerOfTwo back = surface_.scale().inverse();
+    ClosestPoint answer;
+    answer.lower = unscaled_down(std::max(0.0, std::min(resolved_, best_)), back);
+    answer.upper = require_representable(unscaled_up(best_, back));
+    answer.reached =
+        answer.upper - answer.lower <= std::max(options_.absolute, options_.relative * answer.upper);
+    answer.point = require_representable(back.apply(point_));
+    answer.point_error = unscaled_up(enlarged(error_), back) + underflow_error;
+    answer.at = at_;
+    return answer;
+  }
+
+  QueryScratch& scratch_;
+  const Surface& surface_;
+  Point3 to_;
+  const ClosestOptions& options_;
+  const WorkMonitor& monitor_;
+  double absolute_ = 0, point_error_ = 0;
+  double best_ = INFINITY, resolved_ = INFINITY;
+  Point3 point_;
+  double error_ = 0;
+  SurfaceParameter at_{};
+  std::uint64_t splits_ = 0;
+};
+
+}  // namespace
+
+ClosestPoint closest_point(QueryScratch& scratch, const Point3& to, const ClosestOptions& options,
+                           const WorkMonitor& monitor) {
+  SNUG_EXPECT(is_finite(to));
+  SNUG_EXPECT(options.absolute >= 0 && std::isfinite(options.absolute));
+  SNUG_EXPECT(options.relative >= 0 && std::isfinite(options.relative));
+  return Query(scratch, to, options, monitor).run();
+}
+
+std::vector<ClosestPoint> closest_points(const QueryModel& model, std::span<const Point3> to,
+                                         const ClosestOptions& options, int threads,
+                                         const WorkMonitor& monitor) {
+  std::vector<ClosestPoint> results(to.size());
+  std::atomic<std::size_t> done{0};
+  // A scratch a range: as few as there are threads, on long lists.
+  parallel_for(to.size(), threads, [&](std::size_t begin, std::size_t end) {
+    QueryScratch scratch(model);
+    for (std::size_t i = begin; i < end; ++i) {
+      results[i] = closest_point(scratch, to[i], options, monitor);
+      const std::size_t count = ++done;
+      if (count % (1 + to.size() / 1000) == 0) {
+        monitor.report(static_cast<double>(count) / static_cast<double>(to.size()));
+      }
+    }
+  });
+  return results;
+}
+
+}  // namespace snug
