@@ -1,4 +1,5 @@
-// collide as people script it: bad placements, lengths at the ends of the doubles, shapes without thickness.
+// collide, distance and closest as people script them: bad placements, lengths at the ends of the doubles, shapes without
+// thickness.
 
 #include <gtest/gtest.h>
 
@@ -166,6 +167,48 @@ TEST_F(queries, solids_hold_what_is_inside_of_them) {
   EXPECT_EQ(answer(with(ball, seed, {"--solid", "--place-b", moved(2)}))["verdict"], "separated");
   // Open surfaces bound nothing.
   EXPECT_EQ(run_snug(with(ball, sheet, {"--solid"})).status, 4);
+}
+
+TEST_F(queries, distances_do_not_depend_on_the_unit) {
+  const double gap = 3 - 48.0 / 55;  // tip to tip
+  for (const int exponent : {0, 664, -664}) {
+    const double unit = std::ldexp(1.0, exponent);
+    const std::string ball = write("ball.obj", octahedron(unit, unit, unit)),
+                      points = write("points.txt", number(3 * unit) + " 0 0\n");
+    const std::vector<std::string> precise{"--precision", number(1e-6 * unit)};
+    std::vector<std::string> apart{"distance", ball, ball, "--place-b", moved(3 * unit)};
+    apart.insert(apart.end(), precise.begin(), precise.end());
+    const json found = answer(apart);
+    EXPECT_LE(std::ldexp(found["distance"][0].get<double>(), -exponent), gap);
+    EXPECT_GE(std::ldexp(found["distance"][1].get<double>(), -exponent), gap);
+    EXPECT_NEAR(std::ldexp(found["distance"][0].get<double>(), -exponent), gap, 1.1e-6);
+    std::vector<std::string> closest{"closest", ball, "--points", points};
+    closest.insert(closest.end(), precise.begin(), precise.end());
+    const json nearest = answer(closest)["results"][0];
+    EXPECT_LE(std::ldexp(nearest["distance"][0].get<double>(), -exponent), 3 - 24.0 / 55);
+    EXPECT_GE(std::ldexp(nearest["distance"][1].get<double>(), -exponent), 3 - 24.0 / 55);
+    EXPECT_NEAR(std::ldexp(nearest["point"][0].get<double>(), -exponent), 24.0 / 55, 1e-2);
+  }
+}
+
+TEST_F(queries, distance_and_closest_refuse_bad_input_and_leave_no_file) {
+  const std::string star = model("star.obj");
+  const TemporaryFolder out;
+  const std::string file = out.file("answer.json");
+  for (const auto& [placement, status] :
+       {std::pair{"1 0 0 0 0 1 0 0 0 0 1.00000001 0", 4}, std::pair{"nan 0 0 0 0 1 0 0 0 0 1 0", 2}})
+    EXPECT_EQ(run_snug({"distance", star, star, "--place-b", placement, "-o", file}).status, status);
+  EXPECT_EQ(run_snug({"distance", star, star, "--precision", "-1", "-o", file}).status, 2);
+  // The same surface twice: its distance is 0, but no proof ends at that.
+  EXPECT_EQ(run_snug({"distance", star, star, "--precision", "0", "--budget", "200"}).status, 5);
+  for (const char* line : {"1 2", "1 2 3 4", "nan 0 0", "1 2 x", "1e999 0 0"}) {
+    const Outcome outcome = run_snug(
+        {"closest", star, "--points", write("bad.txt", std::string("0 0 0\n") + line + "\n"), "-o", file});
+    EXPECT_EQ(outcome.status, 3) << line;
+    EXPECT_NE(outcome.err.find("bad.txt:2"), std::string::npos) << outcome.err;
+  }
+  EXPECT_EQ(run_snug({"closest", star, "--points", write("far.txt", "1e200 0 0\n"), "-o", file}).status, 4);
+  EXPECT_TRUE(out.empty());
 }
 
 TEST_F(queries, interruption_leaves_no_file) {
