@@ -3,7 +3,7 @@
 //
 //   SNUG_PLACEMENTS=1000000 build/release/bin/tests/sound_contact_test --gtest_filter=contact.verdicts_and_bounds_are_true
 //
-// runs a million, in about half an hour; progress goes to standard error. SNUG_FIRST=N begins with trial N: with
+// runs a million, in some forty minutes on one core; progress goes to standard error. SNUG_FIRST=N begins with trial N: with
 // SNUG_PLACEMENTS=1 one that failed alone, and SNUG_DUMP=FOLDER writes its meshes there. SNUG_SHOW=1 names what stayed
 // undecided.
 
