@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <snug/base/error.h>
+#include <snug/query/distance.h>
 #include <testing/patches.h>
 #include <testing/placements.h>
 
@@ -105,6 +106,66 @@ TEST(collide, compares_meshes_of_very_different_size) {
   Pair pair(oracle::meshes::icosahedron(), grain);
   EXPECT_EQ(pair.ask(moved(0, 0, 0), {0.01, 0}).verdict, Verdict::separated);  // at the centre
   EXPECT_EQ(pair.ask(moved(3, 0, 0), {0.01, 0}).verdict, Verdict::separated);
+}
+
+TEST(collide, proves_contact_at_tolerance_zero) {
+  Pair closed(oracle::meshes::icosahedron(), oracle::meshes::octahedron());
+  const Collision answer = closed.ask(moved(0.9, 0.1, 0.05), {});
+  EXPECT_EQ(answer.verdict, Verdict::intersecting);
+  EXPECT_EQ(answer.upper, 0);
+  EXPECT_EQ(closed.ask(moved(3, 0, 0), {}).verdict, Verdict::separated);
+  // Open surfaces cross as well: one stands on edge in the other.
+  Pair open(oracle::meshes::grid(4, 4), oracle::meshes::grid(4, 4));
+  const Placement upright{{1, 0, 0, 0.3, 0, 0, -1, 1.9, 0, 1, 0, -1.7}};
+  EXPECT_EQ(open.ask(upright, {}).verdict, Verdict::intersecting);
+}
+
+TEST(collide, touching_surfaces_stay_undecided_at_tolerance_zero) {
+  Pair pair(oracle::meshes::grid(3, 3), oracle::meshes::grid(3, 3));
+  EXPECT_EQ(pair.ask({}, {0, 0, 2000}).verdict, Verdict::undecided);
+}
+
+TEST(collide, takes_closed_surfaces_for_solids_if_asked) {
+  oracle::TwinMesh inner = oracle::meshes::icosahedron();
+  for (oracle::Point& p : inner.points) p = {0.5 * p[0], 0.5 * p[1], 0.5 * p[2]};
+  Pair nested(oracle::meshes::icosahedron(), inner);
+  CollideOptions options;
+  EXPECT_EQ(nested.ask({}, options).verdict, Verdict::separated);
+  options.solid = true;
+  EXPECT_EQ(nested.ask({}, options).verdict, Verdict::intersecting);
+  EXPECT_GT(nested.ask({}, options).lower, 0);
+  EXPECT_EQ(nested.ask(moved(0, 3, 0), options).verdict, Verdict::separated);
+  Pair half(oracle::meshes::icosahedron(), oracle::meshes::grid(2, 2));
+  EXPECT_THROW(static_cast<void>(half.ask(moved(0, 0, 1.2), options)), InputError);
+}
+
+TEST(collide, answers_the_same_with_every_sort_of_volume) {
+  const Surface a = testing::surface_of(oracle::meshes::icosahedron()),
+                b = testing::surface_of(oracle::meshes::bipyramid(7));
+  std::mt19937_64 random(31);
+  std::vector<Placement> places;
+  for (int i = 0; i < 60; ++i) {
+    places.push_back(testing::random_placement(random, testing::random_vector(random, 2)));
+  }
+  for (const bool tight : {false, true}) {
+    for (const Volume volume : all_volumes) {
+      QueryModelOptions how;
+      how.volume = volume;
+      how.tight = tight;
+      const QueryModel model_a(a, how), model_b(b, how);
+      QueryScratch scratch_a(model_a), scratch_b(model_b);
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const Collision answer = collide({model_a, scratch_a, {}}, {model_b, scratch_b, places[i]}, {});
+        const Distance far =
+            snug::distance({model_a, scratch_a, {}}, {model_b, scratch_b, places[i]}, {1e-4, 0});
+        ASSERT_NE(answer.verdict, Verdict::undecided) << name_of(volume) << ' ' << i;
+        EXPECT_TRUE(far.reached);
+        EXPECT_EQ(answer.verdict == Verdict::separated, far.lower > 0 || far.upper > 1e-4)
+            << name_of(volume) << ' ' << i;
+        EXPECT_LE(answer.lower, far.upper);
+      }
+    }
+  }
 }
 
 TEST(collide, refuses_a_model_without_surface) {

@@ -134,7 +134,7 @@ TEST_P(EachVolume, distance_never_exceeds_that_of_the_contents) {
     PlacedVolume seen;
     blocks_b.placed({0, 0}, view, seen);
     Blocks::Distances gaps_found;
-    blocks_a.distances(0, seen, view.frame.slack, gaps_found);
+    blocks_a.distances(0, seen, view.frame.slack, random() % 2 ? INFINITY : 0, gaps_found);
     std::vector<Extended> images_b;
     for (const Point3& p : cloud_b) images_b.push_back(image(frame_b, p));
     for (std::size_t l = 0; l < sets.size(); ++l) {
@@ -194,7 +194,7 @@ TEST_P(EachVolume, boxes_side_by_side_are_as_far_as_they_are) {
   PlacedVolume seen;
   two.placed({0, 0}, view, seen);
   Blocks::Distances found;
-  one.distances(0, seen, view.frame.slack, found);
+  one.distances(0, seen, view.frame.slack, INFINITY, found);
   EXPECT_NEAR(found[0], 2, volume == Volume::obb ? 1.3 : 1e-4);  // a cube has no principal axes
   EXPECT_LE(found[0], 2);
 }
@@ -221,10 +221,10 @@ TEST_P(EachVolume, what_is_not_finite_is_apart_from_nothing) {
     PlacedVolume seen;
     Blocks::Distances found;
     two.placed({0, 0}, view, seen);
-    one.distances(0, seen, view.frame.slack, found);
+    one.distances(0, seen, view.frame.slack, INFINITY, found);
     EXPECT_FALSE(found[0] > 0) << bad;
     one.placed({0, 0}, view, seen);
-    two.distances(0, seen, view.frame.slack, found);
+    two.distances(0, seen, view.frame.slack, INFINITY, found);
     EXPECT_FALSE(found[0] > 0) << bad;
   }
 }

@@ -23,13 +23,13 @@ class Inspector {
  public:
   explicit Inspector(const ControlMesh& mesh) : mesh_(mesh) {}
 
-  std::vector<Defect> run() {
+  std::vector<Defect> run(bool with_neighbours) {
     const bool indices_good = check_faces();
     check_points();
     check_tags();
-    if (indices_good) {
+    if (indices_good) check_duplicates();
+    if (indices_good && with_neighbours) {
       check_edges();
-      check_duplicates();
       check_fans();
       check_areas();
     }
@@ -284,7 +284,9 @@ const char* name_of(DefectKind kind) {
   return "";
 }
 
-std::vector<Defect> defects(const ControlMesh& mesh) { return Inspector(mesh).run(); }
+std::vector<Defect> defects(const ControlMesh& mesh) { return Inspector(mesh).run(true); }
+
+std::vector<Defect> defects_of_elements(const ControlMesh& mesh) { return Inspector(mesh).run(false); }
 
 std::string summary(const std::vector<Defect>& list) {
   std::string text;

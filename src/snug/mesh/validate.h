@@ -50,6 +50,11 @@ struct Defect {
 /// Cost:      linear, times the logarithm of the largest valence.
 [[nodiscard]] std::vector<Defect> defects(const ControlMesh& mesh);
 
+/// Those of them that show without looking at neighbours: of faces each on its own, of duplicate faces, points and tags.
+/// All but legal ones, where the mesh's topology is manifold.
+/// Requires:  faces of three vertices or more, in range.
+[[nodiscard]] std::vector<Defect> defects_of_elements(const ControlMesh& mesh);
+
 /// "text; text; ... and 12 more": at most ten.
 [[nodiscard]] std::string summary(const std::vector<Defect>& list);
 

@@ -101,7 +101,7 @@ class Winding {
       const QueryScratch::Opened opened = scratch_.open(node);
       const Blocks& blocks = scratch_.blocks(opened.piece);
       Blocks::Distances to_segment, to_point;
-      blocks.distances(opened.block, segment_, error_, to_segment);
+      blocks.distances(opened.block, segment_, error_, 0, to_segment);
       blocks.distances(opened.block, point_, error_, to_point);
       for (std::uint32_t i = 0; i < blocks.count(opened.block); ++i) {
         if (to_segment[i] > 0) continue;

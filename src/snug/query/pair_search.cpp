@@ -101,7 +101,7 @@ double PairSearch::length_up(double mesh_units) const {
 }
 
 void PairSearch::find_gaps(std::size_t side, std::uint32_t block, const Blocks& blocks, Node other,
-                           Blocks::Distances& out) {
+                           double most, Blocks::Distances& out) {
   const View& seen_view = view(side);
   const RelativeFrame& frame = seen_view.frame;
   if (!frame.comparable) {
@@ -110,7 +110,9 @@ void PairSearch::find_gaps(std::size_t side, std::uint32_t block, const Blocks& 
   }
   PlacedVolume seen;
   scratch_[1 - side]->blocks(other.piece).placed(other.lane(), seen_view, seen);
-  blocks.distances(block, seen, frame.slack, out);
+  // In the frame's units, and a little more for the rounding of in_world().
+  const double enough = most / frame.to_world * (1 + 0x1p-20);
+  blocks.distances(block, seen, frame.slack, static_cast<float>(enough), out);
 }
 
 namespace {
@@ -130,7 +132,8 @@ NodePair PairSearch::roots() {
   }
   const std::size_t side = view(0).frame.comparable ? 0 : 1;
   Blocks::Distances found;
-  find_gaps(side, pair.nodes[side].block, scratch_[side]->blocks(false), pair.nodes[1 - side], found);
+  find_gaps(side, pair.nodes[side].block, scratch_[side]->blocks(false), pair.nodes[1 - side], INFINITY,
+            found);
   pair.gap = in_world(found[0], static_cast<float>(view(side).frame.to_world));
   return pair;
 }
@@ -150,7 +153,7 @@ float PairSearch::open(const NodePair& pair, std::size_t side, double most, std:
   const std::size_t count = blocks.count(opened.block);
   stats.box_tests += count;
   Blocks::Distances found;
-  find_gaps(side, opened.block, blocks, other, found);
+  find_gaps(side, opened.block, blocks, other, most, found);
   const auto to_world = static_cast<float>(view(side).frame.to_world);
   float least = INFINITY;
   const std::size_t before = out.size();

@@ -101,7 +101,7 @@ class PairSearch {
   [[nodiscard]] Point3 placed(std::size_t side, const Point3& p, double& error) const;
 
   std::array<QueryScratch*, 2> scratch_;
-  void find_gaps(std::size_t side, std::uint32_t block, const Blocks& blocks, Node other,
+  void find_gaps(std::size_t side, std::uint32_t block, const Blocks& blocks, Node other, double most,
                  Blocks::Distances& out);
   [[nodiscard]] const View& view(std::size_t side) {
     if (!view_[side]) view_[side].emplace(volume_, frame_[side], frame_[1 - side]);

@@ -143,7 +143,8 @@ RoomRow measure_room(const Surface& a, const Surface& b, const RoomOptions& opti
     const bool moeller_apart =
         within && PrintedHierarchy::says_separated(printed_a, placements[i].a, printed_b, placements[i].b,
                                                    moeller_epsilon);
-    const bool hit = !apart && rows.ask(placements[i], contact) == Verdict::within;
+    const Verdict touching = apart ? Verdict::separated : rows.ask(placements[i], contact);
+    const bool hit = touching == Verdict::within || touching == Verdict::intersecting;
     row.within += within;
     row.hits += hit;
     row.printed_missed += within && printed_apart;

@@ -15,8 +15,16 @@ std::string number(std::size_t n) { return std::to_string(n); }
 
 enum class Purpose : std::uint8_t { refinement, surface };
 
-void require_sound(const ControlMesh& mesh, Scheme scheme, Purpose purpose) {
-  std::vector<Defect> refusing = defects(mesh);
+// Three vertices or more, in range: then there is a topology.
+bool has_topology(const ControlMesh& mesh) {
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    if (mesh.face(FaceId(f)).size() < 3) return false;
+  }
+  return std::all_of(mesh.face_vertices.begin(), mesh.face_vertices.end(),
+                     [&](VertexId v) { return v.index() < mesh.vertex_count(); });
+}
+
+void require_sound(std::vector<Defect> refusing, Scheme scheme, Purpose purpose) {
   std::erase_if(refusing, [&](const Defect& defect) {
     return is_answered(defect.kind, scheme) || (purpose == Purpose::refinement && is_primal(scheme) &&
                                                 defect.kind == DefectKind::repeated_vertex);
@@ -109,23 +117,26 @@ SchemeOptions with_tags(SchemeOptions options, const MeshTags& tags) {
 
 namespace {
 
-void require_fit_for(Purpose purpose, const ControlMesh& mesh, const SchemeOptions& options) {
+Topology require_fit_for(Purpose purpose, const ControlMesh& mesh, const SchemeOptions& options) {
   if (mesh.face_count() == 0) refuse("the mesh has no faces");
-  require_sound(mesh, options.scheme, purpose);
+  Topology topology;
+  if (has_topology(mesh)) topology = Topology(mesh);
+  const bool manifold = topology.face_count() > 0 && topology.is_manifold();
+  require_sound(manifold ? defects_of_elements(mesh) : defects(mesh), options.scheme, purpose);
   if (options.scheme == Scheme::loop) require_triangles(mesh);
   require_small_faces(mesh);
-  const Topology topology(mesh);
   require_valences(topology, options.scheme);
+  return topology;
 }
 
 }  // namespace
 
-void require_subdividable(const ControlMesh& mesh, const SchemeOptions& options) {
-  require_fit_for(Purpose::refinement, mesh, options);
+Topology require_subdividable(const ControlMesh& mesh, const SchemeOptions& options) {
+  return require_fit_for(Purpose::refinement, mesh, options);
 }
 
-void require_surface(const ControlMesh& mesh, const SchemeOptions& options) {
-  require_fit_for(Purpose::surface, mesh, options);
+Topology require_surface(const ControlMesh& mesh, const SchemeOptions& options) {
+  return require_fit_for(Purpose::surface, mesh, options);
 }
 
 }  // namespace snug

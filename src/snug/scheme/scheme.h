@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include <snug/mesh/control_mesh.h>
+#include <snug/mesh/topology.h>
 #include <snug/mesh/validate.h>
 
 namespace snug {
@@ -58,8 +59,9 @@ inline constexpr std::size_t max_face_size = 1000;
 /// answers questions about: no refusing defect (mesh/validate.h), Loop on triangles, valences in range. Non-manifold
 /// edges and vertices and faces of inconsistent orientation are kept by Loop and Catmull-Clark, infinitely sharp, as
 /// OpenSubdiv has them; dual schemes refuse them. The message names elements and the next step.
-void require_surface(const ControlMesh& mesh, const SchemeOptions& options);
+/// Returns:   the topology of the mesh.
+Topology require_surface(const ControlMesh& mesh, const SchemeOptions& options);
 /// The same for refinement alone, which Loop and Catmull-Clark also do to faces that name a vertex twice.
-void require_subdividable(const ControlMesh& mesh, const SchemeOptions& options);
+Topology require_subdividable(const ControlMesh& mesh, const SchemeOptions& options);
 
 }  // namespace snug

@@ -40,13 +40,16 @@ void ControlHull::assign(const Surface& surface, std::span<const PatchId> patche
   inner_count_ = points_.size();
   for (const VertexId corner : corners_) {
     topology.for_each_fan(corner, [&](HalfEdge start) {
-      topology.walk_fan(start, [&](HalfEdge h) {
+      HalfEdge h = start;
+      do {
         // The vertices of this face that the next one does not have: all but the last, where the fan goes on.
         const HalfEdge last = topology.prev(h);
-        for (HalfEdge g = topology.next(h); g != last; g = topology.next(g))
+        for (HalfEdge g = topology.next(h); g != last; g = topology.next(g)) {
           ring_.push_back(add(topology.from(g)));
-        if (topology.ccw(h) == no_half_edge) ring_.push_back(add(topology.from(last)));
-      });
+        }
+        h = topology.twin(last);
+        if (h == no_half_edge) ring_.push_back(add(topology.from(last)));
+      } while (h != no_half_edge && h != start);
     });
     ring_ends_.push_back(static_cast<std::uint32_t>(ring_.size()));
   }

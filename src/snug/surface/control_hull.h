@@ -25,8 +25,6 @@ class ControlHull final : public Enclosed {
   [[nodiscard]] std::span<const Point3> points() const override { return {points_.data(), inner_count_}; }
 
  private:
-  void add_ring(const Surface& surface, VertexId corner);
-
   FirstMet numbers_;
   std::vector<VertexId> corners_;
   std::vector<Point3> points_;  // corners first

@@ -12,9 +12,8 @@ Surface::Surface(ControlMesh mesh, const SchemeOptions& options, std::shared_ptr
                  int threads, const WorkMonitor& monitor)
     : mesh_(std::move(mesh)), options_(with_tags(options, mesh_.tags)), library_(std::move(library)) {
   SNUG_EXPECT(library_ != nullptr && options_.vertex_rule == CatmarkVertexRule::standard);
-  require_surface(mesh_, options_);
+  topology_ = require_surface(mesh_, options_);
   monitor.checkpoint();
-  topology_ = Topology(mesh_);
   const Box3 box = used_box(mesh_);
   size_ = box.longest_side();
   scale_ = PowerOfTwo::normalising(std::max(max_abs(box.lower - Point3{}), max_abs(box.upper - Point3{})));

@@ -47,7 +47,7 @@ HWY_INLINE void store(D d, V gap, float* out) {
   hn::StoreU(hn::IfThenElse(hn::Lt(gap, hn::Set(d, 1e30F)), gap, hn::Set(d, -INFINITY)), d, out);
 }
 
-void boxes(const float* block, const OtherBox& other, float slack, float* out) {
+void boxes(const float* block, const OtherBox& other, float slack, float enough, float* out) {
   const Tag d;
   const std::size_t n = hn::Lanes(d);
   for (std::size_t at = 0; at < 8; at += n) {
@@ -84,6 +84,15 @@ void boxes(const float* block, const OtherBox& other, float slack, float* out) {
       others[j] = hn::Sub(hn::Sub(along, hn::Add(h[j], far)), all_slack);
     }
     V gap = hn::Max(outside(d, own[0], own[1], own[2]), outside(d, others[0], others[1], others[2]));
+    // A NaN may have been lost in a maximum.
+    const auto computed = hn::Lt(reach, hn::Set(d, 1e18F));
+    gap = hn::IfThenElse(computed, gap, hn::Set(d, -INFINITY));
+    // Lane by lane, so that it makes no difference how many a vector has.
+    const auto settled = hn::Gt(gap, hn::Set(d, enough));
+    if (hn::AllTrue(d, settled)) {
+      store(d, gap, out + at);
+      continue;
+    }
     // Cross products of axes are at most 1 long: an overlap along a short one says little, so only gaps count.
     V across = hn::Set(d, -INFINITY);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -97,9 +106,8 @@ void boxes(const float* block, const OtherBox& other, float slack, float* out) {
       }
     }
     across = hn::Sub(across, all_slack);
-    gap = hn::IfThenElse(hn::Gt(across, hn::Zero(d)), hn::Max(gap, across), gap);
-    // A NaN may have been lost in a maximum.
-    store(d, hn::IfThenElse(hn::Lt(reach, hn::Set(d, 1e18F)), gap, hn::Set(d, -INFINITY)), out + at);
+    const auto wider = hn::And(hn::AndNot(settled, hn::Gt(across, hn::Zero(d))), computed);
+    store(d, hn::IfThenElse(wider, hn::Max(gap, across), gap), out + at);
   }
 }
 
@@ -159,8 +167,8 @@ HWY_EXPORT(boxes);
 HWY_EXPORT(boxes_to_point);
 HWY_EXPORT(dops);
 
-void obb_distances(const float* block, const OtherBox& other, float slack, float* out) {
-  HWY_DYNAMIC_DISPATCH(boxes)(block, other, slack, out);
+void obb_distances(const float* block, const OtherBox& other, float slack, float enough, float* out) {
+  HWY_DYNAMIC_DISPATCH(boxes)(block, other, slack, enough, out);
 }
 
 void obb_distances(const float* block, const float point[3], float slack, float* out) {

@@ -17,7 +17,8 @@ struct OtherBox {
   float half[3];
   float axes[3][3];
 };
-void obb_distances(const float* block, const OtherBox& other, float slack, float* out);
+/// Cross products of axes are tried only where the others show no gap above `enough`.
+void obb_distances(const float* block, const OtherBox& other, float slack, float enough, float* out);
 void obb_distances(const float* block, const float point[3], float slack, float* out);
 
 /// Rows: lower and upper of each direction in turn. `length`: upper bounds of the directions' lengths; the first three

@@ -154,6 +154,10 @@ std::uint32_t Blocks::add(std::span<const BoundingVolume> sets, std::span<const 
       rows[lanes * (2 * i + 1) + l] = float_up(sets[l].upper[i] - from + error);
     }
   }
+  // Lanes that are not there repeat the first one, so that they settle when it does.
+  for (std::size_t r = 0; r < stride_ / lanes; ++r) {
+    std::fill(rows + lanes * r + sets.size(), rows + lanes * (r + 1), rows[lanes * r]);
+  }
   heads_.push_back(head);
   return block;
 }
@@ -187,7 +191,8 @@ void Blocks::placed(Lane at, const View& view, PlacedVolume& out) const {
   }
 }
 
-void Blocks::distances(std::uint32_t block, const PlacedVolume& other, double slack, Distances& out) const {
+void Blocks::distances(std::uint32_t block, const PlacedVolume& other, double slack, float enough,
+                       Distances& out) const {
   const Vector3 offset = other.centre - heads_[block].origin;
   if (volume_ == Volume::obb) {
     kernels::OtherBox box;
@@ -196,7 +201,7 @@ void Blocks::distances(std::uint32_t block, const PlacedVolume& other, double sl
       box.half[k] = other.half[k];
       for (std::size_t i = 0; i < 3; ++i) box.axes[k][i] = other.axes[k][i];
     }
-    kernels::obb_distances(data(block), box, float_up(slack), out.data());
+    kernels::obb_distances(data(block), box, float_up(slack), enough, out.data());
     return;
   }
   kernels::OtherIntervals intervals;
@@ -221,7 +226,7 @@ void Blocks::distances(std::uint32_t block, const Point3& point, double slack, D
   other.centre = point;
   other.lower.fill(0);
   other.upper.fill(0);
-  distances(block, other, slack, out);
+  distances(block, other, slack, INFINITY, out);
 }
 
 }  // namespace snug

@@ -71,10 +71,12 @@ class Blocks {
   /// Lower bounds of the distances from the sets of a block to a set placed in the block's frame; zero or negative where no
   /// gap shows, the more negative the deeper they overlap. In units of the frame.
   ///
+  /// `enough`: wider gaps than this are not looked for where one is found.
   /// Guarantee: at most the exact distance where positive; `slack` is taken off. Where anything is not finite: minus
   ///            infinity.
   /// Source:    derivations/boxes.md; [Gottschalk96] for the axes.
-  void distances(std::uint32_t block, const PlacedVolume& other, double slack, Distances& out) const;
+  void distances(std::uint32_t block, const PlacedVolume& other, double slack, float enough,
+                 Distances& out) const;
   /// The same to a point.
   void distances(std::uint32_t block, const Point3& point, double slack, Distances& out) const;
 

@@ -18,53 +18,62 @@ std::size_t child_capacity(std::size_t clusters) {
 
 }  // namespace
 
+namespace {
+
+struct Item {
+  Point3 centre;
+  std::uint32_t number;
+};
+
 // Eight parts by three halvings, each across the longest side of its box; parts are of whole clusters, so that all but the
 // last of these are full.
-void BoundingTree::sort(std::span<const Point3> centres, std::size_t begin, std::size_t end, int threads) {
-  struct Range {
-    std::size_t begin, end;
-  };
-  std::vector<Range> ranges{{begin, end}};
-  const std::size_t clusters = (end - begin + cluster_size - 1) / cluster_size;
-  const std::size_t part = child_capacity(clusters) * cluster_size;
+void sort_items(std::span<Item> items, int threads) {
+  constexpr std::size_t cluster_size = BoundingTree::cluster_size;
+  const std::size_t part = child_capacity((items.size() + cluster_size - 1) / cluster_size) * cluster_size;
+  std::vector<std::span<Item>> ranges{items};
   for (int halving = 0; halving < 3; ++halving) {
-    std::vector<Range> finer;
-    for (const Range& range : ranges) {
-      const std::size_t parts = (range.end - range.begin + part - 1) / part;
+    std::vector<std::span<Item>> finer;
+    for (const std::span<Item> range : ranges) {
+      const std::size_t parts = (range.size() + part - 1) / part;
       if (parts <= 1) {
         finer.push_back(range);
         continue;
       }
-      const std::size_t middle = range.begin + (parts + 1) / 2 * part;
+      const std::size_t middle = (parts + 1) / 2 * part;
       Box3 box;
-      for (std::size_t i = range.begin; i < range.end; ++i) box.add(centres[items_[i]]);
+      for (const Item& item : range) box.add(item.centre);
       const Vector3 sides = box.upper - box.lower;
       const std::size_t axis =
           sides.x >= sides.y ? (sides.x >= sides.z ? 0u : 2u) : (sides.y >= sides.z ? 1u : 2u);
-      const auto at = [&](std::size_t i) { return items_.begin() + static_cast<std::ptrdiff_t>(i); };
-      std::nth_element(at(range.begin), at(middle), at(range.end), [&](std::uint32_t a, std::uint32_t b) {
-        const double x = centres[a][axis], y = centres[b][axis];
-        return x != y ? x < y : a < b;
-      });
-      finer.push_back({range.begin, middle});
-      finer.push_back({middle, range.end});
+      std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(middle), range.end(),
+                       [axis](const Item& a, const Item& b) {
+                         const double x = a.centre[axis], y = b.centre[axis];
+                         return x != y ? x < y : a.number < b.number;
+                       });
+      finer.push_back(range.first(middle));
+      finer.push_back(range.subspan(middle));
     }
     ranges = std::move(finer);
   }
   if (part <= cluster_size) return;
-  const int below = end - begin > 4096 ? threads : 1;
-  parallel_for(ranges.size(), below, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) sort(centres, ranges[i].begin, ranges[i].end, 1);
+  parallel_for(ranges.size(), items.size() > 4096 ? threads : 1, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) sort_items(ranges[i], 1);
   });
 }
+
+}  // namespace
 
 BoundingTree::BoundingTree(Volume volume, std::span<const Point3> centres, int threads,
                            const std::function<BoundingVolume(std::span<const std::uint32_t>)>& fit)
     : blocks_(volume) {
   SNUG_EXPECT(!centres.empty() && centres.size() < cluster_bit);
-  items_.resize(centres.size());
-  for (std::size_t i = 0; i < items_.size(); ++i) items_[i] = static_cast<std::uint32_t>(i);
-  sort(centres, 0, items_.size(), threads);
+  std::vector<Item> items;
+  items.reserve(centres.size());
+  for (std::size_t i = 0; i < centres.size(); ++i)
+    items.push_back({centres[i], static_cast<std::uint32_t>(i)});
+  sort_items(items, threads);
+  items_.reserve(items.size());
+  for (const Item& item : items) items_.push_back(item.number);
 
   std::vector<BoundingVolume> volumes(cluster_count());
   std::vector<std::uint32_t> names(cluster_count());

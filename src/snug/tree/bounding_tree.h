@@ -39,8 +39,6 @@ class BoundingTree {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  void sort(std::span<const Point3> centres, std::size_t begin, std::size_t end, int threads);
-
   std::vector<std::uint32_t> items_;
   Blocks blocks_;
   Ball ball_;
