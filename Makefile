@@ -45,7 +45,7 @@ asan: install-packages  ## the fast tests under address and undefined-behaviour 
 
 tsan: install-packages  ## the tests labelled threads under thread sanitizer
 	@$(call build,tsan,tests_threads)
-	@$(unshuffled) $(ctest) --preset tsan -L threads --repeat until-fail:3
+	@$(unshuffled) $(ctest) --preset tsan -L threads --repeat until-fail:$(or $(TSAN_REPEAT),3)
 
 fuzz: install-packages  ## the readers on made-up files, FUZZ_SECONDS (600) each
 	@$(call build,fuzz)
