@@ -125,6 +125,24 @@ TEST(collide, touching_surfaces_stay_undecided_at_tolerance_zero) {
   EXPECT_EQ(pair.ask({}, {0, 0, 2000}).verdict, Verdict::undecided);
 }
 
+// In one plane but for rounding every pair of triangles looks as if it crossed.
+TEST(collide, surfaces_in_one_plane_end_within_bounded_memory) {
+  Pair pair(oracle::meshes::grid(16, 16), oracle::meshes::grid(16, 16));
+  std::mt19937_64 random(32);
+  const Placement tilted = testing::random_placement(random, {});
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  Placement turned = tilted;  // once more, about the plane's own normal
+  for (std::size_t i = 0; i < 3; ++i) {
+    turned.m[4 * i] = c * tilted.m[4 * i] + s * tilted.m[4 * i + 1];
+    turned.m[4 * i + 1] = c * tilted.m[4 * i + 1] - s * tilted.m[4 * i];
+  }
+  const Collision answer =
+      collide({pair.model_a, pair.scratch_a, tilted}, {pair.model_b, pair.scratch_b, turned}, {});
+  EXPECT_EQ(answer.verdict, Verdict::undecided);
+  EXPECT_LT(pair.scratch_a.bytes() + pair.scratch_b.bytes(),
+            std::size_t{256} << 20);  // what most_touched allows
+}
+
 TEST(collide, takes_closed_surfaces_for_solids_if_asked) {
   oracle::TwinMesh inner = oracle::meshes::icosahedron();
   for (oracle::Point& p : inner.points) p = {0.5 * p[0], 0.5 * p[1], 0.5 * p[2]};

@@ -14,8 +14,8 @@ namespace {
 
 // Blocks that one query may open: bounds its memory.
 constexpr std::size_t most_touched = 50'000;
-// Attempts to prove that surfaces intersect once they are known to be within.
-constexpr int most_attempts = 64;
+// Attempts to prove that surfaces intersect: of surfaces that nearly lie in each other every pair looks like a crossing.
+constexpr int most_attempts = 2000, most_attempts_within = 64;
 
 class Query {
  public:
@@ -67,17 +67,17 @@ class Query {
 
   [[nodiscard]] bool finished() const {
     if (crossing_) return true;
-    return found_ && (!options_.prove_contact || attempts_ >= most_attempts);
+    return found_ && (!options_.prove_contact || attempts_ >= most_attempts_within);
   }
 
   // Are the pieces small enough for rules (a) and (b)? Sets of larger ones are compared faster.
   [[nodiscard]] bool worth_a_look(const NodePair& pair) const {
     const double radii = search_.radii(pair);
     if (!found_ && radii <= reach_) return true;
-    // To prove a crossing both must be flat.
-    if (proving_ && radii <= static_cast<double>(std::min(pair.sizes[0], pair.sizes[1])) / 16) return true;
-    // Smaller ones gain more from planes between them than from more splitting.
     const double smaller = static_cast<double>(std::min(pair.sizes[0], pair.sizes[1]));
+    // To prove a crossing both must be flat.
+    if (proving_ && attempts_ < most_attempts && radii <= smaller / 16) return true;
+    // Smaller ones gain more from planes between them than from more splitting.
     return radii <= smaller / 64 || !search_.side_to_open(pair);
   }
 
@@ -97,7 +97,7 @@ class Query {
       if (witness.distance < best_.distance) best_ = witness;
       found_ = best_.distance <= reach_;
     }
-    if (proving_) {
+    if (proving_ && attempts_ < most_attempts) {
       if (pieces.near.certain_distance == 0) {
         ++attempts_;
         crossing_ = search_.certainly_cross(pieces);

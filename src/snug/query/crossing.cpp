@@ -127,9 +127,10 @@ Crossed::Sides Crossed::sides(const Triangle& points, double error) const {
 
 namespace {
 
-// A piece, and a parameter of it.
+// A piece, and a parameter of it. Of no use to anything but this question, so it is not kept: surfaces that nearly lie in
+// each other ask at every pair.
 struct Probe {
-  PieceId id;
+  Piece piece;
   TriangleParameter at;
 };
 
@@ -145,17 +146,17 @@ std::optional<TriangleParameter> in_middle_child(TriangleParameter p) {
 // connected. False, with the child that descend() names alone, where its parameter there rounds: what holds that need not
 // hold the others'.
 bool add_children(Refinement& pieces, const Probe& probe, std::vector<Probe>& out) {
-  const std::uint32_t first = pieces.split(probe.id).value();
   const auto [u, v] = probe.at;
   const Descent certain = descend(probe.at);
-  if (certain.child == 3 && !in_middle_child(probe.at)) {
-    out.assign(1, {PieceId(first + 3), certain.at});
-    return false;
-  }
-  out.push_back({PieceId(first + certain.child), certain.at});
   const auto add = [&](unsigned child, TriangleParameter at) {
-    if (child != certain.child) out.push_back({PieceId(first + child), at});
+    out.push_back({pieces.child_of(probe.piece, child), at});
   };
+  if (certain.child == 3) {
+    const bool exact = in_middle_child(probe.at).has_value();
+    if (!exact) out.clear();
+    add(3, certain.at);
+    return exact;
+  }
   // Doubling and subtracting 1 from [1, 2] are exact.
   if (sum_at_most(u, v, 0.5)) add(0, {2 * u, 2 * v});
   if (u >= 0.5) add(1, {2 * u - 1, 2 * v});
@@ -172,14 +173,14 @@ bool add_children(Refinement& pieces, const Probe& probe, std::vector<Probe>& ou
 bool crosses_near(Refinement& pieces, PieceId id, TriangleParameter at, const Crossed& crossed,
                   const RelativeFrame& seen) {
   if (!seen.comparable) return false;
-  std::vector<Probe> probes{{id, on_triangle(at)}}, children;
+  std::vector<Probe> probes{{pieces[id], on_triangle(at)}}, children;
   for (unsigned level = 0;; ++level) {
     // seen.slack covers the mapping; lengths grow by its scale.
     const double growth = seen.scale * (1 + 0x1p-20);
     double extent = 0;
     bool inside = true, below = false, above = false, last = false;
     for (const Probe& probe : probes) {
-      const Piece& piece = pieces[probe.id];
+      const Piece& piece = probe.piece;
       Triangle around, corners;
       double error = 0;
       for (std::size_t k = 0; k < 3; ++k) {

@@ -50,7 +50,7 @@ class Crossed {
   std::array<Strip, 3> strips_;
 };
 
-/// Do pieces of `id` around a parameter cross, those that meet there together? Splits some levels down.
+/// Do pieces of `id` around a parameter cross, those that meet there together? Splits some levels down, and keeps nothing.
 /// Requires:  seen: the pieces' frame as seen from that of the crossed piece.
 [[nodiscard]] bool crosses_near(Refinement& pieces, PieceId id, TriangleParameter at, const Crossed& crossed,
                                 const RelativeFrame& seen);

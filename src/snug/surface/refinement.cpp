@@ -98,6 +98,10 @@ PieceId Refinement::root(PatchId patch) {
   return id;
 }
 
+Piece Refinement::child_of(const Piece& piece, unsigned child) {
+  return make_piece(surface_.library(), piece.root, snug::split(piece.patch, child), scratch_, table_);
+}
+
 bool Refinement::can_split(PieceId id) const {
   const Piece& piece = pieces_[id.index()];
   return piece.patch.path.level() < PiecePath::max_level && piece.offset.radius > 2 * piece.offset.rounding;

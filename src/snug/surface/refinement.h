@@ -58,6 +58,9 @@ class Refinement {
   /// First of the four children, making them if need be.
   /// Requires:  below the last level, PiecePath::max_level.
   [[nodiscard]] PieceId split(PieceId id);
+  /// A child of a piece that is not kept, here or elsewhere.
+  /// Requires:  below the last level.
+  [[nodiscard]] Piece child_of(const Piece& piece, unsigned child);
   /// False at the last level, and where rounding alone makes up the radius: children would be no smaller.
   [[nodiscard]] bool can_split(PieceId id) const;
 
