@@ -1,9 +1,12 @@
 #include <snug/mesh/validate.h>
 
 #include <gtest/gtest.h>
+#include <snug/mesh/topology.h>
 #include <testing/twins.h>
 
 #include <initializer_list>
+#include <random>
+#include <string>
 
 namespace snug {
 namespace {
@@ -70,6 +73,40 @@ TEST(defects, see_bad_tags) {
   mesh.tags = {};
   mesh.tags.holes.push_back(FaceId(3));
   EXPECT_TRUE(has(mesh, DefectKind::bad_tag));
+}
+
+// What neighbours would show is left out only where the topology says that there is nothing: of random soups of few
+// vertices, many of them manifold by accident, folded, with faces twice.
+TEST(defects_of_elements, are_all_but_legal_ones_of_a_manifold_mesh) {
+  std::mt19937_64 random(41);
+  const auto serious = [](const std::vector<Defect>& all) {
+    std::vector<std::string> texts;
+    for (const Defect& defect : all) {
+      if (!is_legal(defect.kind)) texts.push_back(defect.text);
+    }
+    return texts;
+  };
+  int manifold = 0, faulty = 0, folded = 0;
+  for (int trial = 0; trial < 40'000; ++trial) {
+    const std::size_t points = 3 + random() % 6;
+    ControlMesh mesh = mesh_of(points, {});
+    for (std::size_t faces = 1 + random() % 6; faces > 0; --faces) {
+      std::vector<VertexId> corners;
+      for (std::size_t n = 3 + random() % 3; n > 0; --n) corners.emplace_back(random() % points);
+      mesh.add_face(corners);
+    }
+    const std::vector<std::string> all = serious(defects(mesh)), quick = serious(defects_of_elements(mesh));
+    faulty += !all.empty();
+    if (!Topology(mesh).is_manifold()) {
+      folded += all.size() > quick.size();
+      continue;
+    }
+    ++manifold;
+    ASSERT_EQ(all, quick) << trial;
+  }
+  EXPECT_GT(manifold, 1000);
+  EXPECT_GT(faulty, 1000);
+  EXPECT_GT(folded, 1000);
 }
 
 TEST(summary, lists_ten_and_counts_the_rest) {
