@@ -1,10 +1,10 @@
 #include <snug/enclose/fit_kernels.h>
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 #include <oracle/loop_twin.h>
 #include <snug/base/rounding.h>
 #include <testing/containment.h>
+#include <testing/instruction_sets.h>
 #include <testing/patches.h>
 
 #include <bit>
@@ -557,27 +557,6 @@ TEST(offset_triangle, contains_patches_on_a_line_in_a_coordinate_plane) {
 
 // ---- instruction sets ----
 
-class EachInstructionSet {
- public:
-  EachInstructionSet() = default;
-  EachInstructionSet(const EachInstructionSet&) = delete;
-  EachInstructionSet& operator=(const EachInstructionSet&) = delete;
-  ~EachInstructionSet() { use(0); }
-  template <class Work>
-  void run(const Work& work) const {
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-      use(target);
-      work(hwy::TargetName(target));
-    }
-  }
-
- private:
-  static void use(std::int64_t targets) {
-    hwy::SetSupportedTargetsForTest(targets);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
-
 using Bits = std::vector<std::uint64_t>;
 
 void add(Bits& bits, double x) { bits.push_back(std::isnan(x) ? ~0ull : std::bit_cast<std::uint64_t>(x)); }
@@ -630,7 +609,7 @@ Bits everything() {
 TEST(fit_kernels, say_the_same_on_every_instruction_set) {
   const Bits here = everything();
   std::string names;
-  EachInstructionSet().run([&](const char* name) {
+  testing::EachInstructionSet().run([&](const char* name) {
     names += std::string(name) + ' ';
     const Bits there = everything();
     ASSERT_EQ(there.size(), here.size()) << name;
