@@ -118,7 +118,7 @@ TEST(collide, agrees_with_brute_force) {
   std::cout << '\n';
   EXPECT_GE(3 * tuned, total * 7 / 10);
   EXPECT_GT(counts["separated"], total / 10);
-  EXPECT_GT(counts["within"], total / 10);
+  EXPECT_GT(counts["within"], total / 12);
 }
 
 }  // namespace

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 #include <testing/containment.h>
+#include <testing/instruction_sets.h>
 
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -149,6 +151,118 @@ TEST_P(EachVolume, distance_never_exceeds_that_of_the_contents) {
     }
   }
   EXPECT_GT(gaps, total / 4);
+}
+
+// Two blocks near each other as two frames place them.
+struct TwoBlocks {
+  TwoBlocks(Volume volume, std::mt19937_64& random)
+      : blocks{Blocks(volume), Blocks(volume)}, frames{any_frame(random), any_frame(random)} {
+    const double size = std::pow(10.0, -static_cast<double>(random() % 9));
+    std::uniform_real_distribution<double> unit(-4 * size, 4 * size);
+    const std::array<Point3, 2> centres{{{0.3, -0.7, 1.1}, {-0.2, 0.4, 0.5}}};
+    for (std::size_t s = 0; s < 2; ++s) {
+      std::vector<BoundingVolume> sets;
+      std::vector<std::uint32_t> names;
+      for (std::uint32_t l = 0; l < 1 + random() % 8; ++l) {
+        const Point3 centre = centres[s] + Vector3{unit(random), unit(random), unit(random)};
+        clouds[s].push_back(any_points(random, centre, random() % 4 == 0 ? 0.1 * size : size));
+        sets.push_back(fit(volume, Cloud(clouds[s].back())));
+        names.push_back(l);
+      }
+      blocks[s].add(sets, names);
+    }
+    const Extended at_a = image(frames[0], centres[0]), at_b = image(frames[1], centres[1]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      frames[1].translation[k] += static_cast<double>(at_a[k] - at_b[k]) + unit(random);
+    }
+    view = View(volume, frames[0], frames[1]);
+    switch (random() % 3) {
+      case 0:
+        break;
+      case 1:
+        view.look_along({unit(random), unit(random), unit(random)});
+        break;
+      default: {
+        // From one of A's points to one of B's, as A's frame sees them.
+        view.look_along(view.frame.apply(clouds[1][0][0]) - clouds[0][0][0]);
+      }
+    }
+    enough = static_cast<float>(random() % 3 == 0 ? INFINITY : random() % 2 ? 0.0 : size);
+  }
+
+  std::array<Blocks, 2> blocks;
+  std::array<PlacedFrame, 2> frames;
+  std::array<std::vector<std::vector<Point3>>, 2> clouds;
+  View view;
+  float enough;
+};
+
+TEST_P(EachVolume, distances_of_all_pairs_never_exceed_those_of_the_contents) {
+  std::mt19937_64 random(27);
+  std::size_t gaps = 0, dropped = 0, total = 0;
+  for (int trial = 0; trial < 1500; ++trial) {
+    const TwoBlocks two(GetParam(), random);
+    ASSERT_TRUE(two.view.frame.comparable);
+    Blocks::Pairs found;
+    const float others = two.blocks[0].distances(0, two.blocks[1], 0, two.view, two.enough, found);
+    if (others < INFINITY) {
+      EXPECT_GT(others, two.enough);
+    }
+    std::array<std::array<float, 8>, 8> gap;
+    for (auto& row : gap) row.fill(others);
+    for (std::size_t k = 0; k < found.count; ++k) {
+      const kernels::LanePair& pair = found.pairs[k];
+      EXPECT_EQ(gap[pair.own][pair.other], others) << "a pair twice";
+      gap[pair.own][pair.other] = pair.gap;
+      EXPECT_LE(pair.gap, two.enough);
+    }
+    dropped += two.blocks[0].count(0) * two.blocks[1].count(0) - found.count;
+    std::array<std::vector<std::vector<Extended>>, 2> images;
+    for (std::size_t s = 0; s < 2; ++s) {
+      for (const auto& cloud : two.clouds[s]) {
+        auto& out = images[s].emplace_back();
+        for (const Point3& p : cloud) out.push_back(image(two.frames[s], p));
+      }
+    }
+    for (std::size_t i = 0; i < images[0].size(); ++i) {
+      for (std::size_t j = 0; j < images[1].size(); ++j) {
+        ++total;
+        if (!(gap[i][j] > 0)) continue;
+        ++gaps;
+        ASSERT_LE(static_cast<double>(gap[i][j]) * two.view.frame.to_world,
+                  distance_from_above(images[0][i], images[1][j], random))
+            << trial << ": " << i << ' ' << j;
+      }
+    }
+  }
+  EXPECT_GT(gaps, total / 3);
+  EXPECT_GT(dropped, total / 8);
+}
+
+TEST_P(EachVolume, distances_are_the_same_on_every_instruction_set) {
+  std::mt19937_64 random(28);
+  const testing::EachInstructionSet sets;
+  for (int trial = 0; trial < 300; ++trial) {
+    const TwoBlocks two(GetParam(), random);
+    PlacedVolume seen;
+    two.blocks[1].placed({0, 0}, two.view, seen);
+    std::optional<std::vector<float>> first;
+    sets.run([&](const char* name) {
+      Blocks::Pairs pairs;
+      Blocks::Distances one;
+      std::vector<float> all{two.blocks[0].distances(0, two.blocks[1], 0, two.view, two.enough, pairs)};
+      for (std::size_t k = 0; k < pairs.count; ++k) {
+        const kernels::LanePair& pair = pairs.pairs[k];
+        all.insert(all.end(), {static_cast<float>(pair.own), static_cast<float>(pair.other), pair.gap});
+      }
+      const Blocks::Near near = two.blocks[0].distances(0, seen, two.view.frame.slack, two.enough, one);
+      all.push_back(near.others);
+      all.push_back(static_cast<float>(near.lanes));
+      for (std::size_t l = 0; l < two.blocks[0].count(0); ++l) all.push_back(one[l]);
+      if (!first) first = all;
+      EXPECT_EQ(all, *first) << name << ' ' << trial;
+    });
+  }
 }
 
 TEST_P(EachVolume, distance_to_a_point_never_exceeds_that_of_the_contents) {

@@ -15,9 +15,10 @@
 namespace snug {
 namespace {
 
-constexpr std::size_t most_touched = 50'000;
 // Squares of the distance, in sizes of the surface, stay well inside single precision.
 constexpr double farthest_point = 0x1p40;
+// Bounds of gaps err by some hundred roundings of coordinates.
+constexpr double noise = 0x1p-45;
 
 struct Candidate {
   Node node;
@@ -45,12 +46,13 @@ class Query {
         surface_(scratch.model().surface()),
         to_(surface_.scale().apply(to)),
         options_(options),
-        monitor_(monitor) {
+        monitor_(monitor),
+        bounds_(surface_.scale().apply(options.absolute) * (1 - 2 * unit_roundoff) - underflow_error,
+                options.relative, noise * (2 + max_abs(to_ - Point3{}))) {
     if (!(max_abs(to_ - Point3{}) <= farthest_point)) {
       throw InputError(InputProblem::refused,
                        "closest: a point is more than 10^12 sizes of the surface away; give nearer points");
     }
-    absolute_ = surface_.scale().apply(options.absolute) * (1 - 2 * unit_roundoff) - underflow_error;
     // Scaling a point to units of the surface loses something only where these are far from its own.
     point_error_ =
         surface_.scale().exact(to.x) && surface_.scale().exact(to.y) && surface_.scale().exact(to.z)
@@ -67,8 +69,8 @@ class Query {
       const Candidate candidate = heap.back();
       heap.pop_back();
       const double gap = static_cast<double>(candidate.gap);
-      if (gap >= enough() || !visit(candidate, heap)) {
-        resolved_ = std::min(resolved_, gap);
+      if (gap >= bounds_.enough() || !visit(candidate, heap)) {
+        bounds_.settle(gap);
         break;
       }
     }
@@ -76,10 +78,6 @@ class Query {
   }
 
  private:
-  [[nodiscard]] double enough() const {
-    return best_ == INFINITY ? INFINITY : best_ - std::max(absolute_, options_.relative * best_);
-  }
-
   // False when the budget ends.
   bool visit(const Candidate& candidate, std::vector<Candidate>& heap) {
     const Node node = candidate.node;
@@ -87,12 +85,12 @@ class Query {
     if (node.piece) {
       monitor_.checkpoint();
       gap = std::max(gap, look_at(scratch_.piece(node)));
-      if (gap >= enough() || !scratch_.can_open(node)) {
-        resolved_ = std::min(resolved_, gap);
+      if (gap >= bounds_.enough() || !scratch_.can_open(node)) {
+        bounds_.settle(gap);
         return true;
       }
     }
-    if (splits_ >= options_.budget || scratch_.touched() >= most_touched) return false;
+    if (splits_ >= options_.budget || scratch_.full()) return false;
     splits_ += node.piece;
     const QueryScratch::Opened opened = scratch_.open(node);
     const Blocks& blocks = scratch_.blocks(opened.piece);
@@ -100,8 +98,8 @@ class Query {
     blocks.distances(opened.block, to_, point_error_, found);
     for (std::size_t i = 0; i < blocks.count(opened.block); ++i) {
       const float least = std::max({found[i], static_cast<float>(gap * (1 - 0x1p-23)), 0.0F});
-      if (static_cast<double>(least) >= enough()) {
-        resolved_ = std::min(resolved_, static_cast<double>(least));
+      if (static_cast<double>(least) >= bounds_.enough()) {
+        bounds_.settle(static_cast<double>(least));
         continue;
       }
       heap.push_back({{opened.block, static_cast<std::uint8_t>(i), opened.piece}, least});
@@ -116,7 +114,7 @@ class Query {
     const NearestTriangles near = nearest({to_, to_, to_}, piece.offset.base);
     double gap =
         rounded_down(near.certain_distance - enlarged(piece.offset.radius + spatial_error(point_error_)));
-    if (near.certain_distance < best_) {
+    if (near.certain_distance < bounds_.upper()) {
       const double b = std::clamp(near.on_b.b, 0.0, 1.0);
       double c = std::clamp(near.on_b.c, 0.0, 1.0 - b);
       if (b + c > 1) c = 0;
@@ -127,15 +125,15 @@ class Query {
       const double upper =
           enlarged(std::sqrt(length_sq(between) + 8 * underflow_error) + spatial_error(error + point_error_) +
                    8 * unit_roundoff * max_abs(between));
-      if (upper < best_) {
-        best_ = upper;
+      if (upper < bounds_.upper()) {
+        bounds_.found(upper);
         point_ = point;
         error_ = error;
         at_ = owner_parameter(surface_, piece.root, to_face(piece.patch.path, {b, c}));
       }
     }
     // A plane between the point and the piece's hull, across the direction of the closest point so far.
-    if (gap < enough()) gap = std::max(gap, plane_gap(id, point_ - to_));
+    if (gap < bounds_.enough()) gap = std::max(gap, plane_gap(id, point_ - to_));
     return gap;
   }
 
@@ -154,10 +152,9 @@ class Query {
   ClosestPoint result() const {
     const PowerOfTwo back = surface_.scale().inverse();
     ClosestPoint answer;
-    answer.lower = unscaled_down(std::max(0.0, std::min(resolved_, best_)), back);
-    answer.upper = require_representable(unscaled_up(best_, back));
-    answer.reached =
-        answer.upper - answer.lower <= std::max(options_.absolute, options_.relative * answer.upper);
+    answer.lower = unscaled_down(std::max(0.0, bounds_.lower()), back);
+    answer.upper = require_representable(unscaled_up(bounds_.upper(), back));
+    answer.reached = near_enough(answer.lower, answer.upper, options_);
     answer.point = require_representable(back.apply(point_));
     answer.point_error = unscaled_up(enlarged(error_), back) + underflow_error;
     answer.at = at_;
@@ -169,8 +166,8 @@ class Query {
   Point3 to_;
   const ClosestOptions& options_;
   const WorkMonitor& monitor_;
-  double absolute_ = 0, point_error_ = 0;
-  double best_ = INFINITY, resolved_ = INFINITY;
+  DistanceBounds bounds_;
+  double point_error_ = 0;
   Point3 point_;
   double error_ = 0;
   SurfaceParameter at_{};

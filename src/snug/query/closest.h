@@ -1,20 +1,16 @@
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include <snug/query/evaluate.h>
+#include <snug/query/precision.h>
 #include <snug/query/query_model.h>
 
 namespace snug {
 
-/// When the bounds of a distance are near enough: upper - lower <= max(absolute, relative * upper).
-struct ClosestOptions {
-  double absolute = 0;               ///< >= 0, mesh units
-  double relative = 0;               ///< >= 0
-  std::uint64_t budget = 1'000'000;  ///< most pieces opened, each point
-};
+/// The budget is for each point.
+using ClosestOptions = DistanceOptions;
 
 /// A limit point near the closest one, in mesh units.
 struct ClosestPoint {

@@ -12,15 +12,14 @@
 namespace snug {
 namespace {
 
-// Blocks that one query may open: bounds its memory.
-constexpr std::size_t most_touched = 50'000;
 // Attempts to prove that surfaces intersect: of surfaces that nearly lie in each other every pair looks like a crossing.
 constexpr int most_attempts = 2000, most_attempts_within = 64;
 
 class Query {
  public:
-  Query(const PlacedModel& a, const PlacedModel& b, const CollideOptions& options, const WorkMonitor& monitor)
-      : search_(a, b), options_(options), monitor_(monitor) {
+  Query(const PlacedModel& a, const PlacedModel& b, const std::array<double, 2>& defects,
+        const CollideOptions& options, const WorkMonitor& monitor)
+      : search_(a, b, defects), options_(options), monitor_(monitor) {
     margin_ = search_.length_up(options.margin);
     reach_ = search_.length_down((options.margin + options.tolerance) * (1 - unit_roundoff));
   }
@@ -36,10 +35,6 @@ class Query {
     thread_local std::vector<NodePair> stack;
     stack.clear();
     const NodePair roots = search_.roots();
-    if (static_cast<double>(roots.gap) > margin_) {
-      lower_ = static_cast<double>(roots.gap);
-      return;
-    }
     // Points so near cannot be found sooner than a crossing is proved.
     proving_ = options_.prove_contact ||
                reach_ <= 0x1p-14 * static_cast<double>(std::max(roots.sizes[0], roots.sizes[1]));
@@ -51,16 +46,18 @@ class Query {
         monitor_.checkpoint();
         if (!look_at(pair)) continue;
       }
-      const std::optional<std::size_t> side = search_.side_to_open(pair);
-      if (!side) {
+      const PairSearch::Opening opening = search_.opening(pair);
+      if (opening == PairSearch::Opening::none) {
         unresolved_ = true;
         continue;
       }
-      if (search_.stats.splits >= options_.budget || search_.scratch(*side).touched() >= most_touched) {
+      if (search_.exhausted(options_.budget)) {
         exhausted_ = true;
         break;
       }
-      lower_ = std::min(lower_, static_cast<double>(search_.open(pair, *side, margin_, stack)));
+      const std::size_t before = stack.size();
+      lower_ = std::min(lower_, static_cast<double>(search_.open(pair, opening, margin_, stack)));
+      nearest_last(stack, before);
     }
     exhausted_ = exhausted_ || !stack.empty();
   }
@@ -78,14 +75,16 @@ class Query {
     // To prove a crossing both must be flat.
     if (proving_ && attempts_ < most_attempts && radii <= smaller / 16) return true;
     // Smaller ones gain more from planes between them than from more splitting.
-    return radii <= smaller / 64 || !search_.side_to_open(pair);
+    return radii <= smaller / 64 || search_.opening(pair) == PairSearch::Opening::none;
   }
 
   // Rules (a) and (b). False if the pair is done with.
   bool look_at(const NodePair& pair) {
     const PairSearch::Pieces pieces = search_.nearest_pieces(pair);
     double gap = pieces.gap;
-    if (!(gap > margin_) && pieces.near.certain_distance > margin_) {
+    const double farthest = pieces.near.certain_distance + pieces.radii[0] + pieces.radii[1];
+    const bool likely_witness = !found_ && farthest <= reach_;
+    if (!(gap > margin_) && !likely_witness && pieces.near.certain_distance > margin_) {
       gap = search_.hull_gap(pair, pieces.direction());
     }
     if (gap > margin_) {
@@ -165,15 +164,11 @@ Collision collide(const PlacedModel& a, const PlacedModel& b, const CollideOptio
                   const WorkMonitor& monitor) {
   SNUG_EXPECT(options.tolerance >= 0 && std::isfinite(options.tolerance));
   SNUG_EXPECT(options.margin >= 0 && std::isfinite(options.margin));
-  SNUG_EXPECT(rigidity_defect(a.placement) <= rigidity_tolerance &&
-              rigidity_defect(b.placement) <= rigidity_tolerance);
-  Collision answer;
+  const std::array<double, 2> defects = rigidity_defects(a, b);
   if (const double gap = outer_gap(a, b); gap > options.margin) {
-    answer.verdict = Verdict::separated;
-    answer.lower = gap;
-    return answer;
+    return {.verdict = Verdict::separated, .lower = gap, .upper = {}, .witness = {}, .stats = {}};
   }
-  answer = Query(a, b, options, monitor).run();
+  Collision answer = Query(a, b, defects, options, monitor).run();
   if (options.solid && answer.verdict == Verdict::separated) answer = as_solids(a, b, answer, monitor);
   return answer;
 }

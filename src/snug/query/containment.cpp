@@ -121,9 +121,9 @@ class Winding {
   void segment(const Vector3& direction, double length) {
     segment_.centre = point_ + (length / 2) * direction;
     const Vector3 unit = (1 / snug::length(direction)) * direction;
-    segment_.half = {static_cast<float>(length), 0, 0};
-    for (std::size_t k = 0; k < 3; ++k) segment_.axes[0][k] = static_cast<float>(unit[k]);
-    segment_.axes[1] = segment_.axes[2] = {};
+    segment_.box = {};
+    segment_.box.half[0] = static_cast<float>(length);
+    for (std::size_t k = 0; k < 3; ++k) segment_.box.axes[0][k] = static_cast<float>(unit[k]);
     const auto places = directions_of(scratch_.blocks(false).volume());
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double half = std::fabs(dot(all_directions[places[i]], direction)) * length;
@@ -240,7 +240,7 @@ Collision as_solids(const PlacedModel& a, const PlacedModel& b, Collision apart,
   require_closed(a.model.surface());
   require_closed(b.model.surface());
   const std::array<const PlacedModel*, 2> side{&a, &b};
-  PairSearch search(a, b);
+  PairSearch search(a, b, rigidity_defects(a, b));
   bool certain = true;
   for (std::size_t s = 0; s < 2; ++s) {
     const Surface& surface = side[s]->model.surface();

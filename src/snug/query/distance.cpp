@@ -11,32 +11,36 @@
 namespace snug {
 namespace {
 
-constexpr std::size_t most_touched = 50'000;
 constexpr int most_attempts = 64;
+// Pairs that are followed down at the same time for a first upper bound.
+constexpr std::size_t beam = 4;
+// Bounds of gaps err by some hundred roundings of what is about 4 large.
+constexpr double noise = 0x1p-43;
 
 bool farther(const NodePair& x, const NodePair& y) { return x.gap > y.gap; }
+bool nearer(const NodePair& x, const NodePair& y) { return x.gap < y.gap; }
 
 class Query {
  public:
   Query(const PlacedModel& a, const PlacedModel& b, const DistanceOptions& options,
         const WorkMonitor& monitor)
-      : search_(a, b), options_(options), monitor_(monitor) {
-    absolute_ = search_.length_down(options.absolute);
-  }
+      : search_(a, b, rigidity_defects(a, b)),
+        options_(options),
+        monitor_(monitor),
+        bounds_(search_.length_down(options.absolute), options.relative, noise) {}
 
+  // Best first.
   Distance run() {
-    thread_local std::vector<NodePair> heap;
-    const NodePair roots = search_.roots();
-    dive(roots, heap);
-    heap.assign(1, roots);
-    while (!heap.empty() && best_ > 0) {
-      std::pop_heap(heap.begin(), heap.end(), farther);
-      const NodePair pair = heap.back();
-      heap.pop_back();
+    dive();
+    heap_.assign(1, search_.roots());
+    while (!heap_.empty() && bounds_.upper() > 0) {
+      std::pop_heap(heap_.begin(), heap_.end(), farther);
+      const NodePair pair = heap_.back();
+      heap_.pop_back();
       // All others are as far or farther.
       const double gap = std::max(static_cast<double>(pair.gap), 0.0);
-      if (gap >= enough() || !visit(pair, heap)) {
-        resolved_ = std::min(resolved_, gap);
+      if (gap >= bounds_.enough() || !visit(pair)) {
+        bounds_.settle(gap);
         break;
       }
     }
@@ -44,78 +48,131 @@ class Query {
   }
 
  private:
-  // A lower bound that is near enough to the upper one.
-  [[nodiscard]] double enough() const {
-    return best_ == INFINITY ? INFINITY : best_ - std::max(absolute_, options_.relative * best_);
+  // Straight down to pieces that are near each other, so that there is an upper bound from the beginning.
+  void dive() {
+    std::vector<NodePair> front{search_.roots()}, next;
+    const auto whole = [&](const NodePair& pair) { return search_.pieces(pair); };
+    while (!std::all_of(front.begin(), front.end(), whole)) {
+      next.clear();
+      for (const NodePair& pair : front) {
+        if (whole(pair)) {
+          next.push_back(pair);
+        } else {
+          static_cast<void>(search_.open(pair, search_.opening(pair), INFINITY, next));
+        }
+      }
+      const auto end = next.begin() + static_cast<std::ptrdiff_t>(std::min(beam, next.size()));
+      std::partial_sort(next.begin(), end, next.end(), nearer);
+      front.assign(next.begin(), end);
+    }
+    double least = INFINITY;
+    NodePair best = front[0];
+    for (const NodePair& pair : front) {
+      const double distance = search_.nearest_pieces(pair).near.certain_distance;
+      if (distance < least) {
+        least = distance;
+        best = pair;
+      }
+    }
+    follow(best);
   }
 
-  // Straight down to two pieces that are near each other, so that there is an upper bound from the beginning.
-  void dive(NodePair pair, std::vector<NodePair>& scratch) {
-    while (!search_.pieces(pair)) {
-      scratch.clear();
-      static_cast<void>(search_.open(pair, *search_.side_to_open(pair), INFINITY, scratch));
-      pair = scratch.back();
+  // From two pieces on to smaller ones, until limit points there are as near as the surfaces come around them.
+  void follow(NodePair pair) {
+    std::vector<NodePair> children;
+    while (search_.radii(pair) > bounds_.precision() / 8 && !search_.exhausted(options_.budget)) {
+      const PairSearch::Opening opening = search_.opening(pair);
+      if (opening == PairSearch::Opening::none) break;
+      children.clear();
+      static_cast<void>(search_.open(pair, opening, INFINITY, children));
+      pair = *std::min_element(children.begin(), children.end(), nearer);
     }
     improve(pair, search_.nearest_pieces(pair));
   }
 
   // False when the budget ends.
-  bool visit(const NodePair& pair, std::vector<NodePair>& heap) {
-    const std::optional<std::size_t> side = search_.side_to_open(pair);
+  bool visit(NodePair pair) {
     double gap = std::max(static_cast<double>(pair.gap), 0.0);
     if (search_.pieces(pair)) {
       monitor_.checkpoint();
-      // The direction of the nearest points so far will do for most pairs.
-      if (witness_.distance < INFINITY) {
-        const Vector3 between = witness_.points[1] - witness_.points[0];
-        if (search_.corner_gap(pair, between) >= enough())
-          gap = std::max(gap, search_.hull_gap(pair, between));
-      }
-      if (gap < enough()) {
-        const PairSearch::Pieces pieces = search_.nearest_pieces(pair);
-        improve(pair, pieces);
-        gap = std::max({gap, pieces.gap, search_.hull_gap(pair, pieces.direction())});
-      }
+      gap = std::max(gap, gap_of_pieces(pair));
+      pair.gap = key(gap);
     }
-    if (!side || gap >= enough()) {
-      resolved_ = std::min(resolved_, gap);
+    const PairSearch::Opening opening = search_.opening(pair);
+    if (opening == PairSearch::Opening::none || gap >= bounds_.enough()) {
+      bounds_.settle(gap);
       return true;
     }
-    if (search_.stats.splits >= options_.budget || search_.scratch(*side).touched() >= most_touched)
-      return false;
-    std::size_t at = heap.size();
-    NodePair parent = pair;
-    parent.gap = std::max(parent.gap, static_cast<float>(gap * (1 - 0x1p-23)));
-    resolved_ = std::min(resolved_, static_cast<double>(search_.open(parent, *side, enough(), heap)));
-    while (at < heap.size())
-      std::push_heap(heap.begin(), heap.begin() + static_cast<std::ptrdiff_t>(++at), farther);
+    if (search_.exhausted(options_.budget)) return false;
+    const std::size_t before = heap_.size();
+    bounds_.settle(static_cast<double>(search_.open(pair, opening, bounds_.enough(), heap_)));
+    for (std::size_t at = before; at < heap_.size();) {
+      if (search_.pieces(heap_[at])) {
+        const double along = search_.gap_along(heap_[at]);
+        if (along >= bounds_.enough()) {
+          bounds_.settle(along);
+          heap_[at] = heap_.back();
+          heap_.pop_back();
+          continue;
+        }
+        heap_[at].gap = std::max(heap_[at].gap, key(along));
+      }
+      std::push_heap(heap_.begin(), heap_.begin() + static_cast<std::ptrdiff_t>(++at), farther);
+    }
     return true;
+  }
+
+  // Not above it in single precision.
+  static float key(double gap) { return static_cast<float>(gap * (1 - 0x1p-23)); }
+
+  // A lower bound of the distance of two pieces; improves the upper one.
+  double gap_of_pieces(const NodePair& pair) {
+    const double along = search_.gap_along(pair);
+    if (along >= bounds_.enough()) return along;
+    const PairSearch::Pieces pieces = search_.nearest_pieces(pair);
+    improve(pair, pieces);
+    // Base triangles lie in the middle of what pieces may be.
+    const double likely = pieces.near.certain_distance + (pieces.radii[0] + pieces.radii[1]) / 2;
+    if (likely < bounds_.enough()) follow(pair);
+    return std::max({along, pieces.gap, search_.hull_gap(pair, pieces.direction())});
   }
 
   // The upper bound, by limit points or by a proof of contact.
   void improve(const NodePair& pair, const PairSearch::Pieces& pieces) {
-    const double radii = pieces.radii[0] + pieces.radii[1];
-    if (pieces.near.certain_distance < best_) {
+    if (pieces.near.certain_distance < bounds_.upper()) {
       const PairSearch::Witness witness = search_.witness(pieces);
-      if (witness.distance < witness_.distance) witness_ = witness;
-      best_ = std::min(best_, witness.distance);
+      if (witness.distance < witness_.distance) {
+        witness_ = witness;
+        look_along_witness();
+      }
+      bounds_.found(witness.distance);
     }
+    const double radii = pieces.radii[0] + pieces.radii[1];
     const bool flat = radii <= static_cast<double>(std::min(pair.sizes[0], pair.sizes[1])) / 16;
     if (pieces.near.certain_distance == 0 && flat && attempts_ < most_attempts) {
       ++attempts_;
-      if (search_.certainly_cross(pieces)) best_ = 0;
+      if (search_.certainly_cross(pieces)) bounds_.found(0);
     }
+  }
+
+  // What is known of a direction is kept until a better one shows more than the precision: the square of the angle.
+  void look_along_witness() {
+    const Vector3 between = witness_.points[1] - witness_.points[0];
+    const double size = length(between);
+    if (!(size > 0) || !std::isfinite(1 / size)) return;
+    const Vector3 direction = (1 / size) * between;
+    if (length_sq(direction - direction_) <= bounds_.precision() / 8) return;
+    direction_ = direction;
+    search_.look_along(direction);
   }
 
   Distance result() {
     Distance answer;
     answer.stats = search_.stats;
     const PowerOfTwo back = search_.to_mesh_units();
-    const double lower = std::min(resolved_, best_);
-    answer.lower = unscaled_down(lower, back);
-    answer.upper = require_representable(unscaled_up(best_, back));
-    answer.reached =
-        answer.upper - answer.lower <= std::max(options_.absolute, options_.relative * answer.upper);
+    answer.lower = unscaled_down(bounds_.lower(), back);
+    answer.upper = require_representable(unscaled_up(bounds_.upper(), back));
+    answer.reached = near_enough(answer.lower, answer.upper, options_);
     for (std::size_t s = 0; s < 2; ++s) {
       answer.witness[s] = require_representable(back.apply(witness_.points[s]));
     }
@@ -126,10 +183,10 @@ class Query {
   PairSearch search_;
   const DistanceOptions& options_;
   const WorkMonitor& monitor_;
-  double absolute_ = 0;
-  double best_ = INFINITY;      // upper bound
-  double resolved_ = INFINITY;  // lower bound of the pairs that are done with
+  DistanceBounds bounds_;
+  std::vector<NodePair> heap_;
   PairSearch::Witness witness_;
+  Vector3 direction_;
   int attempts_ = 0;
 };
 
@@ -139,8 +196,6 @@ Distance distance(const PlacedModel& a, const PlacedModel& b, const DistanceOpti
                   const WorkMonitor& monitor) {
   SNUG_EXPECT(options.absolute >= 0 && std::isfinite(options.absolute));
   SNUG_EXPECT(options.relative >= 0 && std::isfinite(options.relative));
-  SNUG_EXPECT(rigidity_defect(a.placement) <= rigidity_tolerance &&
-              rigidity_defect(b.placement) <= rigidity_tolerance);
   return Query(a, b, options, monitor).run();
 }
 

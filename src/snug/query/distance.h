@@ -4,15 +4,9 @@
 #include <cstdint>
 
 #include <snug/query/pair_search.h>
+#include <snug/query/precision.h>
 
 namespace snug {
-
-/// When the bounds of a distance are near enough: upper - lower <= max(absolute, relative * upper).
-struct DistanceOptions {
-  double absolute = 0;               ///< >= 0, mesh units
-  double relative = 0;               ///< >= 0
-  std::uint64_t budget = 1'000'000;  ///< most pieces opened
-};
 
 /// How far two surfaces are from each other, in mesh units and world coordinates.
 struct Distance {
@@ -26,8 +20,8 @@ struct Distance {
 
 /// Distance of two placed limit surfaces.
 ///
-/// Pairs of nodes are opened, the nearest first; limit points at the nearest parameters of base triangles bound it from
-/// above. Where pieces cut each other, contact is proved as in collide().
+/// Pairs of nodes are opened, the nearest first. Limit points at the nearest parameters of base triangles bound it from
+/// above; planes across the direction of the nearest ones, which hold pieces' hulls apart, from below. Where pieces cut each other, contact is proved as in collide().
 ///
 /// Guarantee: lower <= distance <= upper for these very doubles, also where precision is not reached. The result depends on
 ///            the input alone, not on threads or earlier queries.

@@ -1,6 +1,7 @@
 #include <snug/query/pair_search.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <snug/base/contract.h>
@@ -11,13 +12,12 @@
 namespace snug {
 namespace {
 
-PlacedFrame make_frame(const Surface& surface, const Placement& placement, PowerOfTwo world, double defect) {
-  PlacedFrame frame;
-  frame.rows = {placement.row(0), placement.row(1), placement.row(2)};
-  frame.scale = (surface.scale().inverse() * world).apply(1.0);
-  frame.translation = world.apply(placement.translation());
-  frame.defect = defect;
-  return frame;
+PlacedFrame make_frame(const PlacedModel& model, PowerOfTwo world, double defect) {
+  const Placement& placement = model.placement;
+  return {.rows = {placement.row(0), placement.row(1), placement.row(2)},
+          .scale = (model.model.surface().scale().inverse() * world).apply(1.0),
+          .translation = world.apply(placement.translation()),
+          .defect = defect};
 }
 
 // The power of two that brings both placed surfaces to about 1.
@@ -28,6 +28,10 @@ PowerOfTwo joint_scale(const PlacedModel& a, const PlacedModel& b) {
   const PowerOfTwo scale(-exponent);
   return scale.apply(t) < 2 ? scale : PowerOfTwo(-std::max(exponent, std::ilogb(t)));
 }
+
+// Nodes are opened together where the larger one is at most so many times as large.
+constexpr float both_opened = 3;
+constexpr float deep_overlap = 0.4F;
 
 // Barycentric weights as a parameter that limit_point accepts.
 TriangleParameter parameter(Barycentric p) {
@@ -41,17 +45,20 @@ TriangleParameter parameter(Barycentric p) {
 
 namespace {
 
-// Distance of a placed point to the box of a placed model, but for roundings.
-double distance_to_box(const PlacedModel& model, const Point3& p) {
-  const Vector3 d = p - model.placement.apply(model.model.box().centre);
+// Distance of a ball to the box of a placed model, but for roundings; `between`: how far apart the middles of the balls
+// around both are.
+double ball_to_box(const PlacedModel& model, const Point3& p, double radius, double between) {
+  const Obb& box = model.model.box();
+  if (between <= radius + std::min({box.half.x, box.half.y, box.half.z})) return -INFINITY;
+  const Vector3 d = p - model.placement.apply(box.centre);
   const Vector3 local =
       d.x * model.placement.row(0) + d.y * model.placement.row(1) + d.z * model.placement.row(2);
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double beyond = std::fabs(dot(model.model.box().axes[k], local)) - model.model.box().half[k];
-    if (beyond > 0) sum += beyond * beyond;
+    const double beyond = std::max(0.0, std::fabs(dot(box.axes[k], local)) - box.half[k]);
+    sum += beyond * beyond;
   }
-  return std::sqrt(sum);
+  return std::sqrt(sum) - radius;
 }
 
 }  // namespace
@@ -71,24 +78,36 @@ double outer_gap(const PlacedModel& a, const PlacedModel& b) {
   const double doubt = 16 * rigidity_tolerance * reach;
   const double balls = between - ball_a.radius - ball_b.radius - doubt;
   if (balls > 0) return balls;
-  const double a_box = distance_to_box(a, centre_b) - ball_b.radius,
-               b_box = distance_to_box(b, centre_a) - ball_a.radius;
-  const double boxes = std::max(a_box, b_box) - doubt;
+  const double boxes = std::max(ball_to_box(a, centre_b, ball_b.radius, between),
+                                ball_to_box(b, centre_a, ball_a.radius, between)) -
+                       doubt;
   return boxes > 0 ? boxes : -INFINITY;
 }
 
-PairSearch::PairSearch(const PlacedModel& a, const PlacedModel& b)
-    : scratch_{&a.scratch, &b.scratch}, volume_(a.model.tree().blocks().volume()) {
+void nearest_last(std::vector<NodePair>& pairs, std::size_t from) {
+  if (from == pairs.size()) return;
+  std::size_t nearest = from;
+  for (std::size_t i = from + 1; i < pairs.size(); ++i) {
+    if (pairs[i].gap < pairs[nearest].gap) nearest = i;
+  }
+  std::swap(pairs[nearest], pairs.back());
+}
+
+std::array<double, 2> rigidity_defects(const PlacedModel& a, const PlacedModel& b) {
+  const std::array<double, 2> defects{rigidity_defect(a.placement), rigidity_defect(b.placement)};
+  SNUG_EXPECT(defects[0] <= rigidity_tolerance && defects[1] <= rigidity_tolerance);
+  return defects;
+}
+
+PairSearch::PairSearch(const PlacedModel& a, const PlacedModel& b, const std::array<double, 2>& defects)
+    : scratch_{&a.scratch, &b.scratch},
+      world_(joint_scale(a, b)),
+      frame_{make_frame(a, world_, defects[0]), make_frame(b, world_, defects[1])},
+      scale_{static_cast<float>(frame_[0].scale), static_cast<float>(frame_[1].scale)},
+      volume_(a.model.tree().blocks().volume()) {
   SNUG_EXPECT(&a.scratch != &b.scratch && &a.scratch.model() == &a.model && &b.scratch.model() == &b.model);
   SNUG_EXPECT(volume_ == b.model.tree().blocks().volume());
-  world_ = joint_scale(a, b);
-  const std::array<const PlacedModel*, 2> side{&a, &b};
-  for (std::size_t s = 0; s < 2; ++s) {
-    frame_[s] =
-        make_frame(side[s]->model.surface(), side[s]->placement, world_, rigidity_defect(side[s]->placement));
-    scale_[s] = static_cast<float>(frame_[s].scale);
-    scratch_[s]->begin();
-  }
+  for (QueryScratch* scratch : scratch_) scratch->begin();
 }
 
 double PairSearch::length_down(double mesh_units) const {
@@ -100,19 +119,18 @@ double PairSearch::length_up(double mesh_units) const {
   return world_.exact(mesh_units) ? x : x * (1 + 2 * unit_roundoff) + underflow_error;
 }
 
-void PairSearch::find_gaps(std::size_t side, std::uint32_t block, const Blocks& blocks, Node other,
-                           double most, Blocks::Distances& out) {
+Blocks::Near PairSearch::find_gaps(std::size_t side, std::uint32_t block, const Blocks& blocks, Node other,
+                                   double most, Blocks::Distances& out) {
   const View& seen_view = view(side);
   const RelativeFrame& frame = seen_view.frame;
   if (!frame.comparable) {
     out.fill(-INFINITY);
-    return;
+    return {(1u << blocks.count(block)) - 1, INFINITY};
   }
   PlacedVolume seen;
   scratch_[1 - side]->blocks(other.piece).placed(other.lane(), seen_view, seen);
-  // In the frame's units, and a little more for the rounding of in_world().
-  const double enough = most / frame.to_world * (1 + 0x1p-20);
-  blocks.distances(block, seen, frame.slack, static_cast<float>(enough), out);
+  const double enough = most * frame.from_world;
+  return blocks.distances(block, seen, frame.slack, static_cast<float>(enough), out);
 }
 
 namespace {
@@ -124,65 +142,92 @@ float in_world(float gap, float to_world) {
 
 }  // namespace
 
-NodePair PairSearch::roots() {
+NodePair PairSearch::roots() const {
   NodePair pair;
+  pair.gap = -INFINITY;
   for (std::size_t s = 0; s < 2; ++s) {
     pair.nodes[s] = scratch_[s]->root();
     pair.sizes[s] = scale_[s] * scratch_[s]->blocks(false).size_of(pair.nodes[s].lane());
   }
-  const std::size_t side = view(0).frame.comparable ? 0 : 1;
-  Blocks::Distances found;
-  find_gaps(side, pair.nodes[side].block, scratch_[side]->blocks(false), pair.nodes[1 - side], INFINITY,
-            found);
-  pair.gap = in_world(found[0], static_cast<float>(view(side).frame.to_world));
   return pair;
 }
 
-std::optional<std::size_t> PairSearch::side_to_open(const NodePair& pair) const {
-  const std::size_t larger = pair.sizes[1] > pair.sizes[0] ? 1 : 0;
-  if (scratch_[larger]->can_open(pair.nodes[larger])) return larger;
-  if (scratch_[1 - larger]->can_open(pair.nodes[1 - larger])) return 1 - larger;
-  return std::nullopt;
+PairSearch::Opening PairSearch::opening(const NodePair& pair) const {
+  const bool a = scratch_[0]->can_open(pair.nodes[0]), b = scratch_[1]->can_open(pair.nodes[1]);
+  if (a != b) return a ? Opening::a : Opening::b;
+  if (!a) return Opening::none;
+  const bool a_larger = pair.sizes[0] >= pair.sizes[1];
+  const float larger = pair.sizes[a_larger ? 0 : 1], smaller = pair.sizes[a_larger ? 1 : 0];
+  const bool deep = -pair.gap > deep_overlap * smaller && pair.gap > -INFINITY;
+  if (larger <= both_opened * smaller && !deep) return Opening::both;
+  return a_larger ? Opening::a : Opening::b;
 }
 
-float PairSearch::open(const NodePair& pair, std::size_t side, double most, std::vector<NodePair>& out) {
+float PairSearch::open(const NodePair& pair, Opening opening, double most, std::vector<NodePair>& out) {
+  switch (opening) {
+    case Opening::a:
+      return open_one(pair, 0, most, out);
+    case Opening::b:
+      return open_one(pair, 1, most, out);
+    default:
+      return view(0).frame.comparable ? open_both(pair, most, out) : open_one(pair, 0, most, out);
+  }
+}
+
+float PairSearch::open_both(const NodePair& pair, double most, std::vector<NodePair>& out) {
+  std::array<QueryScratch::Opened, 2> opened;
+  std::array<const Blocks*, 2> blocks;
+  for (std::size_t s = 0; s < 2; ++s) {
+    stats.splits += pair.nodes[s].piece;
+    opened[s] = scratch_[s]->open(pair.nodes[s]);
+    blocks[s] = &scratch_[s]->blocks(opened[s].piece);
+  }
+  stats.box_tests += blocks[0]->count(opened[0].block) * blocks[1]->count(opened[1].block);
+  const View& seen = view(0);
+  const auto to_world = static_cast<float>(seen.frame.to_world);
+  Blocks::Pairs near;
+  const float others = blocks[0]->distances(opened[0].block, *blocks[1], opened[1].block, seen,
+                                            static_cast<float>(most * seen.frame.from_world), near);
+  const float parent = pair.gap > 0 ? pair.gap : -INFINITY;
+  for (std::size_t k = 0; k < near.count; ++k) {
+    const kernels::LanePair& found = near.pairs[k];
+    const std::array<std::uint8_t, 2> lanes{found.own, found.other};
+    NodePair& next = out.emplace_back();
+    for (std::size_t s = 0; s < 2; ++s) {
+      next.nodes[s] = {opened[s].block, lanes[s], opened[s].piece};
+      next.sizes[s] = scale_[s] * blocks[s]->size_of({opened[s].block, lanes[s]});
+    }
+    next.gap = std::max(in_world(found.gap, to_world), parent);
+  }
+  return std::max(in_world(others, to_world), parent);
+}
+
+float PairSearch::open_one(const NodePair& pair, std::size_t side, double most, std::vector<NodePair>& out) {
   const Node node = pair.nodes[side], other = pair.nodes[1 - side];
   stats.splits += node.piece;
   const QueryScratch::Opened opened = scratch_[side]->open(node);
   const Blocks& blocks = scratch_[side]->blocks(opened.piece);
-  const std::size_t count = blocks.count(opened.block);
-  stats.box_tests += count;
+  stats.box_tests += blocks.count(opened.block);
   Blocks::Distances found;
-  find_gaps(side, opened.block, blocks, other, most, found);
+  const Blocks::Near near = find_gaps(side, opened.block, blocks, other, most, found);
   const auto to_world = static_cast<float>(view(side).frame.to_world);
-  float least = INFINITY;
-  const std::size_t before = out.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    float gap = in_world(found[i], to_world);
-    if (pair.gap > 0) gap = std::max(gap, pair.gap);
-    if (static_cast<double>(gap) > most) {
-      least = std::min(least, gap);
-      continue;
-    }
-    NodePair next;
+  const float parent = pair.gap > 0 ? pair.gap : -INFINITY;
+  for (std::uint32_t rest = near.lanes; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
+    NodePair& next = out.emplace_back();
     next.nodes[side] = {opened.block, static_cast<std::uint8_t>(i), opened.piece};
     next.nodes[1 - side] = other;
-    next.sizes[side] = scale_[side] * blocks.size_of({opened.block, static_cast<std::uint32_t>(i)});
+    next.sizes[side] = scale_[side] * blocks.size_of({opened.block, i});
     next.sizes[1 - side] = pair.sizes[1 - side];
-    next.gap = gap;
-    // Insertion: a handful of pairs, equal ones in the order of their lanes.
-    std::size_t at = out.size();
-    out.push_back(next);
-    for (; at > before && out[at - 1].gap < gap; --at) out[at] = out[at - 1];
-    out[at] = next;
+    next.gap = std::max(in_world(found[i], to_world), parent);
   }
-  return least;
+  return std::max(in_world(near.others, to_world), parent);
 }
 
 double PairSearch::radii(const NodePair& pair) const {
   double sum = 0;
   for (std::size_t s = 0; s < 2; ++s) {
-    sum += frame_[s].growth() * scratch_[s]->pieces()[piece(pair, s)].offset.radius;
+    sum += frame_[s].growth() * static_cast<double>(scratch_[s]->radius(pair.nodes[s]));
   }
   return sum;
 }
@@ -213,43 +258,49 @@ PairSearch::Pieces PairSearch::nearest_pieces(const NodePair& pair) {
   return pieces;
 }
 
+double PairSearch::end(std::size_t side, PieceId piece, const Vector3& w) {
+  const PlacedFrame& frame = frame_[side];
+  const HullPoints& hull = scratch_[side]->pieces().hull(piece);
+  // w . (scale R x + t) = scale (R' w) . x + w . t
+  const Vector3 local = w.x * frame.rows[0] + w.y * frame.rows[1] + w.z * frame.rows[2];
+  const Slab slab = outer_slab(hull, local);
+  const double from = frame.scale * dot(local, hull.origin - Point3{}) + dot(w, frame.translation);
+  const double reach =
+      frame.scale * (max_abs(hull.origin - Point3{}) + hull.largest) + max_abs(frame.translation);
+  // |w| <= 1 + 4 u; R' w is off by 4 roundings of its rows' sums, which multiply coordinates.
+  const double error = 40 * unit_roundoff * reach + 8 * underflow_error;
+  return side == 0 ? from + frame.scale * slab.upper + error : from + frame.scale * slab.lower - error;
+}
+
 double PairSearch::hull_gap(const NodePair& pair, const Vector3& direction) {
   const double size = length(direction);
   if (!(size > 0) || !std::isfinite(1 / size)) return 0;
   const Vector3 w = (1 / size) * direction;
-  double end[2] = {0, 0}, reach = 0;
-  for (std::size_t s = 0; s < 2; ++s) {
-    const PlacedFrame& frame = frame_[s];
-    const HullPoints& hull = scratch_[s]->pieces().hull(piece(pair, s));
-    // w . (scale R x + t) = scale (R' w) . x + w . t
-    const Vector3 local = w.x * frame.rows[0] + w.y * frame.rows[1] + w.z * frame.rows[2];
-    const Slab slab = outer_slab(hull, local);
-    const double from = frame.scale * dot(local, hull.origin - Point3{}) + dot(w, frame.translation);
-    end[s] = from + frame.scale * (s == 0 ? slab.upper : slab.lower);
-    reach = std::max(
-        reach, frame.scale * (max_abs(hull.origin - Point3{}) + hull.largest) + max_abs(frame.translation));
-  }
-  // |w| <= 1 + 4 u; R' w is off by 4 roundings of its rows' sums, which multiply coordinates.
-  const double gap =
-      (end[1] - end[0]) * (1 - 16 * unit_roundoff) - 64 * unit_roundoff * reach - 16 * underflow_error;
+  const double gap = (end(1, piece(pair, 1), w) - end(0, piece(pair, 0), w)) * (1 - 16 * unit_roundoff);
   return gap > 0 ? gap : 0;
 }
 
-double PairSearch::corner_gap(const NodePair& pair, const Vector3& direction) const {
-  const Vector3 w = (1 / length(direction)) * direction;
-  double end[2] = {-INFINITY, INFINITY};
+void PairSearch::look_along(const Vector3& direction) {
+  const double size = length(direction);
+  if (!(size > 0) || !std::isfinite(1 / size)) return;
+  along_ = (1 / size) * direction;
+  for (QueryScratch* scratch : scratch_) scratch->ends().forget();
+  const std::array<Vector3, 3>& rows = frame_[0].rows;
+  static_cast<void>(view(0));
+  view_[0].look_along(along_.x * rows[0] + along_.y * rows[1] + along_.z * rows[2]);
+}
+
+double PairSearch::gap_along(const NodePair& pair) {
+  if (along_ == Vector3{}) return 0;
+  std::array<double, 2> ends;
   for (std::size_t s = 0; s < 2; ++s) {
-    const PlacedFrame& frame = frame_[s];
-    const Piece& piece_here = scratch_[s]->pieces()[piece(pair, s)];
-    const Vector3 local = w.x * frame.rows[0] + w.y * frame.rows[1] + w.z * frame.rows[2];
-    const double from =
-        frame.scale * dot(local, piece_here.patch.origin - Point3{}) + dot(w, frame.translation);
-    for (const Vector3& corner : piece_here.corners) {
-      const double height = from + frame.scale * dot(local, corner);
-      end[s] = s == 0 ? std::max(end[s], height) : std::min(end[s], height);
-    }
+    const PieceId id = piece(pair, s);
+    double& known = scratch_[s]->ends()[id.index()];
+    if (std::isnan(known)) known = end(s, id, along_);
+    ends[s] = known;
   }
-  return end[1] - end[0];
+  const double gap = (ends[1] - ends[0]) * (1 - 16 * unit_roundoff);
+  return gap > 0 ? gap : 0;
 }
 
 Point3 PairSearch::placed(std::size_t side, const Point3& p, double& error) const {

@@ -27,33 +27,50 @@ struct NodePair {
   float gap;
 };
 
+/// Of the pairs from the place `from` on, brings the one with the smallest gap to the end.
+void nearest_last(std::vector<NodePair>& pairs, std::size_t from);
+
 /// Lower bound, in mesh units, of the distance of two placed models, by balls and boxes around them: cheap. Not positive
 /// where none shows, or where doubles do not reach.
 /// Requires:  rigid placements.
 [[nodiscard]] double outer_gap(const PlacedModel& a, const PlacedModel& b);
 
+/// Upper bounds of how far two placements are from rigid.
+/// Requires:  rigid placements (require_rigid).
+[[nodiscard]] std::array<double, 2> rigidity_defects(const PlacedModel& a, const PlacedModel& b);
+
 /// What queries between two placed models share: frames, comparisons of nodes and of pieces, limit points. Lengths are in
 /// units of its own, powers of two away from mesh units, in which both placed models are at most about 2 large and far.
 class PairSearch {
  public:
-  /// Requires:  rigid placements (require_rigid), models with the same sort of volume, two scratches.
-  PairSearch(const PlacedModel& a, const PlacedModel& b);
+  /// Requires:  rigidity_defects(a, b), models with the same sort of volume, two scratches.
+  PairSearch(const PlacedModel& a, const PlacedModel& b, const std::array<double, 2>& defects);
 
   /// From mesh units; a lower bound and an upper bound of the exact length.
   [[nodiscard]] double length_down(double mesh_units) const;
   [[nodiscard]] double length_up(double mesh_units) const;
   [[nodiscard]] PowerOfTwo to_mesh_units() const { return world_.inverse(); }
 
-  /// The whole models.
-  [[nodiscard]] NodePair roots();
+  /// The whole models, which are not compared.
+  [[nodiscard]] NodePair roots() const;
 
   [[nodiscard]] bool pieces(const NodePair& pair) const { return pair.nodes[0].piece && pair.nodes[1].piece; }
-  /// The side whose node is larger among those that can be opened; nothing if neither can.
-  [[nodiscard]] std::optional<std::size_t> side_to_open(const NodePair& pair) const;
-  /// What the node of one side opens to, against the other side's node: pairs with a gap of at most `most`, the smallest
-  /// gap last, are added to `out`.
+  /// Which nodes of a pair are to be opened next: the larger one, or both if they are about as large.
+  enum class Opening : std::uint8_t { none, a, b, both };
+  /// none: neither can be opened.
+  [[nodiscard]] Opening opening(const NodePair& pair) const;
+  /// What nodes open to, against each other: pairs with a gap of at most `most` are added to `out`.
   /// Returns:   the smallest gap of the others; infinite if there are none.
-  float open(const NodePair& pair, std::size_t side, double most, std::vector<NodePair>& out);
+  /// Requires:  not none.
+  float open(const NodePair& pair, Opening opening, double most, std::vector<NodePair>& out);
+
+  /// Gaps are looked for along this direction first, from A to B: one that holds much of both apart.
+  void look_along(const Vector3& direction);
+
+  /// Has a query opened as many pieces as it may, or as many as memory is to be taken for?
+  [[nodiscard]] bool exhausted(std::uint64_t budget) const {
+    return stats.splits >= budget || scratch_[0]->full() || scratch_[1]->full();
+  }
 
   /// Two pieces, their base triangles as placed.
   struct Pieces {
@@ -75,8 +92,8 @@ class PairSearch {
   /// Lower bound of the distance of two pieces: that of the planes across `direction` that hold their hulls apart. Any
   /// direction gives one; the best is that from the nearest point of A to that of B.
   [[nodiscard]] double hull_gap(const NodePair& pair, const Vector3& direction);
-  /// The same of their limit corners, in double precision: about the most that hull_gap() can find, and cheap.
-  [[nodiscard]] double corner_gap(const NodePair& pair, const Vector3& direction) const;
+  /// The same along the direction of look_along(), where hulls end being kept; zero without one.
+  [[nodiscard]] double gap_along(const NodePair& pair);
 
   /// Limit points, placed, and an upper bound of the distance of the exact ones.
   struct Witness {
@@ -101,18 +118,27 @@ class PairSearch {
   [[nodiscard]] Point3 placed(std::size_t side, const Point3& p, double& error) const;
 
   std::array<QueryScratch*, 2> scratch_;
-  void find_gaps(std::size_t side, std::uint32_t block, const Blocks& blocks, Node other, double most,
-                 Blocks::Distances& out);
+  /// An upper bound of w . x in a piece of A, a lower bound in one of B, placed.
+  double end(std::size_t side, PieceId piece, const Vector3& w);
+  float open_both(const NodePair& pair, double most, std::vector<NodePair>& out);
+  float open_one(const NodePair& pair, std::size_t side, double most, std::vector<NodePair>& out);
+  Blocks::Near find_gaps(std::size_t side, std::uint32_t block, const Blocks& blocks, Node other, double most,
+                         Blocks::Distances& out);
   [[nodiscard]] const View& view(std::size_t side) {
-    if (!view_[side]) view_[side].emplace(volume_, frame_[side], frame_[1 - side]);
-    return *view_[side];
+    if (!viewed_[side]) {
+      view_[side] = View(volume_, frame_[side], frame_[1 - side]);
+      viewed_[side] = true;
+    }
+    return view_[side];
   }
 
   PowerOfTwo world_;
   std::array<PlacedFrame, 2> frame_;
-  std::array<float, 2> scale_{};
+  std::array<float, 2> scale_;
   Volume volume_;
-  std::array<std::optional<View>, 2> view_;  // made on first use
+  std::array<View, 2> view_;  // made on first use
+  std::array<bool, 2> viewed_{};
+  Vector3 along_;
 };
 
 }  // namespace snug

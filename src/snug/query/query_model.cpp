@@ -9,6 +9,7 @@
 #include <snug/base/error.h>
 #include <snug/base/rounding.h>
 #include <snug/surface/control_hull.h>
+#include <snug/surface/enclosed_hulls.h>
 
 namespace snug {
 namespace {
@@ -24,7 +25,6 @@ class EnclosedPiece final : public Enclosed {
         radius_(piece.offset.radius),
         heights_(heights),
         normal_(unit_normal(base_)) {}
-
   [[nodiscard]] Extent extent(const Vector3& direction) const override {
     Extent all{INFINITY, -INFINITY};
     double largest = 0;
@@ -44,28 +44,6 @@ class EnclosedPiece final : public Enclosed {
   }
   [[nodiscard]] std::span<const Point3> points() const override { return base_; }
 
-  [[nodiscard]] BoundingVolume fitted(Volume volume) const {
-    if (volume != Volume::obb || normal_ == Vector3{}) return fit(volume, *this);
-    // Along the longest edge.
-    std::size_t longest = 0;
-    double size_sq = -1;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double edge_sq = length_sq(base_[(k + 1) % 3] - base_[k]);
-      if (edge_sq > size_sq) {
-        size_sq = edge_sq;
-        longest = k;
-      }
-    }
-    Vector3 along = base_[(longest + 1) % 3] - base_[longest];
-    along = (1 / max_abs(along)) * along;
-    along = (1 / length(along)) * along;
-    along = along - dot(along, normal_) * normal_;
-    along = (1 / length(along)) * along;
-    BoundingVolume result;
-    result.box = fit({along, cross(normal_, along), normal_}, *this);
-    return result;
-  }
-
  private:
   Triangle base_;
   double radius_;
@@ -73,38 +51,18 @@ class EnclosedPiece final : public Enclosed {
   Vector3 normal_;
 };
 
-// Several of them.
-class EnclosedPieces final : public Enclosed {
- public:
-  void add(const Piece& piece, const Heights& heights) {
-    pieces_.emplace_back(piece, heights);
-    points_.insert(points_.end(), piece.offset.base.begin(), piece.offset.base.end());
-  }
-  [[nodiscard]] Extent extent(const Vector3& direction) const override {
-    Extent all{INFINITY, -INFINITY};
-    for (const EnclosedPiece& piece : pieces_) {
-      const Extent one = piece.extent(direction);
-      all = {std::min(all.lower, one.lower), std::max(all.upper, one.upper)};
-      if (std::isnan(one.lower) || std::isnan(one.upper)) return {-INFINITY, INFINITY};
-    }
-    return all;
-  }
-  [[nodiscard]] std::span<const Point3> points() const override { return points_; }
-
- private:
-  std::vector<EnclosedPiece> pieces_;
-  std::vector<Point3> points_;
-};
-
 BoundingVolume tight_volume(const Surface& surface, std::span<const PatchId> patches,
                             const QueryModelOptions& options) {
   Refinement refinement(surface, options.table);
-  EnclosedPieces pieces;
+  std::vector<const HullPoints*> hulls;
+  std::vector<Point3> spread;
   for (const PatchId p : patches) {
     const PieceId id = refinement.root(p);
-    pieces.add(refinement[id], refinement.heights(id));
+    hulls.push_back(&refinement.hull(id));
+    const Triangle& base = refinement[id].offset.base;
+    spread.insert(spread.end(), base.begin(), base.end());
   }
-  return fit(options.volume, pieces);
+  return fit(options.volume, EnclosedHulls(hulls, spread));
 }
 
 std::vector<PatchId> existing_patches(const Surface& surface) {
@@ -166,7 +124,7 @@ QueryScratch::QueryScratch(const QueryModel& model)
       cluster_blocks_(model.tree().cluster_count(), none) {}
 
 std::size_t QueryScratch::bytes() const {
-  return refinement_.bytes() + blocks_.bytes() +
+  return refinement_.bytes() + blocks_.bytes() + ends_.bytes() + lanes_.capacity() * sizeof(Lanes) +
          (cluster_blocks_.capacity() + piece_blocks_.capacity() + stamps_.capacity()) * sizeof(std::uint32_t);
 }
 
@@ -175,6 +133,7 @@ void QueryScratch::begin() {
   if (++query_ == 0 || bytes() > most_bytes) {
     refinement_.clear();
     blocks_.clear();
+    lanes_.clear();
     std::fill(cluster_blocks_.begin(), cluster_blocks_.end(), none);
     piece_blocks_.clear();
     stamps_.clear();
@@ -193,11 +152,20 @@ std::uint32_t QueryScratch::touch(std::uint32_t block) {
 std::uint32_t QueryScratch::add_block(std::span<const PieceId> pieces) {
   std::array<BoundingVolume, Blocks::lanes> volumes;
   std::array<std::uint32_t, Blocks::lanes> names;
+  Lanes lanes{};
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    volumes[i] =
-        EnclosedPiece(refinement_[pieces[i]], refinement_.heights(pieces[i])).fitted(blocks_.volume());
+    if (blocks_.volume() == Volume::obb) {
+      volumes[i].box = refinement_.box(pieces[i]);
+    } else {
+      volumes[i] =
+          fit(blocks_.volume(), EnclosedPiece(refinement_[pieces[i]], refinement_.heights(pieces[i])));
+    }
     names[i] = pieces[i].value();
+    // Rounded to nearest, then up by more than that.
+    lanes.radii[i] = static_cast<float>(refinement_[pieces[i]].offset.radius) * (1 + 0x1p-22F) + 0x1p-120F;
+    if (refinement_.can_split(pieces[i])) lanes.can_split |= static_cast<std::uint8_t>(1u << i);
   }
+  lanes_.push_back(lanes);
   stamps_.push_back(0);
   return blocks_.add(std::span(volumes).first(pieces.size()), std::span(names).first(pieces.size()));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -82,7 +83,11 @@ class QueryScratch {
   [[nodiscard]] PieceId piece(Node node) const { return PieceId(blocks_.name(node.lane())); }
   [[nodiscard]] Refinement& pieces() { return refinement_; }
   /// False for a piece that cannot be split.
-  [[nodiscard]] bool can_open(Node node) const { return !node.piece || refinement_.can_split(piece(node)); }
+  [[nodiscard]] bool can_open(Node node) const {
+    return !node.piece || (lanes_[node.block].can_split >> node.of_block & 1u) != 0;
+  }
+  /// Upper bound of the radius of a piece's offset triangle.
+  [[nodiscard]] float radius(Node node) const { return lanes_[node.block].radii[node.of_block]; }
   /// The block that a node opens to, which is made if need be; of pieces or of the tree.
   struct Opened {
     std::uint32_t block;
@@ -90,16 +95,46 @@ class QueryScratch {
   };
   /// Requires:  can_open(node).
   [[nodiscard]] Opened open(Node node);
-  /// Different blocks of pieces that were opened since begin().
-  [[nodiscard]] std::size_t touched() const { return touched_; }
+  /// A number for each piece, for as long as a query likes; NaN for those that it has not given one.
+  class Numbers {
+   public:
+    [[nodiscard]] double& operator[](std::size_t piece) {
+      if (piece >= kept_.size()) kept_.resize(piece + 1, {0, 0});
+      Number& number = kept_[piece];
+      if (number.stamp != stamp_) number = {NAN, stamp_};
+      return number.value;
+    }
+    void forget() { ++stamp_; }
+    [[nodiscard]] std::size_t bytes() const { return kept_.capacity() * sizeof(Number); }
+
+   private:
+    struct Number {
+      double value;
+      std::uint64_t stamp;
+    };
+    std::vector<Number> kept_;
+    std::uint64_t stamp_ = 1;
+  };
+  [[nodiscard]] Numbers& ends() { return ends_; }
+
+  /// Has the query opened as many different blocks of pieces as one may? Bounds its memory.
+  [[nodiscard]] bool full() const { return touched_ >= 50'000; }
 
  private:
+  // What is asked for most of the pieces of a block.
+  struct Lanes {
+    std::array<float, Blocks::lanes> radii;
+    std::uint8_t can_split;
+  };
+
   std::uint32_t add_block(std::span<const PieceId> pieces);
   std::uint32_t touch(std::uint32_t block);
 
   const QueryModel* model_;
   Refinement refinement_;
   Blocks blocks_;
+  std::vector<Lanes> lanes_;  // of blocks
+  Numbers ends_;
   std::vector<std::uint32_t> cluster_blocks_,
       piece_blocks_;                   // of clusters and pieces; `none` where not opened
   std::vector<std::uint32_t> stamps_;  // of blocks: the query that opened them last

@@ -8,6 +8,7 @@
 #include <snug/base/rounding.h>
 #include <snug/enclose/table_triangle.h>
 #include <snug/patch/evaluate.h>
+#include <snug/surface/enclosed_hulls.h>
 
 namespace snug {
 
@@ -54,6 +55,44 @@ Heights heights_of(const Piece& piece, const HullPoints& points) {
   return {rounded_down(range.lower - error), rounded_up(range.upper + error)};
 }
 
+// Along the longest edge, across it in the triangle's plane, and along the normal.
+std::array<Vector3, 3> box_axes(const Triangle& base) {
+  const Vector3 normal = unit_normal(base);
+  if (normal == Vector3{}) return Obb{}.axes;
+  Vector3 along;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3 edge = base[(k + 1) % 3] - base[k];
+    if (max_abs(edge) > max_abs(along)) along = edge;
+  }
+  along = (1 / max_abs(along)) * along;
+  along = along - dot(along, normal) * normal;
+  along = (1 / length(along)) * along;
+  return {along, cross(normal, along), normal};
+}
+
+// What lies within a radius of a triangle.
+class EnclosedTriangle final : public Enclosed {
+ public:
+  explicit EnclosedTriangle(const OffsetTriangle& offset) : offset_(offset) {}
+
+  [[nodiscard]] Extent extent(const Vector3& direction) const override {
+    Extent all{INFINITY, -INFINITY};
+    double largest = 0;
+    for (const Point3& p : offset_.base) {
+      const double height = dot(direction, p - Point3{});
+      all = {std::min(all.lower, height), std::max(all.upper, height)};
+      largest = std::max(largest, max_abs(p - Point3{}));
+    }
+    const double reach =
+        enlarged(offset_.radius * length(direction) + 16 * unit_roundoff * largest) + 8 * underflow_error;
+    return {all.lower - reach, all.upper + reach};
+  }
+  [[nodiscard]] std::span<const Point3> points() const override { return offset_.base; }
+
+ private:
+  const OffsetTriangle& offset_;
+};
+
 }  // namespace
 
 void Refinement::add(PatchId root, Patch patch) {
@@ -65,13 +104,21 @@ void Refinement::add(PatchId root, Patch patch) {
     heights = {-INFINITY, INFINITY};
   }
   heights_.push_back(heights);
-  bytes_ += sizeof(Piece) + sizeof(Heights) + piece.patch.points.capacity() * sizeof(Vector3);
+  const std::array<Vector3, 3> axes = box_axes(piece.offset.base);
+  if (table_) {
+    boxes_.push_back(fit(axes, EnclosedTriangle(piece.offset)));
+  } else {
+    const HullPoints* const hull = &scratch_;
+    boxes_.push_back(fit(axes, EnclosedHulls({&hull, 1}, {})));
+  }
+  bytes_ += sizeof(Piece) + sizeof(Heights) + sizeof(Obb) + piece.patch.points.capacity() * sizeof(Vector3);
 }
 
 void Refinement::clear() {
   std::fill(roots_.begin(), roots_.end(), PieceId());
   pieces_.clear();
   heights_.clear();
+  boxes_.clear();
   hulls_.clear();
   hull_places_.clear();
   bytes_ = 0;

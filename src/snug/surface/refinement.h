@@ -8,6 +8,7 @@
 #include <snug/enclose/interval_triangle.h>
 #include <snug/enclose/offset_triangle.h>
 #include <snug/surface/surface.h>
+#include <snug/tree/volume.h>
 
 namespace snug {
 
@@ -53,6 +54,8 @@ class Refinement {
   [[nodiscard]] PieceId root(PatchId patch);
   [[nodiscard]] const Piece& operator[](PieceId id) const { return pieces_[id.index()]; }
   [[nodiscard]] const Heights& heights(PieceId id) const { return heights_[id.index()]; }
+  /// A box around the piece: along its base triangle and its normal, or the coordinate axes where it has none.
+  [[nodiscard]] const Obb& box(PieceId id) const { return boxes_[id.index()]; }
   /// Points whose hull holds the piece closely, kept once they are made.
   [[nodiscard]] const HullPoints& hull(PieceId id);
   /// First of the four children, making them if need be.
@@ -78,6 +81,7 @@ class Refinement {
   std::vector<PieceId> roots_;
   std::deque<Piece> pieces_;
   std::vector<Heights> heights_;
+  std::vector<Obb> boxes_;
   std::deque<HullPoints> hulls_;
   std::vector<std::uint32_t> hull_places_;  // in hulls_, from 1 on; 0 where there is none
   std::size_t bytes_ = 0;                   // of pieces

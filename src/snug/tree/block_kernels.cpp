@@ -6,6 +6,8 @@
 // After it, as the library wants it.
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <snug/tree/block_kernels.h>
@@ -21,6 +23,8 @@ using V = hn::Vec<Tag>;
 
 // More than what roundings to single precision can do to any of the gaps, in units of 2^-24 of all that is involved.
 constexpr float roundings = 64 * 0x1p-24F;
+// The same where the other box, too, was placed in single precision.
+constexpr float pair_roundings = 256 * 0x1p-24F;
 
 template <class D>
 HWY_INLINE V dot3(D d, const V* a, const float* b) {
@@ -41,74 +45,243 @@ HWY_INLINE V outside(D d, V x, V y, V z) {
   return hn::IfThenElse(hn::Gt(largest, zero), length, largest);
 }
 
-template <class D>
-HWY_INLINE void store(D d, V gap, float* out) {
-  // Comparisons with a NaN are false.
-  hn::StoreU(hn::IfThenElse(hn::Lt(gap, hn::Set(d, 1e30F)), gap, hn::Set(d, -INFINITY)), d, out);
+// The same of two sorts of gaps, by the better one.
+HWY_INLINE V outside(const V* one, const V* two) {
+  const Tag d;
+  const V zero = hn::Zero(d);
+  const auto square = [&](V x) {
+    const V positive = hn::Max(x, zero);
+    return hn::Mul(positive, positive);
+  };
+  const V largest = hn::Max(max3(one[0], one[1], one[2]), max3(two[0], two[1], two[2]));
+  const V length_sq = hn::Max(sum3(square(one[0]), square(one[1]), square(one[2])),
+                              sum3(square(two[0]), square(two[1]), square(two[2])));
+  const V length = hn::Mul(hn::Sqrt(length_sq), hn::Set(d, 1 - 16 * 0x1p-24F));
+  return hn::IfThenElse(hn::Gt(largest, zero), length, largest);
 }
 
-void boxes(const float* block, const OtherBox& other, float slack, float enough, float* out) {
+// Minus infinity for what is not a number, or too large to be one of ours.
+HWY_INLINE V computed(V gap) {
   const Tag d;
-  const std::size_t n = hn::Lanes(d);
-  for (std::size_t at = 0; at < 8; at += n) {
-    const auto row = [&](std::size_t r) { return hn::LoadU(d, block + 8 * r + at); };
-    V delta[3], half[3], axis[3][3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      delta[k] = hn::Sub(hn::Set(d, other.centre[k]), row(k));
-      half[k] = row(3 + k);
-      for (std::size_t i = 0; i < 3; ++i) axis[k][i] = row(6 + 3 * k + i);
-    }
-    V t[3], c[3][3], m[3][3];  // of the offset along the block's axes; cosines and their absolute values
-    for (std::size_t i = 0; i < 3; ++i) {
-      t[i] =
-          sum3(hn::Mul(axis[i][0], delta[0]), hn::Mul(axis[i][1], delta[1]), hn::Mul(axis[i][2], delta[2]));
-      for (std::size_t j = 0; j < 3; ++j) {
-        c[i][j] = dot3(d, axis[i], other.axes[j]);
-        m[i][j] = hn::Abs(c[i][j]);
-      }
-    }
-    V h[3];
-    for (std::size_t j = 0; j < 3; ++j) h[j] = hn::Set(d, other.half[j]);
-    const V reach = hn::Add(hn::Add(sum3(hn::Abs(delta[0]), hn::Abs(delta[1]), hn::Abs(delta[2])),
-                                    sum3(half[0], half[1], half[2])),
-                            sum3(h[0], h[1], h[2]));
-    const V all_slack = hn::Add(hn::Mul(hn::Set(d, roundings), reach), hn::Set(d, slack));
-    V own[3], others[3];
-    for (std::size_t i = 0; i < 3; ++i) {
-      const V far = sum3(hn::Mul(h[0], m[i][0]), hn::Mul(h[1], m[i][1]), hn::Mul(h[2], m[i][2]));
-      own[i] = hn::Sub(hn::Sub(hn::Abs(t[i]), hn::Add(half[i], far)), all_slack);
-    }
+  return hn::IfThenElse(hn::Lt(gap, hn::Set(d, 1e30F)), gap, hn::Set(d, -INFINITY));
+}
+
+HWY_INLINE std::uint32_t bits(hn::Mask<Tag> mask) {
+  const Tag d;
+  std::uint8_t result = 0;
+  hn::StoreMaskBits(d, mask, &result);
+  return result & ((1u << hn::Lanes(d)) - 1);
+}
+
+// The lanes from `at` on, and what they add to `near`.
+HWY_INLINE void store(V gap, float enough, std::size_t at, float* out, Near& near) {
+  const Tag d;
+  gap = computed(gap);
+  hn::StoreU(gap, d, out + at);
+  const auto beyond = hn::Gt(gap, hn::Set(d, enough));
+  near.lanes |= bits(hn::Not(beyond)) << at;
+  near.others = std::min(near.others,
+                         hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(beyond, gap, hn::Set(d, INFINITY)))));
+}
+
+// Gaps of the lanes from `at` on.
+HWY_INLINE V gaps(const float* block, std::size_t at, const OtherBox& other, V all_slack, float enough) {
+  const Tag d;
+  const V zero = hn::Zero(d);
+  const auto row = [&](std::size_t r) { return hn::LoadU(d, block + 8 * r + at); };
+  const auto number = [&](float x) { return hn::Set(d, x); };
+  V delta[3], half[3];
+  V t[3], c[3][3];  // of the offset along the block's axes; cosines
+  V own[3], others[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    delta[k] = hn::Sub(number(other.centre[k]), row(k));
+    others[k] = number(other.half[k]);
+  }
+  // An axis of the block at a time, so that all fits the registers.
+  for (std::size_t i = 0; i < 3; ++i) {
+    const V axis[3] = {row(6 + 3 * i), row(7 + 3 * i), row(8 + 3 * i)};
+    half[i] = row(3 + i);
+    t[i] = sum3(hn::Mul(axis[0], delta[0]), hn::Mul(axis[1], delta[1]), hn::Mul(axis[2], delta[2]));
+    V far = half[i];
     for (std::size_t j = 0; j < 3; ++j) {
-      const V along = hn::Abs(dot3(d, delta, other.axes[j]));
-      const V far = sum3(hn::Mul(half[0], m[0][j]), hn::Mul(half[1], m[1][j]), hn::Mul(half[2], m[2][j]));
-      others[j] = hn::Sub(hn::Sub(along, hn::Add(h[j], far)), all_slack);
+      c[i][j] = dot3(d, axis, other.axes[j]);
+      const V m = hn::Abs(c[i][j]);
+      far = hn::Add(far, hn::Mul(number(other.half[j]), m));
+      others[j] = hn::Add(others[j], hn::Mul(half[i], m));
     }
-    V gap = hn::Max(outside(d, own[0], own[1], own[2]), outside(d, others[0], others[1], others[2]));
-    // A NaN may have been lost in a maximum.
-    const auto computed = hn::Lt(reach, hn::Set(d, 1e18F));
-    gap = hn::IfThenElse(computed, gap, hn::Set(d, -INFINITY));
-    // Lane by lane, so that it makes no difference how many a vector has.
-    const auto settled = hn::Gt(gap, hn::Set(d, enough));
-    if (hn::AllTrue(d, settled)) {
-      store(d, gap, out + at);
-      continue;
-    }
+    own[i] = hn::Sub(hn::Sub(hn::Abs(t[i]), far), all_slack);
+  }
+  // Along the line of the centres: what both boxes take of it, times its length.
+  const V between_sq =
+      sum3(hn::Mul(delta[0], delta[0]), hn::Mul(delta[1], delta[1]), hn::Mul(delta[2], delta[2]));
+  V taken =
+      sum3(hn::Mul(half[0], hn::Abs(t[0])), hn::Mul(half[1], hn::Abs(t[1])), hn::Mul(half[2], hn::Abs(t[2])));
+  for (std::size_t j = 0; j < 3; ++j) {
+    const V along = hn::Abs(dot3(d, delta, other.axes[j]));
+    taken = hn::Add(taken, hn::Mul(number(other.half[j]), along));
+    others[j] = hn::Sub(hn::Sub(along, others[j]), all_slack);
+  }
+  V gap = outside(own, others);
+  const V central = hn::Sub(hn::Div(hn::Sub(between_sq, taken), hn::Sqrt(between_sq)), all_slack);
+  gap = hn::IfThenElse(hn::Gt(central, zero), hn::Max(gap, central), gap);
+  // Lane by lane, so that it makes no difference how many a vector has.
+  const auto settled = hn::Gt(gap, hn::Set(d, enough));
+  if (!hn::AllTrue(d, settled)) {
     // Cross products of axes are at most 1 long: an overlap along a short one says little, so only gaps count.
-    V across = hn::Set(d, -INFINITY);
+    V across = all_slack;
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3;
       for (std::size_t j = 0; j < 3; ++j) {
         const std::size_t j1 = (j + 1) % 3, j2 = (j + 2) % 3;
         const V along = hn::Abs(hn::Sub(hn::Mul(t[i2], c[i1][j]), hn::Mul(t[i1], c[i2][j])));
-        const V far = hn::Add(hn::Add(hn::Mul(half[i1], m[i2][j]), hn::Mul(half[i2], m[i1][j])),
-                              hn::Add(hn::Mul(h[j1], m[i][j2]), hn::Mul(h[j2], m[i][j1])));
+        const V far =
+            hn::Add(hn::Add(hn::Mul(half[i1], hn::Abs(c[i2][j])), hn::Mul(half[i2], hn::Abs(c[i1][j]))),
+                    hn::Add(hn::Mul(number(other.half[j1]), hn::Abs(c[i][j2])),
+                            hn::Mul(number(other.half[j2]), hn::Abs(c[i][j1]))));
         across = hn::Max(across, hn::Sub(along, far));
       }
     }
     across = hn::Sub(across, all_slack);
-    const auto wider = hn::And(hn::AndNot(settled, hn::Gt(across, hn::Zero(d))), computed);
-    store(d, hn::IfThenElse(wider, hn::Max(gap, across), gap), out + at);
+    const auto wider = hn::AndNot(settled, hn::Gt(across, zero));
+    gap = hn::IfThenElse(wider, hn::Max(gap, across), gap);
   }
+  return gap;
+}
+
+Near boxes(const float* block, float reach, const OtherBox& other, float slack, float enough, float* out) {
+  const Tag d;
+  Near near{0, INFINITY};
+  const V all_slack = hn::Set(d, roundings * reach + slack);
+  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+    store(gaps(block, at, other, all_slack, enough), enough, at, out, near);
+  }
+  return near;
+}
+
+// Centres of a block's boxes in the coordinates of another block.
+HWY_INLINE void place_centres(const BoxBlock& block, const SeenBlock& seen, float (*out)[8]) {
+  const Tag d;
+  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+    const auto row = [&](std::size_t r) { return hn::LoadU(d, block.rows + 8 * r + at); };
+    const V x[3] = {row(0), row(1), row(2)};
+    for (std::size_t i = 0; i < 3; ++i) {
+      hn::Store(hn::Add(dot3(d, x, seen.rows[i]), hn::Set(d, seen.offset[i])), d, out[i] + at);
+    }
+  }
+}
+
+// Their axes.
+HWY_INLINE void place_axes(const BoxBlock& block, const SeenBlock& seen, float (*out)[8]) {
+  const Tag d;
+  const V inverse = hn::Set(d, 1 / seen.scale);
+  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+    const auto row = [&](std::size_t r) { return hn::LoadU(d, block.rows + 8 * r + at); };
+    for (std::size_t k = 0; k < 9; k += 3) {
+      const V x[3] = {row(6 + k), row(7 + k), row(8 + k)};
+      for (std::size_t i = 0; i < 3; ++i) {
+        hn::Store(hn::Mul(inverse, dot3(d, x, seen.rows[i])), d, out[k + i] + at);
+      }
+    }
+  }
+}
+
+// Half of what boxes extend along a direction.
+HWY_INLINE V half_extents(const BoxBlock& block, std::size_t at, const float* direction) {
+  const Tag d;
+  const auto row = [&](std::size_t r) { return hn::LoadU(d, block.rows + 8 * r + at); };
+  V sum = hn::Zero(d);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const V axis[3] = {row(6 + 3 * k), row(7 + 3 * k), row(8 + 3 * k)};
+    sum = hn::Add(sum, hn::Mul(row(3 + k), hn::Abs(dot3(d, axis, direction))));
+  }
+  return sum;
+}
+
+Near box_pairs(const BoxBlock& block, const BoxBlock& other, const SeenBlock& seen, float slack, float enough,
+               LanePair* out) {
+  const Tag d;
+  const std::size_t n = hn::Lanes(d);
+  const float offset = std::fabs(seen.offset[0]) + std::fabs(seen.offset[1]) + std::fabs(seen.offset[2]);
+  const float reach = block.reach + 2 * seen.scale * other.reach + offset;
+  Near near{0, INFINITY};
+  if (!(reach < 1e18F)) {  // nor a NaN
+    for (std::uint32_t j = 0; j < other.count; ++j) {
+      for (std::uint32_t i = 0; i < block.count; ++i) {
+        out[near.lanes++] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), -INFINITY};
+      }
+    }
+    return near;
+  }
+  const V all_slack = hn::Set(d, pair_roundings * reach + slack), most = hn::Set(d, enough);
+  V others = hn::Set(d, INFINITY);
+  HWY_ALIGN float centres[3][8];
+  HWY_ALIGN float balls[8]
+                       [8];  // gaps of the boxes' balls and along the direction, by lane of the other block
+  place_centres(other, seen, centres);
+  // Where boxes end along the direction: from the block's origin, those of the block above, the others below.
+  HWY_ALIGN float ends[8];
+  HWY_ALIGN float other_ends[8];
+  for (std::size_t at = 0; at < 8; at += n) {
+    const V centre[3] = {hn::LoadU(d, block.rows + at), hn::LoadU(d, block.rows + 8 + at),
+                         hn::LoadU(d, block.rows + 16 + at)};
+    const V other_centre[3] = {hn::Load(d, centres[0] + at), hn::Load(d, centres[1] + at),
+                               hn::Load(d, centres[2] + at)};
+    hn::Store(hn::Add(dot3(d, centre, seen.direction), half_extents(block, at, seen.direction)), d,
+              ends + at);
+    hn::Store(hn::Sub(dot3(d, other_centre, seen.direction), half_extents(other, at, seen.other_direction)),
+              d, other_ends + at);
+  }
+  std::uint32_t left = 0;  // lanes of the other block with balls that are not apart
+  for (std::uint32_t j = 0; j < other.count; ++j) {
+    const V radius = hn::Set(d, 0.5F * seen.scale * other.sizes[j]);
+    for (std::size_t at = 0; at < 8; at += n) {
+      V between_sq = hn::Zero(d);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const V delta = hn::Sub(hn::Set(d, centres[k][j]), hn::LoadU(d, block.rows + 8 * k + at));
+        between_sq = hn::Add(between_sq, hn::Mul(delta, delta));
+      }
+      const V radii = hn::Add(hn::Mul(hn::Set(d, 0.5F), hn::LoadU(d, block.sizes + at)), radius);
+      const V along = hn::Sub(hn::Set(d, other_ends[j]), hn::Load(d, ends + at));
+      const V gap = hn::Sub(hn::Max(hn::Sub(hn::Sqrt(between_sq), radii), along), all_slack);
+      const auto apart = hn::Gt(gap, most);
+      hn::Store(gap, d, balls[j] + at);
+      others = hn::Min(others, hn::IfThenElse(apart, gap, hn::Set(d, INFINITY)));
+      left |= static_cast<std::uint32_t>(!hn::AllTrue(d, apart)) << j;
+    }
+  }
+  if (left != 0) {
+    HWY_ALIGN float axes[9][8];
+    place_axes(other, seen, axes);
+    for (; left != 0; left &= left - 1) {
+      const auto j = static_cast<std::uint32_t>(std::countr_zero(left));
+      OtherBox box;
+      for (std::size_t k = 0; k < 3; ++k) {
+        box.centre[k] = centres[k][j];
+        box.half[k] = seen.scale * other.rows[8 * (3 + k) + j];
+        for (std::size_t i = 0; i < 3; ++i) box.axes[k][i] = axes[3 * k + i][j];
+      }
+      HWY_ALIGN float found[8];
+      std::uint32_t lanes = 0;
+      for (std::size_t at = 0; at < 8; at += n) {
+        const V ball = hn::Load(d, balls[j] + at);
+        const auto apart = hn::Gt(ball, most);
+        if (hn::AllTrue(d, apart)) continue;
+        // How deep balls overlap says little.
+        const V own = computed(gaps(block.rows, at, box, all_slack, enough));
+        const V gap = hn::IfThenElse(hn::Gt(ball, hn::Zero(d)), hn::Max(own, ball), own);
+        const auto settled = hn::Or(apart, hn::Gt(gap, most));
+        hn::Store(gap, d, found + at);
+        others = hn::Min(others, hn::IfThenElse(settled, gap, hn::Set(d, INFINITY)));
+        lanes |= bits(hn::Not(settled)) << at;
+      }
+      for (lanes &= (1u << block.count) - 1; lanes != 0; lanes &= lanes - 1) {
+        const auto i = static_cast<std::uint8_t>(std::countr_zero(lanes));
+        out[near.lanes++] = {i, static_cast<std::uint8_t>(j), found[i]};
+      }
+    }
+  }
+  near.others = hn::GetLane(hn::MinOfLanes(d, others));
+  return near;
 }
 
 void boxes_to_point(const float* block, const float* point, float slack, float* out) {
@@ -128,15 +301,16 @@ void boxes_to_point(const float* block, const float* point, float slack, float* 
                                    hn::Mul(row(8 + 3 * i), delta[2])));
       gap[i] = hn::Sub(hn::Sub(along, row(3 + i)), all_slack);
     }
-    store(d,
-          hn::IfThenElse(hn::Lt(reach, hn::Set(d, 1e18F)), outside(d, gap[0], gap[1], gap[2]),
-                         hn::Set(d, -INFINITY)),
-          out + at);
+    const V gap_of_all = outside(d, gap[0], gap[1], gap[2]);
+    const V known = hn::IfThenElse(hn::Lt(reach, hn::Set(d, 1e18F)), gap_of_all, hn::Set(d, -INFINITY));
+    hn::StoreU(computed(known), d, out + at);
   }
 }
 
-void dops(const float* block, std::size_t directions, const OtherIntervals& other, float slack, float* out) {
+Near dops(const float* block, std::size_t directions, const OtherIntervals& other, float slack, float enough,
+          float* out) {
   const Tag d;
+  Near near{0, INFINITY};
   const std::size_t n = hn::Lanes(d);
   for (std::size_t at = 0; at < 8; at += n) {
     const auto gap_along = [&](std::size_t i) {
@@ -152,8 +326,9 @@ void dops(const float* block, std::size_t directions, const OtherIntervals& othe
     for (std::size_t i = 3; i < directions; ++i) {
       gap = hn::Max(gap, hn::Mul(gap_along(i), hn::Set(d, 1 / other.length[i])));
     }
-    store(d, gap, out + at);
+    store(gap, enough, at, out, near);
   }
+  return near;
 }
 
 }  // namespace
@@ -164,20 +339,33 @@ HWY_AFTER_NAMESPACE();
 namespace snug::kernels {
 
 HWY_EXPORT(boxes);
+HWY_EXPORT(box_pairs);
 HWY_EXPORT(boxes_to_point);
 HWY_EXPORT(dops);
 
-void obb_distances(const float* block, const OtherBox& other, float slack, float enough, float* out) {
-  HWY_DYNAMIC_DISPATCH(boxes)(block, other, slack, enough, out);
+Near obb_distances(const float* block, float reach, const OtherBox& other, float slack, float enough,
+                   float* out) {
+  reach += other.reach();
+  // A NaN may be lost in a maximum.
+  if (!(reach < 1e18F)) {
+    std::fill(out, out + 8, -INFINITY);
+    return {0xff, INFINITY};
+  }
+  return HWY_DYNAMIC_DISPATCH(boxes)(block, reach, other, slack, enough, out);
+}
+
+Near obb_pairs(const BoxBlock& block, const BoxBlock& other, const SeenBlock& seen, float slack, float enough,
+               LanePair* out) {
+  return HWY_DYNAMIC_DISPATCH(box_pairs)(block, other, seen, slack, enough, out);
 }
 
 void obb_distances(const float* block, const float point[3], float slack, float* out) {
   HWY_DYNAMIC_DISPATCH(boxes_to_point)(block, point, slack, out);
 }
 
-void dop_distances(const float* block, std::size_t directions, const OtherIntervals& other, float slack,
-                   float* out) {
-  HWY_DYNAMIC_DISPATCH(dops)(block, directions, other, slack, out);
+Near dop_distances(const float* block, std::size_t directions, const OtherIntervals& other, float slack,
+                   float enough, float* out) {
+  return HWY_DYNAMIC_DISPATCH(dops)(block, directions, other, slack, enough, out);
 }
 
 }  // namespace snug::kernels

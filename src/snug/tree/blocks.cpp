@@ -5,7 +5,6 @@
 
 #include <snug/base/contract.h>
 #include <snug/base/rounding.h>
-#include <snug/tree/block_kernels.h>
 
 namespace snug {
 namespace {
@@ -95,11 +94,31 @@ class Decomposition {
 }  // namespace
 
 View::View(Volume volume, const PlacedFrame& target, const PlacedFrame& source) : frame(target, source) {
-  if (volume == Volume::obb || !frame.comparable) return;
+  if (!frame.comparable) return;
+  if (volume == Volume::obb) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) seen.rows[i][j] = static_cast<float>(frame.rows[i][j]);
+    }
+    seen.scale = static_cast<float>(frame.scale);
+    for (std::size_t j = 0; j < 3; ++j) seen.direction[j] = seen.other_direction[j] = 0;
+    return;
+  }
   const Decomposition decomposition(volume);
   for (const std::uint8_t direction : directions_of(volume)) {
     const Vector3& d = all_directions[direction];
     sums.push_back(decomposition(d.x * frame.rows[0] + d.y * frame.rows[1] + d.z * frame.rows[2]));
+  }
+}
+
+void View::look_along(const Vector3& direction) {
+  if (!frame.comparable) return;
+  const double size = length(direction);
+  if (!(size > 0) || !std::isfinite(1 / size)) return;
+  const Vector3 n = ((1 - 0x1p-20) / size) * direction;
+  for (std::size_t j = 0; j < 3; ++j) {
+    seen.direction[j] = static_cast<float>(n[j]);
+    const Vector3 column{frame.rows[0][j], frame.rows[1][j], frame.rows[2][j]};
+    seen.other_direction[j] = static_cast<float>(dot(n, column));
   }
 }
 
@@ -145,6 +164,10 @@ std::uint32_t Blocks::add(std::span<const BoundingVolume> sets, std::span<const 
       for (std::size_t k = 0; k < 3; ++k) {
         rows[lanes * (3 + k) + l] = float_up(enlarged(box.half[k] + moved + 8 * single_roundoff * sum));
       }
+      float reach = 0;
+      for (std::size_t r = 0; r < 6; ++r) reach += std::fabs(rows[lanes * r + l]);
+      // A NaN stays.
+      if (!std::isnan(head.reach) && !(reach <= head.reach)) head.reach = reach;
       continue;
     }
     for (std::size_t i = 0; i < directions_.size(); ++i) {
@@ -155,6 +178,7 @@ std::uint32_t Blocks::add(std::span<const BoundingVolume> sets, std::span<const 
     }
   }
   // Lanes that are not there repeat the first one, so that they settle when it does.
+  std::fill(head.sizes.begin() + static_cast<std::ptrdiff_t>(sets.size()), head.sizes.end(), head.sizes[0]);
   for (std::size_t r = 0; r < stride_ / lanes; ++r) {
     std::fill(rows + lanes * r + sets.size(), rows + lanes * (r + 1), rows[lanes * r]);
   }
@@ -170,9 +194,9 @@ void Blocks::placed(Lane at, const View& view, PlacedVolume& out) const {
     out.centre = view.frame.apply(origin + Vector3{number(0), number(1), number(2)});
     const double inverse = 1 / view.frame.scale;
     for (std::size_t k = 0; k < 3; ++k) {
-      out.half[k] = static_cast<float>(view.frame.scale * number(3 + k));
+      out.box.half[k] = static_cast<float>(view.frame.scale * number(3 + k));
       const Vector3 axis = view.frame.turn({number(6 + 3 * k), number(7 + 3 * k), number(8 + 3 * k)});
-      for (std::size_t i = 0; i < 3; ++i) out.axes[k][i] = static_cast<float>(inverse * axis[i]);
+      for (std::size_t i = 0; i < 3; ++i) out.box.axes[k][i] = static_cast<float>(inverse * axis[i]);
     }
     return;
   }
@@ -191,18 +215,18 @@ void Blocks::placed(Lane at, const View& view, PlacedVolume& out) const {
   }
 }
 
-void Blocks::distances(std::uint32_t block, const PlacedVolume& other, double slack, float enough,
-                       Distances& out) const {
+Blocks::Near Blocks::distances(std::uint32_t block, const PlacedVolume& other, double slack, float enough,
+                               Distances& out) const {
+  // Of the lanes that are there.
+  const auto result = [&](kernels::Near near) {
+    return Near{near.lanes & ((1u << heads_[block].count) - 1), near.others};
+  };
   const Vector3 offset = other.centre - heads_[block].origin;
   if (volume_ == Volume::obb) {
-    kernels::OtherBox box;
-    for (std::size_t k = 0; k < 3; ++k) {
-      box.centre[k] = static_cast<float>(offset[k]);
-      box.half[k] = other.half[k];
-      for (std::size_t i = 0; i < 3; ++i) box.axes[k][i] = other.axes[k][i];
-    }
-    kernels::obb_distances(data(block), box, float_up(slack), enough, out.data());
-    return;
+    kernels::OtherBox box = other.box;
+    for (std::size_t k = 0; k < 3; ++k) box.centre[k] = static_cast<float>(offset[k]);
+    return result(
+        kernels::obb_distances(data(block), heads_[block].reach, box, float_up(slack), enough, out.data()));
   }
   kernels::OtherIntervals intervals;
   for (std::size_t i = 0; i < directions_.size(); ++i) {
@@ -211,7 +235,35 @@ void Blocks::distances(std::uint32_t block, const PlacedVolume& other, double sl
     intervals.upper[i] = float_up(other.upper[i] + from);
     intervals.length[i] = length_of(directions_[i]);
   }
-  kernels::dop_distances(data(block), directions_.size(), intervals, float_up(slack), out.data());
+  return result(kernels::dop_distances(data(block), directions_.size(), intervals, float_up(slack), enough,
+                                       out.data()));
+}
+
+float Blocks::distances(std::uint32_t block, const Blocks& others, std::uint32_t other, const View& view,
+                        float enough, Pairs& out) const {
+  if (volume_ == Volume::obb) {
+    kernels::SeenBlock seen = view.seen;
+    const Vector3 offset = view.frame.apply(others.heads_[other].origin) - heads_[block].origin;
+    for (std::size_t k = 0; k < 3; ++k) seen.offset[k] = static_cast<float>(offset[k]);
+    const Near near = kernels::obb_pairs(boxes(block), others.boxes(other), seen, float_up(view.frame.slack),
+                                         enough, out.pairs.data());
+    out.count = near.lanes;
+    return near.others;
+  }
+  out.count = 0;
+  float least = INFINITY;
+  for (std::uint32_t j = 0; j < others.count(other); ++j) {
+    PlacedVolume seen;
+    others.placed({other, j}, view, seen);
+    Distances found;
+    const Near near = distances(block, seen, view.frame.slack, enough, found);
+    least = std::min(least, near.others);
+    for (std::uint32_t i = 0; i < count(block); ++i) {
+      if ((near.lanes >> i & 1u) == 0) continue;
+      out.pairs[out.count++] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), found[i]};
+    }
+  }
+  return least;
 }
 
 void Blocks::distances(std::uint32_t block, const Point3& point, double slack, Distances& out) const {
@@ -226,7 +278,7 @@ void Blocks::distances(std::uint32_t block, const Point3& point, double slack, D
   other.centre = point;
   other.lower.fill(0);
   other.upper.fill(0);
-  distances(block, other, slack, INFINITY, out);
+  static_cast<void>(distances(block, other, slack, INFINITY, out));
 }
 
 }  // namespace snug

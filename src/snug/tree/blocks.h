@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <snug/tree/block_kernels.h>
 #include <snug/tree/frame.h>
 #include <snug/tree/volume.h>
 
@@ -25,16 +26,18 @@ struct View {
     std::array<double, 3> weight;
   };
   std::vector<Sum> sums;
+  kernels::SeenBlock seen;  // obb, but for its offset
 
   View() = default;
   View(Volume volume, const PlacedFrame& target, const PlacedFrame& source);
+  /// Gaps of pairs of blocks are looked for along this direction first, from the target's sets to the source's.
+  void look_along(const Vector3& direction);
 };
 
 /// A set as seen from another frame, ready to be compared with blocks there.
 struct PlacedVolume {
   Point3 centre;
-  std::array<float, 3> half;                        // obb
-  std::array<std::array<float, 3>, 3> axes;         // obb
+  kernels::OtherBox box;                            // obb, but for its centre
   std::array<double, max_directions> lower, upper;  // others, relative to the centre
 };
 
@@ -47,6 +50,7 @@ class Blocks {
  public:
   static constexpr std::size_t lanes = 8;
   using Distances = std::array<float, lanes>;
+  using Near = kernels::Near;
 
   explicit Blocks(Volume volume);
   [[nodiscard]] Volume volume() const { return volume_; }
@@ -72,11 +76,21 @@ class Blocks {
   /// gap shows, the more negative the deeper they overlap. In units of the frame.
   ///
   /// `enough`: wider gaps than this are not looked for where one is found.
+  /// Returns:   the lanes with at most `enough`, one bit each, and the least gap of the others; infinite if there are none.
   /// Guarantee: at most the exact distance where positive; `slack` is taken off. Where anything is not finite: minus
   ///            infinity.
   /// Source:    derivations/boxes.md; [Gottschalk96] for the axes.
-  void distances(std::uint32_t block, const PlacedVolume& other, double slack, float enough,
+  Near distances(std::uint32_t block, const PlacedVolume& other, double slack, float enough,
                  Distances& out) const;
+  /// The same of all sets of two blocks, the other one seen through `view`. `out`: the pairs with at most `enough`.
+  /// Returns:   the least gap of the others; infinite if there are none.
+  /// Requires:  view.frame.comparable.
+  struct Pairs {
+    std::array<kernels::LanePair, lanes * lanes> pairs;
+    std::size_t count = 0;
+  };
+  float distances(std::uint32_t block, const Blocks& others, std::uint32_t other, const View& view,
+                  float enough, Pairs& out) const;
   /// The same to a point.
   void distances(std::uint32_t block, const Point3& point, double slack, Distances& out) const;
 
@@ -86,7 +100,12 @@ class Blocks {
     std::array<std::uint32_t, lanes> names;
     std::array<float, lanes> sizes;
     std::uint32_t count;
+    float reach;  // obb: of the largest, see kernels
   };
+  [[nodiscard]] kernels::BoxBlock boxes(std::uint32_t block) const {
+    const Head& head = heads_[block];
+    return {data(block), head.sizes.data(), head.count, head.reach};
+  }
   [[nodiscard]] const float* data(std::uint32_t block) const { return data_.data() + block * stride_; }
 
   Volume volume_;

@@ -32,6 +32,7 @@ RelativeFrame::RelativeFrame(const PlacedFrame& target, const PlacedFrame& sourc
   slack = static_cast<double>(static_cast<float>(slack * (1 + 0x1p-22)));
   comparable = slack < 0x1p20;
   to_world = target.scale * (1 - 8 * defects);
+  from_world = (1 + 0x1p-20) / to_world;
 }
 
 }  // namespace snug

@@ -40,6 +40,7 @@ struct RelativeFrame {
   double scale = 1;        ///< of M: source.scale / target.scale
   double slack = 0;        ///< in units of the target; a number of single precision
   double to_world = 1;     ///< lower bound of the placed length of one unit of the target
+  double from_world = 1;   ///< a little more than its inverse
   bool comparable = true;  ///< false: the source is so much larger that single precision cannot hold it
 
   RelativeFrame() = default;

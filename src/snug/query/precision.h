@@ -1,0 +1,43 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace snug {
+
+/// When the bounds of a distance are near enough: upper - lower <= max(absolute, relative * upper).
+struct DistanceOptions {
+  double absolute = 0;               ///< >= 0, mesh units
+  double relative = 0;               ///< >= 0
+  std::uint64_t budget = 1'000'000;  ///< most pieces opened
+};
+
+/// Bounds of a distance while they are searched for, in a search's units, in which surfaces are about 2 large.
+class DistanceBounds {
+ public:
+  /// `absolute`, `noise`: bounds are not brought nearer to each other than this; `noise` where rounding hides what is left.
+  DistanceBounds(double absolute, double relative, double noise)
+      : absolute_(std::max(absolute, noise)), relative_(relative) {}
+
+  [[nodiscard]] double upper() const { return upper_; }
+  [[nodiscard]] double lower() const { return std::min(settled_, upper_); }
+  [[nodiscard]] double precision() const { return std::max(absolute_, relative_ * upper_); }
+  /// What is as far as this need not be looked at.
+  [[nodiscard]] double enough() const { return upper_ == INFINITY ? INFINITY : upper_ - precision(); }
+  /// The distance is at most this.
+  void found(double upper) { upper_ = std::min(upper_, upper); }
+  /// A part of the search is done with: it is no nearer than this.
+  void settle(double lower) { settled_ = std::min(settled_, lower); }
+
+ private:
+  double absolute_, relative_;
+  double upper_ = INFINITY, settled_ = INFINITY;
+};
+
+/// Are bounds, in mesh units, as near as was asked for?
+[[nodiscard]] inline bool near_enough(double lower, double upper, const DistanceOptions& options) {
+  return upper - lower <= std::max(options.absolute, options.relative * upper);
+}
+
+}  // namespace snug
