@@ -1,47 +1,83 @@
 #include <snug/patch/evaluate.h>
 
+#include <algorithm>
 #include <array>
-#include <cmath>
-#include <utility>
 
 #include <snug/base/contract.h>
 #include <snug/base/rounding.h>
 #include <snug/patch/descent.h>
+#include <snug/patch/monomials.h>
 
 namespace snug {
 namespace {
 
-constexpr std::size_t most_points = bezier_count(max_degree);
-using BezierPoints = std::array<Vector3, most_points>;
-
-// One polynomial of a piece.
-struct Polynomial {
-  std::size_t degree;
-  BezierPoints points;
-  double error;
-  double largest;
+// Barycentric coordinates on a piece, in its kind's order of corners. `off` bounds the sum of their errors.
+struct Barycentric {
+  std::array<double, 3> at;
+  double off;
 };
 
-Polynomial bezier_points(const Patch& patch, std::size_t part) {
-  const PolynomialForm& form = patch.kind->form();
-  Polynomial result;
-  result.degree = form.degree;
-  result.largest = 0;
-  const std::size_t count = bezier_count(form.degree);
-  for (std::size_t r = 0; r < count; ++r) {
-    result.points[r] = form.rows.apply<Vector3>(part * count + r, patch.points);
-    result.largest = std::max(result.largest, max_abs(result.points[r]));
-  }
-  result.error = form.rows.result_error(patch.largest, patch.error);
+// Drift bounds the errors of u and v; 1 - u - v is off by one roundoff more.
+Barycentric to_kind(const Patch& patch, TriangleParameter p, double drift) {
+  const std::array<double, 3> at{1 - p.u - p.v, p.u, p.v};
+  Barycentric result{{}, 4 * drift + unit_roundoff};
+  for (std::size_t corner = 0; corner < 3; ++corner) result.at[patch.to_kind(corner)] = at[corner];
   return result;
 }
 
-// De Casteljau on a triangle down to degree 1, whose three points give position and derivatives.
-std::array<Vector3, 3> reduce_to_plane(const Polynomial& polynomial, double u, double v) {
-  BezierPoints b = polynomial.points;
-  const double w = 1 - u - v;
-  std::size_t degree = polynomial.degree;
-  while (degree > 1) {
+// The part of form() that holds a parameter, and where it does: a triangle split at the middle m of its edge 02 has
+// w c0 + u c1 + v c2 = (w - v) c0 + u c1 + 2 v m = 2 w m + u c1 + (v - w) c2.
+struct InPart {
+  std::size_t part;
+  Barycentric p;
+};
+
+InPart to_part(const PolynomialForm& form, const Barycentric& p) {
+  if (form.parts == 1) return {0, p};
+  const auto [w, u, v] = p.at;
+  const double off = 3 * p.off + unit_roundoff;
+  if (v <= w) return {0, {{w - v, u, 2 * v}, off}};
+  return {1, {{2 * w, u, v - w}, off}};
+}
+
+// Limit point in a polynomial piece: first the weights of the control points, then their sum.
+LimitPoint polynomial_point(const Patch& piece, const Barycentric& parameter) {
+  const PolynomialForm& form = piece.kind->form();
+  const auto [part, p] = to_part(form, parameter);
+  const std::size_t count = bezier_count(form.degree), controls = piece.points.size();
+  std::array<double, bezier_count(max_degree)> powers;
+  const auto [w, u, v] = p.at;
+  form.degree == 4   ? monomials<4>(w, u, v, powers.data())
+  : form.degree == 6 ? monomials<6>(w, u, v, powers.data())
+                     : monomials<2>(w, u, v, powers.data());
+  const double* row = form.weights.data() + part * (form.weights.size() / form.parts);
+  Vector3 point;
+  for (std::size_t c = 0; c < controls; c += 4) {
+    std::array<double, 4> weights{};
+    for (std::size_t r = 0; r < count; ++r, row += 4) {
+      for (std::size_t a = 0; a < 4; ++a) weights[a] += powers[r] * row[a];
+    }
+    for (std::size_t a = 0; a < std::min<std::size_t>(4, controls - c); ++a) {
+      point = point + weights[a] * piece.points[c + a];
+    }
+  }
+  // derivations/rounding.md
+  const std::size_t roundings = form.degree + count + controls + 4;
+  const double off = gamma_bound(roundings) + static_cast<double>(form.degree) * p.off;
+  const double sum = form.rows.max_abs_sum(), row_error = form.rows.max_error();
+  const double error = (off * sum + row_error) * piece.largest + (sum + row_error) * piece.error;
+  return {point, enlarged(error) + 0x1p20 * underflow_error};
+}
+
+// Derivatives along the kind's u and v in a polynomial piece: de Casteljau on a triangle down to degree 1.
+std::array<Vector3, 2> polynomial_derivatives(const Patch& piece, const Barycentric& parameter) {
+  const PolynomialForm& form = piece.kind->form();
+  const auto [part, p] = to_part(form, parameter);
+  const auto [w, u, v] = p.at;
+  std::array<Vector3, bezier_count(max_degree)> b;
+  const std::size_t count = bezier_count(form.degree);
+  for (std::size_t r = 0; r < count; ++r) b[r] = form.rows.apply<Vector3>(part * count + r, piece.points);
+  for (std::size_t degree = form.degree; degree > 1; --degree) {
     std::size_t to = 0, row = 0;
     for (std::size_t j = 0; j < degree; ++j) {
       const std::size_t length = degree + 1 - j;
@@ -50,38 +86,16 @@ std::array<Vector3, 3> reduce_to_plane(const Polynomial& polynomial, double u, d
       }
       row += length;
     }
-    --degree;
   }
-  return {b[0], b[1], b[2]};
-}
-
-// The parameter in the kind's corner order. Turning needs w = 1 - u - v, which may round; `drift` bounds
-// that.
-struct KindParameter {
-  TriangleParameter at;
-  double drift;
-};
-
-KindParameter to_kind(const Patch& patch, TriangleParameter p) {
-  if (patch.first == 0) return {p, 0};
-  const double w = std::fmax(0.0, 1 - p.u - p.v);
-  // Kind corner c is patch corner c + first: (w, u, v) turned.
-  if (patch.first == 1) return {{p.v, w}, 4 * unit_roundoff};
-  return {{w, p.u}, 4 * unit_roundoff};
-}
-
-// The same in the half of a triangle that form() splits at the middle of its edge 02:
-// w c0 + u c1 + v c2 = (w - v) c0 + u c1 + 2 v m = 2 w m + u c1 + (v - w) c2.
-KindParameter to_part(const KindParameter& p, std::size_t& part) {
-  const double w = std::fmax(0.0, 1 - p.at.u - p.at.v);
-  part = p.at.v <= w ? 0 : 1;
-  const double drift = 4 * p.drift + 8 * unit_roundoff;
-  if (part == 0) return {{p.at.u, 2 * p.at.v}, drift};
-  return {{p.at.u, p.at.v - w}, drift};
+  const auto degree = static_cast<double>(form.degree);
+  const Vector3 along_u = degree * (b[1] - b[0]), along_v = degree * (b[2] - b[0]);
+  if (form.parts == 1) return {along_u, along_v};
+  if (part == 0) return {along_u, 2.0 * along_v};  // (u, 2 v)
+  return {along_u + along_v, 2.0 * along_v};       // (u, v - w), w = 1 - u - v:  (u, u + 2 v - 1)
 }
 
 struct Located {
-  Patch piece;  // polynomial, unless stopped
+  const Patch* piece;  // polynomial, unless stopped; stays until the thread's next search
   TriangleParameter at;
   double turned = 1;     // derivative of the piece's u along the face's u: plus or minus 2^level
   double drift = 0;      // upper bound of the distance of parameters that roundings have made, in the piece
@@ -90,16 +104,16 @@ struct Located {
 
 // Splits until the parameter lies in a polynomial piece.
 Located locate(const Patch& patch, TriangleParameter at) {
-  Located here{patch, at};
-  Patch child;
-  while (!here.piece.kind->polynomial()) {
-    if (here.piece.path.level() >= PiecePath::max_level) {
+  thread_local std::array<Patch, 2> pieces;  // for their memory
+  Located here{&patch, at};
+  for (std::size_t next = 0; !here.piece->kind->polynomial(); next = 1 - next) {
+    if (here.piece->path.level() >= PiecePath::max_level) {
       here.stopped = true;
       return here;
     }
     const Descent step = descend(here.at);
-    split(here.piece, step.child, child);
-    std::swap(here.piece, child);
+    split(*here.piece, step.child, pieces[next]);
+    here.piece = &pieces[next];
     here.at = step.at;
     here.turned *= step.child == 3 ? -2 : 2;
     here.drift = 2 * here.drift + (step.child == 3 ? unit_roundoff : 0);
@@ -107,41 +121,9 @@ Located locate(const Patch& patch, TriangleParameter at) {
   return here;
 }
 
-// Position and derivatives along the kind's u and v in a polynomial piece.
-struct Evaluated {
-  LimitPoint point;
-  std::array<Vector3, 2> derivatives;
-};
-
-Evaluated evaluate_polynomial(const Patch& piece, KindParameter p) {
-  const PolynomialForm& form = piece.kind->form();
-  std::size_t part = 0;
-  if (form.parts == 2) p = to_part(p, part);
-  const Polynomial polynomial = bezier_points(piece, part);
-  const double u = p.at.u, v = p.at.v, w = 1 - u - v;
-  const auto degree = static_cast<double>(form.degree);
-  const std::array<Vector3, 3> plane = reduce_to_plane(polynomial, u, v);
-  Evaluated result;
-  // Three roundings a level, each weight off by two more; a parameter off by d moves the point by at most
-  // degree * 2 largest * 2 d, the derivative being the degree times a difference of Bezier points.
-  const double error =
-      (gamma_bound(8 * form.degree) + 4 * degree * (p.drift + 2 * unit_roundoff)) * polynomial.largest +
-      polynomial.error + 64 * underflow_error;
-  result.point = {w * plane[0] + u * plane[1] + v * plane[2], enlarged(error)};
-  const Vector3 along_u = degree * (plane[1] - plane[0]), along_v = degree * (plane[2] - plane[0]);
-  if (form.parts == 1) {
-    result.derivatives = {along_u, along_v};
-  } else if (part == 0) {  // (u, 2 v)
-    result.derivatives = {along_u, 2.0 * along_v};
-  } else {  // (u, 1 - u - 2 w), w = 1 - u - v:  (u, u + 2 v - 1)
-    result.derivatives = {along_u + along_v, 2.0 * along_v};
-  }
-  return result;
-}
-
 LimitPoint stopped_point(const Located& here) {
-  LimitPoint corner = corner_point(here.piece, 0);
-  corner.error += net_size(here.piece);
+  LimitPoint corner = corner_point(*here.piece, 0);
+  corner.error += net_size(*here.piece);
   return corner;
 }
 
@@ -187,17 +169,9 @@ std::array<Vector3, 3> limit_corners(const Patch& patch) {
 LimitPoint limit_point(const Patch& patch, TriangleParameter parameter) {
   const TriangleParameter at = checked(parameter);
   if (const std::size_t corner = corner_at(at); corner < 3) return corner_point(patch, corner);
-  if (patch.kind->polynomial()) return evaluate_polynomial(patch, to_kind(patch, at)).point;
   const Located here = locate(patch, at);
   if (here.stopped) return stopped_point(here);
-  if (const std::size_t corner = corner_at(here.at); corner < 3) {
-    LimitPoint point = corner_point(here.piece, corner);
-    point.error += enlarged(16 * here.drift * here.piece.largest);
-    return point;
-  }
-  KindParameter p = to_kind(here.piece, here.at);
-  p.drift += here.drift;
-  return evaluate_polynomial(here.piece, p).point;
+  return polynomial_point(*here.piece, to_kind(*here.piece, here.at, here.drift));
 }
 
 LimitFrame limit_frame(const Patch& patch, TriangleParameter parameter) {
@@ -206,22 +180,22 @@ LimitFrame limit_frame(const Patch& patch, TriangleParameter parameter) {
       corner < 3 && !patch.kind->regular_corner(patch.to_kind(corner))) {
     return corner_frame(patch, corner);
   }
-  Located here = locate(patch, at);
+  const Located here = locate(patch, at);
+  const Patch& piece = *here.piece;
   if (here.stopped) {
     std::size_t corner = 0;
-    while (corner < 2 && here.piece.kind->regular_corner(here.piece.to_kind(corner))) ++corner;
-    LimitFrame frame = corner_frame(here.piece, corner);
+    while (corner < 2 && piece.kind->regular_corner(piece.to_kind(corner))) ++corner;
+    LimitFrame frame = corner_frame(piece, corner);
     frame.point = stopped_point(here);
     return frame;
   }
-  KindParameter p = to_kind(here.piece, here.at);
-  p.drift += here.drift;
-  const Evaluated evaluated = evaluate_polynomial(here.piece, p);
+  const Barycentric p = to_kind(piece, here.at, here.drift);
+  const std::array<Vector3, 2> derivatives = polynomial_derivatives(piece, p);
   LimitFrame frame;
-  frame.point = evaluated.point;
+  frame.point = polynomial_point(piece, p);
   // Derivatives along the kind's edges 01 and 02; those along the patch's are differences of these.
-  const std::array<Vector3, 3> towards{Vector3{}, evaluated.derivatives[0], evaluated.derivatives[1]};
-  const auto corner_at_plane = [&](std::size_t corner) { return towards[here.piece.to_kind(corner)]; };
+  const std::array<Vector3, 3> towards{Vector3{}, derivatives[0], derivatives[1]};
+  const auto corner_at_plane = [&](std::size_t corner) { return towards[piece.to_kind(corner)]; };
   frame.tangents = {here.turned * (corner_at_plane(1) - corner_at_plane(0)),
                     here.turned * (corner_at_plane(2) - corner_at_plane(0))};
   frame.differentiable = true;

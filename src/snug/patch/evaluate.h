@@ -29,7 +29,8 @@ struct LimitFrame {
 ///            doubles.
 /// Requires:  u >= 0, v >= 0, u + v <= 1 in doubles. Where the exact sum is above 1 all the same, the smaller
 ///            of the two is lowered to the far edge, and the point meant is the one there.
-/// Cost:      regular: 15 rows and de Casteljau; near an extraordinary corner one split a level, at most 60.
+/// Cost:      regular: a product of 15 monomials with a matrix of the kind, then with the control points, about 90 ns
+///            (Catmull-Clark: 28); near an extraordinary corner one split a level more, at most 60.
 [[nodiscard]] LimitPoint limit_point(const Patch& patch, TriangleParameter at);
 
 /// The same with tangents and normal, in double precision without a bound for these.

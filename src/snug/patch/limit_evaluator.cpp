@@ -7,33 +7,10 @@
 #include <snug/base/contract.h>
 #include <snug/base/rounding.h>
 #include <snug/patch/descent.h>
+#include <snug/patch/monomials.h>
 
 namespace snug {
 namespace {
-
-// degree! / (i! j! k!) in the order of bezier_index().
-template <std::size_t degree>
-constexpr std::array<double, bezier_count(degree)> make_multinomials() {
-  constexpr auto factorial = [](std::size_t n) {
-    double product = 1;
-    for (std::size_t i = 2; i <= n; ++i) product *= static_cast<double>(i);
-    return product;
-  };
-  std::array<double, bezier_count(degree)> result{};
-  for (std::size_t j = 0; j <= degree; ++j) {
-    for (std::size_t i = 0; i + j <= degree; ++i) {
-      result[bezier_index(degree, i, j)] =
-          factorial(degree) / (factorial(i) * factorial(j) * factorial(degree - i - j));
-    }
-  }
-  return result;
-}
-template <std::size_t degree>
-constexpr std::array<double, bezier_count(degree)> multinomials = make_multinomials<degree>();
-
-double multinomial(std::size_t degree, std::size_t place) {
-  return degree == 2 ? multinomials<2>[place] : degree == 4 ? multinomials<4>[place] : multinomials<6>[place];
-}
 
 // Where the kind counts the Bezier point that the patch counts as u^i v^j.
 std::size_t kind_index(const Patch& patch, std::size_t degree, std::size_t i, std::size_t j) {
@@ -43,20 +20,14 @@ std::size_t kind_index(const Patch& patch, std::size_t degree, std::size_t i, st
   return bezier_index(degree, kind_powers[1], kind_powers[2]);
 }
 
-// Sum of monomials times weights. Powers are products, the last factor last: as good as repeated ones.
 template <std::size_t degree>
 std::array<double, 4> sum_of(const std::array<double, 4>* weights, double u, double v) {
-  const double w = 1 - u - v;
-  std::array<double, degree + 1> us{1}, vs{1}, ws{1};
-  for (std::size_t k = 1; k <= degree; ++k)
-    us[k] = us[k - 1] * u, vs[k] = vs[k - 1] * v, ws[k] = ws[k - 1] * w;
+  std::array<double, bezier_count(degree)> powers;
+  monomials<degree>(1 - u - v, u, v, powers.data());
   std::array<double, 4> sum{};
-  std::size_t place = 0;
-  for (std::size_t j = 0; j <= degree; ++j) {
-    for (std::size_t i = 0; i + j <= degree; ++i, ++place) {
-      const double monomial = ws[degree - i - j] * us[i] * vs[j];
-      for (std::size_t a = 0; a < 4; ++a) sum[a] += monomial * weights[place][a];
-    }
+  for (const double power : powers) {
+    for (std::size_t a = 0; a < 4; ++a) sum[a] += power * (*weights)[a];
+    ++weights;
   }
   return sum;
 }

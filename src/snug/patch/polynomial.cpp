@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include <snug/base/rounding.h>
+#include <snug/patch/monomials.h>
 
 namespace snug {
 namespace {
@@ -181,7 +183,7 @@ Stencils tensor_rows(std::size_t d, const Lattice& lattice) {
   static constexpr int cubic[4][4] = {{1, 4, 1, 0}, {0, 4, 2, 0}, {0, 2, 4, 0}, {0, 1, 4, 1}};
   static constexpr int quadratic[3][3] = {{1, 1, 0}, {0, 2, 0}, {0, 1, 1}};
   const auto segment = [&](std::size_t i, std::size_t k) { return d == 3 ? cubic[i][k] : quadratic[i][k]; };
-  const std::int64_t scale = d == 3 ? 36 : 4;
+  const double scale = d == 3 ? 36 : 4;
   const std::size_t controls = lattice[0].size();
   // Coefficients of the monomials w^(2d-i-j) u^i v^j, a control point each.
   std::vector<std::vector<std::int64_t>> sums(bezier_count(2 * d), std::vector<std::int64_t>(controls, 0));
@@ -206,12 +208,12 @@ Stencils tensor_rows(std::size_t d, const Lattice& lattice) {
   Stencils out;
   for (std::size_t j = 0; j <= 2 * d; ++j) {
     for (std::size_t i = 0; i + j <= 2 * d; ++i) {
-      const std::int64_t multinomial =
-          factorial(2 * d) / (factorial(i) * factorial(j) * factorial(2 * d - i - j));
-      const auto& sum = sums[bezier_index(2 * d, i, j)];
+      const std::size_t place = bezier_index(2 * d, i, j);
+      const double divisor = scale * multinomial(2 * d, place);
+      const auto& sum = sums[place];
       for (std::size_t c = 0; c < controls; ++c) {
         if (sum[c] == 0) continue;
-        const double weight = static_cast<double>(sum[c]) / static_cast<double>(scale * multinomial);
+        const double weight = static_cast<double>(sum[c]) / divisor;
         out.add(static_cast<std::uint32_t>(c), weight, std::fabs(weight) * unit_roundoff);
       }
       out.end_row();
@@ -270,21 +272,36 @@ bool all_regular(const KindKey& key) {
                      [&](const CornerFan& fan) { return fan.regular(key.scheme); });
 }
 
+PolynomialForm form_of(const KindKey& key, std::size_t degree, std::size_t parts, Stencils rows) {
+  const std::size_t count = bezier_count(degree);
+  const std::size_t blocks = (neighbourhood(key).topology.vertex_count() + 3) / 4;
+  std::vector<double> weights(parts * blocks * count * 4);
+  for (std::size_t r = 0; r < parts * count; ++r) {
+    const std::size_t part = r / count, place = r % count;
+    const Stencils::Row row = rows.row(r);
+    for (std::size_t i = 0; i < row.sources.size(); ++i) {
+      const std::size_t block = part * blocks + row.sources[i] / 4;
+      weights[(block * count + place) * 4 + row.sources[i] % 4] = multinomial(degree, place) * row.weights[i];
+    }
+  }
+  return {degree, parts, std::move(rows), std::move(weights)};
+}
+
 }  // namespace
 
 std::optional<PolynomialForm> polynomial_form(const KindKey& key) {
   if (!key.plain() || key.polygon || !all_regular(key)) return {};
   switch (key.scheme) {
     case Scheme::loop:
-      return PolynomialForm{4, 1, loop_rows(key)};
+      return form_of(key, 4, 1, loop_rows(key));
     case Scheme::catmark:
-      return PolynomialForm{6, 1, tensor_rows(3, bicubic_lattice(key))};
+      return form_of(key, 6, 1, tensor_rows(3, bicubic_lattice(key)));
     case Scheme::doo_sabin:
-      return PolynomialForm{4, 1, tensor_rows(2, biquadratic_lattice())};
+      return form_of(key, 4, 1, tensor_rows(2, biquadratic_lattice()));
     case Scheme::midedge:
       break;
   }
-  return PolynomialForm{2, 2, midedge_rows()};
+  return form_of(key, 2, 2, midedge_rows());
 }
 
 }  // namespace snug
