@@ -68,7 +68,7 @@ ExitStatus status(Verdict verdict, bool exit_code) {
 ExitStatus run(const Options& options) {
   const Length tolerance = parse_length(options.tolerance, "--tolerance", true);
   const Length margin = parse_length(options.margin, "--margin", true);
-  PlacedPair pair(options, "collide");
+  PairArguments pair(options, "collide");
   CollideOptions wanted;
   wanted.tolerance = tolerance.in_mesh_units(pair.size());
   wanted.margin = margin.in_mesh_units(pair.size());

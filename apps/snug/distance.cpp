@@ -28,7 +28,7 @@ void write_answer(JsonWriter& json, const Distance& answer, const DistanceOption
 
 ExitStatus run(const Options& options) {
   const Length precision = parse_length(options.precision, "--precision", true);
-  PlacedPair pair(options, "distance");
+  PairArguments pair(options, "distance");
   DistanceOptions wanted;
   wanted.absolute = precision.in_mesh_units(pair.size());
   wanted.relative = options.relative;

@@ -43,7 +43,7 @@ void add_pair_options(CLI::App& app, PairOptions& options) {
   add_model_options(app, options);
 }
 
-PlacedPair::PlacedPair(const PairOptions& options, const std::string& command)
+PairArguments::PairArguments(const PairOptions& options, const std::string& command)
     : options_(options), model_options_(model_options(options, command)) {
   if (!options.place_a.empty()) place_a_ = parse_placement(options.place_a, "--place-a");
   if (!options.place_b.empty()) place_b_ = parse_placement(options.place_b, "--place-b");
@@ -53,14 +53,14 @@ PlacedPair::PlacedPair(const PairOptions& options, const std::string& command)
   surface_b_.emplace(load_surface(options.mesh_b, options, scheme(options.scheme_b), library));
 }
 
-void PlacedPair::prepare(const WorkMonitor& monitor) {
+void PairArguments::prepare(const WorkMonitor& monitor) {
   naming(options_.mesh_a, [&] { model_a_.emplace(*surface_a_, model_options_, monitor); });
   naming(options_.mesh_b, [&] { model_b_.emplace(*surface_b_, model_options_, monitor); });
   scratch_a_.emplace(*model_a_);
   scratch_b_.emplace(*model_b_);
 }
 
-void PlacedPair::write_heads(Report& report) const {
+void PairArguments::write_heads(Report& report) const {
   report.heads({options_.mesh_a, options_.mesh_b},
                {name_of(surface_a_->options().scheme), name_of(surface_b_->options().scheme)});
 }

@@ -26,10 +26,10 @@ struct PairOptions : ModelOptions {
 void add_pair_options(CLI::App& app, PairOptions& options);
 
 /// Two meshes, read and made ready.
-class PlacedPair {
+class PairArguments {
  public:
   /// Errors:    UsageError; InputError that names the mesh or the placement.
-  PlacedPair(const PairOptions& options, const std::string& command);
+  PairArguments(const PairOptions& options, const std::string& command);
 
   /// Makes the models.
   void prepare(const WorkMonitor& monitor);

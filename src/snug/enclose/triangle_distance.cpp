@@ -43,6 +43,12 @@ double supporting_gap(const Corners& a, const Corners& b, Vector3 w, double reac
 
 }  // namespace
 
+TriangleParameter clamped(Barycentric weights) {
+  const double b = std::clamp(weights.b, 0.0, 1.0);
+  const double c = std::clamp(weights.c, 0.0, 1.0 - b);
+  return {b, b + c > 1 ? 0 : c};
+}
+
 NearestTriangles nearest(const Triangle& first, const Triangle& second) {
   // Relative to one corner: triangles far from the coordinates' origin lose nothing. Each difference errs by
   // half a unit in its last place; the gap is lowered for it below.

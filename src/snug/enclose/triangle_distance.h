@@ -3,6 +3,7 @@
 #include <optional>
 
 #include <snug/enclose/triangle.h>
+#include <snug/patch/piece_path.h>
 
 namespace snug {
 
@@ -24,6 +25,9 @@ struct NearestTriangles {
 /// Source:    [Ericson05, sec. 5.1.9, 5.1.10]; differs: a supporting slab certifies the result; searched by
 ///            enclose/triangle_kernels.h.
 [[nodiscard]] NearestTriangles nearest(const Triangle& a, const Triangle& b);
+
+/// Weights that roundings may have left a little outside of the triangle, as a parameter inside.
+[[nodiscard]] TriangleParameter clamped(Barycentric weights);
 
 /// A point of each of two triangles.
 struct PairOfPoints {

@@ -115,10 +115,8 @@ class Query {
     double gap =
         rounded_down(near.certain_distance - enlarged(piece.offset.radius + spatial_error(point_error_)));
     if (near.certain_distance < bounds_.upper()) {
-      const double b = std::clamp(near.on_b.b, 0.0, 1.0);
-      double c = std::clamp(near.on_b.c, 0.0, 1.0 - b);
-      if (b + c > 1) c = 0;
-      const LimitPoint limit = limit_point(piece.patch, {b, c});
+      const TriangleParameter at = clamped(near.on_b);
+      const LimitPoint limit = limit_point(piece.patch, at);
       const Point3 point = piece.patch.origin + limit.relative;
       const double error = limit.error + unit_roundoff * max_abs(point - Point3{});
       const Vector3 between = point - to_;
@@ -129,7 +127,7 @@ class Query {
         bounds_.found(upper);
         point_ = point;
         error_ = error;
-        at_ = owner_parameter(surface_, piece.root, to_face(piece.patch.path, {b, c}));
+        at_ = owner_parameter(surface_, piece.root, to_face(piece.patch.path, at));
       }
     }
     // A plane between the point and the piece's hull, across the direction of the closest point so far.

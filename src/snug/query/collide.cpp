@@ -46,12 +46,12 @@ class Query {
         monitor_.checkpoint();
         if (!look_at(pair)) continue;
       }
-      const PairSearch::Opening opening = search_.opening(pair);
+      const PairSearch::Opening opening = search_.opening(pair, PairSearch::Clusters::singly);
       if (opening == PairSearch::Opening::none) {
         unresolved_ = true;
         continue;
       }
-      if (search_.exhausted(options_.budget)) {
+      if (!search_.may_open(pair, opening, options_.budget)) {
         exhausted_ = true;
         break;
       }
@@ -75,7 +75,8 @@ class Query {
     // To prove a crossing both must be flat.
     if (proving_ && attempts_ < most_attempts && radii <= smaller / 16) return true;
     // Smaller ones gain more from planes between them than from more splitting.
-    return radii <= smaller / 64 || search_.opening(pair) == PairSearch::Opening::none;
+    return radii <= smaller / 64 ||
+           search_.opening(pair, PairSearch::Clusters::singly) == PairSearch::Opening::none;
   }
 
   // Rules (a) and (b). False if the pair is done with.

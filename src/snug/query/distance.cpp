@@ -58,7 +58,8 @@ class Query {
         if (whole(pair)) {
           next.push_back(pair);
         } else {
-          static_cast<void>(search_.open(pair, search_.opening(pair), INFINITY, next));
+          static_cast<void>(
+              search_.open(pair, search_.opening(pair, PairSearch::Clusters::together), INFINITY, next));
         }
       }
       const auto end = next.begin() + static_cast<std::ptrdiff_t>(std::min(beam, next.size()));
@@ -80,9 +81,9 @@ class Query {
   // From two pieces on to smaller ones, until limit points there are as near as the surfaces come around them.
   void follow(NodePair pair) {
     std::vector<NodePair> children;
-    while (search_.radii(pair) > bounds_.precision() / 8 && !search_.exhausted(options_.budget)) {
-      const PairSearch::Opening opening = search_.opening(pair);
-      if (opening == PairSearch::Opening::none) break;
+    while (search_.radii(pair) > bounds_.precision() / 8) {
+      const PairSearch::Opening opening = search_.opening(pair, PairSearch::Clusters::together);
+      if (opening == PairSearch::Opening::none || !search_.may_open(pair, opening, options_.budget)) break;
       children.clear();
       static_cast<void>(search_.open(pair, opening, INFINITY, children));
       pair = *std::min_element(children.begin(), children.end(), nearer);
@@ -98,12 +99,12 @@ class Query {
       gap = std::max(gap, gap_of_pieces(pair));
       pair.gap = key(gap);
     }
-    const PairSearch::Opening opening = search_.opening(pair);
+    const PairSearch::Opening opening = search_.opening(pair, PairSearch::Clusters::together);
     if (opening == PairSearch::Opening::none || gap >= bounds_.enough()) {
       bounds_.settle(gap);
       return true;
     }
-    if (search_.exhausted(options_.budget)) return false;
+    if (!search_.may_open(pair, opening, options_.budget)) return false;
     const std::size_t before = heap_.size();
     bounds_.settle(static_cast<double>(search_.open(pair, opening, bounds_.enough(), heap_)));
     for (std::size_t at = before; at < heap_.size();) {

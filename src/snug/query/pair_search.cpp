@@ -31,19 +31,8 @@ PowerOfTwo joint_scale(const PlacedModel& a, const PlacedModel& b) {
 
 // Nodes are opened together where the larger one is at most so many times as large.
 constexpr float both_opened = 3;
+// And where they do not overlap by more than this part of the smaller one: else one of them is enough to find out where.
 constexpr float deep_overlap = 0.4F;
-
-// Barycentric weights as a parameter that limit_point accepts.
-TriangleParameter parameter(Barycentric p) {
-  const double b = std::clamp(p.b, 0.0, 1.0);
-  double c = std::clamp(p.c, 0.0, 1.0 - b);
-  if (b + c > 1) c = 0;
-  return {b, c};
-}
-
-}  // namespace
-
-namespace {
 
 // Distance of a ball to the box of a placed model, but for roundings; `between`: how far apart the middles of the balls
 // around both are.
@@ -152,15 +141,18 @@ NodePair PairSearch::roots() const {
   return pair;
 }
 
-PairSearch::Opening PairSearch::opening(const NodePair& pair) const {
+PairSearch::Opening PairSearch::opening(const NodePair& pair, Clusters clusters) const {
   const bool a = scratch_[0]->can_open(pair.nodes[0]), b = scratch_[1]->can_open(pair.nodes[1]);
   if (a != b) return a ? Opening::a : Opening::b;
   if (!a) return Opening::none;
-  const bool a_larger = pair.sizes[0] >= pair.sizes[1];
-  const float larger = pair.sizes[a_larger ? 0 : 1], smaller = pair.sizes[a_larger ? 1 : 0];
-  const bool deep = -pair.gap > deep_overlap * smaller && pair.gap > -INFINITY;
-  if (larger <= both_opened * smaller && !deep) return Opening::both;
-  return a_larger ? Opening::a : Opening::b;
+  const std::size_t larger = pair.sizes[1] > pair.sizes[0] ? 1 : 0;
+  const float smaller_size = pair.sizes[1 - larger];
+  const bool alike = pair.sizes[larger] <= both_opened * smaller_size;
+  const bool deep = pair.gap > -INFINITY && -pair.gap > deep_overlap * smaller_size;
+  const bool costly = clusters == Clusters::singly &&
+                      (scratch_[0]->is_cluster(pair.nodes[0]) || scratch_[1]->is_cluster(pair.nodes[1]));
+  if (alike && !deep && !costly) return Opening::both;
+  return larger == 0 ? Opening::a : Opening::b;
 }
 
 float PairSearch::open(const NodePair& pair, Opening opening, double most, std::vector<NodePair>& out) {
@@ -314,7 +306,7 @@ PairSearch::Witness PairSearch::witness(const Pieces& pieces) {
   const std::array<Barycentric, 2> at{pieces.near.on_a, pieces.near.on_b};
   for (std::size_t s = 0; s < 2; ++s) {
     const Patch& patch = scratch_[s]->pieces()[pieces.ids[s]].patch;
-    const LimitPoint limit = limit_point(patch, parameter(at[s]));
+    const LimitPoint limit = limit_point(patch, clamped(at[s]));
     const Point3 local = patch.origin + limit.relative;
     double error = limit.error + unit_roundoff * max_abs(local - Point3{});
     found.points[s] = placed(s, local, error);
@@ -333,7 +325,7 @@ bool PairSearch::certainly_cross(const Pieces& pieces) {
   for (std::size_t s = 0; s < 2; ++s) {
     const Crossed crossed(scratch_[s]->pieces()[pieces.ids[s]], scratch_[s]->pieces().heights(pieces.ids[s]));
     if (!crossed.possible()) continue;
-    if (crosses_near(scratch_[1 - s]->pieces(), pieces.ids[1 - s], parameter(at[1 - s]), crossed,
+    if (crosses_near(scratch_[1 - s]->pieces(), pieces.ids[1 - s], clamped(at[1 - s]), crossed,
                      view(s).frame)) {
       return true;
     }

@@ -57,8 +57,10 @@ class PairSearch {
   [[nodiscard]] bool pieces(const NodePair& pair) const { return pair.nodes[0].piece && pair.nodes[1].piece; }
   /// Which nodes of a pair are to be opened next: the larger one, or both if they are about as large.
   enum class Opening : std::uint8_t { none, a, b, both };
+  /// Are clusters, whose patches may have to be bounded first, opened together with other nodes?
+  enum class Clusters : std::uint8_t { singly, together };
   /// none: neither can be opened.
-  [[nodiscard]] Opening opening(const NodePair& pair) const;
+  [[nodiscard]] Opening opening(const NodePair& pair, Clusters clusters) const;
   /// What nodes open to, against each other: pairs with a gap of at most `most` are added to `out`.
   /// Returns:   the smallest gap of the others; infinite if there are none.
   /// Requires:  not none.
@@ -67,9 +69,11 @@ class PairSearch {
   /// Gaps are looked for along this direction first, from A to B: one that holds much of both apart.
   void look_along(const Vector3& direction);
 
-  /// Has a query opened as many pieces as it may, or as many as memory is to be taken for?
-  [[nodiscard]] bool exhausted(std::uint64_t budget) const {
-    return stats.splits >= budget || scratch_[0]->full() || scratch_[1]->full();
+  /// May a query that may open so many pieces open these nodes? Not if it has taken as much memory as it may, either.
+  [[nodiscard]] bool may_open(const NodePair& pair, Opening opening, std::uint64_t budget) const {
+    const std::uint64_t pieces = (opening != Opening::b && pair.nodes[0].piece ? 1u : 0u) +
+                                 (opening != Opening::a && pair.nodes[1].piece ? 1u : 0u);
+    return stats.splits + pieces <= budget && !scratch_[0]->full() && !scratch_[1]->full();
   }
 
   /// Two pieces, their base triangles as placed.

@@ -9,7 +9,7 @@
 #include <snug/base/error.h>
 #include <snug/base/rounding.h>
 #include <snug/surface/control_hull.h>
-#include <snug/surface/enclosed_hulls.h>
+#include <snug/surface/enclosed_pieces.h>
 
 namespace snug {
 namespace {
@@ -17,51 +17,19 @@ namespace {
 constexpr std::uint32_t none = UINT32_MAX;
 constexpr std::size_t most_bytes = std::size_t{256} << 20;
 
-// A piece: its offset triangle between its heights.
-class EnclosedPiece final : public Enclosed {
- public:
-  EnclosedPiece(const Piece& piece, const Heights& heights)
-      : base_(piece.offset.base),
-        radius_(piece.offset.radius),
-        heights_(heights),
-        normal_(unit_normal(base_)) {}
-  [[nodiscard]] Extent extent(const Vector3& direction) const override {
-    Extent all{INFINITY, -INFINITY};
-    double largest = 0;
-    for (const Point3& p : base_) {
-      const double height = dot(direction, p - Point3{});
-      all.lower = std::min(all.lower, height);
-      all.upper = std::max(all.upper, height);
-      largest = std::max(largest, max_abs(p - Point3{}));
-    }
-    const double error = enlarged(16 * unit_roundoff * largest) + 8 * underflow_error;
-    if (direction == normal_) {
-      const double from = dot(direction, base_[0] - Point3{});
-      return {from + heights_.lower - error, from + heights_.upper + error};
-    }
-    const double reach = enlarged(radius_ * length(direction));
-    return {all.lower - reach - error, all.upper + reach + error};
-  }
-  [[nodiscard]] std::span<const Point3> points() const override { return base_; }
-
- private:
-  Triangle base_;
-  double radius_;
-  Heights heights_;
-  Vector3 normal_;
-};
-
 BoundingVolume tight_volume(const Surface& surface, std::span<const PatchId> patches,
                             const QueryModelOptions& options) {
   Refinement refinement(surface, options.table);
   std::vector<const HullPoints*> hulls;
+  std::vector<OffsetTriangle> triangles;
   std::vector<Point3> spread;
   for (const PatchId p : patches) {
     const PieceId id = refinement.root(p);
-    hulls.push_back(&refinement.hull(id));
-    const Triangle& base = refinement[id].offset.base;
-    spread.insert(spread.end(), base.begin(), base.end());
+    triangles.push_back(refinement[id].offset);
+    if (!options.table) hulls.push_back(&refinement.hull(id));
+    spread.insert(spread.end(), triangles.back().base.begin(), triangles.back().base.end());
   }
+  if (options.table) return fit(options.volume, EnclosedTriangles(triangles, spread));
   return fit(options.volume, EnclosedHulls(hulls, spread));
 }
 
@@ -157,8 +125,8 @@ std::uint32_t QueryScratch::add_block(std::span<const PieceId> pieces) {
     if (blocks_.volume() == Volume::obb) {
       volumes[i].box = refinement_.box(pieces[i]);
     } else {
-      volumes[i] =
-          fit(blocks_.volume(), EnclosedPiece(refinement_[pieces[i]], refinement_.heights(pieces[i])));
+      const OffsetTriangle& offset = refinement_[pieces[i]].offset;
+      volumes[i] = fit(blocks_.volume(), EnclosedTriangles({&offset, 1}, offset.base));
     }
     names[i] = pieces[i].value();
     // Rounded to nearest, then up by more than that.

@@ -8,7 +8,7 @@
 #include <snug/base/rounding.h>
 #include <snug/enclose/table_triangle.h>
 #include <snug/patch/evaluate.h>
-#include <snug/surface/enclosed_hulls.h>
+#include <snug/surface/enclosed_pieces.h>
 
 namespace snug {
 
@@ -70,29 +70,6 @@ std::array<Vector3, 3> box_axes(const Triangle& base) {
   return {along, cross(normal, along), normal};
 }
 
-// What lies within a radius of a triangle.
-class EnclosedTriangle final : public Enclosed {
- public:
-  explicit EnclosedTriangle(const OffsetTriangle& offset) : offset_(offset) {}
-
-  [[nodiscard]] Extent extent(const Vector3& direction) const override {
-    Extent all{INFINITY, -INFINITY};
-    double largest = 0;
-    for (const Point3& p : offset_.base) {
-      const double height = dot(direction, p - Point3{});
-      all = {std::min(all.lower, height), std::max(all.upper, height)};
-      largest = std::max(largest, max_abs(p - Point3{}));
-    }
-    const double reach =
-        enlarged(offset_.radius * length(direction) + 16 * unit_roundoff * largest) + 8 * underflow_error;
-    return {all.lower - reach, all.upper + reach};
-  }
-  [[nodiscard]] std::span<const Point3> points() const override { return offset_.base; }
-
- private:
-  const OffsetTriangle& offset_;
-};
-
 }  // namespace
 
 void Refinement::add(PatchId root, Patch patch) {
@@ -106,7 +83,7 @@ void Refinement::add(PatchId root, Patch patch) {
   heights_.push_back(heights);
   const std::array<Vector3, 3> axes = box_axes(piece.offset.base);
   if (table_) {
-    boxes_.push_back(fit(axes, EnclosedTriangle(piece.offset)));
+    boxes_.push_back(fit(axes, EnclosedTriangles({&piece.offset, 1}, {})));
   } else {
     const HullPoints* const hull = &scratch_;
     boxes_.push_back(fit(axes, EnclosedHulls({&hull, 1}, {})));

@@ -84,18 +84,22 @@ HWY_INLINE void store(V gap, float enough, std::size_t at, float* out, Near& nea
                          hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(beyond, gap, hn::Set(d, INFINITY)))));
 }
 
-// Gaps of the lanes from `at` on.
-HWY_INLINE V gaps(const float* block, std::size_t at, const OtherBox& other, V all_slack, float enough) {
+// Gaps of the lanes from `at` on. `other`: a row of the other boxes, as in a block.
+template <class Row>
+HWY_INLINE V gaps(const float* block, std::size_t at, const Row& other, V all_slack, float enough) {
   const Tag d;
   const V zero = hn::Zero(d);
   const auto row = [&](std::size_t r) { return hn::LoadU(d, block + 8 * r + at); };
-  const auto number = [&](float x) { return hn::Set(d, x); };
+  const auto along_axis = [&](const V* v, std::size_t j) {
+    return sum3(hn::Mul(v[0], other(6 + 3 * j)), hn::Mul(v[1], other(7 + 3 * j)),
+                hn::Mul(v[2], other(8 + 3 * j)));
+  };
   V delta[3], half[3];
   V t[3], c[3][3];  // of the offset along the block's axes; cosines
   V own[3], others[3];
   for (std::size_t k = 0; k < 3; ++k) {
-    delta[k] = hn::Sub(number(other.centre[k]), row(k));
-    others[k] = number(other.half[k]);
+    delta[k] = hn::Sub(other(k), row(k));
+    others[k] = other(3 + k);
   }
   // An axis of the block at a time, so that all fits the registers.
   for (std::size_t i = 0; i < 3; ++i) {
@@ -104,9 +108,9 @@ HWY_INLINE V gaps(const float* block, std::size_t at, const OtherBox& other, V a
     t[i] = sum3(hn::Mul(axis[0], delta[0]), hn::Mul(axis[1], delta[1]), hn::Mul(axis[2], delta[2]));
     V far = half[i];
     for (std::size_t j = 0; j < 3; ++j) {
-      c[i][j] = dot3(d, axis, other.axes[j]);
+      c[i][j] = along_axis(axis, j);
       const V m = hn::Abs(c[i][j]);
-      far = hn::Add(far, hn::Mul(number(other.half[j]), m));
+      far = hn::Add(far, hn::Mul(other(3 + j), m));
       others[j] = hn::Add(others[j], hn::Mul(half[i], m));
     }
     own[i] = hn::Sub(hn::Sub(hn::Abs(t[i]), far), all_slack);
@@ -117,8 +121,8 @@ HWY_INLINE V gaps(const float* block, std::size_t at, const OtherBox& other, V a
   V taken =
       sum3(hn::Mul(half[0], hn::Abs(t[0])), hn::Mul(half[1], hn::Abs(t[1])), hn::Mul(half[2], hn::Abs(t[2])));
   for (std::size_t j = 0; j < 3; ++j) {
-    const V along = hn::Abs(dot3(d, delta, other.axes[j]));
-    taken = hn::Add(taken, hn::Mul(number(other.half[j]), along));
+    const V along = hn::Abs(along_axis(delta, j));
+    taken = hn::Add(taken, hn::Mul(other(3 + j), along));
     others[j] = hn::Sub(hn::Sub(along, others[j]), all_slack);
   }
   V gap = outside(own, others);
@@ -134,10 +138,9 @@ HWY_INLINE V gaps(const float* block, std::size_t at, const OtherBox& other, V a
       for (std::size_t j = 0; j < 3; ++j) {
         const std::size_t j1 = (j + 1) % 3, j2 = (j + 2) % 3;
         const V along = hn::Abs(hn::Sub(hn::Mul(t[i2], c[i1][j]), hn::Mul(t[i1], c[i2][j])));
-        const V far =
-            hn::Add(hn::Add(hn::Mul(half[i1], hn::Abs(c[i2][j])), hn::Mul(half[i2], hn::Abs(c[i1][j]))),
-                    hn::Add(hn::Mul(number(other.half[j1]), hn::Abs(c[i][j2])),
-                            hn::Mul(number(other.half[j2]), hn::Abs(c[i][j1]))));
+        const V far = hn::Add(
+            hn::Add(hn::Mul(half[i1], hn::Abs(c[i2][j])), hn::Mul(half[i2], hn::Abs(c[i1][j]))),
+            hn::Add(hn::Mul(other(3 + j1), hn::Abs(c[i][j2])), hn::Mul(other(3 + j2), hn::Abs(c[i][j1]))));
         across = hn::Max(across, hn::Sub(along, far));
       }
     }
@@ -152,35 +155,56 @@ Near boxes(const float* block, float reach, const OtherBox& other, float slack, 
   const Tag d;
   Near near{0, INFINITY};
   const V all_slack = hn::Set(d, roundings * reach + slack);
+  const auto row = [&](std::size_t r) {
+    return hn::Set(d, r < 3 ? other.centre[r] : r < 6 ? other.half[r - 3] : other.axes[(r - 6) / 3][r % 3]);
+  };
   for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
-    store(gaps(block, at, other, all_slack, enough), enough, at, out, near);
+    store(gaps(block, at, row, all_slack, enough), enough, at, out, near);
   }
   return near;
 }
 
 // Centres of a block's boxes in the coordinates of another block.
-HWY_INLINE void place_centres(const BoxBlock& block, const SeenBlock& seen, float (*out)[8]) {
+HWY_INLINE void place_centres(const BoxBlock& block, const SeenBlock& seen, float* out) {
   const Tag d;
   for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
     const auto row = [&](std::size_t r) { return hn::LoadU(d, block.rows + 8 * r + at); };
     const V x[3] = {row(0), row(1), row(2)};
     for (std::size_t i = 0; i < 3; ++i) {
-      hn::Store(hn::Add(dot3(d, x, seen.rows[i]), hn::Set(d, seen.offset[i])), d, out[i] + at);
+      hn::Store(hn::Add(dot3(d, x, seen.rows[i]), hn::Set(d, seen.offset[i])), d, out + 8 * i + at);
     }
   }
 }
 
-// Their axes.
-HWY_INLINE void place_axes(const BoxBlock& block, const SeenBlock& seen, float (*out)[8]) {
+// Their half sizes and axes, in the rows after these.
+HWY_INLINE void place_axes(const BoxBlock& block, const SeenBlock& seen, float* out) {
   const Tag d;
-  const V inverse = hn::Set(d, 1 / seen.scale);
+  const V scale = hn::Set(d, seen.scale), inverse = hn::Set(d, 1 / seen.scale);
   for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
     const auto row = [&](std::size_t r) { return hn::LoadU(d, block.rows + 8 * r + at); };
-    for (std::size_t k = 0; k < 9; k += 3) {
-      const V x[3] = {row(6 + k), row(7 + k), row(8 + k)};
+    for (std::size_t k = 3; k < 6; ++k) hn::Store(hn::Mul(scale, row(k)), d, out + 8 * k + at);
+    for (std::size_t k = 6; k < obb_rows; k += 3) {
+      const V x[3] = {row(k), row(k + 1), row(k + 2)};
       for (std::size_t i = 0; i < 3; ++i) {
-        hn::Store(hn::Mul(inverse, dot3(d, x, seen.rows[i])), d, out[k + i] + at);
+        hn::Store(hn::Mul(inverse, dot3(d, x, seen.rows[i])), d, out + 8 * (k + i) + at);
       }
+    }
+  }
+}
+
+// Eight lanes of a block's rows in another order.
+HWY_INLINE void pick(const float* rows, const std::int32_t* lanes, float* out) {
+  const Tag d;
+  const hn::RebindToSigned<Tag> di;
+  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+    const auto places = hn::LoadU(di, lanes + at);
+    for (std::size_t r = 0; r < obb_rows; ++r) {
+#if HWY_MAX_BYTES >= 32
+      const V row = hn::TableLookupLanes(hn::LoadU(d, rows + 8 * r), hn::IndicesFromVec(d, places));
+#else
+      const V row = hn::GatherIndex(d, rows + 8 * r, places);
+#endif
+      hn::Store(row, d, out + 8 * r + at);
     }
   }
 }
@@ -200,7 +224,6 @@ HWY_INLINE V half_extents(const BoxBlock& block, std::size_t at, const float* di
 Near box_pairs(const BoxBlock& block, const BoxBlock& other, const SeenBlock& seen, float slack, float enough,
                LanePair* out) {
   const Tag d;
-  const std::size_t n = hn::Lanes(d);
   const float offset = std::fabs(seen.offset[0]) + std::fabs(seen.offset[1]) + std::fabs(seen.offset[2]);
   const float reach = block.reach + 2 * seen.scale * other.reach + offset;
   Near near{0, INFINITY};
@@ -214,70 +237,83 @@ Near box_pairs(const BoxBlock& block, const BoxBlock& other, const SeenBlock& se
   }
   const V all_slack = hn::Set(d, pair_roundings * reach + slack), most = hn::Set(d, enough);
   V others = hn::Set(d, INFINITY);
-  HWY_ALIGN float centres[3][8];
-  HWY_ALIGN float balls[8]
-                       [8];  // gaps of the boxes' balls and along the direction, by lane of the other block
-  place_centres(other, seen, centres);
-  // Where boxes end along the direction: from the block's origin, those of the block above, the others below.
+  HWY_ALIGN float placed[obb_rows * 8];
+  place_centres(other, seen, placed);
+  // Where boxes end along the direction: those of the block above, the others below.
   HWY_ALIGN float ends[8];
   HWY_ALIGN float other_ends[8];
-  for (std::size_t at = 0; at < 8; at += n) {
-    const V centre[3] = {hn::LoadU(d, block.rows + at), hn::LoadU(d, block.rows + 8 + at),
-                         hn::LoadU(d, block.rows + 16 + at)};
-    const V other_centre[3] = {hn::Load(d, centres[0] + at), hn::Load(d, centres[1] + at),
-                               hn::Load(d, centres[2] + at)};
-    hn::Store(hn::Add(dot3(d, centre, seen.direction), half_extents(block, at, seen.direction)), d,
-              ends + at);
-    hn::Store(hn::Sub(dot3(d, other_centre, seen.direction), half_extents(other, at, seen.other_direction)),
-              d, other_ends + at);
+  const float* const n = seen.direction;
+  const bool directed = n[0] != 0 || n[1] != 0 || n[2] != 0;
+  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+    V end = hn::Set(d, INFINITY), other_end = hn::Zero(d);
+    if (directed) {
+      const auto row = [&](std::size_t r) { return hn::LoadU(d, block.rows + 8 * r + at); };
+      const auto other_row = [&](std::size_t r) { return hn::Load(d, placed + 8 * r + at); };
+      const V centre[3] = {row(0), row(1), row(2)};
+      const V other_centre[3] = {other_row(0), other_row(1), other_row(2)};
+      end = hn::Add(dot3(d, centre, n), half_extents(block, at, n));
+      other_end = hn::Sub(dot3(d, other_centre, n), half_extents(other, at, seen.other_direction));
+    }
+    hn::Store(end, d, ends + at);
+    hn::Store(other_end, d, other_ends + at);
   }
-  std::uint32_t left = 0;  // lanes of the other block with balls that are not apart
+  // Balls and the direction first.
+  std::int32_t own_lanes[64 + 8], other_lanes[64 + 8];  // of pairs that are left; eight at a time are read
+  std::size_t left = 0;
+  HWY_ALIGN float first_gaps[8][8];  // by lane of the other block
   for (std::uint32_t j = 0; j < other.count; ++j) {
     const V radius = hn::Set(d, 0.5F * seen.scale * other.sizes[j]);
-    for (std::size_t at = 0; at < 8; at += n) {
+    std::uint32_t near_lanes = 0;
+    for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
       V between_sq = hn::Zero(d);
       for (std::size_t k = 0; k < 3; ++k) {
-        const V delta = hn::Sub(hn::Set(d, centres[k][j]), hn::LoadU(d, block.rows + 8 * k + at));
+        const V delta = hn::Sub(hn::Set(d, placed[8 * k + j]), hn::LoadU(d, block.rows + 8 * k + at));
         between_sq = hn::Add(between_sq, hn::Mul(delta, delta));
       }
       const V radii = hn::Add(hn::Mul(hn::Set(d, 0.5F), hn::LoadU(d, block.sizes + at)), radius);
       const V along = hn::Sub(hn::Set(d, other_ends[j]), hn::Load(d, ends + at));
       const V gap = hn::Sub(hn::Max(hn::Sub(hn::Sqrt(between_sq), radii), along), all_slack);
       const auto apart = hn::Gt(gap, most);
-      hn::Store(gap, d, balls[j] + at);
+      hn::Store(gap, d, first_gaps[j] + at);
       others = hn::Min(others, hn::IfThenElse(apart, gap, hn::Set(d, INFINITY)));
-      left |= static_cast<std::uint32_t>(!hn::AllTrue(d, apart)) << j;
+      near_lanes |= bits(hn::Not(apart)) << at;
+    }
+    for (near_lanes &= (1u << block.count) - 1; near_lanes != 0; near_lanes &= near_lanes - 1) {
+      own_lanes[left] = std::countr_zero(near_lanes);
+      other_lanes[left++] = static_cast<std::int32_t>(j);
     }
   }
-  if (left != 0) {
-    HWY_ALIGN float axes[9][8];
-    place_axes(other, seen, axes);
-    for (; left != 0; left &= left - 1) {
-      const auto j = static_cast<std::uint32_t>(std::countr_zero(left));
-      OtherBox box;
-      for (std::size_t k = 0; k < 3; ++k) {
-        box.centre[k] = centres[k][j];
-        box.half[k] = seen.scale * other.rows[8 * (3 + k) + j];
-        for (std::size_t i = 0; i < 3; ++i) box.axes[k][i] = axes[3 * k + i][j];
-      }
-      HWY_ALIGN float found[8];
-      std::uint32_t lanes = 0;
-      for (std::size_t at = 0; at < 8; at += n) {
-        const V ball = hn::Load(d, balls[j] + at);
-        const auto apart = hn::Gt(ball, most);
-        if (hn::AllTrue(d, apart)) continue;
-        // How deep balls overlap says little.
-        const V own = computed(gaps(block.rows, at, box, all_slack, enough));
-        const V gap = hn::IfThenElse(hn::Gt(ball, hn::Zero(d)), hn::Max(own, ball), own);
-        const auto settled = hn::Or(apart, hn::Gt(gap, most));
-        hn::Store(gap, d, found + at);
-        others = hn::Min(others, hn::IfThenElse(settled, gap, hn::Set(d, INFINITY)));
-        lanes |= bits(hn::Not(settled)) << at;
-      }
-      for (lanes &= (1u << block.count) - 1; lanes != 0; lanes &= lanes - 1) {
-        const auto i = static_cast<std::uint8_t>(std::countr_zero(lanes));
-        out[near.lanes++] = {i, static_cast<std::uint8_t>(j), found[i]};
-      }
+  if (left != 0) place_axes(other, seen, placed);
+  // Then axes, eight pairs at a time.
+  for (std::size_t begin = 0; begin < left; begin += 8) {
+    const std::size_t count = std::min<std::size_t>(8, left - begin);
+    for (std::size_t l = count; l < 8; ++l) {
+      own_lanes[begin + l] = own_lanes[begin];
+      other_lanes[begin + l] = other_lanes[begin];
+    }
+    HWY_ALIGN float own_rows[obb_rows * 8];
+    HWY_ALIGN float other_rows[obb_rows * 8];
+    HWY_ALIGN float found[8];
+    pick(block.rows, own_lanes + begin, own_rows);
+    pick(placed, other_lanes + begin, other_rows);
+    for (std::size_t l = 0; l < 8; ++l) {
+      found[l] = first_gaps[other_lanes[begin + l]][own_lanes[begin + l]];
+    }
+    std::uint32_t near_lanes = 0;
+    for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+      const auto row = [&](std::size_t r) { return hn::Load(d, other_rows + 8 * r + at); };
+      // How deep balls overlap says little.
+      const V first = hn::Load(d, found + at), own = computed(gaps(own_rows, at, row, all_slack, enough));
+      const V gap = hn::IfThenElse(hn::Gt(first, hn::Zero(d)), hn::Max(own, first), own);
+      const auto apart = hn::Gt(gap, most);
+      hn::Store(gap, d, found + at);
+      others = hn::Min(others, hn::IfThenElse(apart, gap, hn::Set(d, INFINITY)));
+      near_lanes |= bits(hn::Not(apart)) << at;
+    }
+    for (near_lanes &= (1u << count) - 1; near_lanes != 0; near_lanes &= near_lanes - 1) {
+      const auto l = static_cast<std::size_t>(std::countr_zero(near_lanes));
+      out[near.lanes++] = {static_cast<std::uint8_t>(own_lanes[begin + l]),
+                           static_cast<std::uint8_t>(other_lanes[begin + l]), found[l]};
     }
   }
   near.others = hn::GetLane(hn::MinOfLanes(d, others));

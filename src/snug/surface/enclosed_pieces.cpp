@@ -1,4 +1,4 @@
-#include <snug/surface/enclosed_hulls.h>
+#include <snug/surface/enclosed_pieces.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +18,24 @@ Enclosed::Extent EnclosedHulls::extent(const Vector3& direction) const {
         8 * underflow_error;
     all = {std::min(all.lower, from + slab.lower - error), std::max(all.upper, from + slab.upper + error)};
     if (std::isnan(slab.lower) || std::isnan(slab.upper)) return {-INFINITY, INFINITY};
+  }
+  return all;
+}
+
+Enclosed::Extent EnclosedTriangles::extent(const Vector3& direction) const {
+  Extent all{INFINITY, -INFINITY};
+  for (const OffsetTriangle& triangle : triangles_) {
+    Extent one{INFINITY, -INFINITY};
+    double largest = 0;
+    for (const Point3& p : triangle.base) {
+      const double height = dot(direction, p - Point3{});
+      one = {std::min(one.lower, height), std::max(one.upper, height)};
+      largest = std::max(largest, max_abs(p - Point3{}));
+    }
+    const double reach =
+        enlarged(triangle.radius * length(direction) + 16 * unit_roundoff * largest) + 8 * underflow_error;
+    if (!std::isfinite(reach)) return {-INFINITY, INFINITY};
+    all = {std::min(all.lower, one.lower - reach), std::max(all.upper, one.upper + reach)};
   }
   return all;
 }

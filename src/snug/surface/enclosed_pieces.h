@@ -1,9 +1,9 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include <snug/enclose/hull_points.h>
+#include <snug/enclose/offset_triangle.h>
 #include <snug/tree/volume.h>
 
 namespace snug {
@@ -21,6 +21,21 @@ class EnclosedHulls final : public Enclosed {
 
  private:
   std::span<const HullPoints* const> hulls_;
+  std::span<const Point3> spread_;
+};
+
+/// The same, known by their offset triangles.
+class EnclosedTriangles final : public Enclosed {
+ public:
+  /// Requires:  both outlive this.
+  EnclosedTriangles(std::span<const OffsetTriangle> triangles, std::span<const Point3> spread)
+      : triangles_(triangles), spread_(spread) {}
+
+  [[nodiscard]] Extent extent(const Vector3& direction) const override;
+  [[nodiscard]] std::span<const Point3> points() const override { return spread_; }
+
+ private:
+  std::span<const OffsetTriangle> triangles_;
   std::span<const Point3> spread_;
 };
 
