@@ -44,6 +44,20 @@ void HullPoints::reserve(std::size_t count) {
   z_.resize(count);
 }
 
+void HullPoints::assign(const HullPoints& other) {
+  origin = other.origin;
+  error = other.error;
+  largest = other.largest;
+  tips = other.tips;
+  count_ = other.count_;
+  const auto copy = [&](const std::vector<double>& from) {
+    return std::vector<double>(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(count_));
+  };
+  x_ = copy(other.x_);
+  y_ = copy(other.y_);
+  z_ = copy(other.z_);
+}
+
 void HullPoints::resize(std::size_t count) {
   reserve(count);
   count_ = count;

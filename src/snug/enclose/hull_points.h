@@ -26,6 +26,8 @@ class HullPoints {
 
   /// The first points stay; new ones may be anything. Keeps its memory.
   void resize(std::size_t count);
+  /// A copy with no more memory than it needs.
+  void assign(const HullPoints& other);
   /// Memory for so many.
   void reserve(std::size_t count);
   void set(std::size_t i, const Vector3& p) {

@@ -59,18 +59,18 @@ void Topology::connect(std::size_t vertex_count) {
 }
 
 void Topology::find_fans() {
-  std::vector<std::uint32_t> corners(vertex_count(), 0);
+  face_counts_.assign(vertex_count(), 0);
   for (HalfEdge h = 0; h < half_edge_count(); ++h) {
     HalfEdge& best = leaving_[from(h).index()];
     if (best == no_half_edge || twins_[h] == no_half_edge) best = h;
-    ++corners[from(h).index()];
+    ++face_counts_[from(h).index()];
   }
   std::vector<VertexId> pinched;
   for (std::size_t i = 0; i < vertex_count(); ++i) {
-    if (corners[i] == 0) continue;
+    if (face_counts_[i] == 0) continue;
     std::uint32_t met = 0;
     walk_fan(leaving_[i], [&](HalfEdge) { ++met; });
-    if (met != corners[i]) pinched.emplace_back(i);
+    if (met != face_counts_[i]) pinched.emplace_back(i);
   }
   if (pinched.empty()) return;
   std::vector<bool> is_pinched(vertex_count(), false), met(half_edge_count(), false);
@@ -132,12 +132,6 @@ bool Topology::is_manifold(VertexId v) const {
     });
   });
   return manifold;
-}
-
-std::size_t Topology::face_valence(VertexId v) const {
-  std::size_t count = 0;
-  for_each_fan(v, [&](HalfEdge start) { walk_fan(start, [&](HalfEdge) { ++count; }); });
-  return count;
 }
 
 }  // namespace snug

@@ -90,7 +90,7 @@ class Topology {
     return more_halves_.empty() && more_fans_.empty() && odd_.empty();
   }
   /// Number of faces around a vertex.
-  [[nodiscard]] std::size_t face_valence(VertexId v) const;
+  [[nodiscard]] std::size_t face_valence(VertexId v) const { return face_counts_[v.index()]; }
 
   /// Calls visit(h) for the half-edges that leave v in the fan of `start`, counter-clockwise from there.
   template <class Visit>
@@ -121,6 +121,7 @@ class Topology {
   std::vector<EdgeId> edges_;
   std::vector<HalfEdge> edge_half_;
   std::vector<HalfEdge> leaving_;
+  std::vector<std::uint32_t> face_counts_;  // of vertices
   // All in rising order.
   std::vector<std::pair<EdgeId, HalfEdge>> more_halves_;
   std::vector<std::pair<VertexId, HalfEdge>> more_fans_;

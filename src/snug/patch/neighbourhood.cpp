@@ -22,6 +22,14 @@ CornerView view_of(const Topology& topology, const Sharpness& sharpness, HalfEdg
   const bool loop = options.scheme == Scheme::loop;
   CornerView view{{0, 0, false, false, false}, true};
   CornerFan& fan = view.fan;
+  // Most vertices are of this sort: no need to walk around them.
+  if (loop && sharpness.none() && topology.is_manifold() && !topology.on_boundary(topology.from(corner))) {
+    const std::size_t faces = topology.face_valence(topology.from(corner));
+    fan.after = static_cast<std::uint16_t>(faces - 1);
+    fan.closed = true;
+    view.plain = faces >= 3;
+    return view;
+  }
   const auto is_standard = [&](HalfEdge h) { return loop || topology.face(topology.face_of(h)).size() == 4; };
   bool cutting = false;
   const VertexId v = topology.from(corner);

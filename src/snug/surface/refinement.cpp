@@ -105,8 +105,10 @@ const HullPoints& Refinement::hull(PieceId id) {
   if (id.index() >= hull_places_.size()) hull_places_.resize(pieces_.size(), 0);
   std::uint32_t& place = hull_places_[id.index()];
   if (place == 0) {
+    // Scratch memory is several times as large as what it is needed for.
+    close_points(surface_.library(), pieces_[id.index()].patch, scratch_);
     HullPoints& points = hulls_.emplace_back();
-    close_points(surface_.library(), pieces_[id.index()].patch, points);
+    points.assign(scratch_);
     place = static_cast<std::uint32_t>(hulls_.size());
     bytes_ += sizeof(HullPoints) + 3 * points.size() * sizeof(double);
   }

@@ -20,8 +20,9 @@ std::size_t child_capacity(std::size_t clusters) {
 
 namespace {
 
+// A centre in single precision: enough to sort by.
 struct Item {
-  Point3 centre;
+  std::array<float, 3> centre;
   std::uint32_t number;
 };
 
@@ -40,14 +41,19 @@ void sort_items(std::span<Item> items, int threads) {
         continue;
       }
       const std::size_t middle = (parts + 1) / 2 * part;
-      Box3 box;
-      for (const Item& item : range) box.add(item.centre);
-      const Vector3 sides = box.upper - box.lower;
+      std::array<float, 3> lower = range[0].centre, upper = lower, sides;
+      for (const Item& item : range) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          lower[k] = std::min(lower[k], item.centre[k]);
+          upper[k] = std::max(upper[k], item.centre[k]);
+        }
+      }
+      for (std::size_t k = 0; k < 3; ++k) sides[k] = upper[k] - lower[k];
       const std::size_t axis =
-          sides.x >= sides.y ? (sides.x >= sides.z ? 0u : 2u) : (sides.y >= sides.z ? 1u : 2u);
+          sides[0] >= sides[1] ? (sides[0] >= sides[2] ? 0u : 2u) : (sides[1] >= sides[2] ? 1u : 2u);
       std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(middle), range.end(),
                        [axis](const Item& a, const Item& b) {
-                         const double x = a.centre[axis], y = b.centre[axis];
+                         const float x = a.centre[axis], y = b.centre[axis];
                          return x != y ? x < y : a.number < b.number;
                        });
       finer.push_back(range.first(middle));
@@ -69,8 +75,11 @@ BoundingTree::BoundingTree(Volume volume, std::span<const Point3> centres, int t
   SNUG_EXPECT(!centres.empty() && centres.size() < cluster_bit);
   std::vector<Item> items;
   items.reserve(centres.size());
-  for (std::size_t i = 0; i < centres.size(); ++i)
-    items.push_back({centres[i], static_cast<std::uint32_t>(i)});
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    const Point3& p = centres[i];
+    items.push_back({{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
+                     static_cast<std::uint32_t>(i)});
+  }
   sort_items(items, threads);
   items_.reserve(items.size());
   for (const Item& item : items) items_.push_back(item.number);
