@@ -46,7 +46,7 @@ class Query {
         monitor_.checkpoint();
         if (!look_at(pair)) continue;
       }
-      const PairSearch::Opening opening = search_.opening(pair, PairSearch::Clusters::singly);
+      const PairSearch::Opening opening = search_.opening(pair, PairSearch::Bounding::sparing);
       if (opening == PairSearch::Opening::none) {
         unresolved_ = true;
         continue;
@@ -76,7 +76,7 @@ class Query {
     if (proving_ && attempts_ < most_attempts && radii <= smaller / 16) return true;
     // Smaller ones gain more from planes between them than from more splitting.
     return radii <= smaller / 64 ||
-           search_.opening(pair, PairSearch::Clusters::singly) == PairSearch::Opening::none;
+           search_.opening(pair, PairSearch::Bounding::sparing) == PairSearch::Opening::none;
   }
 
   // Rules (a) and (b). False if the pair is done with.

@@ -59,7 +59,7 @@ class Query {
           next.push_back(pair);
         } else {
           static_cast<void>(
-              search_.open(pair, search_.opening(pair, PairSearch::Clusters::together), INFINITY, next));
+              search_.open(pair, search_.opening(pair, PairSearch::Bounding::eager), INFINITY, next));
         }
       }
       const auto end = next.begin() + static_cast<std::ptrdiff_t>(std::min(beam, next.size()));
@@ -82,7 +82,7 @@ class Query {
   void follow(NodePair pair) {
     std::vector<NodePair> children;
     while (search_.radii(pair) > bounds_.precision() / 8) {
-      const PairSearch::Opening opening = search_.opening(pair, PairSearch::Clusters::together);
+      const PairSearch::Opening opening = search_.opening(pair, PairSearch::Bounding::eager);
       if (opening == PairSearch::Opening::none || !search_.may_open(pair, opening, options_.budget)) break;
       children.clear();
       static_cast<void>(search_.open(pair, opening, INFINITY, children));
@@ -99,7 +99,7 @@ class Query {
       gap = std::max(gap, gap_of_pieces(pair));
       pair.gap = key(gap);
     }
-    const PairSearch::Opening opening = search_.opening(pair, PairSearch::Clusters::together);
+    const PairSearch::Opening opening = search_.opening(pair, PairSearch::Bounding::eager);
     if (opening == PairSearch::Opening::none || gap >= bounds_.enough()) {
       bounds_.settle(gap);
       return true;

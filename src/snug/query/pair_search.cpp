@@ -141,7 +141,7 @@ NodePair PairSearch::roots() const {
   return pair;
 }
 
-PairSearch::Opening PairSearch::opening(const NodePair& pair, Clusters clusters) const {
+PairSearch::Opening PairSearch::opening(const NodePair& pair, Bounding bounding) const {
   const bool a = scratch_[0]->can_open(pair.nodes[0]), b = scratch_[1]->can_open(pair.nodes[1]);
   if (a != b) return a ? Opening::a : Opening::b;
   if (!a) return Opening::none;
@@ -149,8 +149,8 @@ PairSearch::Opening PairSearch::opening(const NodePair& pair, Clusters clusters)
   const float smaller_size = pair.sizes[1 - larger];
   const bool alike = pair.sizes[larger] <= both_opened * smaller_size;
   const bool deep = pair.gap > -INFINITY && -pair.gap > deep_overlap * smaller_size;
-  const bool costly = clusters == Clusters::singly &&
-                      (scratch_[0]->is_cluster(pair.nodes[0]) || scratch_[1]->is_cluster(pair.nodes[1]));
+  const bool costly = bounding == Bounding::sparing && (scratch_[0]->opens_to_pieces(pair.nodes[0]) ||
+                                                        scratch_[1]->opens_to_pieces(pair.nodes[1]));
   if (alike && !deep && !costly) return Opening::both;
   return larger == 0 ? Opening::a : Opening::b;
 }

@@ -57,10 +57,10 @@ class PairSearch {
   [[nodiscard]] bool pieces(const NodePair& pair) const { return pair.nodes[0].piece && pair.nodes[1].piece; }
   /// Which nodes of a pair are to be opened next: the larger one, or both if they are about as large.
   enum class Opening : std::uint8_t { none, a, b, both };
-  /// Are clusters, whose patches may have to be bounded first, opened together with other nodes?
-  enum class Clusters : std::uint8_t { singly, together };
+  /// sparing: a node that opens to pieces, which may have to be bounded first, is opened alone.
+  enum class Bounding : std::uint8_t { sparing, eager };
   /// none: neither can be opened.
-  [[nodiscard]] Opening opening(const NodePair& pair, Clusters clusters) const;
+  [[nodiscard]] Opening opening(const NodePair& pair, Bounding bounding) const;
   /// What nodes open to, against each other: pairs with a gap of at most `most` are added to `out`.
   /// Returns:   the smallest gap of the others; infinite if there are none.
   /// Requires:  not none.

@@ -86,9 +86,9 @@ class QueryScratch {
   [[nodiscard]] bool can_open(Node node) const {
     return !node.piece || (lanes_[node.block].can_split >> node.of_block & 1u) != 0;
   }
-  /// Does a node of the tree open to pieces, which may have to be made?
-  [[nodiscard]] bool is_cluster(Node node) const {
-    return !node.piece && (model_->tree().blocks().name(node.lane()) & BoundingTree::cluster_bit) != 0;
+  /// Does a node open to pieces, which may have to be made?
+  [[nodiscard]] bool opens_to_pieces(Node node) const {
+    return node.piece || (model_->tree().blocks().name(node.lane()) & BoundingTree::cluster_bit) != 0;
   }
   /// Upper bound of the radius of a piece's offset triangle.
   [[nodiscard]] float radius(Node node) const { return lanes_[node.block].radii[node.of_block]; }
