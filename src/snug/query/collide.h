@@ -47,7 +47,7 @@ struct Collision {
 ///            earlier queries.
 /// Requires:  rigid placements (require_rigid); tolerance and margin >= 0; models with the same sort of volume.
 /// Errors:    InputError if a result does not fit a double, or with `solid` if a surface is not closed; Interrupted.
-/// Cost:      some 50 ns for surfaces far apart, microseconds in contact (bench/results/collide.txt).
+/// Cost:      some 100 ns for surfaces far apart, microseconds in contact (bench/results/collide.txt).
 /// Source:    [Wu05, sec. 5.1]; differs: the printed pair test is not sound, see derivations/leaf_rule.md.
 [[nodiscard]] Collision collide(const PlacedModel& a, const PlacedModel& b, const CollideOptions& options,
                                 const WorkMonitor& monitor = {});

@@ -27,7 +27,7 @@ struct Distance {
 ///            the input alone, not on threads or earlier queries.
 /// Requires:  rigid placements (require_rigid); models with the same sort of volume.
 /// Errors:    InputError if a result does not fit a double; Interrupted.
-/// Cost:      tens of microseconds at 0.1 % of the size (bench/results/distance.txt).
+/// Cost:      some 200 microseconds at 0.1 % of the size (bench/results/distance.txt).
 [[nodiscard]] Distance distance(const PlacedModel& a, const PlacedModel& b, const DistanceOptions& options,
                                 const WorkMonitor& monitor = {});
 
