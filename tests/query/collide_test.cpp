@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 #include <snug/base/error.h>
+#include <snug/patch/evaluate.h>
+#include <snug/query/closest.h>
 #include <snug/query/distance.h>
 #include <testing/patches.h>
 #include <testing/placements.h>
@@ -88,6 +90,18 @@ TEST(collide, is_undecided_when_the_budget_ends) {
   EXPECT_EQ(answer.verdict, Verdict::undecided);
   EXPECT_EQ(answer.lower, 0);
   EXPECT_LE(answer.stats.splits, 3u);
+}
+
+TEST(closest, ends_at_rounding_where_the_point_lies_on_the_surface) {
+  const Surface surface = testing::surface_of(oracle::meshes::icosahedron());
+  const QueryModel model(surface);
+  QueryScratch scratch(model);
+  const Patch patch = surface.patch(PatchId(3));
+  const Point3 on = surface.scale().inverse().apply(patch.origin + limit_point(patch, {0.3, 0.4}).relative);
+  // No distance is small beside none: precision relative to it alone is never reached.
+  const ClosestPoint found = closest_point(scratch, on, {0, 1e-3});
+  EXPECT_LE(found.upper, 1e-13);
+  EXPECT_LT(scratch.pieces().size(), 1000u);
 }
 
 TEST(collide, works_at_the_ends_of_the_doubles) {

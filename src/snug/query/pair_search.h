@@ -120,10 +120,8 @@ class PairSearch {
 
  private:
   [[nodiscard]] Point3 placed(std::size_t side, const Point3& p, double& error) const;
-
-  std::array<QueryScratch*, 2> scratch_;
-  /// An upper bound of w . x in a piece of A, a lower bound in one of B, placed.
-  double end(std::size_t side, PieceId piece, const Vector3& w);
+  // An upper bound of w . x in a piece of A, a lower bound in one of B, placed.
+  [[nodiscard]] double end(std::size_t side, PieceId piece, const Vector3& w);
   float open_both(const NodePair& pair, double most, std::vector<NodePair>& out);
   float open_one(const NodePair& pair, std::size_t side, double most, std::vector<NodePair>& out);
   Blocks::Near find_gaps(std::size_t side, std::uint32_t block, const Blocks& blocks, Node other, double most,
@@ -136,6 +134,7 @@ class PairSearch {
     return view_[side];
   }
 
+  std::array<QueryScratch*, 2> scratch_;
   PowerOfTwo world_;
   std::array<PlacedFrame, 2> frame_;
   std::array<float, 2> scale_;

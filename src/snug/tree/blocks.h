@@ -26,7 +26,7 @@ struct View {
     std::array<double, 3> weight;
   };
   std::vector<Sum> sums;
-  kernels::SeenBlock seen;  // obb, but for its offset
+  kernels::SeenBlock seen{};  // obb, but for its offset
 
   View() = default;
   View(Volume volume, const PlacedFrame& target, const PlacedFrame& source);
