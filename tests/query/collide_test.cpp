@@ -97,11 +97,12 @@ TEST(closest, ends_at_rounding_where_the_point_lies_on_the_surface) {
   const QueryModel model(surface);
   QueryScratch scratch(model);
   const Patch patch = surface.patch(PatchId(3));
-  const Point3 on = surface.scale().inverse().apply(patch.origin + limit_point(patch, {0.3, 0.4}).relative);
-  // No distance is small beside none: precision relative to it alone is never reached.
+  const Point3 on = surface.scale().inverse().apply(patch.origin + limit_point(patch, {0, 0}).relative);
+  // No distance is small beside none: precision relative to it alone is never reached, and pieces around a vertex
+  // could be split for long.
   const ClosestPoint found = closest_point(scratch, on, {0, 1e-3});
   EXPECT_LE(found.upper, 1e-13);
-  EXPECT_LT(scratch.pieces().size(), 1000u);
+  EXPECT_LT(scratch.pieces().size(), 250u);
 }
 
 TEST(collide, works_at_the_ends_of_the_doubles) {
