@@ -5,10 +5,13 @@
 
 namespace snug {
 
-/// Which side of the border bad data failed at; the command turns it into its exit status.
+/// What a caller or a file got wrong; the command turns it into its exit status.
 enum class InputProblem {
-  unreadable,  ///< a file that cannot be opened, read, written or parsed
-  refused,     ///< a mesh, placement or option that is well formed but outside what snug answers
+  unreadable,       ///< a file that cannot be opened, read, written or parsed
+  refused,          ///< a mesh that is well formed but outside what snug answers
+  pose,             ///< a motion that is not rigid, mirrors, or is not finite
+  value,            ///< a point, tolerance, parameter or option that is not finite or out of its range
+  unrepresentable,  ///< a result that does not fit a double
 };
 
 /// Bad data from outside. The message is one line that names the file, line, face or vertex, and the next
@@ -22,6 +25,9 @@ class InputError : public std::runtime_error {
  private:
   InputProblem problem_;
 };
+
+/// Throws InputError (value), naming `what`, unless x is finite and >= 0.
+void require_length(double x, const std::string& what);
 
 /// Thrown at the next check point after an interruption was asked for (base/progress.h).
 class Interrupted : public std::runtime_error {

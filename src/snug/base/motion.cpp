@@ -21,18 +21,18 @@ double rigidity_defect(const Placement& placement) {
 void require_rigid(const Placement& placement) {
   for (std::size_t i = 0; i < 12; ++i) {
     if (!std::isfinite(placement.m[i])) {
-      throw InputError(InputProblem::refused,
+      throw InputError(InputProblem::pose,
                        "placement: number " + std::to_string(i + 1) + " of 12 is not finite");
     }
   }
   const double defect = rigidity_defect(placement);
   if (!(defect <= rigidity_tolerance)) {
     throw InputError(
-        InputProblem::refused,
+        InputProblem::pose,
         "placement: its 3x3 part is off from a rotation by more than 1e-9; give an orthonormal one");
   }
   if (dot(cross(placement.row(0), placement.row(1)), placement.row(2)) < 0) {
-    throw InputError(InputProblem::refused, "placement: it mirrors; give a rotation with determinant 1");
+    throw InputError(InputProblem::pose, "placement: it mirrors; give a rotation with determinant 1");
   }
 }
 

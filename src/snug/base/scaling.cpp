@@ -12,7 +12,7 @@ PowerOfTwo PowerOfTwo::normalising(double largest) {
 
 double require_representable(double x) {
   if (!std::isfinite(x)) {
-    throw InputError(InputProblem::refused,
+    throw InputError(InputProblem::unrepresentable,
                      "a result no longer fits a double: the coordinates are too large; scale the mesh down");
   }
   return x;

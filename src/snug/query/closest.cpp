@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cmath>
 
-#include <snug/base/contract.h>
 #include <snug/base/error.h>
 #include <snug/base/parallel.h>
 #include <snug/base/rounding.h>
@@ -50,7 +49,7 @@ class Query {
         bounds_(surface_.scale().apply(options.absolute) * (1 - 2 * unit_roundoff) - underflow_error,
                 options.relative, noise * (2 + max_abs(to_ - Point3{}))) {
     if (!(max_abs(to_ - Point3{}) <= farthest_point)) {
-      throw InputError(InputProblem::refused,
+      throw InputError(InputProblem::value,
                        "closest: a point is more than 10^12 sizes of the surface away; give nearer points");
     }
     // Scaling a point to units of the surface loses something only where these are far from its own.
@@ -176,9 +175,10 @@ class Query {
 
 ClosestPoint closest_point(QueryScratch& scratch, const Point3& to, const ClosestOptions& options,
                            const WorkMonitor& monitor) {
-  SNUG_EXPECT(is_finite(to));
-  SNUG_EXPECT(options.absolute >= 0 && std::isfinite(options.absolute));
-  SNUG_EXPECT(options.relative >= 0 && std::isfinite(options.relative));
+  if (!is_finite(to)) {
+    throw InputError(InputProblem::value, "closest: a coordinate of the point is not finite; give three numbers");
+  }
+  require_precision(options);
   return Query(scratch, to, options, monitor).run();
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include <snug/base/contract.h>
 #include <snug/base/rounding.h>
 #include <snug/query/containment.h>
 #include <snug/surface/unscale.h>
@@ -163,8 +162,8 @@ const char* name_of(Verdict verdict) {
 
 Collision collide(const PlacedModel& a, const PlacedModel& b, const CollideOptions& options,
                   const WorkMonitor& monitor) {
-  SNUG_EXPECT(options.tolerance >= 0 && std::isfinite(options.tolerance));
-  SNUG_EXPECT(options.margin >= 0 && std::isfinite(options.margin));
+  require_length(options.tolerance, "collide: the tolerance");
+  require_length(options.margin, "collide: the margin");
   const std::array<double, 2> defects = rigidity_defects(a, b);
   if (const double gap = outer_gap(a, b); gap > options.margin) {
     return {.verdict = Verdict::separated, .lower = gap, .upper = {}, .witness = {}, .stats = {}};

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include <snug/base/contract.h>
 #include <snug/base/rounding.h>
 #include <snug/surface/unscale.h>
 
@@ -195,8 +194,7 @@ class Query {
 
 Distance distance(const PlacedModel& a, const PlacedModel& b, const DistanceOptions& options,
                   const WorkMonitor& monitor) {
-  SNUG_EXPECT(options.absolute >= 0 && std::isfinite(options.absolute));
-  SNUG_EXPECT(options.relative >= 0 && std::isfinite(options.relative));
+  require_precision(options);
   return Query(a, b, options, monitor).run();
 }
 

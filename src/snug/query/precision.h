@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include <snug/base/error.h>
+
 namespace snug {
 
 /// When the bounds of a distance are near enough: upper - lower <= max(absolute, relative * upper).
@@ -12,6 +14,12 @@ struct DistanceOptions {
   double relative = 0;               ///< >= 0
   std::uint64_t budget = 1'000'000;  ///< most pieces opened
 };
+
+/// Throws InputError (value) unless both precisions are finite and >= 0.
+inline void require_precision(const DistanceOptions& options) {
+  require_length(options.absolute, "the absolute precision");
+  require_length(options.relative, "the relative precision");
+}
 
 /// Bounds of a distance while they are searched for, in a search's units, in which surfaces are about 2 large.
 class DistanceBounds {
