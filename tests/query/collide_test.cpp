@@ -4,9 +4,12 @@
 #include <snug/base/error.h>
 #include <snug/patch/evaluate.h>
 #include <snug/query/closest.h>
+#include <snug/query/containment.h>
 #include <snug/query/distance.h>
+#include <snug/query/solid.h>
 #include <testing/patches.h>
 #include <testing/placements.h>
+#include <testing/tagged.h>
 
 namespace snug {
 namespace {
@@ -165,11 +168,42 @@ TEST(collide, takes_closed_surfaces_for_solids_if_asked) {
   CollideOptions options;
   EXPECT_EQ(nested.ask({}, options).verdict, Verdict::separated);
   options.solid = true;
-  EXPECT_EQ(nested.ask({}, options).verdict, Verdict::intersecting);
-  EXPECT_GT(nested.ask({}, options).lower, 0);
+  const Collision held = nested.ask({}, options);
+  EXPECT_EQ(held.verdict, Verdict::intersecting);
+  EXPECT_EQ(held.inner, std::optional<std::size_t>(1));
+  EXPECT_EQ(held.lower, 0);
+  EXPECT_EQ(held.upper, 0);
+  ASSERT_TRUE(held.witness);
+  EXPECT_EQ((*held.witness)[0], (*held.witness)[1]);
   EXPECT_EQ(nested.ask(moved(0, 3, 0), options).verdict, Verdict::separated);
   Pair half(oracle::meshes::icosahedron(), oracle::meshes::grid(2, 2));
+  // However far away.
   EXPECT_THROW(static_cast<void>(half.ask(moved(0, 0, 1.2), options)), InputError);
+  EXPECT_THROW(static_cast<void>(half.ask(moved(0, 0, 1e9), options)), InputError);
+}
+
+// Where the first split of a polygon meets a quad, the triangle over the middle of their edge belongs to the cycle whose
+// winding number is taken: a ray that leaves through it counts it.
+TEST(collide, edges_between_quads_and_polygons_are_closed) {
+  for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
+    oracle::TaggedMesh shape = oracle::meshes::prism(3);
+    if (scheme != Scheme::catmark) shape.polygons = oracle::meshes::pyramid(4).polygons;
+    if (scheme != Scheme::catmark) shape.points = oracle::meshes::pyramid(4).points;
+    const Surface surface(testing::control_mesh(shape), {scheme}, std::make_shared<BoundLibrary>());
+    const QueryModel model(surface);
+    QueryScratch scratch(model);
+    ASSERT_FALSE(model.solid().fillers().empty()) << name_of(scheme);
+    const PowerOfTwo back = surface.scale().inverse();
+    for (const Solid::Filler& filler : model.solid().fillers()) {
+      const auto& [a, b, m] = filler.corners;
+      // Between the chord and the curve, and beyond the curve.
+      const Point3 chord = a + 0.5 * (b - a);
+      const Vector3 out = m - chord;
+      EXPECT_EQ(contains(scratch, back.apply(chord - 0.5 * out)), std::optional<bool>(true));
+      EXPECT_EQ(contains(scratch, back.apply(chord + 0.3 * out)), std::optional<bool>(true));
+      EXPECT_EQ(contains(scratch, back.apply(m + 2 * out)), std::optional<bool>(false));
+    }
+  }
 }
 
 TEST(collide, answers_the_same_with_every_sort_of_volume) {

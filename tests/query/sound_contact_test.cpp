@@ -8,7 +8,7 @@
 // undecided.
 
 #include <snug/query/collide.h>
-#include <snug/query/containment.h>
+#include <snug/query/winding.h>
 
 #include <gtest/gtest.h>
 #include <testing/contact_trials.h>

@@ -86,6 +86,7 @@ QueryModelOptions random_options(Dice& dice) {
                                 Volume::dop14, Volume::dop18, Volume::dop26};
   options.volume = volumes[dice.below(7)];
   if (dice.one_in(6)) options.table = dice.one_in(2) ? TableLayout::ngon : TableLayout::characteristic;
+  options.tight = dice.one_in(3);
   return options;
 }
 
@@ -797,7 +798,8 @@ std::string describe(const Trial& trial) {
   text += std::string("; ") + name_of(options.volume) +
           (!options.table                        ? ""
            : *options.table == TableLayout::ngon ? ", n-gon tables"
-                                                 : ", characteristic tables");
+                                                 : ", characteristic tables") +
+          (options.tight ? ", tight" : "");
   if (const char* folder = std::getenv("SNUG_DUMP")) {
     for (std::size_t side = 0; side < 2; ++side) {
       std::ofstream file(std::string(folder) + (side == 0 ? "/a.obj" : "/b.obj"));

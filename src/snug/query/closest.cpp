@@ -176,7 +176,8 @@ class Query {
 ClosestPoint closest_point(QueryScratch& scratch, const Point3& to, const ClosestOptions& options,
                            const WorkMonitor& monitor) {
   if (!is_finite(to)) {
-    throw InputError(InputProblem::value, "closest: a coordinate of the point is not finite; give three numbers");
+    throw InputError(InputProblem::value,
+                     "closest: a coordinate of the point is not finite; give three numbers");
   }
   require_precision(options);
   return Query(scratch, to, options, monitor).run();

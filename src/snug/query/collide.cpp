@@ -160,17 +160,46 @@ const char* name_of(Verdict verdict) {
   return "";
 }
 
+namespace {
+
+// What the answer about two closed surfaces is for the solids that they bound. A point of one surface in the other solid is
+// a common point of both solids, whatever is known of the surfaces.
+Collision as_solids(const PlacedModel& a, const PlacedModel& b, Collision answer,
+                    const WorkMonitor& monitor) {
+  const Nesting found = nesting(a, b, monitor);
+  if (found.inner) {
+    answer.verdict = Verdict::intersecting;
+    answer.inner = found.inner;
+    answer.lower = 0;
+    answer.upper = 0;
+    answer.witness = {found.point, found.point};
+    answer.witness_error = found.error;
+  } else if (answer.verdict == Verdict::separated && !found.certain) {
+    answer.verdict = Verdict::undecided;
+    answer.lower = 0;
+  }
+  return answer;
+}
+
+}  // namespace
+
 Collision collide(const PlacedModel& a, const PlacedModel& b, const CollideOptions& options,
                   const WorkMonitor& monitor) {
   require_length(options.tolerance, "collide: the tolerance");
   require_length(options.margin, "collide: the margin");
+  if (options.solid) {
+    static_cast<void>(a.model.solid());
+    static_cast<void>(b.model.solid());
+  }
   const std::array<double, 2> defects = rigidity_defects(a, b);
   if (const double gap = outer_gap(a, b); gap > options.margin) {
-    return {.verdict = Verdict::separated, .lower = gap, .upper = {}, .witness = {}, .stats = {}};
+    return {
+        .verdict = Verdict::separated, .lower = gap, .upper = {}, .witness = {}, .inner = {}, .stats = {}};
   }
   Collision answer = Query(a, b, defects, options, monitor).run();
-  if (options.solid && answer.verdict == Verdict::separated) answer = as_solids(a, b, answer, monitor);
-  return answer;
+  const bool proved = answer.verdict == Verdict::intersecting ||
+                      (answer.verdict == Verdict::within && !options.prove_contact);
+  return options.solid && !proved ? as_solids(a, b, answer, monitor) : answer;
 }
 
 }  // namespace snug

@@ -21,7 +21,7 @@ struct CollideOptions {
   double margin = 0;                 ///< >= 0, mesh units
   std::uint64_t budget = 1'000'000;  ///< most pieces opened
   bool prove_contact = false;        ///< where surfaces are within, try to prove that they intersect
-  bool solid = false;                ///< closed surfaces are solids: one inside of the other intersects it
+  bool solid = false;                ///< closed surfaces bound solids: one inside of the other intersects it
 };
 
 /// Answer to "do these surfaces touch?", in mesh units and world coordinates.
@@ -32,6 +32,9 @@ struct Collision {
   std::optional<std::array<Point3, 2>> witness;  ///< two points as near as were found, on A and on B
   /// Upper bound, a coordinate, of how far a witness is from the limit point it stands for.
   double witness_error = 0;
+  /// With `solid`: 0 where a component of A lies in the solid of B, 1 the other way round. Both witnesses are then one and the
+  /// same point of the inner surface.
+  std::optional<std::size_t> inner;
   QueryStats stats;
 };
 
@@ -42,11 +45,12 @@ struct Collision {
 /// near enough, or a proof that one crosses the other; (c) else its larger piece is split, below half the tolerance too.
 ///
 /// Guarantee: `separated` means distance > margin, `within` distance <= margin + tolerance, `intersecting` distance = 0 (or
-///            solids that overlap), all in exact arithmetic for these very doubles; lower and upper bound the distance of
-///            the surfaces. Where several verdicts are true the choice depends on the input alone, not on threads or
+///            solids with a common point), all in exact arithmetic for these very doubles; lower and upper bound the distance of
+///            the surfaces, with `solid` that of the solids. Where several verdicts are true the choice depends on the input alone, not on threads or
 ///            earlier queries.
-/// Requires:  rigid placements (require_rigid); tolerance and margin >= 0; models with the same sort of volume.
-/// Errors:    InputError if a result does not fit a double, or with `solid` if a surface is not closed; Interrupted.
+/// Requires:  rigid placements (require_rigid); models with the same sort of volume.
+/// Errors:    InputError if a tolerance or margin is negative or not finite, if a result does not fit a double, or with
+///            `solid` if a surface is not closed, wherever it is; Interrupted.
 /// Cost:      some 100 ns for surfaces far apart, microseconds in contact (bench/results/collide.txt).
 /// Source:    [Wu05, sec. 5.1]; differs: the printed pair test is not sound, see derivations/leaf_rule.md.
 [[nodiscard]] Collision collide(const PlacedModel& a, const PlacedModel& b, const CollideOptions& options,

@@ -1,32 +1,39 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 
-#include <snug/query/collide.h>
+#include <snug/query/query_model.h>
 
 namespace snug {
 
-/// How often a closed limit surface winds around a point: 0 outside, 1 inside of a surface whose faces are
-/// counter-clockwise from outside.
-///
-/// Where no set around a piece holds the point, the surface is replaced by triangles of limit corners, with a third
-/// triangle over each edge where a piece is split; signed crossings of a ray with these are counted.
-///
-/// Guarantee: right for every point within `error` of `point`; nothing where that cannot be told, as on the surface.
-/// Requires:  closed: require_closed(); point in scaled units of the surface.
-/// Cost:      a walk along a ray; more pieces are split the nearer the point is to the surface.
-/// Source:    derivations/contact.md.
-[[nodiscard]] std::optional<int> winding_number(QueryScratch& scratch, const Point3& point, double error,
-                                                const WorkMonitor& monitor = {});
+/// Whether a component of one closed surface lies in the solid that another one bounds.
+struct Nesting {
+  /// 0: a component of A has a point in the solid of B; 1: the other way round. Nothing where none has been found.
+  std::optional<std::size_t> inner;
+  /// Is it certain that there is none else? Not where a point is too near to the other surface to tell.
+  bool certain = true;
+  Point3 point;  ///< of the inner surface, in the outer solid; mesh units, world coordinates
+  double error =
+      0;  ///< upper bound, a coordinate, of how far `point` is from the limit point that it stands for
+};
 
-/// Throws InputError (refused), naming a face, unless every edge of the surface's mesh has two faces that run along it in
-/// opposite directions, and all have a limit surface.
-void require_closed(const Surface& surface);
+/// Asks one limit point of each component of two placed surfaces whether it lies in the other solid.
+///
+/// Guarantee: a point that is named lies on one surface and in the solid of the other one. Surfaces that do not meet bound
+///            solids that do not meet if `certain` and there is no `inner`.
+/// Errors:    those of QueryModel::solid(); InputError if the point does not fit a double; Interrupted.
+/// Cost:      a walk along a ray for each component.
+/// Source:    derivations/contact.md, "Two solids".
+[[nodiscard]] Nesting nesting(const PlacedModel& a, const PlacedModel& b, const WorkMonitor& monitor = {});
 
-/// What `apart`, separated surfaces, is for the solids that they bound: intersecting if a component of one lies inside the
-/// other, undecided where that cannot be told.
-/// Errors:    those of require_closed().
-[[nodiscard]] Collision as_solids(const PlacedModel& a, const PlacedModel& b, Collision apart,
-                                  const WorkMonitor& monitor = {});
+/// Is a point, in mesh units, in the solid that a closed limit surface bounds?
+///
+/// Guarantee: the answer is right; nothing where it cannot be told, as on the surface and within rounding of it.
+/// Errors:    InputError: (refused) from QueryModel::solid(), (value) for a point that is not finite.
+/// Cost:      that of winding_number().
+[[nodiscard]] std::optional<bool> contains(QueryScratch& scratch, const Point3& point,
+                                           const WorkMonitor& monitor = {});
 
 }  // namespace snug

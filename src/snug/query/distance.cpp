@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <snug/base/rounding.h>
+#include <snug/query/containment.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {
@@ -195,7 +196,26 @@ class Query {
 Distance distance(const PlacedModel& a, const PlacedModel& b, const DistanceOptions& options,
                   const WorkMonitor& monitor) {
   require_precision(options);
-  return Query(a, b, options, monitor).run();
+  if (options.solid) {
+    static_cast<void>(a.model.solid());
+    static_cast<void>(b.model.solid());
+  }
+  Distance answer = Query(a, b, options, monitor).run();
+  if (!options.solid || answer.upper == 0) return answer;
+  const Nesting found = nesting(a, b, monitor);
+  if (found.inner) {
+    answer = {.lower = 0,
+              .upper = 0,
+              .reached = true,
+              .witness = {found.point, found.point},
+              .witness_error = found.error,
+              .inner = found.inner,
+              .stats = answer.stats};
+  } else if (!found.certain) {
+    answer.lower = 0;
+    answer.reached = near_enough(answer.lower, answer.upper, options);
+  }
+  return answer;
 }
 
 }  // namespace snug

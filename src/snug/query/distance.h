@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include <snug/query/pair_search.h>
 #include <snug/query/precision.h>
@@ -15,6 +16,7 @@ struct Distance {
   std::array<Point3, 2> witness;  ///< two points as near as were found, on A and on B
   double witness_error =
       0;  ///< upper bound, a coordinate, of how far one is from the limit point it stands for
+  std::optional<std::size_t> inner;  ///< with `solid`: as in Collision
   QueryStats stats;
 };
 
@@ -26,7 +28,8 @@ struct Distance {
 /// Guarantee: lower <= distance <= upper for these very doubles, also where precision is not reached. The result depends on
 ///            the input alone, not on threads or earlier queries.
 /// Requires:  rigid placements (require_rigid); models with the same sort of volume.
-/// Errors:    InputError if a result does not fit a double; Interrupted.
+/// Errors:    InputError for a precision that is negative or not finite, if a result does not fit a double, or with `solid` if
+///            a surface is not closed, wherever it is; Interrupted.
 /// Cost:      some 200 microseconds at 0.1 % of the size (bench/results/distance.txt).
 [[nodiscard]] Distance distance(const PlacedModel& a, const PlacedModel& b, const DistanceOptions& options,
                                 const WorkMonitor& monitor = {});

@@ -13,6 +13,7 @@ struct DistanceOptions {
   double absolute = 0;               ///< >= 0, mesh units
   double relative = 0;               ///< >= 0
   std::uint64_t budget = 1'000'000;  ///< most pieces opened
+  bool solid = false;  ///< distance(): closed surfaces bound solids, which are 0 apart where they meet
 };
 
 /// Throws InputError (value) unless both precisions are finite and >= 0.

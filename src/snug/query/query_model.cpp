@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
 #include <utility>
 
 #include <snug/base/contract.h>
 #include <snug/base/error.h>
 #include <snug/base/rounding.h>
+#include <snug/query/solid.h>
 #include <snug/surface/control_hull.h>
 #include <snug/surface/enclosed_pieces.h>
 
@@ -66,11 +68,21 @@ BoundingTree make_tree(const Surface& surface, std::span<const PatchId> patches,
 
 }  // namespace
 
+struct QueryModel::LazySolid {
+  std::once_flag once;
+  std::optional<Solid> solid;
+};
+
+QueryModel::~QueryModel() = default;
+QueryModel::QueryModel(QueryModel&&) noexcept = default;
+QueryModel& QueryModel::operator=(QueryModel&&) noexcept = default;
+
 QueryModel::QueryModel(const Surface& surface, const QueryModelOptions& options, const WorkMonitor& monitor)
     : surface_(&surface),
       table_(options.table),
       patches_(existing_patches(surface)),
-      tree_(make_tree(surface, patches_, options, monitor)) {
+      tree_(make_tree(surface, patches_, options, monitor)),
+      solid_(std::make_unique<LazySolid>()) {
   const PowerOfTwo back = surface.scale().inverse();
   ball_ = {back.apply(tree_.ball().centre), enlarged(back.apply(tree_.ball().radius))};
   box_ = tree_.box();
@@ -81,6 +93,11 @@ QueryModel::QueryModel(const Surface& surface, const QueryModelOptions& options,
     ball_ = {Point3{}, INFINITY};
     box_.half = {INFINITY, INFINITY, INFINITY};
   }
+}
+
+const Solid& QueryModel::solid() const {
+  std::call_once(solid_->once, [&] { solid_->solid.emplace(*surface_, tree_.blocks().volume()); });
+  return *solid_->solid;
 }
 
 std::size_t QueryModel::bytes() const { return patches_.capacity() * sizeof(PatchId) + tree_.bytes(); }

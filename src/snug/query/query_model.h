@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -12,6 +13,8 @@
 #include <snug/tree/bounding_tree.h>
 
 namespace snug {
+
+class Solid;
 
 struct QueryModelOptions {
   Volume volume = Volume::obb;
@@ -32,6 +35,9 @@ class QueryModel {
   /// Errors:    InputError (refused) if no face has a patch.
   explicit QueryModel(const Surface& surface, const QueryModelOptions& options = {},
                       const WorkMonitor& monitor = {});
+  ~QueryModel();
+  QueryModel(QueryModel&&) noexcept;
+  QueryModel& operator=(QueryModel&&) noexcept;
 
   [[nodiscard]] const Surface& surface() const { return *surface_; }
   [[nodiscard]] std::optional<TableLayout> table() const { return table_; }
@@ -41,6 +47,9 @@ class QueryModel {
   /// Around the surface, in mesh units; infinite where that does not fit a double.
   [[nodiscard]] const Ball& ball() const { return ball_; }
   [[nodiscard]] const Obb& box() const { return box_; }
+  /// The solid that the surface bounds, made on first use.
+  /// Errors:    those of Solid: InputError (refused) for a surface that is not closed.
+  [[nodiscard]] const Solid& solid() const;
   /// Without the surface.
   [[nodiscard]] std::size_t bytes() const;
 
@@ -51,6 +60,8 @@ class QueryModel {
   BoundingTree tree_;
   Ball ball_;
   Obb box_;
+  struct LazySolid;
+  std::unique_ptr<LazySolid> solid_;
 };
 
 /// A set in a model's tree: of the tree itself, or of a piece that queries made.

@@ -55,6 +55,24 @@ Heights heights_of(const Piece& piece, const HullPoints& points) {
   return {rounded_down(range.lower - error), rounded_up(range.upper + error)};
 }
 
+// Of all that the offset triangle holds. On needles the computed normal is off by far more than a rounding, so that the
+// corners have heights, too.
+Heights heights_of(const OffsetTriangle& offset) {
+  const Vector3 normal = unit_normal(offset.base);
+  Heights heights{0, 0};
+  double largest = 0;
+  for (const Point3& corner : offset.base) {
+    const Vector3 from = corner - offset.base[0];
+    const double height = dot(normal, from);
+    heights = {std::min(heights.lower, height), std::max(heights.upper, height)};
+    largest = std::max(largest, max_abs(from));
+  }
+  // The normal's length is 1 up to 8 roundings; differences and products of the corners', gamma(8).
+  const double reach =
+      enlarged(offset.radius * (1 + 16 * unit_roundoff) + gamma_bound(8) * 2 * largest) + 8 * underflow_error;
+  return {rounded_down(heights.lower - reach), rounded_up(heights.upper + reach)};
+}
+
 // Along the longest edge, across it in the triangle's plane, and along the normal.
 std::array<Vector3, 3> box_axes(const Triangle& base) {
   const Vector3 normal = unit_normal(base);
@@ -75,9 +93,8 @@ std::array<Vector3, 3> box_axes(const Triangle& base) {
 void Refinement::add(PatchId root, Patch patch) {
   pieces_.push_back(make_piece(surface_.library(), root, std::move(patch), scratch_, table_));
   const Piece& piece = pieces_.back();
-  const double radius = enlarged(piece.offset.radius) + 64 * unit_roundoff;  // the normal is off by roundings
-  Heights heights = table_ ? Heights{-radius, radius} : heights_of(piece, scratch_);
-  if (!std::isfinite(radius) || !std::isfinite(heights.lower) || !std::isfinite(heights.upper)) {
+  Heights heights = table_ ? heights_of(piece.offset) : heights_of(piece, scratch_);
+  if (!std::isfinite(heights.lower) || !std::isfinite(heights.upper)) {
     heights = {-INFINITY, INFINITY};
   }
   heights_.push_back(heights);

@@ -1,0 +1,260 @@
+// Inside and outside of random solids whose meshes mix triangles, quads and polygons, against winding numbers of refined
+// meshes. A third of the points look along a ray at an edge that the first split of one side alone cuts in two.
+//
+//   SNUG_PLACEMENTS=100000 build/release/bin/tests/sound_solids_test
+//
+// asks about so many points; SNUG_FIRST=N begins with solid N.
+
+#include <snug/query/collide.h>
+#include <snug/query/containment.h>
+#include <snug/query/distance.h>
+#include <snug/query/solid.h>
+#include <snug/query/winding.h>
+
+#include <gtest/gtest.h>
+#include <oracle/winding_twin.h>
+#include <snug/base/error.h>
+#include <testing/solids.h>
+#include <testing/tagged.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <map>
+
+namespace snug {
+namespace {
+
+constexpr std::uint64_t points_a_solid = 100;
+// The rays that winding_number() tries: points are aimed along them.
+constexpr std::array<Vector3, 8> rays{{{0.8236391, 0.2941752, 0.4848613},
+                                       {-0.3912744, 0.8123906, 0.4324018},
+                                       {0.1748203, -0.5321907, 0.8283922},
+                                       {-0.6723481, -0.5610927, -0.4829115},
+                                       {0.5519373, 0.7218405, -0.4176331},
+                                       {-0.9321904, 0.1293847, 0.3381923},
+                                       {0.2639471, -0.8931207, -0.3642918},
+                                       {-0.1173952, 0.2387164, -0.9639721}}};
+
+double unit(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
+double between(std::mt19937_64& random, double low, double high) { return low + (high - low) * unit(random); }
+
+struct Case {
+  std::string name;
+  oracle::TaggedMesh mesh;
+  oracle::WindingScheme scheme;
+  SchemeOptions options;
+};
+
+Case make_case(std::uint64_t number) {
+  std::mt19937_64 random(number * 7919 + 17);
+  Case c{"solid " + std::to_string(number), testing::random_solid(random), {}, {}};
+  const std::uint64_t which = number % 8;
+  if (which >= 6) {
+    c.scheme = which == 6 ? oracle::DualScheme::doo_sabin : oracle::DualScheme::midedge;
+    c.options.scheme = which == 6 ? Scheme::doo_sabin : Scheme::midedge;
+    c.name += std::string(", ") + name_of(c.options.scheme);
+    return c;
+  }
+  oracle::Rules rules;
+  rules.clamp_dart_edges = true;
+  rules.scheme = which == 5 ? oracle::PrimalScheme::loop : oracle::PrimalScheme::catmull_clark;
+  if (which == 5) c.mesh = oracle::meshes::triangulated(c.mesh);
+  rules.chaikin = random() % 3 == 0;
+  rules.smooth_triangles = which != 5 && random() % 3 == 0;
+  if (random() % 3 == 0) testing::tag(c.mesh, random, false);
+  c.scheme = rules;
+  c.options = testing::options_of(rules);
+  c.name += ", " + testing::text_of(rules);
+  return c;
+}
+
+// A ray that is tried first from q: the one that leads away from the middle.
+std::size_t first_ray(const Point3& q, const Point3& middle) {
+  std::size_t best = 0;
+  for (std::size_t k = 1; k < rays.size(); ++k)
+    if (dot(rays[k], q - middle) > dot(rays[best], q - middle)) best = k;
+  return best;
+}
+
+class Trials {
+ public:
+  Trials(const Case& c, std::uint64_t seed)
+      : case_(c),
+        random_(seed),
+        twin_(c.mesh, c.scheme, levels(c.mesh)),
+        surface_(mesh_of(c), c.options, std::make_shared<BoundLibrary>(), 1),
+        model_(surface_, volume(seed)),
+        scratch_(model_) {}
+
+  void run() {
+    for (std::uint64_t i = 0; i < points_a_solid && !::testing::Test::HasFailure(); ++i) {
+      std::optional<int> truth;
+      Point3 q;
+      for (int tries = 0; tries < 60 && !truth; ++tries) {
+        aimed_ = false;
+        q = i % 8 < 6 ? aimed() : i % 8 == 6 ? near_surface() : anywhere();
+        truth = twin_({q.x, q.y, q.z});
+      }
+      if (!truth) continue;
+      aimed_at += aimed_;
+      ask(q, *truth, i);
+    }
+  }
+
+  static inline std::size_t asked = 0, untold = 0, inside = 0, aimed_at = 0;
+  static inline std::map<int, std::size_t> numbers;
+
+ private:
+  static int levels(const oracle::TaggedMesh& mesh) {
+    int level = 2;
+    for (std::size_t faces = 16 * mesh.polygons.size(); faces < 1500; faces *= 4) ++level;
+    return level;
+  }
+  static ControlMesh mesh_of(const Case& c) {
+    const oracle::Rules* const rules = std::get_if<oracle::Rules>(&c.scheme);
+    return testing::control_mesh(c.mesh, rules ? *rules : oracle::Rules{});
+  }
+  static QueryModelOptions volume(std::uint64_t seed) {
+    QueryModelOptions options;
+    options.volume = all_volumes[seed % all_volumes.size()];
+    options.threads = 1;
+    return options;
+  }
+
+  Point3 anywhere() {
+    const Ball& ball = model_.ball();
+    Point3 q = ball.centre;
+    for (std::size_t x = 0; x < 3; ++x) q[x] += between(random_, -1.1, 1.1) * ball.radius;
+    return q;
+  }
+  Point3 near_surface() {
+    const auto& points = twin_.mesh().points;
+    const oracle::Point& p = points[random_() % points.size()];
+    const double away = model_.ball().radius * std::exp2(-between(random_, 1, 7));
+    return Point3{p[0], p[1], p[2]} +
+           away * Vector3{between(random_, -1, 1), between(random_, -1, 1), between(random_, -1, 1)};
+  }
+  // Looks from afar at a filler, or beside it.
+  Point3 aimed() {
+    const auto& fillers = model_.solid().fillers();
+    if (fillers.empty()) return near_surface();
+    const PowerOfTwo back = surface_.scale().inverse();
+    const Triangle& t = fillers[random_() % fillers.size()].corners;
+    const double b = between(random_, -0.1, 1.1), c = between(random_, -0.1, 1.1);
+    const Point3 target = t[0] + (b * (t[1] - t[0]) + c * (t[2] - t[0]));
+    const Point3 middle = model_.tree().ball().centre;
+    const std::size_t k = first_ray(target, middle);
+    for (int tries = 0; tries < 20; ++tries) {
+      const Point3 q = target - model_.tree().ball().radius * between(random_, 0.02, 1) * rays[k];
+      if (first_ray(q, middle) != k) continue;
+      aimed_ = true;
+      return back.apply(q);
+    }
+    return near_surface();
+  }
+
+  void ask(const Point3& q, int truth, std::uint64_t i) {
+    ++asked;
+    ++numbers[truth];
+    const Point3 scaled = surface_.scale().apply(q);
+    const std::optional<int> found = winding_number(scratch_, scaled, 0);
+    untold += !found;
+    inside += truth != 0;
+    const auto where = [&] {
+      std::ostringstream text;
+      text.precision(17);
+      text << case_.name << " (SNUG_FIRST), point " << q.x << ' ' << q.y << ' ' << q.z;
+      return text.str();
+    };
+    if (found) {
+      EXPECT_EQ(*found, truth) << where();
+    }
+    const std::optional<bool> held = contains(scratch_, q);
+    if (held) {
+      EXPECT_EQ(*held, truth != 0) << where();
+    }
+    if (i % 10 == 0) ask_for_solids(q, truth, where());
+  }
+
+  // A small tetrahedron of curved faces around q that does not come near the surface.
+  void ask_for_solids(const Point3& q, int truth, const std::string& where) {
+    const double r = 1e-4 * model_.ball().radius;
+    ControlMesh mesh;
+    mesh.points = {q + Vector3{r, r, r}, q + Vector3{r, -r, -r}, q + Vector3{-r, r, -r},
+                   q + Vector3{-r, -r, r}};
+    for (const std::array<std::uint32_t, 3>& f :
+         {std::array<std::uint32_t, 3>{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}) {
+      const std::array corners{VertexId(f[0]), VertexId(f[1]), VertexId(f[2])};
+      mesh.add_face(corners);
+    }
+    const Surface surface(std::move(mesh), {Scheme::loop}, std::make_shared<BoundLibrary>(), 1);
+    QueryModelOptions options;
+    options.volume = model_.tree().blocks().volume();
+    const QueryModel model(surface, options);
+    QueryScratch scratch(model);
+    CollideOptions wanted;
+    wanted.solid = true;
+    const Collision answer = collide({model_, scratch_, {}}, {model, scratch, {}}, wanted);
+    if (answer.verdict == Verdict::separated) {
+      EXPECT_EQ(truth, 0) << where;
+    }
+    if (answer.verdict == Verdict::intersecting) {
+      EXPECT_NE(truth, 0) << where;
+      EXPECT_EQ(answer.inner, std::optional<std::size_t>(1)) << where;
+      EXPECT_LE(length((*answer.witness)[0] - q), 4 * r) << where;
+    }
+    EXPECT_NE(answer.verdict, Verdict::within) << where;
+    DistanceOptions precision;
+    precision.relative = 0.1;
+    precision.solid = true;
+    const Distance gap = distance({model_, scratch_, {}}, {model, scratch, {}}, precision);
+    if (truth != 0) {
+      EXPECT_EQ(gap.lower, 0) << where;
+      if (gap.inner) {
+        EXPECT_EQ(gap.upper, 0) << where;
+      }
+    } else {
+      EXPECT_GT(gap.upper, 0) << where;
+      EXPECT_FALSE(gap.inner) << where;
+    }
+  }
+
+  const Case& case_;
+  std::mt19937_64 random_;
+  bool aimed_ = false;
+  oracle::WindingTwin twin_;
+  Surface surface_;
+  QueryModel model_;
+  QueryScratch scratch_;
+};
+
+std::uint64_t number_of(const char* variable, std::uint64_t usual) {
+  const char* const text = std::getenv(variable);
+  return text ? std::strtoull(text, nullptr, 10) : usual;
+}
+
+TEST(solids, winding_numbers_are_those_of_refined_meshes) {
+  const std::uint64_t solids = (number_of("SNUG_PLACEMENTS", 8000) + points_a_solid - 1) / points_a_solid;
+  const std::uint64_t first = number_of("SNUG_FIRST", 0);
+  std::uint64_t refused = 0;
+  for (std::uint64_t i = 0; i < solids && !HasFailure(); ++i) {
+    const Case c = make_case(first + i);
+    try {
+      Trials(c, first + i).run();
+    } catch (const InputError&) {
+      ++refused;  // the same triangle twice
+    }
+  }
+  std::cout << "  " << Trials::asked << " points, " << Trials::inside << " inside, " << Trials::aimed_at
+            << " aimed at edges of first splits, " << Trials::untold << " not told; winding numbers";
+  for (const auto& [number, count] : Trials::numbers) std::cout << "  " << number << ": " << count;
+  std::cout << "; " << refused << " solids refused\n";
+  EXPECT_LE(refused * 100, solids);
+  EXPECT_GT(Trials::inside * 10, Trials::asked);
+  EXPECT_GT(Trials::aimed_at * 3, Trials::asked);
+  EXPECT_LE(Trials::untold * 1000, Trials::asked);
+}
+
+}  // namespace
+}  // namespace snug
