@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 #include <snug/io/mesh_file.h>
 #include <snug/picture/polyhedron.h>
-#include <CLI/CLI.hpp>
 
 #include "common.h"
 #include "curve.h"
@@ -170,33 +169,30 @@ ExitStatus run(const Options& options) {
 
 }  // namespace
 
-Command add_bound(CLI::App& app) {
+Command bound_command() {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("bound", "Enclosures that contain the limit surface, or limit curves");
-  command->add_option("MESH", options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)")
-      ->required();
-  CLI::Option* tolerance =
-      command->add_option("--tolerance", options->tolerance,
-                          "Split until each radius is at most half of this: mesh units, or 1%");
-  command
-      ->add_option("--level", options->level,
-                   "Split every patch this often; the first split of a polygon counts")
-      ->check(CLI::Range(0u, 12u))
-      ->excludes(tolerance);
-  command
-      ->add_option(
-          "--creases", options->creases,
-          "Where sharpness decays, or faces that are no quads split: bound the patches as they are, or "
-          "split them first until it has passed")
-      ->check(CLI::IsMember({"bound", "split"}))
-      ->capture_default_str();
-  command->add_option(
-      "--polyhedra", options->polyhedra,
-      "The hulls of the enclosures' boxes as one mesh, for pictures: .obj, .off, .ply, .stl or .glb");
-  add_degree_option(*command, options->degree);
-  add_common_options(*command, *options);
-  return {command, [options] { return run(*options); }};
+  OptionList list;
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
+  list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
+           "Split until each radius is at most half of this: mesh units, or 1%");
+  list.add(Group::own, "--level N", &options->level,
+           "Split every patch this often, 0 to 12; the first split of a polygon counts")
+      .between(0, 12)
+      .excludes("--tolerance");
+  list.add(Group::own, "--polyhedra FILE", &options->polyhedra,
+           "The hulls of the enclosures' boxes as one mesh, for pictures: .obj, .off, .ply, .stl or .glb");
+  list.add(Group::research, "--creases HOW", &options->creases,
+           "Where sharpness decays, or faces that are no quads split: bound the patches as they are, or "
+           "split them first until it has passed")
+      .one_of({"bound", "split"});
+  add_degree_option(list, options->degree);
+  add_common_options(list, *options);
+  return {"bound",
+          Topic::one_surface,
+          "Enclosures that contain the limit surface, or limit curves",
+          {"snug bound pawn.obj --tolerance 0.5% --json"},
+          std::move(list),
+          [options] { return run(*options); }};
 }
 
 }  // namespace snug::command

@@ -4,7 +4,6 @@
 
 #include <fmt/core.h>
 #include <snug/io/read_file.h>
-#include <CLI/CLI.hpp>
 
 #include "length.h"
 #include "placed_pair.h"
@@ -91,23 +90,24 @@ ExitStatus run(const Options& options) {
 
 }  // namespace
 
-Command add_closest(CLI::App& app) {
+Command closest_command() {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("closest", "The limit points closest to given points");
-  command->add_option("MESH", options->mesh, "Control mesh (OBJ, OFF, PLY or STL)")->required();
-  command
-      ->add_option("--points", options->points,
-                   "File with a line 'x y z' for each point; - for standard input")
-      ->required();
-  command
-      ->add_option("--precision", options->precision,
-                   "How near the bounds of a distance must be: mesh units, or percent of the mesh")
-      ->capture_default_str();
-  command->add_option("--relative", options->relative, "Or as near as this share of the distance")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  add_model_options(*command, *options);
-  return {command, [options] { return run(*options); }};
+  OptionList list;
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL)");
+  list.add(Group::own, "--points FILE", &options->points,
+           "File with a line 'x y z' for each point; - for standard input")
+      .required();
+  list.add(Group::own, "--precision LENGTH", &options->precision,
+           "How near the bounds of a distance must be: mesh units, or percent of the mesh");
+  list.add(Group::own, "--relative SHARE", &options->relative, "Or as near as this share of the distance")
+      .between(0, 1);
+  add_model_options(list, *options);
+  return {"closest",
+          Topic::one_surface,
+          "The limit points closest to given points",
+          {"snug closest bust.obj --points points.txt", "echo \"0 2 5\" | snug closest bust.obj --points -"},
+          std::move(list),
+          [options] { return run(*options); }};
 }
 
 }  // namespace snug::command

@@ -1,7 +1,6 @@
 #include <snug/query/collide.h>
 
 #include <fmt/core.h>
-#include <CLI/CLI.hpp>
 
 #include "length.h"
 #include "placed_pair.h"
@@ -90,20 +89,24 @@ ExitStatus run(const Options& options) {
 
 }  // namespace
 
-Command add_collide(CLI::App& app) {
+Command collide_command() {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("collide", "Do two limit surfaces touch? A verdict that is a proof");
-  command
-      ->add_option("--tolerance", options->tolerance,
-                   "Surfaces this near may be called within: mesh units, or percent of the longer mesh (1%)")
-      ->required();
-  command->add_option("--margin", options->margin, "Distance that must be kept")->capture_default_str();
-  command->add_flag("--solid", options->solid,
-                    "Closed surfaces bound solids: one inside of the other intersects it");
-  command->add_flag("--exit-code", options->exit_code,
-                    "Status 0 separated, 10 within, 11 intersecting, 12 undecided");
-  add_pair_options(*command, *options);
-  return {command, [options] { return run(*options); }};
+  OptionList list;
+  list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
+           "Surfaces this near may be called within: mesh units, or percent of the longer mesh (1%)")
+      .required();
+  list.add(Group::own, "--margin LENGTH", &options->margin, "Distance that must be kept");
+  list.add(Group::own, "--solid", &options->solid,
+           "Closed surfaces bound solids: one inside of the other intersects it");
+  list.add(Group::own, "--exit-code", &options->exit_code,
+           "Status 0 separated, 10 within, 11 intersecting, 12 undecided");
+  add_pair_options(list, *options);
+  return {"collide",
+          Topic::two_surfaces,
+          "Do two limit surfaces touch? A verdict that is a proof",
+          {"snug collide pawn.obj bust.obj --tolerance 0.1% --place-b \"1 0 0 3  0 1 0 0  0 0 1 0\""},
+          std::move(list),
+          [options] { return run(*options); }};
 }
 
 }  // namespace snug::command

@@ -7,7 +7,6 @@
 #include <snug/base/contract.h>
 #include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
-#include <CLI/CLI.hpp>
 
 #include "curve.h"
 #include "progress_bar.h"
@@ -15,40 +14,55 @@
 
 namespace snug::command {
 
-void add_common_options(CLI::App& app, CommonOptions& options) {
-  app.add_option(
-         "--scheme", options.scheme,
-         "Subdivision scheme; auto: loop for triangles alone, curve for polylines alone, else catmark")
-      ->check(CLI::IsMember({"auto", "loop", "catmark", "catmull-clark", "doo-sabin", "midedge", "curve"}))
-      ->capture_default_str();
-  app.add_option("--boundary", options.boundary,
-                 "What the boundary does; default: the file's tag, else edge-and-corner")
-      ->check(CLI::IsMember({"edge-and-corner", "edge-only", "none"}));
-  app.add_option(
-         "--bounds", options.bounds,
-         "What encloses: hull rows, the dissertation's tables, or the baseline box of the control points")
-      ->check(CLI::IsMember({"rows", "table", "control-box"}))
-      ->capture_default_str();
-  app.add_option("--layout", options.layout,
-                 "Where the tables lay control points: on a regular n-gon, or as the characteristic map")
-      ->check(CLI::IsMember({"ngon", "characteristic"}))
-      ->capture_default_str();
-  app.add_flag("--json", options.json, "One JSON document on standard output");
-  app.add_option("-o", options.output, "Output file; the format follows the ending");
-  app.add_option("--threads", options.threads, "Threads; 0: all cores. Results do not depend on it")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  app.add_option("--budget", options.budget, "Most patches split before the answer is what was reached")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 40))
-      ->capture_default_str();
-  app.add_option("--weld", options.weld,
-                 "STL: vertices this near become one: mesh units, or percent of the mesh (0.001%)");
-  app.add_flag("--quiet", options.quiet, "No progress and no notes on standard error");
+Option& add_scheme_option(OptionList& list, const std::string& name, std::string& scheme,
+                          const std::string& help) {
+  // Besides ours: the names of USD (catmullClark) and OpenSubdiv (SCHEME_CATMARK).
+  const char* unsupported = "is no scheme that snug answers for: its limit surface is its own control mesh";
+  return list.add(Group::mesh, name + " NAME", &scheme, help)
+      .one_of({"auto", "loop", "catmark", "doo-sabin", "midedge"})
+      .alias("catmull-clark", "catmark")
+      .alias("cc", "catmark")
+      .alias("scheme-catmark", "catmark")
+      .alias("scheme-loop", "loop")
+      .alias("mid-edge", "midedge")
+      .refuse("bilinear", unsupported)
+      .refuse("scheme-bilinear", unsupported)
+      .refuse("none", "means a mesh that is not subdivided, and snug answers for limit surfaces");
+}
+
+void add_common_options(OptionList& list, CommonOptions& options) {
+  Option& scheme = add_scheme_option(list, "--scheme", options.scheme,
+                                     "Subdivision scheme; auto is loop for triangles alone, curve for "
+                                     "polylines alone, else catmark");
+  scheme.choices.emplace_back("curve");
+  list.add(Group::mesh, "--boundary RULE", &options.boundary,
+           "What the boundary does; default: the file's tag, else edge-and-corner")
+      .one_of({"edge-and-corner", "edge-only", "none"})
+      .alias("vtx-boundary-edge-and-corner", "edge-and-corner")
+      .alias("vtx-boundary-edge-only", "edge-only")
+      .alias("vtx-boundary-none", "none");
+  list.add(Group::mesh, "--weld LENGTH", &options.weld,
+           "STL: vertices this near become one: mesh units, or percent of the mesh (0.001%)");
+  list.add(Group::output, "--json", &options.json, "One JSON document on standard output");
+  list.add(Group::output, "-o FILE", &options.output, "Output file; the format follows the ending");
+  list.add(Group::output, "--quiet", &options.quiet, "No progress and no notes on standard error");
+  list.add(Group::effort, "--threads N", &options.threads,
+           "Threads, up to 1024; 0: all cores. Results do not depend on it")
+      .between(0, 1024);
+  list.add(Group::effort, "--budget N", &options.budget,
+           "Most patches split before the answer is what was reached")
+      .between(0, std::uint64_t{1} << 40);
+  list.add(Group::research, "--bounds WHAT", &options.bounds,
+           "What encloses: hull rows, the dissertation's tables, or the baseline box of the control points")
+      .one_of({"rows", "table", "control-box"});
+  list.add(Group::research, "--layout WHERE", &options.layout,
+           "Where the tables lay control points: on a regular n-gon, or as the characteristic map")
+      .one_of({"ngon", "characteristic"});
 }
 
 Scheme choose_scheme(const std::string& name, const ControlMesh& mesh) {
   if (name == "loop") return Scheme::loop;
-  if (name == "catmark" || name == "catmull-clark") return Scheme::catmark;
+  if (name == "catmark") return Scheme::catmark;
   if (name == "doo-sabin") return Scheme::doo_sabin;
   if (name == "midedge") return Scheme::midedge;
   return natural_scheme(mesh);

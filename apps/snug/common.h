@@ -12,13 +12,11 @@
 #include <snug/query/bound.h>
 #include <snug/surface/surface.h>
 
+#include "command_line.h"
 #include "exit_status.h"
 #include "json_writer.h"
 #include "length.h"
-
-namespace CLI {
-class App;
-}
+#include "options.h"
 
 namespace snug::command {
 
@@ -36,14 +34,11 @@ struct CommonOptions {
   bool quiet = false;
 };
 
-/// Adds them to a sub-command.
-void add_common_options(CLI::App& app, CommonOptions& options);
-
-/// A sub-command: what it added to the parser, and what runs if it is the one chosen.
-struct Command {
-  CLI::App* app;
-  std::function<ExitStatus()> run;
-};
+/// Adds them to a command's.
+void add_common_options(OptionList& list, CommonOptions& options);
+/// Adds an option that names a scheme of surfaces, under the names of other programs too.
+Option& add_scheme_option(OptionList& list, const std::string& name, std::string& scheme,
+                          const std::string& help);
 
 /// The scheme that --scheme (or an override of it) names for this mesh.
 [[nodiscard]] Scheme choose_scheme(const std::string& name, const ControlMesh& mesh);
@@ -103,14 +98,14 @@ class Report {
 /// About six digits of a proved bound, rounded to the safe side: down for lower bounds, up with `at_least` for upper ones.
 [[nodiscard]] std::string text_at_most(double x, bool at_least = false);
 
-[[nodiscard]] Command add_info(CLI::App& app);
-[[nodiscard]] Command add_bound(CLI::App& app);
-[[nodiscard]] Command add_eval(CLI::App& app);
-[[nodiscard]] Command add_subdivide(CLI::App& app);
-[[nodiscard]] Command add_collide(CLI::App& app);
-[[nodiscard]] Command add_distance(CLI::App& app);
-[[nodiscard]] Command add_closest(CLI::App& app);
-[[nodiscard]] Command add_render(CLI::App& app);
-[[nodiscard]] Command add_experiment(CLI::App& app);
+[[nodiscard]] Command info_command();
+[[nodiscard]] Command bound_command();
+[[nodiscard]] Command eval_command();
+[[nodiscard]] Command subdivide_command();
+[[nodiscard]] Command collide_command();
+[[nodiscard]] Command distance_command();
+[[nodiscard]] Command closest_command();
+[[nodiscard]] Command render_command();
+[[nodiscard]] Command experiment_command();
 
 }  // namespace snug::command

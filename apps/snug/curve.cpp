@@ -1,7 +1,5 @@
 #include "curve.h"
 
-#include <CLI/CLI.hpp>
-
 namespace snug::command {
 
 bool is_curve(const ControlMesh& mesh, const std::string& scheme) {
@@ -24,10 +22,8 @@ void refuse_curves(const ControlMesh& mesh, const std::string& scheme, const std
   }
 }
 
-void add_degree_option(CLI::App& app, unsigned& degree) {
-  app.add_option("--degree", degree, "Of curves: B-splines of degree 2 or 3")
-      ->check(CLI::IsMember({2u, 3u}))
-      ->capture_default_str();
+void add_degree_option(OptionList& list, unsigned& degree) {
+  list.add(Group::mesh, "--degree N", &degree, "Degree of B-spline curves").one_of({"2", "3"});
 }
 
 CurveDegree curve_degree(unsigned degree) {

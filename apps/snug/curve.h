@@ -19,7 +19,7 @@ namespace snug::command {
 void refuse_curves(const ControlMesh& mesh, const std::string& scheme, const std::string& path);
 
 /// Adds --degree.
-void add_degree_option(CLI::App& app, unsigned& degree);
+void add_degree_option(OptionList& list, unsigned& degree);
 [[nodiscard]] CurveDegree curve_degree(unsigned degree);
 /// The head of the document, the degree included.
 void curve_heads(Report& report, const std::string& path, unsigned degree);

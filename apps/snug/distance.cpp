@@ -1,7 +1,6 @@
 #include <snug/query/distance.h>
 
 #include <fmt/core.h>
-#include <CLI/CLI.hpp>
 
 #include "length.h"
 #include "placed_pair.h"
@@ -55,19 +54,20 @@ ExitStatus run(const Options& options) {
 
 }  // namespace
 
-Command add_distance(CLI::App& app) {
+Command distance_command() {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("distance", "How far are two limit surfaces apart? Bounds, and two points");
-  command
-      ->add_option("--precision", options->precision,
-                   "How near the bounds must be: mesh units, or percent of the longer mesh")
-      ->capture_default_str();
-  command->add_option("--relative", options->relative, "Or as near as this share of the distance")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  add_pair_options(*command, *options);
-  return {command, [options] { return run(*options); }};
+  OptionList list;
+  list.add(Group::own, "--precision LENGTH", &options->precision,
+           "How near the bounds must be: mesh units, or percent of the longer mesh");
+  list.add(Group::own, "--relative SHARE", &options->relative, "Or as near as this share of the distance")
+      .between(0, 1);
+  add_pair_options(list, *options);
+  return {"distance",
+          Topic::two_surfaces,
+          "How far are two limit surfaces apart? Bounds, and two points",
+          {"snug distance pawn.obj bust.obj --place-b \"1 0 0 9  0 1 0 0  0 0 1 0\""},
+          std::move(list),
+          [options] { return run(*options); }};
 }
 
 }  // namespace snug::command

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 #include <snug/io/read_file.h>
 #include <snug/query/evaluate.h>
-#include <CLI/CLI.hpp>
 
 #include "common.h"
 #include "curve.h"
@@ -155,26 +154,25 @@ ExitStatus run(const Options& options) {
 
 }  // namespace
 
-Command add_eval(CLI::App& app) {
+Command eval_command() {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("eval", "Limit points, tangents and normals");
-  command->add_option("MESH", options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)")
-      ->required();
-  CLI::Option* samples =
-      command
-          ->add_option("--samples", options->samples,
-                       "A lattice of N steps along each edge of every face, or of every polyline")
-          ->check(CLI::Range(1u, 1000u))
-          ->capture_default_str();
-  command
-      ->add_option("--at", options->at,
-                   "File of lines 'face u v' (Loop: p = (1-u-v) c0 + u c1 + v c2; quads: u from c0 towards "
-                   "c1), a corner "
-                   "after it for the quads of other faces; of curves: 'edge t'")
-      ->excludes(samples);
-  add_degree_option(*command, options->degree);
-  add_common_options(*command, *options);
-  return {command, [options] { return run(*options); }};
+  OptionList list;
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
+  list.add(Group::own, "--samples N", &options->samples,
+           "A lattice of N steps, 1 to 1000, along each edge of every face, or of every polyline")
+      .between(1, 1000);
+  list.add(Group::own, "--at FILE", &options->at,
+           "File of lines 'face u v' (Loop: p = (1-u-v) c0 + u c1 + v c2; quads: u from c0 towards c1), a "
+           "corner after it for the quads of other faces; of curves: 'edge t'")
+      .excludes("--samples");
+  add_degree_option(list, options->degree);
+  add_common_options(list, *options);
+  return {"eval",
+          Topic::one_surface,
+          "Limit points, tangents and normals",
+          {"snug eval pawn.obj --samples 2", "echo \"0 0.25 0.5\" | snug eval pawn.obj --at - --json"},
+          std::move(list),
+          [options] { return run(*options); }};
 }
 
 }  // namespace snug::command

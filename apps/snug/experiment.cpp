@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <CLI/CLI.hpp>
 
 #include "common.h"
 #include "experiment_tables.h"
@@ -23,12 +22,12 @@ struct Options : CommonOptions {
   std::string name;
   std::uint64_t pairs = 20'000;
   std::uint64_t seed = 1;
-  std::optional<std::size_t> nets;  // each experiment has its own default
+  std::optional<std::uint64_t> nets;  // each experiment has its own default
   unsigned levels = RateOptions{}.levels;
   int samples = TightnessOptions{}.steps;
   std::string at = name_of(NetCentre::interior);
   std::vector<std::string> models;
-  std::size_t placements = TableExperiment{}.placements;
+  std::uint64_t placements = TableExperiment{}.placements;
 };
 
 // The fields that all experiments begin with.
@@ -134,7 +133,6 @@ RateOptions rate_options(const Options& options) {
   for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
     if (options.scheme == name_of(scheme)) wanted.scheme = scheme;
   }
-  if (options.scheme == "catmull-clark") wanted.scheme = Scheme::catmark;
   for (const NetCentre centre : all_net_centres) {
     if (options.at == name_of(centre)) wanted.centre = centre;
   }
@@ -295,49 +293,47 @@ ExitStatus run(const Options& options) {
 
 }  // namespace
 
-Command add_experiment(CLI::App& app) {
+Command experiment_command() {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("experiment", "A table or figure of the dissertation, measured here");
-  command
-      ->add_option("NAME", options->name,
-                   "pair-test: how often the pair test as printed misses a near pair; rates: how fast "
-                   "enclosures shrink at an extraordinary corner, or those of curves with --scheme curve; "
-                   "tightness: radii over the least possible; table-5-1, table-5-2, table-5-3: triangles, "
-                   "creation times and query times of the dissertation's tables")
-      ->required()
-      ->check(CLI::IsMember({"pair-test", "rates", "tightness", "table-5-1", "table-5-2", "table-5-3"}));
-  command->add_option("MODEL", options->models,
-                      "table-5-1 to 5-3: control meshes of triangles, for 5-3 two by two; default: six of "
-                      "examples/models");
-  command->add_option("--placements", options->placements, "table-5-3: random placements of a pair in a room")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}))
-      ->capture_default_str();
-  command->add_option("--pairs", options->pairs, "pair-test: random pairs in all, over three families")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
-      ->capture_default_str();
-  command
-      ->add_option("--nets", options->nets,
-                   "rates, tightness: nets for each valence (default: 25, and 60 a shape)")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000}));
-  command->add_option("--levels", options->levels, "rates: how often a patch is split")
-      ->check(CLI::Range(4u, 40u))
-      ->capture_default_str();
-  command
-      ->add_option("--samples", options->samples,
-                   "tightness: steps of the lattice of limit points along an edge")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--at", options->at,
-          "rates: what is in the middle of the nets; all but interior with --scheme loop or catmark, "
-          "for dual schemes have neither patches at boundaries nor creases")
-      ->check(CLI::IsMember({"interior", "boundary", "corner", "crease", "dart", "semi-sharp"}))
-      ->capture_default_str();
-  command->add_option("--seed", options->seed, "Seed of what is drawn")->capture_default_str();
-  add_common_options(*command, *options);
-  return {command, [options] { return run(*options); }};
+  OptionList list;
+  list.add(Group::own, "NAME", &options->name,
+           "pair-test: how often the pair test as printed misses a near pair; rates: how fast enclosures "
+           "shrink "
+           "at an extraordinary corner, or those of curves with --scheme curve; tightness: radii over the "
+           "least "
+           "possible; table-5-1, table-5-2, table-5-3: triangles, creation times and query times of the "
+           "dissertation's tables")
+      .one_of({"pair-test", "rates", "tightness", "table-5-1", "table-5-2", "table-5-3"});
+  list.add(Group::own, "MODEL", &options->models,
+           "table-5-1 to 5-3: control meshes of triangles, for 5-3 two by two; default: six of "
+           "examples/models")
+      .must = false;
+  list.add(Group::own, "--placements N", &options->placements,
+           "table-5-3: random placements of a pair in a room")
+      .between(1, 100'000'000);
+  list.add(Group::own, "--pairs N", &options->pairs, "pair-test: random pairs in all, over three families")
+      .between(1, 1'000'000'000);
+  list.add(Group::own, "--nets N", &options->nets,
+           "rates, tightness: nets for each valence (default: 25, and 60 a shape)")
+      .between(1, 100'000);
+  list.add(Group::own, "--levels N", &options->levels, "rates: how often a patch is split, 4 to 40")
+      .between(4, 40);
+  list.add(Group::own, "--samples N", &options->samples,
+           "tightness: steps of the lattice of limit points along an edge, 1 to 1000")
+      .between(1, 1000);
+  list.add(Group::own, "--at PLACE", &options->at,
+           "rates: what is in the middle of the nets; all but interior with --scheme loop or catmark, for "
+           "dual "
+           "schemes have neither patches at boundaries nor creases")
+      .one_of({"interior", "boundary", "corner", "crease", "dart", "semi-sharp"});
+  list.add(Group::own, "--seed N", &options->seed, "Seed of what is drawn");
+  add_common_options(list, *options);
+  return {"experiment",
+          Topic::research,
+          "A table or figure of the dissertation, measured here",
+          {"snug experiment rates --scheme catmark"},
+          std::move(list),
+          [options] { return run(*options); }};
 }
 
 }  // namespace snug::command

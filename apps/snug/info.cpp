@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 #include <snug/mesh/statistics.h>
 #include <snug/mesh/validate.h>
-#include <CLI/CLI.hpp>
 
 #include "common.h"
 #include "curve.h"
@@ -85,14 +84,17 @@ ExitStatus run(const Options& options) {
 
 }  // namespace
 
-Command add_info(CLI::App& app) {
+Command info_command() {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("info", "Counts, valences and defects of a mesh, of a broken one too");
-  command->add_option("MESH", options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)")
-      ->required();
-  add_common_options(*command, *options);
-  return {command, [options] { return run(*options); }};
+  OptionList list;
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
+  add_common_options(list, *options);
+  return {"info",
+          Topic::files,
+          "Counts, valences and defects of a mesh, of a broken one too",
+          {"snug info pawn.obj"},
+          std::move(list),
+          [options] { return run(*options); }};
 }
 
 }  // namespace snug::command

@@ -8,7 +8,6 @@
 #include <fmt/core.h>
 #include <snug/base/error.h>
 #include <snug/enclose/fit_kernels.h>
-#include <CLI/CLI.hpp>
 
 #include "common.h"
 #include "length.h"
@@ -24,11 +23,14 @@ int fail(ExitStatus status, const char* message) {
   return static_cast<int>(status);
 }
 
-int run(const std::vector<Command>& commands) {
+// Ends with what the command line asks for.
+int run(const std::vector<Command>& commands, const std::vector<std::string>& words) {
   try {
-    const auto chosen =
-        std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.app->parsed(); });
-    return chosen == commands.end() ? static_cast<int>(ExitStatus::usage) : static_cast<int>(chosen->run());
+    const std::string version = version_head + std::string(snug::kernels::instruction_set()) + ")";
+    const Invocation wanted = read_command_line(commands, words, version);
+    if (wanted.command != nullptr) return static_cast<int>(wanted.command->run());
+    fmt::print(wanted.status == ExitStatus::answered ? stdout : stderr, "{}", wanted.text);
+    return static_cast<int>(wanted.status);
   } catch (const UsageError& error) {
     return fail(ExitStatus::usage, error.what());
   } catch (const snug::InputError& error) {
@@ -46,22 +48,8 @@ int run(const std::vector<Command>& commands) {
 
 int main(int argc, char** argv) {
   install_interrupt_handler();
-  CLI::App app{"Tight, proved bounds for the limit surfaces of subdivision meshes, and answers about them.",
-               "snug"};
-  app.set_version_flag("--version", version_head + std::string(snug::kernels::instruction_set()) + ")");
-  app.require_subcommand(1);
-  app.footer(
-      "Exit status: 0 answered, 2 usage, 3 unreadable file, 4 refused mesh, 5 tolerance or budget not "
-      "reached, "
-      "130 interrupted.");
-  const std::vector<Command> commands{add_info(app),      add_bound(app),   add_eval(app),
-                                      add_subdivide(app), add_collide(app), add_distance(app),
-                                      add_closest(app),   add_render(app),  add_experiment(app)};
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
-    return fail(ExitStatus::usage, (std::string(error.what()) + "; see snug --help").c_str());
-  }
-  return run(commands);
+  const std::vector<Command> commands{collide_command(),   distance_command(), closest_command(),
+                                      bound_command(),     eval_command(),     info_command(),
+                                      subdivide_command(), render_command(),   experiment_command()};
+  return run(commands, {argv + std::min(argc, 1), argv + argc});
 }

@@ -2,20 +2,15 @@
 
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "length.h"
 
 namespace snug::command {
 
-void add_model_options(CLI::App& app, ModelOptions& options) {
+void add_model_options(OptionList& list, ModelOptions& options) {
   std::vector<std::string> names;
   for (const Volume volume : all_volumes) names.emplace_back(name_of(volume));
-  app.add_option("--volume", options.volume,
-                 "Sets that trees are made of: aabb, obb, 14-dop, 18-dop or 26-dop")
-      ->check(CLI::IsMember(names))
-      ->capture_default_str();
-  add_common_options(app, options);
+  list.add(Group::research, "--volume NAME", &options.volume, "Sets that trees are made of").one_of(names);
+  add_common_options(list, options);
 }
 
 QueryModelOptions model_options(const ModelOptions& options, const std::string& command) {
@@ -32,15 +27,15 @@ QueryModelOptions model_options(const ModelOptions& options, const std::string& 
   return result;
 }
 
-void add_pair_options(CLI::App& app, PairOptions& options) {
-  app.add_option("A", options.mesh_a, "First control mesh (OBJ, OFF, PLY or STL)")->required();
-  app.add_option("B", options.mesh_b, "Second control mesh")->required();
-  app.add_option("--place-a", options.place_a, "Placement of A: twelve numbers, a row-major 3x4 motion");
-  app.add_option("--place-b", options.place_b, "Placement of B");
-  const auto schemes = CLI::IsMember({"auto", "loop", "catmark", "catmull-clark", "doo-sabin", "midedge"});
-  app.add_option("--scheme-a", options.scheme_a, "Scheme of A, before --scheme")->check(schemes);
-  app.add_option("--scheme-b", options.scheme_b, "Scheme of B, before --scheme")->check(schemes);
-  add_model_options(app, options);
+void add_pair_options(OptionList& list, PairOptions& options) {
+  list.add(Group::own, "A", &options.mesh_a, "First control mesh (OBJ, OFF, PLY or STL)");
+  list.add(Group::own, "B", &options.mesh_b, "Second control mesh");
+  list.add(Group::placement, "--place-a \"12 NUMBERS\"", &options.place_a,
+           "Placement of A: a row-major 3x4 motion");
+  list.add(Group::placement, "--place-b \"12 NUMBERS\"", &options.place_b, "Placement of B");
+  add_model_options(list, options);
+  add_scheme_option(list, "--scheme-a", options.scheme_a, "Scheme of A, before --scheme");
+  add_scheme_option(list, "--scheme-b", options.scheme_b, "Scheme of B, before --scheme");
 }
 
 PairArguments::PairArguments(const PairOptions& options, const std::string& command)

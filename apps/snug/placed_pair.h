@@ -14,7 +14,7 @@ namespace snug::command {
 struct ModelOptions : CommonOptions {
   std::string volume = name_of(QueryModelOptions{}.volume);
 };
-void add_model_options(CLI::App& app, ModelOptions& options);
+void add_model_options(OptionList& list, ModelOptions& options);
 /// Errors:    UsageError where `command` has no use for --bounds.
 [[nodiscard]] QueryModelOptions model_options(const ModelOptions& options, const std::string& command);
 
@@ -23,7 +23,7 @@ struct PairOptions : ModelOptions {
   std::string scheme_a, scheme_b;
   std::string place_a, place_b;
 };
-void add_pair_options(CLI::App& app, PairOptions& options);
+void add_pair_options(OptionList& list, PairOptions& options);
 
 /// Two meshes, read and made ready.
 class PairArguments {

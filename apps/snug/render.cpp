@@ -11,7 +11,6 @@
 #include <snug/base/parallel.h>
 #include <snug/io/atomic_file.h>
 #include <snug/io/number.h>
-#include <CLI/CLI.hpp>
 
 #include "common.h"
 #include "progress_bar.h"
@@ -311,36 +310,35 @@ ExitStatus run(const Options& options) {
 
 }  // namespace
 
-Command add_render(CLI::App& app) {
+Command render_command() {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("render", "A shaded picture of limit surfaces");
-  command->add_option("MESH", options->meshes, "Control meshes (OBJ, OFF, PLY or STL; - for standard input)")
-      ->required();
-  command->add_option("--size", options->size, "Pixels: WxH, or one number")->capture_default_str();
-  command->add_option("--samples", options->samples, "N * N rays a pixel")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str();
-  command->add_flag("--cage", options->cage, "The edges of the control meshes, too");
-  CLI::Option* enclosures =
-      command->add_flag("--enclosures", options->enclosures, "What encloses the surfaces, half transparent");
-  CLI::Option* tolerance =
-      command
-          ->add_option("--tolerance", options->tolerance,
-                       "Enclosures whose radius is at most half of this: mesh units, or 1%")
-          ->needs(enclosures);
-  command->add_option("--level", options->level, "Enclosures of patches split this often")
-      ->check(CLI::Range(0u, 12u))
-      ->excludes(tolerance)
-      ->needs(enclosures);
-  command->add_option("--view", options->view,
-                      "Direction of view, \"x y z\"; default: a three-quarter view from above");
-  command->add_option("--up", options->up, "What is up on the picture, \"x y z\"; default: y");
-  command
-      ->add_option("--place", options->placements,
-                   "Placement of a mesh: twelve numbers, a row-major 3x4 motion; once a mesh, in their order")
-      ->allow_extra_args(false);
-  add_common_options(*command, *options);
-  return {command, [options] { return run(*options); }};
+  OptionList list;
+  list.add(Group::own, "MESH", &options->meshes,
+           "Control meshes (OBJ, OFF, PLY or STL; - for standard input)");
+  list.add(Group::own, "--size WxH", &options->size, "Pixels: WxH, or one number");
+  list.add(Group::own, "--samples N", &options->samples, "N * N rays a pixel, N from 1 to 16").between(1, 16);
+  list.add(Group::own, "--cage", &options->cage, "The edges of the control meshes, too");
+  list.add(Group::own, "--enclosures", &options->enclosures, "What encloses the surfaces, half transparent");
+  list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
+           "Enclosures whose radius is at most half of this: mesh units, or 1%")
+      .needs("--enclosures");
+  list.add(Group::own, "--level N", &options->level, "Enclosures of patches split this often, 0 to 12")
+      .between(0, 12)
+      .excludes("--tolerance")
+      .needs("--enclosures");
+  list.add(Group::own, "--view \"X Y Z\"", &options->view,
+           "Direction of view; default: a three-quarter view from above");
+  list.add(Group::own, "--up \"X Y Z\"", &options->up, "What is up on the picture; default: y");
+  list.add(Group::placement, "--place \"12 NUMBERS\"", &options->placements,
+           "Placement of a mesh: a row-major 3x4 motion; once a mesh, in their order");
+  add_common_options(list, *options);
+  return {"render",
+          Topic::files,
+          "A shaded picture of limit surfaces",
+          {"snug render pawn.obj -o pawn.png",
+           "snug render pawn.obj --enclosures --cage --size 1200x900 -o pawn.png"},
+          std::move(list),
+          [options] { return run(*options); }};
 }
 
 }  // namespace snug::command

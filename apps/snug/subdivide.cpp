@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 #include <snug/io/mesh_file.h>
 #include <snug/query/subdivide.h>
-#include <CLI/CLI.hpp>
 
 #include "common.h"
 #include "curve.h"
@@ -64,23 +63,23 @@ ExitStatus run(const Options& options) {
 
 }  // namespace
 
-Command add_subdivide(CLI::App& app) {
+Command subdivide_command() {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("subdivide", "The refined control mesh, or its limit positions");
-  command->add_option("MESH", options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)")
-      ->required();
-  command->add_option("--level", options->level, "Steps of subdivision")
-      ->check(CLI::Range(0u, 12u))
-      ->capture_default_str();
-  command->add_flag("--limit", options->limit, "Move every vertex to its limit position");
-  command
-      ->add_option("--vertex-rule", options->vertex_rule,
-                   "Catmull-Clark's new place of a vertex: (Q + 2R + (n-3)S)/n, or the older (Q + 2R + S)/4")
-      ->check(CLI::IsMember({"standard", "older"}))
-      ->capture_default_str();
-  add_degree_option(*command, options->degree);
-  add_common_options(*command, *options);
-  return {command, [options] { return run(*options); }};
+  OptionList list;
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
+  list.add(Group::own, "--level N", &options->level, "Steps of subdivision, 0 to 12").between(0, 12);
+  list.add(Group::own, "--limit", &options->limit, "Move every vertex to its limit position");
+  list.add(Group::research, "--vertex-rule RULE", &options->vertex_rule,
+           "Catmull-Clark's new place of a vertex: (Q + 2R + (n-3)S)/n, or the older (Q + 2R + S)/4")
+      .one_of({"standard", "older"});
+  add_degree_option(list, options->degree);
+  add_common_options(list, *options);
+  return {"subdivide",
+          Topic::files,
+          "The refined control mesh, or its limit positions",
+          {"snug subdivide pawn.obj --level 3 --limit -o smooth.ply"},
+          std::move(list),
+          [options] { return run(*options); }};
 }
 
 }  // namespace snug::command

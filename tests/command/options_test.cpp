@@ -35,7 +35,6 @@ TEST(threads, change_nothing) {
 TEST(usage, ends_with_2) {
   const std::string star = model("star.obj");
   for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
-           {},
            {"frobnicate"},
            {"bound"},
            {"bound", star, "--tolerance", "-1"},
@@ -117,6 +116,13 @@ TEST(tables, bound_render_and_collide) {
   const Outcome picture = run_snug(
       {"render", star, "--enclosures", "--bounds", "table", "--size", "40", "-o", folder.file("star.png")});
   EXPECT_EQ(picture.status, 0) << picture.err;
+}
+
+TEST(no_command, shows_the_help_on_standard_error_and_ends_with_2) {
+  const Outcome outcome = run_snug({});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_EQ(outcome.err, run_snug({"--help"}).out);
 }
 
 TEST(help_and_version, go_to_standard_output) {

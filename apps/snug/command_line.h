@@ -1,0 +1,43 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "exit_status.h"
+#include "options.h"
+
+namespace snug::command {
+
+/// What commands are about; `snug --help` lists them by it, in this order.
+enum class Topic { two_surfaces, one_surface, files, research };
+
+/// A command: what --help says of it, its options, and what runs when it is chosen.
+struct Command {
+  const char* name;
+  Topic topic;
+  const char* summary;  ///< a sentence without its full stop
+  std::vector<std::string> examples;
+  OptionList options;
+  std::function<ExitStatus()> run;
+};
+
+/// What a command line asks for.
+struct Invocation {
+  const Command* command = nullptr;          ///< to run, if not null
+  std::string text = {};                     ///< else to print,
+  ExitStatus status = ExitStatus::answered;  ///< and to end with; on standard error if that is not `answered`
+};
+
+/// Reads the words after the program's name and fills the options of the command that they name.
+///
+/// Errors:    UsageError, one line that names the word and the next step.
+[[nodiscard]] Invocation read_command_line(const std::vector<Command>& commands,
+                                           const std::vector<std::string>& words, const std::string& version);
+
+/// What `snug --help` prints.
+[[nodiscard]] std::string help_of(const std::vector<Command>& commands);
+/// What `snug COMMAND --help` prints.
+[[nodiscard]] std::string help_of(const Command& command);
+
+}  // namespace snug::command
