@@ -35,7 +35,7 @@ void bench_patches(const char* title, ControlMesh mesh, std::shared_ptr<BoundLib
   group.run();
 }
 
-Placement random_placement(std::mt19937_64& random, double half_room) {
+Motion random_pose(std::mt19937_64& random, double half_room) {
   const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
   double q[4], norm = 0;
   do {
@@ -47,9 +47,10 @@ Placement random_placement(std::mt19937_64& random, double half_room) {
   } while (norm > 1 || norm < 0.01);
   for (double& x : q) x /= std::sqrt(norm);
   const auto [w, x, y, z] = std::to_array(q);
-  return {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), half_room * unit(),
-           2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x), half_room * unit(),
-           2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y), half_room * unit()}};
+  return Motion::from_3x4({1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
+                           half_room * unit(), 2 * (x * y + w * z), 1 - 2 * (x * x + z * z),
+                           2 * (y * z - w * x), half_room * unit(), 2 * (x * z - w * y), 2 * (y * z + w * x),
+                           1 - 2 * (x * x + y * y), half_room * unit()});
 }
 
 void bench_queries(const Surface& a, const Surface& b, const Options& options) {
@@ -67,8 +68,8 @@ void bench_queries(const Surface& a, const Surface& b, const Options& options) {
         std::mt19937_64 random(7);
         double within = 0;
         for (int i = 0; i < count; ++i) {
-          const Placement place_a = random_placement(random, (room - 1) / 2 * size);
-          const Placement place_b = random_placement(random, (room - 1) / 2 * size);
+          const Motion place_a = random_pose(random, (room - 1) / 2 * size);
+          const Motion place_b = random_pose(random, (room - 1) / 2 * size);
           within +=
               collide({model_a, scratch_a, place_a}, {model_b, scratch_b, place_b}, {tolerance * size, 0})
                   .verdict == Verdict::within;

@@ -30,11 +30,11 @@ std::unique_ptr<fcl::CollisionGeometryd> build(const TriangleMesh& mesh, std::si
   return model;
 }
 
-fcl::Transform3d transform(const Placement& placement) {
+fcl::Transform3d transform(const Motion& pose) {
   fcl::Transform3d result = fcl::Transform3d::Identity();
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) {
-      result.matrix()(row, column) = placement.m[static_cast<std::size_t>(4 * row + column)];
+      result.matrix()(row, column) = pose.numbers()[static_cast<std::size_t>(4 * row + column)];
     }
   }
   return result;
@@ -57,15 +57,14 @@ FclModel& FclModel::operator=(FclModel&&) noexcept = default;
 
 std::size_t FclModel::bytes() const { return impl_->bytes; }
 
-bool fcl_collide(const FclModel& a, const Placement& place_a, const FclModel& b, const Placement& place_b) {
+bool fcl_collide(const FclModel& a, const Motion& place_a, const FclModel& b, const Motion& place_b) {
   const fcl::CollisionRequestd request;
   fcl::CollisionResultd result;
   return fcl::collide(a.impl().geometry.get(), transform(place_a), b.impl().geometry.get(),
                       transform(place_b), request, result) > 0;
 }
 
-double fcl_distance(const FclModel& a, const Placement& place_a, const FclModel& b,
-                    const Placement& place_b) {
+double fcl_distance(const FclModel& a, const Motion& place_a, const FclModel& b, const Motion& place_b) {
   const fcl::DistanceRequestd request;
   fcl::DistanceResultd result;
   return fcl::distance(a.impl().geometry.get(), transform(place_a), b.impl().geometry.get(),

@@ -32,12 +32,12 @@ class FclModel {
 
 /// Do two triangles meet? One contact, without its details.
 /// Requires:  both models with the same boxes.
-[[nodiscard]] bool fcl_collide(const FclModel& a, const Placement& place_a, const FclModel& b,
-                               const Placement& place_b);
+[[nodiscard]] bool fcl_collide(const FclModel& a, const Motion& place_a, const FclModel& b,
+                               const Motion& place_b);
 
 /// Distance of two triangle meshes: no error allowed, no nearest points, no signed distance. Negative or 0 for meshes that meet.
 /// Requires:  FclBoxes::obbrss.
-[[nodiscard]] double fcl_distance(const FclModel& a, const Placement& place_a, const FclModel& b,
-                                  const Placement& place_b);
+[[nodiscard]] double fcl_distance(const FclModel& a, const Motion& place_a, const FclModel& b,
+                                  const Motion& place_b);
 
 }  // namespace snug::bench

@@ -20,12 +20,12 @@ struct TurnedBox {
   std::array<Vector3, 3> half;
 };
 
-TurnedBox turned(const Box3& box, const Placement& placement) {
+TurnedBox turned(const Box3& box, const Motion& pose) {
   const Vector3 half = 0.5 * (box.upper - box.lower);
   const std::array<Vector3, 3> edges{Vector3{half.x, 0, 0}, Vector3{0, half.y, 0}, Vector3{0, 0, half.z}};
   TurnedBox result;
-  result.middle = placement.apply(box.lower + half);
-  for (std::size_t k = 0; k < 3; ++k) result.half[k] = placement.rotate(edges[k]);
+  result.middle = pose.apply(box.lower + half);
+  for (std::size_t k = 0; k < 3; ++k) result.half[k] = pose.rotate(edges[k]);
   return result;
 }
 
@@ -135,10 +135,7 @@ std::vector<PlacedPair> contact_placements(const Model& a, const Model& b, doubl
     if (!(length(between) > 0)) continue;
     const Vector3 direction = (1 / length(between)) * between;
     const auto move_to = [&](double t) {
-      const Vector3 at = pair.a.translation() + t * direction;
-      pair.b.m[3] = at.x;
-      pair.b.m[7] = at.y;
-      pair.b.m[11] = at.z;
+      pair.b = pair.b.with_translation(pair.a.translation() + t * direction);
     };
     // First contact seen from outside: steps by margins that are proved to be kept do not pass it.
     double t = 2;

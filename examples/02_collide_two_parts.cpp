@@ -24,12 +24,11 @@ int main(int argc, char** argv) {
     snug::QueryScratch scratch_a(model_a), scratch_b(model_b);
     const double size = a.size() > b.size() ? a.size() : b.size();
     for (int step = 4; step >= 0; --step) {
-      snug::Placement place_b;
-      place_b.m[3] = 0.5 * step * size;
+      const snug::Motion pose_b = snug::Motion::from_translation({0.5 * step * size, 0, 0});
       const snug::Collision answer =
-          snug::collide({model_a, scratch_a, {}}, {model_b, scratch_b, place_b}, {.tolerance = 0.001 * size});
-      std::printf("moved by %g: %s, distance at least %g\n", place_b.m[3], snug::name_of(answer.verdict),
-                  answer.lower);
+          snug::collide({model_a, scratch_a, {}}, {model_b, scratch_b, pose_b}, {.tolerance = 0.001 * size});
+      std::printf("moved by %g: %s, distance at least %g\n", pose_b.translation().x,
+                  snug::name_of(answer.verdict), answer.lower);
     }
     return 0;
   } catch (const std::exception& error) {

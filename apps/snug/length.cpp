@@ -42,8 +42,8 @@ Length parse_length(const std::string& text, const std::string& option, bool zer
   return length;
 }
 
-Placement parse_placement(const std::string& text, const std::string& option) {
-  Placement placement;
+Motion parse_placement(const std::string& text, const std::string& option) {
+  std::array<double, 12> numbers{};
   std::size_t count = 0, i = 0;
   const auto blank = [](char c) { return c == ' ' || c == ',' || c == '\t' || c == '\n' || c == '\r'; };
   while (i < text.size()) {
@@ -56,7 +56,7 @@ Placement parse_placement(const std::string& text, const std::string& option) {
     double number = 0;
     const std::string word = text.substr(i, end - i);
     if (!parse_number(word, number)) throw UsageError(option + ": '" + word + "' is not a finite number");
-    if (count < 12) placement.m[count] = number;
+    if (count < 12) numbers[count] = number;
     ++count;
     i = end;
   }
@@ -65,11 +65,10 @@ Placement parse_placement(const std::string& text, const std::string& option) {
                      " numbers; a placement has twelve, a row-major 3x4 motion");
   }
   try {
-    require_rigid(placement);
+    return Motion::from_3x4(numbers);
   } catch (const InputError& error) {
     throw InputError(error.problem(), option + ": " + error.what());
   }
-  return placement;
 }
 
 }  // namespace snug::command

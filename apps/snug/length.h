@@ -28,8 +28,8 @@ struct Length {
                                   bool zero_allowed = false);
 
 /// Twelve numbers, separated by blanks or commas.
-/// Errors:    UsageError for another count or text that is no number; InputError (refused) from
-///            require_rigid.
-[[nodiscard]] Placement parse_placement(const std::string& text, const std::string& option);
+/// Errors:    UsageError for another count or text that is no number; InputError (pose) that
+///            names `option` from Motion.
+[[nodiscard]] Motion parse_placement(const std::string& text, const std::string& option);
 
 }  // namespace snug::command

@@ -44,7 +44,7 @@ class PairArguments {
  private:
   const PairOptions& options_;
   QueryModelOptions model_options_;
-  Placement place_a_, place_b_;
+  Motion place_a_, place_b_;
   std::optional<Surface> surface_a_, surface_b_;
   std::optional<QueryModel> model_a_, model_b_;
   std::optional<QueryScratch> scratch_a_, scratch_b_;

@@ -225,7 +225,7 @@ Shot compose(const Options& options, std::span<const PlacedSurface> parts, const
   std::vector<std::vector<Polyhedron>> solids;
   for (std::size_t part = 0; part < enclosures.of_part.size(); ++part) {
     solids.push_back(
-        enclosure_hulls(enclosures.of_part[part], parts[part].placement, units, options.threads, monitor));
+        enclosure_hulls(enclosures.of_part[part], parts[part].pose, units, options.threads, monitor));
     for (const Polyhedron& solid : solids.back())
       visible.insert(visible.end(), solid.points.begin(), solid.points.end());
   }
@@ -245,7 +245,7 @@ ExitStatus run(const Options& options) {
   const View view = choose_view(options);
   std::optional<Length> tolerance;
   if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--tolerance");
-  std::vector<Placement> placements;
+  std::vector<Motion> placements;
   for (const std::string& text : options.placements) placements.push_back(parse_placement(text, "--place"));
   placements.resize(options.meshes.size());
   CommonOptions to_standard_output = options;

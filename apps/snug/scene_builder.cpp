@@ -30,7 +30,7 @@ PictureUnits::PictureUnits(std::span<const PlacedSurface> parts) {
     const Box3 box = used_box(part.surface->mesh());
     if (box.empty()) continue;
     largest = std::max({largest, max_abs(box.lower - Point3{}), max_abs(box.upper - Point3{}),
-                        max_abs(part.placement.translation())});
+                        max_abs(part.pose.translation())});
   }
   // Two halvings: sums of a rotated point and a translation stay small.
   scale_ = PowerOfTwo::normalising(largest) * PowerOfTwo(-2);
@@ -38,7 +38,7 @@ PictureUnits::PictureUnits(std::span<const PlacedSurface> parts) {
   for (const PlacedSurface& part : parts) {
     const ControlMesh& mesh = part.surface->mesh();
     for (const VertexId v : mesh.face_vertices) {
-      box.add(placed(part.placement, scale_.apply(mesh.points[v.index()])));
+      box.add(placed(part.pose, scale_.apply(mesh.points[v.index()])));
     }
   }
   if (box.empty()) return;
@@ -77,8 +77,8 @@ Tessellation::Tessellation(const PlacedSurface& part, const PictureUnits& units,
           const double v = static_cast<double>(j) / steps_,
                        u = std::fmin(static_cast<double>(i) / steps_, 1 - v);
           const SurfacePoint point = evaluate_at(TriangleParameter{u, v});
-          positions_[at] = units(part.placement, point.position);
-          if (point.normal) normals_[at] = units(part.placement, *point.normal);
+          positions_[at] = units(part.pose, point.position);
+          if (point.normal) normals_[at] = units(part.pose, *point.normal);
         }
       }
     }
@@ -166,9 +166,8 @@ void Tessellation::add_to(Scene& scene, std::uint32_t material, int threads) con
   });
 }
 
-std::vector<Polyhedron> enclosure_hulls(std::span<const IntervalTriangle> enclosures,
-                                        const Placement& placement, const PictureUnits& units, int threads,
-                                        const WorkMonitor& monitor) {
+std::vector<Polyhedron> enclosure_hulls(std::span<const IntervalTriangle> enclosures, const Motion& pose,
+                                        const PictureUnits& units, int threads, const WorkMonitor& monitor) {
   std::vector<Polyhedron> hulls(enclosures.size());
   parallel_for(enclosures.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -176,7 +175,7 @@ std::vector<Polyhedron> enclosure_hulls(std::span<const IntervalTriangle> enclos
       IntervalTriangle scaled = enclosures[i];
       for (Box3& box : scaled.corner) box = {units.scale().apply(box.lower), units.scale().apply(box.upper)};
       hulls[i] = hull_of_boxes(scaled);
-      for (Point3& p : hulls[i].points) p = units.from_scaled(placement, p);
+      for (Point3& p : hulls[i].points) p = units.from_scaled(pose, p);
     }
   });
   return hulls;
@@ -217,9 +216,7 @@ void add_polyhedron(Scene& scene, const Polyhedron& solid, Point3 eye, const Sol
 void add_cage(Scene& scene, const PlacedSurface& part, const PictureUnits& units, double line_width,
               Colour line_colour) {
   const Topology& topology = part.surface->topology();
-  const auto place = [&](VertexId v) {
-    return units(part.placement, part.surface->mesh().points[v.index()]);
-  };
+  const auto place = [&](VertexId v) { return units(part.pose, part.surface->mesh().points[v.index()]); };
   for (std::size_t e = 0; e < topology.edge_count(); ++e) {
     const HalfEdge h = topology.half_of(EdgeId(e));
     scene.lines.push_back({place(topology.from(h)), place(topology.to(h)), line_width, line_colour});

@@ -18,7 +18,7 @@ namespace snug::command {
 /// Requires:  the surface outlives it.
 struct PlacedSurface {
   const Surface* surface;
-  Placement placement;
+  Motion pose;
 };
 
 /// The coordinates of a picture: the box of the placed control meshes, whatever its size and place, is
@@ -27,23 +27,23 @@ class PictureUnits {
  public:
   explicit PictureUnits(std::span<const PlacedSurface> parts);
 
-  /// From mesh units, before the placement, to the picture.
-  [[nodiscard]] Point3 operator()(const Placement& placement, Point3 p) const {
-    return from_scaled(placement, scale_.apply(p));
+  /// From mesh units, before the pose, to the picture.
+  [[nodiscard]] Point3 operator()(const Motion& pose, Point3 p) const {
+    return from_scaled(pose, scale_.apply(p));
   }
-  [[nodiscard]] Vector3 operator()(const Placement& placement, Vector3 direction) const {
-    return placement.rotate(direction);
+  [[nodiscard]] Vector3 operator()(const Motion& pose, Vector3 direction) const {
+    return pose.rotate(direction);
   }
   /// The same for points that scale() was applied to.
-  [[nodiscard]] Point3 from_scaled(const Placement& placement, Point3 p) const {
-    return Point3{} + zoom_ * (placed(placement, p) - centre_);
+  [[nodiscard]] Point3 from_scaled(const Motion& pose, Point3 p) const {
+    return Point3{} + zoom_ * (placed(pose, p) - centre_);
   }
   /// A first step that brings the largest coordinate to about 1, without rounding.
   [[nodiscard]] PowerOfTwo scale() const { return scale_; }
 
  private:
-  [[nodiscard]] Point3 placed(const Placement& placement, Point3 p) const {
-    return Point3{} + placement.rotate(p - Point3{}) + scale_.apply(placement.translation());
+  [[nodiscard]] Point3 placed(const Motion& pose, Point3 p) const {
+    return Point3{} + pose.rotate(p - Point3{}) + scale_.apply(pose.translation());
   }
 
   PowerOfTwo scale_;
@@ -91,7 +91,7 @@ class Tessellation {
 
 /// The hull of each enclosure, in picture units.
 [[nodiscard]] std::vector<Polyhedron> enclosure_hulls(std::span<const IntervalTriangle> enclosures,
-                                                      const Placement& placement, const PictureUnits& units,
+                                                      const Motion& pose, const PictureUnits& units,
                                                       int threads, const WorkMonitor& monitor);
 
 /// How solids are drawn: facets of one material, outlined.

@@ -24,8 +24,7 @@ int main() {
 
   const snug::QueryModel model(surface);
   snug::QueryScratch scratch(model), other(model);
-  snug::Placement aside;
-  aside.m[3] = 2;
+  const snug::Motion aside = snug::Motion::from_translation({2, 0, 0});
   const snug::Collision answer =
       snug::collide({model, scratch, {}}, {model, other, aside}, {.tolerance = 0.01});
   std::printf("consumer: %llu enclosures, %s\n", static_cast<unsigned long long>(summary.count),

@@ -25,12 +25,12 @@ struct Pair {
         model_b(b, {.threads = threads}),
         scratch_a(model_a),
         scratch_b(model_b) {}
-  Collision ask(const Placement& place, const CollideOptions& options) {
+  Collision ask(const Motion& place, const CollideOptions& options) {
     return collide({model_a, scratch_a, {}}, {model_b, scratch_b, place}, options);
   }
 };
 
-Placement moved(double x, double y, double z) { return {{1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z}}; }
+Motion moved(double x, double y, double z) { return Motion::from_translation({x, y, z}); }
 
 bool same(const Collision& x, const Collision& y) {
   return x.verdict == y.verdict && x.lower == y.lower && x.upper == y.upper && x.witness == y.witness &&
@@ -76,7 +76,7 @@ TEST(collide, does_not_depend_on_threads_or_earlier_queries) {
       oracle::meshes::disturbed(oracle::meshes::quartered(oracle::meshes::icosahedron()), 10, 0.1, random);
   Pair one(x, oracle::meshes::bipyramid(7), 1), two(x, oracle::meshes::bipyramid(7), 2);
   for (int trial = 0; trial < 300; ++trial) {
-    const Placement place = testing::random_placement(random, testing::random_vector(random, 1.5));
+    const Motion place = testing::random_placement(random, testing::random_vector(random, 1.5));
     const CollideOptions options{0.002, 0};
     const Collision answer = one.ask(place, options);
     EXPECT_TRUE(same(answer, two.ask(place, options)));
@@ -134,7 +134,7 @@ TEST(collide, proves_contact_at_tolerance_zero) {
   EXPECT_EQ(closed.ask(moved(3, 0, 0), {}).verdict, Verdict::separated);
   // Open surfaces cross as well: one stands on edge in the other.
   Pair open(oracle::meshes::grid(4, 4), oracle::meshes::grid(4, 4));
-  const Placement upright{{1, 0, 0, 0.3, 0, 0, -1, 1.9, 0, 1, 0, -1.7}};
+  const Motion upright = Motion::from_3x4({1, 0, 0, 0.3, 0, 0, -1, 1.9, 0, 1, 0, -1.7});
   EXPECT_EQ(open.ask(upright, {}).verdict, Verdict::intersecting);
 }
 
@@ -147,13 +147,9 @@ TEST(collide, touching_surfaces_stay_undecided_at_tolerance_zero) {
 TEST(collide, surfaces_in_one_plane_end_within_bounded_memory) {
   Pair pair(oracle::meshes::grid(16, 16), oracle::meshes::grid(16, 16));
   std::mt19937_64 random(32);
-  const Placement tilted = testing::random_placement(random, {});
-  const double c = std::cos(0.3), s = std::sin(0.3);
-  Placement turned = tilted;  // once more, about the plane's own normal
-  for (std::size_t i = 0; i < 3; ++i) {
-    turned.m[4 * i] = c * tilted.m[4 * i] + s * tilted.m[4 * i + 1];
-    turned.m[4 * i + 1] = c * tilted.m[4 * i + 1] - s * tilted.m[4 * i];
-  }
+  const Motion tilted = testing::random_placement(random, {});
+  // Once more, about the plane's own normal.
+  const Motion turned = tilted * Motion::from_axis_angle({0, 0, 1}, 0.3);
   const Collision answer =
       collide({pair.model_a, pair.scratch_a, tilted}, {pair.model_b, pair.scratch_b, turned}, {});
   EXPECT_EQ(answer.verdict, Verdict::undecided);
@@ -210,7 +206,7 @@ TEST(collide, answers_the_same_with_every_sort_of_volume) {
   const Surface a = testing::surface_of(oracle::meshes::icosahedron()),
                 b = testing::surface_of(oracle::meshes::bipyramid(7));
   std::mt19937_64 random(31);
-  std::vector<Placement> places;
+  std::vector<Motion> places;
   for (int i = 0; i < 60; ++i) {
     places.push_back(testing::random_placement(random, testing::random_vector(random, 2)));
   }

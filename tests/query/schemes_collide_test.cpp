@@ -86,16 +86,16 @@ std::unique_ptr<Body> dual_body(const std::string& name, const oracle::TaggedMes
   return body;
 }
 
-Point3 placed(const Placement& place, const Point3& p) {
+Point3 placed(const Motion& place, const Point3& p) {
   Point3 result;
+  const auto& m = place.numbers();
   for (std::size_t k = 0; k < 3; ++k) {
-    result[k] =
-        place.m[4 * k] * p[0] + place.m[4 * k + 1] * p[1] + place.m[4 * k + 2] * p[2] + place.m[4 * k + 3];
+    result[k] = m[4 * k] * p[0] + m[4 * k + 1] * p[1] + m[4 * k + 2] * p[2] + m[4 * k + 3];
   }
   return result;
 }
 
-std::vector<Point3> placed(const Placement& place, const std::vector<Point3>& points) {
+std::vector<Point3> placed(const Motion& place, const std::vector<Point3>& points) {
   std::vector<Point3> result;
   for (const Point3& p : points) result.push_back(placed(place, p));
   return result;
@@ -127,7 +127,7 @@ NearestPair nearest_pair(const std::vector<Point3>& a, const std::vector<Point3>
 }
 
 // What samples can say of one placement; `counts` tells how often each verdict came.
-void check(const Body& a, const Body& b, const Placement& place_a, const Placement& place_b,
+void check(const Body& a, const Body& b, const Motion& place_a, const Motion& place_b,
            std::map<std::string, int>& counts) {
   const std::string where = a.name + " and " + b.name;
   const double size = std::max(a.surface.size(), b.surface.size());
@@ -162,15 +162,15 @@ void check_pair(const Body& a, const Body& b, int trials, std::mt19937_64& rando
                 std::map<std::string, int>& counts) {
   const double size = std::max(a.surface.size(), b.surface.size());
   for (int trial = 0; trial < trials; ++trial) {
-    const Placement place_a = testing::random_placement(random, testing::random_vector(random, 0.2 * size));
-    Placement place_b = testing::random_placement(random, testing::random_vector(random, 0.9 * size));
+    const Motion place_a = testing::random_placement(random, testing::random_vector(random, 0.2 * size));
+    Motion place_b = testing::random_placement(random, testing::random_vector(random, 0.9 * size));
     if (trial % 2 == 1) {
       const double target = size * std::pow(10.0, -static_cast<double>(1 + random() % 5));
       for (int step = 0; step < 3; ++step) {
         const NearestPair near = nearest_pair(placed(place_a, a.samples), placed(place_b, b.samples));
         if (near.distance == 0) break;
         const double pull = (near.distance - target) / near.distance;
-        for (std::size_t k = 0; k < 3; ++k) place_b.m[4 * k + 3] += pull * near.from_b_to_a[k];
+        place_b = place_b.with_translation(place_b.translation() + pull * near.from_b_to_a);
       }
     }
     check(a, b, place_a, place_b, counts);
@@ -182,8 +182,7 @@ void check_pair(const Body& a, const Body& b, int trials, std::mt19937_64& rando
 void check_with_itself(const Body& a, const Body& smaller, std::map<std::string, int>& counts) {
   const double size = a.surface.size();
   for (const double hair : {0.0, 1e-15, 1e-9, 1e-4}) {
-    Placement place;
-    place.m[3] = hair * size;
+    const Motion place = Motion::from_translation({hair * size, 0, 0});
     QueryScratch scratch(a.model), other(a.model);
     const Collision answer = collide({a.model, scratch, {}}, {a.model, other, place}, {1e-3 * size, 0});
     ++counts[name_of(answer.verdict)];

@@ -65,9 +65,10 @@ TEST(collide, agrees_with_brute_force) {
     const double size = std::max(pair.a.size(), pair.b.size());
     const double tolerance =
         size * 0.05 * std::pow(0.02, static_cast<double>(random() >> 11) * 0x1p-53);  // 5 % to 0.1 %
-    const Placement place_a = testing::random_placement(random, {0.1, 0.2, 0.3});
-    Placement place_b = testing::random_placement(random, testing::random_vector(random, 0.9 * size));
-    oracle::TwinDistance truth = pair.distance_twin.query(place_a.m, place_b.m, {1e-3 * size, 0});
+    const Motion place_a = testing::random_placement(random, {0.1, 0.2, 0.3});
+    Motion place_b = testing::random_placement(random, testing::random_vector(random, 0.9 * size));
+    oracle::TwinDistance truth =
+        pair.distance_twin.query(place_a.numbers(), place_b.numbers(), {1e-3 * size, 0});
     const bool tune = trial % 3 == 0 && truth.lower > 0;
     if (tune) {
       // Along the line of the nearest points the distance falls as the step grows, to first order and never
@@ -77,8 +78,8 @@ TEST(collide, agrees_with_brute_force) {
         Vector3 d;
         for (std::size_t k = 0; k < 3; ++k) d[k] = truth.on_a[k] - truth.on_b[k];
         const double pull = (length(d) - target) / length(d);
-        for (std::size_t k = 0; k < 3; ++k) place_b.m[4 * k + 3] += pull * d[k];
-        truth = pair.distance_twin.query(place_a.m, place_b.m, {0.02 * tolerance, 1e-3});
+        place_b = place_b.with_translation(place_b.translation() + pull * d);
+        truth = pair.distance_twin.query(place_a.numbers(), place_b.numbers(), {0.02 * tolerance, 1e-3});
       }
     }
     tuned += truth.upper >= 0.5 * tolerance && truth.lower <= 2 * tolerance;
@@ -109,8 +110,8 @@ TEST(collide, agrees_with_brute_force) {
       ASSERT_LE(distance(w[0], w[1]), tolerance) << trial;
       ASSERT_LE(*answer.upper, tolerance) << trial;
       const oracle::Point on_a{w[0].x, w[0].y, w[0].z}, on_b{w[1].x, w[1].y, w[1].z};
-      ASSERT_TRUE(pair.surface_a.on_surface(place_a.m, on_a, 1e-11 * size)) << trial;
-      ASSERT_TRUE(pair.surface_b.on_surface(place_b.m, on_b, 1e-11 * size)) << trial;
+      ASSERT_TRUE(pair.surface_a.on_surface(place_a.numbers(), on_a, 1e-11 * size)) << trial;
+      ASSERT_TRUE(pair.surface_b.on_surface(place_b.numbers(), on_b, 1e-11 * size)) << trial;
     }
   }
   std::cout << total << " placements, " << tuned << " between 0.5 and 2 tolerances:";

@@ -323,8 +323,7 @@ TEST(contact, bounds_hold_for_sizes_from_one_end_of_the_doubles_to_the_other) {
           const Surface low = surface(a, 0), high = surface(b, by_placement ? 0 : h);
           const QueryModel model_a(low), model_b(high);
           QueryScratch scratch_a(model_a), scratch_b(model_b);
-          Placement place;
-          if (by_placement) place.m[11] = h;
+          const Motion place = Motion::from_translation({0, 0, by_placement ? h : 0});
           CollideOptions options;
           options.budget = 300;
           for (const double tolerance : {0.0, h / 4, 2 * h, std::ldexp(1e-3, std::max(a, b))}) {

@@ -246,10 +246,10 @@ oracle::ContactSurface& Contestants::twin(std::size_t side) {
   return *s.twin;
 }
 
-Placement Contestants::scaled(const oracle::Placement& place) const {
-  Placement result;
-  for (std::size_t i = 0; i < 12; ++i) result.m[i] = i % 4 == 3 ? scaled(place[i]) : place[i];
-  return result;
+Motion Contestants::scaled(const oracle::Placement& place) const {
+  oracle::Placement result = place;
+  for (const std::size_t i : {3, 7, 11}) result[i] = scaled(place[i]);
+  return Motion::from_3x4(result);
 }
 
 struct Trials::Pool {

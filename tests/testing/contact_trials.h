@@ -38,7 +38,7 @@ class Contestants {
   [[nodiscard]] double scaled(double length) const { return std::ldexp(length, exponent_); }
   [[nodiscard]] double back(double length) const { return std::ldexp(length, -exponent_); }
   [[nodiscard]] oracle::Point back(const Point3& p) const { return {back(p.x), back(p.y), back(p.z)}; }
-  [[nodiscard]] Placement scaled(const oracle::Placement& place) const;
+  [[nodiscard]] Motion scaled(const oracle::Placement& place) const;
 
  private:
   struct Side {

@@ -16,9 +16,8 @@ constexpr int most_attempts = 2000, most_attempts_within = 64;
 
 class Query {
  public:
-  Query(const PlacedModel& a, const PlacedModel& b, const std::array<double, 2>& defects,
-        const CollideOptions& options, const WorkMonitor& monitor)
-      : search_(a, b, defects), options_(options), monitor_(monitor) {
+  Query(const PlacedModel& a, const PlacedModel& b, const CollideOptions& options, const WorkMonitor& monitor)
+      : search_(a, b), options_(options), monitor_(monitor) {
     margin_ = search_.length_up(options.margin);
     reach_ = search_.length_down((options.margin + options.tolerance) * (1 - unit_roundoff));
   }
@@ -191,12 +190,11 @@ Collision collide(const PlacedModel& a, const PlacedModel& b, const CollideOptio
     static_cast<void>(a.model.solid());
     static_cast<void>(b.model.solid());
   }
-  const std::array<double, 2> defects = rigidity_defects(a, b);
   if (const double gap = outer_gap(a, b); gap > options.margin) {
     return {
         .verdict = Verdict::separated, .lower = gap, .upper = {}, .witness = {}, .inner = {}, .stats = {}};
   }
-  Collision answer = Query(a, b, defects, options, monitor).run();
+  Collision answer = Query(a, b, options, monitor).run();
   const bool proved = answer.verdict == Verdict::intersecting ||
                       (answer.verdict == Verdict::within && !options.prove_contact);
   return options.solid && !proved ? as_solids(a, b, answer, monitor) : answer;

@@ -48,7 +48,7 @@ struct Collision {
 ///            solids with a common point), all in exact arithmetic for these very doubles; lower and upper bound the distance of
 ///            the surfaces, with `solid` that of the solids. Where several verdicts are true the choice depends on the input alone, not on threads or
 ///            earlier queries.
-/// Requires:  rigid placements (require_rigid); models with the same sort of volume.
+/// Requires:  models with the same sort of volume.
 /// Errors:    InputError if a tolerance or margin is negative or not finite, if a result does not fit a double, or with
 ///            `solid` if a surface is not closed, wherever it is; Interrupted.
 /// Cost:      some 100 ns for surfaces far apart, microseconds in contact (bench/results/collide.txt).

@@ -39,7 +39,7 @@ bool beyond(const PlacedFrame& frame, const Ball& ball, const Point3& placed, do
 
 Nesting nesting(const PlacedModel& a, const PlacedModel& b, const WorkMonitor& monitor) {
   const std::array<const PlacedModel*, 2> side{&a, &b};
-  PairSearch search(a, b, rigidity_defects(a, b));
+  PairSearch search(a, b);
   Nesting found;
   for (std::size_t s = 0; s < 2; ++s) {
     const PlacedModel& other = *side[1 - s];

@@ -24,7 +24,7 @@ class Query {
  public:
   Query(const PlacedModel& a, const PlacedModel& b, const DistanceOptions& options,
         const WorkMonitor& monitor)
-      : search_(a, b, rigidity_defects(a, b)),
+      : search_(a, b),
         options_(options),
         monitor_(monitor),
         bounds_(search_.length_down(options.absolute), options.relative, noise) {}

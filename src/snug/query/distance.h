@@ -27,7 +27,7 @@ struct Distance {
 ///
 /// Guarantee: lower <= distance <= upper for these very doubles, also where precision is not reached. The result depends on
 ///            the input alone, not on threads or earlier queries.
-/// Requires:  rigid placements (require_rigid); models with the same sort of volume.
+/// Requires:  models with the same sort of volume.
 /// Errors:    InputError for a precision that is negative or not finite, if a result does not fit a double, or with `solid` if
 ///            a surface is not closed, wherever it is; Interrupted.
 /// Cost:      some 200 microseconds at 0.1 % of the size (bench/results/distance.txt).

@@ -12,19 +12,19 @@
 namespace snug {
 namespace {
 
-PlacedFrame make_frame(const PlacedModel& model, PowerOfTwo world, double defect) {
-  const Placement& placement = model.placement;
-  return {.rows = {placement.row(0), placement.row(1), placement.row(2)},
+PlacedFrame make_frame(const PlacedModel& model, PowerOfTwo world) {
+  const Motion& pose = model.pose;
+  return {.rows = {pose.row(0), pose.row(1), pose.row(2)},
           .scale = (model.model.surface().scale().inverse() * world).apply(1.0),
-          .translation = world.apply(placement.translation()),
-          .defect = defect};
+          .translation = world.apply(pose.translation()),
+          .defect = pose.defect()};
 }
 
 // The power of two that brings both placed surfaces to about 1.
 PowerOfTwo joint_scale(const PlacedModel& a, const PlacedModel& b) {
   // Surfaces are at most 2 in their own scales.
   const int exponent = std::max(-a.model.surface().scale().exponent(), -b.model.surface().scale().exponent());
-  const double t = std::max(max_abs(a.placement.translation()), max_abs(b.placement.translation()));
+  const double t = std::max(max_abs(a.pose.translation()), max_abs(b.pose.translation()));
   const PowerOfTwo scale(-exponent);
   return scale.apply(t) < 2 ? scale : PowerOfTwo(-std::max(exponent, std::ilogb(t)));
 }
@@ -39,9 +39,8 @@ constexpr float deep_overlap = 0.4F;
 double ball_to_box(const PlacedModel& model, const Point3& p, double radius, double between) {
   const Obb& box = model.model.box();
   if (between <= radius + std::min({box.half.x, box.half.y, box.half.z})) return -INFINITY;
-  const Vector3 d = p - model.placement.apply(box.centre);
-  const Vector3 local =
-      d.x * model.placement.row(0) + d.y * model.placement.row(1) + d.z * model.placement.row(2);
+  const Vector3 d = p - model.pose.apply(box.centre);
+  const Vector3 local = d.x * model.pose.row(0) + d.y * model.pose.row(1) + d.z * model.pose.row(2);
   double sum = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const double beyond = std::max(0.0, std::fabs(dot(box.axes[k], local)) - box.half[k]);
@@ -55,15 +54,15 @@ double ball_to_box(const PlacedModel& model, const Point3& p, double radius, dou
 double outer_gap(const PlacedModel& a, const PlacedModel& b) {
   const Ball& ball_a = a.model.ball();
   const Ball& ball_b = b.model.ball();
-  const Point3 centre_a = a.placement.apply(ball_a.centre), centre_b = b.placement.apply(ball_b.centre);
+  const Point3 centre_a = a.pose.apply(ball_a.centre), centre_b = b.pose.apply(ball_b.centre);
   const double between = length(centre_b - centre_a);
   if (!(between > 0x1p-400 && between < 0x1p400))
     return -INFINITY;  // squares are far from both ends of the range
   // Rotations within rigidity_tolerance: their inverses, which are their transposes but for that, and radii; products and
   // sums of three, far below that.
   const double reach = between + max_abs(ball_a.centre - Point3{}) + max_abs(ball_b.centre - Point3{}) +
-                       max_abs(a.placement.translation()) * 0x1p-20 +
-                       max_abs(b.placement.translation()) * 0x1p-20 + ball_a.radius + ball_b.radius;
+                       max_abs(a.pose.translation()) * 0x1p-20 + max_abs(b.pose.translation()) * 0x1p-20 +
+                       ball_a.radius + ball_b.radius;
   const double doubt = 16 * rigidity_tolerance * reach;
   const double balls = between - ball_a.radius - ball_b.radius - doubt;
   if (balls > 0) return balls;
@@ -82,16 +81,10 @@ void nearest_last(std::vector<NodePair>& pairs, std::size_t from) {
   std::swap(pairs[nearest], pairs.back());
 }
 
-std::array<double, 2> rigidity_defects(const PlacedModel& a, const PlacedModel& b) {
-  const std::array<double, 2> defects{rigidity_defect(a.placement), rigidity_defect(b.placement)};
-  SNUG_EXPECT(defects[0] <= rigidity_tolerance && defects[1] <= rigidity_tolerance);
-  return defects;
-}
-
-PairSearch::PairSearch(const PlacedModel& a, const PlacedModel& b, const std::array<double, 2>& defects)
+PairSearch::PairSearch(const PlacedModel& a, const PlacedModel& b)
     : scratch_{&a.scratch, &b.scratch},
       world_(joint_scale(a, b)),
-      frame_{make_frame(a, world_, defects[0]), make_frame(b, world_, defects[1])},
+      frame_{make_frame(a, world_), make_frame(b, world_)},
       scale_{static_cast<float>(frame_[0].scale), static_cast<float>(frame_[1].scale)},
       volume_(a.model.tree().blocks().volume()) {
   SNUG_EXPECT(&a.scratch != &b.scratch && &a.scratch.model() == &a.model && &b.scratch.model() == &b.model);

@@ -32,19 +32,14 @@ void nearest_last(std::vector<NodePair>& pairs, std::size_t from);
 
 /// Lower bound, in mesh units, of the distance of two placed models, by balls and boxes around them: cheap. Not positive
 /// where none shows, or where doubles do not reach.
-/// Requires:  rigid placements.
 [[nodiscard]] double outer_gap(const PlacedModel& a, const PlacedModel& b);
-
-/// Upper bounds of how far two placements are from rigid.
-/// Requires:  rigid placements (require_rigid).
-[[nodiscard]] std::array<double, 2> rigidity_defects(const PlacedModel& a, const PlacedModel& b);
 
 /// What queries between two placed models share: frames, comparisons of nodes and of pieces, limit points. Lengths are in
 /// units of its own, powers of two away from mesh units, in which both placed models are at most about 2 large and far.
 class PairSearch {
  public:
-  /// Requires:  rigidity_defects(a, b), models with the same sort of volume, two scratches.
-  PairSearch(const PlacedModel& a, const PlacedModel& b, const std::array<double, 2>& defects);
+  /// Requires:  models with the same sort of volume, two scratches.
+  PairSearch(const PlacedModel& a, const PlacedModel& b);
 
   /// From mesh units; a lower bound and an upper bound of the exact length.
   [[nodiscard]] double length_down(double mesh_units) const;

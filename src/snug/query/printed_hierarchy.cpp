@@ -98,9 +98,9 @@ std::size_t halve(std::span<const OffsetTriangle*> members, const Obb& box) {
 }
 
 // Radii are those of rigid motions exactly: nothing is proved here.
-OffsetTriangle placed(const OffsetTriangle& leaf, const Placement& placement) {
+OffsetTriangle placed(const OffsetTriangle& leaf, const Motion& pose) {
   OffsetTriangle result = leaf;
-  for (Point3& p : result.base) p = placement.apply(p);
+  for (Point3& p : result.base) p = pose.apply(p);
   return result;
 }
 
@@ -149,7 +149,7 @@ PrintedHierarchy::PrintedHierarchy(const Surface& surface, const LeafOptions& op
 }
 
 // The fifteen axes; those across two edges are not of length 1, which lets fewer boxes be apart.
-bool PrintedHierarchy::apart(const Node& a, const Placement& place_a, const Node& b, const Placement& place_b,
+bool PrintedHierarchy::apart(const Node& a, const Motion& place_a, const Node& b, const Motion& place_b,
                              double epsilon) {
   std::array<Vector3, 3> axes_a, axes_b;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -186,8 +186,8 @@ bool PrintedHierarchy::apart(const Node& a, const Placement& place_a, const Node
   return false;
 }
 
-bool PrintedHierarchy::says_separated(const PrintedHierarchy& a, const Placement& place_a,
-                                      const PrintedHierarchy& b, const Placement& place_b, double epsilon) {
+bool PrintedHierarchy::says_separated(const PrintedHierarchy& a, const Motion& place_a,
+                                      const PrintedHierarchy& b, const Motion& place_b, double epsilon) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> stack{{0, 0}};
   while (!stack.empty()) {
     const auto [i, j] = stack.back();

@@ -41,10 +41,9 @@ class PrintedHierarchy {
   /// Does no pair of leaves stop the descent as printed? `epsilon` is what the pair test adds to the radii.
   ///
   /// Guarantee: none: see printed_test_says_separated.
-  /// Requires:  rigid placements; coordinates of at most about 4.
-  [[nodiscard]] static bool says_separated(const PrintedHierarchy& a, const Placement& place_a,
-                                           const PrintedHierarchy& b, const Placement& place_b,
-                                           double epsilon);
+  /// Requires:  coordinates of at most about 4.
+  [[nodiscard]] static bool says_separated(const PrintedHierarchy& a, const Motion& place_a,
+                                           const PrintedHierarchy& b, const Motion& place_b, double epsilon);
 
  private:
   struct Node {
@@ -52,8 +51,8 @@ class PrintedHierarchy {
     std::uint32_t first_child = 0;  // its two children follow each other; 0 for a leaf
     std::uint32_t leaf = 0;
   };
-  [[nodiscard]] static bool apart(const Node& a, const Placement& place_a, const Node& b,
-                                  const Placement& place_b, double epsilon);
+  [[nodiscard]] static bool apart(const Node& a, const Motion& place_a, const Node& b, const Motion& place_b,
+                                  double epsilon);
 
   std::vector<OffsetTriangle> leaves_;
   std::vector<Node> nodes_;

@@ -161,7 +161,7 @@ class QueryScratch {
 struct PlacedModel {
   const QueryModel& model;
   QueryScratch& scratch;  ///< of this model and of no other one in the same query
-  Placement placement;
+  Motion pose;
 };
 
 }  // namespace snug

@@ -26,14 +26,15 @@ std::array<double, 4> any_quaternion(std::mt19937_64& random) {
   }
 }
 
-Placement any_placement(double reach, std::mt19937_64& random) {
+Motion any_pose(double reach, std::mt19937_64& random) {
   const auto [w, x, y, z] = any_quaternion(random);
-  Placement placement;
-  placement.m = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),     0,
-                 2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),     0,
-                 2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y), 0};
-  for (const std::size_t entry : {3, 7, 11}) placement.m[entry] = reach * symmetric(random);
-  return placement;
+  const std::array<double, 12> rotation{
+      1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),     0,
+      2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),     0,
+      2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y), 0};
+  Vector3 translation;
+  for (std::size_t k = 0; k < 3; ++k) translation[k] = reach * symmetric(random);
+  return Motion::from_3x4(rotation).with_translation(translation);
 }
 
 }  // namespace
@@ -51,8 +52,8 @@ ControlMesh unit_model(ControlMesh mesh) {
 PlacedPair place_in_room(double side, std::mt19937_64& random) {
   SNUG_EXPECT(side > 1 && std::isfinite(side));
   const double reach = (side - 1) / 2;
-  const Placement a = any_placement(reach, random);
-  return {a, any_placement(reach, random)};
+  const Motion a = any_pose(reach, random);
+  return {a, any_pose(reach, random)};
 }
 
 }  // namespace snug

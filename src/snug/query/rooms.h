@@ -15,7 +15,7 @@ namespace snug {
 [[nodiscard]] ControlMesh unit_model(ControlMesh mesh);
 
 struct PlacedPair {
-  Placement a, b;
+  Motion a, b;
 };
 
 /// Both models of size 1 anywhere in a cube of side `side` around the origin, turned about the middles of their boxes, every
