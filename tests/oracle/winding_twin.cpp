@@ -97,6 +97,19 @@ WindingTwin::WindingTwin(const TaggedMesh& mesh, const WindingScheme& scheme, in
   }
 }
 
+double WindingTwin::distance_to_boxes(const Point& q) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Box& box : boxes_) {
+    double sum = 0;
+    for (std::size_t x = 0; x < 3; ++x) {
+      const double beyond = std::max({box.lower[x] - q[x], q[x] - box.upper[x], 0.0});
+      sum += beyond * beyond;
+    }
+    least = std::min(least, sum);
+  }
+  return std::sqrt(least) * (1 - 1e-15);
+}
+
 std::optional<int> WindingTwin::operator()(const Point& q) const {
   for (const Box& box : boxes_) {
     bool inside = true;

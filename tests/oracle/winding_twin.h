@@ -30,6 +30,9 @@ class WindingTwin {
   /// The winding number, by solid angles; nothing in a box of a hull.
   [[nodiscard]] std::optional<int> operator()(const Point& q) const;
 
+  /// Lower bound of the distance of a point to the limit surface: that to the boxes of the hulls.
+  [[nodiscard]] double distance_to_boxes(const Point& q) const;
+
   /// The refined mesh, with the orientation of the control mesh.
   [[nodiscard]] const TaggedMesh& mesh() const { return mesh_; }
 

@@ -39,6 +39,7 @@ struct Reply {
   std::optional<double> upper;
   std::optional<std::array<Point, 2>> witness;
   double witness_error;
+  std::optional<std::size_t> inner;
 };
 
 class Checks {
@@ -58,7 +59,8 @@ class Checks {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     asked_ += seconds;
     if (seconds > slowest_) slowest_ = seconds, slowest_trial_ = trial.number;
-    reply_ = {answer.verdict, pair_->back(answer.lower), {}, {}, pair_->back(answer.witness_error)};
+    reply_ = {answer.verdict, pair_->back(answer.lower), {}, {}, pair_->back(answer.witness_error),
+              answer.inner};
     if (answer.upper) reply_.upper = pair_->back(*answer.upper);
     if (answer.witness)
       reply_.witness = {pair_->back((*answer.witness)[0]), pair_->back((*answer.witness)[1])};
@@ -179,7 +181,7 @@ class Checks {
     const Trial& t = *trial_;
     const testing::Truth& truth = t.truth;
     expect(reply_.lower <= truth.upper, "lower is at most the distance", reply_.lower, truth.upper);
-    if (reply_.upper)
+    if (reply_.upper && !reply_.inner)
       expect(*reply_.upper >= truth.lower, "upper is at least the distance", *reply_.upper, truth.lower);
     if (truth.meet) {
       expect(reply_.verdict != Verdict::separated, "false separated");
@@ -217,6 +219,7 @@ class Checks {
       const double near =
           closely ? std::max(2 * reply_.witness_error, 1e-11 * size()) + twin_rounding() : 1e-9 * size();
       for (std::size_t side = 0; side < 2; ++side) {
+        if (reply_.inner && side != *reply_.inner) continue;  // in the solid, not on its surface
         const oracle::Placement& place = side == 0 ? t.a : t.b;
         expect(pair_->twin(side).on_surface(place, (*reply_.witness)[side], near),
                side == 0 ? "the witness on A is on the surface" : "the witness on B is on the surface", near);

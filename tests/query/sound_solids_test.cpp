@@ -12,13 +12,10 @@
 #include <snug/query/winding.h>
 
 #include <gtest/gtest.h>
-#include <oracle/winding_twin.h>
 #include <snug/base/error.h>
-#include <testing/solids.h>
-#include <testing/tagged.h>
+#include <testing/solid_cases.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <iostream>
 #include <map>
 
@@ -36,38 +33,9 @@ constexpr std::array<Vector3, 8> rays{{{0.8236391, 0.2941752, 0.4848613},
                                        {0.2639471, -0.8931207, -0.3642918},
                                        {-0.1173952, 0.2387164, -0.9639721}}};
 
-double unit(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
-double between(std::mt19937_64& random, double low, double high) { return low + (high - low) * unit(random); }
-
-struct Case {
-  std::string name;
-  oracle::TaggedMesh mesh;
-  oracle::WindingScheme scheme;
-  SchemeOptions options;
-};
-
-Case make_case(std::uint64_t number) {
-  std::mt19937_64 random(number * 7919 + 17);
-  Case c{"solid " + std::to_string(number), testing::random_solid(random), {}, {}};
-  const std::uint64_t which = number % 8;
-  if (which >= 6) {
-    c.scheme = which == 6 ? oracle::DualScheme::doo_sabin : oracle::DualScheme::midedge;
-    c.options.scheme = which == 6 ? Scheme::doo_sabin : Scheme::midedge;
-    c.name += std::string(", ") + name_of(c.options.scheme);
-    return c;
-  }
-  oracle::Rules rules;
-  rules.clamp_dart_edges = true;
-  rules.scheme = which == 5 ? oracle::PrimalScheme::loop : oracle::PrimalScheme::catmull_clark;
-  if (which == 5) c.mesh = oracle::meshes::triangulated(c.mesh);
-  rules.chaikin = random() % 3 == 0;
-  rules.smooth_triangles = which != 5 && random() % 3 == 0;
-  if (random() % 3 == 0) testing::tag(c.mesh, random, false);
-  c.scheme = rules;
-  c.options = testing::options_of(rules);
-  c.name += ", " + testing::text_of(rules);
-  return c;
-}
+using testing::between;
+using testing::number_of;
+using testing::SolidCase;
 
 // A ray that is tried first from q: the one that leads away from the middle.
 std::size_t first_ray(const Point3& q, const Point3& middle) {
@@ -79,11 +47,11 @@ std::size_t first_ray(const Point3& q, const Point3& middle) {
 
 class Trials {
  public:
-  Trials(const Case& c, std::uint64_t seed)
+  Trials(const SolidCase& c, std::uint64_t seed)
       : case_(c),
         random_(seed),
-        twin_(c.mesh, c.scheme, levels(c.mesh)),
-        surface_(mesh_of(c), c.options, std::make_shared<BoundLibrary>(), 1),
+        twin_(c.mesh, c.scheme, testing::twin_levels(c.mesh, 1500)),
+        surface_(testing::control_mesh(c), c.options, std::make_shared<BoundLibrary>(), 1),
         model_(surface_, volume(seed)),
         scratch_(model_) {}
 
@@ -106,15 +74,6 @@ class Trials {
   static inline std::map<int, std::size_t> numbers;
 
  private:
-  static int levels(const oracle::TaggedMesh& mesh) {
-    int level = 2;
-    for (std::size_t faces = 16 * mesh.polygons.size(); faces < 1500; faces *= 4) ++level;
-    return level;
-  }
-  static ControlMesh mesh_of(const Case& c) {
-    const oracle::Rules* const rules = std::get_if<oracle::Rules>(&c.scheme);
-    return testing::control_mesh(c.mesh, rules ? *rules : oracle::Rules{});
-  }
   static QueryModelOptions volume(std::uint64_t seed) {
     QueryModelOptions options;
     options.volume = all_volumes[seed % all_volumes.size()];
@@ -220,7 +179,7 @@ class Trials {
     }
   }
 
-  const Case& case_;
+  const SolidCase& case_;
   std::mt19937_64 random_;
   bool aimed_ = false;
   oracle::WindingTwin twin_;
@@ -229,17 +188,12 @@ class Trials {
   QueryScratch scratch_;
 };
 
-std::uint64_t number_of(const char* variable, std::uint64_t usual) {
-  const char* const text = std::getenv(variable);
-  return text ? std::strtoull(text, nullptr, 10) : usual;
-}
-
 TEST(solids, winding_numbers_are_those_of_refined_meshes) {
   const std::uint64_t solids = (number_of("SNUG_PLACEMENTS", 8000) + points_a_solid - 1) / points_a_solid;
   const std::uint64_t first = number_of("SNUG_FIRST", 0);
   std::uint64_t refused = 0;
   for (std::uint64_t i = 0; i < solids && !HasFailure(); ++i) {
-    const Case c = make_case(first + i);
+    const SolidCase c = testing::solid_case(first + i);
     try {
       Trials(c, first + i).run();
     } catch (const InputError&) {

@@ -1,0 +1,260 @@
+#include <snug/query/penetration.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <snug/base/error.h>
+#include <snug/base/rounding.h>
+#include <snug/query/collide.h>
+#include <snug/query/distance.h>
+#include <snug/query/signed_distance.h>
+
+namespace snug {
+namespace {
+
+// Steps in which a length is doubled until a translation separates, and halved towards the last that did not.
+constexpr int doublings = 12, halvings = 5;
+constexpr std::size_t most_descended = 4;  // of the best directions, along the normals of their contacts
+constexpr int most_descents = 24;
+// Steps of the search for a point deep in both solids, each of six neighbours, and how it shrinks.
+constexpr int most_steps = 40;
+constexpr double smallest_step = 1e-3;
+
+struct Candidate {
+  Vector3 translation;
+  double length;
+};
+
+std::vector<Vector3> some_directions() {
+  std::vector<Vector3> directions;
+  for (int x = -1; x <= 1; ++x) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int z = -1; z <= 1; ++z) {
+        const Vector3 d{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+        if (d != Vector3{}) directions.push_back((1 / length(d)) * d);
+      }
+    }
+  }
+  return directions;
+}
+
+class Search {
+ public:
+  Search(const PlacedModel& a, const PlacedModel& b, const PenetrationOptions& options,
+         const WorkMonitor& monitor)
+      : a_(a), b_(b), options_(options), monitor_(monitor) {}
+
+  Penetration run() {
+    Penetration answer;
+    if (separated({})) {
+      answer.reached = true;
+      return answer;
+    }
+    shorten();
+    answer.lower = deepest_common_balls();
+    for (const Vector3& w : outward_) {
+      if (const std::optional<double> t = shortest_along(w, 2 * best_.length)) descend({*t * w, *t});
+    }
+    answer.translation = best_.translation;
+    answer.upper = length_up(best_.translation);
+    answer.lower = std::min(answer.lower, answer.upper);
+    answer.reached = answer.upper - answer.lower <= options_.relative * answer.upper;
+    return answer;
+  }
+
+ private:
+  // Of the exact difference of the poses' translations: its coordinates are each within a rounding of these.
+  [[nodiscard]] double length_up(const Vector3& d) const {
+    return enlarged(length((b_.pose.translation() + d) - b_.pose.translation()));
+  }
+
+  [[nodiscard]] PlacedModel moved(const Vector3& d) const {
+    return {b_.model, b_.scratch, b_.pose.with_translation(b_.pose.translation() + d)};
+  }
+  [[nodiscard]] bool separated(const Vector3& d) {
+    monitor_.checkpoint();
+    if (!is_finite(b_.pose.translation() + d)) return false;
+    CollideOptions options;
+    options.solid = true;
+    options.budget = options_.budget;
+    return collide(a_, moved(d), options, monitor_).verdict == Verdict::separated;
+  }
+  // Keeps a shorter translation that separates.
+  bool improve(const Vector3& d) {
+    const double size = length(d);
+    if (!(size < best_.length) || !separated(d)) return false;
+    best_ = {d, size};
+    return true;
+  }
+
+  void shorten() {
+    const double reach = reach_of_both();
+    std::vector<Candidate> found;
+    for (const Vector3& w : some_directions()) {
+      if (const std::optional<double> t = shortest_along(w, reach)) found.push_back({*t * w, *t});
+    }
+    if (found.empty()) {
+      throw InputError(
+          InputProblem::unrepresentable,
+          "penetration: no translation that separates the solids fits doubles; scale the meshes down");
+    }
+    std::sort(found.begin(), found.end(),
+              [](const Candidate& x, const Candidate& y) { return x.length < y.length; });
+    found.resize(std::min(found.size(), most_descended));
+    best_ = found[0];
+    for (const Candidate& start : found) descend(start);
+  }
+
+  // A length that surely separates, but for roundings.
+  [[nodiscard]] double reach_of_both() const {
+    const Ball &ball_a = a_.model.ball(), &ball_b = b_.model.ball();
+    const double between = distance(a_.pose.apply(ball_a.centre), b_.pose.apply(ball_b.centre));
+    return 1.01 * (between + ball_a.radius + ball_b.radius);
+  }
+
+  // The first of some lengths along w that separates, made shorter. Nothing that is longer than the best is looked at.
+  std::optional<double> shortest_along(const Vector3& w, double reach) {
+    double blocked = 0;
+    for (int k = doublings; k >= 0; --k) {
+      double free = std::ldexp(reach, -k);
+      if (blocked >= 2 * best_.length) return std::nullopt;
+      if (!separated(free * w)) {
+        blocked = free;
+        continue;
+      }
+      for (int i = 0; i < halvings; ++i) {
+        const double middle = blocked + (free - blocked) / 2;
+        (separated(middle * w) ? free : blocked) = middle;
+      }
+      if (free < best_.length) best_ = {free * w, free};
+      return free;
+    }
+    return std::nullopt;
+  }
+
+  // Along the normal of the contact that a translation leaves, the shortest one that stays on its side of the plane; where
+  // that is blocked, straight back.
+  void descend(Candidate at) {
+    for (int i = 0; i < most_descents; ++i) {
+      DistanceOptions precision;
+      precision.relative = 0.05;
+      precision.absolute = 1e-3 * at.length;
+      precision.budget = options_.budget;
+      const Distance gap = snug::distance(a_, moved(at.translation), precision, monitor_);
+      const Vector3 normal = gap.witness[1] - gap.witness[0];
+      const double size = length(normal);
+      if (!(size > 0) || !std::isfinite(1 / size)) return;
+      const Vector3 n = (1 / size) * normal;
+      const double along = dot(n, at.translation) - gap.lower;
+      const double before = at.length;
+      for (const Vector3& next :
+           {(1 + 1e-4) * std::max(along, 0.0) * n, at.translation - gap.lower * n,
+            (1 - 0.9 * gap.lower / at.length) * at.translation, 0.98 * at.translation}) {
+        const double shorter = length(next);
+        if (!(shorter < at.length) || !separated(next)) continue;
+        at = {next, shorter};
+        if (shorter < best_.length) best_ = at;
+        break;
+      }
+      if (!(at.length < (1 - 1e-3) * before)) return;
+    }
+  }
+
+  // The sum of the radii of two balls around one point, each in one of the solids.
+  double depth_at(const Point3& local) {
+    ClosestOptions precision;
+    precision.relative = 0.02;
+    precision.budget = options_.budget;
+    const Point3 world = a_.pose.apply(local);
+    const Motion back = b_.pose.inverse();
+    const Point3 other = back.apply(world);
+    // How far `other` may be from the exact preimage of the exact image of `local`, measured forwards.
+    const Point3 again = b_.pose.apply(other);
+    const double magnitude = max_abs(local - Point3{}) + max_abs(other - Point3{}) +
+                             max_abs(a_.pose.translation()) + max_abs(b_.pose.translation());
+    const double off =
+        spatial_error(max_abs(again - world) + 64 * unit_roundoff * magnitude + 8 * underflow_error);
+    const SignedDistance in_a = signed_distance(a_.scratch, local, precision, monitor_);
+    const SignedDistance in_b = signed_distance(b_.scratch, other, precision, monitor_);
+    // A motion shrinks lengths by at most its defect.
+    const double radius_a = -in_a.upper * (1 - 2 * a_.pose.defect()),
+                 radius_b = -in_b.upper * (1 - 2 * b_.pose.defect()) - off;
+    guide_ = std::min(-in_a.lower, -in_b.lower);
+    const Vector3 from_a = a_.pose.rotate(in_a.nearest.point - local),
+                  to_b = b_.pose.rotate(other - in_b.nearest.point);
+    ways_out_ = {from_a, to_b};
+    return radius_a > 0 && radius_b > 0 ? (radius_a + radius_b) * (1 - 16 * unit_roundoff) : 0;
+  }
+
+  // Looks for a point deep in both, from the middle of what the found translation has to clear.
+  double deepest_common_balls() {
+    double best = 0;
+    for (const Point3& start : starts()) {
+      Point3 at = start;
+      double step = best_.length, deepest = depth_at(at), guide = guide_;
+      for (int i = 0; i < most_steps && step > smallest_step * best_.length; ++i) {
+        bool better = false;
+        for (std::size_t axis = 0; axis < 3 && !better; ++axis) {
+          for (const double side : {-step, step}) {
+            Point3 next = at;
+            next[axis] += side;
+            const double depth = depth_at(next);
+            if (!(depth > deepest || (deepest == 0 && guide_ > guide))) continue;
+            at = next;
+            deepest = depth;
+            guide = guide_;
+            better = true;
+            break;
+          }
+        }
+        if (!better) step /= 2;
+      }
+      if (!(deepest > best)) continue;
+      best = deepest;
+      static_cast<void>(depth_at(at));
+      outward_.clear();
+      for (const Vector3& way : ways_out_) {
+        if (const double size = length(way); size > 0 && std::isfinite(1 / size)) {
+          outward_.push_back((1 / size) * way);
+        }
+      }
+    }
+    return best;
+  }
+
+  // Points of A's frame that may lie in both: where the surfaces touch once they are separated, half the way back, and the
+  // middles of both.
+  std::vector<Point3> starts() {
+    DistanceOptions precision;
+    precision.relative = 0.1;
+    precision.absolute = 1e-2 * best_.length;
+    precision.budget = options_.budget;
+    const Distance gap = snug::distance(a_, moved(best_.translation), precision, monitor_);
+    const Motion back = a_.pose.inverse();
+    const Point3 touch = gap.witness[0] - 0.5 * best_.translation;
+    return {back.apply(touch), back.apply(b_.pose.apply(b_.model.ball().centre)), a_.model.ball().centre};
+  }
+
+  const PlacedModel &a_, &b_;
+  const PenetrationOptions& options_;
+  const WorkMonitor& monitor_;
+  Candidate best_{{}, INFINITY};
+  // Of the last point that depth_at() looked at: how deep it is in the shallower solid, negative outside; from it to the
+  // surface of A, and to it from that of B.
+  double guide_ = 0;
+  std::array<Vector3, 2> ways_out_;
+  std::vector<Vector3> outward_;  // directions of the same, of the deepest point
+};
+
+}  // namespace
+
+Penetration penetration(const PlacedModel& a, const PlacedModel& b, const PenetrationOptions& options,
+                        const WorkMonitor& monitor) {
+  require_length(options.relative, "penetration: the precision");
+  return Search(a, b, options, monitor).run();
+}
+
+}  // namespace snug
