@@ -1,5 +1,5 @@
 // bench_tables: the peers' columns of `snug experiment table-5-1`, `table-5-2` and `table-5-3`, which runs this program and reads
-// what it prints: {"rows": [...]} in the order of its own rows.
+// what it prints: a line "NAME NUMBER NAME NUMBER ..." for each of its own rows, in their order.
 //
 //   bench_tables NAME PLACEMENTS SEED MODEL...
 
@@ -30,29 +30,11 @@ double seconds_of(const std::function<void()>& work) {
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
-// Prints rows with commas between them.
-class Rows {
- public:
-  Rows() { std::printf("{\"rows\": ["); }
-  ~Rows() { std::printf("\n]}\n"); }
-  Rows(const Rows&) = delete;
-  Rows& operator=(const Rows&) = delete;
-  void next() {
-    std::printf(first_ ? "\n" : ",\n");
-    first_ = false;
-  }
-
- private:
-  bool first_ = true;
-};
-
 void leaves_table(const std::vector<Model>& models) {
-  Rows rows;
   for (const Model& model : models) {
     for (const double tolerance : table_tolerances) {
       const int level = osd_uniform_level(model.mesh, tolerance);
-      rows.next();
-      std::printf("{\"level\": %d, \"triangles\": %zu}", level, model.mesh.face_count() << (2 * level));
+      std::printf("level %d triangles %zu\n", level, model.mesh.face_count() << (2 * level));
     }
   }
 }
@@ -66,12 +48,10 @@ double creation_ms(const Model& model, int level, FclBoxes boxes) {
 }
 
 void creation_table(const std::vector<Model>& models) {
-  Rows rows;
   for (const Model& model : models) {
     for (const double tolerance : table_tolerances) {
       const int level = osd_uniform_level(model.mesh, tolerance);
-      rows.next();
-      std::printf("{\"obb_ms\": %.17g, \"obbrss_ms\": %.17g}", creation_ms(model, level, FclBoxes::obb),
+      std::printf("obb_ms %.17g obbrss_ms %.17g\n", creation_ms(model, level, FclBoxes::obb),
                   creation_ms(model, level, FclBoxes::obbrss));
     }
   }
@@ -87,7 +67,6 @@ double query_us(const FclModel& a, const FclModel& b, const std::vector<PlacedPa
 }
 
 void room_table(const std::vector<Model>& models, std::size_t placements, std::uint64_t seed) {
-  Rows rows;
   for (const double side : room_sides) {
     // The command draws the same ones for each pair and tolerance.
     std::mt19937_64 random(seed);
@@ -106,8 +85,7 @@ void room_table(const std::vector<Model>& models, std::size_t placements, std::u
           const FclModel a(meshes[0], boxes), b(meshes[1], boxes);
           times[boxes == FclBoxes::obb ? 0 : 1] = query_us(a, b, at, hits);
         }
-        rows.next();
-        std::printf("{\"obb_us\": %.17g, \"obbrss_us\": %.17g, \"hits\": %zu}", times[0], times[1], hits);
+        std::printf("obb_us %.17g obbrss_us %.17g hits %zu\n", times[0], times[1], hits);
       }
     }
   }

@@ -10,7 +10,7 @@ namespace snug::command {
 namespace {
 
 struct Options : PairOptions {
-  std::string tolerance, margin = "0";
+  std::string tolerance = "0.1%", margin = "0";
   bool solid = false;
   bool exit_code = false;
 };
@@ -93,8 +93,7 @@ Command collide_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
-           "Surfaces this near may be called within: mesh units, or percent of the longer mesh (1%)")
-      .required();
+           "Surfaces this near may be called within: mesh units, or percent of the longer mesh");
   list.add(Group::own, "--margin LENGTH", &options->margin, "Distance that must be kept");
   list.add(Group::own, "--solid", &options->solid,
            "Closed surfaces bound solids: one inside of the other intersects it");
@@ -104,7 +103,7 @@ Command collide_command() {
   return {"collide",
           Topic::two_surfaces,
           "Do two limit surfaces touch? A verdict that is a proof",
-          {"snug collide pawn.obj bust.obj --tolerance 0.1% --place-b \"1 0 0 3  0 1 0 0  0 0 1 0\""},
+          {"snug collide pawn.obj bust.obj --place-b \"1 0 0 3  0 1 0 0  0 0 1 0\""},
           std::move(list),
           [options] { return run(*options); }};
 }

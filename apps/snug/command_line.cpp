@@ -1,11 +1,8 @@
 #include "command_line.h"
 
 #include <algorithm>
+#include <deque>
 #include <map>
-#include <optional>
-
-#include <fmt/core.h>
-#include <CLI/CLI.hpp>
 
 #include "length.h"
 #include "nearest.h"
@@ -13,46 +10,8 @@
 namespace snug::command {
 namespace {
 
-// The words of each option, and those that belong to none.
-struct Sorted {
-  std::map<std::string, std::vector<std::string>> given;
-  std::vector<std::string> left_over;
-  std::string problem = {};  // empty for none
-};
-
-// Sorts a command's words; what they mean is for the options to say.
-Sorted sort_words(const Command& command, std::vector<std::string> words) {
-  CLI::App app;
-  app.set_help_flag();
-  app.allow_extras();
-  std::map<std::string, std::vector<std::string>> values;  // as CLI11 has converted them, which is not wanted
-  std::map<std::string, bool> flags;
-  for (const Option& option : command.options.all()) {
-    if (option.is_flag()) {
-      app.add_flag(option.name, flags[option.name]);
-      continue;
-    }
-    CLI::Option* added = app.add_option(option.name, values[option.name]);
-    if (option.is_argument() && option.is_list()) continue;
-    added->expected(1)->allow_extra_args(false)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  }
-  Sorted result;
-  std::reverse(words.begin(), words.end());  // the order that CLI11 wants
-  try {
-    app.parse(std::move(words));
-  } catch (const CLI::ParseError& error) {
-    result.problem = error.what();
-  }
-  result.left_over = app.remaining();
-  for (const auto& [name, set] : flags) {
-    if (app.get_option(name)->count() > 0) result.given[name] = {set ? "true" : "false"};
-  }
-  for (const auto& [name, converted] : values) {
-    const std::vector<std::string>& list = app.get_option(name)->results();
-    if (!list.empty()) result.given[name] = list;
-  }
-  return result;
-}
+// What a command line gives, by the names of options and arguments.
+using Given = std::map<std::string, std::vector<std::string>>;
 
 std::vector<std::string> names_of(const std::vector<Command>& commands) {
   std::vector<std::string> names;
@@ -62,37 +21,81 @@ std::vector<std::string> names_of(const std::vector<Command>& commands) {
 
 bool is_option(const std::string& word) { return word.size() > 1 && word.front() == '-'; }
 
-// Says what is wrong with a word that no option or argument took.
-[[noreturn]] void refuse_word(const Command& command, const std::string& word) {
-  const std::string help = std::string("; see snug ") + command.name + " --help";
-  if (!is_option(word)) {
-    throw UsageError(fmt::format("{}: unexpected argument '{}'{}", command.name, word, help));
+const Option* find_option(const Command& command, const std::string& name) {
+  for (const Option& option : command.options.all()) {
+    if (option.name == name && !option.is_argument()) return &option;
   }
+  return nullptr;
+}
+
+std::string see_help(const Command& command) { return std::string("; see snug ") + command.name + " --help"; }
+
+[[noreturn]] void refuse_option(const Command& command, const std::string& name) {
   std::vector<std::string> names{"--help"};
   for (const Option& option : command.options.all()) {
     if (!option.is_argument()) names.push_back(option.name);
   }
-  const std::string guess = did_you_mean(word.substr(0, word.find('=')), names);
-  throw UsageError(
-      fmt::format("{}: unknown option '{}'{}", command.name, word, guess.empty() ? help : guess));
+  throw UsageError("unknown option '" + name + "'" + did_you_mean(name, names));
+}
+
+// Takes the option that words[i] names, and its value, from there: --name value, --name=value, -n value or -nvalue.
+// Returns the place of the last word taken.
+std::size_t take_option(const Command& command, const std::vector<std::string>& words, std::size_t i,
+                        Given& given) {
+  const std::string& word = words[i];
+  const bool is_long = word.starts_with("--");
+  const std::size_t end = is_long ? std::min(word.find('='), word.size()) : 2;
+  const Option* option = find_option(command, word.substr(0, end));
+  if (option == nullptr) refuse_option(command, is_long ? word.substr(0, end) : word);
+  std::vector<std::string>& values = given[option->name];
+  const bool joined = end < word.size();
+  if (option->is_flag()) {
+    if (joined) throw UsageError(option->name + " takes no value");
+    values = {"true"};
+    return i;
+  }
+  if (joined) {
+    values.push_back(word.substr(end + (is_long ? 1 : 0)));
+    return i;
+  }
+  if (i + 1 == words.size()) throw UsageError(option->name + " needs a value: " + option->value);
+  values.push_back(words[i + 1]);
+  return i + 1;
+}
+
+Given sort_words(const Command& command, const std::vector<std::string>& words) {
+  Given given;
+  std::deque<std::string> arguments;
+  bool options_end = false;  // after "--"
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (options_end || !is_option(words[i])) {
+      arguments.push_back(words[i]);
+    } else if (words[i] == "--") {
+      options_end = true;
+    } else {
+      i = take_option(command, words, i, given);
+    }
+  }
+  for (const Option& option : command.options.all()) {
+    if (!option.is_argument()) continue;
+    while (!arguments.empty() && (option.is_list() || !given.contains(option.name))) {
+      given[option.name].push_back(arguments.front());
+      arguments.pop_front();
+    }
+  }
+  if (!arguments.empty()) throw UsageError("unexpected argument '" + arguments.front() + "'");
+  return given;
 }
 
 void fill_options(const Command& command, const std::vector<std::string>& words) {
-  if (std::find(words.begin(), words.end(), "%") != words.end()) {
-    throw UsageError(std::string(command.name) +
-                     ": '%' stands alone; join it to its number (1%), or put quotes around both (\"1 %\")");
-  }
-  const Sorted sorted = sort_words(command, words);
-  const auto unknown = std::find_if(sorted.left_over.begin(), sorted.left_over.end(), is_option);
-  if (unknown != sorted.left_over.end()) refuse_word(command, *unknown);
-  const std::string help = std::string("; see snug ") + command.name + " --help";
-  if (!sorted.problem.empty()) throw UsageError(command.name + (": " + sorted.problem) + help);
-  if (!sorted.left_over.empty()) refuse_word(command, sorted.left_over.front());
   try {
-    command.options.assign(sorted.given);
+    if (std::find(words.begin(), words.end(), "%") != words.end()) {
+      throw UsageError("'%' stands alone; join it to its number (1%), or put quotes around both (\"1 %\")");
+    }
+    command.options.assign(sort_words(command, words));
   } catch (const UsageError& error) {
     const std::string message = command.name + (": " + std::string(error.what()));
-    throw UsageError(message.ends_with('?') ? message : message + help);
+    throw UsageError(message.ends_with('?') ? message : message + see_help(command));
   }
 }
 

@@ -1,6 +1,7 @@
 #include "experiment_tables.h"
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -8,16 +9,16 @@
 #include <snug/base/error.h>
 #include <snug/query/room_tables.h>
 #include <snug/query/rooms.h>
-#include <nlohmann/json.hpp>
 
 #include "neighbour.h"
 #include "progress_bar.h"
+#include "words.h"
 
 namespace snug::command {
 namespace {
 
 // Peers' columns, in the order of our rows: from the program that bench/ builds where the peers are installed.
-using PeerRows = std::optional<nlohmann::json>;
+using PeerRows = std::optional<std::vector<std::map<std::string, double>>>;
 constexpr const char* peer_program = "bench_tables";
 constexpr unsigned creation_rounds = 5;
 
@@ -59,6 +60,23 @@ std::vector<Model> load_models(const TableExperiment& experiment, const CommonOp
   return models;
 }
 
+// Reads lines "NAME NUMBER NAME NUMBER ...".
+PeerRows read_peer_rows(const std::string& text) {
+  PeerRows rows(std::in_place);
+  for_each_line(text, [&](std::string_view line, std::size_t) {
+    std::map<std::string, double>& row = rows->emplace_back();
+    for (std::string_view name = next_word(line); !name.empty(); name = next_word(line)) {
+      parse(next_word(line), row[std::string(name)]);
+    }
+  });
+  return rows;
+}
+
+[[noreturn]] void refuse_peers() {
+  throw UsageError(
+      fmt::format("{} beside this executable is of another version; build it again", peer_program));
+}
+
 PeerRows ask_peers(const TableExperiment& experiment, const std::vector<Model>& models,
                    std::size_t expected_rows) {
   std::vector<std::string> arguments{experiment.name, std::to_string(experiment.placements),
@@ -66,17 +84,17 @@ PeerRows ask_peers(const TableExperiment& experiment, const std::vector<Model>& 
   for (const Model& model : models) arguments.push_back(model.file);
   const std::optional<std::string> text = output_of_neighbour(peer_program, arguments);
   if (!text) return {};
-  nlohmann::json document = nlohmann::json::parse(*text, nullptr, false);
-  if (!document.contains("rows") || document["rows"].size() != expected_rows) {
-    throw UsageError(
-        fmt::format("{} beside this executable is of another version; build it again", peer_program));
-  }
-  return document["rows"];
+  PeerRows rows = read_peer_rows(*text);
+  if (rows->size() != expected_rows) refuse_peers();
+  return rows;
 }
 
 // The number in a peer's row; nothing without peers.
 std::optional<double> peer_number(const PeerRows& peers, std::size_t row, const char* key) {
-  return peers ? std::optional<double>(peers->at(row).at(key).get<double>()) : std::nullopt;
+  if (!peers) return {};
+  const auto number = peers->at(row).find(key);
+  if (number == peers->at(row).end()) refuse_peers();
+  return number->second;
 }
 
 void write_number(JsonWriter& json, const char* key, const std::optional<double>& number) {

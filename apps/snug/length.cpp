@@ -16,6 +16,12 @@ bool parse_number(std::string_view text, double& number) {
   return error == std::errc() && end == text.data() + text.size() && std::isfinite(number);
 }
 
+// Without blanks at either end.
+std::string_view trimmed(std::string_view text) {
+  const auto begin = text.find_first_not_of(' ');
+  return begin == std::string_view::npos ? "" : text.substr(begin, text.find_last_not_of(' ') - begin + 1);
+}
+
 }  // namespace
 
 double Length::in_mesh_units(double size) const {
@@ -30,10 +36,10 @@ double Length::in_mesh_units(double size) const {
 
 Length parse_length(const std::string& text, const std::string& option, bool zero_allowed) {
   Length length;
-  std::string_view digits = text;
-  if (!digits.empty() && digits.back() == '%') {
+  std::string_view digits = trimmed(text);
+  if (digits.ends_with('%')) {
     length.percent = true;
-    digits.remove_suffix(1);
+    digits = trimmed(digits.substr(0, digits.size() - 1));
   }
   if (!parse_number(digits, length.number) || length.number < 0 || (length.number == 0 && !zero_allowed)) {
     throw UsageError(option + ": '" + text + "' is not a " + (zero_allowed ? "length" : "positive length") +

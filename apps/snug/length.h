@@ -13,7 +13,7 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A length as users give it: mesh units, or percent of a mesh's size ("0.5%").
+/// A length as users give it: mesh units, or percent of a mesh's size ("0.5%", "0.5 %").
 struct Length {
   double number = 0;
   bool percent = false;

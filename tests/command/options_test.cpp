@@ -49,7 +49,6 @@ TEST(usage, ends_with_2) {
            {"collide", star, star, "--tolerance", "1%", "--bounds", "control-box"},
            {"bound", star, "--creases", "smooth"},
            {"bound", star, "--threads", "-1"},
-           {"collide", star, star},
            {"collide", star, star, "--tolerance", "1%", "--place-b", "1 0 0"},
            {"collide", star, star, "--tolerance", "1%", "--place-b", "1 0 0 x 0 1 0 0 0 0 1 0"},
            {"subdivide", star},
