@@ -22,8 +22,12 @@ unshuffled = $$(setarch -R true 2> /dev/null && echo setarch -R || true)
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-17s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
-demo: install-packages build  ## two surfaces: do they touch? and a picture of them, build/demo.png
-	@scripts/demo build/release/bin/snug build/demo.png
+# A fresh clone builds the command alone, without the libraries of tests; where they are configured their objects serve.
+demo_preset = $(if $(wildcard build/release/CMakeCache.txt),release,command)
+demo:  ## two surfaces: do they touch? and a picture of them, build/demo.png
+	@scripts/install_packages build
+	@$(call build,$(demo_preset),snug_command)
+	@scripts/demo build/$(demo_preset)/bin/snug build/demo.png
 
 test: install-packages build  ## every test, on the release build
 	@$(ctest) --preset release
@@ -88,7 +92,7 @@ tables:  ## make the rows and tables again that are compiled in, then prove them
 	@build/release/bin/tablegen src/snug/basis/shipped.bin
 	@scripts/check_tables
 
-install-packages:  ## what building, testing and checking need, where it is missing (scripts/packages.txt)
+install-packages:  ## what building, testing and checking need, where it is missing (scripts/packages.txt has it in sections)
 	@scripts/install_packages
 
 clean:  ## remove build/
