@@ -1,4 +1,4 @@
-#include <snug/query/closest.h>
+#include <snug/query/signed_distance.h>
 
 #include <cmath>
 
@@ -17,6 +17,7 @@ struct Options : ModelOptions {
   std::string mesh, points;
   std::string precision = "0.01%";
   double relative = 0;
+  bool with_sign = false;
 };
 
 // Lines "x y z".
@@ -36,20 +37,64 @@ std::vector<Point3> read_points(const std::string& path) {
   return points;
 }
 
-void write_result(Report& report, const Surface& surface, const ClosestPoint& result) {
+// Of one point: with --signed, bounds of the signed distance too.
+struct Result {
+  ClosestPoint nearest;
+  std::optional<SignedDistance> with_sign;
+  [[nodiscard]] bool reached() const { return with_sign ? with_sign->reached : nearest.reached; }
+};
+
+std::vector<Result> find(const QueryModel& model, std::span<const Point3> points,
+                         const ClosestOptions& wanted, const Options& options, const WorkMonitor& monitor) {
+  std::vector<Result> results;
+  results.reserve(points.size());
+  if (options.with_sign) {
+    for (SignedDistance& found : signed_distances(model, points, wanted, options.threads, monitor)) {
+      results.push_back({found.nearest, found});
+    }
+  } else {
+    for (ClosestPoint& found : closest_points(model, points, wanted, options.threads, monitor)) {
+      results.push_back({found, {}});
+    }
+  }
+  return results;
+}
+
+std::string text_of_bounds(double lower, double upper) {
+  const auto down = [](double x) { return x < 0 ? "-" + text_at_most(-x, true) : text_at_most(x); };
+  const auto up = [](double x) { return x < 0 ? "-" + text_at_most(-x) : text_at_most(x, true); };
+  return down(lower) + " " + up(upper);
+}
+
+void write_sign(JsonWriter& json, const SignedDistance& found) {
+  json.key("signed_distance").begin_array().value(found.lower).value(found.upper).end_array().key("inside");
+  if (found.upper < 0) {
+    json.value(true);
+  } else if (found.lower > 0) {
+    json.value(false);
+  } else {
+    json.null();
+  }
+}
+
+void write_result(Report& report, const Surface& surface, const Result& result) {
   const bool primal = is_primal(surface.options().scheme), loop = surface.options().scheme == Scheme::loop;
+  const ClosestPoint& near = result.nearest;
   if (!report.json()) {
-    report.text(fmt::format("{} {}  {} {} {}  {} {} {}{}", text_at_most(result.lower),
-                            text_at_most(result.upper, true), result.point.x, result.point.y, result.point.z,
-                            result.at.owner, result.at.u, result.at.v,
-                            loop ? "" : fmt::format(" {}", result.at.corner)));
+    report.text(fmt::format("{}  {} {} {}  {} {} {}{}",
+                            result.with_sign
+                                ? text_of_bounds(result.with_sign->lower, result.with_sign->upper)
+                                : text_of_bounds(near.lower, near.upper),
+                            near.point.x, near.point.y, near.point.z, near.at.owner, near.at.u, near.at.v,
+                            loop ? "" : fmt::format(" {}", near.at.corner)));
     return;
   }
   JsonWriter& json = report.write();
-  json.begin_object().key("distance").begin_array().value(result.lower).value(result.upper).end_array();
-  json.field("reached", result.reached).field("point", result.point).field("error", result.point_error);
-  json.field(primal ? "face" : "vertex", result.at.owner).field("u", result.at.u).field("v", result.at.v);
-  if (!loop) json.field("corner", result.at.corner);
+  json.begin_object().key("distance").begin_array().value(near.lower).value(near.upper).end_array();
+  if (result.with_sign) write_sign(json, *result.with_sign);
+  json.field("reached", result.reached()).field("point", near.point).field("error", near.point_error);
+  json.field(primal ? "face" : "vertex", near.at.owner).field("u", near.at.u).field("v", near.at.v);
+  if (!loop) json.field("corner", near.at.corner);
   json.end_object();
 }
 
@@ -63,13 +108,13 @@ ExitStatus run(const Options& options) {
   wanted.absolute = precision.in_mesh_units(surface.size());
   wanted.relative = options.relative;
   wanted.budget = options.budget;
-  std::vector<ClosestPoint> results;
+  std::vector<Result> results;
   {
     ProgressBar bar("closest points", options.quiet);
     const WorkMonitor monitor = bar.monitor();
     naming(options.mesh, [&] {
       const QueryModel model(surface, how, monitor);
-      results = closest_points(model, points, wanted, options.threads, monitor);
+      results = find(model, points, wanted, options, monitor);
     });
   }
   Report report("closest", options);
@@ -79,9 +124,9 @@ ExitStatus run(const Options& options) {
     report.write().key("results").begin_array();
   }
   bool reached = true;
-  for (const ClosestPoint& result : results) {
+  for (const Result& result : results) {
     write_result(report, surface, result);
-    reached = reached && result.reached;
+    reached = reached && result.reached();
   }
   if (report.json()) report.write().end_array();
   report.finish();
@@ -101,6 +146,8 @@ Command closest_command() {
            "How near the bounds of a distance must be: mesh units, or percent of the mesh");
   list.add(Group::own, "--relative SHARE", &options->relative, "Or as near as this share of the distance")
       .between(0, 1);
+  list.add(Group::own, "--signed", &options->with_sign,
+           "Signed distances of a closed surface: negative inside, a sign that is proved");
   add_model_options(list, *options);
   return {"closest",
           Topic::one_surface,

@@ -5,6 +5,7 @@
 #include "length.h"
 #include "placed_pair.h"
 #include "progress_bar.h"
+#include "solids.h"
 
 namespace snug::command {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 struct Options : PairOptions {
   std::string tolerance = "0.1%", margin = "0";
   bool solid = false;
+  bool penetration = false;
   bool exit_code = false;
 };
 
@@ -26,6 +28,7 @@ void write_answer(JsonWriter& json, const Collision& answer, double tolerance, d
   } else {
     json.null().key("witness_error").null();
   }
+  write_inner(json, answer.inner);
   json.key("stats").begin_object();
   json.field("box_tests", answer.stats.box_tests).field("triangle_tests", answer.stats.triangle_tests);
   json.field("evaluations", answer.stats.evaluations).field("splits", answer.stats.splits).end_object();
@@ -41,8 +44,8 @@ std::string sentence(const Collision& answer, double tolerance, double margin) {
       return fmt::format("within: two points of the limit surfaces are at most {} apart (asked: {:.6g})",
                          text_at_most(*answer.upper, true), margin + tolerance);
     case Verdict::intersecting:
-      return answer.lower > 0 ? "intersecting: proved, one solid holds a part of the other"
-                              : "intersecting: proved, the limit surfaces have a point in common";
+      return answer.inner ? "intersecting: proved, " + inner_sentence(*answer.inner)
+                          : "intersecting: proved, the limit surfaces have a point in common";
     case Verdict::undecided:
       break;
   }
@@ -78,11 +81,19 @@ ExitStatus run(const Options& options) {
   const WorkMonitor monitor = bar.monitor();
   pair.prepare(monitor);
   const Collision answer = collide(pair.a(), pair.b(), wanted, monitor);
+  std::optional<Penetration> depth;
+  if (options.penetration) depth = penetration(pair.a(), pair.b(), {}, monitor);
 
   Report report("collide", options);
   pair.write_heads(report);
-  if (report.json()) write_answer(report.write(), answer, wanted.tolerance, wanted.margin);
+  if (report.json()) {
+    write_answer(report.write(), answer, wanted.tolerance, wanted.margin);
+    if (depth) write_penetration(report.write(), *depth);
+  }
   report.text(sentence(answer, wanted.tolerance, wanted.margin));
+  if (depth) report.text(penetration_sentence(*depth));
+  if (answer.verdict == Verdict::separated && !options.solid)
+    note_nesting(options, pair.a(), pair.b(), monitor);
   report.finish();
   return status(answer.verdict, options.exit_code);
 }
@@ -97,6 +108,9 @@ Command collide_command() {
   list.add(Group::own, "--margin LENGTH", &options->margin, "Distance that must be kept");
   list.add(Group::own, "--solid", &options->solid,
            "Closed surfaces bound solids: one inside of the other intersects it");
+  list.add(Group::own, "--penetration", &options->penetration,
+           "Bounds of the shortest translation that separates the solids, and one that does")
+      .needs("--solid");
   list.add(Group::own, "--exit-code", &options->exit_code,
            "Status 0 separated, 10 within, 11 intersecting, 12 undecided");
   add_pair_options(list, *options);

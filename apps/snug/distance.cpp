@@ -5,6 +5,7 @@
 #include "length.h"
 #include "placed_pair.h"
 #include "progress_bar.h"
+#include "solids.h"
 
 namespace snug::command {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 struct Options : PairOptions {
   std::string precision = "0.01%";
   double relative = 0;
+  bool solid = false;
 };
 
 void write_answer(JsonWriter& json, const Distance& answer, const DistanceOptions& wanted) {
@@ -20,7 +22,9 @@ void write_answer(JsonWriter& json, const Distance& answer, const DistanceOption
       .field("reached", answer.reached);
   json.key("distance").begin_array().value(answer.lower).value(answer.upper).end_array();
   json.key("witness").begin_array().value(answer.witness[0]).value(answer.witness[1]).end_array();
-  json.field("witness_error", answer.witness_error).key("stats").begin_object();
+  json.field("witness_error", answer.witness_error);
+  write_inner(json, answer.inner);
+  json.key("stats").begin_object();
   json.field("box_tests", answer.stats.box_tests).field("triangle_tests", answer.stats.triangle_tests);
   json.field("evaluations", answer.stats.evaluations).field("splits", answer.stats.splits).end_object();
 }
@@ -32,6 +36,7 @@ ExitStatus run(const Options& options) {
   wanted.absolute = precision.in_mesh_units(pair.size());
   wanted.relative = options.relative;
   wanted.budget = options.budget;
+  wanted.solid = options.solid;
   ProgressBar bar("measuring", options.quiet);
   const WorkMonitor monitor = bar.monitor();
   pair.prepare(monitor);
@@ -41,13 +46,15 @@ ExitStatus run(const Options& options) {
   pair.write_heads(report);
   if (report.json()) write_answer(report.write(), answer, wanted);
   if (answer.upper == 0) {
-    report.text("the limit surfaces have a point in common: proved");
+    report.text(answer.inner ? inner_sentence(*answer.inner) + ": proved, the solids meet"
+                             : "the limit surfaces have a point in common: proved");
   } else {
     report.text(
         fmt::format("the limit surfaces are at least {} and at most {} apart{}", text_at_most(answer.lower),
                     text_at_most(answer.upper, true),
                     answer.reached ? "" : "; that is not as precise as asked, give a larger --budget"));
   }
+  if (answer.lower > 0 && !options.solid) note_nesting(options, pair.a(), pair.b(), monitor);
   report.finish();
   return answer.reached ? ExitStatus::answered : ExitStatus::not_reached;
 }
@@ -61,6 +68,8 @@ Command distance_command() {
            "How near the bounds must be: mesh units, or percent of the longer mesh");
   list.add(Group::own, "--relative SHARE", &options->relative, "Or as near as this share of the distance")
       .between(0, 1);
+  list.add(Group::own, "--solid", &options->solid,
+           "Closed surfaces bound solids: 0 where one lies inside of the other");
   add_pair_options(list, *options);
   return {"distance",
           Topic::two_surfaces,

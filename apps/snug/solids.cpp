@@ -1,0 +1,57 @@
+#include "solids.h"
+
+#include <fmt/core.h>
+#include <snug/base/error.h>
+#include <snug/query/containment.h>
+#include <snug/query/solid.h>
+
+namespace snug::command {
+namespace {
+
+bool is_closed(const QueryModel& model) {
+  try {
+    static_cast<void>(model.solid());
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+void write_inner(JsonWriter& json, const std::optional<std::size_t>& inner) {
+  json.key("inner");
+  inner ? json.value(*inner == 0 ? "a" : "b") : json.null();
+}
+
+std::string inner_sentence(std::size_t inner) {
+  return inner == 0 ? "A, or a part of it, lies inside of B" : "B, or a part of it, lies inside of A";
+}
+
+void note_nesting(const CommonOptions& options, const PlacedModel& a, const PlacedModel& b,
+                  const WorkMonitor& monitor) {
+  const Notes notes = notes_for(options);
+  if (!notes || !is_closed(a.model) || !is_closed(b.model)) return;
+  const Nesting found = nesting(a, b, monitor);
+  if (found.inner) {
+    notes(inner_sentence(*found.inner) +
+          "; these are surfaces, which do not meet: --solid asks about solids");
+  }
+}
+
+void write_penetration(JsonWriter& json, const Penetration& found) {
+  json.key("penetration").begin_object().key("depth").begin_array();
+  json.value(found.lower).value(found.upper).end_array();
+  json.field("translation", found.translation).field("reached", found.reached).end_object();
+}
+
+std::string penetration_sentence(const Penetration& found) {
+  if (found.upper == 0) return "the solids are separated as they stand";
+  return fmt::format(
+      "the solids are at least {} deep in each other; moving B by ({:.6g} {:.6g} {:.6g}), {} long, separates "
+      "them: proved",
+      text_at_most(found.lower), found.translation.x, found.translation.y, found.translation.z,
+      text_at_most(found.upper, true));
+}
+
+}  // namespace snug::command

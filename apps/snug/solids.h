@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include <snug/query/penetration.h>
+
+#include "placed_pair.h"
+
+namespace snug::command {
+
+/// "inner": "a" or "b", the part that lies in the other one, or null.
+void write_inner(JsonWriter& json, const std::optional<std::size_t>& inner);
+
+/// "B lies inside of A", or with a witness on it.
+[[nodiscard]] std::string inner_sentence(std::size_t inner);
+
+/// Two surfaces that do not meet, closed both, one inside of the other: a note that they do as solids.
+void note_nesting(const CommonOptions& options, const PlacedModel& a, const PlacedModel& b,
+                  const WorkMonitor& monitor);
+
+/// "penetration": {depth, translation, reached}, and as a sentence.
+void write_penetration(JsonWriter& json, const Penetration& found);
+[[nodiscard]] std::string penetration_sentence(const Penetration& found);
+
+}  // namespace snug::command
