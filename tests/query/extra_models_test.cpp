@@ -2,6 +2,8 @@
 // bounded and compared with the twin.
 
 #include <snug/query/bound.h>
+#include <snug/query/collide.h>
+#include <snug/query/distance.h>
 
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
@@ -83,6 +85,35 @@ TEST(extra_models, venus_needs_few_leaves) {
     BoundOptions options;
     options.tolerance = tolerance * surface.size();
     EXPECT_LE(bound(surface, options, [](const PieceEnclosure&) {}).count, most) << tolerance;
+  }
+}
+
+// Counter-examples to proofs that were wrong once, with what is true of them.
+TEST(extra_models, counter_examples_are_answered_right) {
+  const char* folder = std::getenv("SNUG_EXTRA_MODELS");
+  const std::string path = std::string(folder ? folder : "") + "/solid/";
+  if (!folder || !std::filesystem::exists(path)) GTEST_SKIP() << "no folder solid in SNUG_EXTRA_MODELS";
+  const auto ask = [&](const std::string& a, const std::string& b, Scheme scheme,
+                       std::optional<TableLayout> table) {
+    const Surface surface_a(read_mesh(a), {scheme}, std::make_shared<BoundLibrary>()),
+        surface_b(read_mesh(b), {scheme}, std::make_shared<BoundLibrary>());
+    QueryModelOptions how;
+    how.table = table;
+    const QueryModel model_a(surface_a, how), model_b(surface_b, how);
+    QueryScratch scratch_a(model_a), scratch_b(model_b);
+    CollideOptions options;
+    options.solid = !table;
+    const Collision found = collide({model_a, scratch_a, {}}, {model_b, scratch_b, {}}, options);
+    const Distance gap = distance({model_a, scratch_a, {}}, {model_b, scratch_b, {}}, {});
+    EXPECT_TRUE(table ? gap.upper > 0 : true);
+    return found.verdict;
+  };
+  EXPECT_EQ(ask(path + "prism.obj", path + "inside.obj", Scheme::catmark, {}), Verdict::intersecting);
+  EXPECT_EQ(ask(path + "prism.obj", path + "outside.obj", Scheme::catmark, {}), Verdict::separated);
+  EXPECT_EQ(ask(SNUG_MODELS_DIR "/bracket.obj", path + "inside_bracket.obj", Scheme::midedge, {}),
+            Verdict::intersecting);
+  for (const TableLayout layout : {TableLayout::ngon, TableLayout::characteristic}) {
+    EXPECT_NE(ask(path + "needle_a.obj", path + "needle_b.obj", Scheme::loop, layout), Verdict::intersecting);
   }
 }
 
