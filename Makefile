@@ -58,6 +58,7 @@ fuzz: install-packages  ## the readers on made-up files, FUZZ_SECONDS (600) each
 	@JOBS=$(JOBS) scripts/fuzz
 
 check: test  ## every gate that a commit must pass
+	@scripts/demo --self-test
 	@scripts/check_format
 	@scripts/check_layers.py --self-test
 	@scripts/check_layers.py
@@ -76,7 +77,7 @@ format:  ## rewrite C++ files in the project's format
 tidy: build  ## clang-tidy over the library
 	@run-clang-tidy -quiet -j $(JOBS) -p build/release 'src/snug/.*\.cpp$$'
 
-docs: install-packages  ## plots and tables of docs/convergence.md, pictures of docs/schemes.md; links and citations
+docs: install-packages  ## plots and tables of docs/convergence.md, pictures of README.md and docs/schemes.md; links and citations
 	@$(call build,release,snug_command)
 	@mkdir -p build/docs
 	@for name in rates tightness; do build/release/bin/snug experiment $$name -o build/docs/$$name.json > /dev/null; done
@@ -87,6 +88,7 @@ docs: install-packages  ## plots and tables of docs/convergence.md, pictures of 
 	  build/release/bin/snug experiment rates --scheme $$scheme --at semi-sharp -o build/docs/$$scheme-semi-sharp.json > /dev/null; done
 	@scripts/plot_experiments.py build/docs docs/convergence.md docs/pictures
 	@scripts/draw_schemes build/release/bin/snug docs/pictures
+	@scripts/demo build/release/bin/snug docs/pictures/demo.png > /dev/null
 	@scripts/check_docs.py
 
 tables:  ## make the rows and tables again that are compiled in, then prove them

@@ -30,7 +30,7 @@ constexpr Vector3 default_view{-0.55, -0.35, -0.85};
 constexpr Vector3 default_up{0, 1, 0};
 
 struct Options : CommonOptions {
-  std::vector<std::string> meshes, placements;
+  std::vector<std::string> meshes, placements, witnesses;
   std::string size = "1000x1000", view, up;
   int samples = 3;
   bool cage = false, enclosures = false;
@@ -57,25 +57,45 @@ Size parse_size(const std::string& text) {
   return {side(whole.substr(0, by)), side(whole.substr(by + 1))};
 }
 
-// Three numbers, separated by blanks or commas, scaled to a direction of length 1.
-Vector3 parse_direction(const std::string& text, const std::string& option) {
-  const auto refuse = [&] {
-    throw UsageError(option + ": '" + text + "' is not a direction; give three numbers, not all zero");
-  };
+// As many numbers, separated by blanks or commas; nothing if the text is not that.
+template <std::size_t count>
+std::optional<std::array<double, count>> parse_numbers(std::string_view text) {
   constexpr std::string_view blanks = " ,\t\r\n";
-  std::array<double, 3> numbers{};
-  std::size_t count = 0;
-  for (auto begin = text.find_first_not_of(blanks); begin != std::string::npos;) {
+  std::array<double, count> numbers{};
+  std::size_t found = 0;
+  for (auto begin = text.find_first_not_of(blanks); begin != std::string_view::npos;) {
     const auto end = std::min(text.find_first_of(blanks, begin), text.size());
-    const ParsedReal number = parse_real(std::string_view(text).substr(begin, end - begin));
-    if (number.fault != NumberFault::none || count == 3) refuse();
-    numbers[count++] = number.value;
+    const ParsedReal number = parse_real(text.substr(begin, end - begin));
+    if (number.fault != NumberFault::none || found == count) return {};
+    numbers[found++] = number.value;
     begin = text.find_first_not_of(blanks, end);
   }
-  const Vector3 given{numbers[0], numbers[1], numbers[2]};
-  if (count != 3 || max_abs(given) == 0) refuse();
+  if (found < count) return {};
+  return numbers;
+}
+
+// Three numbers, scaled to a direction of length 1.
+Vector3 parse_direction(const std::string& text, const std::string& option) {
+  const auto numbers = parse_numbers<3>(text);
+  const Vector3 given = numbers ? Vector3{(*numbers)[0], (*numbers)[1], (*numbers)[2]} : Vector3{};
+  if (max_abs(given) == 0) {
+    throw UsageError(option + ": '" + text + "' is not a direction; give three numbers, not all zero");
+  }
   const Vector3 scaled = PowerOfTwo::normalising(max_abs(given)).apply(given);
   return (1 / length(scaled)) * scaled;
+}
+
+// Two points, one on each surface.
+using Witness = std::array<Point3, 2>;
+
+Witness parse_witness(const std::string& text) {
+  const auto numbers = parse_numbers<6>(text);
+  if (!numbers) {
+    throw UsageError("--witness: '" + text +
+                     "' is not two points; give six numbers, as collide and distance print them");
+  }
+  const auto& n = *numbers;
+  return {Point3{n[0], n[1], n[2]}, Point3{n[3], n[4], n[5]}};
 }
 
 struct View {
@@ -196,6 +216,7 @@ void require_sound(const Options& options) {
     throw UsageError(fmt::format("render: {} times --place, but {} meshes", options.placements.size(),
                                  options.meshes.size()));
   }
+  for (const std::string& text : options.witnesses) parse_witness(text);
 }
 
 struct Shot {
@@ -221,6 +242,11 @@ Shot compose(const Options& options, std::span<const PlacedSurface> parts, const
       add_cage(shot.scene, part, units, palette::cage_width * line_scale, palette::ink);
     }
     for (const Line& line : shot.scene.lines) visible.insert(visible.end(), {line.a, line.b});
+  }
+  for (const std::string& text : options.witnesses) {
+    const std::size_t before = shot.scene.lines.size();
+    add_witness(shot.scene, parse_witness(text), units, line_scale);
+    for (std::size_t i = before; i < shot.scene.lines.size(); ++i) visible.push_back(shot.scene.lines[i].a);
   }
   std::vector<std::vector<Polyhedron>> solids;
   for (std::size_t part = 0; part < enclosures.of_part.size(); ++part) {
@@ -318,6 +344,9 @@ Command render_command() {
   list.add(Group::own, "--size WxH", &options->size, "Pixels: WxH, or one number");
   list.add(Group::own, "--samples N", &options->samples, "N * N rays a pixel, N from 1 to 16").between(1, 16);
   list.add(Group::own, "--cage", &options->cage, "The edges of the control meshes, too");
+  list.add(Group::own, "--witness \"X Y Z  X Y Z\"", &options->witnesses,
+           "Two points and the segment between them, such as the witnesses of collide and distance; may be "
+           "repeated");
   list.add(Group::own, "--enclosures", &options->enclosures, "What encloses the surfaces, half transparent");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Enclosures whose radius is at most half of this: mesh units, or 1%")

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <snug/base/parallel.h>
+#include <snug/picture/palette.h>
 #include <snug/query/evaluate.h>
 
 namespace snug::command {
@@ -211,6 +212,19 @@ void add_polyhedron(Scene& scene, const Polyhedron& solid, Point3 eye, const Sol
           {points[from], points[to], (inner ? 0.5 : 1) * style.line_width, style.line_colour});
     }
   }
+}
+
+void add_witness(Scene& scene, const std::array<Point3, 2>& points, const PictureUnits& units, double scale) {
+  std::array<Point3, 2> drawn;
+  for (std::size_t i = 0; i < 2; ++i) {
+    drawn[i] = units.from_scaled(Motion{}, units.scale().apply(points[i]));
+    if (!(max_abs(drawn[i] - Point3{}) < 1e6)) {
+      throw InputError(InputProblem::value,
+                       "--witness: a point is too far away for a picture of these meshes");
+    }
+  }
+  scene.lines.push_back({drawn[0], drawn[1], palette::witness_width * scale, palette::signal});
+  for (const Point3& p : drawn) scene.lines.push_back({p, p, palette::witness_dot * scale, palette::signal});
 }
 
 void add_cage(Scene& scene, const PlacedSurface& part, const PictureUnits& units, double line_width,

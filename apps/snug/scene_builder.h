@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -103,6 +104,10 @@ struct SolidStyle {
 
 /// Adds what an eye sees of a convex solid by itself: the facets towards the eye and their edges.
 void add_polyhedron(Scene& scene, const Polyhedron& solid, Point3 eye, const SolidStyle& style);
+
+/// Adds two points of the world and the segment between them; `scale` is the picture's smaller side over a thousand pixels.
+/// Errors:    InputError (value) for points so far away that the picture cannot hold them.
+void add_witness(Scene& scene, const std::array<Point3, 2>& points, const PictureUnits& units, double scale);
 
 /// Adds the edges of the control mesh.
 void add_cage(Scene& scene, const PlacedSurface& part, const PictureUnits& units, double line_width,

@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
                 << " faces\n";
     }
     write(folder, "bracket", models::bracket_text());
+    write(folder, "pin", models::pin_text());
   } catch (const std::exception& error) {
     std::cerr << "generate_models: " << error.what() << "\n";
     return 1;

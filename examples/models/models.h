@@ -13,7 +13,8 @@ TriangleMesh make_bust();
 TriangleMesh make_demon();
 TriangleMesh make_figure();
 
-/// Text of the OBJ file of the one model of quads.
+/// Texts of the OBJ files of the models of quads.
 std::string bracket_text();
+std::string pin_text();
 
 }  // namespace models

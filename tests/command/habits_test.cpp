@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -153,6 +154,28 @@ TEST(words, are_sorted_as_everywhere) {
     EXPECT_TRUE(std::filesystem::remove(file));
   }
   EXPECT_EQ(run_snug({"info", "--", "--json"}).status, 3);  // a file of that name
+}
+
+TEST(render, draws_witnesses) {
+  const TemporaryFolder folder;
+  const std::string star = model("star.obj"), with = folder.file("with.png"),
+                    without = folder.file("without.png");
+  const auto picture = [&](const std::string& file, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"render", star, "--size", "64", "-o", file};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run_snug(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    std::ifstream stream(file, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  const std::string bare = picture(without, {});
+  EXPECT_NE(picture(with, {"--witness", "0 0 2  1,1,1"}), bare);
+  EXPECT_NE(picture(with, {"--witness", "0 0 2 1 1 1", "--witness", "0 0 2 -1 -1 -1"}),
+            picture(without, {"--witness", "0 0 2 1 1 1"}));
+  for (const char* bad : {"0 0 2 1 1", "0 0 2 1 1 1 1", "0 0 2 1 1 x", "0 0 2 1 1 nan", ""}) {
+    expect_usage_error({"render", star, "-o", with, "--witness", bad}, "is not two points");
+  }
+  EXPECT_EQ(run_snug({"render", star, "-o", with, "--witness", "0 0 1e300 0 0 0"}).status, 4);
 }
 
 // Help in groups: each heading once, in this order, an example last.
