@@ -69,6 +69,8 @@ std::optional<int> PolyhedronTwin::winding(const Point& q) const {
     int crossings = 0;
     bool certain = true;
     for (const auto& t : triangles_) {
+      const Vector normal = cross(t[1] - t[0], t[2] - t[0]);
+      if (dot(normal, normal) == 0) continue;  // without area: what crosses it crosses edges of others
       const Vector a = t[0] - at, b = t[1] - at, c = t[2] - at;
       const int x = sign(dot(ray, cross(a, b))), y = sign(dot(ray, cross(b, c))),
                 z = sign(dot(ray, cross(c, a)));

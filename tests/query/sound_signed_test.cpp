@@ -11,6 +11,7 @@
 #include <oracle/polyhedron_twin.h>
 #include <snug/base/error.h>
 #include <snug/query/containment.h>
+#include <snug/query/solid.h>
 #include <testing/solid_cases.h>
 
 #include <cmath>
@@ -54,7 +55,7 @@ std::vector<Point3> limit_points_of(const testing::SolidCase& c) {
 TEST(signed_distance, agrees_with_refined_meshes) {
   const std::uint64_t solids = (number_of("SNUG_PLACEMENTS", 20'000) + points_a_solid - 1) / points_a_solid;
   const std::uint64_t first = number_of("SNUG_FIRST", 0);
-  std::size_t asked = 0, told = 0, inside = 0;
+  std::size_t asked = 0, told = 0, inside = 0, unreached = 0;
   double widest = 0;
   for (std::uint64_t i = first; i < first + solids && !HasFailure(); ++i) {
     const testing::SolidCase c = testing::solid_case(i);
@@ -90,7 +91,9 @@ TEST(signed_distance, agrees_with_refined_meshes) {
                        upper = *number == 0 ? truth.upper : -truth.lower;
           ASSERT_LE(answer.lower, upper + slack) << c.name << ", point " << k;
           ASSERT_GE(answer.upper, lower - slack) << c.name << ", point " << k;
-          widest = std::max(widest, (answer.upper - answer.lower) / options.absolute);
+          // Some points run into the budget of pieces.
+          unreached += !answer.reached;
+          if (answer.reached) widest = std::max(widest, (answer.upper - answer.lower) / options.absolute);
         } else {
           ASSERT_LE(std::max(answer.lower, -answer.upper), truth.upper + slack) << c.name << ", point " << k;
           ASSERT_GE(std::max(-answer.lower, answer.upper), truth.lower - slack) << c.name << ", point " << k;
@@ -101,9 +104,11 @@ TEST(signed_distance, agrees_with_refined_meshes) {
     }
   }
   std::cout << "  " << asked << " points, the twin tells " << told << ", " << inside
-            << " of them inside; widest interval " << widest << " times what was asked\n";
+            << " of them inside; widest interval " << widest << " times what was asked, " << unreached
+            << " not reached\n";
   EXPECT_GT(inside * 40, asked);
   EXPECT_LE(widest, 1);
+  EXPECT_LE(unreached * 1000, told);
 }
 
 // Every edge infinitely sharp: the limit surface of a triangle is the triangle.
@@ -129,14 +134,16 @@ TEST(signed_distance, of_sharp_polyhedra_is_exact) {
     for (const auto& t : shape.polygons) triangles.push_back({t[0], t[1], t[2]});
     const oracle::PolyhedronTwin twin(shape.points, triangles);
     std::optional<Surface> surface;
+    std::optional<QueryModel> model;
     try {
       surface.emplace(sharp_mesh(shape), SchemeOptions{i % 2 == 0 ? Scheme::loop : Scheme::catmark},
                       std::make_shared<BoundLibrary>(), 1);
+      model.emplace(*surface);
+      static_cast<void>(model->solid());
     } catch (const InputError&) {
-      continue;  // the same triangle twice
+      continue;  // the same triangle twice, or four at an edge
     }
-    const QueryModel model(*surface);
-    QueryScratch scratch(model);
+    QueryScratch scratch(*model);
     for (int k = 0; k < 60; ++k) {
       // Lattice points lie in planes of faces, on edges and at corners; others a hair away from them.
       Point3 q;
