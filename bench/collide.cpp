@@ -66,14 +66,14 @@ void bench_leaves(const std::vector<Model>& models) {
 
 // --- 2. from two control meshes in memory to the first answer ---
 
-double first_answer(const Model& a, const Model& b, const PlacedPair& at, double tolerance,
+double first_answer(const Model& a, const Model& b, const PosePair& at, double tolerance,
                     const Library& library) {
   SnugPair pair(a, b, library);
   return static_cast<double>(pair.queries.collide(at, tolerance).verdict);
 }
 
 void bench_first_answer(const Model& a, const Model& b, const Options& options) {
-  const std::vector<PlacedPair> near = contact_placements(a, b, 3, 0.01, 5, 7);
+  const std::vector<PosePair> near = contact_placements(a, b, 3, 0.01, 5, 7);
   const Library library = std::make_shared<BoundLibrary>();
   for (const double percent : {2.0, 1.0, 0.5, 0.1}) {
     if (options.quick && percent < 1) continue;
@@ -86,7 +86,7 @@ void bench_first_answer(const Model& a, const Model& b, const Options& options) 
     if (percent < 0.5) group.limit_rounds(5);
     const auto answers = [&](const std::function<Library()>& take) {
       double sum = 0;
-      for (const PlacedPair& at : near) sum += first_answer(a, b, at, tolerance, take());
+      for (const PosePair& at : near) sum += first_answer(a, b, at, tolerance, take());
       return sum;
     };
     const double items = static_cast<double>(near.size());
@@ -126,9 +126,9 @@ void bench_first_answer(const Model& a, const Model& b, const Options& options) 
 
 constexpr double mib = 0x1p20;
 
-double run_queries(SnugPair& pair, const std::vector<PlacedPair>& at, double tolerance) {
+double run_queries(SnugPair& pair, const std::vector<PosePair>& at, double tolerance) {
   double sum = 0;
-  for (const PlacedPair& placed : at) {
+  for (const PosePair& placed : at) {
     sum += static_cast<double>(pair.queries.collide(placed, tolerance).verdict);
   }
   return sum;
@@ -136,9 +136,9 @@ double run_queries(SnugPair& pair, const std::vector<PlacedPair>& at, double tol
 
 void bench_memory(const Model& a, const Model& b, const Options& options) {
   std::mt19937_64 random(11);
-  std::vector<PlacedPair> at(options.size<std::size_t>(5000, 200));
-  for (PlacedPair& placed : at) placed = place_in_room(3, random);
-  const PlacedPair first = contact_placements(a, b, 3, 0.01, 1, 7)[0];
+  std::vector<PosePair> at(options.size<std::size_t>(5000, 200));
+  for (PosePair& placed : at) placed = place_in_room(3, random);
+  const PosePair first = contact_placements(a, b, 3, 0.01, 1, 7)[0];
 
   const std::size_t before = heap_bytes();
   const Library library = std::make_shared<BoundLibrary>();
@@ -209,7 +209,7 @@ struct Contest {
   }
 };
 
-using PlacementsOfPairs = std::vector<std::vector<PlacedPair>>;
+using PlacementsOfPairs = std::vector<std::vector<PosePair>>;
 
 // Times of snug as it is and with tight trees, of FCL's OBB and FCL's OBBRSS.
 std::vector<Times> run_contest(Contest& contest, const std::string& title, const PlacementsOfPairs& at,
@@ -229,7 +229,7 @@ std::vector<Times> run_contest(Contest& contest, const std::string& title, const
   const auto peer = [&at](const std::vector<FclPair>& pairs) {
     double sum = 0;
     for (std::size_t p = 0; p < at.size(); ++p) {
-      for (const PlacedPair& placed : at[p]) sum += pairs[p].collide(placed);
+      for (const PosePair& placed : at[p]) sum += pairs[p].collide(placed);
     }
     return sum;
   };
@@ -240,7 +240,7 @@ std::vector<Times> run_contest(Contest& contest, const std::string& title, const
   for (const auto* pairs : {&contest.snug, &contest.tight}) {
     Work work;
     for (std::size_t p = 0; p < at.size(); ++p) {
-      for (const PlacedPair& placed : at[p]) {
+      for (const PosePair& placed : at[p]) {
         work.add((*pairs)[p]->queries.collide(placed, one_percent).stats);
       }
     }
@@ -270,7 +270,7 @@ void bench_volumes(const std::vector<Model>& models, const std::string& room, co
     group.add(name, items, [&at, &pairs, index = pairs.size() - 1] {
       double sum = 0;
       for (std::size_t p = 0; p < at.size(); ++p) {
-        for (const PlacedPair& placed : at[p]) {
+        for (const PosePair& placed : at[p]) {
           sum += pairs[index][p]->queries.collide(placed, one_percent).verdict == Verdict::separated;
         }
       }
@@ -353,14 +353,14 @@ void bench_wrong_answers(const std::vector<Model>& models, bool near_contact, co
   for (const auto& [name_a, name_b] : model_pairs) {
     const Model &a = named(models, name_a), &b = named(models, name_b);
     const std::vector<FclPair> peers = meshes_of(a, b, counts);
-    std::vector<PlacedPair> at(count);
+    std::vector<PosePair> at(count);
     if (near_contact) {
       at = contact_placements(a, b, 3, one_percent, count, 5);
     } else {
-      for (PlacedPair& placed : at) placed = place_in_room(3, random);
+      for (PosePair& placed : at) placed = place_in_room(3, random);
     }
     SnugPair pair(a, b, library);
-    for (const PlacedPair& placed : at) {
+    for (const PosePair& placed : at) {
       const std::optional<bool> truth = pair.queries.meet(placed);
       if (!truth) {
         ++unsure;

@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
   // All disjoint placements, then sort by sort.
   for (std::size_t choice = 0; choice < all_nearness.size(); ++choice) {
     const bool all = choice == 0;
-    std::vector<std::vector<PlacedPair>> at(placements.size());
+    std::vector<std::vector<PosePair>> at(placements.size());
     double items = 0;
     for (std::size_t p = 0; p < placements.size(); ++p) {
       for (const Placed& placed : placements[p]) {
@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
     const auto ask = [&at](const std::vector<std::unique_ptr<SnugPair>>& pairs) {
       double sum = 0;
       for (std::size_t p = 0; p < at.size(); ++p) {
-        for (const PlacedPair& placed : at[p]) sum += pairs[p]->queries.distance(placed, precision).upper;
+        for (const PosePair& placed : at[p]) sum += pairs[p]->queries.distance(placed, precision).upper;
       }
       return sum;
     };
@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
     group.add("FCL OBBRSS, uniform Loop of 1 %", items, [&] {
       double sum = 0;
       for (std::size_t p = 0; p < at.size(); ++p) {
-        for (const PlacedPair& placed : at[p]) sum += peers[p].distance(placed);
+        for (const PosePair& placed : at[p]) sum += peers[p].distance(placed);
       }
       return sum;
     });
@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
     for (const auto* pairs : {&snug, &tight}) {
       Work work;
       for (std::size_t p = 0; p < at.size(); ++p) {
-        for (const PlacedPair& placed : at[p]) {
+        for (const PosePair& placed : at[p]) {
           work.add((*pairs)[p]->queries.distance(placed, precision).stats);
         }
       }

@@ -33,8 +33,8 @@ struct FclPair {
       : FclPair(osd_uniform(model_a.mesh, osd_uniform_level(model_a.mesh, tolerance)),
                 osd_uniform(model_b.mesh, osd_uniform_level(model_b.mesh, tolerance)), boxes) {}
 
-  [[nodiscard]] bool collide(const PlacedPair& at) const { return fcl_collide(a, at.a, b, at.b); }
-  [[nodiscard]] double distance(const PlacedPair& at) const { return fcl_distance(a, at.a, b, at.b); }
+  [[nodiscard]] bool collide(const PosePair& at) const { return fcl_collide(a, at.a, b, at.b); }
+  [[nodiscard]] double distance(const PosePair& at) const { return fcl_distance(a, at.a, b, at.b); }
   [[nodiscard]] std::size_t bytes() const { return a.bytes() + b.bytes(); }
 };
 #endif

@@ -47,7 +47,7 @@ bool overlap(const TurnedBox& a, const TurnedBox& b) {
   return true;
 }
 
-Nearness sorted(Queries& queries, const PlacedPair& at, bool boxes_overlap) {
+Nearness sorted(Queries& queries, const PosePair& at, bool boxes_overlap) {
   const auto separated = [&](double tolerance, double margin) {
     return queries.collide(at, tolerance, margin).verdict == Verdict::separated;
   };
@@ -108,29 +108,29 @@ std::vector<Placed> sorted_placements(const Model& a, const Model& b, double sid
   return result;
 }
 
-std::vector<PlacedPair> of(const std::vector<Placed>& all, Nearness nearness) {
-  std::vector<PlacedPair> result;
+std::vector<PosePair> of(const std::vector<Placed>& all, Nearness nearness) {
+  std::vector<PosePair> result;
   for (const Placed& placed : all) {
     if (placed.nearness == nearness) result.push_back(placed.at);
   }
   return result;
 }
 
-std::vector<PlacedPair> of(const std::vector<Placed>& all) {
-  std::vector<PlacedPair> result;
+std::vector<PosePair> of(const std::vector<Placed>& all) {
+  std::vector<PosePair> result;
   for (const Placed& placed : all) result.push_back(placed.at);
   return result;
 }
 
-std::vector<PlacedPair> contact_placements(const Model& a, const Model& b, double side, double reach,
-                                           std::size_t count, std::uint64_t seed) {
+std::vector<PosePair> contact_placements(const Model& a, const Model& b, double side, double reach,
+                                         std::size_t count, std::uint64_t seed) {
   const auto library = std::make_shared<BoundLibrary>();
   const Surface surface_a(a.mesh, loop_rules(), library, 1), surface_b(b.mesh, loop_rules(), library, 1);
   Queries queries(surface_a, surface_b);
   std::mt19937_64 random(seed);
-  std::vector<PlacedPair> result;
+  std::vector<PosePair> result;
   while (result.size() < count) {
-    PlacedPair pair = place_in_room(side, random);
+    PosePair pair = place_in_room(side, random);
     const Vector3 between = pair.b.translation() - pair.a.translation();
     if (!(length(between) > 0)) continue;
     const Vector3 direction = (1 / length(between)) * between;

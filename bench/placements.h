@@ -39,7 +39,7 @@ inline constexpr std::array all_nearness{Nearness::colliding, Nearness::grazing,
 [[nodiscard]] const char* name_of(Nearness nearness);
 
 struct Placed {
-  PlacedPair at;
+  PosePair at;
   Nearness nearness;
 };
 
@@ -47,13 +47,13 @@ struct Placed {
 [[nodiscard]] std::vector<Placed> sorted_placements(const Model& a, const Model& b, double side,
                                                     std::size_t count, std::uint64_t seed);
 /// Those of one sort.
-[[nodiscard]] std::vector<PlacedPair> of(const std::vector<Placed>& all, Nearness nearness);
-[[nodiscard]] std::vector<PlacedPair> of(const std::vector<Placed>& all);
+[[nodiscard]] std::vector<PosePair> of(const std::vector<Placed>& all, Nearness nearness);
+[[nodiscard]] std::vector<PosePair> of(const std::vector<Placed>& all);
 
 /// Placements near first contact: random ones whose model b comes along the line of the middles until the models touch, then goes
 /// on or back by up to `reach`, evenly. Those that pass by each other stay as they are drawn.
-[[nodiscard]] std::vector<PlacedPair> contact_placements(const Model& a, const Model& b, double side,
-                                                         double reach, std::size_t count, std::uint64_t seed);
+[[nodiscard]] std::vector<PosePair> contact_placements(const Model& a, const Model& b, double side,
+                                                       double reach, std::size_t count, std::uint64_t seed);
 
 /// Loop, boundary edge and corner: the rules that peers get, too.
 [[nodiscard]] inline SchemeOptions loop_rules() { return {Scheme::loop, BoundaryRule::edge_and_corner}; }

@@ -15,14 +15,14 @@ QueryModelOptions one_thread(QueryModelOptions options) {
 Queries::Queries(const Surface& a, const Surface& b, const QueryModelOptions& options)
     : a_(a, one_thread(options)), b_(b, one_thread(options)), scratch_a_(a_), scratch_b_(b_) {}
 
-Collision Queries::collide(const PlacedPair& at, double tolerance, double margin) {
+Collision Queries::collide(const PosePair& at, double tolerance, double margin) {
   CollideOptions options;
   options.tolerance = tolerance;
   options.margin = margin;
   return snug::collide({a_, scratch_a_, at.a}, {b_, scratch_b_, at.b}, options);
 }
 
-std::optional<bool> Queries::meet(const PlacedPair& at) {
+std::optional<bool> Queries::meet(const PosePair& at) {
   CollideOptions options;
   options.tolerance = 1e-7;
   options.prove_contact = true;
@@ -38,7 +38,7 @@ std::optional<bool> Queries::meet(const PlacedPair& at) {
   return {};
 }
 
-Distance Queries::distance(const PlacedPair& at, double precision) {
+Distance Queries::distance(const PosePair& at, double precision) {
   DistanceOptions options;
   options.absolute = precision;
   return snug::distance({a_, scratch_a_, at.a}, {b_, scratch_b_, at.b}, options);

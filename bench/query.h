@@ -15,11 +15,11 @@ class Queries {
  public:
   Queries(const Surface& a, const Surface& b, const QueryModelOptions& options = {});
 
-  [[nodiscard]] Collision collide(const PlacedPair& at, double tolerance, double margin = 0);
+  [[nodiscard]] Collision collide(const PosePair& at, double tolerance, double margin = 0);
   /// Do the limit surfaces meet? Nothing where neither is certain.
-  [[nodiscard]] std::optional<bool> meet(const PlacedPair& at);
+  [[nodiscard]] std::optional<bool> meet(const PosePair& at);
   /// With upper - lower at most `precision`.
-  [[nodiscard]] Distance distance(const PlacedPair& at, double precision);
+  [[nodiscard]] Distance distance(const PosePair& at, double precision);
   /// Models and scratch, without the surfaces.
   [[nodiscard]] std::size_t bytes() const;
 

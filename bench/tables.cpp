@@ -58,10 +58,10 @@ void creation_table(const std::vector<Model>& models) {
 }
 
 // Microseconds a query.
-double query_us(const FclModel& a, const FclModel& b, const std::vector<PlacedPair>& at, std::size_t& hits) {
+double query_us(const FclModel& a, const FclModel& b, const std::vector<PosePair>& at, std::size_t& hits) {
   hits = 0;
   const double seconds = seconds_of([&] {
-    for (const PlacedPair& placed : at) hits += fcl_collide(a, placed.a, b, placed.b);
+    for (const PosePair& placed : at) hits += fcl_collide(a, placed.a, b, placed.b);
   });
   return 1e6 * seconds / static_cast<double>(at.size());
 }
@@ -70,8 +70,8 @@ void room_table(const std::vector<Model>& models, std::size_t placements, std::u
   for (const double side : room_sides) {
     // The command draws the same ones for each pair and tolerance.
     std::mt19937_64 random(seed);
-    std::vector<PlacedPair> at(placements);
-    for (PlacedPair& placed : at) placed = place_in_room(side, random);
+    std::vector<PosePair> at(placements);
+    for (PosePair& placed : at) placed = place_in_room(side, random);
     for (std::size_t pair = 0; pair + 1 < models.size(); pair += 2) {
       for (const double tolerance : table_tolerances) {
         std::vector<TriangleMesh> meshes;

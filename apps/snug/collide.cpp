@@ -4,6 +4,7 @@
 
 #include "length.h"
 #include "placed_pair.h"
+#include "pose_answers.h"
 #include "progress_bar.h"
 #include "solids.h"
 
@@ -17,8 +18,8 @@ struct Options : PairOptions {
   bool exit_code = false;
 };
 
-void write_answer(JsonWriter& json, const Collision& answer, double tolerance, double margin) {
-  json.field("verdict", name_of(answer.verdict)).field("tolerance", tolerance).field("margin", margin);
+void write_answer(JsonWriter& json, const Collision& answer) {
+  json.field("verdict", name_of(answer.verdict));
   json.key("distance").begin_array().value(answer.lower);
   answer.upper ? json.value(*answer.upper) : json.null();
   json.end_array().key("witness");
@@ -67,6 +68,35 @@ ExitStatus status(Verdict verdict, bool exit_code) {
   return exit_code ? ExitStatus::undecided : ExitStatus::not_reached;
 }
 
+// Verdict, bounds of the distance and witnesses of one pose among many.
+std::string row(const Collision& answer) {
+  std::string text = fmt::format("{} {} {}", name_of(answer.verdict), text_at_most(answer.lower),
+                                 answer.upper ? text_at_most(*answer.upper, true) : "-");
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (!answer.witness) {
+      text += " - - -";
+      continue;
+    }
+    const Point3& p = (*answer.witness)[side];
+    text += fmt::format(" {} {} {}", p.x, p.y, p.z);
+  }
+  return text;
+}
+
+ExitStatus run_poses(PairArguments& pair, Report& report, const CollideOptions& wanted,
+                     const WorkMonitor& monitor) {
+  const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+  const auto ask = [&](const PlacedModel& a, const PlacedModel& b) {
+    Collision answer = collide(a, b, wanted, stop_only);
+    return PoseAnswer{.fields = [answer](JsonWriter& json) { write_answer(json, answer); },
+                      .row = row(answer),
+                      .reached = answer.verdict != Verdict::undecided};
+  };
+  const ExitStatus status = answer_poses(pair, report, "verdict lower upper ax ay az bx by bz", ask, monitor);
+  report.finish();
+  return status;
+}
+
 ExitStatus run(const Options& options) {
   const Length tolerance = parse_length(options.tolerance, "--tolerance", true);
   const Length margin = parse_length(options.margin, "--margin", true);
@@ -80,14 +110,16 @@ ExitStatus run(const Options& options) {
   ProgressBar bar("colliding", options.quiet);
   const WorkMonitor monitor = bar.monitor();
   pair.prepare(monitor);
+  Report report("collide", options);
+  pair.write_heads(report);
+  if (report.json()) report.write().field("tolerance", wanted.tolerance).field("margin", wanted.margin);
+  if (!options.poses.empty()) return run_poses(pair, report, wanted, monitor);
   const Collision answer = collide(pair.a(), pair.b(), wanted, monitor);
   std::optional<Penetration> depth;
   if (options.penetration) depth = penetration(pair.a(), pair.b(), {}, monitor);
-
-  Report report("collide", options);
-  pair.write_heads(report);
   if (report.json()) {
-    write_answer(report.write(), answer, wanted.tolerance, wanted.margin);
+    write_poses(report.write(), {pair.pose_a(), pair.pose_b()});
+    write_answer(report.write(), answer);
     if (depth) write_penetration(report.write(), *depth);
   }
   report.text(sentence(answer, wanted.tolerance, wanted.margin));
@@ -110,14 +142,16 @@ Command collide_command() {
            "Closed surfaces bound solids: one inside of the other intersects it");
   list.add(Group::own, "--penetration", &options->penetration,
            "Bounds of the shortest translation that separates the solids, and one that does")
-      .needs("--solid");
+      .needs("--solid")
+      .excludes("--poses");
   list.add(Group::own, "--exit-code", &options->exit_code,
-           "Status 0 separated, 10 within, 11 intersecting, 12 undecided");
+           "Status 0 separated, 10 within, 11 intersecting, 12 undecided")
+      .excludes("--poses");
   add_pair_options(list, *options);
   return {"collide",
           Topic::two_surfaces,
           "Do two limit surfaces touch? A verdict that is a proof",
-          {"snug collide pawn.obj bust.obj --place-b \"1 0 0 3  0 1 0 0  0 0 1 0\""},
+          {"snug collide pawn.obj bust.obj --move-b \"3 0 0\""},
           std::move(list),
           [options] { return run(*options); }};
 }

@@ -172,6 +172,10 @@ void Report::text(const std::string& line) {
   if (!quiet_ && !to_standard_output_) fmt::print("{}\n", line);
 }
 
+void Report::flush_text() {
+  if (!quiet_ && !to_standard_output_) std::fflush(stdout);
+}
+
 void Report::finish() {
   if (writer_) {
     writer_->field("seconds",

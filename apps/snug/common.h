@@ -83,6 +83,8 @@ class Report {
   void heads(const std::vector<std::string>& meshes, const std::vector<std::string>& schemes);
   /// One line for people on standard output; nothing with --json, or where the document goes there.
   void text(const std::string& line);
+  /// Lets lines of text out at once.
+  void flush_text();
   /// Ends the document and puts the file in place.
   void finish();
 

@@ -4,6 +4,7 @@
 
 #include "length.h"
 #include "placed_pair.h"
+#include "pose_answers.h"
 #include "progress_bar.h"
 #include "solids.h"
 
@@ -16,10 +17,8 @@ struct Options : PairOptions {
   bool solid = false;
 };
 
-void write_answer(JsonWriter& json, const Distance& answer, const DistanceOptions& wanted) {
-  json.field("precision", wanted.absolute)
-      .field("relative", wanted.relative)
-      .field("reached", answer.reached);
+void write_answer(JsonWriter& json, const Distance& answer) {
+  json.field("reached", answer.reached);
   json.key("distance").begin_array().value(answer.lower).value(answer.upper).end_array();
   json.key("witness").begin_array().value(answer.witness[0]).value(answer.witness[1]).end_array();
   json.field("witness_error", answer.witness_error);
@@ -27,6 +26,27 @@ void write_answer(JsonWriter& json, const Distance& answer, const DistanceOption
   json.key("stats").begin_object();
   json.field("box_tests", answer.stats.box_tests).field("triangle_tests", answer.stats.triangle_tests);
   json.field("evaluations", answer.stats.evaluations).field("splits", answer.stats.splits).end_object();
+}
+
+// Bounds of the distance and witnesses of one pose among many.
+std::string row(const Distance& answer) {
+  const auto& [a, b] = answer.witness;
+  return fmt::format("{} {} {} {} {} {} {} {}", text_at_most(answer.lower), text_at_most(answer.upper, true),
+                     a.x, a.y, a.z, b.x, b.y, b.z);
+}
+
+ExitStatus run_poses(PairArguments& pair, Report& report, const DistanceOptions& wanted,
+                     const WorkMonitor& monitor) {
+  const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+  const auto ask = [&](const PlacedModel& a, const PlacedModel& b) {
+    Distance answer = distance(a, b, wanted, stop_only);
+    return PoseAnswer{.fields = [answer](JsonWriter& json) { write_answer(json, answer); },
+                      .row = row(answer),
+                      .reached = answer.reached};
+  };
+  const ExitStatus status = answer_poses(pair, report, "lower upper ax ay az bx by bz", ask, monitor);
+  report.finish();
+  return status;
 }
 
 ExitStatus run(const Options& options) {
@@ -40,11 +60,15 @@ ExitStatus run(const Options& options) {
   ProgressBar bar("measuring", options.quiet);
   const WorkMonitor monitor = bar.monitor();
   pair.prepare(monitor);
-  const Distance answer = distance(pair.a(), pair.b(), wanted, monitor);
-
   Report report("distance", options);
   pair.write_heads(report);
-  if (report.json()) write_answer(report.write(), answer, wanted);
+  if (report.json()) report.write().field("precision", wanted.absolute).field("relative", wanted.relative);
+  if (!options.poses.empty()) return run_poses(pair, report, wanted, monitor);
+  const Distance answer = distance(pair.a(), pair.b(), wanted, monitor);
+  if (report.json()) {
+    write_poses(report.write(), {pair.pose_a(), pair.pose_b()});
+    write_answer(report.write(), answer);
+  }
   if (answer.upper == 0) {
     report.text(answer.inner ? inner_sentence(*answer.inner) + ": proved, the solids meet"
                              : "the limit surfaces have a point in common: proved");
@@ -74,7 +98,7 @@ Command distance_command() {
   return {"distance",
           Topic::two_surfaces,
           "How far are two limit surfaces apart? Bounds, and two points",
-          {"snug distance pawn.obj bust.obj --place-b \"1 0 0 9  0 1 0 0  0 0 1 0\""},
+          {"snug distance pawn.obj bust.obj --rotate-b \"z 30\" --move-b \"9 0 0\""},
           std::move(list),
           [options] { return run(*options); }};
 }

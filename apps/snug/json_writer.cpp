@@ -7,7 +7,8 @@
 
 namespace snug::command {
 
-JsonWriter::JsonWriter(std::function<void(std::string_view)> sink) : sink_(std::move(sink)) {}
+JsonWriter::JsonWriter(std::function<void(std::string_view)> sink, Lines lines)
+    : sink_(std::move(sink)), lines_(lines) {}
 
 void JsonWriter::separate() {
   if (after_key_) {
@@ -17,7 +18,8 @@ void JsonWriter::separate() {
   if (has_items_.empty()) return;
   if (has_items_.back()) buffer_ += ',';
   has_items_.back() = true;
-  if (has_items_.size() <= 2) buffer_ += '\n';  // a line for each entry of the document and of its lists
+  if (lines_ == Lines::many && has_items_.size() <= 2)
+    buffer_ += '\n';  // a line for each entry of the document and of its lists
 }
 
 void JsonWriter::open(char bracket) {
@@ -30,7 +32,7 @@ void JsonWriter::close(char bracket) {
   SNUG_EXPECT(!has_items_.empty() && !after_key_);
   const bool items = has_items_.back();
   has_items_.pop_back();
-  if (items && has_items_.size() <= 1) buffer_ += '\n';
+  if (lines_ == Lines::many && items && has_items_.size() <= 1) buffer_ += '\n';
   buffer_ += bracket;
   flush_if_long();
 }
@@ -43,6 +45,12 @@ JsonWriter& JsonWriter::end_array() { return close(']'), *this; }
 JsonWriter& JsonWriter::raw(std::string_view text) {
   separate();
   buffer_ += text;
+  return *this;
+}
+
+JsonWriter& JsonWriter::spliced(std::string_view document) {
+  raw(document);
+  flush_if_long();
   return *this;
 }
 
@@ -95,7 +103,7 @@ void JsonWriter::flush_if_long() {
 
 void JsonWriter::finish() {
   SNUG_EXPECT(has_items_.empty());
-  buffer_ += '\n';
+  if (lines_ == Lines::many) buffer_ += '\n';
   sink_(buffer_);
   buffer_.clear();
 }

@@ -18,8 +18,10 @@ namespace snug::command {
 /// Errors:    SNUG_EXPECT otherwise.
 class JsonWriter {
  public:
+  /// Line feeds between the entries of a document and of its lists, or none.
+  enum class Lines { many, one };
   /// `sink` receives text in blocks of about 64 KiB.
-  explicit JsonWriter(std::function<void(std::string_view)> sink);
+  explicit JsonWriter(std::function<void(std::string_view)> sink, Lines lines = Lines::many);
 
   JsonWriter& begin_object();
   JsonWriter& end_object();
@@ -43,7 +45,10 @@ class JsonWriter {
     return key(name).value(content);
   }
 
-  /// Ends the document with a line feed and hands out what is left.
+  /// A value that another writer made, of one line.
+  JsonWriter& spliced(std::string_view document);
+
+  /// Ends the document, with a line feed where it has several lines, and hands out what is left.
   void finish();
 
  private:
@@ -54,6 +59,7 @@ class JsonWriter {
   void flush_if_long();
 
   std::function<void(std::string_view)> sink_;
+  Lines lines_;
   std::string buffer_;
   std::vector<bool> has_items_;  // a level of nesting
   bool after_key_ = false;

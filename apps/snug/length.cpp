@@ -48,33 +48,4 @@ Length parse_length(const std::string& text, const std::string& option, bool zer
   return length;
 }
 
-Motion parse_placement(const std::string& text, const std::string& option) {
-  std::array<double, 12> numbers{};
-  std::size_t count = 0, i = 0;
-  const auto blank = [](char c) { return c == ' ' || c == ',' || c == '\t' || c == '\n' || c == '\r'; };
-  while (i < text.size()) {
-    if (blank(text[i])) {
-      ++i;
-      continue;
-    }
-    std::size_t end = i;
-    while (end < text.size() && !blank(text[end])) ++end;
-    double number = 0;
-    const std::string word = text.substr(i, end - i);
-    if (!parse_number(word, number)) throw UsageError(option + ": '" + word + "' is not a finite number");
-    if (count < 12) numbers[count] = number;
-    ++count;
-    i = end;
-  }
-  if (count != 12) {
-    throw UsageError(option + ": " + std::to_string(count) +
-                     " numbers; a placement has twelve, a row-major 3x4 motion");
-  }
-  try {
-    return Motion::from_3x4(numbers);
-  } catch (const InputError& error) {
-    throw InputError(error.problem(), option + ": " + error.what());
-  }
-}
-
 }  // namespace snug::command

@@ -3,8 +3,6 @@
 #include <stdexcept>
 #include <string>
 
-#include <snug/base/motion.h>
-
 namespace snug::command {
 
 /// A command line that cannot be carried out; ends with status 2.
@@ -26,10 +24,5 @@ struct Length {
 ///            or > 0 where zero is not allowed.
 [[nodiscard]] Length parse_length(const std::string& text, const std::string& option,
                                   bool zero_allowed = false);
-
-/// Twelve numbers, separated by blanks or commas.
-/// Errors:    UsageError for another count or text that is no number; InputError (pose) that
-///            names `option` from Motion.
-[[nodiscard]] Motion parse_placement(const std::string& text, const std::string& option);
 
 }  // namespace snug::command

@@ -30,18 +30,29 @@ QueryModelOptions model_options(const ModelOptions& options, const std::string& 
 void add_pair_options(OptionList& list, PairOptions& options) {
   list.add(Group::own, "A", &options.mesh_a, "First control mesh (OBJ, OFF, PLY or STL)");
   list.add(Group::own, "B", &options.mesh_b, "Second control mesh");
-  list.add(Group::placement, "--place-a \"12 NUMBERS\"", &options.place_a,
-           "Placement of A: a row-major 3x4 motion");
-  list.add(Group::placement, "--place-b \"12 NUMBERS\"", &options.place_b, "Placement of B");
+  add_pose_options(list, "-a", "A", options.pose_a);
+  add_pose_options(list, "-b", "B", options.pose_b);
+  add_nearest_rigid_option(list, options.nearest_rigid);
+  list.add(Group::placement, "--poses FILE", &options.poses,
+           "Answers each line, a pose of B or JSON with a, b or both; - for standard input");
   add_model_options(list, options);
   add_scheme_option(list, "--scheme-a", options.scheme_a, "Scheme of A, before --scheme");
   add_scheme_option(list, "--scheme-b", options.scheme_b, "Scheme of B, before --scheme");
 }
 
+void write_poses(JsonWriter& json, const PosePair& poses) {
+  for (const auto& [key, motion] : {std::pair{"place_a", &poses.a}, {"place_b", &poses.b}}) {
+    json.key(key).begin_array();
+    for (const double number : motion->numbers()) json.value(number);
+    json.end_array();
+  }
+}
+
 PairArguments::PairArguments(const PairOptions& options, const std::string& command)
     : options_(options), model_options_(model_options(options, command)) {
-  if (!options.place_a.empty()) place_a_ = parse_placement(options.place_a, "--place-a");
-  if (!options.place_b.empty()) place_b_ = parse_placement(options.place_b, "--place-b");
+  const Mending mending{options.nearest_rigid, notes_for(options)};
+  pose_a_ = pose_of(options.pose_a, "-a", mending);
+  pose_b_ = pose_of(options.pose_b, "-b", mending);
   const auto library = std::make_shared<BoundLibrary>();
   const auto scheme = [&](const std::string& own) { return own.empty() ? options.scheme : own; };
   surface_a_.emplace(load_surface(options.mesh_a, options, scheme(options.scheme_a), library));

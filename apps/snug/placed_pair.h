@@ -7,6 +7,7 @@
 #include <snug/query/query_model.h>
 
 #include "common.h"
+#include "pose.h"
 
 namespace snug::command {
 
@@ -21,21 +22,34 @@ void add_model_options(OptionList& list, ModelOptions& options);
 struct PairOptions : ModelOptions {
   std::string mesh_a, mesh_b;
   std::string scheme_a, scheme_b;
-  std::string place_a, place_b;
+  PoseOptions pose_a, pose_b;
+  bool nearest_rigid = false;
+  std::string poses;  ///< a file of poses; empty for none
 };
 void add_pair_options(OptionList& list, PairOptions& options);
+
+/// The fields place_a and place_b: the twelve numbers of each pose.
+void write_poses(JsonWriter& json, const PosePair& poses);
 
 /// Two meshes, read and made ready.
 class PairArguments {
  public:
-  /// Errors:    UsageError; InputError that names the mesh or the placement.
+  /// Errors:    UsageError; InputError that names the mesh or the pose.
   PairArguments(const PairOptions& options, const std::string& command);
 
   /// Makes the models.
   void prepare(const WorkMonitor& monitor);
   /// Requires:  prepare().
-  [[nodiscard]] PlacedModel a() { return {*model_a_, *scratch_a_, place_a_}; }
-  [[nodiscard]] PlacedModel b() { return {*model_b_, *scratch_b_, place_b_}; }
+  [[nodiscard]] PlacedModel a() { return {*model_a_, *scratch_a_, pose_a_}; }
+  [[nodiscard]] PlacedModel b() { return {*model_b_, *scratch_b_, pose_b_}; }
+  [[nodiscard]] const QueryModel& model_a() const { return *model_a_; }
+  [[nodiscard]] const QueryModel& model_b() const { return *model_b_; }
+  [[nodiscard]] const Motion& pose_a() const { return pose_a_; }
+  [[nodiscard]] const Motion& pose_b() const { return pose_b_; }
+  [[nodiscard]] const std::string& poses() const { return options_.poses; }
+  [[nodiscard]] bool nearest_rigid() const { return options_.nearest_rigid; }
+  [[nodiscard]] int threads() const { return options_.threads; }
+  [[nodiscard]] Notes notes() const { return notes_for(options_); }
   /// Of the longer one.
   [[nodiscard]] double size() const { return std::max(surface_a_->size(), surface_b_->size()); }
   /// The fields of both in the head of a report.
@@ -44,7 +58,7 @@ class PairArguments {
  private:
   const PairOptions& options_;
   QueryModelOptions model_options_;
-  Motion place_a_, place_b_;
+  Motion pose_a_, pose_b_;
   std::optional<Surface> surface_a_, surface_b_;
   std::optional<QueryModel> model_a_, model_b_;
   std::optional<QueryScratch> scratch_a_, scratch_b_;

@@ -13,6 +13,7 @@
 #include <snug/io/number.h>
 
 #include "common.h"
+#include "pose.h"
 #include "progress_bar.h"
 #include "scene_builder.h"
 
@@ -30,7 +31,8 @@ constexpr Vector3 default_view{-0.55, -0.35, -0.85};
 constexpr Vector3 default_up{0, 1, 0};
 
 struct Options : CommonOptions {
-  std::vector<std::string> meshes, placements, witnesses;
+  std::vector<std::string> meshes, poses, witnesses;
+  bool nearest_rigid = false;
   std::string size = "1000x1000", view, up;
   int samples = 3;
   bool cage = false, enclosures = false;
@@ -212,9 +214,9 @@ void require_sound(const Options& options) {
   }
   if (options.json && options.output == "-")
     throw UsageError("render: --json and -o - both want standard output");
-  if (options.placements.size() > options.meshes.size()) {
-    throw UsageError(fmt::format("render: {} times --place, but {} meshes", options.placements.size(),
-                                 options.meshes.size()));
+  if (options.poses.size() > options.meshes.size()) {
+    throw UsageError(
+        fmt::format("render: {} times --place, but {} meshes", options.poses.size(), options.meshes.size()));
   }
   for (const std::string& text : options.witnesses) parse_witness(text);
 }
@@ -271,9 +273,10 @@ ExitStatus run(const Options& options) {
   const View view = choose_view(options);
   std::optional<Length> tolerance;
   if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--tolerance");
-  std::vector<Motion> placements;
-  for (const std::string& text : options.placements) placements.push_back(parse_placement(text, "--place"));
-  placements.resize(options.meshes.size());
+  const Mending mending{options.nearest_rigid, notes_for(options)};
+  std::vector<Motion> poses;
+  for (const std::string& text : options.poses) poses.push_back(parse_pose(text, "--place", mending));
+  poses.resize(options.meshes.size());
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("render", to_standard_output);
@@ -287,8 +290,7 @@ ExitStatus run(const Options& options) {
   }
   report.heads(options.meshes, schemes);
   std::vector<PlacedSurface> parts;
-  for (std::size_t part = 0; part < surfaces.size(); ++part)
-    parts.push_back({&surfaces[part], placements[part]});
+  for (std::size_t part = 0; part < surfaces.size(); ++part) parts.push_back({&surfaces[part], poses[part]});
   const Enclosures enclosures = enclose(options, tolerance, surfaces);
 
   AtomicFile file(options.output);  // now: if it cannot be written, that should not wait for the picture
@@ -358,8 +360,9 @@ Command render_command() {
   list.add(Group::own, "--view \"X Y Z\"", &options->view,
            "Direction of view; default: a three-quarter view from above");
   list.add(Group::own, "--up \"X Y Z\"", &options->up, "What is up on the picture; default: y");
-  list.add(Group::placement, "--place \"12 NUMBERS\"", &options->placements,
-           "Placement of a mesh: a row-major 3x4 motion; once a mesh, in their order");
+  list.add(Group::placement, "--place \"NUMBERS\"", &options->poses,
+           "Pose of a mesh: a row-major 3x4 matrix of a rigid motion, or 4x4; once a mesh, in their order");
+  add_nearest_rigid_option(list, options->nearest_rigid);
   add_common_options(list, *options);
   return {"render",
           Topic::files,

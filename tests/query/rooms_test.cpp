@@ -22,7 +22,7 @@ TEST(rooms, motions_are_rigid_and_middles_keep_half_a_unit_from_the_walls) {
   std::mt19937_64 random(4);
   double most = 0;
   for (int i = 0; i < 2000; ++i) {
-    const PlacedPair pair = place_in_room(3, random);
+    const PosePair pair = place_in_room(3, random);
     EXPECT_LT(pair.a.defect(), 1e-14);
     EXPECT_LT(pair.b.defect(), 1e-14);
     for (const Vector3& t : {pair.a.translation(), pair.b.translation()}) most = std::max(most, max_abs(t));

@@ -79,6 +79,11 @@ class Motion {
   double defect_ = 8 * unit_roundoff;
 };
 
+/// Where two meshes stand.
+struct PosePair {
+  Motion a, b;
+};
+
 /// A motion near a matrix that is none, and how far that was from being one.
 struct NearestRigid {
   Motion motion;

@@ -49,7 +49,7 @@ class QueryPair {
         scratch_a_(a_),
         scratch_b_(b_) {}
 
-  Verdict ask(const PlacedPair& at, double tolerance, double margin = 0) {
+  Verdict ask(const PosePair& at, double tolerance, double margin = 0) {
     CollideOptions options;
     options.tolerance = tolerance;
     options.margin = margin;
@@ -102,14 +102,14 @@ RoomRow measure_room(const Surface& a, const Surface& b, const RoomOptions& opti
   const PrintedHierarchy printed_a(a, as_printed(tolerance), monitor),
       printed_b(b, as_printed(tolerance), monitor);
   std::mt19937_64 random(options.seed);
-  std::vector<PlacedPair> placements(options.placements);
-  for (PlacedPair& placed : placements) placed = place_in_room(options.side, random);
+  std::vector<PosePair> placements(options.placements);
+  for (PosePair& placed : placements) placed = place_in_room(options.side, random);
 
   // Each method answers all placements; the first ones beforehand, too.
-  using Ask = std::function<Verdict(const PlacedPair&)>;
-  const std::array<Ask, 3> asks{[&](const PlacedPair& at) { return rows.ask(at, tolerance); },
-                                [&](const PlacedPair& at) { return tables.ask(at, tolerance); },
-                                [&](const PlacedPair& at) {
+  using Ask = std::function<Verdict(const PosePair&)>;
+  const std::array<Ask, 3> asks{[&](const PosePair& at) { return rows.ask(at, tolerance); },
+                                [&](const PosePair& at) { return tables.ask(at, tolerance); },
+                                [&](const PosePair& at) {
                                   return PrintedHierarchy::says_separated(printed_a, at.a, printed_b, at.b,
                                                                           tolerance)
                                              ? Verdict::separated

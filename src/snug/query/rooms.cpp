@@ -49,7 +49,7 @@ ControlMesh unit_model(ControlMesh mesh) {
   return mesh;
 }
 
-PlacedPair place_in_room(double side, std::mt19937_64& random) {
+PosePair place_in_room(double side, std::mt19937_64& random) {
   SNUG_EXPECT(side > 1 && std::isfinite(side));
   const double reach = (side - 1) / 2;
   const Motion a = any_pose(reach, random);

@@ -14,10 +14,6 @@ namespace snug {
 /// Source:    [Wu05, sec. 5.1]: "scaled to tightly fit into a bounding box of size 1".
 [[nodiscard]] ControlMesh unit_model(ControlMesh mesh);
 
-struct PlacedPair {
-  Motion a, b;
-};
-
 /// Both models of size 1 anywhere in a cube of side `side` around the origin, turned about the middles of their boxes, every
 /// rotation alike. Middles stay half a unit away from the walls.
 ///
@@ -25,6 +21,6 @@ struct PlacedPair {
 /// Requires:  side > 1.
 /// Source:    [Wu05, sec. 5.1] after [Klosowski98]; differs: the text does not say whether models may stick out of the room.
 ///            With this choice fewer of our models collide than its heads say, see docs/tables.md.
-[[nodiscard]] PlacedPair place_in_room(double side, std::mt19937_64& random);
+[[nodiscard]] PosePair place_in_room(double side, std::mt19937_64& random);
 
 }  // namespace snug

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include <snug/base/motion.h>
+#include <snug/io/notes.h>
+
+#include "options.h"
+
+namespace snug::command {
+
+/// Where one mesh stands, as its options say it.
+struct PoseOptions {
+  std::string place, rotate, move;
+};
+
+/// Adds --place, --rotate and --move with a suffix, such as "-b", for the mesh that --help calls `mesh`.
+void add_pose_options(OptionList& list, const std::string& suffix, const std::string& mesh,
+                      PoseOptions& options);
+void add_nearest_rigid_option(OptionList& list, bool& nearest_rigid);
+
+/// What is done about matrices that are no motions.
+struct Mending {
+  bool nearest_rigid = false;  ///< take the nearest motion; else they are refused
+  Notes notes = {};            ///< told of each
+};
+
+/// The motion of twelve numbers, row-major 3x4, or of sixteen.
+/// Returns:   also the defect that was mended, if one was.
+/// Requires:  12 or 16 numbers.
+/// Errors:    InputError (pose).
+struct TakenPose {
+  Motion motion;
+  std::optional<NearestRigid> mended;
+};
+[[nodiscard]] TakenPose take_matrix(std::span<const double> numbers, bool nearest_rigid);
+
+/// Twelve or sixteen numbers, separated by blanks or commas.
+/// Errors:    UsageError for another count or text that is no number; InputError (pose). Both name `option`.
+[[nodiscard]] Motion parse_pose(const std::string& text, const std::string& option, const Mending& mending);
+
+/// The pose that options with this suffix name: the rotation, then the translation, or the matrix.
+/// Errors:    UsageError; InputError (pose). Both name the option.
+[[nodiscard]] Motion pose_of(const PoseOptions& options, const std::string& suffix, const Mending& mending);
+
+}  // namespace snug::command

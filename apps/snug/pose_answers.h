@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "placed_pair.h"
+
+namespace snug::command {
+
+/// The answer for one pose.
+struct PoseAnswer {
+  std::function<void(JsonWriter&)> fields;  ///< writes its fields
+  std::string row;                          ///< for people
+  bool reached = true;
+};
+/// Asks about one pose; called by several threads.
+using AskPose = std::function<PoseAnswer(const PlacedModel& a, const PlacedModel& b)>;
+
+/// Answers every pose of --poses in the file's order: `results` and `count` of the report, or a row each below `header`.
+///
+/// Guarantee: memory does not grow with the number of poses. What is written depends on the file and the options alone.
+/// Returns:   not_reached if one was not.
+/// Errors:    InputError that names the line, after the answers before it were written; Interrupted.
+[[nodiscard]] ExitStatus answer_poses(PairArguments& pair, Report& report, const std::string& header,
+                                      const AskPose& ask, const WorkMonitor& monitor);
+
+}  // namespace snug::command
