@@ -113,7 +113,7 @@ std::vector<Times> Group::run() {
   std::vector<Times> results;
   for (std::size_t c = 0; c < count; ++c) {
     Times times{contestants_[c].name,      contestants_[c].items,     quantile(processor[c], 0.5),
-                quantile(processor[c], 0), quantile(processor[c], 1), checksums[c]};
+                quantile(processor[c], 0), quantile(processor[c], 1), checksums[c], quantile(wall[c], 0.5)};
     results.push_back(times);
     const double per_item = 1e6 / times.items;
     const double ratio = (times.median / times.items) / (results.front().median / results.front().items);
@@ -121,7 +121,7 @@ std::vector<Times> Group::run() {
     const double per_second = rate(times.items / times.median, prefix);
     std::printf("  %-40s  %10.4f us/%s  %7.2f %s/s  x %-8.3g  [%.4f-%.4f, busy %.2f, cal %.2f]  sum %.17g\n",
                 times.name.c_str(), times.median * per_item, item_.c_str(), per_second, prefix, ratio,
-                times.least * per_item, times.most * per_item, times.median / quantile(wall[c], 0.5), cal,
+                times.least * per_item, times.most * per_item, times.median / times.wall, cal,
                 times.checksum);
   }
   std::fflush(stdout);

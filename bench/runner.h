@@ -23,12 +23,13 @@ struct Options {
 /// Errors:    prints usage and ends the process with status 2, also unless `files` file names are given.
 [[nodiscard]] Options start(int argc, char** argv, std::size_t files, const char* usage);
 
-/// Processor times of one contestant, in seconds.
+/// Processor times of one contestant, in seconds, and the median time on the clock.
 struct Times {
   std::string name;
   double items = 0;
   double median = 0, least = 0, most = 0;
   double checksum = 0;
+  double wall = 0;
 };
 
 /// Contestants for the same work, timed in turns so that a slow moment hits all of them.
