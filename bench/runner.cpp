@@ -113,7 +113,8 @@ std::vector<Times> Group::run() {
   std::vector<Times> results;
   for (std::size_t c = 0; c < count; ++c) {
     Times times{contestants_[c].name,      contestants_[c].items,     quantile(processor[c], 0.5),
-                quantile(processor[c], 0), quantile(processor[c], 1), checksums[c], quantile(wall[c], 0.5)};
+                quantile(processor[c], 0), quantile(processor[c], 1), checksums[c],
+                quantile(wall[c], 0.5)};
     results.push_back(times);
     const double per_item = 1e6 / times.items;
     const double ratio = (times.median / times.items) / (results.front().median / results.front().items);

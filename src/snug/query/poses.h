@@ -38,7 +38,7 @@ class PairScratches {
 ///
 /// Guarantee: the same bits as from collide() alone, for any number of threads.
 /// Requires, Errors: those of collide().
-/// Cost:      that of collide(), shared by the threads (bench/results/poses.txt).
+/// Cost:      that of collide(), shared by the threads (bench/poses.cpp).
 [[nodiscard]] std::vector<Collision> collide_poses(PairScratches& scratches, std::span<const PosePair> poses,
                                                    const CollideOptions& options,
                                                    const WorkMonitor& monitor = {});
