@@ -26,7 +26,7 @@ struct ContactBounds {
   bool spent;  ///< the effort ended the search
 };
 
-/// A Loop limit surface, or a single segment, for very many questions about distances: a fast sibling of SurfaceTwin that
+/// A Loop limit surface for very many questions about distances: a fast sibling of SurfaceTwin that
 /// takes one-sided questions. Patches are split by matrices, one for each connectivity of a net, made once a thread by
 /// the masks of loop_net.h.
 ///
@@ -43,8 +43,6 @@ class ContactSurface {
   static constexpr std::uint32_t kDeepestPatch = 46;
 
   explicit ContactSurface(const TwinMesh& mesh);
-  /// The segment from p to q; a point if they are the same.
-  ContactSurface(const Point& p, const Point& q);
   ~ContactSurface();
   ContactSurface(ContactSurface&&) noexcept;
   ContactSurface& operator=(ContactSurface&&) noexcept;
@@ -75,7 +73,6 @@ class ContactSurface {
   [[nodiscard]] double largest() const;
 
  private:
-  friend class ContactSearch;
   struct Tree;
   std::unique_ptr<Tree> tree_;
 };

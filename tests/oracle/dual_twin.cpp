@@ -11,15 +11,9 @@
 
 namespace oracle {
 
+namespace detail {
+
 namespace {
-
-using detail::Quad;
-using detail::QuadPoint;
-using Id = std::uint32_t;
-
-void require(bool condition, const char* what) {
-  if (!condition) throw std::invalid_argument(std::string("oracle: ") + what);
-}
 
 /// cos(2 pi i / n), to one roundoff.
 Quad cosine(std::size_t i, std::size_t n) {
@@ -38,8 +32,9 @@ Quad cosine(std::size_t i, std::size_t n) {
   return static_cast<Quad>(part[0]) + (static_cast<Quad>(part[1]) + static_cast<Quad>(part[2]));
 }
 
-/// Weight of the corner i steps further in a face of n corners.
-std::vector<Quad> mask(DualScheme scheme, std::size_t n) {
+}  // namespace
+
+std::vector<Quad> dual_mask(DualScheme scheme, std::size_t n) {
   std::vector<Quad> weights(n, 0);
   const Quad size = static_cast<Quad>(n);
   if (scheme == DualScheme::midedge) {
@@ -51,6 +46,19 @@ std::vector<Quad> mask(DualScheme scheme, std::size_t n) {
     weights[0] = Quad(0.25) + 5 / (4 * size);
   }
   return weights;
+}
+
+}  // namespace detail
+
+namespace {
+
+using detail::dual_mask;
+using detail::Quad;
+using detail::QuadPoint;
+using Id = std::uint32_t;
+
+void require(bool condition, const char* what) {
+  if (!condition) throw std::invalid_argument(std::string("oracle: ") + what);
 }
 
 struct Net {
@@ -73,7 +81,7 @@ class Step {
       const Id n = static_cast<Id>(face.size());
       first_.push_back(static_cast<Id>(fine_.points.size()));
       auto& weights = masks[n];
-      if (weights.empty()) weights = mask(scheme, n);
+      if (weights.empty()) weights = dual_mask(scheme, n);
       std::vector<Id> child;
       for (Id k = 0; k < n; ++k) {
         QuadPoint p{};

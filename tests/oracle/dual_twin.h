@@ -1,5 +1,6 @@
 #pragma once
 
+#include <oracle/loop_net.h>
 #include <oracle/tagged_mesh.h>
 
 #include <cstdint>
@@ -8,6 +9,11 @@
 namespace oracle {
 
 enum class DualScheme { doo_sabin, midedge };
+
+namespace detail {
+/// Weight of the corner i steps further in a face of n corners.
+[[nodiscard]] std::vector<Quad> dual_mask(DualScheme scheme, std::size_t n);
+}  // namespace detail
 
 /// A point of the limit surface, on the patches of the control vertices `owners` (in order).
 struct DualSample {

@@ -9,16 +9,13 @@ namespace {
 
 using Id = std::uint32_t;
 
-void add(QuadPoint& sum, const Quad& weight, const QuadPoint& p) {
-  for (std::size_t x = 0; x < 3; ++x) sum[x] += weight * p[x];
-}
-
 Quad magnitude(const Quad& x) { return x < 0 ? -x : x; }
 
 /// Where the same masks apply at every level from here on; `ring` where no closed formula is known.
 enum class Future { corner, crease, smooth, ring, open };
 
-Future future(const PolygonNet& net, const Neighbours& near, Id v, const Rules& rules) {
+template <class P>
+Future future(const NetOf<P>& net, const Neighbours& near, Id v, const Rules& rules) {
   std::size_t infinite = 0, finite = 0;
   for (const Id e : near.vertex_edges[v]) {
     infinite += net.edges[e].sharpness >= kInfinitelySharp ? 1 : 0;
@@ -37,10 +34,10 @@ Future future(const PolygonNet& net, const Neighbours& near, Id v, const Rules& 
 
 /// (4 v + ends) / 6; Loop: w v + (1 - w) mean(ring); Catmull-Clark: (n^2 v + 4 sum(ring) + sum(opposite)) /
 /// (n (n + 5)).
-QuadPoint closed_formula(const PolygonNet& net, const Neighbours& near, Id v, Future kind,
-                         const Rules& rules) {
+template <class P>
+P closed_formula(const NetOf<P>& net, const Neighbours& near, Id v, Future kind, const Rules& rules) {
   if (kind == Future::corner) return net.points[v];
-  QuadPoint p{}, ring{};
+  P p{}, ring{};
   for (const Id e : near.vertex_edges[v])
     if (kind == Future::smooth || net.edges[e].sharpness > 0)
       add(ring, 1, net.points[net.edges[e].a == v ? net.edges[e].b : net.edges[e].a]);
@@ -65,7 +62,7 @@ QuadPoint closed_formula(const PolygonNet& net, const Neighbours& near, Id v, Fu
       add(p, 1, net.points[corners[static_cast<std::size_t>(k + 2) % 4]]);
     }
   }
-  for (Quad& x : p) x /= whole;
+  divide(p, whole);
   return p;
 }
 
@@ -124,6 +121,15 @@ Quad largest(const PolygonNet& net) {
 }
 
 }  // namespace
+
+template <class P>
+std::optional<P> settled_limit(const NetOf<P>& net, const Neighbours& near, Id v, const Rules& rules) {
+  const Future kind = future(net, near, v, rules);
+  if (kind == Future::ring || kind == Future::open) return {};
+  return closed_formula(net, near, v, kind, rules);
+}
+template std::optional<QuadPoint> settled_limit(const PolygonNet&, const Neighbours&, Id, const Rules&);
+template std::optional<SparseRow> settled_limit(const NetOf<SparseRow>&, const Neighbours&, Id, const Rules&);
 
 Limits limit_points(const PolygonNet& net, const Rules& rules, const std::vector<char>& wanted) {
   const Neighbours near(net);

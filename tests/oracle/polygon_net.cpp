@@ -125,15 +125,16 @@ bool one_fan(const PolygonNet& net, const Neighbours& near, Id v) {
 
 }  // namespace
 
-Neighbours::Neighbours(const PolygonNet& net)
-    : vertex_edges(net.points.size()), vertex_faces(net.points.size()), edge_faces(net.edges.size()) {
-  for (Id e = 0; e < net.edges.size(); ++e) {
-    vertex_edges[net.edges[e].a].push_back(e);
-    vertex_edges[net.edges[e].b].push_back(e);
+Neighbours::Neighbours(std::size_t vertex_count, const std::vector<NetEdge>& edges,
+                       const std::vector<NetFace>& faces)
+    : vertex_edges(vertex_count), vertex_faces(vertex_count), edge_faces(edges.size()) {
+  for (Id e = 0; e < edges.size(); ++e) {
+    vertex_edges[edges[e].a].push_back(e);
+    vertex_edges[edges[e].b].push_back(e);
   }
-  for (Id f = 0; f < net.faces.size(); ++f) {
-    for (const Id v : net.faces[f].vertices) vertex_faces[v].push_back(f);
-    for (const Id e : net.faces[f].edges) edge_faces[e].push_back(f);
+  for (Id f = 0; f < faces.size(); ++f) {
+    for (const Id v : faces[f].vertices) vertex_faces[v].push_back(f);
+    for (const Id e : faces[f].edges) edge_faces[e].push_back(f);
   }
 }
 

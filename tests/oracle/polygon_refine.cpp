@@ -7,34 +7,32 @@ namespace oracle::detail {
 namespace {
 
 using Id = std::uint32_t;
-using Edge = PolygonNet::Edge;
+using Edge = NetEdge;
 
 bool is_infinite(const Quad& s) { return s >= kInfinitelySharp; }
 bool is_finite(const Quad& s) { return s > 0 && !is_infinite(s); }
 
 Quad lowered(const Quad& s) { return is_infinite(s) ? s : s > 1 ? s - 1 : Quad(0); }
 
-void add(QuadPoint& sum, const Quad& weight, const QuadPoint& p) {
-  for (std::size_t x = 0; x < 3; ++x) sum[x] += weight * p[x];
-}
-
 /// weight * a + (1 - weight) * b
-QuadPoint blend(const Quad& weight, const QuadPoint& a, const QuadPoint& b) {
-  QuadPoint p{};
+template <class P>
+P blend(const Quad& weight, const P& a, const P& b) {
+  P p{};
   add(p, weight, a);
   add(p, 1 - weight, b);
   return p;
 }
 
+template <class P>
 class Step {
  public:
-  Step(const PolygonNet& net, const Rules& rules) : net_(net), rules_(rules), near_(net) {
+  Step(const NetOf<P>& net, const Rules& rules) : net_(net), rules_(rules), near_(net) {
     if (catmull_clark())
       for (const auto& face : net.faces) face_points_.push_back(mean(face.vertices));
     lower_edges();
   }
 
-  [[nodiscard]] PolygonNet result() {
+  [[nodiscard]] NetOf<P> result() {
     fine_.points = face_points_;
     for (Id e = 0; e < net_.edges.size(); ++e) fine_.points.push_back(edge_point(e));
     fine_.sharpness.assign(fine_.points.size(), Quad(0));
@@ -53,10 +51,10 @@ class Step {
  private:
   [[nodiscard]] bool catmull_clark() const { return rules_.scheme == PrimalScheme::catmull_clark; }
 
-  [[nodiscard]] QuadPoint mean(const std::vector<Id>& vertices) const {
-    QuadPoint p{};
+  [[nodiscard]] P mean(const std::vector<Id>& vertices) const {
+    P p{};
     for (const Id v : vertices) add(p, 1, net_.points[v]);
-    for (Quad& x : p) x /= static_cast<Quad>(vertices.size());
+    divide(p, static_cast<Quad>(vertices.size()));
     return p;
   }
 
@@ -85,7 +83,7 @@ class Step {
 
   // ---- points
 
-  [[nodiscard]] QuadPoint midpoint(const Edge& edge) const {
+  [[nodiscard]] P midpoint(const Edge& edge) const {
     return blend(0.5, net_.points[edge.a], net_.points[edge.b]);
   }
 
@@ -96,7 +94,7 @@ class Step {
     return face.vertices[static_cast<std::size_t>(k + 2) % 3];
   }
 
-  [[nodiscard]] QuadPoint smooth_edge_point(Id e) const {
+  [[nodiscard]] P smooth_edge_point(Id e) const {
     const Edge& edge = net_.edges[e];
     const auto& faces = near_.edge_faces[e];
     // Only edges with two faces are ever smooth; in a piece of a net others occur, and nobody uses them.
@@ -107,14 +105,14 @@ class Step {
       for (const Id f : faces)
         face_weight += (net_.faces[f].vertices.size() == 3 ? Quad(47) / 100 : Quad(0.25)) / 2;
     }
-    QuadPoint p{};
+    P p{};
     for (const Id f : faces)
       add(p, face_weight, catmull_clark() ? face_points_[f] : net_.points[opposite(f, e)]);
     add(p, 1 - 2 * face_weight, midpoint(edge));
     return p;
   }
 
-  [[nodiscard]] QuadPoint edge_point(Id e) const {
+  [[nodiscard]] P edge_point(Id e) const {
     const Edge& edge = net_.edges[e];
     if (!(edge.sharpness > 0)) return smooth_edge_point(e);
     if (children_[e][0] > 0 && children_[e][1] > 0) return midpoint(edge);
@@ -123,18 +121,18 @@ class Step {
     return blend(weight, midpoint(edge), smooth_edge_point(e));
   }
 
-  [[nodiscard]] QuadPoint smooth_vertex_point(Id v) const {
+  [[nodiscard]] P smooth_vertex_point(Id v) const {
     const auto& edges = near_.vertex_edges[v];
     const auto& faces = near_.vertex_faces[v];
     const Quad n = static_cast<Quad>(edges.size());
-    QuadPoint p{};
+    P p{};
     if (!catmull_clark()) {
       const auto& w = weights()[static_cast<Id>(edges.size())];
       for (const Id e : edges) add(p, w.vertex_ring, net_.points[other_end(e, v)]);
       add(p, w.vertex_self, net_.points[v]);
       return p;
     }
-    QuadPoint q{}, r{};
+    P q{}, r{};
     for (const Id f : faces) add(q, 1 / static_cast<Quad>(faces.size()), face_points_[f]);
     for (const Id e : edges) add(r, 1 / n, midpoint(net_.edges[e]));
     const Quad whole = rules_.old_vertex_rule ? Quad(4) : n;
@@ -152,17 +150,17 @@ class Step {
   }
 
   /// By one rule; `sharp` tells a crease its two edges.
-  [[nodiscard]] QuadPoint by_rule(Rule rule, Id v, const std::vector<Quad>& sharp) const {
+  [[nodiscard]] P by_rule(Rule rule, Id v, const std::vector<Quad>& sharp) const {
     if (rule == Rule::smooth || rule == Rule::dart) return smooth_vertex_point(v);
     if (rule == Rule::corner) return net_.points[v];
-    QuadPoint p{};
+    P p{};
     for (std::size_t i = 0; i < sharp.size(); ++i)
       if (sharp[i] > 0) add(p, 0.125, net_.points[other_end(near_.vertex_edges[v][i], v)]);
     add(p, 0.75, net_.points[v]);
     return p;
   }
 
-  [[nodiscard]] QuadPoint vertex_point(Id v) const {
+  [[nodiscard]] P vertex_point(Id v) const {
     const auto& edges = near_.vertex_edges[v];
     std::vector<Quad> parent, child;
     for (const Id e : edges) {
@@ -171,7 +169,7 @@ class Step {
     }
     const Quad own = net_.sharpness[v], own_child = lowered(own);
     const Rule before = vertex_rule(own, parent), after = vertex_rule(own_child, child);
-    const QuadPoint p = by_rule(before, v, parent);
+    const P p = by_rule(before, v, parent);
     if (before == Rule::smooth || before == Rule::dart || before == after) return p;
     // The mean of the sharpnesses that vanish, one at most, is the old rule's weight.
     Quad sum = 0;
@@ -193,7 +191,7 @@ class Step {
   [[nodiscard]] Id edge_child(Id e) const { return static_cast<Id>(face_points_.size()) + e; }
   [[nodiscard]] Id vertex_child(Id v) const { return edge_child(static_cast<Id>(net_.edges.size())) + v; }
   /// The half of side k of a face at its start or its end.
-  [[nodiscard]] Id half(const PolygonNet::Face& face, std::size_t k, bool at_end) const {
+  [[nodiscard]] Id half(const NetFace& face, std::size_t k, bool at_end) const {
     const Id e = face.edges[k];
     const bool forward = net_.edges[e].a == face.vertices[k];
     return 2 * e + (forward == at_end ? 1 : 0);
@@ -206,7 +204,7 @@ class Step {
     for (std::size_t k = 0; k < n; ++k) fine_.edges.push_back({edge_child(face.edges[k]), f, Quad(0)});
     for (std::size_t k = 0; k < n; ++k) {
       const std::size_t before = (k + n - 1) % n;
-      PolygonNet::Face child{
+      NetFace child{
           {vertex_child(face.vertices[k]), edge_child(face.edges[k]), f, edge_child(face.edges[before])},
           {half(face, k, false), inner + static_cast<Id>(k), inner + static_cast<Id>(before),
            half(face, before, true)}};
@@ -225,8 +223,8 @@ class Step {
     for (std::size_t k = 0; k < 3; ++k) fine_.edges.push_back({m[k], m[(k + 2) % 3], Quad(0)});
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t before = (k + 2) % 3;
-      PolygonNet::Face child{{vertex_child(face.vertices[k]), m[k], m[before]},
-                             {half(face, k, false), inner + static_cast<Id>(k), half(face, before, true)}};
+      NetFace child{{vertex_child(face.vertices[k]), m[k], m[before]},
+                    {half(face, k, false), inner + static_cast<Id>(k), half(face, before, true)}};
       for (auto* ids : {&child.vertices, &child.edges})
         std::rotate(ids->begin(), ids->end() - static_cast<std::ptrdiff_t>(k), ids->end());
       fine_.faces.push_back(std::move(child));
@@ -234,12 +232,12 @@ class Step {
     fine_.faces.push_back({{m[1], m[2], m[0]}, {inner + 2, inner, inner + 1}});
   }
 
-  const PolygonNet& net_;
+  const NetOf<P>& net_;
   const Rules& rules_;
   Neighbours near_;
-  std::vector<QuadPoint> face_points_;
+  std::vector<P> face_points_;
   std::vector<std::array<Quad, 2>> children_;  // sharpness of the halves at a and at b
-  PolygonNet fine_;
+  NetOf<P> fine_;
 };
 
 }  // namespace
@@ -250,6 +248,11 @@ Rule vertex_rule(const Quad& own, const std::vector<Quad>& edges) {
   return sharp == 2 ? Rule::crease : sharp == 1 ? Rule::dart : Rule::smooth;
 }
 
-PolygonNet refine(const PolygonNet& net, const Rules& rules) { return Step(net, rules).result(); }
+template <class P>
+NetOf<P> refine(const NetOf<P>& net, const Rules& rules) {
+  return Step<P>(net, rules).result();
+}
+template PolygonNet refine(const PolygonNet&, const Rules&);
+template NetOf<SparseRow> refine(const NetOf<SparseRow>&, const Rules&);
 
 }  // namespace oracle::detail
