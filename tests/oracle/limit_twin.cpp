@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -34,7 +35,7 @@ std::vector<Point> applied(const std::vector<detail::WeightRow>& rows, const Poi
   return result;
 }
 
-/// Solid angle of a triangle as the origin sees it, signed. [VanOosterom83]
+/// Solid angle of a triangle as the origin sees it, signed, by Van Oosterom and Strackee's formula.
 double solid_angle(const Point& a, const Point& b, const Point& c) {
   const double x = length(a), y = length(b), z = length(c);
   return 2 * std::atan2(dot(a, cross(b, c)), x * y * z + dot(a, b) * z + dot(b, c) * x + dot(c, a) * y);
@@ -68,10 +69,17 @@ struct LimitTwin::Tree final : detail::PatchTree {
     for (const auto& polygon : mesh.polygons)
       for (const Id v : polygon)
         for (const double x : mesh.points[v]) largest = std::max(largest, std::abs(x));
+    std::map<Id, Corner> limits;  // of control vertices without a formula
     for (const detail::RootPatch& root : kinds.roots(mesh)) {
       std::vector<Point> net;
       for (const Id v : root.vertices) net.push_back(mesh.points[v]);
-      add_patch(root.kind, net, {}, root.owner, 0);
+      Corners known(kinds[root.kind].corners.size());
+      for (Id k = 0; k < known.size(); ++k) {
+        if (kinds[root.kind].corners[k]) continue;
+        const auto at = limits.find(root.vertices[k]);
+        known[k] = at != limits.end() ? at->second : limits[root.vertices[k]] = limit_of(root.kind, net, k);
+      }
+      add_patch(root.kind, net, known, root.owner, 0);
     }
     if (patches.empty()) throw std::invalid_argument("oracle: there is no surface");
     root_count = patches.size();

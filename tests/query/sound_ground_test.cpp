@@ -1,0 +1,408 @@
+// The promises of collide, distance and closest for every scheme, tag and rule, each with each other one: boundary rules,
+// holes, edges and vertices that are not manifold, creases, Chaikin, darts, corners, smooth triangles, valences above 200,
+// rows and tables; against a twin that refines by itself.
+//
+//   SNUG_PLACEMENTS=20000 build/release/bin/tests/sound_ground_test --gtest_filter=ground.answers_are_true
+//
+// runs so many placements; progress goes to standard error. SNUG_FIRST=N begins with placement N: with SNUG_PLACEMENTS=1 one
+// that failed alone, and SNUG_DUMP=FOLDER writes its meshes there.
+
+#include <snug/base/error.h>
+#include <snug/query/closest.h>
+#include <snug/query/collide.h>
+#include <snug/query/distance.h>
+
+#include <gtest/gtest.h>
+#include <testing/ground_trials.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <map>
+
+namespace snug {
+namespace {
+
+using oracle::ContactBounds;
+using oracle::ContactGoal;
+using oracle::Point;
+using testing::GroundSide;
+using testing::GroundTrial;
+
+constexpr int most_failures = 20;
+constexpr std::uint64_t of_each_row = 3;
+
+std::uint64_t from_environment(const char* name, std::uint64_t usual) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? usual : std::strtoull(text, nullptr, 10);
+}
+
+double between(const Point& p, const Point& q) { return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]); }
+Point point_of(const Point3& p) { return {p.x, p.y, p.z}; }
+
+class Checks {
+ public:
+  /// False once too much has failed.
+  bool run(GroundTrial& trial) {
+    trial_ = &trial;
+    size_ = trial.size();
+    rounding_ = size_;
+    for (const oracle::Placement& place : trial.places)
+      for (const std::size_t i : {3u, 7u, 11u}) rounding_ = std::max(rounding_, std::abs(place[i]));
+    rounding_ *= 0x1p-50;
+    ++counts_["trials " + trial.family];
+    counts_["twin's bounds far apart"] += trial.truth.spent;
+    timed("collide", [&] { check_collide(); });
+    timed("distance", [&] { check_distance(); });
+    timed("closest", [&] { check_closest(trial.random() % 2); });
+    if (side(0).is_solid() && side(1).is_solid()) timed("solids", [&] { check_solids(); });
+    return failures_ < most_failures;
+  }
+
+  void report() const {
+    for (const auto& [name, count] : counts_) std::printf("  %-40s %8zu\n", name.c_str(), count);
+    for (const auto& [name, seconds] : seconds_)
+      std::printf("  %-40s %8.2f s, slowest %.2f s (trial %llu)\n", name.c_str(), seconds,
+                  slowest_.at(name).first, static_cast<unsigned long long>(slowest_.at(name).second));
+    std::fflush(stdout);
+  }
+  [[nodiscard]] std::size_t count(const std::string& name) const {
+    const auto at = counts_.find(name);
+    return at == counts_.end() ? 0 : at->second;
+  }
+
+ private:
+  void timed(const std::string& name, const std::function<void()>& what) {
+    const auto start = std::chrono::steady_clock::now();
+    what();
+    const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds_[name] += took;
+    if (took >= slowest_[name].first) slowest_[name] = {took, trial_->number};
+    if (took > 2 && std::getenv("SNUG_SHOW"))
+      std::fprintf(stderr, "%s took %.1f s: %s\n", name.c_str(), took, testing::describe(*trial_).c_str());
+  }
+  [[nodiscard]] const GroundSide& side(std::size_t s) const { return (*trial_->sides)[s]; }
+
+  /// Less where each piece may be of a kind of its own.
+  [[nodiscard]] std::uint64_t budget(std::uint64_t usual) const {
+    std::uint64_t most = usual;
+    for (std::size_t s = 0; s < 2; ++s)
+      if (side(s).has_many()) most = std::min<std::uint64_t>(most, side(s).model->table() ? 60 : 300);
+    return most;
+  }
+
+  void expect(bool holds, const char* claim, double found = 0, double bound = 0) {
+    if (holds) return;
+    ++failures_;
+    char numbers[120];
+    std::snprintf(numbers, sizeof numbers, " (%.17g, %.17g): ", found, bound);
+    ADD_FAILURE() << claim << numbers << answer_ << "; " << testing::describe(*trial_);
+  }
+
+  /// Of the twin: much now and then.
+  [[nodiscard]] std::size_t effort() const { return trial_->number % 10 == 3 ? 3000 : 400; }
+  [[nodiscard]] ContactBounds contact(const ContactGoal& goal) {
+    return contact_bounds(*side(0).twin, trial_->places[0], *side(1).twin, trial_->places[1], goal);
+  }
+  void expect_no_nearer(double lower, const char* claim) {
+    if (!(lower > 0)) return;
+    expect(lower <= trial_->truth.upper + rounding_, claim, lower, trial_->truth.upper);
+    if (lower <= trial_->truth.lower) return;
+    ContactGoal goal;
+    goal.effort = effort();
+    goal.threshold = lower;
+    goal.precision = {1e-14 * size_, 1e-6};
+    const ContactBounds found = contact(goal);
+    expect(found.upper >= lower - rounding_, claim, lower, found.upper);
+    counts_["twin left open"] += found.spent;
+  }
+  void expect_contact(const char* claim) {
+    ContactGoal goal;
+    goal.effort = effort();
+    goal.threshold = 0;
+    goal.precision = {1e-6 * size_, 0};
+    const ContactBounds found = contact(goal);
+    expect(found.lower <= 0, claim, found.lower);
+    counts_["twin left open"] += found.spent;
+  }
+  void expect_on_surfaces(const std::array<Point3, 2>& witness, double error) {
+    const double near = std::max(2 * error, 1e-9 * size_) + 8 * rounding_;
+    for (std::size_t s = 0; s < 2; ++s)
+      expect(side(s).twin->on_surface(trial_->places[s], point_of(witness[s]), near),
+             s == 0 ? "the witness on A is on the surface" : "the witness on B is on the surface", near,
+             error);
+  }
+
+  void check_collide() {
+    CollideOptions options;
+    options.tolerance = trial_->tolerance;
+    options.margin = trial_->margin;
+    options.budget = budget(trial_->tolerance > 0 ? 20'000 : 3000);
+    options.prove_contact = trial_->number % 3 == 0;
+    const Collision answer = collide(trial_->placed(0), trial_->placed(1), options);
+    answer_ = std::string("collide: ") + name_of(answer.verdict) + " [" + std::to_string(answer.lower) +
+              ", " + std::to_string(answer.upper.value_or(-1)) + "]";
+    ++counts_[std::string("collide: ") + name_of(answer.verdict)];
+    const double reach = options.margin + options.tolerance;
+    expect(answer.lower >= 0 && std::isfinite(answer.lower), "lower is a length", answer.lower);
+    if (answer.upper) {
+      expect(answer.lower <= *answer.upper, "lower is at most upper", answer.lower, *answer.upper);
+      expect(*answer.upper >= trial_->truth.lower, "upper is at least the distance", *answer.upper,
+             trial_->truth.lower);
+    }
+    expect_no_nearer(answer.lower, "lower is at most the distance");
+    switch (answer.verdict) {
+      case Verdict::separated:
+        expect(trial_->truth.upper > options.margin, "false separated", trial_->truth.upper, options.margin);
+        expect_apart(options.margin);
+        break;
+      case Verdict::within:
+        expect(answer.upper && *answer.upper <= reach * (1 + 1e-15), "within: upper is what was asked",
+               answer.upper.value_or(-1), reach);
+        expect(trial_->truth.lower <= reach, "false within", trial_->truth.lower, reach);
+        break;
+      case Verdict::intersecting:
+        expect(answer.lower == 0, "intersecting: nothing is between them", answer.lower);
+        expect_contact("false intersecting");
+        break;
+      case Verdict::undecided:
+        counts_["undecided with a tolerance"] += options.tolerance > 0;
+        break;
+    }
+    if (answer.witness) {
+      if (answer.verdict != Verdict::intersecting)
+        expect(between(point_of((*answer.witness)[0]), point_of((*answer.witness)[1])) <=
+                   *answer.upper * (1 + 1e-12) + rounding_,
+               "the witnesses are at most upper apart", *answer.upper);
+      expect_on_surfaces(*answer.witness, answer.witness_error);
+    }
+    if (trial_->number % 3 == 1) {
+      QueryScratch a(*side(0).model), b(*side(1).model);
+      for (const bool fresh : {true, false}) {
+        const Collision again = fresh ? collide(trial_->placed(0, a), trial_->placed(1, b), options)
+                                      : collide(trial_->placed(0), trial_->placed(1), options);
+        expect(again.verdict == answer.verdict && again.lower == answer.lower &&
+                   again.upper == answer.upper && again.witness == answer.witness &&
+                   again.stats.splits == answer.stats.splits,
+               "the same answer again", again.lower, answer.lower);
+      }
+    }
+  }
+
+  /// Farther than the margin: the twin finds no two points as near.
+  void expect_apart(double margin) {
+    ContactGoal goal;
+    goal.effort = effort();
+    goal.threshold = margin;
+    goal.precision = {1e-14 * size_, 1e-9};
+    if (trial_->truth.lower > margin) return;
+    const ContactBounds found = contact(goal);
+    expect(found.upper > margin - (margin > 0 ? rounding_ : 0), "false separated: the twin's points",
+           found.upper, margin);
+    counts_["twin left open"] += found.spent;
+  }
+
+  void check_distance() {
+    DistanceOptions options;
+    const std::uint64_t choice = trial_->random() % 4;
+    if (choice != 1) options.relative = choice == 0 ? 1e-6 : 1e-2;
+    if (choice != 0) options.absolute = size_ * (choice == 1 ? 1e-6 : 1e-3);
+    options.budget = budget(3000);
+    const Distance answer = distance(trial_->placed(0), trial_->placed(1), options);
+    char text[100];
+    std::snprintf(text, sizeof text, "distance: [%.17g, %.17g]", answer.lower, answer.upper);
+    answer_ = text;
+    counts_["distance: reached"] += answer.reached;
+    expect(answer.lower >= 0 && answer.lower <= answer.upper && std::isfinite(answer.upper), "an interval",
+           answer.lower, answer.upper);
+    expect(answer.upper >= trial_->truth.lower, "upper is at least the distance", answer.upper,
+           trial_->truth.lower);
+    expect_no_nearer(answer.lower, "lower is at most the distance");
+    if (answer.upper == 0) {
+      expect_contact("false contact");
+    } else {
+      expect(between(point_of(answer.witness[0]), point_of(answer.witness[1])) <=
+                 answer.upper * (1 + 1e-12) + rounding_,
+             "the witnesses are at most upper apart", answer.upper);
+    }
+    expect_on_surfaces(answer.witness, answer.witness_error);
+    if (trial_->number % 3 == 2) {
+      QueryScratch a(*side(0).model), b(*side(1).model);
+      const Distance again = distance(trial_->placed(0, a), trial_->placed(1, b), options);
+      expect(again.lower == answer.lower && again.upper == answer.upper && again.witness == answer.witness,
+             "the same answer again", again.lower, again.upper);
+    }
+  }
+
+  [[nodiscard]] Point some_point(std::size_t s) {
+    std::uniform_real_distribution<double> unit(-1, 1);
+    Point p = side(s).twin->some_limit_point(trial_->random());
+    switch (trial_->random() % 5) {
+      case 0:
+        break;
+      case 1:
+        p[trial_->random() % 3] +=
+            size_ * std::ldexp(unit(trial_->random), -static_cast<int>(trial_->random() % 40));
+        break;
+      case 2: {
+        const auto& points = side(s).made.mesh.points;
+        p = points[trial_->random() % points.size()];
+        break;
+      }
+      default:
+        for (double& x : p) x = 1.5 * size_ * unit(trial_->random);
+    }
+    return p;
+  }
+
+  void check_closest(std::size_t s) {
+    const Point to = some_point(s);
+    ClosestOptions options;
+    const std::uint64_t choice = trial_->random() % 3;
+    options.relative = choice == 0 ? 1e-9 : 1e-3;
+    options.absolute = size_ * (choice == 1 ? 1e-4 : 1e-9);
+    options.budget = budget(1000);
+    const ClosestPoint answer = closest_point(*side(s).scratch, {to[0], to[1], to[2]}, options);
+    char text[240];
+    std::snprintf(text, sizeof text,
+                  "closest on %s to (%.17g %.17g %.17g): [%.17g, %.17g] owner %u corner %u at %.17g %.17g",
+                  s == 0 ? "A" : "B", to[0], to[1], to[2], answer.lower, answer.upper, answer.at.owner,
+                  answer.at.corner, answer.at.u, answer.at.v);
+    answer_ = text;
+    counts_["closest: reached"] += answer.reached;
+    const double rounding = 0x1p-50 * std::max({size_, std::abs(to[0]), std::abs(to[1]), std::abs(to[2])});
+    const Point point = point_of(answer.point);
+    expect(answer.lower >= 0 && answer.lower <= answer.upper && std::isfinite(answer.upper), "an interval");
+    expect(between(point, to) <= answer.upper * (1 + 1e-12) + rounding, "the point is at most upper away",
+           between(point, to), answer.upper);
+    ContactGoal goal;
+    goal.effort = effort();
+    goal.precision = {1e-13 * size_, 1e-3};
+    if (answer.lower > 0) goal.threshold = answer.lower;
+    const ContactBounds found = side(s).twin->distance_to(oracle::kUnmoved, to, goal);
+    expect(found.upper >= answer.lower - rounding, "the twin finds a nearer point", found.upper,
+           answer.lower);
+    expect(answer.upper >= found.lower - rounding, "upper is at least the distance", answer.upper,
+           found.lower);
+    counts_["twin left open"] += found.spent;
+    const Point same = side(s).twin->limit_point(answer.at.owner, answer.at.corner, answer.at.u, answer.at.v);
+    expect(between(same, point) <= 2 * answer.point_error + 1e-9 * size_,
+           "owner, u and v are those of the point", between(same, point), answer.point_error);
+    if (trial_->number % 3 == 0) {
+      QueryScratch fresh(*side(s).model);
+      const ClosestPoint again = closest_point(fresh, {to[0], to[1], to[2]}, options);
+      expect(again.lower == answer.lower && again.upper == answer.upper && again.point == answer.point,
+             "the same answer again", again.lower, again.upper);
+    }
+  }
+
+  /// A limit point of one placed surface as the other one's mesh sees it.
+  [[nodiscard]] static Point from_world(const oracle::Placement& place, const Point& p) {
+    Point q{};
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t r = 0; r < 3; ++r) q[c] += place[4 * r + c] * (p[r] - place[4 * r + 3]);
+    return q;
+  }
+  [[nodiscard]] static Point to_world(const oracle::Placement& place, const Point& p) {
+    Point q{};
+    for (std::size_t r = 0; r < 3; ++r)
+      q[r] = place[4 * r] * p[0] + place[4 * r + 1] * p[1] + place[4 * r + 2] * p[2] + place[4 * r + 3];
+    return q;
+  }
+  /// Does a surface wind around a limit point of the other one? Nothing where that is not told.
+  [[nodiscard]] std::optional<bool> holds(std::size_t outer) const {
+    for (std::size_t i = 0; i < 40; i += 7) {
+      const Point p = to_world(trial_->places[1 - outer], side(1 - outer).twin->some_limit_point(i));
+      const int levels = side(outer).made.mesh.polygons.size() > 150 ? 1 : 4;
+      const std::optional<int> number =
+          side(outer).twin->winding_number(from_world(trial_->places[outer], p), levels);
+      if (number) return *number != 0;
+    }
+    return {};
+  }
+
+  void check_solids() {
+    if (!(trial_->truth.lower > 0)) return;  // what meets is told by the surfaces alone
+    CollideOptions options;
+    options.tolerance = trial_->tolerance;
+    options.budget = budget(20'000);
+    options.solid = true;
+    const Collision answer = collide(trial_->placed(0), trial_->placed(1), options);
+    answer_ = std::string("solids: ") + name_of(answer.verdict);
+    ++counts_[answer_];
+    const std::optional<bool> in_a = holds(0), in_b = holds(1);
+    if (!in_a || !in_b) {
+      ++counts_["solids: the twin does not tell"];
+      return;
+    }
+    const bool nested = *in_a || *in_b;
+    ++counts_[nested ? "solids: nested" : "solids: not nested"];
+    if (nested) {
+      expect(answer.verdict != Verdict::separated, "false separated: one lies inside the other");
+    } else {
+      expect(answer.verdict != Verdict::intersecting, "false intersecting: apart, none inside the other");
+    }
+  }
+
+  GroundTrial* trial_ = nullptr;
+  double size_ = 0, rounding_ = 0;
+  std::string answer_;
+  std::map<std::string, std::size_t> counts_;
+  std::map<std::string, double> seconds_;
+  std::map<std::string, std::pair<double, std::uint64_t>> slowest_;
+  int failures_ = 0;
+};
+
+TEST(ground, meshes_have_what_was_chosen) {
+  std::mt19937_64 random(3);
+  const auto& rows = testing::covering_rows();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    testing::Choices choices;
+    std::copy_n(rows[i].begin() + (i % 2 == 0 ? 0 : testing::factor_count), testing::factor_count,
+                choices.begin());
+    EXPECT_TRUE(testing::is_possible(choices));
+    EXPECT_EQ(testing::missing(testing::make_mesh(choices, random), choices), "") << i;
+  }
+}
+
+TEST(ground, answers_are_true) {
+  const std::uint64_t usual = testing::row_count() * of_each_row;
+  const std::uint64_t first = from_environment("SNUG_FIRST", 0);
+  const std::uint64_t count = from_environment("SNUG_PLACEMENTS", usual);
+  testing::GroundTrials trials(of_each_row);
+  Checks checks;
+  std::map<testing::ValuePair, std::size_t> covered;
+  double making = 0;
+  const auto start = std::chrono::steady_clock::now();
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const auto before = std::chrono::steady_clock::now();
+    GroundTrial trial = trials.make(first + i);
+    making += std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+    for (const testing::ValuePair& pair : testing::pairs_of(trials.row())) ++covered[pair];
+    if (!checks.run(trial)) break;
+    if ((i + 1) % 500 == 0)
+      std::fprintf(stderr, "%llu placements, %.0f s\n", static_cast<unsigned long long>(i + 1),
+                   std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  checks.report();
+  std::printf("  %-40s %8.2f s\n", "surfaces, placements and the twin's bounds", making);
+  std::size_t least = SIZE_MAX, all = 0;
+  for (const testing::ValuePair& pair : testing::all_pairs()) {
+    all += covered.contains(pair);
+    least = std::min(least, covered.contains(pair) ? covered[pair] : 0);
+  }
+  std::printf("  pairs of cases: %zu of %zu, each in at least %zu placements; %zu rows cover them\n", all,
+              testing::all_pairs().size(), least, testing::covering_rows().size());
+  if (first == 0 && count >= usual && !HasFailure()) {
+    EXPECT_EQ(all, testing::all_pairs().size());
+    EXPECT_GT(checks.count("collide: separated"), count / 10);
+    EXPECT_GT(checks.count("collide: within") + checks.count("collide: intersecting"), count / 10);
+    EXPECT_GT(checks.count("solids: nested"), 0u);
+  }
+}
+
+}  // namespace
+}  // namespace snug
