@@ -69,7 +69,7 @@ Choices random_choices(Dice& dice, std::uint64_t rare, bool covering) {
 PairChoices random_row(Dice& dice, std::optional<bool> solids) {
   PairChoices row{};
   for (std::size_t side = 0; side < 2; ++side) {
-    Choices choices = random_choices(dice, solids ? 30 : 8, !solids);
+    Choices choices = random_choices(dice, solids ? 150 : 8, !solids);
     if (solids && *solids) {
       for (const Factor factor : {Factor::border, Factor::holes})
         choices[static_cast<std::size_t>(factor)] = 0;
