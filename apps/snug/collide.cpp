@@ -110,6 +110,7 @@ ExitStatus run(const Options& options) {
   ProgressBar bar("colliding", options.quiet);
   const WorkMonitor monitor = bar.monitor();
   pair.prepare(monitor);
+  if (options.solid) pair.require_closed();
   Report report("collide", options);
   pair.write_heads(report);
   if (report.json()) report.write().field("tolerance", wanted.tolerance).field("margin", wanted.margin);

@@ -60,6 +60,7 @@ ExitStatus run(const Options& options) {
   ProgressBar bar("measuring", options.quiet);
   const WorkMonitor monitor = bar.monitor();
   pair.prepare(monitor);
+  if (options.solid) pair.require_closed();
   Report report("distance", options);
   pair.write_heads(report);
   if (report.json()) report.write().field("precision", wanted.absolute).field("relative", wanted.relative);

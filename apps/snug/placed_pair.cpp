@@ -66,6 +66,11 @@ void PairArguments::prepare(const WorkMonitor& monitor) {
   scratch_b_.emplace(*model_b_);
 }
 
+void PairArguments::require_closed() const {
+  naming(options_.mesh_a, [&] { static_cast<void>(model_a_->solid()); });
+  naming(options_.mesh_b, [&] { static_cast<void>(model_b_->solid()); });
+}
+
 void PairArguments::write_heads(Report& report) const {
   report.heads({options_.mesh_a, options_.mesh_b},
                {name_of(surface_a_->options().scheme), name_of(surface_b_->options().scheme)});

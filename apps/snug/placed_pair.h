@@ -39,6 +39,10 @@ class PairArguments {
 
   /// Makes the models.
   void prepare(const WorkMonitor& monitor);
+  /// For --solid.
+  /// Requires:  prepare().
+  /// Errors:    InputError (refused) that names the mesh which is not closed.
+  void require_closed() const;
   /// Requires:  prepare().
   [[nodiscard]] PlacedModel a() { return {*model_a_, *scratch_a_, pose_a_}; }
   [[nodiscard]] PlacedModel b() { return {*model_b_, *scratch_b_, pose_b_}; }
