@@ -6,10 +6,13 @@
 #include <snug/query/closest.h>
 #include <snug/query/containment.h>
 #include <snug/query/distance.h>
+#include <snug/query/pair_search.h>
 #include <snug/query/solid.h>
 #include <testing/patches.h>
 #include <testing/placements.h>
 #include <testing/tagged.h>
+
+#include <cfloat>
 
 namespace snug {
 namespace {
@@ -124,6 +127,51 @@ TEST(collide, compares_meshes_of_very_different_size) {
   Pair pair(oracle::meshes::icosahedron(), grain);
   EXPECT_EQ(pair.ask(moved(0, 0, 0), {0.01, 0}).verdict, Verdict::separated);  // at the centre
   EXPECT_EQ(pair.ask(moved(3, 0, 0), {0.01, 0}).verdict, Verdict::separated);
+}
+
+// Both moved so far away that their own size underflows single precision in units of the translation.
+TEST(collide, lower_bounds_hold_for_placements_of_any_length) {
+  int separated = 0;
+  for (int k = 0; k < 40; ++k) {
+    const double apart = 0.05 + 0.0101 * k;
+    oracle::TwinMesh below = oracle::meshes::grid(5, 5);
+    for (oracle::Point& p : below.points) p = {0.1 * p[0], 0.1 * p[1], 0};
+    oracle::TwinMesh above = below;
+    for (oracle::Point& p : above.points) p[2] = apart;
+    Pair pair(below, above);
+    for (int exponent = 100; exponent < 150; ++exponent) {
+      const Motion place = moved(std::ldexp(1.0, exponent), 0, 0);
+      CollideOptions options{.margin = 0.9 * apart};
+      options.budget = 200;
+      const Collision answer =
+          collide({pair.model_a, pair.scratch_a, place}, {pair.model_b, pair.scratch_b, place}, options);
+      separated += answer.verdict == Verdict::separated;
+      EXPECT_LE(answer.lower, apart) << exponent;
+    }
+  }
+  EXPECT_GT(separated, 1000);
+}
+
+// Any direction gives a bound, whatever its length: squares of short ones lose digits.
+TEST(collide, planes_between_hulls_hold_for_directions_of_any_length) {
+  Pair pair(oracle::meshes::icosahedron(), oracle::meshes::octahedron());
+  const PlacedModel a{pair.model_a, pair.scratch_a, {}}, b{pair.model_b, pair.scratch_b, moved(3, 0.2, 0.1)};
+  PairSearch search(a, b);
+  std::vector<NodePair> pairs{search.roots()};
+  while (!search.pieces(pairs.back())) {
+    const NodePair next = pairs.back();
+    pairs.pop_back();
+    search.open(next, search.opening(next, PairSearch::Bounding::eager), INFINITY, pairs);
+  }
+  const Vector3 direction{3, 0.2, 0.1};
+  const double gap = search.hull_gap(pairs.back(), direction);
+  ASSERT_GT(gap, 0);
+  for (int exponent = -1073; exponent < 1000; ++exponent) {
+    const Vector3 scaled{std::ldexp(direction.x, exponent), std::ldexp(direction.y, exponent),
+                         std::ldexp(direction.z, exponent)};
+    if (scaled.z * 2 < DBL_MIN) continue;  // another direction
+    EXPECT_LE(search.hull_gap(pairs.back(), scaled), gap * (1 + 1e-12)) << exponent;
+  }
 }
 
 TEST(collide, proves_contact_at_tolerance_zero) {

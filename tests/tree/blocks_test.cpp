@@ -153,6 +153,61 @@ TEST_P(EachVolume, distance_never_exceeds_that_of_the_contents) {
   EXPECT_GT(gaps, total / 4);
 }
 
+// Small beside the unit, squares and then the lengths themselves leave single precision.
+TEST_P(EachVolume, distance_of_a_point_holds_for_sets_of_any_size) {
+  const Volume volume = GetParam();
+  std::mt19937_64 random(24);
+  std::uniform_real_distribution<double> unit(-3, 3);
+  int gaps = 0;
+  for (int exponent = 0; exponent < 160; ++exponent) {
+    const double size = std::ldexp(1.0, -exponent);
+    BoundingVolume set;
+    set.box.half = {size, size, size / 2};
+    const auto directions = directions_of(volume);
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+      const Vector3& d = all_directions[directions[i]];
+      set.upper[i] = size * (std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z) / 2);
+      set.lower[i] = -set.upper[i];
+    }
+    Blocks blocks(volume);
+    const std::uint32_t name = 0;
+    blocks.add({&set, 1}, {&name, 1});
+    for (int trial = 0; trial < 200; ++trial) {
+      const Point3 p{size * unit(random), size * unit(random), size * unit(random)};
+      Blocks::Distances found;
+      blocks.distances(0, p, 0, found);
+      if (!(found[0] > 0)) continue;
+      ++gaps;
+      const Vector3 beyond{std::max(0.0, std::fabs(p.x) - size), std::max(0.0, std::fabs(p.y) - size),
+                           std::max(0.0, std::fabs(p.z) - size / 2)};
+      ASSERT_LE(static_cast<double>(found[0]), std::hypot(beyond.x, beyond.y, beyond.z)) << exponent;
+    }
+  }
+  EXPECT_GT(gaps, 10'000);
+}
+
+TEST_P(EachVolume, sets_around_infinite_ones_are_infinite) {
+  class Endless final : public Enclosed {
+   public:
+    [[nodiscard]] Extent extent(const Vector3&) const override { return {-INFINITY, INFINITY}; }
+    [[nodiscard]] std::span<const Point3> points() const override { return {}; }
+  };
+  const Volume volume = GetParam();
+  std::mt19937_64 random(25);
+  const BoundingVolume infinite = fit(volume, Endless()),
+                       finite = fit(volume, Cloud(any_points(random, {0.3, -0.7, 1.1}, 0.1)));
+  for (const auto& parts : {std::vector{infinite}, {infinite, finite}, {finite, infinite}}) {
+    const BoundingVolume around = merge(volume, parts);
+    EXPECT_EQ(ball_around(volume, around).radius, INFINITY);
+    Blocks blocks(volume);
+    const std::uint32_t name = 0;
+    blocks.add({&around, 1}, {&name, 1});
+    Blocks::Distances found;
+    blocks.distances(0, Point3{50, 60, -70}, 0, found);
+    EXPECT_LE(found[0], 0);
+  }
+}
+
 // Two blocks near each other as two frames place them.
 struct TwoBlocks {
   TwoBlocks(Volume volume, std::mt19937_64& random)

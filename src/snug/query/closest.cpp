@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 
+#include <snug/base/direction.h>
 #include <snug/base/error.h>
 #include <snug/base/parallel.h>
 #include <snug/base/rounding.h>
@@ -96,7 +97,7 @@ class Query {
     Blocks::Distances found;
     blocks.distances(opened.block, to_, point_error_, found);
     for (std::size_t i = 0; i < blocks.count(opened.block); ++i) {
-      const float least = std::max({found[i], static_cast<float>(gap * (1 - 0x1p-23)), 0.0F});
+      const float least = std::max({found[i], single_down(gap), 0.0F});
       if (static_cast<double>(least) >= bounds_.enough()) {
         bounds_.settle(static_cast<double>(least));
         continue;
@@ -135,9 +136,8 @@ class Query {
   }
 
   [[nodiscard]] double plane_gap(PieceId id, const Vector3& direction) {
-    const double size = length(direction);
-    if (!(size > 0) || !std::isfinite(1 / size)) return 0;
-    const Vector3 w = (1 / size) * direction;
+    const Vector3 w = normalized(direction);
+    if (w == Vector3{}) return 0;
     const HullPoints& hull = scratch_.pieces().hull(id);
     const Slab slab = outer_slab(hull, w);
     const Vector3 from = hull.origin - to_;

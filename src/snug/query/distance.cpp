@@ -97,7 +97,7 @@ class Query {
     if (search_.pieces(pair)) {
       monitor_.checkpoint();
       gap = std::max(gap, gap_of_pieces(pair));
-      pair.gap = key(gap);
+      pair.gap = single_down(gap);
     }
     const PairSearch::Opening opening = search_.opening(pair, PairSearch::Bounding::eager);
     if (opening == PairSearch::Opening::none || gap >= bounds_.enough()) {
@@ -116,15 +116,12 @@ class Query {
           heap_.pop_back();
           continue;
         }
-        heap_[at].gap = std::max(heap_[at].gap, key(along));
+        heap_[at].gap = std::max(heap_[at].gap, single_down(along));
       }
       std::push_heap(heap_.begin(), heap_.begin() + static_cast<std::ptrdiff_t>(++at), farther);
     }
     return true;
   }
-
-  // Not above it in single precision.
-  static float key(double gap) { return static_cast<float>(gap * (1 - 0x1p-23)); }
 
   // A lower bound of the distance of two pieces; improves the upper one.
   double gap_of_pieces(const NodePair& pair) {

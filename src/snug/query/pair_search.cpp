@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <snug/base/contract.h>
+#include <snug/base/direction.h>
 #include <snug/base/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/query/crossing.h>
@@ -117,9 +118,10 @@ Blocks::Near PairSearch::find_gaps(std::size_t side, std::uint32_t block, const 
 
 namespace {
 
-// A gap in the search's units, rounded down: by one rounding of the factor, one of the product.
+// A gap in the search's units, rounded down: by one rounding of the factor, two of products, and what they lose where they
+// underflow.
 float in_world(float gap, float to_world) {
-  return gap > 0 ? gap * to_world * (1 - 4 * 0x1p-24F) : gap * to_world;
+  return gap > 0 ? gap * to_world * (1 - 4 * 0x1p-24F) - 0x1p-125F : gap * to_world;
 }
 
 }  // namespace
@@ -258,17 +260,16 @@ double PairSearch::end(std::size_t side, PieceId piece, const Vector3& w) {
 }
 
 double PairSearch::hull_gap(const NodePair& pair, const Vector3& direction) {
-  const double size = length(direction);
-  if (!(size > 0) || !std::isfinite(1 / size)) return 0;
-  const Vector3 w = (1 / size) * direction;
+  const Vector3 w = normalized(direction);
+  if (w == Vector3{}) return 0;
   const double gap = (end(1, piece(pair, 1), w) - end(0, piece(pair, 0), w)) * (1 - 16 * unit_roundoff);
   return gap > 0 ? gap : 0;
 }
 
 void PairSearch::look_along(const Vector3& direction) {
-  const double size = length(direction);
-  if (!(size > 0) || !std::isfinite(1 / size)) return;
-  along_ = (1 / size) * direction;
+  const Vector3 w = normalized(direction);
+  if (w == Vector3{}) return;
+  along_ = w;
   for (QueryScratch* scratch : scratch_) scratch->ends().forget();
   const std::array<Vector3, 3>& rows = frame_[0].rows;
   static_cast<void>(view(0));

@@ -22,6 +22,10 @@ inline void require_precision(const DistanceOptions& options) {
   require_length(options.relative, "the relative precision");
 }
 
+/// A number of single precision that is not above a lower bound; below zero where single precision underflows.
+/// Requires:  x >= 0.
+[[nodiscard]] inline float single_down(double x) { return static_cast<float>(x * (1 - 0x1p-23)) - 0x1p-125F; }
+
 /// Bounds of a distance while they are searched for, in a search's units, in which surfaces are about 2 large.
 class DistanceBounds {
  public:

@@ -51,8 +51,8 @@ class Ray {
     }
     // Determinants of three vectors: a sum of six products, each off by its factors' errors and by roundings.
     const double off = enlarged(error + error_);
-    const double doubt =
-        enlarged(12 * largest * off + 64 * unit_roundoff * largest * largest + 12 * off * off);
+    const double doubt = enlarged(12 * largest * off + 64 * unit_roundoff * largest * largest +
+                                  12 * off * off + 16 * underflow_error);
     int positive = 0, negative = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const double side = determinant(direction_, v[k], v[(k + 1) % 3]);
@@ -61,7 +61,7 @@ class Ray {
     }
     if (positive > 0 && negative > 0) return true;  // the line passes by
     const double volume = determinant(v[0], v[1], v[2]);
-    const double volume_doubt = enlarged(largest * doubt * 4 + 36 * off * off * off);
+    const double volume_doubt = enlarged(largest * doubt * 4 + 36 * off * off * off + 16 * underflow_error);
     // All three alike: the line goes through; ahead if the volume has the same sign.
     if (positive == 3 || negative == 3) {
       if (std::fabs(volume) <= volume_doubt) return false;

@@ -35,14 +35,17 @@ HWY_INLINE V dot3(D d, const V* a, const float* b) {
 HWY_INLINE V sum3(V a, V b, V c) { return hn::Add(hn::Add(a, b), c); }
 HWY_INLINE V max3(V a, V b, V c) { return hn::Max(hn::Max(a, b), c); }
 
-// Length of the vector of the positive ones of three gaps, or the largest if there are none.
+// Squares of shorter lengths lose digits to the end of single precision, or all of them.
+constexpr float least_squared = 0x1p-50F;
+
+// Length of the vector of the positive ones of three gaps, or the largest if there are none or squares are too small.
 template <class D>
 HWY_INLINE V outside(D d, V x, V y, V z) {
   const V zero = hn::Zero(d), largest = max3(x, y, z);
   const V px = hn::Max(x, zero), py = hn::Max(y, zero), pz = hn::Max(z, zero);
   const V length = hn::Mul(hn::Sqrt(sum3(hn::Mul(px, px), hn::Mul(py, py), hn::Mul(pz, pz))),
                            hn::Set(d, 1 - 16 * 0x1p-24F));
-  return hn::IfThenElse(hn::Gt(largest, zero), length, largest);
+  return hn::IfThenElse(hn::Gt(largest, hn::Set(d, least_squared)), length, largest);
 }
 
 // The same of two sorts of gaps, by the better one.
@@ -57,7 +60,7 @@ HWY_INLINE V outside(const V* one, const V* two) {
   const V length_sq = hn::Max(sum3(square(one[0]), square(one[1]), square(one[2])),
                               sum3(square(two[0]), square(two[1]), square(two[2])));
   const V length = hn::Mul(hn::Sqrt(length_sq), hn::Set(d, 1 - 16 * 0x1p-24F));
-  return hn::IfThenElse(hn::Gt(largest, zero), length, largest);
+  return hn::IfThenElse(hn::Gt(largest, hn::Set(d, least_squared)), length, largest);
 }
 
 // Minus infinity for what is not a number, or too large to be one of ours.
@@ -127,7 +130,9 @@ HWY_INLINE V gaps(const float* block, std::size_t at, const Row& other, V all_sl
   }
   V gap = outside(own, others);
   const V central = hn::Sub(hn::Div(hn::Sub(between_sq, taken), hn::Sqrt(between_sq)), all_slack);
-  gap = hn::IfThenElse(hn::Gt(central, zero), hn::Max(gap, central), gap);
+  const auto apart =
+      hn::And(hn::Gt(central, zero), hn::Gt(between_sq, hn::Set(d, least_squared * least_squared)));
+  gap = hn::IfThenElse(apart, hn::Max(gap, central), gap);
   // Lane by lane, so that it makes no difference how many a vector has.
   const auto settled = hn::Gt(gap, hn::Set(d, enough));
   if (!hn::AllTrue(d, settled)) {

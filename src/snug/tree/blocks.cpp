@@ -10,6 +10,9 @@ namespace snug {
 namespace {
 
 constexpr double single_roundoff = 0x1p-24;
+// More than what some hundred operations in single precision lose where they underflow, be it by flushing. Gaps are
+// lowered by it, as by a slack.
+constexpr double single_underflow = 0x1p-118;
 
 float float_up(double x) {
   const auto f = static_cast<float>(x);
@@ -225,8 +228,8 @@ Blocks::Near Blocks::distances(std::uint32_t block, const PlacedVolume& other, d
   if (volume_ == Volume::obb) {
     kernels::OtherBox box = other.box;
     for (std::size_t k = 0; k < 3; ++k) box.centre[k] = static_cast<float>(offset[k]);
-    return result(
-        kernels::obb_distances(data(block), heads_[block].reach, box, float_up(slack), enough, out.data()));
+    return result(kernels::obb_distances(data(block), heads_[block].reach, box,
+                                         float_up(slack + single_underflow), enough, out.data()));
   }
   kernels::OtherIntervals intervals;
   for (std::size_t i = 0; i < directions_.size(); ++i) {
@@ -235,8 +238,8 @@ Blocks::Near Blocks::distances(std::uint32_t block, const PlacedVolume& other, d
     intervals.upper[i] = float_up(other.upper[i] + from);
     intervals.length[i] = length_of(directions_[i]);
   }
-  return result(kernels::dop_distances(data(block), directions_.size(), intervals, float_up(slack), enough,
-                                       out.data()));
+  return result(kernels::dop_distances(data(block), directions_.size(), intervals,
+                                       float_up(slack + single_underflow), enough, out.data()));
 }
 
 float Blocks::distances(std::uint32_t block, const Blocks& others, std::uint32_t other, const View& view,
@@ -271,7 +274,7 @@ void Blocks::distances(std::uint32_t block, const Point3& point, double slack, D
   if (volume_ == Volume::obb) {
     const float centre[3] = {static_cast<float>(offset.x), static_cast<float>(offset.y),
                              static_cast<float>(offset.z)};
-    kernels::obb_distances(data(block), centre, float_up(slack), out.data());
+    kernels::obb_distances(data(block), centre, float_up(slack + single_underflow), out.data());
     return;
   }
   PlacedVolume other;

@@ -28,7 +28,10 @@ RelativeFrame::RelativeFrame(const PlacedFrame& target, const PlacedFrame& sourc
   for (std::size_t i = 0; i < 3; ++i) rows[i] = {columns[0][i], columns[1][i], columns[2][i]};
   translation = transposed(inverse * (source.translation - target.translation));
   const double defects = target.defect + source.defect;
-  slack = enlarged(16 * (defects + 16 * unit_roundoff) * (1 + scale + max_abs(translation))) + 0x1p-100;
+  // Translations may have underflowed when they were brought to the search's units.
+  slack = enlarged(16 * (defects + 16 * unit_roundoff) * (1 + scale + max_abs(translation)) +
+                   8 * inverse * underflow_error) +
+          0x1p-100;
   slack = static_cast<double>(static_cast<float>(slack * (1 + 0x1p-22)));
   comparable = slack < 0x1p20;
   to_world = target.scale * (1 - 8 * defects);

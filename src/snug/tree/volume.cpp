@@ -93,6 +93,8 @@ Enclosed::Extent extent_of(std::span<const BoundingVolume> boxes, const Vector3&
   Enclosed::Extent all{INFINITY, -INFINITY};
   for (const BoundingVolume& part : boxes) {
     const Obb& box = part.box;
+    // Infinite sides times cosines of zero are no numbers, which minima pass over.
+    if (!std::isfinite(box.half.x + box.half.y + box.half.z)) return {-INFINITY, INFINITY};
     double reach = 0;
     for (std::size_t k = 0; k < 3; ++k) reach += box.half[k] * std::fabs(dot(direction, box.axes[k]));
     const double middle = dot(direction, box.centre - Point3{});
