@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include <snug/base/direction.h>
 #include <snug/base/rounding.h>
 #include <snug/patch/descent.h>
 #include <snug/patch/evaluate.h>
@@ -16,6 +17,9 @@ namespace {
 constexpr unsigned edge_levels = 8;
 // Levels from the piece that was asked about to one that is small enough to pass between the strips.
 constexpr unsigned probe_levels = 16;
+// Least sine of the angle between the normal of a base triangle and an edge of the limit triangle. They are across each
+// other but for what the base triangle's plane and the limit triangle's differ.
+constexpr double least_sine = 0.5;
 
 // Bezier points of the polynomial `part` whose hull holds its edge from corner k to k + 1.
 template <class Visit>
@@ -76,12 +80,10 @@ Crossed::Crossed(const Piece& piece, const Heights& heights) {
   for (std::size_t k = 0; k < 3; ++k) {
     Strip& strip = strips_[k];
     const Vector3 edge = corners[(k + 1) % 3] - corners[k];
-    const double size = max_abs(edge);
-    if (!(size > 0) || !std::isfinite(1 / size)) return;
-    strip.inward = cross(normal_, (1 / size) * edge);
-    const double length_in = length(strip.inward);
-    if (!(length_in > 0)) return;
-    strip.inward = (1 / length_in) * strip.inward;
+    // Of an edge nearly along the normal the product is mostly rounding: then it is not across either.
+    const Vector3 along = normalized(edge), inward = cross(normal_, along);
+    if (!(length(inward) > least_sine)) return;
+    strip.inward = normalized(inward);
     strip.from = corners[k];
     // Both ends of the edge belong to its curve: the exact corners are within their error of these.
     double widest = std::max(0.0, dot(strip.inward, edge)) + 2 * spatial_error(corner_error);
@@ -91,7 +93,7 @@ Crossed::Crossed(const Piece& piece, const Heights& heights) {
       widest = std::max(widest, dot(strip.inward, p - from) + 2 * spatial_error(error));
       largest = std::max(largest, max_abs(p));
     });
-    strip.width = enlarged(widest + gamma_bound(16) * largest);
+    strip.width = enlarged(widest + gamma_bound(64) * largest);
     // Nothing is free unless the opposite corner lies beyond the strip.
     if (!(dot(strip.inward, corners[(k + 2) % 3] - strip.from) > strip.width)) return;
   }
@@ -101,7 +103,7 @@ Crossed::Crossed(const Piece& piece, const Heights& heights) {
 double Crossed::rounding(const Triangle& points) const {
   double largest = 0;
   for (const Point3& p : points) largest = std::max(largest, max_abs(p - from_));
-  return gamma_bound(16) * (largest + 4);
+  return gamma_bound(32) * (largest + 4);
 }
 
 bool Crossed::holds(const Triangle& around, double radius) const {
