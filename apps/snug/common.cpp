@@ -9,6 +9,7 @@
 #include <snug/io/mesh_file.h>
 
 #include "curve.h"
+#include "mesh_reading.h"
 #include "progress_bar.h"
 #include "version.h"
 
@@ -42,7 +43,7 @@ void add_common_options(OptionList& list, CommonOptions& options) {
       .alias("vtx-boundary-edge-only", "edge-only")
       .alias("vtx-boundary-none", "none");
   list.add(Group::mesh, "--weld LENGTH", &options.weld,
-           "STL: vertices this near become one: mesh units, or percent of the mesh (0.001%)");
+           "Vertices this near become one: mesh units, or percent of the mesh (0.001%); 0: equal ones");
   list.add(Group::output, "--json", &options.json, "One JSON document on standard output");
   list.add(Group::output, "-o FILE", &options.output, "Output file; the format follows the ending");
   list.add(Group::output, "--quiet", &options.quiet, "No progress and no notes on standard error");
@@ -87,14 +88,11 @@ Notes notes_for(const CommonOptions& options) {
 }
 
 ControlMesh load_mesh(const std::string& path, const CommonOptions& options) {
-  WeldDistance weld;
-  if (!options.weld.empty()) {
-    weld = [length = parse_length(options.weld, "--weld")](double size) {
-      return length.in_mesh_units(size);
-    };
-  }
+  const WeldDistance weld = weld_distance(options);
   ProgressBar bar("reading " + path, options.quiet);
-  return read_mesh(path, notes_for(options), bar.monitor(), weld);
+  ControlMesh mesh = read_mesh(path, notes_for(options), bar.monitor(), weld);
+  note_coincidences(mesh, path, options);
+  return mesh;
 }
 
 void naming(const std::string& path, const std::function<void()>& work) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <snug/io/mesh_file.h>
 #include <snug/io/notes.h>
 #include <snug/query/bound.h>
 #include <snug/surface/surface.h>
@@ -30,7 +31,7 @@ struct CommonOptions {
   std::string output;  ///< -o; empty for none
   int threads = 0;
   std::uint64_t budget = 1'000'000;
-  std::string weld;  ///< empty: only equal vertices of STL files are welded
+  std::string weld;  ///< a length; empty: only equal vertices of STL files are welded
   bool quiet = false;
 };
 

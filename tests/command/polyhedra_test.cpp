@@ -141,7 +141,8 @@ TEST(stl_files, are_welded_by_the_length_that_is_asked_for) {
   EXPECT_TRUE(closed({"--weld", "1e-5"}));
   EXPECT_TRUE(closed({"--weld", "0.001%"}));
   EXPECT_EQ(run_snug({"bound", path, "--weld", "near"}).status, 2);
-  EXPECT_EQ(run_snug({"bound", path, "--weld", "0"}).status, 2);
+  EXPECT_EQ(run_snug({"bound", path, "--weld", "-1"}).status, 2);
+  EXPECT_EQ(run_snug({"bound", path, "--weld", "0"}).status, 0);
   const Outcome tiny = run_snug({"bound", path, "--weld", "1e-20"});
   EXPECT_EQ(tiny.status, 4);
   EXPECT_NE(tiny.err.find("split.stl"), std::string::npos);

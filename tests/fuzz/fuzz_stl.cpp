@@ -1,4 +1,5 @@
 #include <snug/io/stl.h>
+#include <snug/mesh/weld.h>
 
 #include "claims.h"
 
@@ -16,7 +17,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::read_or_refuse(
       data, size,
       [](std::string_view bytes) {
-        return parse_stl(bytes, "input", [](double longest_side) { return longest_side / 8; });
+        ControlMesh mesh = parse_stl(bytes, "input");
+        weld(mesh, used_box(mesh).longest_side() / 8);
+        return mesh;
       },
       [](const ControlMesh&) {});
   return 0;

@@ -93,15 +93,39 @@ TEST(mesh_file, tells_the_formats_of_files_without_ending_apart) {
   expect_same_arrays(creased_triangle(), read_mesh(folder / "binary"));
 }
 
-TEST(mesh_file, welds_stl_alone) {
+TEST(mesh_file, welds_every_format_and_says_what) {
   const TemporaryFolder folder;
-  ControlMesh mesh = creased_triangle();
-  mesh.points[1] = {0, 0.125, 0};
-  const WeldDistance weld = [](double size) { return size / 4; };
-  write_mesh(mesh, folder / "a.stl");
-  write_mesh(mesh, folder / "a.ply");
-  EXPECT_EQ(read_mesh(folder / "a.stl", {}, {}, weld).vertex_count(), 2u);
-  EXPECT_EQ(read_mesh(folder / "a.ply", {}, {}, weld).vertex_count(), 3u);
+  const ControlMesh mesh = parse_obj(
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 1 1e-7\nv 1 1e-7 0\nv 1 1 0\nf 1 2 3\nf 4 5 6\n", "split.obj", {});
+  for (const char* name : {"a.obj", "a.off", "a.ply", "a.stl"}) {
+    write_mesh(mesh, folder / name);
+    EXPECT_EQ(read_mesh(folder / name).vertex_count(), 6u) << name;
+    double seen = 0;
+    std::vector<std::string> notes;
+    const ControlMesh welded = read_mesh(
+        folder / name, [&](const std::string& line) { notes.push_back(line); }, {},
+        [&](double size) {
+          seen = size;
+          return 1e-6 * size;
+        });
+    EXPECT_EQ(seen, 1) << name;
+    EXPECT_EQ(welded.vertex_count(), 4u) << name;
+    EXPECT_EQ(testing::corners(welded, 1), (std::vector<std::uint32_t>{2, 1, 3})) << name;
+    ASSERT_EQ(notes.size(), 1u) << name;
+    EXPECT_NE(notes[0].find("2 vertices were welded"), std::string::npos) << notes[0];
+  }
+}
+
+TEST(mesh_file, says_which_file_cannot_be_welded) {
+  const TemporaryFolder folder;
+  write_mesh(creased_triangle(), folder / "a.obj");
+  try {
+    static_cast<void>(read_mesh(folder / "a.obj", {}, {}, [](double) { return 1e-300; }));
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problem(), InputProblem::refused);
+    EXPECT_NE(std::string(error.what()).find("a.obj"), std::string::npos);
+  }
 }
 
 TEST(mesh_file, knows_which_formats_hold_polygons) {

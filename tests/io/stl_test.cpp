@@ -18,9 +18,7 @@ using testing::expect_same_arrays;
 using testing::unreadable;
 using Ids = std::vector<std::uint32_t>;
 
-ControlMesh parse(const std::string& bytes, const WeldDistance& weld = {}) {
-  return parse_stl(bytes, "mesh.stl", weld);
-}
+ControlMesh parse(const std::string& bytes) { return parse_stl(bytes, "mesh.stl"); }
 std::string message(const std::string& bytes) {
   return unreadable([&] { static_cast<void>(parse(bytes)); });
 }
@@ -72,23 +70,8 @@ TEST(stl, zeros_of_both_signs_are_equal_and_the_first_one_stays) {
   EXPECT_TRUE(std::signbit(mesh.points[0].x));
 }
 
-TEST(stl, near_corners_are_welded_on_request_only) {
-  const std::string file =
-      "solid\n" + facet("0 0 0", "1 0 0", "0 1 0") + facet("0 1 1e-7", "1 1e-7 0", "1 1 0") + "endsolid\n";
-  EXPECT_EQ(parse(file).vertex_count(), 6u);
-  double seen = 0;
-  const ControlMesh mesh = parse(file, [&](double size) {
-    seen = size;
-    return 1e-6 * size;
-  });
-  EXPECT_EQ(seen, 1);
-  EXPECT_EQ(mesh.points, (std::vector<Point3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
-  EXPECT_EQ(corners(mesh, 1), (Ids{2, 1, 3}));
-}
-
-TEST(stl, facets_that_welding_collapses_are_kept) {
-  const ControlMesh mesh = parse("solid\n" + two_facets + facet("0 0 0", "1e-9 0 0", "0 1 0") + "endsolid\n",
-                                 [](double) { return 1e-6; });
+TEST(stl, facets_with_equal_corners_are_kept) {
+  const ControlMesh mesh = parse("solid\n" + two_facets + facet("0 0 0", "0 0 0", "0 1 0") + "endsolid\n");
   ASSERT_EQ(mesh.face_count(), 3u);
   EXPECT_EQ(corners(mesh, 2), (Ids{0, 0, 2}));
 }

@@ -8,10 +8,12 @@
 #include <snug/base/error.h>
 #include <snug/io/atomic_file.h>
 #include <snug/io/glb.h>
+#include <snug/io/number.h>
 #include <snug/io/obj.h>
 #include <snug/io/off.h>
 #include <snug/io/ply.h>
 #include <snug/io/read_file.h>
+#include <snug/mesh/weld.h>
 
 namespace snug {
 namespace {
@@ -57,22 +59,61 @@ std::string formatted(const ControlMesh& mesh, const std::string& ending, const 
   return format_obj(mesh);
 }
 
-}  // namespace
-
-ControlMesh read_mesh(const std::string& path, const Notes& notes, const WorkMonitor& monitor,
-                      const WeldDistance& weld) {
+ControlMesh parsed(const std::string& path, const std::string& name, const Notes& notes,
+                   const WorkMonitor& monitor) {
   std::string ending = path == "-" ? "" : lower_case_ending(path);
   constexpr std::array<std::string_view, 5> known{"", ".obj", ".off", ".ply", ".stl"};
   if (std::find(known.begin(), known.end(), ending) == known.end()) {
     refuse_ending(path, "read from .obj, .off, .ply and .stl files only");
   }
   const std::string bytes = read_file(path, monitor);
-  const std::string name = input_name(path);
   if (ending.empty()) ending = sniffed_format(bytes);
   if (ending == ".off") return parse_off(bytes, name);
   if (ending == ".ply") return parse_ply(bytes, name);
-  if (ending == ".stl") return parse_stl(bytes, name, weld);
+  if (ending == ".stl") return parse_stl(bytes, name);
   return parse_obj(bytes, name, notes);
+}
+
+/// Longest side of the box of the vertices that faces or polylines use.
+double size_of(const ControlMesh& mesh) {
+  Box3 box = used_box(mesh);
+  for (const VertexId v : mesh.polyline_vertices) box.add(mesh.points[v.index()]);
+  return box.longest_side();
+}
+
+std::string counted(std::size_t count, const std::string& singular, const std::string& plural) {
+  return std::to_string(count) + ' ' + (count == 1 ? singular : plural);
+}
+
+std::string told(const Welded& welded) {
+  std::string text = "no two vertices are near enough to be welded";
+  if (welded.vertices > 0) {
+    text = counted(welded.vertices, "vertex was", "vertices were") + " welded to others, at most ";
+    append_real(text, welded.farthest);
+    text += " away";
+  }
+  if (welded.shortened > 0) text += "; " + counted(welded.shortened, "face", "faces") + " lost corners";
+  if (welded.dropped > 0) {
+    text += "; " + counted(welded.dropped, "face was", "faces were") +
+            " left with fewer than three corners and dropped: faces are counted without them";
+  }
+  return text;
+}
+
+}  // namespace
+
+ControlMesh read_mesh(const std::string& path, const Notes& notes, const WorkMonitor& monitor,
+                      const WeldDistance& distance) {
+  const std::string name = input_name(path);
+  ControlMesh mesh = parsed(path, name, notes, monitor);
+  if (!distance) return mesh;
+  try {
+    const Welded welded = weld(mesh, distance(size_of(mesh)));
+    if (notes) notes(name + ": " + told(welded));
+  } catch (const InputError& error) {
+    throw InputError(error.problem(), name + ": " + error.what());
+  }
+  return mesh;
 }
 
 void require_writable_ending(const std::string& path) { static_cast<void>(format_to_write(path)); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include <snug/base/progress.h>
@@ -9,12 +10,17 @@
 
 namespace snug {
 
+/// How near vertices are welded, for a mesh whose longest side is `size`; empty: not at all.
+using WeldDistance = std::function<double(double size)>;
+
 /// The control mesh in a file. The format follows the ending, .obj, .off, .ply or .stl in any case. Standard
-/// input ("-") and files without an ending are PLY or OFF if they begin like that, else OBJ. `weld` is for
-/// STL alone.
+/// input ("-") and files without an ending are PLY or OFF if they begin like that, else OBJ. With `weld` vertices
+/// are joined as weld() does it (mesh/weld.h), for every format; `size` is the longest side of the box of the vertices
+/// that faces or polylines use.
 ///
-/// Errors:    InputError as read_file and the parser of the format; (unreadable) for another ending.
-///            Interrupted as read_file.
+/// Notes:     those of the parser; one line that says what was welded, or that nothing was.
+/// Errors:    InputError as read_file and the parser of the format; (unreadable) for another ending; as weld() and
+///            `weld`, with the name. Interrupted as read_file.
 [[nodiscard]] ControlMesh read_mesh(const std::string& path, const Notes& notes = {},
                                     const WorkMonitor& monitor = {}, const WeldDistance& weld = {});
 

@@ -15,7 +15,7 @@
 #include <snug/io/single.h>
 #include <snug/io/text_cursor.h>
 #include <snug/io/text_kind.h>
-#include <snug/io/weld.h>
+#include <snug/mesh/weld.h>
 
 namespace snug {
 namespace {
@@ -214,16 +214,9 @@ std::string format_ascii(const ControlMesh& mesh) {
 
 }  // namespace
 
-ControlMesh parse_stl(std::string_view bytes, const std::string& name, const WeldDistance& weld) {
+ControlMesh parse_stl(std::string_view bytes, const std::string& name) {
   const Corners corners = read_corners(bytes, name);
-  if (!weld) return welded_mesh(corners, first_of_welded(corners));
-  Box3 box;
-  for (const Point3& corner : corners) box.add(corner);
-  try {
-    return welded_mesh(corners, first_of_welded(corners, weld(box.longest_side())));
-  } catch (const InputError& error) {
-    throw InputError(error.problem(), name + ": " + error.what());
-  }
+  return welded_mesh(corners, first_of_welded(corners));
 }
 
 std::string format_stl(const ControlMesh& mesh, const std::string& name, StlFormat format,

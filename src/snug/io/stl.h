@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <string_view>
 
@@ -12,25 +11,20 @@ namespace snug {
 
 enum class StlFormat : std::uint8_t { binary, ascii };
 
-/// How near vertices of an STL mesh are welded, for a mesh whose longest side is `size`; empty: only equal ones.
-using WeldDistance = std::function<double(double size)>;
-
 /// The control mesh that an STL file describes. `name` is what messages call it.
 ///
 /// Reads:     binary files: exactly 84 + 50 n bytes, n facets, whatever the first 80 bytes are; and ascii files:
 /// text that begins with `solid`. Words count in any case, and the solids of one file are joined. Normals,
 /// attributes, and names are ignored.
 /// Guarantee: coordinates are exactly the floats of a binary file and the doubles nearest to the decimals of an
-///            ascii one. Corners become one vertex where they are equal, 0 and -0 being equal, and as
-///            first_of_welded says where a distance is given: the first corner in the file stays. Vertices are
-///            numbered in the order of their first corners. Facets keep their order; those that lose corners
-///            by welding are kept, see mesh/validate.h.
+///            ascii one. Corners become one vertex where they are equal, 0 and -0 being equal. Vertices are
+///            numbered in the order of their first corners. Facets keep their order; those with equal corners
+///            are kept, see mesh/validate.h.
 /// Errors:    InputError (unreadable) naming line or facet: coordinates that are not finite, facets that are no
 ///            triangles, a size that does not agree with the number of facets, no facets, a file that is
-///            neither. InputError as first_of_welded and `weld`, with the name.
-/// Cost:      as first_of_welded.
-[[nodiscard]] ControlMesh parse_stl(std::string_view bytes, const std::string& name,
-                                    const WeldDistance& weld = {});
+///            neither.
+/// Cost:      linear.
+[[nodiscard]] ControlMesh parse_stl(std::string_view bytes, const std::string& name);
 
 /// The mesh as an STL file with normals, without its tags. Binary files hold coordinates rounded to the nearest
 /// float; ascii ones, read again, have the same doubles. Vertices that no face uses are left out, and vertices
