@@ -44,6 +44,10 @@ void add_common_options(OptionList& list, CommonOptions& options) {
       .alias("vtx-boundary-none", "none");
   list.add(Group::mesh, "--weld LENGTH", &options.weld,
            "Vertices this near become one: mesh units, or percent of the mesh (0.001%); 0: equal ones");
+  list.add(
+      Group::mesh, "--sharp ANGLE", &options.sharp,
+      "Parts from CAD: edges whose faces differ by more degrees are infinitely sharp, and flat faces stay as "
+      "they are; auto is 30");
   list.add(Group::output, "--json", &options.json, "One JSON document on standard output");
   list.add(Group::output, "-o FILE", &options.output, "Output file; the format follows the ending");
   list.add(Group::output, "--quiet", &options.quiet, "No progress and no notes on standard error");
@@ -72,6 +76,10 @@ Scheme choose_scheme(const std::string& name, const ControlMesh& mesh) {
 SchemeOptions choose_rules(const CommonOptions& options, const std::string& scheme, const ControlMesh& mesh) {
   SchemeOptions rules;
   rules.scheme = choose_scheme(scheme, mesh);
+  if (!options.sharp.empty() && !is_primal(rules.scheme)) {
+    throw UsageError(std::string("--sharp: ") + name_of(rules.scheme) +
+                     " has no creases; give --scheme loop or catmark");
+  }
   if (options.boundary == "none") {
     rules.boundary = BoundaryRule::none;
   } else if (options.boundary == "edge-only") {
@@ -89,9 +97,11 @@ Notes notes_for(const CommonOptions& options) {
 
 ControlMesh load_mesh(const std::string& path, const CommonOptions& options) {
   const WeldDistance weld = weld_distance(options);
+  const std::optional<double> sharp = sharp_angle(options);
   ProgressBar bar("reading " + path, options.quiet);
   ControlMesh mesh = read_mesh(path, notes_for(options), bar.monitor(), weld);
   note_coincidences(mesh, path, options);
+  if (sharp) sharpen_mesh(mesh, path, *sharp, options);
   return mesh;
 }
 
@@ -117,6 +127,7 @@ Surface make_surface(ControlMesh mesh, const std::string& path, const CommonOpti
     ProgressBar bar("preparing " + path, options.quiet);
     surface.emplace(std::move(mesh), rules, library, options.threads, bar.monitor());
   });
+  note_distance_to_faces(*surface, path, options);
   return std::move(*surface);
 }
 

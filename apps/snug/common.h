@@ -31,7 +31,8 @@ struct CommonOptions {
   std::string output;  ///< -o; empty for none
   int threads = 0;
   std::uint64_t budget = 1'000'000;
-  std::string weld;  ///< a length; empty: only equal vertices of STL files are welded
+  std::string weld;   ///< a length; empty: only equal vertices of STL files are welded
+  std::string sharp;  ///< an angle or auto; empty: only what tags make sharp
   bool quiet = false;
 };
 
@@ -44,14 +45,15 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 /// The scheme that --scheme (or an override of it) names for this mesh.
 [[nodiscard]] Scheme choose_scheme(const std::string& name, const ControlMesh& mesh);
 /// The rules for a mesh: the option if given, else the file's tag, else edge-and-corner.
+/// Errors:    UsageError for --sharp with a dual scheme.
 [[nodiscard]] SchemeOptions choose_rules(const CommonOptions& options, const std::string& scheme,
                                          const ControlMesh& mesh);
 
 /// Where notes of readers and writers go: standard error, unless quiet.
 [[nodiscard]] Notes notes_for(const CommonOptions& options);
 
-/// Reads a control mesh.
-/// Errors:    UsageError for --weld that is no length.
+/// Reads a control mesh, welds and sharpens it as the options say.
+/// Errors:    UsageError for --weld that is no length and --sharp that is no angle, or for curves.
 [[nodiscard]] ControlMesh load_mesh(const std::string& path, const CommonOptions& options);
 
 /// Reads a mesh and makes its surface. Refusals name the file.

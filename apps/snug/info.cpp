@@ -1,9 +1,11 @@
 #include <fmt/core.h>
 #include <snug/mesh/statistics.h>
 #include <snug/mesh/validate.h>
+#include <snug/query/face_distance.h>
 
 #include "common.h"
 #include "curve.h"
+#include "mesh_reading.h"
 
 namespace snug::command {
 namespace {
@@ -30,9 +32,15 @@ ExitStatus run(const Options& options) {
   const std::size_t odd_ones = extraordinary(mesh, counts, rules.scheme);
   const std::vector<Defect> found = defects(mesh);
   std::optional<std::size_t> kinds;
+  std::optional<double> apart;
+  double size = 0;
   std::string refusal;
   try {
-    kinds = Surface(mesh, rules, std::make_shared<BoundLibrary>(), options.threads).kind_count();
+    const Surface surface(mesh, rules, std::make_shared<BoundLibrary>(), options.threads);
+    apart = limit_to_faces(surface, options.threads);
+    size = surface.size();
+    kinds = surface.kind_count();
+    note_distance_to_faces(surface, options.mesh, options, apart);
   } catch (const InputError& error) {
     refusal = error.what();
   }
@@ -51,6 +59,8 @@ ExitStatus run(const Options& options) {
     json.field("holes", mesh.tags.holes.size());
     json.key("kinds");
     kinds ? json.value(*kinds) : json.null();
+    json.key("limit_to_faces");
+    apart ? json.value(*apart) : json.null();
     json.key("refusal");
     kinds ? json.null() : json.value(refusal);
     json.key("defects").begin_array();
@@ -70,6 +80,9 @@ ExitStatus run(const Options& options) {
                           mesh.tags.creases.size()));
   if (kinds) {
     report.text(fmt::format("scheme {}: {} kinds of patches", name_of(rules.scheme), *kinds));
+    if (apart) {
+      report.text("the limit surface is at most " + text_of_length(*apart, size) + " away from the faces");
+    }
   } else {
     report.text(fmt::format("scheme {}: refused: {}", name_of(rules.scheme), refusal));
   }

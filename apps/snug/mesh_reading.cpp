@@ -1,7 +1,16 @@
 #include "mesh_reading.h"
 
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+
 #include <fmt/core.h>
+#include <snug/base/rounding.h>
+#include <snug/mesh/sharpen.h>
 #include <snug/mesh/weld.h>
+#include <snug/query/face_distance.h>
+
+#include "curve.h"
 
 namespace snug::command {
 
@@ -32,6 +41,90 @@ void note_coincidences(const ControlMesh& mesh, const std::string& path, const C
     note(fmt::format("{}: {} boundary {} {} from another one: not joined; --weld {} joins {}", path,
                      found.near, found.near == 1 ? "vertex is" : "vertices are", gaps,
                      text_at_most(found.farthest, true), found.near == 1 ? "it" : "them"));
+  }
+}
+
+std::optional<double> sharp_angle(const CommonOptions& options) {
+  const std::string& text = options.sharp;
+  if (text.empty()) return {};
+  if (text == "auto") return default_sharp_angle;
+  double angle = -1;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), angle);
+  if (error != std::errc() || end != text.data() + text.size() || !(angle >= 0 && angle < 180)) {
+    throw UsageError("--sharp: '" + text + "' is no angle; give degrees from 0 to below 180, or auto");
+  }
+  return angle;
+}
+
+void sharpen_mesh(ControlMesh& mesh, const std::string& path, double angle, const CommonOptions& options) {
+  if (is_curve(mesh, options.scheme)) {
+    throw UsageError("--sharp: " + path +
+                     " is answered as curves, which have no edges to sharpen; leave it out");
+  }
+  const std::size_t faces = mesh.face_count();
+  const Sharpened done = sharpen(mesh, angle);
+  const Notes note = notes_for(options);
+  if (!note) return;
+  std::string text = fmt::format(
+      "{}: --sharp {} made {} creases and {} corners; {} planar and {} curved regions are kept facet by "
+      "facet",
+      path, angle, done.creases, done.corners, done.flat_regions, done.fixed_regions);
+  if (done.split_faces > 0) {
+    text += fmt::format("; {} of their faces, not convex, are triangles now, further ones numbered from {}",
+                        done.split_faces, faces);
+  }
+  if (done.crossed_faces > 0) {
+    text +=
+        fmt::format("; {} of their faces cross themselves and may leave their outline", done.crossed_faces);
+  }
+  note(text);
+}
+
+std::string text_of_length(double length, double size) {
+  if (!(size > 0)) return text_at_most(length, true);
+  const double percent = length > 0 ? enlarged(length / size * 100) : 0;
+  return fmt::format("{} ({} % of the size)", text_at_most(length, true), text_at_most(percent, true));
+}
+
+namespace {
+
+bool is_stl(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return ending == ".stl";
+}
+
+std::string how_far(std::optional<double> apart, const Surface& surface) {
+  return apart ? "at most " + text_of_length(*apart, surface.size()) : "which this scheme shrinks";
+}
+
+}  // namespace
+
+void note_smooth_facets(const std::string& path, const CommonOptions& options, const std::string& far) {
+  const Notes note = notes_for(options);
+  if (!note || !options.sharp.empty() || !is_stl(path)) return;
+  note(path +
+       ": the facets are taken for a control mesh, whose limit surface is smooth and away from them, " + far +
+       "; --sharp auto keeps edges and flat faces of a part from CAD");
+}
+
+void note_distance_to_faces(const Surface& surface, const std::string& path, const CommonOptions& options,
+                            std::optional<double> known) {
+  const Notes note = notes_for(options);
+  const bool sharp = !options.sharp.empty();
+  if (!note || (!sharp && !is_stl(path))) return;
+  constexpr std::size_t most_faces = 200'000;  // half a second
+  if (!known && surface.face_count() > most_faces) {
+    note_smooth_facets(path, options, ask_info);
+    return;
+  }
+  const std::optional<double> apart = known ? known : limit_to_faces(surface, options.threads);
+  if (!sharp) {
+    note_smooth_facets(path, options, how_far(apart, surface));
+  } else if (apart && *apart > 0) {
+    note(path + ": where it is not sharp the limit surface is away from the faces, " +
+         how_far(apart, surface));
   }
 }
 

@@ -5,6 +5,7 @@
 #include "common.h"
 #include "curve.h"
 #include "length.h"
+#include "mesh_reading.h"
 #include "progress_bar.h"
 
 namespace snug::command {
@@ -44,6 +45,7 @@ ExitStatus run(const Options& options) {
     ProgressBar bar("subdividing " + options.mesh, options.quiet);
     result = subdivide(std::move(mesh), rules, options.level, options.limit, bar.monitor());
   });
+  note_smooth_facets(options.mesh, options, ask_info);
   write_mesh(result, options.output, notes_for(options));
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -60,6 +62,131 @@ TEST(vertices_that_stand_twice, are_noted_where_they_nearly_do_with_the_length_t
   EXPECT_NEAR(std::stod(length), std::sqrt(2e-14), 1e-12);
   const Outcome joined = run_snug({"info", "-", "--json", "--weld", length}, sheets);
   EXPECT_TRUE(nlohmann::json::parse(joined.out)["closed"].get<bool>()) << joined.err;
+}
+
+// A box of 12 facets, as CAD exports it.
+std::string stl_box(double x, double y, double z) {
+  const auto corner = [&](int k) {
+    return "vertex " + std::to_string(k & 1 ? x : 0) + ' ' + std::to_string(k & 2 ? y : 0) + ' ' +
+           std::to_string(k & 4 ? z : 0) + '\n';
+  };
+  std::string text = "solid box\n";
+  for (const auto& [a, b, c] :
+       {std::array{0, 2, 3}, std::array{0, 3, 1}, std::array{4, 5, 7}, std::array{4, 7, 6},
+        std::array{0, 1, 5}, std::array{0, 5, 4}, std::array{2, 6, 7}, std::array{2, 7, 3},
+        std::array{0, 4, 6}, std::array{0, 6, 2}, std::array{1, 3, 7}, std::array{1, 7, 5}}) {
+    text += "facet normal 0 0 0\nouter loop\n" + corner(a) + corner(b) + corner(c) + "endloop\nendfacet\n";
+  }
+  return text + "endsolid\n";
+}
+
+TEST(sharp, makes_boxes_of_facets_what_they_are) {
+  const TemporaryFolder folder;
+  const std::string box = folder.file("box.STL");
+  std::ofstream(box) << stl_box(40, 20, 10);
+  const auto verdict = [&](const std::vector<std::string>& options, const std::string& shift) {
+    std::vector<std::string> arguments{"collide",     box,         box,
+                                       "--tolerance", "0.1%",      "--json",
+                                       "--quiet",     "--place-b", "1 0 0 " + shift + " 0 1 0 3 0 0 1 2"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return nlohmann::json::parse(run_snug(arguments).out)["verdict"].get<std::string>();
+  };
+  EXPECT_EQ(verdict({}, "35"), "separated");
+  EXPECT_EQ(verdict({"--sharp", "auto"}, "35"), "intersecting");
+  EXPECT_EQ(verdict({"--sharp", "45.5"}, "41"), "separated");
+  const Outcome apart = run_snug({"distance", box, box, "--sharp", "auto", "--precision", "1e-9", "--json",
+                                  "--quiet", "--place-b", "1 0 0 41 0 1 0 0 0 0 1 0"});
+  const nlohmann::json distance = nlohmann::json::parse(apart.out)["distance"];
+  EXPECT_NEAR(distance[0].get<double>(), 1, 1e-9);
+  EXPECT_NEAR(distance[1].get<double>(), 1, 1e-9);
+}
+
+TEST(sharp, is_named_by_a_note_where_an_stl_file_is_read_without_it) {
+  const TemporaryFolder folder;
+  const std::string box = folder.file("box.stl");
+  std::ofstream(box) << stl_box(40, 20, 10);
+  for (const std::string command : {"info", "bound", "eval", "subdivide"}) {
+    std::vector<std::string> arguments{command, box};
+    if (command == "subdivide") arguments.insert(arguments.end(), {"-o", folder.file("out.obj")});
+    const Outcome plain = run_snug(arguments);
+    EXPECT_EQ(plain.status, 0) << plain.err;
+    EXPECT_NE(plain.err.find("--sharp auto"), std::string::npos) << command << plain.err;
+    arguments.emplace_back("--quiet");
+    EXPECT_EQ(run_snug(arguments).err, "") << command;
+    arguments.back() = "--sharp";
+    arguments.emplace_back("auto");
+    const Outcome sharp = run_snug(arguments);
+    EXPECT_EQ(sharp.status, 0) << sharp.err;
+    EXPECT_NE(sharp.err.find("18 creases"), std::string::npos) << command << sharp.err;
+  }
+  const Outcome note = run_snug({"bound", box});
+  EXPECT_NE(note.err.find("at most 13.9"), std::string::npos) << note.err;
+  EXPECT_NE(note.err.find("34.8"), std::string::npos) << note.err;
+}
+
+TEST(sharp, shows_in_info_how_far_the_limit_surface_is_from_the_faces) {
+  const TemporaryFolder folder;
+  const std::string box = folder.file("box.stl");
+  std::ofstream(box) << stl_box(40, 20, 10);
+  const auto apart = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"info", box, "--json"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return nlohmann::json::parse(run_snug(arguments).out)["limit_to_faces"];
+  };
+  EXPECT_NEAR(apart({}).get<double>(), 13.9236, 1e-3);
+  EXPECT_EQ(apart({"--sharp", "auto"}).get<double>(), 0);
+  EXPECT_TRUE(apart({"--scheme", "doo-sabin"}).is_null());
+}
+
+TEST(sharp, is_refused_where_there_are_no_creases_and_where_it_is_no_angle) {
+  const std::string cube = six_sheets("0.0");
+  for (const char* angle : {"-1", "180", "sharp", "", "30deg", "nan"}) {
+    const Outcome bad = run_snug({"info", "-", "--sharp", angle}, cube);
+    if (std::string(angle).empty()) continue;
+    EXPECT_EQ(bad.status, 2) << angle;
+    EXPECT_NE(bad.err.find("--sharp"), std::string::npos) << bad.err;
+  }
+  const Outcome dual =
+      run_snug({"bound", "-", "--weld", "0", "--sharp", "auto", "--scheme", "midedge"}, cube);
+  EXPECT_EQ(dual.status, 2);
+  EXPECT_NE(dual.err.find("has no creases"), std::string::npos) << dual.err;
+  EXPECT_EQ(run_snug({"bound", "-", "--sharp", "auto"}, "v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\n").status, 2);
+}
+
+TEST(sharp, says_which_faces_it_split) {
+  const std::string prism =
+      "v 0 0 0\nv 4 0 0\nv 4 2 0\nv 2 2 0\nv 2 4 0\nv 0 4 0\nv 0 0 1\nv 4 0 1\nv 4 2 1\nv 2 2 1\nv 2 4 1\nv "
+      "0 4 1\n"
+      "f 6 5 4 3 2 1\nf 7 8 9 10 11 12\nf 1 2 8 7\nf 2 3 9 8\nf 3 4 10 9\nf 4 5 11 10\nf 5 6 12 11\nf 6 1 7 "
+      "12\n";
+  const Outcome info = run_snug({"info", "-", "--sharp", "auto", "--json"}, prism);
+  EXPECT_NE(info.err.find("2 of their faces"), std::string::npos) << info.err;
+  const nlohmann::json answer = nlohmann::json::parse(info.out);
+  EXPECT_EQ(answer["faces"], 14);
+  EXPECT_EQ(answer["limit_to_faces"], 0);
+}
+
+// For who has them: SNUG_EXTRA_MODELS names a folder with cad/box.stl, cad/plate.stl and cad/pin.stl.
+TEST(sharp, gives_known_parts_their_known_clearance) {
+  const char* folder = std::getenv("SNUG_EXTRA_MODELS");
+  if (!folder) GTEST_SKIP() << "SNUG_EXTRA_MODELS names no folder";
+  const std::string cad = std::string(folder) + "/cad/";
+  const auto ask = [&](const std::string& command, const std::string& a, const std::string& b,
+                       const std::string& shift) {
+    std::vector<std::string> arguments{command,   cad + a,     cad + b,
+                                       "--sharp", "auto",      "--json",
+                                       "--quiet", "--place-b", "1 0 0 " + shift + " 0 1 0 0 0 0 1 0"};
+    arguments.insert(arguments.end(), {command == "collide" ? "--tolerance" : "--precision", "1e-9"});
+    return nlohmann::json::parse(run_snug(arguments).out);
+  };
+  const nlohmann::json boxes = ask("distance", "box.stl", "box.stl", "41")["distance"];
+  EXPECT_NEAR(boxes[0].get<double>(), 1, 1e-9);
+  EXPECT_NEAR(boxes[1].get<double>(), 1, 1e-9);
+  EXPECT_NE(ask("collide", "box.stl", "box.stl", "35")["verdict"], "separated");
+  const nlohmann::json centred = ask("distance", "plate.stl", "pin.stl", "0")["distance"];
+  EXPECT_GE(centred[0].get<double>(), 0.1998);
+  EXPECT_LE(centred[1].get<double>(), 0.1999);
+  EXPECT_EQ(ask("collide", "plate.stl", "pin.stl", "0.3")["verdict"], "intersecting");
 }
 
 }  // namespace
