@@ -226,6 +226,35 @@ TEST(collide, takes_closed_surfaces_for_solids_if_asked) {
   EXPECT_THROW(static_cast<void>(half.ask(moved(0, 0, 1e9), options)), InputError);
 }
 
+// Boxes that overlap, with faces in common planes: no crossing is proved, but faces of one lie in the other.
+TEST(collide, solids_that_share_planes_intersect) {
+  for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
+    oracle::TaggedMesh shape = oracle::meshes::cube();
+    if (scheme == Scheme::loop) shape = oracle::meshes::triangulated(shape);
+    for (const auto& polygon : shape.polygons) {
+      for (std::size_t k = 0; k < polygon.size(); ++k) {
+        shape.creases.push_back({polygon[k], polygon[(k + 1) % polygon.size()], oracle::kInfinitelySharp});
+      }
+    }
+    const Surface box(testing::control_mesh(shape), {scheme}, std::make_shared<BoundLibrary>());
+    const QueryModel model_a(box), model_b(box);
+    QueryScratch scratch_a(model_a), scratch_b(model_b);
+    CollideOptions options;
+    options.tolerance = 1e-3;
+    options.prove_contact = true;
+    options.solid = true;
+    const auto ask = [&](const Vector3& d) {
+      return collide({model_a, scratch_a, {}}, {model_b, scratch_b, Motion::from_translation(d)}, options);
+    };
+    for (const Vector3& d : {Vector3{0.875, 0, 0}, Vector3{0.5, 0.5, 0}, Vector3{0, 0.125, 0}}) {
+      EXPECT_EQ(ask(d).verdict, Verdict::intersecting) << name_of(scheme) << ' ' << d.x << ' ' << d.y;
+      EXPECT_TRUE(ask(d).inner);
+    }
+    EXPECT_EQ(ask({1.25, 0, 0}).verdict, Verdict::separated);
+    EXPECT_EQ(ask({1, 0, 0}).verdict, Verdict::within);  // side by side
+  }
+}
+
 // Where the first split of a polygon meets a quad, the triangle over the middle of their edge belongs to the cycle whose
 // winding number is taken: a ray that leaves through it counts it.
 TEST(collide, edges_between_quads_and_polygons_are_closed) {

@@ -165,7 +165,8 @@ namespace {
 // a common point of both solids, whatever is known of the surfaces.
 Collision as_solids(const PlacedModel& a, const PlacedModel& b, Collision answer,
                     const WorkMonitor& monitor) {
-  const Nesting found = nesting(a, b, monitor);
+  const Nesting found =
+      answer.verdict == Verdict::separated ? nesting(a, b, monitor) : common_point(a, b, monitor);
   if (found.inner) {
     answer.verdict = Verdict::intersecting;
     answer.inner = found.inner;

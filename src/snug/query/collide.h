@@ -32,8 +32,8 @@ struct Collision {
   std::optional<std::array<Point3, 2>> witness;  ///< two points as near as were found, on A and on B
   /// Upper bound, a coordinate, of how far a witness is from the limit point it stands for.
   double witness_error = 0;
-  /// With `solid`: 0 where a component of A lies in the solid of B, 1 the other way round. Both witnesses are then one and the
-  /// same point of the inner surface.
+  /// With `solid`, where no crossing was proved: 0 where a point of A's surface lies in the solid of B, 1 the other way round.
+  /// Both witnesses are then that point.
   std::optional<std::size_t> inner;
   QueryStats stats;
 };

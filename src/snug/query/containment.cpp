@@ -1,5 +1,10 @@
 #include <snug/query/containment.h>
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
 #include <snug/base/error.h>
 #include <snug/base/rounding.h>
 #include <snug/patch/evaluate.h>
@@ -13,6 +18,8 @@ namespace {
 
 // Points farther from a surface than this, in sizes of it, are outside without a look.
 constexpr double farthest_point = 0x1p40;
+// Of each surface, patches that are asked where the surfaces may meet.
+constexpr std::size_t most_patches = 32;
 
 // A limit point of a component.
 struct Sample {
@@ -20,11 +27,9 @@ struct Sample {
   double error;
 };
 
-Sample sample_of(const Surface& surface, PatchId p) {
-  const Patch patch = surface.patch(p);
-  const LimitPoint corner = corner_point(patch, 0);
-  const Point3 local = patch.origin + corner.relative;
-  return {local, corner.error + unit_roundoff * max_abs(local - Point3{})};
+Sample sample_of(const Patch& patch, const LimitPoint& limit) {
+  const Point3 local = patch.origin + limit.relative;
+  return {local, limit.error + unit_roundoff * max_abs(local - Point3{})};
 }
 
 // Is a placed point certainly outside of the ball around a placed model?
@@ -35,37 +40,97 @@ bool beyond(const PlacedFrame& frame, const Ball& ball, const Point3& placed, do
          enlarged(frame.growth() * ball.radius + spatial_error(error + frame.apply_error(ball.centre)));
 }
 
+class Asking {
+ public:
+  Asking(const PlacedModel& a, const PlacedModel& b, const WorkMonitor& monitor)
+      : side_{&a, &b}, search_(a, b), monitor_(monitor) {}
+
+  Nesting components() {
+    for (std::size_t s = 0; s < 2 && !found_.inner; ++s) {
+      for (const PatchId p : side_[s]->model.solid().components()) {
+        const Patch patch = side_[s]->model.surface().patch(p);
+        ask(s, sample_of(patch, corner_point(patch, 0)));
+        if (found_.inner) break;
+      }
+    }
+    return found_;
+  }
+
+  // Middles of patches that are deepest in the box of the other one.
+  Nesting deep_patches() {
+    for (std::size_t s = 0; s < 2 && !found_.inner; ++s) {
+      for (const PatchId p : deepest(s)) {
+        const Patch patch = side_[s]->model.surface().patch(p);
+        ask(s, sample_of(patch, limit_point(patch, {1.0 / 3, 1.0 / 3})));
+        if (found_.inner) break;
+      }
+    }
+    return found_;
+  }
+
+ private:
+  // Is a limit point of `side` in the other solid?
+  void ask(std::size_t side, const Sample& sample) {
+    const PlacedModel& other = *side_[1 - side];
+    const PlacedFrame& frame = search_.frame(side);
+    const Point3 placed = frame.apply(sample.local);
+    const double error =
+        enlarged(frame.growth() * spatial_error(sample.error)) + frame.apply_error(sample.local);
+    if (beyond(search_.frame(1 - side), other.model.tree().ball(), placed, error)) return;
+    const RelativeFrame& seen = search_.seen_from(1 - side);
+    std::optional<int> number;
+    if (seen.comparable) {
+      number = winding_number(other.scratch, seen.apply(sample.local),
+                              enlarged(2 * seen.scale * spatial_error(sample.error)) + seen.slack, monitor_);
+    }
+    found_.certain = found_.certain && number.has_value();
+    if (number.value_or(0) == 0) return;
+    found_.inner = side;
+    found_.point = require_representable(search_.to_mesh_units().apply(placed));
+    found_.error = unscaled_up(error, search_.to_mesh_units()) + underflow_error;
+  }
+
+  [[nodiscard]] std::vector<PatchId> deepest(std::size_t side) {
+    const RelativeFrame& seen = search_.seen_from(1 - side);
+    if (!seen.comparable) return {};
+    const Surface& surface = side_[side]->model.surface();
+    const Obb& box = side_[1 - side]->model.tree().box();
+    std::vector<std::pair<double, PatchId>> inside;
+    for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+      const Vector3 from = seen.apply(surface.middle(PatchId(p))) - box.centre;
+      double depth = INFINITY;
+      for (std::size_t k = 0; k < 3; ++k) {
+        depth = std::min(depth, box.half[k] - std::fabs(dot(box.axes[k], from)));
+      }
+      if (depth > 0) inside.emplace_back(depth, PatchId(p));
+    }
+    const std::size_t count = std::min(most_patches, inside.size());
+    std::partial_sort(inside.begin(), inside.begin() + static_cast<std::ptrdiff_t>(count), inside.end(),
+                      [](const auto& x, const auto& y) {
+                        return x.first != y.first ? x.first > y.first : x.second.index() < y.second.index();
+                      });
+    std::vector<PatchId> patches;
+    for (std::size_t i = 0; i < count; ++i) patches.push_back(inside[i].second);
+    return patches;
+  }
+
+  std::array<const PlacedModel*, 2> side_;
+  PairSearch search_;
+  const WorkMonitor& monitor_;
+  Nesting found_;
+};
+
 }  // namespace
 
 Nesting nesting(const PlacedModel& a, const PlacedModel& b, const WorkMonitor& monitor) {
-  const std::array<const PlacedModel*, 2> side{&a, &b};
-  PairSearch search(a, b);
-  Nesting found;
-  for (std::size_t s = 0; s < 2; ++s) {
-    const PlacedModel& other = *side[1 - s];
-    static_cast<void>(other.model.solid());
-    const PlacedFrame& frame = search.frame(s);
-    for (const PatchId p : side[s]->model.solid().components()) {
-      const Sample sample = sample_of(side[s]->model.surface(), p);
-      const Point3 placed = frame.apply(sample.local);
-      const double error =
-          enlarged(frame.growth() * spatial_error(sample.error)) + frame.apply_error(sample.local);
-      if (beyond(search.frame(1 - s), other.model.tree().ball(), placed, error)) continue;
-      const RelativeFrame& seen = search.seen_from(1 - s);
-      std::optional<int> number;
-      if (seen.comparable) {
-        number = winding_number(other.scratch, seen.apply(sample.local),
-                                enlarged(2 * seen.scale * spatial_error(sample.error)) + seen.slack, monitor);
-      }
-      found.certain = found.certain && number.has_value();
-      if (number.value_or(0) == 0) continue;
-      found.inner = s;
-      found.point = require_representable(search.to_mesh_units().apply(placed));
-      found.error = unscaled_up(error, search.to_mesh_units()) + underflow_error;
-      return found;
-    }
-  }
-  return found;
+  static_cast<void>(a.model.solid());
+  static_cast<void>(b.model.solid());
+  return Asking(a, b, monitor).components();
+}
+
+Nesting common_point(const PlacedModel& a, const PlacedModel& b, const WorkMonitor& monitor) {
+  const Nesting found = nesting(a, b, monitor);
+  return found.inner ? found : Asking(a, b, monitor).deep_patches();
 }
 
 std::optional<bool> contains(QueryScratch& scratch, const Point3& point, const WorkMonitor& monitor) {

@@ -28,6 +28,14 @@ struct Nesting {
 /// Source:    derivations/contact.md, "Two solids".
 [[nodiscard]] Nesting nesting(const PlacedModel& a, const PlacedModel& b, const WorkMonitor& monitor = {});
 
+/// Looks for a point of one surface in the other solid where the surfaces may meet: also in the middles of some patches,
+/// those deepest in the box around the other one. Where faces of two parts lie in each other no crossing proves contact; a
+/// point of this sort does.
+///
+/// Guarantee: as nesting(); nothing follows where none is found.
+[[nodiscard]] Nesting common_point(const PlacedModel& a, const PlacedModel& b,
+                                   const WorkMonitor& monitor = {});
+
 /// Is a point, in mesh units, in the solid that a closed limit surface bounds?
 ///
 /// Guarantee: the answer is right; nothing where it cannot be told, as on the surface and within rounding of it.

@@ -199,7 +199,7 @@ Distance distance(const PlacedModel& a, const PlacedModel& b, const DistanceOpti
   }
   Distance answer = Query(a, b, options, monitor).run();
   if (!options.solid || answer.upper == 0) return answer;
-  const Nesting found = nesting(a, b, monitor);
+  const Nesting found = answer.lower > 0 ? nesting(a, b, monitor) : common_point(a, b, monitor);
   if (found.inner) {
     answer = {.lower = 0,
               .upper = 0,
