@@ -9,7 +9,6 @@
 
 #include <opensubdiv/far/topologyRefiner.h>
 
-#include <snug/base/contract.h>
 #include <snug/base/error.h>
 #include <snug/mesh/control_mesh.h>
 #include <snug/scheme/scheme.h>
@@ -151,8 +150,9 @@ MeshAndOptions read_strided(const Far::TopologyRefiner& refiner, std::span<const
                             std::size_t stride) {
   MeshAndOptions result = read_topology(refiner);
   const auto count = static_cast<std::size_t>(refiner.GetLevel(0).GetNumVertices());
-  SNUG_EXPECT(stride >= 3);
-  SNUG_EXPECT(count == 0 || (values.size() >= 3 && (values.size() - 3) / stride >= count - 1));
+  require_value(stride >= 3, "from_refiner: the stride is less than three numbers");
+  require_value(count == 0 || (values.size() >= 3 && (values.size() - 3) / stride >= count - 1),
+                "from_refiner: there are fewer points than vertices of the base level");
   result.mesh.points.reserve(count);
   for (std::size_t v = 0; v < count; ++v) {
     const auto p = values.subspan(v * stride, 3);
@@ -180,14 +180,14 @@ MeshAndOptions read_strided(const Far::TopologyRefiner& refiner, std::span<const
 ///            not read.
 /// Requires:  a point for each vertex of the base level; points after these, as of refined levels, are not
 ///            read.
-/// Errors:    InputError (refused) for the scheme bilinear; SNUG_EXPECT on too few points. What snug does not
+/// Errors:    InputError (refused) for the scheme bilinear; (value) on too few points. What snug does not
 ///            answer for, non-manifold meshes for instance, Surface refuses.
 /// Cost:      linear, but for the sorting of creases; copies the points.
 [[nodiscard]] inline MeshAndOptions from_refiner(const OpenSubdiv::Far::TopologyRefiner& refiner,
                                                  std::span<const Point3> points) {
   MeshAndOptions result = detail::read_topology(refiner);
   const auto count = static_cast<std::size_t>(refiner.GetLevel(0).GetNumVertices());
-  SNUG_EXPECT(points.size() >= count);
+  require_value(points.size() >= count, "from_refiner: there are fewer points than vertices of the base level");
   result.mesh.points.assign(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count));
   return result;
 }

@@ -55,8 +55,7 @@ function(snug_test name)
 
   set(properties TIMEOUT ${ARG_TIMEOUT})
   if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=thread")
-    list(APPEND properties ENVIRONMENT
-         "TSAN_OPTIONS=halt_on_error=1 suppressions=${PROJECT_SOURCE_DIR}/cmake/tsan.supp")
+    list(APPEND properties ENVIRONMENT "TSAN_OPTIONS=halt_on_error=1")
   endif()
   gtest_discover_tests(${name} TEST_PREFIX "${folder}." TEST_LIST ${name}_claims DISCOVERY_MODE PRE_TEST
                        DISCOVERY_TIMEOUT 60 PROPERTIES ${properties})

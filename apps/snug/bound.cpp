@@ -1,6 +1,7 @@
 #include <snug/query/bound.h>
 
 #include <fmt/core.h>
+#include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
 #include <snug/picture/polyhedron.h>
 
@@ -102,9 +103,19 @@ class Polyhedra {
   ControlMesh mesh_;
 };
 
+void write_polyhedra(const Polyhedra& polyhedra, const Options& options, AtomicFile& file, Report& report) {
+  if (polyhedra.count() == 0) {
+    throw InputError(InputProblem::refused, options.mesh + ": no enclosure is a solid or a polygon to write");
+  }
+  write_mesh(polyhedra.mesh(), file, options.polyhedra, notes_for(options), stopped_by_interrupts());
+  report.text(fmt::format("{}: {} polyhedra with {} facets, for pictures", options.polyhedra,
+                          polyhedra.count(), polyhedra.mesh().face_count()));
+}
+
 ExitStatus run(const Options& options) {
   if (options.polyhedra == "-") throw UsageError("bound: --polyhedra - : give a file");
   const bool triangles = !options.polyhedra.empty() && !writes_polygons(options.polyhedra);
+  if (!options.polyhedra.empty()) require_writable(options.polyhedra);
   BoundOptions how;
   how.method = bound_method(options);
   how.layout = table_layout(options);
@@ -154,16 +165,12 @@ ExitStatus run(const Options& options) {
                             spent ? "the budget was spent, patch by patch; give a larger --budget"
                                   : "rounding stands in the way; give a larger --tolerance"));
   }
+  std::optional<AtomicFile> file;
   if (!options.polyhedra.empty()) {
-    if (polyhedra.count() == 0) {
-      throw InputError(InputProblem::refused,
-                       options.mesh + ": no enclosure is a solid or a polygon to write");
-    }
-    write_mesh(polyhedra.mesh(), options.polyhedra, notes_for(options));
-    report.text(fmt::format("{}: {} polyhedra with {} facets, for pictures", options.polyhedra,
-                            polyhedra.count(), polyhedra.mesh().face_count()));
+    file.emplace(options.polyhedra);
+    write_polyhedra(polyhedra, options, *file, report);
   }
-  report.finish();
+  report.finish(file ? &*file : nullptr);
   return summary.reached ? ExitStatus::answered : ExitStatus::not_reached;
 }
 

@@ -22,7 +22,7 @@ struct Options : ModelOptions {
 
 // Lines "x y z".
 std::vector<Point3> read_points(const std::string& path) {
-  const std::string text = read_file(path);
+  const std::string text = read_file(path, stopped_by_interrupts());
   std::vector<Point3> points;
   for_each_line(text, [&](std::string_view line, std::size_t number) {
     Point3 p;

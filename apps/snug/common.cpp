@@ -1,19 +1,30 @@
 #include "common.h"
 
-#include <cstdio>
 #include <cstdlib>
 
 #include <fmt/core.h>
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
+#include <snug/base/parallel.h>
 #include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
 
 #include "curve.h"
 #include "mesh_reading.h"
+#include "messages.h"
 #include "progress_bar.h"
 #include "version.h"
 
 namespace snug::command {
+
+void require_output(const std::string& command, const std::string& output) {
+  if (output.empty() || output == "-") return;
+  if (command == "subdivide") {
+    require_writable_ending(output);
+  } else if (command != "render" && !output.ends_with(".json")) {
+    throw UsageError("-o " + output + ": " + command + " writes JSON; give a file that ends in .json");
+  }
+  require_writable(output);
+}
 
 Option& add_scheme_option(OptionList& list, const std::string& name, std::string& scheme,
                           const std::string& help) {
@@ -92,7 +103,7 @@ SchemeOptions choose_rules(const CommonOptions& options, const std::string& sche
 
 Notes notes_for(const CommonOptions& options) {
   if (options.quiet) return {};
-  return [](const std::string& line) { fmt::print(stderr, "snug: note: {}\n", line); };
+  return [](const std::string& line) { tell("note: " + line); };
 }
 
 ControlMesh load_mesh(const std::string& path, const CommonOptions& options) {
@@ -146,14 +157,11 @@ struct Report::Target {
 };
 
 Report::Report(const char* command, const CommonOptions& options)
-    : quiet_(options.json), start_(std::chrono::steady_clock::now()) {
+    : notes_(notes_for(options)), start_(std::chrono::steady_clock::now()) {
   const std::string& output = options.output;
-  if (output.empty() && !options.json) return;
-  if (!output.empty() && output != "-" && !output.ends_with(".json")) {
-    throw UsageError("-o " + output + ": " + command + " writes JSON; give a file that ends in .json");
-  }
-  const std::string target = output.empty() ? "-" : output;
-  to_standard_output_ = target == "-";
+  const std::string target = output.empty() && options.json ? "-" : output;
+  if (!options.json && target != "-") text_ = std::make_unique<Target>("-");
+  if (target.empty()) return;
   target_ = std::make_unique<Target>(target);
   writer_ = std::make_unique<JsonWriter>([this](std::string_view text) { target_->file.write(text); });
   writer_->begin_object().field("command", command).field("version", version_number);
@@ -178,22 +186,30 @@ void Report::heads(const std::vector<std::string>& meshes, const std::vector<std
 }
 
 void Report::text(const std::string& line) {
-  if (!quiet_ && !to_standard_output_) fmt::print("{}\n", line);
+  if (text_) text_->file.write(one_line(line) + "\n");
 }
 
 void Report::flush_text() {
-  if (!quiet_ && !to_standard_output_) std::fflush(stdout);
+  if (text_) text_->file.complete();
 }
 
-void Report::finish() {
+void Report::finish(AtomicFile* other) {
+  stopped_by_interrupts().checkpoint();
   if (writer_) {
     writer_->field("seconds",
                    std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count());
     writer_->end_object().finish();
-    target_->file.commit();
   }
-  if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
-    throw InputError(InputProblem::unreadable, "standard output: cannot be written");
+  if (notes_ && threads_were_refused()) {
+    notes_("the system refused to start threads: fewer have done the work, and it took longer");
+  }
+  // What may fail comes before any file is put in its place.
+  AtomicFile* const files[] = {text_ ? &text_->file : nullptr, target_ ? &target_->file : nullptr, other};
+  for (AtomicFile* file : files) {
+    if (file) file->complete();
+  }
+  for (AtomicFile* file : files) {
+    if (file) file->commit();
   }
 }
 

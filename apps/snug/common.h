@@ -19,6 +19,10 @@
 #include "length.h"
 #include "options.h"
 
+namespace snug {
+class AtomicFile;
+}
+
 namespace snug::command {
 
 /// Options that every command takes.
@@ -69,6 +73,10 @@ void naming(const std::string& path, const std::function<void()>& work);
 [[nodiscard]] BoundMethod bound_method(const CommonOptions& options);
 [[nodiscard]] TableLayout table_layout(const CommonOptions& options);
 
+/// Before any work: can what -o names be written, and is its ending one that the command writes?
+/// Errors:    UsageError for an ending; InputError (unreadable) for what cannot be written. Nothing is left of the trial.
+void require_output(const std::string& command, const std::string& output);
+
 /// The output of a command: one JSON document on standard output or in the file of -o, or a few lines of
 /// text.
 ///
@@ -76,7 +84,6 @@ void naming(const std::string& path, const std::function<void()>& work);
 /// seconds.
 class Report {
  public:
-  /// Errors:    UsageError for an output file that does not end in .json.
   Report(const char* command, const CommonOptions& options);
   ~Report();
 
@@ -88,15 +95,17 @@ class Report {
   void text(const std::string& line);
   /// Lets lines of text out at once.
   void flush_text();
-  /// Ends the document and puts the file in place.
-  void finish();
+  /// Ends the document and puts the file in place, and another one that the command has written. Where anything cannot be
+  /// written, neither is left.
+  /// Notes:     one line if threads could not be started.
+  /// Errors:    InputError (unreadable) if standard output or a file cannot be written; Interrupted.
+  void finish(AtomicFile* other = nullptr);
 
  private:
   struct Target;
-  bool quiet_;  // no text: --json
-  bool to_standard_output_ = false;
+  Notes notes_;
   std::chrono::steady_clock::time_point start_;
-  std::unique_ptr<Target> target_;
+  std::unique_ptr<Target> target_, text_;  // the document, and lines for people
   std::unique_ptr<JsonWriter> writer_;
 };
 

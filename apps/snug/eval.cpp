@@ -30,7 +30,7 @@ const char* owner_word(Scheme scheme) { return is_primal(scheme) ? "face" : "ver
 
 // Lines "face u v"; blank lines and those that begin with # are passed over.
 std::vector<SurfaceParameter> read_requests(const std::string& path, const Surface& surface) {
-  const std::string text = read_file(path);
+  const std::string text = read_file(path, stopped_by_interrupts());
   const Scheme scheme = surface.options().scheme;
   const std::string owner = owner_word(scheme);
   std::vector<SurfaceParameter> requests;

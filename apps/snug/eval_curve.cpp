@@ -26,7 +26,7 @@ bool parse(const std::string& word, Number& number) {
 
 // Lines "edge t"; blank lines and those that begin with # are passed over.
 std::vector<Request> read_requests(const std::string& path, const CurveSet& curves) {
-  std::istringstream text(read_file(path));
+  std::istringstream text(read_file(path, stopped_by_interrupts()));
   std::vector<Request> requests;
   std::string line;
   for (std::size_t line_number = 1; std::getline(text, line); ++line_number) {

@@ -1,9 +1,13 @@
 #include "json_writer.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include <snug/base/contract.h>
+#include <snug/base/error.h>
+
+#include "messages.h"
 
 namespace snug::command {
 
@@ -62,7 +66,9 @@ JsonWriter& JsonWriter::key(std::string_view name) {
 }
 
 JsonWriter& JsonWriter::value(double number) {
-  SNUG_EXPECT(std::isfinite(number));
+  if (!std::isfinite(number)) {
+    throw InputError(InputProblem::unrepresentable, "a number of the answer does not fit a double");
+  }
   char text[32];
   const auto end = std::to_chars(text, text + sizeof text, number).ptr;
   return raw({text, static_cast<std::size_t>(end - text)});
@@ -70,6 +76,10 @@ JsonWriter& JsonWriter::value(double number) {
 
 JsonWriter& JsonWriter::value(std::string_view text) {
   separate();
+  std::string mended;  // names of files need not be UTF-8
+  if (std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; })) {
+    text = mended = as_utf8(text);
+  }
   buffer_ += '"';
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);

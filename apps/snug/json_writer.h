@@ -13,9 +13,9 @@ namespace snug::command {
 
 /// Writes one JSON document piece by piece, so that a million enclosures need no gigabytes.
 ///
-/// Guarantee: numbers are the shortest that read back as the same double.
-/// Requires:  calls in an order that makes a document; finite numbers.
-/// Errors:    SNUG_EXPECT otherwise.
+/// Guarantee: numbers are the shortest that read back as the same double; text is UTF-8, with U+FFFD for bytes that are none.
+/// Requires:  calls in an order that makes a document.
+/// Errors:    InputError (unrepresentable) on a number that is not finite.
 class JsonWriter {
  public:
   /// Line feeds between the entries of a document and of its lists, or none.

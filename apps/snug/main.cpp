@@ -1,16 +1,17 @@
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 #include <new>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include <fmt/core.h>
 #include <snug/base/error.h>
 #include <snug/enclose/fit_kernels.h>
 
 #include "common.h"
 #include "length.h"
+#include "messages.h"
 #include "progress_bar.h"
 #include "version.h"
 
@@ -18,38 +19,62 @@ namespace {
 
 using namespace snug::command;
 
-int fail(ExitStatus status, const char* message) {
-  fmt::print(stderr, "snug: {}\n", message);
+constexpr const char* out_of_memory =
+    "out of memory: the mesh or the answer is too large for this machine";
+
+int fail(ExitStatus status, std::string_view message) {
+  tell(message);
   return static_cast<int>(status);
 }
 
-// Ends with what the command line asks for.
-int run(const std::vector<Command>& commands, const std::vector<std::string>& words) {
-  try {
-    const std::string version = version_head + std::string(snug::kernels::instruction_set()) + ")";
-    const Invocation wanted = read_command_line(commands, words, version);
-    if (wanted.command != nullptr) return static_cast<int>(wanted.command->run());
-    fmt::print(wanted.status == ExitStatus::answered ? stdout : stderr, "{}", wanted.text);
+int answer(int argc, char** argv) {
+  const std::vector<Command> commands{collide_command(),   distance_command(), closest_command(),
+                                      bound_command(),     eval_command(),     info_command(),
+                                      subdivide_command(), render_command(),   experiment_command()};
+  const std::string version = version_head + std::string(snug::kernels::instruction_set()) + ")";
+  const Invocation wanted = read_command_line(commands, {argv + std::min(argc, 1), argv + argc}, version);
+  if (wanted.command == nullptr) {
+    wanted.status == ExitStatus::answered ? write_output(wanted.text) : to_standard_error(wanted.text);
     return static_cast<int>(wanted.status);
+  }
+  for (const Option& option : wanted.command->options.all()) {
+    if (option.name == "-o") require_output(wanted.command->name, option.text());
+  }
+  stopped_by_interrupts().checkpoint();
+  return static_cast<int>(wanted.command->run());
+}
+
+int interruption() {
+  tell_interrupted();
+  return static_cast<int>(ExitStatus::interrupted);
+}
+
+// Nothing that comes from outside ends the process without a message and a status.
+int guarded_answer(int argc, char** argv) {
+  try {
+    return answer(argc, argv);
+  } catch (const snug::Interrupted&) {
+    return interruption();
   } catch (const UsageError& error) {
     return fail(ExitStatus::usage, error.what());
   } catch (const snug::InputError& error) {
+    // A wait for a file that a signal ended.
+    if (interrupted.load()) return interruption();
     return fail(
         error.problem() == snug::InputProblem::unreadable ? ExitStatus::unreadable : ExitStatus::refused,
         error.what());
-  } catch (const snug::Interrupted&) {
-    return fail(ExitStatus::interrupted, "interrupted");
   } catch (const std::bad_alloc&) {
-    return fail(ExitStatus::refused, "out of memory: the mesh or the answer is too large for this machine");
+    return fail(ExitStatus::refused, out_of_memory);
+  } catch (const std::length_error&) {
+    return fail(ExitStatus::refused, out_of_memory);
+  } catch (const std::exception& error) {
+    return fail(ExitStatus::refused, error.what());
   }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  install_interrupt_handler();
-  const std::vector<Command> commands{collide_command(),   distance_command(), closest_command(),
-                                      bound_command(),     eval_command(),     info_command(),
-                                      subdivide_command(), render_command(),   experiment_command()};
-  return run(commands, {argv + std::min(argc, 1), argv + argc});
+  hold_standard_descriptors();
+  return guarded_answer(argc, argv);
 }

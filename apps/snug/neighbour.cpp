@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <filesystem>
 
 #include <snug/base/error.h>
@@ -23,15 +24,36 @@ fs::path own_folder() {
   return fs::read_symlink("/proc/self/exe", ignored).parent_path();
 }
 
+// Until an interrupt, at most.
 std::string read_all(int file) {
   std::string text;
   char block[4096];
-  for (ssize_t got = 0; (got = read(file, block, sizeof block)) != 0;) {
+  for (ssize_t got = 0; !interrupted.load() && (got = read(file, block, sizeof block)) != 0;) {
     if (got > 0) text.append(block, static_cast<std::size_t>(got));
     if (got < 0 && errno != EINTR) break;
   }
   return text;
 }
+
+// The signals that this process does not die of, in the child as usual.
+class UsualSignals {
+ public:
+  UsualSignals() {
+    posix_spawnattr_init(&attributes_);
+    sigset_t signals;
+    sigemptyset(&signals);
+    for (const int signal : {SIGPIPE, SIGXFSZ}) sigaddset(&signals, signal);
+    posix_spawnattr_setsigdefault(&attributes_, &signals);
+    posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGDEF);
+  }
+  ~UsualSignals() { posix_spawnattr_destroy(&attributes_); }
+  UsualSignals(const UsualSignals&) = delete;
+  UsualSignals& operator=(const UsualSignals&) = delete;
+  [[nodiscard]] const posix_spawnattr_t* get() const { return &attributes_; }
+
+ private:
+  posix_spawnattr_t attributes_;
+};
 
 }  // namespace
 
@@ -54,12 +76,14 @@ std::optional<std::string> output_of_neighbour(const std::string& program,
   posix_spawn_file_actions_addclose(&actions, ends[0]);
   posix_spawn_file_actions_addclose(&actions, ends[1]);
   pid_t child = 0;
-  const int failed = posix_spawn(&child, words[0].c_str(), &actions, nullptr, pointers.data(), environ);
+  const UsualSignals signals;
+  const int failed = posix_spawn(&child, words[0].c_str(), &actions, signals.get(), pointers.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
   std::string text;
   if (failed == 0) text = read_all(ends[0]);
   close(ends[0]);
+  if (failed == 0 && interrupted.load()) kill(child, SIGTERM);
   int status = 0;
   const bool ended = failed == 0 && waitpid(child, &status, 0) == child;
   if (interrupted.load()) throw Interrupted();

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <mutex>
 #include <string>
+#include <string_view>
 
 #include <snug/base/progress.h>
 
@@ -14,7 +15,7 @@ namespace snug::command {
 class ProgressBar {
  public:
   /// `quiet` shows nothing, ever.
-  ProgressBar(std::string what, bool quiet);
+  ProgressBar(std::string_view what, bool quiet);
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
@@ -28,13 +29,18 @@ class ProgressBar {
 
   std::string what_;
   bool visible_;
-  bool drawn_ = false;
   std::mutex mutex_;
   std::chrono::steady_clock::time_point start_, last_;
 };
 
-/// Set by SIGINT and SIGTERM once install_interrupt_handler was called.
+/// Set by SIGINT, SIGTERM and SIGHUP, from before main on.
+///
+/// Guarantee: work that does not end by itself within 0.3 s of the first signal is ended then, or at a second signal:
+///            temporary files removed, standard output as far as it was written, status 130.
 extern std::atomic<bool> interrupted;
-void install_interrupt_handler();
+/// A monitor that stops at an interrupt and shows nothing.
+[[nodiscard]] WorkMonitor stopped_by_interrupts();
+/// "snug: interrupted" on standard error, once a process. Async-signal-safe.
+void tell_interrupted() noexcept;
 
 }  // namespace snug::command

@@ -293,7 +293,7 @@ ExitStatus run(const Options& options) {
   for (std::size_t part = 0; part < surfaces.size(); ++part) parts.push_back({&surfaces[part], poses[part]});
   const Enclosures enclosures = enclose(options, tolerance, surfaces);
 
-  AtomicFile file(options.output);  // now: if it cannot be written, that should not wait for the picture
+  AtomicFile file(options.output);
   ProgressBar bar("rendering", options.quiet);
   const WorkMonitor monitor = bar.monitor();
   const Shot shot = compose(options, parts, enclosures, size, view, monitor);
@@ -308,7 +308,6 @@ ExitStatus run(const Options& options) {
   const CountedImage picture = render_counted(shot.scene, shot.camera, how);
   const std::vector<std::uint8_t> png = encode_png(picture.image);
   file.write({reinterpret_cast<const char*>(png.data()), png.size()});
-  file.commit();
 
   const std::size_t triangles = shot.scene.triangles.size();
   if (report.json()) {
@@ -332,7 +331,7 @@ ExitStatus run(const Options& options) {
           most_enclosures));
     }
   }
-  report.finish();
+  report.finish(&file);
   return enclosures.reached ? ExitStatus::answered : ExitStatus::not_reached;
 }
 

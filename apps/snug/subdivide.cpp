@@ -1,4 +1,5 @@
 #include <fmt/core.h>
+#include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
 #include <snug/query/subdivide.h>
 
@@ -30,7 +31,6 @@ ExitStatus run(const Options& options) {
   if (options.output.empty()) throw UsageError("subdivide: -o FILE is missing: where the refined mesh goes");
   if (options.json && options.output == "-")
     throw UsageError("subdivide: --json and -o - both want standard output");
-  require_writable_ending(options.output);
   ControlMesh mesh = load_mesh(options.mesh, options);
   if (is_curve(mesh, options.scheme)) {
     return subdivide_curve(mesh, options.mesh, options, {options.degree, options.level, options.limit});
@@ -46,7 +46,8 @@ ExitStatus run(const Options& options) {
     result = subdivide(std::move(mesh), rules, options.level, options.limit, bar.monitor());
   });
   note_smooth_facets(options.mesh, options, ask_info);
-  write_mesh(result, options.output, notes_for(options));
+  AtomicFile file(options.output);
+  write_mesh(result, file, options.output, notes_for(options), stopped_by_interrupts());
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("subdivide", to_standard_output);
@@ -59,7 +60,7 @@ ExitStatus run(const Options& options) {
     report.text(fmt::format("{}: {} vertices, {} faces{}", options.output, result.vertex_count(),
                             result.face_count(), options.limit ? ", at their limit positions" : ""));
   }
-  report.finish();
+  report.finish(&file);
   return ExitStatus::answered;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <fmt/core.h>
+#include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
 
 #include "curve.h"
@@ -24,7 +25,8 @@ ExitStatus subdivide_curve(const ControlMesh& mesh, const std::string& path, con
     ProgressBar bar("subdividing " + path, options.quiet);
     result = subdivide_curves(mesh, curve_degree(which.degree), which.level, which.limit, bar.monitor());
   });
-  write_mesh(result, options.output, notes_for(options));
+  AtomicFile file(options.output);
+  write_mesh(result, file, options.output, notes_for(options), stopped_by_interrupts());
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("subdivide", to_standard_output);
@@ -38,7 +40,7 @@ ExitStatus subdivide_curve(const ControlMesh& mesh, const std::string& path, con
     report.text(fmt::format("{}: {} vertices, {} polylines{}", options.output, result.vertex_count(),
                             result.polyline_count(), which.limit ? ", at their limit positions" : ""));
   }
-  report.finish();
+  report.finish(&file);
   return ExitStatus::answered;
 }
 

@@ -25,7 +25,8 @@ void redirect(const std::string& path, int flags, int to) {
   close(file);
 }
 
-Outcome run(const std::vector<std::string>& arguments, const std::string& input, int interrupt_after) {
+Outcome run(const std::vector<std::string>& arguments, const std::string& input,
+            const Surroundings& surroundings) {
   const TemporaryFolder folder;
   const std::string in = folder.file("in"), out = folder.file("out"), err = folder.file("err");
   std::ofstream(in, std::ios::binary) << input;
@@ -38,13 +39,11 @@ Outcome run(const std::vector<std::string>& arguments, const std::string& input,
     redirect(in, O_RDONLY, STDIN_FILENO);
     redirect(out, O_WRONLY | O_CREAT | O_TRUNC, STDOUT_FILENO);
     redirect(err, O_WRONLY | O_CREAT | O_TRUNC, STDERR_FILENO);
+    if (surroundings.before) surroundings.before();
     execv(SNUG_COMMAND, argv.data());
     _exit(127);
   }
-  if (interrupt_after >= 0) {
-    usleep(static_cast<useconds_t>(interrupt_after) * 1000);
-    kill(child, SIGINT);
-  }
+  if (surroundings.meanwhile) surroundings.meanwhile(child);
   int status = 0;
   while (waitpid(child, &status, 0) < 0) {
     if (errno != EINTR) throw std::runtime_error("waitpid");
@@ -55,11 +54,18 @@ Outcome run(const std::vector<std::string>& arguments, const std::string& input,
 }  // namespace
 
 Outcome run_snug(const std::vector<std::string>& arguments, const std::string& input) {
-  return run(arguments, input, -1);
+  return run(arguments, input, {});
+}
+
+Outcome run_snug_in(const Surroundings& surroundings, const std::vector<std::string>& arguments) {
+  return run(arguments, "", surroundings);
 }
 
 Outcome interrupt_snug(const std::vector<std::string>& arguments, int milliseconds) {
-  return run(arguments, "", milliseconds);
+  return run(arguments, "", {{}, [milliseconds](int child) {
+                               usleep(static_cast<useconds_t>(milliseconds) * 1000);
+                               kill(child, SIGINT);
+                             }});
 }
 
 TemporaryFolder::TemporaryFolder() {

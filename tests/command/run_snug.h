@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,15 @@ struct Outcome {
 
 /// Runs the command with these arguments, standard input empty or `input`, and waits for it.
 [[nodiscard]] Outcome run_snug(const std::vector<std::string>& arguments, const std::string& input = "");
+
+/// What is different from a usual start of the command.
+struct Surroundings {
+  /// Called in the new process once its standard files are in place, before the command begins.
+  std::function<void()> before;
+  /// Called with the number of the process while it runs.
+  std::function<void(int)> meanwhile;
+};
+[[nodiscard]] Outcome run_snug_in(const Surroundings& surroundings, const std::vector<std::string>& arguments);
 
 /// Starts the command, sends it SIGINT after `milliseconds`, and waits.
 [[nodiscard]] Outcome interrupt_snug(const std::vector<std::string>& arguments, int milliseconds);

@@ -1,7 +1,9 @@
 #include <snug/io/atomic_file.h>
 
 #include <csignal>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include <fcntl.h>
 #include <sys/resource.h>
@@ -54,6 +56,48 @@ TEST(atomic_file, leaves_nothing_behind_when_it_is_dropped) {
   }
   EXPECT_EQ(read_file(folder / "kept"), "old");
   EXPECT_EQ(folder.entries(), 1u);
+}
+
+TEST(atomic_file, is_not_in_place_before_the_commit_though_complete) {
+  const TemporaryFolder folder;
+  AtomicFile file(folder / "out");
+  file.write("all");
+  file.complete();
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+  file.commit();
+  EXPECT_EQ(read_file(folder / "out"), "all");
+  EXPECT_THROW(file.write("more"), InputError);
+  EXPECT_THROW(file.commit(), InputError);
+}
+
+TEST(atomic_file, a_handler_of_signals_finds_what_is_unfinished) {
+  const TemporaryFolder folder;
+  std::vector<std::unique_ptr<AtomicFile>> files;
+  for (int i = 0; i < 60; ++i) {
+    files.push_back(std::make_unique<AtomicFile>(folder / std::to_string(i)));
+    files.back()->write("x");
+    if (i % 3 == 0) files.back()->commit();
+    if (i % 3 == 1) files.back().reset();
+  }
+  EXPECT_EQ(folder.entries(), 40u);
+  remove_unfinished_files();
+  EXPECT_EQ(folder.entries(), 20u);
+  for (int i = 0; i < 60; i += 3) EXPECT_EQ(read_file(folder / std::to_string(i)), "x");
+}
+
+TEST(atomic_file, a_trial_leaves_everything_as_it_was) {
+  const TemporaryFolder folder;
+  put(folder / "kept", "old");
+  require_writable(folder / "kept");
+  require_writable(folder / "new");
+  require_writable("-");
+  require_writable("/dev/null");
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  require_writable(folder / "pipe");  // does not wait for a reader
+  EXPECT_EQ(folder.entries(), 2u);
+  EXPECT_EQ(read_file(folder / "kept"), "old");
+  EXPECT_TRUE(unreadable([&] { require_writable(folder / "no/file"); }, "no/file"));
+  EXPECT_TRUE(unreadable([&] { require_writable(folder / ""); }, "Is a directory"));
 }
 
 TEST(atomic_file, replaces_the_bytes_and_keeps_the_permissions) {

@@ -26,6 +26,14 @@ class InputError : public std::runtime_error {
   InputProblem problem_;
 };
 
+/// Throws InputError (value) with this message.
+[[noreturn]] void refuse_value(const char* message);
+/// The same unless `holds`: for what a public function requires of its caller. The message is one line that names the thing
+/// and the next step.
+inline void require_value(bool holds, const char* message) {
+  if (!holds) refuse_value(message);
+}
+
 /// Throws InputError (value), naming `what`, unless x is finite and >= 0.
 void require_length(double x, const std::string& what);
 

@@ -1,58 +1,107 @@
 #include <snug/base/parallel.h>
 
-#include <atomic>
+#include <algorithm>
 #include <exception>
+#include <mutex>
+#include <new>
+#include <system_error>
 #include <thread>
 #include <utility>
-
-#ifdef SNUG_WITH_TBB
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
-#endif
+#include <vector>
 
 namespace snug {
+namespace {
+
+std::atomic<bool> refused{false};
+
+// Threads that pay: more than there are cores only wait for one another.
+std::size_t useful_threads(std::size_t count, int threads) {
+  constexpr int always = 4;
+  const int cores = hardware_threads();
+  const int wanted = threads > 0 ? std::min(threads, std::max(cores, always)) : cores;
+  return std::min(count, static_cast<std::size_t>(wanted));
+}
+
+// Runs the calls of one loop, and keeps the first exception.
+class Loop {
+ public:
+  Loop(std::size_t count, std::size_t parts, const std::function<void(SharedRanges&)>& work)
+      : ranges_(count, static_cast<int>(parts)), work_(work) {
+    helpers_.reserve(parts - 1);
+    while (helpers_.size() + 1 < parts && start()) {
+    }
+  }
+  void run() noexcept {
+    try {
+      work_(ranges_);
+    } catch (...) {
+      ranges_.end();
+      const std::lock_guard lock(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+    }
+  }
+
+  // Once run() has returned here.
+  std::exception_ptr end() {
+    for (std::thread& helper : helpers_) helper.join();
+    return std::move(failure_);
+  }
+
+ private:
+  // False where the system has no thread to give.
+  bool start() {
+    try {
+      helpers_.emplace_back([this] { run(); });
+      return true;
+    } catch (const std::system_error&) {
+    } catch (const std::bad_alloc&) {
+    }
+    refused.store(true);
+    return false;
+  }
+
+  SharedRanges ranges_;
+  const std::function<void(SharedRanges&)>& work_;
+  std::mutex mutex_;
+  std::exception_ptr failure_;
+  std::vector<std::thread> helpers_;
+};
+
+}  // namespace
+
+std::optional<SharedRanges::Range> SharedRanges::next() noexcept {
+  std::size_t begin = first_.load(std::memory_order_relaxed), end = 0;
+  do {
+    if (begin >= count_ || ended_.load(std::memory_order_relaxed)) return {};
+    end = begin + std::max<std::size_t>(1, (count_ - begin) / divisor_);
+  } while (!first_.compare_exchange_weak(begin, end, std::memory_order_relaxed));
+  return Range{begin, end};
+}
 
 int hardware_threads() {
   const unsigned cores = std::thread::hardware_concurrency();
   return cores ? static_cast<int>(cores) : 1;
 }
 
-void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t, std::size_t)>& body) {
+bool threads_were_refused() noexcept { return refused.load(); }
+
+void share_ranges(std::size_t count, int threads, const std::function<void(SharedRanges&)>& work) {
   if (count == 0) return;
-#ifdef SNUG_WITH_TBB
-  if (threads != 1 && count > 1) {
-    oneapi::tbb::task_arena arena(threads > 0 ? threads : hardware_threads());
-    // The flags say what oneTBB guarantees anyway, in terms that the thread sanitizer sees: what came before
-    // the loop happens before every body, and every body before what comes after. Exceptions too are handed
-    // over here, since oneTBB's own way of doing so is hidden from it.
-    std::atomic<bool> started{false}, finished{false}, failed{false};
-    std::exception_ptr failure;
-    oneapi::tbb::task_group_context group;
-    started.store(true, std::memory_order_release);
-    arena.execute([&] {
-      oneapi::tbb::parallel_for(
-          oneapi::tbb::blocked_range<std::size_t>(0, count),
-          [&](const auto& range) {
-            static_cast<void>(started.load(std::memory_order_acquire));
-            try {
-              body(range.begin(), range.end());
-            } catch (...) {
-              if (!failed.exchange(true, std::memory_order_acq_rel)) failure = std::current_exception();
-              group.cancel_group_execution();
-            }
-            finished.exchange(true, std::memory_order_acq_rel);
-          },
-          group);
-    });
-    static_cast<void>(finished.load(std::memory_order_acquire));
-    if (failure) std::rethrow_exception(std::move(failure));
+  const std::size_t parts = useful_threads(count, threads);
+  if (parts == 1) {
+    SharedRanges ranges(count, 1);
+    work(ranges);
     return;
   }
-#else
-  static_cast<void>(threads);
-#endif
-  body(0, count);
+  Loop loop(count, parts, work);
+  loop.run();
+  if (std::exception_ptr failure = loop.end()) std::rethrow_exception(std::move(failure));
+}
+
+void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t, std::size_t)>& body) {
+  share_ranges(count, threads, [&](SharedRanges& ranges) {
+    while (const auto range = ranges.next()) body(range->begin, range->end);
+  });
 }
 
 }  // namespace snug

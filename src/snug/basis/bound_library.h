@@ -20,7 +20,7 @@ class BoundLibrary {
   /// The rows of a kind. With several extraordinary corners they go down one level only: the tips there are of
   /// kinds that have rows of their own, and there are far fewer of these.
   /// Requires:  a kind of kinds().
-  /// Errors:    SNUG_EXPECT beyond 16 million kinds.
+  /// Errors:    InputError (refused) beyond 16 million kinds.
   [[nodiscard]] const BoundRows& rows(const Kind& kind);
   /// The table of a kind, made from rows that go down to tip_depth().
   [[nodiscard]] const BoundTable& table(const Kind& kind, TableLayout layout = TableLayout::ngon);

@@ -6,7 +6,7 @@
 #include <memory>
 #include <mutex>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 #include <snug/base/ids.h>
 
 namespace snug {
@@ -15,7 +15,7 @@ namespace snug {
 ///
 /// Requires:  `make` gives equal values for equal kinds: two threads may both make one, and the first to
 ///            finish keeps it.
-/// Errors:    SNUG_EXPECT beyond 16 million kinds; whatever `make` throws, and nothing is kept then.
+/// Errors:    InputError (refused) beyond 16 million kinds; whatever `make` throws, and nothing is kept then.
 template <class T>
 class KindSlots {
  public:
@@ -52,7 +52,9 @@ class KindSlots {
   using Block = std::array<std::atomic<const T*>, block_size>;
 
   std::atomic<const T*>& slot(std::size_t index) {
-    SNUG_EXPECT(index / block_size < blocks_.size());
+    if (index / block_size >= blocks_.size()) {
+      throw InputError(InputProblem::refused, "more than 16 million kinds of patches: use a library for each mesh");
+    }
     std::atomic<Block*>& place = blocks_[index / block_size];
     Block* block = place.load(std::memory_order_acquire);
     if (!block) {

@@ -4,13 +4,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 
-#include <snug/base/contract.h>
 #include <snug/base/error.h>
 
 namespace snug {
@@ -32,7 +33,50 @@ void sync_folder(const std::string& folder) {
   ::close(descriptor);
 }
 
+// Names for remove_unfinished_files(): they stay where they are, since a signal may come at any time. A place is taken, then
+// its name is written, then it counts.
+struct Unfinished {
+  std::atomic<bool> taken{false}, there{false};
+  std::array<char, 4096> name{};
+};
+constinit std::array<Unfinished, 64> unfinished{};
+
+int hold_name(const std::string& name) {
+  if (name.size() >= unfinished[0].name.size()) return -1;
+  for (std::size_t i = 0; i < unfinished.size(); ++i) {
+    if (unfinished[i].taken.exchange(true)) continue;
+    std::memcpy(unfinished[i].name.data(), name.c_str(), name.size() + 1);
+    unfinished[i].there.store(true);
+    return static_cast<int>(i);
+  }
+  return -1;
+}
+
+void release_name(int place) noexcept {
+  if (place < 0) return;
+  unfinished[static_cast<std::size_t>(place)].there.store(false);
+  unfinished[static_cast<std::size_t>(place)].taken.store(false);
+}
+
 }  // namespace
+
+void remove_unfinished_files() noexcept {
+  for (const Unfinished& file : unfinished) {
+    if (file.there.load()) ::unlink(file.name.data());
+  }
+}
+
+void require_writable(const std::string& path) {
+  struct stat status {};
+  const bool stream = path == "-" || (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) &&
+                                      !S_ISDIR(status.st_mode));
+  if (!stream) {
+    const AtomicFile trial(path);
+  } else if (path != "-" && ::access(path.c_str(), W_OK) != 0) {
+    throw InputError(InputProblem::unreadable,
+                     path + ": cannot be written: " + std::generic_category().message(errno));
+  }
+}
 
 AtomicFile::AtomicFile(const std::string& path)
     : name_(path == "-" ? "standard output" : path), target_(path) {
@@ -70,18 +114,31 @@ AtomicFile::~AtomicFile() { abandon(); }
 void AtomicFile::open_temporary(unsigned mode) {
   static std::atomic<unsigned> serial{0};
   const std::string stem = folder_of(target_) + "/.snug-" + std::to_string(::getpid()) + '-';
-  for (;;) {
+  do {
     temporary_ = stem + std::to_string(serial++) + ".part";
-    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-    if (descriptor_ >= 0) return;
-    const int reason = errno;
-    temporary_.clear();
-    if (reason != EEXIST) fail(reason);
-  }
+  } while (!create_temporary(mode));
+}
+
+// False if there is a file of this name.
+bool AtomicFile::create_temporary(unsigned mode) {
+  // Known before it is there: no signal comes in between.
+  held_ = hold_name(temporary_);
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+  if (descriptor_ >= 0) return true;
+  const int reason = errno;
+  forget_temporary();
+  if (reason != EEXIST) fail(reason);
+  return false;
+}
+
+void AtomicFile::forget_temporary() noexcept {
+  release_name(held_);
+  held_ = -1;
+  temporary_.clear();
 }
 
 void AtomicFile::write(std::string_view bytes) {
-  SNUG_EXPECT(!finished_);
+  require_value(!finished_, "a file to write is used after commit() or a failure; open another one");
   while (!bytes.empty()) {
     const std::string_view part = bytes.substr(0, buffer_size - buffer_.size());
     buffer_.append(part);
@@ -103,16 +160,20 @@ void AtomicFile::flush() {
   buffer_.clear();
 }
 
-void AtomicFile::commit() {
-  SNUG_EXPECT(!finished_);
+void AtomicFile::complete() {
+  require_value(!finished_, "a file to write is used after commit() or a failure; open another one");
   flush();
+  if (!temporary_.empty() && ::fsync(descriptor_) != 0) fail(errno);
+}
+
+void AtomicFile::commit() {
+  complete();
   if (!temporary_.empty()) {
-    if (::fsync(descriptor_) != 0) fail(errno);
     const int closing = descriptor_;
     descriptor_ = -1;
     if (::close(closing) != 0) fail(errno);
     if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
-    temporary_.clear();
+    forget_temporary();
     sync_folder(folder_of(target_));
   }
   finished_ = true;
@@ -122,7 +183,7 @@ void AtomicFile::abandon() noexcept {
   if (descriptor_ >= 0 && descriptor_ != STDOUT_FILENO) ::close(descriptor_);
   descriptor_ = -1;
   if (!temporary_.empty()) ::unlink(temporary_.c_str());
-  temporary_.clear();
+  forget_temporary();
 }
 
 void AtomicFile::fail(int reason) {

@@ -15,7 +15,8 @@ namespace snug {
 ///
 /// Guarantee: until commit() returns, the target is as it was; afterwards it holds all bytes, on the disk,
 ///            with the permissions it had or those of a new file. If commit() is not reached, the destructor
-///            removes the temporary file, so that unwinding from an exception leaves nothing behind. A
+///            removes the temporary file, so that unwinding from an exception leaves nothing behind, and
+///            remove_unfinished_files() does where nothing unwinds. A
 ///            symbolic link to a file stays one: the file behind it is replaced. Targets that cannot be
 ///            replaced, "-" (standard output), devices, pipes and sockets, receive the bytes as they come,
 ///            without a promise of all or nothing.
@@ -30,14 +31,21 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// Requires:  commit() was not called, and nothing failed.
+  /// Errors:    also InputError (value) after commit() or a failure.
   void write(std::string_view bytes);
-  /// Requires:  as write().
+  /// Brings all bytes to the disk, or to where the target takes them: what commit() has left to do is a rename. For
+  /// several files of which all are to be written or none.
+  /// Errors:    as write().
+  void complete();
+  /// complete(), and puts the file in place.
+  /// Errors:    as write().
   void commit();
 
  private:
   void open_temporary(unsigned mode);
+  bool create_temporary(unsigned mode);
   void flush();
+  void forget_temporary() noexcept;
   void abandon() noexcept;
   [[noreturn]] void fail(int reason);
 
@@ -46,7 +54,20 @@ class AtomicFile {
   std::string temporary_;  ///< empty if the bytes go to the target directly
   std::string buffer_;
   int descriptor_ = -1;
+  int held_ = -1;          ///< place in the list of unfinished files
   bool finished_ = false;  ///< committed or failed
 };
+
+/// Before work whose result an AtomicFile will take: can it be opened? Nothing is left of the trial, and devices, pipes
+/// and sockets are not opened, which would be seen.
+///
+/// Errors:    as the constructor of AtomicFile.
+void require_writable(const std::string& path);
+
+/// Removes the temporary files of all AtomicFiles of this process that are not committed; for handlers of signals that end
+/// it. At most 64 files at a time are known; names of more than 4095 bytes are not.
+///
+/// Guarantee: async-signal-safe.
+void remove_unfinished_files() noexcept;
 
 }  // namespace snug

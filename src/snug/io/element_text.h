@@ -26,7 +26,7 @@ void expect_elements(const TextCursor& at, std::size_t vertices, std::size_t fac
 
 /// Appends "x y z".
 ///
-/// Errors:    SNUG_EXPECT on a coordinate that is not finite.
+/// Errors:    InputError (value) on a coordinate that is not finite.
 void append_point(std::string& text, const Point3& point);
 
 }  // namespace snug

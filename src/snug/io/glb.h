@@ -15,7 +15,7 @@ namespace snug {
 ///            their numbers. Coordinates are the nearest floats, and `min` and `max` of the positions are exact.
 /// Notes:     one line if coordinates were rounded; one if faces were split into triangles.
 /// Errors:    InputError (refused) naming a face of one or two corners, or a vertex that does not fit floats;
-///            for files beyond 4 GiB, which the format cannot hold, and meshes without triangles. SNUG_EXPECT on
+///            for files beyond 4 GiB, which the format cannot hold, and meshes without triangles. InputError (value) on
 ///            coordinates that are not finite.
 /// Source:    glTF 2.0 specification, sections 3.6, 3.7 and 4.4.
 [[nodiscard]] std::string format_glb(const ControlMesh& mesh, const std::string& name,

@@ -123,7 +123,8 @@ bool writes_polygons(const std::string& path) {
   return ending != ".stl" && ending != ".glb";
 }
 
-void write_mesh(const ControlMesh& mesh, const std::string& path, const Notes& notes) {
+void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& path, const Notes& notes,
+                const WorkMonitor& monitor) {
   const std::string ending = format_to_write(path);
   if (ending != ".obj" && notes && changes_surface(mesh.tags)) {
     notes(path + ": this format has no tags: creases and rules are left out");
@@ -131,8 +132,20 @@ void write_mesh(const ControlMesh& mesh, const std::string& path, const Notes& n
   if (ending != ".obj" && notes && mesh.polyline_count() > 0) {
     notes(path + ": this format has no polylines: they are left out");
   }
+  monitor.checkpoint();
+  const std::string bytes = formatted(mesh, ending, path, notes);
+  constexpr std::size_t part = std::size_t{1} << 20;
+  for (std::size_t begin = 0; begin < bytes.size(); begin += part) {
+    monitor.checkpoint();
+    file.write(std::string_view(bytes).substr(begin, part));
+  }
+}
+
+void write_mesh(const ControlMesh& mesh, const std::string& path, const Notes& notes,
+                const WorkMonitor& monitor) {
+  require_writable_ending(path);
   AtomicFile file(path);
-  file.write(formatted(mesh, ending, path, notes));
+  write_mesh(mesh, file, path, notes, monitor);
   file.commit();
 }
 

@@ -10,6 +10,8 @@
 
 namespace snug {
 
+class AtomicFile;
+
 /// How near vertices are welded, for a mesh whose longest side is `size`; empty: not at all.
 using WeldDistance = std::function<double(double size)>;
 
@@ -30,8 +32,12 @@ using WeldDistance = std::function<double(double size)>;
 /// Notes:     one line if the format has no tags but the mesh has, one for polylines; as the writer of the
 ///            format.
 /// Errors:    InputError as the writer of the format and AtomicFile; (unreadable) for another ending.
-///            SNUG_EXPECT as format_obj.
-void write_mesh(const ControlMesh& mesh, const std::string& path, const Notes& notes = {});
+///            Interrupted.
+void write_mesh(const ControlMesh& mesh, const std::string& path, const Notes& notes = {},
+                const WorkMonitor& monitor = {});
+/// The same into a file that was opened for this name, and that is left to the caller to commit.
+void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& path, const Notes& notes = {},
+                const WorkMonitor& monitor = {});
 
 /// Before work whose result write_mesh will write: is there a writer for this name?
 ///

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include <snug/base/contract.h>
+#include <snug/base/error.h>
 
 namespace snug {
 namespace {
@@ -104,7 +105,7 @@ std::string_view describe(NumberFault fault) {
 }
 
 void append_real(std::string& text, double value) {
-  SNUG_EXPECT(std::isfinite(value));
+  require_value(std::isfinite(value), "a number to write is not finite");
   std::array<char, 32> digits;
   const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value);
   text.append(digits.data(), result.ptr);

@@ -44,7 +44,7 @@ struct ParsedReal {
 
 /// Appends the shortest decimal that parse_real reads back as the same double, sign of zero included.
 ///
-/// Errors:    SNUG_EXPECT on a number that is not finite.
+/// Errors:    InputError (value) on a number that is not finite.
 void append_real(std::string& text, double value);
 
 /// Appends a decimal integer.

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 #include <snug/io/element_text.h>
 #include <snug/io/number.h>
 #include <snug/io/obj_tags.h>
@@ -163,7 +163,7 @@ ControlMesh parse_obj(std::string_view text, const std::string& name, const Note
 namespace {
 
 void append_element(std::string& text, char keyword, std::span<const VertexId> vertices) {
-  SNUG_EXPECT(!vertices.empty());
+  require_value(!vertices.empty(), "OBJ: a face or polyline to write has no corners; take it out");
   text += keyword;
   for (const VertexId vertex : vertices) {
     text += ' ';

@@ -29,7 +29,7 @@ namespace snug {
 
 /// The mesh as OBJ text that parse_obj reads back as the same mesh, tags included and bit by bit.
 ///
-/// Errors:    SNUG_EXPECT on coordinates that are not finite and on faces or polylines without corners.
+/// Errors:    InputError (value) on coordinates that are not finite and on faces or polylines without corners.
 [[nodiscard]] std::string format_obj(const ControlMesh& mesh);
 
 }  // namespace snug

@@ -70,7 +70,7 @@ class ObjTagReader {
 /// Appends the `t` statements that ObjTagReader reads back as the same tags. One edge, vertex or face a
 /// statement, so that readers with short lines, or with another idea of long creases, agree.
 ///
-/// Errors:    SNUG_EXPECT on a sharpness that is not finite.
+/// Errors:    InputError (value) on a sharpness that is not finite.
 void append_obj_tags(std::string& text, const MeshTags& tags);
 
 }  // namespace snug

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 #include <snug/io/element_text.h>
 #include <snug/io/number.h>
 #include <snug/io/text_cursor.h>
@@ -185,7 +185,7 @@ std::string format_off(const ControlMesh& mesh) {
   }
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     const auto corners = mesh.face(FaceId(face));
-    SNUG_EXPECT(!corners.empty());
+    require_value(!corners.empty(), "OFF: a face to write has no corners; take it out");
     append_integer(text, corners.size());
     for (const VertexId vertex : corners) {
       text += ' ';

@@ -27,7 +27,7 @@ namespace snug {
 
 /// The mesh as OFF text that parse_off reads back bit by bit, without its tags: OFF has none.
 ///
-/// Errors:    SNUG_EXPECT on coordinates that are not finite and on faces without corners.
+/// Errors:    InputError (value) on coordinates that are not finite and on faces without corners.
 [[nodiscard]] std::string format_off(const ControlMesh& mesh);
 
 }  // namespace snug

@@ -565,7 +565,7 @@ class PlyWriter {
   }
 
   void write_vertex(const Point3& point) {
-    SNUG_EXPECT(is_finite(point));
+    require_value(is_finite(point), "PLY: a coordinate to write is not finite");
     if (format_ == PlyFormat::ascii) {
       append_point(bytes_, point);
       bytes_ += '\n';
@@ -575,7 +575,7 @@ class PlyWriter {
   }
 
   void write_face(std::span<const VertexId> corners) {
-    SNUG_EXPECT(!corners.empty());
+    require_value(!corners.empty(), "PLY: a face to write has no corners; take it out");
     if (format_ == PlyFormat::ascii) {
       append_integer(bytes_, corners.size());
       for (const VertexId vertex : corners) {

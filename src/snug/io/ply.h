@@ -36,7 +36,7 @@ enum class PlyFormat : std::uint8_t { ascii, binary_little_endian, binary_big_en
 /// PLY has none. Lists of corners are counted by bytes where all faces have at most 255 corners; indices are
 /// `int`, or `uint` where a mesh has more vertices than that.
 ///
-/// Errors:    SNUG_EXPECT on coordinates that are not finite and on faces without corners.
+/// Errors:    InputError (value) on coordinates that are not finite and on faces without corners.
 [[nodiscard]] std::string format_ply(const ControlMesh& mesh,
                                      PlyFormat format = PlyFormat::binary_little_endian);
 

@@ -4,7 +4,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <system_error>
 
 #include <snug/base/error.h>
@@ -39,6 +41,30 @@ class InputDescriptor {
   int number_ = STDIN_FILENO;
 };
 
+std::size_t memory_of_machine() {
+  const long pages = ::sysconf(_SC_PHYS_PAGES), size = ::sysconf(_SC_PAGESIZE);
+  if (pages <= 0 || size <= 0) return SIZE_MAX;
+  return static_cast<std::size_t>(pages) * static_cast<std::size_t>(size);
+}
+
+// How much is to come, and how much may.
+struct Size {
+  std::size_t expected = 0;
+  unsigned most_bits = 30;  // 2^most_bits bytes, or what is expected if that is more
+};
+
+Size size_of(int descriptor, const std::string& path) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) return {};
+  if (S_ISDIR(status.st_mode)) fail(path, "is a directory: name a file in it");
+  // A terminal, or one that never ends.
+  if (S_ISCHR(status.st_mode)) return {0, 20};
+  if (!S_ISREG(status.st_mode) || status.st_size <= 0) return {};
+  const auto size = static_cast<std::size_t>(status.st_size);
+  if (size > memory_of_machine()) fail(path, "is larger than the memory of this machine");
+  return {size};
+}
+
 }  // namespace
 
 std::string read_file(const std::string& path, const WorkMonitor& monitor) {
@@ -46,24 +72,22 @@ std::string read_file(const std::string& path, const WorkMonitor& monitor) {
   const InputDescriptor descriptor(path);
 
   // The size is a hint: pipes have none, and a file may grow meanwhile.
-  struct stat status {};
-  std::size_t expected = 0;
-  if (::fstat(descriptor.number(), &status) == 0) {
-    if (S_ISDIR(status.st_mode)) fail(path, "is a directory: name a file in it");
-    if (S_ISREG(status.st_mode) && status.st_size > 0) expected = static_cast<std::size_t>(status.st_size);
-  }
+  const Size limits = size_of(descriptor.number(), path);
+  const std::size_t most = std::max(limits.expected, std::size_t{1} << limits.most_bits);
   constexpr std::size_t least_room = 64 * 1024;
-  std::string bytes(expected + least_room, '\0');
+  std::string bytes(limits.expected + least_room, '\0');
   std::size_t size = 0;
   for (;;) {
+    monitor.checkpoint();
     if (bytes.size() == size) bytes.resize(2 * size);
     const ssize_t got = ::read(descriptor.number(), bytes.data() + size, bytes.size() - size);
     if (got == 0) break;
     if (got > 0) {
       size += static_cast<std::size_t>(got);
-    } else if (errno == EINTR) {
-      monitor.checkpoint();
-    } else {
+      if (size > most) {
+        fail(path, "does not end after 2^" + std::to_string(limits.most_bits) + " bytes: name a file that does");
+      }
+    } else if (errno != EINTR) {
       fail_with_reason(path, errno);
     }
   }

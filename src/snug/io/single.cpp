@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include <snug/base/contract.h>
 #include <snug/base/error.h>
 
 namespace snug {
@@ -14,7 +13,7 @@ std::vector<std::array<float, 3>> in_single_precision(std::span<const Point3> po
   result.reserve(points.size());
   bool rounded = false;
   for (const Point3& point : points) {
-    SNUG_EXPECT(is_finite(point));
+    require_value(is_finite(point), "a coordinate to write is not finite");
     std::array<float, 3>& own = result.emplace_back();
     for (std::size_t axis = 0; axis < 3; ++axis) {
       // Beyond the largest float the conversion is not defined, although half a step farther would round to it.

@@ -32,7 +32,7 @@ enum class StlFormat : std::uint8_t { binary, ascii };
 ///
 /// Notes:     one line if coordinates were rounded.
 /// Errors:    InputError (refused) naming the face if one is no triangle, and the vertex if its coordinates do
-///            not fit a float; for more than 2^32 - 1 facets. SNUG_EXPECT on coordinates that are not finite.
+///            not fit a float; for more than 2^32 - 1 facets. InputError (value) on coordinates that are not finite.
 [[nodiscard]] std::string format_stl(const ControlMesh& mesh, const std::string& name,
                                      StlFormat format = StlFormat::binary, const Notes& notes = {});
 

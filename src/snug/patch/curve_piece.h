@@ -58,7 +58,7 @@ struct CurvePoint {
   Vector3 tangent;  ///< in double precision without a bound; may be 0
 };
 /// Guarantee: |relative - exact| <= error a coordinate, for exactly this parameter.
-/// Requires:  0 <= t <= 1.
+/// Errors:    InputError (value) unless 0 <= t <= 1.
 /// Source:    derivations/curves.md.
 [[nodiscard]] CurvePoint curve_point(const CurvePiece& piece, double t);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 #include <snug/base/rounding.h>
 #include <snug/patch/patch.h>
 
@@ -48,7 +48,8 @@ inline std::size_t corner_at(TriangleParameter p) {
 
 // The parameter of a question, on the triangle.
 inline TriangleParameter checked(TriangleParameter at) {
-  SNUG_EXPECT(at.u >= 0 && at.v >= 0 && at.u + at.v <= 1);
+  require_value(at.u >= 0 && at.v >= 0 && at.u + at.v <= 1,
+                "a parameter is outside of its triangle: u and v must be >= 0, and u + v <= 1");
   return on_triangle(at);
 }
 

@@ -27,8 +27,8 @@ struct LimitFrame {
 ///
 /// Guarantee: |relative - exact| <= error a coordinate, for the point whose parameters are exactly these
 ///            doubles.
-/// Requires:  u >= 0, v >= 0, u + v <= 1 in doubles. Where the exact sum is above 1 all the same, the smaller
-///            of the two is lowered to the far edge, and the point meant is the one there.
+/// Errors:    InputError (value) unless u >= 0, v >= 0, u + v <= 1 in doubles. Where the exact sum is above 1 all the same,
+///            the smaller of the two is lowered to the far edge, and the point meant is the one there.
 /// Cost:      regular: a product of 15 monomials with a matrix of the kind, then with the control points, about 90 ns
 ///            (Catmull-Clark: 28); near an extraordinary corner one split a level more, at most 60.
 [[nodiscard]] LimitPoint limit_point(const Patch& patch, TriangleParameter at);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <snug/base/contract.h>
+#include <snug/base/error.h>
 #include <snug/base/rounding.h>
 #include <snug/patch/descent.h>
 #include <snug/patch/monomials.h>
@@ -93,7 +94,7 @@ LimitPoint LimitEvaluator::evaluate(const Polynomial& polynomial, TriangleParame
 }
 
 LimitPoint LimitEvaluator::operator()(TriangleParameter parameter) {
-  SNUG_EXPECT(!inner_.empty());
+  require_value(!inner_.empty(), "limit evaluator: it has no patch; call reset() first");
   TriangleParameter at = checked(parameter);
   if (const std::size_t corner = corner_at(at); corner < 3) return corner_point(patch_, corner);
   Child child = inner_[0].children[0];
@@ -119,7 +120,7 @@ LimitPoint LimitEvaluator::operator()(TriangleParameter parameter) {
 }
 
 void LimitEvaluator::operator()(std::span<const TriangleParameter> at, std::span<LimitPoint> out) {
-  SNUG_EXPECT(out.size() == at.size());
+  require_value(out.size() == at.size(), "limit evaluator: there must be room for as many points as parameters");
   for (std::size_t i = 0; i < at.size(); ++i) out[i] = (*this)(at[i]);
 }
 

@@ -26,9 +26,9 @@ class LimitEvaluator {
   /// Stays where it is until reset().
   [[nodiscard]] const Patch& patch() const { return patch_; }
 
-  /// Requires:  a patch; at as in limit_point().
+  /// Errors:    InputError (value) without a patch, and as limit_point().
   [[nodiscard]] LimitPoint operator()(TriangleParameter at);
-  /// Requires:  out.size() == at.size().
+  /// Errors:    likewise; (value) unless out.size() == at.size().
   void operator()(std::span<const TriangleParameter> at, std::span<LimitPoint> out);
 
   [[nodiscard]] std::size_t bytes() const;

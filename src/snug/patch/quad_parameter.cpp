@@ -1,6 +1,6 @@
 #include <snug/patch/quad_parameter.h>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 #include <snug/base/rounding.h>
 
 namespace snug {
@@ -53,7 +53,8 @@ double slack(const Half& here) { return enlarged(64 * unit_roundoff * here.piece
 LimitPoint limit_point(const Patch& patch, QuadParameter at) { return limit_frame(patch, at).point; }
 
 LimitFrame limit_frame(const Patch& patch, QuadParameter at) {
-  SNUG_EXPECT(at.u >= 0 && at.u <= 1 && at.v >= 0 && at.v <= 1);
+  require_value(at.u >= 0 && at.u <= 1 && at.v >= 0 && at.v <= 1,
+                "a parameter is outside of its quad: u and v must be from 0 to 1");
   const Half here = descend(patch, at);
   LimitFrame frame = limit_frame(here.piece, on_triangle(here));
   frame.point.error += slack(here);

@@ -17,7 +17,8 @@ struct QuadParameter {
 ///
 /// Guarantee: as limit_point(): at exactly these doubles, in corners too; a triangle's own parameters are coarser
 ///            near its far corners.
-/// Requires:  0 <= u, v <= 1; patch: half part_of(at), whole.
+/// Requires:  patch: half part_of(at), whole.
+/// Errors:    InputError (value) unless 0 <= u, v <= 1.
 [[nodiscard]] LimitPoint limit_point(const Patch& patch, QuadParameter at);
 /// The same with the derivatives along the quad's u and v, where they exist.
 [[nodiscard]] LimitFrame limit_frame(const Patch& patch, QuadParameter at);

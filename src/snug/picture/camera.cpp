@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 
 namespace snug {
 namespace {
@@ -12,7 +12,8 @@ constexpr double margin = 0.05;
 
 Vector3 unit(Vector3 v) {
   const double largest = max_abs(v);
-  SNUG_EXPECT(is_finite(v) && largest > 0);
+  require_value(is_finite(v) && largest > 0,
+                "camera: view and up must be finite, not zero and not parallel");
   // The length of v itself might overflow or underflow.
   const Vector3 scaled{v.x / largest, v.y / largest, v.z / largest};
   return (1 / length(scaled)) * scaled;
@@ -38,8 +39,8 @@ class Wedge {
 }  // namespace
 
 Camera frame(std::span<const Point3> points, Vector3 view_direction, Vector3 up, double aspect) {
-  SNUG_EXPECT(!points.empty());
-  SNUG_EXPECT(std::isfinite(aspect) && aspect > 0);
+  require_value(!points.empty(), "camera: there is nothing to show");
+  require_value(std::isfinite(aspect) && aspect > 0, "camera: width / height must be finite and positive");
   Camera camera;
   camera.tangent = half_angle_tangent;
   camera.forward = unit(view_direction);
@@ -51,7 +52,7 @@ Camera frame(std::span<const Point3> points, Vector3 view_direction, Vector3 up,
   Box3 box;
   double nearest = std::numeric_limits<double>::infinity();
   for (const Point3& p : points) {
-    SNUG_EXPECT(is_finite(p));
+    require_value(is_finite(p), "camera: a point to show is not finite");
     box.add(p);
     const Vector3 v = p - points.front();
     const double depth = dot(v, camera.forward);
@@ -68,7 +69,7 @@ Camera frame(std::span<const Point3> points, Vector3 view_direction, Vector3 up,
 }
 
 Camera frame(const Box3& box, Vector3 view_direction, Vector3 up, double aspect) {
-  SNUG_EXPECT(!box.empty());
+  require_value(!box.empty(), "camera: the box to show is empty");
   Point3 corners[8];
   for (int i = 0; i < 8; ++i)
     corners[i] = {i & 1 ? box.upper.x : box.lower.x, i & 2 ? box.upper.y : box.lower.y,

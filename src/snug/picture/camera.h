@@ -33,7 +33,7 @@ struct Camera {
 /// Requires:  at least one point, all finite; aspect = width / height > 0; `view_direction` and `up` finite,
 /// not zero
 ///            and not parallel (they need not be unit or perpendicular).
-/// Errors:    SNUG_EXPECT on what is required.
+/// Errors:    InputError (value) on what is required.
 [[nodiscard]] Camera frame(std::span<const Point3> points, Vector3 view_direction, Vector3 up, double aspect);
 
 /// The same for the corners of a box that is not empty: looser around what is in it, and still when that

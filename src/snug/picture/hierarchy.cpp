@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 
 namespace snug {
 namespace {
@@ -72,7 +72,8 @@ std::uint32_t split(std::span<const Box3> boxes, std::span<std::uint32_t> ids) {
 }  // namespace
 
 BeamHierarchy::BeamHierarchy(std::span<const Box3> boxes) : ids_(boxes.size()) {
-  SNUG_EXPECT(boxes.size() < (std::size_t{1} << 31));
+  require_value(boxes.size() < (std::size_t{1} << 31),
+                "picture: more than 2^31 triangles and lines; show fewer meshes");
   if (boxes.empty()) return;
   std::iota(ids_.begin(), ids_.end(), 0U);
   Box3 all;

@@ -4,14 +4,14 @@
 
 #include <string>
 
-#include <snug/base/contract.h>
 #include <snug/base/error.h>
 
 namespace snug {
 
 std::vector<std::uint8_t> encode_png(const Image& image) {
-  SNUG_EXPECT(image.width >= 1 && image.height >= 1);
-  SNUG_EXPECT(image.rgb.size() == std::size_t{3} * image.width * image.height);
+  require_value(image.width >= 1 && image.height >= 1, "picture: width and height must be at least 1");
+  require_value(image.rgb.size() == std::size_t{3} * image.width * image.height,
+                "picture: there must be three bytes a pixel");
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.width);

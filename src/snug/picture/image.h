@@ -16,8 +16,8 @@ struct Image {
 ///
 /// Guarantee: lossless; the same image gives the same bytes with the same libpng and zlib (no time, no text).
 /// Requires:  width, height >= 1; rgb.size() == 3 * width * height.
-/// Errors:    InputError (refused) with libpng's words for an image that PNG cannot hold; SNUG_EXPECT on what
-///            is required.
+/// Errors:    InputError (refused) with libpng's words for an image that PNG cannot hold; (value) on
+///            what is required.
 /// Cost:      about 0.1 s for a million pixels.
 [[nodiscard]] std::vector<std::uint8_t> encode_png(const Image& image);
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 
 namespace snug {
 namespace {
@@ -45,12 +45,13 @@ Difference operator-(const LatticePoint& a, const LatticePoint& b) {
 std::vector<LatticePoint> lattice_corners(const IntervalTriangle& triangle) {
   Box3 all;
   for (const Box3& box : triangle.corner) {
-    SNUG_EXPECT(is_finite(box.lower) && is_finite(box.upper));
-    SNUG_EXPECT(box.lower.x <= box.upper.x && box.lower.y <= box.upper.y && box.lower.z <= box.upper.z);
+    require_value(is_finite(box.lower) && is_finite(box.upper), "hull of boxes: a corner is not finite");
+    require_value(box.lower.x <= box.upper.x && box.lower.y <= box.upper.y && box.lower.z <= box.upper.z,
+                  "hull of boxes: a box is empty");
     all.add(box);
   }
   const double size = all.longest_side();
-  SNUG_EXPECT(std::isfinite(size));
+  require_value(std::isfinite(size), "hull of boxes: its longest side does not fit a double");
   int exponent = 0;
   std::frexp(size, &exponent);
   const int step = exponent - lattice_bits;  // size <= 2^lattice_bits steps of 2^step

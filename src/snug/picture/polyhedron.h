@@ -24,7 +24,7 @@ struct Polyhedron {
 ///            random boxes met 26. A flat hull has two facets, back to back; one that is a segment or a
 ///            point has none, and its ends for corners.
 /// Requires:  boxes that are finite and not empty; the longest side of the hull does not overflow.
-/// Errors:    SNUG_EXPECT on what is required.
+/// Errors:    InputError (value) on what is required.
 /// Cost:      about 20 microseconds.
 /// Source:    gift wrapping; differs: on a lattice of integers, so that every decision is exact.
 [[nodiscard]] Polyhedron hull_of_boxes(const IntervalTriangle& triangle);

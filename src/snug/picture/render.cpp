@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <exception>
+#include <memory>
 #include <mutex>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 #include <snug/picture/hierarchy.h>
 #include <snug/picture/shading.h>
 
@@ -59,22 +60,28 @@ Vector3 unit(Vector3 v) { return (1 / length(v)) * v; }
 bool is_unit(Vector3 v) { return std::fabs(length_sq(v) - 1) < 1e-9; }
 
 void expect_sound(const Scene& scene, const Camera& camera, const RenderOptions& options) {
-  SNUG_EXPECT(options.width >= 1 && options.height >= 1);
-  SNUG_EXPECT(1 <= options.samples && options.samples <= 16);
-  SNUG_EXPECT(in_unit(options.background.top) && in_unit(options.background.foot));
-  SNUG_EXPECT(is_finite(camera.eye) && std::isfinite(camera.tangent) && camera.tangent > 0);
-  SNUG_EXPECT(is_unit(camera.right) && is_unit(camera.up) && is_unit(camera.forward));
-  SNUG_EXPECT(length(cross(camera.right, camera.up) + camera.forward) < 1e-9);
-  for (const Material& m : scene.materials)
-    SNUG_EXPECT(in_unit(m.colour) && in_unit(m.opacity) && in_unit(m.gloss));
+  require_value(options.width >= 1 && options.height >= 1, "render: width and height must be at least 1");
+  require_value(1 <= options.samples && options.samples <= 16, "render: samples must be from 1 to 16");
+  require_value(in_unit(options.background.top) && in_unit(options.background.foot),
+                "render: colours of the background must be from 0 to 1");
+  require_value(is_finite(camera.eye) && std::isfinite(camera.tangent) && camera.tangent > 0,
+                "render: the camera's eye must be finite, and its tangent positive");
+  require_value(is_unit(camera.right) && is_unit(camera.up) && is_unit(camera.forward) &&
+                    length(cross(camera.right, camera.up) + camera.forward) < 1e-9,
+                "render: the camera's axes must be of length 1 and at right angles; frame() makes such");
+  for (const Material& m : scene.materials) {
+    require_value(in_unit(m.colour) && in_unit(m.opacity) && in_unit(m.gloss),
+                  "render: colour, opacity and gloss of a material must be from 0 to 1");
+  }
   for (const ShadedTriangle& t : scene.triangles) {
-    SNUG_EXPECT(t.material < scene.materials.size());
-    for (const Point3& p : t.corner) SNUG_EXPECT(is_finite(p));
-    for (const Vector3& n : t.normal) SNUG_EXPECT(is_finite(n));
+    require_value(t.material < scene.materials.size(), "render: a triangle is of a material that is not there");
+    for (const Point3& p : t.corner) require_value(is_finite(p), "render: a triangle is not finite");
+    for (const Vector3& n : t.normal) require_value(is_finite(n), "render: a normal is not finite");
   }
   for (const Line& line : scene.lines) {
-    SNUG_EXPECT(is_finite(line.a) && is_finite(line.b));
-    SNUG_EXPECT(std::isfinite(line.width_in_pixels) && line.width_in_pixels > 0 && in_unit(line.colour));
+    require_value(is_finite(line.a) && is_finite(line.b), "render: a line is not finite");
+    require_value(std::isfinite(line.width_in_pixels) && line.width_in_pixels > 0 && in_unit(line.colour),
+                  "render: the width of a line must be positive, and its colour from 0 to 1");
   }
 }
 
@@ -380,8 +387,15 @@ CountedImage render_counted(const Scene& scene, const Camera& camera, const Rend
 
   std::mutex mutex;  // guards the next three, and the calls of progress
   std::size_t done = 0;
-  std::uint64_t hits = 0;
+  std::vector<std::unique_ptr<Renderer::Scratch>> spare;  // of ranges that are done; as many as are drawn at once
   std::exception_ptr failure;
+  const auto take = [&] {
+    const std::lock_guard lock(mutex);
+    if (spare.empty()) return std::make_unique<Renderer::Scratch>();
+    std::unique_ptr<Renderer::Scratch> scratch = std::move(spare.back());
+    spare.pop_back();
+    return scratch;
+  };
   const auto finish_row = [&] {
     const std::lock_guard lock(mutex);
     ++done;
@@ -394,13 +408,13 @@ CountedImage render_counted(const Scene& scene, const Camera& camera, const Rend
   };
   const auto body = [&](std::size_t begin, std::size_t end) {
     try {
-      Renderer::Scratch scratch;
+      std::unique_ptr<Renderer::Scratch> scratch = take();
       for (std::size_t row = begin; row < end && !failed(); ++row) {
-        renderer.draw_row(static_cast<int>(row), scratch, image.rgb.data() + row * row_bytes);
+        renderer.draw_row(static_cast<int>(row), *scratch, image.rgb.data() + row * row_bytes);
         finish_row();
       }
       const std::lock_guard lock(mutex);
-      hits += scratch.rays_that_hit;
+      spare.push_back(std::move(scratch));
     } catch (...) {
       const std::lock_guard lock(mutex);
       if (!failure) failure = std::current_exception();
@@ -411,7 +425,9 @@ CountedImage render_counted(const Scene& scene, const Camera& camera, const Rend
   else
     body(0, rows);
   if (failure) std::rethrow_exception(failure);
-  SNUG_EXPECT(done == rows);
+  require_value(done == rows, "render: parallel_for did not call the body for all rows once");
+  std::uint64_t hits = 0;
+  for (const auto& scratch : spare) hits += scratch->rays_that_hit;
   const std::uint64_t rays_a_pixel = static_cast<std::uint64_t>(options.samples) * options.samples;
   return {std::move(image), rays_a_pixel * options.width * rows, hits};
 }

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/contract.h>
 #include <snug/base/parallel.h>
 #include <snug/base/rounding.h>
 #include <snug/enclose/table_triangle.h>
@@ -120,10 +119,15 @@ double half_longest_side(const Box3& box) {
 
 }  // namespace
 
+void require_sound(const BoundOptions& options) {
+  require_value(!options.tolerance || (*options.tolerance > 0 && std::isfinite(*options.tolerance)),
+                "bound: the tolerance must be finite and positive; leave it out to bound whole patches");
+  require_value(options.level <= PiecePath::max_level, "bound: the level is too high; give at most 60");
+}
+
 BoundSummary bound(const Surface& surface, const BoundOptions& options,
                    const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor) {
-  SNUG_EXPECT(!options.tolerance || *options.tolerance > 0);
-  SNUG_EXPECT(options.level <= PiecePath::max_level);
+  require_sound(options);
   const double target = options.tolerance ? surface.scale().apply(*options.tolerance / 2) : INFINITY;
   // Patches worked on at once: as many as their pieces are few, so that memory stays small and threads are busy.
   constexpr std::size_t most_patches = 256, most_pieces = 1 << 16;
@@ -136,12 +140,11 @@ BoundSummary bound(const Surface& surface, const BoundOptions& options,
     const std::uint64_t left = std::min<std::uint64_t>(
         options.budget - summary.splits, std::max<std::uint64_t>(64, most_pieces / (3 * count)));
     results.assign(count, {});
-    parallel_for(count, options.threads, [&](std::size_t from, std::size_t to) {
-      PatchBounder bounder(surface, options, target, monitor);
-      for (std::size_t i = from; i < to; ++i) {
-        results[i] = bounder.run(PatchId(begin + i), left);
-      }
-    });
+    parallel_for_with(
+        count, options.threads, [&] { return PatchBounder(surface, options, target, monitor); },
+        [&](PatchBounder& bounder, std::size_t from, std::size_t to) {
+          for (std::size_t i = from; i < to; ++i) results[i] = bounder.run(PatchId(begin + i), left);
+        });
     for (std::size_t i = 0; i < count; ++i) {
       // The budget is spent in the order of patches, whatever the threads did.
       const std::uint64_t rest = options.budget - summary.splits;

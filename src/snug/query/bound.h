@@ -36,6 +36,10 @@ struct BoundOptions {
   int threads = 0;
 };
 
+/// Throws InputError (value) unless the tolerance, if there is one, is finite and positive, and the level at most
+/// PiecePath::max_level.
+void require_sound(const BoundOptions& options);
+
 /// What encloses one piece of the limit surface, in mesh units.
 struct PieceEnclosure {
   PatchId patch;
@@ -61,7 +65,8 @@ struct BoundSummary {
 /// Guarantee: every limit point of a patch lies in the union of its pieces' offset triangles, of their
 ///            interval triangles, and of their boxes, each on its own, rounding included; also where
 ///            `reached` is false. Same output for any number of threads.
-/// Errors:    InputError if a result does not fit a double; whatever `sink` or the monitor throws.
+/// Errors:    InputError (value) as require_sound(), (unrepresentable) if a result does not fit a double; whatever `sink` or
+///            the monitor throws.
 /// Cost:      rows: a piece 3 to 5 microseconds on regular patches. Memory holds the pieces of one face,
 ///            or some 65,000; it does not grow with the output.
 BoundSummary bound(const Surface& surface, const BoundOptions& options,

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 #include <snug/base/rounding.h>
 #include <snug/enclose/curve_points.h>
 #include <snug/surface/unscale.h>
@@ -74,9 +74,8 @@ class CurveBounder {
 
 BoundSummary bound(const CurveSet& curves, const BoundOptions& options,
                    const std::function<void(const CurveEnclosure&)>& sink, const WorkMonitor& monitor) {
-  SNUG_EXPECT(options.method != BoundMethod::table);
-  SNUG_EXPECT(!options.tolerance || *options.tolerance > 0);
-  SNUG_EXPECT(options.level <= PiecePath::max_level);
+  require_value(options.method != BoundMethod::table, "bound: curves have no tables; give rows or control boxes");
+  require_sound(options);
   CurveBounder bounder(curves, options, sink, monitor);
   const std::size_t edges = curves.edge_count(), stride = 1 + edges / 1000;
   for (std::size_t e = 0; e < edges; ++e) {

@@ -25,8 +25,9 @@ struct CurveEnclosure {
 /// Guarantee: every limit point of edge e lies in the union of its pieces' offset segments, of their interval
 ///            segments, and of their boxes, each on its own, rounding included; also where `reached` is
 ///            false.
-/// Requires:  options.method is not table. `threads` and `layout` change nothing.
-/// Errors:    InputError if a result does not fit a double; whatever `sink` or the monitor throws.
+///            `threads` and `layout` change nothing.
+/// Errors:    InputError (value) for tables and as require_sound(), (unrepresentable) if a result does not fit a double;
+///            whatever `sink` or the monitor throws.
 /// Cost:      about a microsecond a piece, on one thread. Memory does not grow with the output.
 BoundSummary bound(const CurveSet& curves, const BoundOptions& options,
                    const std::function<void(const CurveEnclosure&)>& sink, const WorkMonitor& monitor = {});

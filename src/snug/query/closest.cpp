@@ -188,17 +188,18 @@ std::vector<ClosestPoint> closest_points(const QueryModel& model, std::span<cons
                                          const WorkMonitor& monitor) {
   std::vector<ClosestPoint> results(to.size());
   std::atomic<std::size_t> done{0};
-  // A scratch a range: as few as there are threads, on long lists.
-  parallel_for(to.size(), threads, [&](std::size_t begin, std::size_t end) {
-    QueryScratch scratch(model);
-    for (std::size_t i = begin; i < end; ++i) {
-      results[i] = closest_point(scratch, to[i], options, monitor);
-      const std::size_t count = ++done;
-      if (count % (1 + to.size() / 1000) == 0) {
-        monitor.report(static_cast<double>(count) / static_cast<double>(to.size()));
-      }
-    }
-  });
+  // A scratch a thread: pieces that one point made serve the next ones.
+  parallel_for_with(
+      to.size(), threads, [&] { return QueryScratch(model); },
+      [&](QueryScratch& scratch, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          results[i] = closest_point(scratch, to[i], options, monitor);
+          const std::size_t count = ++done;
+          if (count % (1 + to.size() / 1000) == 0) {
+            monitor.report(static_cast<double>(count) / static_cast<double>(to.size()));
+          }
+        }
+      });
   return results;
 }
 

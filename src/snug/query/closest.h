@@ -25,9 +25,8 @@ struct ClosestPoint {
 ///
 /// Guarantee: lower <= distance <= upper, and there is a limit point at a distance of at most `upper`, also where precision
 ///            is not reached. The result depends on the input alone.
-/// Requires:  a finite point.
-/// Errors:    InputError (refused) for a point more than 10^12 sizes of the surface away, or a result that does not fit a
-///            double.
+/// Errors:    InputError (value) for a point that is not finite or more than 10^12 sizes of the surface away, and for a
+///            precision that is negative or not finite; (unrepresentable) for a result that does not fit a double.
 /// Cost:      some 10 microseconds at 0.1 % of the size, some 100 at 1e-9 (bench/results/distance.txt).
 [[nodiscard]] ClosestPoint closest_point(QueryScratch& scratch, const Point3& to,
                                          const ClosestOptions& options, const WorkMonitor& monitor = {});

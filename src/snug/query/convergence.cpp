@@ -5,7 +5,7 @@
 #include <memory>
 #include <numbers>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 #include <snug/base/parallel.h>
 #include <snug/base/quantile.h>
 #include <snug/enclose/interval_triangle.h>
@@ -137,7 +137,7 @@ PatchId first_patch(const Surface& surface) { return PatchId(surface.patches_of(
 }  // namespace
 
 CornerEigenvalues corner_eigenvalues(std::size_t n, Scheme scheme) {
-  SNUG_EXPECT(n >= 3);
+  require_value(n >= 3, "eigenvalues: a valence is at least 3");
   if (scheme == Scheme::catmark) return catmark_eigenvalues(n);
   if (scheme == Scheme::doo_sabin)
     return {dual::doo_sabin_subdominant(n), dual::doo_sabin_subdominant(n), 0.25};
@@ -169,6 +169,7 @@ const char* name_of(ThicknessMeasure measure) {
 
 std::array<Thicknesses, 3> corner_thicknesses(const Surface& surface, PatchId p, BoundSource source,
                                               unsigned levels) {
+  require_value(levels <= PiecePath::max_level, "thicknesses: there are too many levels; give at most 60");
   Patch patch = surface.patch(p);
   const std::optional<Vector3> normal = limit_frame(patch, {0, 0}).normal;
   const PowerOfTwo back = surface.scale().inverse();
@@ -189,7 +190,7 @@ std::array<Thicknesses, 3> corner_thicknesses(const Surface& surface, PatchId p,
 }
 
 double fitted_factor(std::span<const double> values) {
-  SNUG_EXPECT(values.size() >= 3);
+  require_value(values.size() >= 3, "fitted factor: give at least three values");
   const std::size_t first = values.size() / 2;
   const auto count = static_cast<double>(values.size() - first);
   const double middle = (count - 1) / 2;
@@ -240,8 +241,10 @@ double expected_factor(Scheme scheme, const NetPlace& place, BoundSource source,
 }
 
 std::vector<RateRow> measure_rates(const RateOptions& options, const WorkMonitor& monitor) {
-  SNUG_EXPECT(options.nets >= 1 && options.levels >= 4);
-  SNUG_EXPECT(is_primal(options.scheme) || options.centre == NetCentre::interior);
+  require_value(options.nets >= 1 && options.levels >= 4 && options.levels <= PiecePath::max_level,
+                "rates: give at least one net, and 4 to 60 levels");
+  require_value(is_primal(options.scheme) || options.centre == NetCentre::interior,
+                "rates: nets of dual schemes have an inner centre; give NetCentre::interior");
   const auto library = std::make_shared<BoundLibrary>();
   std::vector<RateRow> rows;
   const std::span<const BoundSource> sources = sources_of(options.scheme, options.centre);

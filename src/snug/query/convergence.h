@@ -21,7 +21,7 @@ struct CornerEigenvalues {
   double subdominant, second, next;
 };
 /// Inside the mesh, in closed form.
-/// Requires:  n >= 3.
+/// Errors:    InputError (value) unless n >= 3.
 /// Source:    derivations/loop_limits.md, catmark_limits.md, midedge_bezier.md; docs/convergence.md.
 [[nodiscard]] CornerEigenvalues corner_eigenvalues(std::size_t n, Scheme scheme = Scheme::loop);
 /// In the middle of bent_net(). Elsewhere than inside: sizes of eigenvalues of the corner's matrix
@@ -46,13 +46,14 @@ using Thicknesses = std::vector<double>;
 /// ThicknessMeasure. Without a normal at the corner there are no values of
 /// ThicknessMeasure::normal.
 ///
-/// Requires:  surface.has_patch(p); levels <= PiecePath::max_level.
+/// Errors:    InputError (value) unless surface.has_patch(p) and levels <= PiecePath::max_level.
 [[nodiscard]] std::array<Thicknesses, 3> corner_thicknesses(const Surface& surface, PatchId p,
                                                             BoundSource source, unsigned levels);
 
 /// The factor a level of the geometric sequence nearest to the second half of `values`: least squares of
 /// logarithms. Levels below values.size() / 2 are left out.
-/// Requires:  at least three values, all positive.
+/// Requires:  positive values.
+/// Errors:    InputError (value) for fewer than three.
 [[nodiscard]] double fitted_factor(std::span<const double> values);
 
 /// The factor that theory gives inside the mesh: 1/4 at a regular corner. Else the `next` eigenvalue for the
@@ -94,7 +95,7 @@ struct RateRow {
 /// normal.
 ///
 /// Guarantee: the same for any number of threads.
-/// Requires:  nets >= 1; 4 <= levels <= PiecePath::max_level; is_primal(scheme) for all places but the
+/// Errors:    InputError (value) unless nets >= 1; 4 <= levels <= PiecePath::max_level; is_primal(scheme) for all places but the
 ///            interior.
 /// Cost:      some 0.2 ms a net at the default levels.
 [[nodiscard]] std::vector<RateRow> measure_rates(const RateOptions& options, const WorkMonitor& monitor = {});

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 
 namespace snug {
 namespace {
@@ -64,7 +64,8 @@ class Fan {
  public:
   Fan(std::size_t n, std::size_t rings, bool quads, bool open)
       : n_(n), rings_(rings), quads_(quads), open_(open) {
-    SNUG_EXPECT(n >= (open ? 1u : 3u) && rings >= 1);
+    require_value(n >= (open ? 1u : 3u) && rings >= 1,
+                  "fan: give at least one ring, and three sectors, or one where it is open");
   }
 
   [[nodiscard]] ControlMesh mesh() const { return quads_ ? of_quads() : of_triangles(); }
@@ -152,7 +153,7 @@ ControlMesh open_fan_mesh(std::size_t n, std::size_t rings) { return Fan(n, ring
 ControlMesh open_quad_fan_mesh(std::size_t n, std::size_t rings) { return Fan(n, rings, true, true).mesh(); }
 
 ControlMesh polygon_mesh(std::size_t n) {
-  SNUG_EXPECT(n >= 3);
+  require_value(n >= 3, "polygon: give at least three corners");
   const double angle = spoke_angle(n, false);
   ControlMesh mesh;
   for (const auto& [p, q] : {std::pair{0.5, 0.5}, {1.5, 0.5}, {1.5, 1.5}, {0.5, 1.5}}) {
@@ -232,7 +233,8 @@ ControlMesh bent_net(Scheme scheme, const NetPlace& place, std::uint64_t seed) {
     }
     if (place.centre == NetCentre::dart) sharpen(0, infinite_sharpness);
   } else {
-    SNUG_EXPECT(place.centre == NetCentre::interior);
+    require_value(place.centre == NetCentre::interior,
+                  "nets of dual schemes have an inner centre; give NetCentre::interior");
     mesh = polygon_mesh(n);
   }
   double extent = 0;

@@ -17,26 +17,27 @@ namespace snug {
 /// spokes have length 1. Faces 0 to n - 1 touch it, with their corner 0. Regular but for the middle and the
 /// border.
 ///
-/// Requires:  n >= 3; rings >= 1, and 2 if the faces in the middle are to have no boundary.
+/// Requires:  2 rings if the faces in the middle are to have no boundary.
+/// Errors:    InputError (value) unless n >= 3 and rings >= 1.
 [[nodiscard]] ControlMesh fan_mesh(std::size_t n, std::size_t rings);
 
 /// The same of quads: `rings` rings around a vertex of valence n. Faces touch it with their corner 0; face 0
 /// is one of them.
 ///
-/// Requires:  n >= 3; rings >= 1.
+/// Errors:    InputError (value) unless n >= 3 and rings >= 1.
 [[nodiscard]] ControlMesh quad_fan_mesh(std::size_t n, std::size_t rings);
 
 /// The same with a boundary through the vertex: n faces touch it, from the first spoke to the last one, which
 /// are the boundary. Together they make half a turn, one face a quarter.
 ///
-/// Requires:  n >= 1; rings >= 1.
+/// Errors:    InputError (value) unless n >= 1 and rings >= 1.
 [[nodiscard]] ControlMesh open_fan_mesh(std::size_t n, std::size_t rings);
 [[nodiscard]] ControlMesh open_quad_fan_mesh(std::size_t n, std::size_t rings);
 
 /// A face of n vertices, which is face 0, in the middle of a ring of quads; its vertices are 0 to n - 1, of
 /// valence 4.
 ///
-/// Requires:  n >= 3.
+/// Errors:    InputError (value) unless n >= 3.
 [[nodiscard]] ControlMesh polygon_mesh(std::size_t n);
 
 /// Moves every vertex by at most `along` in x and y, and by at most `across` in z, evenly distributed.
@@ -54,7 +55,7 @@ inline constexpr std::array all_net_shapes{NetShape::bent, NetShape::bumpy, NetS
 /// The net of this shape and valence.
 ///
 /// Guarantee: the same for the same arguments, up to the last digits of the standard library's cosine.
-/// Requires:  n >= 3.
+/// Errors:    InputError (value) unless n >= 3.
 [[nodiscard]] ControlMesh corner_net(NetShape shape, std::size_t n, std::uint64_t seed);
 
 /// What is in the middle of a net. All but the first are for Loop and Catmull-Clark.
@@ -81,7 +82,7 @@ struct NetPlace {
 /// The bent net for a scheme. The first patch of owner 0 has its corner 0 in the middle; with creases it lies
 /// beside one.
 ///
-/// Requires:  n >= 3, on a boundary n >= 1; is_primal(scheme) for all but the interior.
+/// Errors:    InputError (value) unless n >= 3, on a boundary n >= 1; is_primal(scheme) for all but the interior.
 [[nodiscard]] ControlMesh bent_net(Scheme scheme, const NetPlace& place, std::uint64_t seed);
 
 /// What bounds a patch: hull rows (no layout), or tables of a layout.

@@ -4,7 +4,7 @@
 #include <array>
 #include <random>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 #include <snug/base/quantile.h>
 #include <snug/enclose/curve_points.h>
 #include <snug/surface/curve_set.h>
@@ -73,7 +73,8 @@ const char* name_of(CurvePlace place) {
 }
 
 std::vector<CurveRateRow> measure_curve_rates(const RateOptions& options, const WorkMonitor& monitor) {
-  SNUG_EXPECT(options.nets >= 1 && options.levels >= 4 && options.levels <= PiecePath::max_level);
+  require_value(options.nets >= 1 && options.levels >= 4 && options.levels <= PiecePath::max_level,
+                "rates: give at least one net, and 4 to 60 levels");
   std::vector<CurveRateRow> rows;
   for (const CurveDegree degree : all_degrees) {
     for (const CurvePlace place : all_places) {

@@ -32,7 +32,7 @@ struct CurveRateRow {
 /// Rows of both degrees, all places and measures, in this order. `nets` are polylines of seven vertices on
 /// random cubic curves.
 ///
-/// Requires:  as measure_rates.
+/// Errors:    as measure_rates.
 /// Source:    docs/derivations/curves.md.
 [[nodiscard]] std::vector<CurveRateRow> measure_curve_rates(const RateOptions& options,
                                                             const WorkMonitor& monitor = {});

@@ -27,9 +27,9 @@ struct Distance {
 ///
 /// Guarantee: lower <= distance <= upper for these very doubles, also where precision is not reached. The result depends on
 ///            the input alone, not on threads or earlier queries.
-/// Requires:  models with the same sort of volume.
-/// Errors:    InputError for a precision that is negative or not finite, if a result does not fit a double, or with `solid` if
-///            a surface is not closed, wherever it is; Interrupted.
+/// Errors:    InputError (value) for a precision that is negative or not finite, models with different sorts of volume, and
+///            scratches that are not of their models; (unrepresentable) if a result does not fit a double; (refused) with `solid`
+///            if a surface is not closed, wherever it is; Interrupted.
 /// Cost:      some 200 microseconds at 0.1 % of the size (bench/results/distance.txt).
 [[nodiscard]] Distance distance(const PlacedModel& a, const PlacedModel& b, const DistanceOptions& options,
                                 const WorkMonitor& monitor = {});

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 #include <snug/base/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/patch/quad_parameter.h>
@@ -67,7 +67,8 @@ std::optional<PatchId> patch_at(const Surface& surface, const SurfaceParameter& 
 
 SurfacePoint evaluate(const Surface& surface, const SurfaceParameter& at) {
   const std::optional<PatchId> patch = patch_at(surface, at);
-  SNUG_EXPECT(patch.has_value());
+  require_value(patch.has_value(),
+                "evaluate: there is no limit surface at this place; patch_at() tells where there is one");
   return PatchEvaluator(surface, *patch)(at);
 }
 

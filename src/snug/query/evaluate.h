@@ -39,21 +39,21 @@ struct SurfaceParameter {
 /// The limit point at a place, with derivatives along its u and v.
 ///
 /// Guarantee: as SurfacePoint says; tangents and normal are in double precision without a bound.
-/// Requires:  patch_at(surface, at).
-/// Errors:    InputError if a coordinate does not fit a double.
+/// Errors:    InputError (value) where patch_at() has nothing, NaN included; (unrepresentable) if a coordinate does not fit a
+///            double.
 [[nodiscard]] SurfacePoint evaluate(const Surface& surface, const SurfaceParameter& at);
 
 /// Evaluates many points of one patch with a single set-up. For one thread.
 ///
-/// Errors:    InputError if a coordinate does not fit a double.
+/// Errors:    InputError (value) for a patch that is not there and a parameter that is not on it, NaN included;
+///            (unrepresentable) if a coordinate does not fit a double.
 class PatchEvaluator {
  public:
-  /// Requires:  surface.has_patch(p).
   PatchEvaluator(const Surface& surface, PatchId p);
   /// The point at a place of its owner that lies on this patch.
   [[nodiscard]] SurfacePoint operator()(const SurfaceParameter& at) const;
   /// The point at a parameter of the patch, with derivatives along its own u and v.
-  /// Requires:  u, v >= 0 and u + v <= 1.
+  /// u, v >= 0 and u + v <= 1.
   [[nodiscard]] SurfacePoint operator()(TriangleParameter at) const;
   /// The position alone; keeps the polynomial pieces that it meets.
   /// Cost:      see LimitEvaluator.

@@ -13,8 +13,8 @@ struct CurveSetPoint : SurfacePosition {
 /// The limit point of an edge at t: 0 at the limit of its first vertex, 1 at that of the second.
 ///
 /// Guarantee: |position - exact| <= error a coordinate, for exactly this t.
-/// Requires:  edge < curves.edge_count(), 0 <= t <= 1.
-/// Errors:    InputError if a coordinate does not fit a double.
+/// Errors:    InputError (value) unless edge < curves.edge_count() and 0 <= t <= 1; (unrepresentable) if a coordinate does
+///            not fit a double.
 [[nodiscard]] CurveSetPoint evaluate(const CurveSet& curves, EdgeId edge, double t);
 
 }  // namespace snug

@@ -6,6 +6,7 @@
 
 #include <snug/base/contract.h>
 #include <snug/base/direction.h>
+#include <snug/base/error.h>
 #include <snug/base/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/query/crossing.h>
@@ -88,8 +89,10 @@ PairSearch::PairSearch(const PlacedModel& a, const PlacedModel& b)
       frame_{make_frame(a, world_), make_frame(b, world_)},
       scale_{static_cast<float>(frame_[0].scale), static_cast<float>(frame_[1].scale)},
       volume_(a.model.tree().blocks().volume()) {
-  SNUG_EXPECT(&a.scratch != &b.scratch && &a.scratch.model() == &a.model && &b.scratch.model() == &b.model);
-  SNUG_EXPECT(volume_ == b.model.tree().blocks().volume());
+  require_value(&a.scratch != &b.scratch && &a.scratch.model() == &a.model && &b.scratch.model() == &b.model,
+                "pair of models: each needs a scratch of its own, made for it");
+  require_value(volume_ == b.model.tree().blocks().volume(),
+                "pair of models: their trees are of different volumes; make both with the same one");
   for (QueryScratch* scratch : scratch_) scratch->begin();
 }
 

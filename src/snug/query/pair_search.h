@@ -38,7 +38,7 @@ void nearest_last(std::vector<NodePair>& pairs, std::size_t from);
 /// units of its own, powers of two away from mesh units, in which both placed models are at most about 2 large and far.
 class PairSearch {
  public:
-  /// Requires:  models with the same sort of volume, two scratches.
+  /// Errors:    InputError (value) unless models have the same sort of volume, and each a scratch of its own.
   PairSearch(const PlacedModel& a, const PlacedModel& b);
 
   /// From mesh units; a lower bound and an upper bound of the exact length.

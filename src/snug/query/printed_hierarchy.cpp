@@ -6,7 +6,6 @@
 #include <span>
 #include <utility>
 
-#include <snug/base/contract.h>
 #include <snug/base/error.h>
 #include <snug/base/rounding.h>
 #include <snug/query/printed_pair_test.h>
@@ -108,7 +107,7 @@ OffsetTriangle placed(const OffsetTriangle& leaf, const Motion& pose) {
 
 std::vector<OffsetTriangle> leaves(const Surface& surface, const LeafOptions& options,
                                    const WorkMonitor& monitor) {
-  SNUG_EXPECT(options.tolerance > 0);
+  require_value(options.tolerance > 0, "leaves: the tolerance must be positive");
   std::vector<OffsetTriangle> result;
   LeafMaker maker(surface, options, result);
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {

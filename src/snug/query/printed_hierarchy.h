@@ -23,7 +23,7 @@ struct LeafOptions {
 ///
 /// Guarantee: every limit point is in one of them, rounding included.
 /// Requires:  coordinates of about 1: see unit_model (rooms.h).
-/// Errors:    InputError (refused) where the tolerance is not reached at the last level.
+/// Errors:    InputError (value) for a tolerance that is not positive, (refused) where it is not reached at the last level.
 /// Source:    [Wu05, sec. 5.1.2].
 [[nodiscard]] std::vector<OffsetTriangle> leaves(const Surface& surface, const LeafOptions& options,
                                                  const WorkMonitor& monitor = {});

@@ -6,7 +6,6 @@
 #include <mutex>
 #include <utility>
 
-#include <snug/base/contract.h>
 #include <snug/base/error.h>
 #include <snug/base/rounding.h>
 #include <snug/query/solid.h>
@@ -21,15 +20,20 @@ constexpr std::size_t most_bytes = std::size_t{256} << 20;
 
 BoundingVolume tight_volume(const Surface& surface, std::span<const PatchId> patches,
                             const QueryModelOptions& options) {
-  Refinement refinement(surface, options.table);
+  // For their memory.
+  thread_local HullPoints scratch;
+  thread_local std::array<HullPoints, BoundingTree::cluster_size> kept;
   std::vector<const HullPoints*> hulls;
   std::vector<OffsetTriangle> triangles;
   std::vector<Point3> spread;
   for (const PatchId p : patches) {
-    const PieceId id = refinement.root(p);
-    triangles.push_back(refinement[id].offset);
-    if (!options.table) hulls.push_back(&refinement.hull(id));
-    spread.insert(spread.end(), triangles.back().base.begin(), triangles.back().base.end());
+    const Piece piece = make_piece(surface.library(), p, surface.patch(p), scratch, options.table);
+    triangles.push_back(piece.offset);
+    spread.insert(spread.end(), piece.offset.base.begin(), piece.offset.base.end());
+    if (options.table) continue;
+    HullPoints& hull = kept[hulls.size()];
+    close_points(surface.library(), piece.patch, hull);
+    hulls.push_back(&hull);
   }
   if (options.table) return fit(options.volume, EnclosedTriangles(triangles, spread));
   return fit(options.volume, EnclosedHulls(hulls, spread));
@@ -40,6 +44,9 @@ std::vector<PatchId> existing_patches(const Surface& surface) {
   patches.reserve(surface.patch_count());
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
     if (surface.has_patch(PatchId(p))) patches.emplace_back(p);
+  }
+  if (patches.size() >= BoundingTree::cluster_bit) {
+    throw InputError(InputProblem::refused, "more than 2^31 patches: ask about parts of the mesh");
   }
   if (patches.empty()) {
     throw InputError(InputProblem::refused,

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 #include <snug/base/quantile.h>
 #include <snug/query/collide.h>
 #include <snug/query/printed_hierarchy.h>
@@ -71,7 +71,7 @@ LeafCounts count_leaves(const Surface& surface, double tolerance, const WorkMoni
 
 CreationTimes measure_creation(const ControlMesh& mesh, const SchemeOptions& rules, double tolerance,
                                unsigned rounds, const WorkMonitor& monitor) {
-  SNUG_EXPECT(rounds >= 1);
+  require_value(rounds >= 1, "creation times: give at least one round");
   const auto library = std::make_shared<BoundLibrary>();
   const std::array<std::function<void()>, 4> works{
       [&] {
@@ -96,7 +96,7 @@ CreationTimes measure_creation(const ControlMesh& mesh, const SchemeOptions& rul
 
 RoomRow measure_room(const Surface& a, const Surface& b, const RoomOptions& options,
                      const WorkMonitor& monitor) {
-  SNUG_EXPECT(options.placements >= 1);
+  require_value(options.placements >= 1, "room: give at least one placement");
   const double tolerance = options.tolerance;
   QueryPair rows(a, b, {}), tables(a, b, TableLayout::ngon);
   const PrintedHierarchy printed_a(a, as_printed(tolerance), monitor),

@@ -32,7 +32,7 @@ struct CreationTimes {
   double rows = 0;     ///< all leaves by hull rows and a tree of oriented boxes
   double printed = 0;  ///< the same by the dissertation's tables, at most one extraordinary corner
 };
-/// Requires:  rounds >= 1.
+/// Errors:    InputError (value) unless rounds >= 1.
 [[nodiscard]] CreationTimes measure_creation(const ControlMesh& mesh, const SchemeOptions& rules,
                                              double tolerance, unsigned rounds,
                                              const WorkMonitor& monitor = {});
@@ -60,7 +60,8 @@ struct RoomRow {
   std::uint64_t printed_missed_hits = 0;     ///< hits that it calls separated, with either epsilon
   std::uint64_t printed_alarms = 0;          ///< farther apart than the tolerance, and not called separated
 };
-/// Requires:  unit models (rooms.h); placements >= 1.
+/// Requires:  unit models (rooms.h).
+/// Errors:    InputError (value) unless placements >= 1.
 /// Guarantee: the counts depend on the surfaces and options alone.
 [[nodiscard]] RoomRow measure_room(const Surface& a, const Surface& b, const RoomOptions& options,
                                    const WorkMonitor& monitor = {});

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 
 namespace snug {
 namespace {
@@ -42,7 +42,8 @@ Motion any_pose(double reach, std::mt19937_64& random) {
 ControlMesh unit_model(ControlMesh mesh) {
   const Box3 box = used_box(mesh);
   const double size = box.longest_side();
-  SNUG_EXPECT(size > 0 && std::isfinite(size));
+  require_value(size > 0 && std::isfinite(size),
+                "unit model: the longest side of the box is 0 or does not fit a double; give another mesh");
   for (Point3& p : mesh.points) {
     for (std::size_t k = 0; k < 3; ++k) p[k] = (p[k] - 0.5 * (box.lower[k] + box.upper[k])) / size;
   }
@@ -50,7 +51,7 @@ ControlMesh unit_model(ControlMesh mesh) {
 }
 
 PosePair place_in_room(double side, std::mt19937_64& random) {
-  SNUG_EXPECT(side > 1 && std::isfinite(side));
+  require_value(side > 1 && std::isfinite(side), "room: the side must be finite and larger than 1");
   const double reach = (side - 1) / 2;
   const Motion a = any_pose(reach, random);
   return {a, any_pose(reach, random)};

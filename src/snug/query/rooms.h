@@ -10,7 +10,7 @@ namespace snug {
 
 /// The mesh moved and scaled so that its box has its middle at the origin and a longest side of 1. Tags stay.
 ///
-/// Requires:  a used box of positive, finite size.
+/// Errors:    InputError (value) unless the used box has a positive, finite size.
 /// Source:    [Wu05, sec. 5.1]: "scaled to tightly fit into a bounding box of size 1".
 [[nodiscard]] ControlMesh unit_model(ControlMesh mesh);
 
@@ -18,7 +18,7 @@ namespace snug {
 /// rotation alike. Middles stay half a unit away from the walls.
 ///
 /// Guarantee: rigid within a few roundings; the same for the same state of `random` with any standard library.
-/// Requires:  side > 1.
+/// Errors:    InputError (value) unless side > 1.
 /// Source:    [Wu05, sec. 5.1] after [Klosowski98]; differs: the text does not say whether models may stick out of the room.
 ///            With this choice fewer of our models collide than its heads say, see docs/tables.md.
 [[nodiscard]] PosePair place_in_room(double side, std::mt19937_64& random);

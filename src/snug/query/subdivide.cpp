@@ -101,18 +101,21 @@ ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned l
   Sharpness sharpness = primal ? sharpness_of(mesh, topology) : Sharpness{};
   for (unsigned step = 0; step < level; ++step) {
     monitor.report(static_cast<double>(step) / (level + 1.0));
-    RefinedTopology refined = refine(topology, rules, sharpness);
-    mesh = refined_mesh(mesh, rules, topology, refined);
+    RefinedTopology refined = refine(topology, rules, sharpness, monitor);
+    mesh = refined_mesh(mesh, rules, topology, refined, monitor);
     topology = std::move(refined.topology);
     sharpness = std::move(refined.sharpness);
   }
+  monitor.checkpoint();
   bool dropped = !primal && level > 0;
   if (limit) {
-    const Stencils rows = limit_stencils(topology, rules, sharpness);
+    const Stencils rows = limit_stencils(topology, rules, sharpness, monitor);
     std::vector<Point3> positions;
     positions.reserve(mesh.points.size());
-    for (std::size_t v = 0; v < mesh.points.size(); ++v)
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+      monitor.checkpoint();
       positions.push_back(rows.apply<Point3>(v, mesh.points));
+    }
     mesh.points = std::move(positions);
     const std::vector<bool> kept = faces_with_limit(mesh, topology, rules.scheme);
     if (!kept.empty()) {

@@ -15,7 +15,7 @@ namespace snug {
 /// Guarantee: connectivity and numbering as in scheme/refine.h; positions in double precision, within a few
 ///            units in the last place of the largest coordinate a level. Tags are decayed by as many steps.
 /// Errors:    InputError (refused) from require_subdividable, and if the result has more than 2^31 faces or a
-///            coordinate that does not fit a double.
+///            coordinate that does not fit a double. Interrupted.
 /// Cost:      linear in the result.
 [[nodiscard]] ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned level,
                                     bool limit, const WorkMonitor& monitor = {});

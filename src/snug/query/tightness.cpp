@@ -4,7 +4,7 @@
 #include <array>
 #include <memory>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 #include <snug/base/parallel.h>
 #include <snug/base/quantile.h>
 #include <snug/patch/evaluate.h>
@@ -13,7 +13,7 @@
 namespace snug {
 
 LimitLattice::LimitLattice(const Patch& patch, int steps) : patch_(patch), steps_(steps) {
-  SNUG_EXPECT(steps >= 1);
+  require_value(steps >= 1, "limit lattice: there are no steps; give at least 1");
   for (int j = 0; j <= steps; ++j) {
     for (int i = 0; i + j <= steps; ++i) {
       TriangleParameter at{static_cast<double>(i) / steps, static_cast<double>(j) / steps};
@@ -50,7 +50,7 @@ double LimitLattice::least_radius(const Triangle& base) const {
 }
 
 std::vector<TightnessRow> measure_tightness(const TightnessOptions& options, const WorkMonitor& monitor) {
-  SNUG_EXPECT(options.nets >= 1);
+  require_value(options.nets >= 1, "tightness: there are no nets; give at least 1");
   // Of a patch and a source; 0 where rounding makes up too much of the radius.
   struct Measured {
     double ratio = 0, over_rows = 0;
@@ -63,8 +63,7 @@ std::vector<TightnessRow> measure_tightness(const TightnessOptions& options, con
     const NetShape shape = all_net_shapes[job / experiment_valences.size()];
     const std::size_t n = experiment_valences[job % experiment_valences.size()];
     std::vector<std::array<Measured, all_bound_sources.size()>> all(2 * options.nets);
-    parallel_for(all.size(), options.threads, [&](std::size_t begin, std::size_t end) {
-      HullPoints scratch;
+    const auto measure = [&](HullPoints& scratch, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         monitor.checkpoint();
         const Surface surface(corner_net(shape, n, options.seed + i / 2), {}, library, 1);
@@ -80,7 +79,8 @@ std::vector<TightnessRow> measure_tightness(const TightnessOptions& options, con
           all[i][s] = {offset.radius / lattice.least_radius(offset.base), offset.radius / of_rows};
         }
       }
-    });
+    };
+    parallel_for_with(all.size(), options.threads, [] { return HullPoints{}; }, measure);
     for (std::size_t s = 0; s < all_bound_sources.size(); ++s) {
       std::vector<double> ratios, over_rows;
       for (const auto& patch : all) {

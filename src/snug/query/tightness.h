@@ -16,7 +16,8 @@ namespace snug {
 class LimitLattice {
  public:
   /// The points at all parameters (i, j) / steps.
-  /// Requires:  steps >= 1; the patch outlives this.
+  /// Requires:  the patch outlives this.
+  /// Errors:    InputError (value) unless steps >= 1.
   /// Cost:      (steps + 1) (steps + 2) / 2 limit points.
   LimitLattice(const Patch& patch, int steps);
 
@@ -58,7 +59,7 @@ struct TightnessRow {
 /// Rows of all shapes, valences and sources, in this order.
 ///
 /// Guarantee: the same for any number of threads.
-/// Requires:  nets >= 1, steps >= 1.
+/// Errors:    InputError (value) unless nets >= 1 and steps >= 1.
 /// Cost:      some 3 ms a net at the default steps.
 [[nodiscard]] std::vector<TightnessRow> measure_tightness(const TightnessOptions& options,
                                                           const WorkMonitor& monitor = {});

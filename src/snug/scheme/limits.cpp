@@ -482,11 +482,14 @@ void add_limit_row(const Topology& topology, VertexId v, const SchemeOptions& op
   add_product(limit.row(0), next.refined.stencils, next.part.names, out);
 }
 
-Stencils limit_stencils(const Topology& topology, const SchemeOptions& options, const Sharpness& sharpness) {
+Stencils limit_stencils(const Topology& topology, const SchemeOptions& options, const Sharpness& sharpness,
+                        const WorkMonitor& monitor) {
   Stencils out;
   out.reserve(topology.vertex_count(), 7 * topology.vertex_count());
-  for (std::size_t v = 0; v < topology.vertex_count(); ++v)
+  for (std::size_t v = 0; v < topology.vertex_count(); ++v) {
+    monitor.checkpoint();
     add_limit_row(topology, VertexId(v), options, sharpness, out);
+  }
   return out;
 }
 

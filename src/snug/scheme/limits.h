@@ -1,5 +1,6 @@
 #pragma once
 
+#include <snug/base/progress.h>
 #include <snug/scheme/creases.h>
 #include <snug/scheme/scheme.h>
 #include <snug/scheme/stencils.h>
@@ -8,8 +9,9 @@ namespace snug {
 
 /// Limit position of every vertex; rows of isolated vertices give the vertex itself. For dual schemes a vertex stands for the middle of its patch; at the boundary, where
 /// there is none, for itself.
+/// Errors:    Interrupted.
 [[nodiscard]] Stencils limit_stencils(const Topology& topology, const SchemeOptions& options,
-                                      const Sharpness& sharpness = {});
+                                      const Sharpness& sharpness = {}, const WorkMonitor& monitor = {});
 
 /// Adds the limit row of one vertex to `out`, if it can be read off the star of the vertex: where nothing decays any more,
 /// and with Catmull-Clark among quads. Returns whether it could.

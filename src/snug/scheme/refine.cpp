@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include <snug/base/contract.h>
 #include <snug/scheme/catmark_masks.h>
 #include <snug/scheme/dual_masks.h>
 #include <snug/scheme/loop_masks.h>
@@ -290,29 +289,40 @@ Sharpness sharpness_left(const Topology& topology, const SchemeOptions& options,
 }
 
 RefinedTopology refine_primal(const Topology& topology, const SchemeOptions& options,
-                              const Sharpness& sharpness) {
+                              const Sharpness& sharpness, const WorkMonitor& monitor) {
   const std::size_t vertices = topology.vertex_count(), edges = topology.edge_count();
   RefinedTopology result;
   result.stencils.reserve(vertices + edges, 7 * vertices + 4 * edges);
   PrimalRows rows(topology, options, sharpness);
-  for (std::size_t v = 0; v < vertices; ++v) rows.add_vertex(VertexId(v), result.stencils);
-  for (std::size_t e = 0; e < edges; ++e) rows.add_edge(EdgeId(e), result.stencils);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    monitor.checkpoint();
+    rows.add_vertex(VertexId(v), result.stencils);
+  }
+  for (std::size_t e = 0; e < edges; ++e) {
+    monitor.checkpoint();
+    rows.add_edge(EdgeId(e), result.stencils);
+  }
   if (options.scheme == Scheme::loop) {
     result.topology = loop_faces(topology);
   } else {
-    for (std::size_t f = 0; f < topology.face_count(); ++f) rows.add_centre(FaceId(f), result.stencils);
+    for (std::size_t f = 0; f < topology.face_count(); ++f) {
+      monitor.checkpoint();
+      rows.add_centre(FaceId(f), result.stencils);
+    }
     result.topology = catmark_faces(topology);
   }
+  monitor.checkpoint();
   result.sharpness = sharpness_left(topology, options, sharpness, result.topology);
   return result;
 }
 
-RefinedTopology refine_dual(const Topology& topology, Scheme scheme) {
+RefinedTopology refine_dual(const Topology& topology, Scheme scheme, const WorkMonitor& monitor) {
   RefinedTopology result;
   std::vector<std::uint32_t> offsets{0};
   std::vector<VertexId> corners;
   const auto end_face = [&] { offsets.push_back(static_cast<std::uint32_t>(corners.size())); };
   for (std::size_t f = 0; f < topology.face_count(); ++f) {
+    monitor.checkpoint();
     const auto face = topology.face(FaceId(f));
     const std::size_t n = face.size();
     const std::vector<Interval> mask =
@@ -327,6 +337,7 @@ RefinedTopology refine_dual(const Topology& topology, Scheme scheme) {
     end_face();
   }
   for (std::size_t e = 0; e < topology.edge_count(); ++e) {
+    monitor.checkpoint();
     const HalfEdge h = topology.half_of(EdgeId(e)), g = topology.twin(h);
     if (g == no_half_edge) continue;
     for (const HalfEdge corner : {topology.next(h), h, topology.next(g), g}) corners.emplace_back(corner);
@@ -371,9 +382,10 @@ MeshTags refined_tags(const ControlMesh& mesh, const SchemeOptions& options, con
 
 }  // namespace
 
-RefinedTopology refine(const Topology& topology, const SchemeOptions& options, const Sharpness& sharpness) {
-  return is_primal(options.scheme) ? refine_primal(topology, options, sharpness)
-                                   : refine_dual(topology, options.scheme);
+RefinedTopology refine(const Topology& topology, const SchemeOptions& options, const Sharpness& sharpness,
+                       const WorkMonitor& monitor) {
+  return is_primal(options.scheme) ? refine_primal(topology, options, sharpness, monitor)
+                                   : refine_dual(topology, options.scheme, monitor);
 }
 
 ControlMesh refine(const ControlMesh& mesh, const SchemeOptions& options) {
@@ -382,14 +394,17 @@ ControlMesh refine(const ControlMesh& mesh, const SchemeOptions& options) {
 }
 
 ControlMesh refined_mesh(const ControlMesh& mesh, const SchemeOptions& options, const Topology& topology,
-                         const RefinedTopology& refined) {
+                         const RefinedTopology& refined, const WorkMonitor& monitor) {
   ControlMesh result;
   result.points.reserve(refined.stencils.row_count());
   for (std::size_t r = 0; r < refined.stencils.row_count(); ++r) {
+    monitor.checkpoint();
     result.points.push_back(refined.stencils.apply<Point3>(r, mesh.points));
   }
-  for (std::size_t f = 0; f < refined.topology.face_count(); ++f)
+  for (std::size_t f = 0; f < refined.topology.face_count(); ++f) {
+    monitor.checkpoint();
     result.add_face(refined.topology.face(FaceId(f)));
+  }
   result.tags = refined_tags(mesh, options, topology, refined);
   return result;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <snug/base/progress.h>
 #include <snug/mesh/topology.h>
 #include <snug/scheme/creases.h>
 #include <snug/scheme/scheme.h>
@@ -40,16 +41,19 @@ struct RefinedTopology {
 
 /// Requires:  a topology that require_subdividable accepts, or a part of one: rules at its rim are those of a
 ///            boundary.
+/// Errors:    Interrupted; InputError (refused) where the step takes more than 2^32 weights.
 /// Cost:      linear.
 [[nodiscard]] RefinedTopology refine(const Topology& topology, const SchemeOptions& options,
-                                     const Sharpness& sharpness = {});
+                                     const Sharpness& sharpness = {}, const WorkMonitor& monitor = {});
 
 /// A refined control mesh, its tags decayed; tags that do not change the surface are left out of it.
 /// Requires:  options as with_tags() makes them.
 [[nodiscard]] ControlMesh refine(const ControlMesh& mesh, const SchemeOptions& options);
 /// The same, of a step that refine() has made. Several steps of a non-manifold mesh need this one: connectivity and
 /// sharpness of the step know what the mesh cannot say (Sharpness::vertices_complete).
+/// Errors:    Interrupted.
 [[nodiscard]] ControlMesh refined_mesh(const ControlMesh& mesh, const SchemeOptions& options,
-                                       const Topology& topology, const RefinedTopology& refined);
+                                       const Topology& topology, const RefinedTopology& refined,
+                                       const WorkMonitor& monitor = {});
 
 }  // namespace snug

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 #include <snug/base/rounding.h>
 
 namespace snug {
@@ -23,7 +23,9 @@ void Stencils::add(std::uint32_t source, double weight, double error) {
 }
 
 void Stencils::end_row() {
-  SNUG_EXPECT(sources_.size() <= UINT32_MAX);
+  if (sources_.size() > UINT32_MAX) {
+    throw InputError(InputProblem::refused, "a mesh this large takes more than 2^32 weights: take a lower level");
+  }
   const std::size_t entries = sources_.size() - offsets_.back();
   offsets_.push_back(static_cast<std::uint32_t>(sources_.size()));
   const double slack = 1 + gamma_bound(entries + 2);

@@ -5,7 +5,6 @@
 #include <map>
 #include <utility>
 
-#include <snug/base/contract.h>
 #include <snug/base/error.h>
 #include <snug/base/parallel.h>
 #include <snug/base/rounding.h>
@@ -92,6 +91,10 @@ PatchBounds::PatchBounds(const Surface& surface, std::optional<TableLayout> tabl
 PatchBounds::PatchBounds(const Surface& surface, std::vector<PatchId> patches,
                          std::optional<TableLayout> table, int threads)
     : library_(&surface.library()), patches_(std::move(patches)) {
+  for (const PatchId p : patches_) {
+    require_value(p.index() < surface.patch_count() && surface.has_patch(p),
+                  "patch bounds: there is no such patch; has_patch() tells which are there");
+  }
   sort_by_kind(surface);
   collect_control(surface);
   parallel_for(groups_.size(), threads, [&](std::size_t begin, std::size_t end) {
@@ -162,7 +165,8 @@ void PatchBounds::collect_control(const Surface& surface) {
 }
 
 void PatchBounds::update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads) {
-  SNUG_EXPECT(points.size() == scaled_.size() && out.size() == patches_.size());
+  require_value(points.size() == scaled_.size(), "patch bounds: give a point for each vertex of the mesh");
+  require_value(out.size() == patches_.size(), "patch bounds: give room for an answer for each of patches()");
   const PowerOfTwo scale = normalising(points, unused_), back = scale.inverse();
   for (std::size_t v = 0; v < points.size(); ++v) scaled_[v] = scale.apply(points[v]);
   const auto work = [&](std::size_t begin, std::size_t end) {

@@ -18,9 +18,9 @@ class PatchBounds {
  public:
   /// Makes what the kinds of the surface need: their rows, or their tables in a layout.
   /// Requires:  the surface outlives the bounds.
+  /// Errors:    InputError (value) for a patch that is not there.
   explicit PatchBounds(const Surface& surface, std::optional<TableLayout> table = {}, int threads = 0);
   /// The same for some of the patches, in any order.
-  /// Requires:  each is there.
   PatchBounds(const Surface& surface, std::vector<PatchId> patches, std::optional<TableLayout> table = {},
               int threads = 0);
 
@@ -31,9 +31,9 @@ class PatchBounds {
   ///
   /// Guarantee: every limit point of a patch is within its radius of its base, rounding included; results do
   ///            not depend on threads. One thread allocates nothing after its first call.
-  /// Requires:  points: one for each vertex of the mesh; out.size() == patches().size().
-  /// Errors:    InputError (refused) if a point that a face uses is not finite, or a result no double. Then
-  ///            `out` is in no particular state.
+  /// Errors:    InputError (value) unless there is a point for each vertex of the mesh and out.size() == patches().size();
+  ///            (refused) if a point that a face uses is not finite, or a result no double. Then `out` is in no
+  ///            particular state.
   void update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads = 1);
 
   [[nodiscard]] std::size_t bytes() const;

@@ -4,14 +4,16 @@
 #include <unordered_set>
 #include <utility>
 
-#include <snug/base/contract.h>
+#include <snug/base/error.h>
 #include <snug/base/parallel.h>
 
 namespace snug {
 Surface::Surface(ControlMesh mesh, const SchemeOptions& options, std::shared_ptr<BoundLibrary> library,
                  int threads, const WorkMonitor& monitor)
     : mesh_(std::move(mesh)), options_(with_tags(options, mesh_.tags)), library_(std::move(library)) {
-  SNUG_EXPECT(library_ != nullptr && options_.vertex_rule == CatmarkVertexRule::standard);
+  require_value(library_ != nullptr, "surface: the library is null; give std::make_shared<BoundLibrary>()");
+  require_value(options_.vertex_rule == CatmarkVertexRule::standard,
+                "surface: limits are of the standard vertex rule only; the older one is for subdivide()");
   topology_ = require_surface(mesh_, options_);
   monitor.checkpoint();
   const Box3 box = used_box(mesh_);
@@ -107,7 +109,8 @@ const Kind* Surface::polygon_of(PatchId p) const {
 }
 
 void Surface::control_vertices(PatchId p, std::vector<VertexId>& out) const {
-  SNUG_EXPECT(has_patch(p));
+  require_value(p.index() < patch_count() && has_patch(p),
+                "surface: there is no such patch; has_patch() tells which are there");
   const PatchPlace at = place(p);
   HalfEdge start = start_of(at.owner);
   if (const Kind* polygon = polygon_of(p)) {

@@ -29,7 +29,7 @@ using PatchId = Id<struct PatchTag>;
 /// from mesh units. Everything below surface/ works in scaled units, everything that questions answer with is
 /// in mesh units.
 ///
-/// Errors:    InputError (refused) from require_subdividable.
+/// Errors:    InputError (refused) from require_subdividable, and (value) for a library that is null or the older vertex rule.
 /// Cost:      linear; 9 bytes a patch beside mesh and topology. Rows of kinds are made when a patch is first
 ///            bounded.
 class Surface {
@@ -82,13 +82,13 @@ class Surface {
   /// The kind of the polygon that a patch is made of in a first split; none for others.
   [[nodiscard]] const Kind* polygon_of(PatchId p) const;
   /// The control vertices of a patch, or of its polygon, in the order of its kind.
-  /// Requires:  has_patch(p).
+  /// Errors:    InputError (value) unless has_patch(p).
   void control_vertices(PatchId p, std::vector<VertexId>& out) const;
   [[nodiscard]] const Point3& scaled_point(VertexId v) const { return scaled_[v.index()]; }
   /// The middle of its owner's corners, in scaled units.
   [[nodiscard]] Point3 middle(PatchId p) const;
   /// The whole patch, in scaled units.
-  /// Requires:  has_patch(p).
+  /// Errors:    InputError (value) unless has_patch(p).
   /// Cost:      a walk around its corners; of a polygon a product with its stencils.
   [[nodiscard]] Patch patch(PatchId p) const;
   /// Names of the patch's three corners: equal names, equal limit points. Below corner_name_count().

@@ -1,0 +1,188 @@
+// What a caller of the library gets wrong is an InputError with a code, never the end of the process.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <snug/patch/evaluate.h>
+#include <snug/patch/quad_parameter.h>
+#include <snug/query/bound.h>
+#include <snug/query/bound_curve.h>
+#include <snug/query/closest.h>
+#include <snug/query/collide.h>
+#include <snug/query/convergence.h>
+#include <snug/query/corner_nets.h>
+#include <snug/query/distance.h>
+#include <snug/query/evaluate.h>
+#include <snug/query/evaluate_curve.h>
+#include <snug/query/rooms.h>
+#include <snug/query/tightness.h>
+#include <snug/surface/patch_bounds.h>
+
+namespace snug {
+namespace {
+
+template <class Call>
+void expect_refused(const char* what, const Call& call) {
+  try {
+    call();
+    ADD_FAILURE() << what << ": not refused";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problem(), InputProblem::value) << what << ": " << error.what();
+    const std::string message = error.what();
+    EXPECT_GT(message.size(), 10u) << what;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << what;
+  }
+}
+
+ControlMesh square() {
+  ControlMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.25}, {0, 1, 0}};
+  mesh.add_face(std::array{VertexId(0), VertexId(1), VertexId(2), VertexId(3)});
+  return mesh;
+}
+
+ControlMesh triangle() {
+  ControlMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.25}};
+  mesh.add_face(std::array{VertexId(0), VertexId(1), VertexId(2)});
+  return mesh;
+}
+
+Surface surface_of(ControlMesh mesh, Scheme scheme) {
+  SchemeOptions options;
+  options.scheme = scheme;
+  return {std::move(mesh), options, std::make_shared<BoundLibrary>(), 1};
+}
+
+const std::vector<double> no_numbers{NAN, INFINITY, -INFINITY};
+
+TEST(callers_mistakes, a_surface_needs_a_library_and_the_standard_rule) {
+  expect_refused("null", [] { Surface(square(), {.scheme = Scheme::catmark}, nullptr, 1); });
+  SchemeOptions older;
+  older.scheme = Scheme::catmark;
+  older.vertex_rule = CatmarkVertexRule::older;
+  expect_refused("older", [&] { Surface(square(), older, std::make_shared<BoundLibrary>(), 1); });
+  const Surface surface = surface_of(square(), Scheme::catmark);
+  expect_refused("patch", [&] { static_cast<void>(surface.patch(PatchId(2))); });
+  expect_refused("no patch", [&] { static_cast<void>(surface.patch(PatchId())); });
+}
+
+TEST(callers_mistakes, bound_needs_a_positive_tolerance_and_a_level_that_there_is) {
+  const Surface surface = surface_of(square(), Scheme::catmark);
+  const auto run = [&](const BoundOptions& options) { bound(surface, options, [](const PieceEnclosure&) {}); };
+  for (const double tolerance : {NAN, INFINITY, -INFINITY, 0.0, -0.0, -1e-300}) {
+    expect_refused("tolerance", [&] { run({.tolerance = tolerance}); });
+  }
+  expect_refused("level", [&] { run({.level = 61}); });
+  expect_refused("level", [&] { run({.level = UINT32_MAX}); });
+}
+
+TEST(callers_mistakes, points_of_a_surface_have_parameters_on_it) {
+  const Surface quad = surface_of(square(), Scheme::catmark), loop = surface_of(triangle(), Scheme::loop);
+  PatchEvaluator of_quad(quad, PatchId(0)), of_loop(loop, PatchId(0));
+  const std::vector<double> outside{NAN, INFINITY, -INFINITY, -1e-300, 1 + 0x1p-52};
+  for (const double x : outside) {
+    expect_refused("quad u", [&] { static_cast<void>(evaluate(quad, {0, 0, x, 0})); });
+    expect_refused("quad v", [&] { static_cast<void>(evaluate(quad, {0, 0, 0, x})); });
+    expect_refused("loop u", [&] { static_cast<void>(evaluate(loop, {0, 0, x, 0})); });
+    expect_refused("evaluator of a quad", [&] { static_cast<void>(of_quad(SurfaceParameter{0, 0, x, 0})); });
+    expect_refused("evaluator of a triangle", [&] { static_cast<void>(of_loop(TriangleParameter{0, x})); });
+    expect_refused("position", [&] { static_cast<void>(of_loop.position({x, 0})); });
+    expect_refused("patch", [&] { static_cast<void>(limit_point(loop.patch(PatchId(0)), {x, 0})); });
+    expect_refused("half", [&] { static_cast<void>(limit_point(quad.patch(PatchId(0)), QuadParameter{x, 0})); });
+  }
+  expect_refused("sum", [&] { static_cast<void>(evaluate(loop, {0, 0, 0.5, 0.5 + 0x1p-52})); });
+  expect_refused("owner", [&] { static_cast<void>(evaluate(quad, {1, 0, 0, 0})); });
+  expect_refused("corner", [&] { static_cast<void>(evaluate(quad, {0, 1, 0, 0})); });
+  expect_refused("no such patch", [&] { PatchEvaluator(quad, PatchId(7)); });
+  LimitEvaluator empty;
+  expect_refused("no patch", [&] { static_cast<void>(empty({0, 0})); });
+  std::vector<LimitPoint> one(1);
+  const std::vector<TriangleParameter> two(2);
+  LimitEvaluator whole(loop.patch(PatchId(0)));
+  expect_refused("room", [&] { whole(two, one); });
+}
+
+TEST(callers_mistakes, curves_have_edges_parameters_and_no_tables) {
+  ControlMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+  mesh.add_polyline(std::array{VertexId(0), VertexId(1), VertexId(2)});
+  const CurveSet curves(std::move(mesh), CurveDegree::cubic);
+  const auto run = [&](const BoundOptions& options) { bound(curves, options, [](const CurveEnclosure&) {}); };
+  expect_refused("tables", [&] { run({.method = BoundMethod::table}); });
+  expect_refused("tolerance", [&] { run({.tolerance = -1}); });
+  expect_refused("level", [&] { run({.level = 61}); });
+  expect_refused("edge", [&] { static_cast<void>(evaluate(curves, EdgeId(2), 0)); });
+  for (const double t : {NAN, -1e-300, 1 + 0x1p-52}) {
+    expect_refused("t", [&] { static_cast<void>(evaluate(curves, EdgeId(0), t)); });
+  }
+}
+
+TEST(callers_mistakes, patch_bounds_take_a_point_a_vertex_and_patches_that_there_are) {
+  const Surface surface = surface_of(square(), Scheme::catmark);
+  PatchBounds bounds(surface, {}, 1);
+  std::vector<Point3> points = surface.mesh().points;
+  std::vector<OffsetTriangle> out(bounds.patches().size());
+  EXPECT_NO_THROW(bounds.update(points, out));
+  expect_refused("room", [&] { bounds.update(points, std::span(out).first(1)); });
+  points.pop_back();
+  expect_refused("points", [&] { bounds.update(points, out); });
+  expect_refused("patch", [&] { PatchBounds(surface, std::vector{PatchId(2)}, {}, 1); });
+  expect_refused("no patch", [&] { PatchBounds(surface, std::vector{PatchId()}, {}, 1); });
+}
+
+TEST(callers_mistakes, queries_take_finite_numbers_and_a_scratch_for_each_model) {
+  const Surface surface = surface_of(square(), Scheme::catmark);
+  const QueryModel a(surface, {.threads = 1}), b(surface, {.threads = 1}),
+      boxes(surface, {.volume = Volume::aabb, .threads = 1});
+  QueryScratch at_a(a), at_b(b), at_boxes(boxes);
+  for (const double x : no_numbers) {
+    expect_refused("point", [&] { static_cast<void>(closest_point(at_a, {x, 0, 0}, {})); });
+    expect_refused("points", [&] { static_cast<void>(closest_points(a, std::vector<Point3>{{0, 0, x}}, {}, 2)); });
+    expect_refused("precision", [&] { static_cast<void>(closest_point(at_a, {}, {.absolute = x})); });
+    expect_refused("tolerance", [&] {
+      static_cast<void>(collide({a, at_a, {}}, {b, at_b, {}}, {.tolerance = x}));
+    });
+    expect_refused("relative", [&] {
+      static_cast<void>(distance({a, at_a, {}}, {b, at_b, {}}, {.relative = x}));
+    });
+  }
+  expect_refused("one scratch for two", [&] {
+    static_cast<void>(collide({a, at_a, {}}, {a, at_a, {}}, {.tolerance = 1}));
+  });
+  expect_refused("another's scratch", [&] {
+    static_cast<void>(distance({a, at_b, {}}, {b, at_a, {}}, {}));
+  });
+  expect_refused("two sorts of volume", [&] {
+    static_cast<void>(collide({a, at_a, {}}, {boxes, at_boxes, {}}, {.tolerance = 1}));
+  });
+}
+
+TEST(callers_mistakes, experiments_need_something_to_measure) {
+  expect_refused("nets", [] { static_cast<void>(measure_tightness({.nets = 0})); });
+  expect_refused("steps", [] { static_cast<void>(measure_tightness({.nets = 1, .steps = 0})); });
+  RateOptions rates;
+  rates.levels = 61;
+  expect_refused("levels", [&] { static_cast<void>(measure_rates(rates)); });
+  expect_refused("corners", [] { static_cast<void>(polygon_mesh(2)); });
+  expect_refused("rings", [] { static_cast<void>(fan_mesh(3, 0)); });
+  expect_refused("size", [] { static_cast<void>(unit_model({})); });
+  std::mt19937_64 random(1);
+  expect_refused("room", [&] { static_cast<void>(place_in_room(1, random)); });
+}
+
+TEST(callers_mistakes, messages_tell_small_numbers_from_zero) {
+  try {
+    require_length(-1e-300, "the tolerance");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "the tolerance is -1e-300: give a finite number that is not negative");
+  }
+}
+
+}  // namespace
+}  // namespace snug
