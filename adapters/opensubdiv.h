@@ -187,7 +187,8 @@ MeshAndOptions read_strided(const Far::TopologyRefiner& refiner, std::span<const
                                                  std::span<const Point3> points) {
   MeshAndOptions result = detail::read_topology(refiner);
   const auto count = static_cast<std::size_t>(refiner.GetLevel(0).GetNumVertices());
-  require_value(points.size() >= count, "from_refiner: there are fewer points than vertices of the base level");
+  require_value(points.size() >= count,
+                "from_refiner: there are fewer points than vertices of the base level");
   result.mesh.points.assign(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count));
   return result;
 }

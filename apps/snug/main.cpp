@@ -1,4 +1,8 @@
+#include <execinfo.h>
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <stdexcept>
@@ -19,8 +23,29 @@ namespace {
 
 using namespace snug::command;
 
-constexpr const char* out_of_memory =
-    "out of memory: the mesh or the answer is too large for this machine";
+constexpr const char* out_of_memory = "out of memory: the mesh or the answer is too large for this machine";
+
+// Memory for the way out, a part for each failure: without it unwinding, and what the C library allocates meanwhile, would
+// end the process. Parts are small enough to come from the heap.
+std::array<std::atomic<void*>, 64> reserve;
+
+void release_a_part() {
+  for (std::atomic<void*>& part : reserve) {
+    if (void* const memory = part.exchange(nullptr)) {
+      std::free(memory);
+      break;
+    }
+  }
+  throw std::bad_alloc();
+}
+
+void prepare_for_lack_of_memory() {
+  for (std::atomic<void*>& part : reserve) part = std::malloc(std::size_t{8} << 10);
+  std::set_new_handler(release_a_part);
+  // The C library loads what it needs to unwind through itself (std::call_once) now, while it can.
+  void* frame = nullptr;
+  static_cast<void>(backtrace(&frame, 1));
+}
 
 int fail(ExitStatus status, std::string_view message) {
   tell(message);
@@ -76,5 +101,6 @@ int guarded_answer(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   hold_standard_descriptors();
+  prepare_for_lack_of_memory();
   return guarded_answer(argc, argv);
 }

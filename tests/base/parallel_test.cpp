@@ -33,7 +33,8 @@ TEST(parallel_for, makes_one_state_a_thread) {
     EXPECT_LE(states, threads);
     for (const auto& count : seen) ASSERT_EQ(count, 1);
   }
-  parallel_for_with(0, 4, [] { return ADD_FAILURE(), 0; }, [](int, std::size_t, std::size_t) { FAIL(); });
+  parallel_for_with(
+      0, 4, [] { return ADD_FAILURE(), 0; }, [](int, std::size_t, std::size_t) { FAIL(); });
 }
 
 TEST(parallel_for, works_inside_of_itself) {
@@ -54,10 +55,10 @@ TEST(parallel_for, hands_on_an_exception_of_any_thread) {
                               }),
                  std::bad_alloc);
   }
-  EXPECT_THROW(parallel_for_with(
-                   100, 4, []() -> int { throw std::runtime_error("state"); },
-                   [](int, std::size_t, std::size_t) {}),
-               std::runtime_error);
+  EXPECT_THROW(
+      parallel_for_with(
+          100, 4, []() -> int { throw std::runtime_error("state"); }, [](int, std::size_t, std::size_t) {}),
+      std::runtime_error);
 }
 
 TEST(parallel_for, hands_on_exceptions) {

@@ -63,7 +63,8 @@ TEST(border, standard_error_may_be_closed_or_full) {
     EXPECT_EQ(run_snug_in(silent, {"info", "nofile"}).status, 3);
     EXPECT_EQ(run_snug_in(silent, {"info"}).status, 2);
     EXPECT_EQ(run_snug_in(silent, {"info", model("star.obj")}).status, 0);
-    EXPECT_EQ(run_snug_in(silent, {"subdivide", model("star.obj"), "--level", "40", "-o", "x.obj"}).status, 2);
+    EXPECT_EQ(run_snug_in(silent, {"subdivide", model("star.obj"), "--level", "40", "-o", "x.obj"}).status,
+              2);
   }
 }
 
@@ -154,12 +155,13 @@ TEST(border, the_output_is_tried_before_any_work) {
     expect_one_line(outcome, command[0]);
     EXPECT_NE(outcome.err.find(target), std::string::npos) << command[0] << ": " << outcome.err;
   };
-  const std::vector<std::vector<std::string>> questions{{"info", "none.obj"},
-                                                        {"bound", "none.obj"},
-                                                        {"eval", "none.obj"},
-                                                        {"collide", "none.obj", "none.obj", "--tolerance", "0"},
-                                                        {"distance", "none.obj", "none.obj"},
-                                                        {"closest", "none.obj", "--points", "none.txt"}};
+  const std::vector<std::vector<std::string>> questions{
+      {"info", "none.obj"},
+      {"bound", "none.obj"},
+      {"eval", "none.obj"},
+      {"collide", "none.obj", "none.obj", "--tolerance", "0"},
+      {"distance", "none.obj", "none.obj"},
+      {"closest", "none.obj", "--points", "none.txt"}};
   for (std::vector<std::string> command : questions) {
     command.insert(command.end(), {"-o", "/nowhere/at/all.json"});
     expect_named(command, "/nowhere/at/all.json", 3);
@@ -180,16 +182,17 @@ TEST(border, the_output_is_tried_before_any_work) {
 
 TEST(border, errors_are_one_line_whatever_an_argument_holds) {
   const std::string strange = "a\nb\r\tc\x1b[31m\x07\x7f\xff\xc0\xaf\xed\xa0\x80\xe2\x80\xa8\xc2\x85.obj";
-  const std::vector<std::vector<std::string>> commands{{"info", strange},
-                                                       {"info", model("star.obj"), "--" + strange},
-                                                       {"info", model("star.obj"), "--scheme", strange},
-                                                       {"info", model("star.obj"), "-o", strange},
-                                                       {"info", model("star.obj"), "--threads", strange},
-                                                       {"bound", model("star.obj"), "--tolerance", strange},
-                                                       {"subdivide", model("star.obj"), "-o", "/no/" + strange},
-                                                       {"render", model("star.obj"), "-o", strange},
-                                                       {"render", strange, "-o", "x.png"},
-                                                       {"experiment", strange}};
+  const std::vector<std::vector<std::string>> commands{
+      {"info", strange},
+      {"info", model("star.obj"), "--" + strange},
+      {"info", model("star.obj"), "--scheme", strange},
+      {"info", model("star.obj"), "-o", strange},
+      {"info", model("star.obj"), "--threads", strange},
+      {"bound", model("star.obj"), "--tolerance", strange},
+      {"subdivide", model("star.obj"), "-o", "/no/" + strange},
+      {"render", model("star.obj"), "-o", strange},
+      {"render", strange, "-o", "x.png"},
+      {"experiment", strange}};
   for (const std::vector<std::string>& command : commands) {
     const Outcome outcome = run_snug(command);
     EXPECT_TRUE(outcome.status == 2 || outcome.status == 3) << outcome.status;
@@ -231,7 +234,8 @@ void expect_one_thread_and_a_note(const Surroundings& poor) {
     EXPECT_EQ(answer(outcome), answer(usual));
     EXPECT_EQ(usual.err, "");
     expect_one_line(outcome, command[0]);
-    EXPECT_NE(outcome.err.find("note: the system refused to start threads"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("note: the system refused to start threads"), std::string::npos)
+        << outcome.err;
     command.emplace_back("--quiet");
     EXPECT_EQ(run_snug_in(poor, command).err, "");
   }
@@ -260,15 +264,17 @@ TEST(border, memory_that_is_not_enough_is_status_4_on_every_thread) {
   SNUG_SKIP_UNDER_SANITIZERS();
   const TemporaryFolder folder;
   int answered = 0, refused = 0;
-  for (rlim_t mib = 24; mib <= 700; mib += mib / 4) {
+  for (rlim_t mib = 24; mib <= 300; mib += mib / 8) {
     const Surroundings small{[mib] {
                                const rlimit memory{mib << 20, mib << 20};
                                setrlimit(RLIMIT_AS, &memory);
                              },
                              {}};
     const std::vector<std::vector<std::string>> commands{
-        {"bound", model("pawn.obj"), "--level", "3", "--threads", "4", "--quiet", "-o", folder.file("a.json")},
-        {"render", model("star.obj"), "--size", "100", "--threads", "4", "--quiet", "-o", folder.file("b.png")},
+        {"bound", model("pawn.obj"), "--level", "3", "--threads", "4", "--quiet", "-o",
+         folder.file("a.json")},
+        {"render", model("star.obj"), "--size", "100", "--threads", "4", "--quiet", "-o",
+         folder.file("b.png")},
         {"subdivide", model("star.obj"), "--level", "6", "--quiet", "-o", folder.file("c.obj")}};
     for (const std::vector<std::string>& command : commands) {
       const Outcome outcome = run_snug_in(small, command);
@@ -284,15 +290,17 @@ TEST(border, memory_that_is_not_enough_is_status_4_on_every_thread) {
       EXPECT_TRUE(folder.empty()) << command[0];
     }
   }
-  EXPECT_GT(answered, 5);
-  EXPECT_GT(refused, 5);
+  EXPECT_GT(answered, 2);
+  EXPECT_GT(refused, 2);
 }
 
 TEST(border, a_signal_at_mains_first_statement_is_status_130) {
   SNUG_SKIP_UNDER_SANITIZERS();
   const TemporaryFolder folder;
   const std::vector<std::vector<std::string>> commands{
-      {"info", model("star.obj")}, {"subdivide", model("star.obj"), "-o", folder.file("a.obj")}, {"info", "none"}};
+      {"info", model("star.obj")},
+      {"subdivide", model("star.obj"), "-o", folder.file("a.obj")},
+      {"info", "none"}};
   for (const std::vector<std::string>& command : commands) {
     const Outcome outcome = run_snug_in(preloading(SNUG_EARLY_SIGNAL), command);
     EXPECT_EQ(outcome.status, 130);
@@ -302,11 +310,23 @@ TEST(border, a_signal_at_mains_first_statement_is_status_130) {
   EXPECT_TRUE(folder.empty());
 }
 
+// Has the process told the system that it handles SIGINT?
+bool handles_signals(int child) {
+  std::ifstream status("/proc/" + std::to_string(child) + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("SigCgt:"))
+      return (std::stoull(line.substr(7), nullptr, 16) >> (SIGINT - 1) & 1u) != 0;
+  }
+  return false;
+}
+
 // Waits until the command has been at work for a while, signals it, and waits for its end.
-double seconds_to_end(const std::vector<std::string>& command, int milliseconds, int signals, int signal = SIGINT) {
+double seconds_to_end(const std::vector<std::string>& command, int milliseconds, int signals,
+                      int signal = SIGINT) {
   auto sent = std::chrono::steady_clock::now();
   const Outcome outcome = run_snug_in({{},
                                        [&](int child) {
+                                         while (!handles_signals(child)) std::this_thread::yield();
                                          std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
                                          sent = std::chrono::steady_clock::now();
                                          for (int i = 0; i < signals; ++i) {
@@ -324,15 +344,15 @@ TEST(border, subdivide_stops_soon_after_a_signal) {
   const TemporaryFolder folder;
   for (const char* name : {"out.obj", "out.ply", "out.stl"}) {
     // Half a second is what is promised; a loaded machine may need more to end a process.
-    for (const int wait : {30, 300, 1500}) {
-      const std::vector<std::string> command{"subdivide", model("head.obj"), "--level", "8", "--quiet", "-o",
-                                             folder.file(name)};
+    for (const int wait : {0, 30, 300, 1500}) {
+      const std::vector<std::string> command{"subdivide", model("head.obj"), "--level", "8", "--quiet",
+                                             "-o",        folder.file(name)};
       EXPECT_LT(seconds_to_end(command, wait, 1), 2) << name << wait;
     }
   }
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    const std::vector<std::string> command{"subdivide", model("head.obj"), "--level", "8", "--quiet", "-o",
-                                           folder.file("out.obj")};
+    const std::vector<std::string> command{"subdivide", model("head.obj"),     "--level", "8", "--quiet",
+                                           "-o",        folder.file("out.obj")};
     EXPECT_LT(seconds_to_end(command, 200, 1, signal), 2);
     EXPECT_LT(seconds_to_end(command, 200, 2, signal), 2);
   }

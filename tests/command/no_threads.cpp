@@ -3,7 +3,7 @@
 
 #include <cerrno>
 
-extern "C" int pthread_create(pthread_t* /*unused*/, const pthread_attr_t* /*unused*/, void* (*/*unused*/)(void*),
-                              void* /*unused*/) {
+extern "C" int pthread_create(pthread_t* /*unused*/, const pthread_attr_t* /*unused*/,
+                              void* (* /*unused*/)(void*), void* /*unused*/) {
   return EAGAIN;
 }

@@ -22,7 +22,8 @@ struct Surroundings {
   /// Called with the number of the process while it runs.
   std::function<void(int)> meanwhile;
 };
-[[nodiscard]] Outcome run_snug_in(const Surroundings& surroundings, const std::vector<std::string>& arguments);
+[[nodiscard]] Outcome run_snug_in(const Surroundings& surroundings,
+                                  const std::vector<std::string>& arguments);
 
 /// Starts the command, sends it SIGINT after `milliseconds`, and waits.
 [[nodiscard]] Outcome interrupt_snug(const std::vector<std::string>& arguments, int milliseconds);

@@ -96,8 +96,9 @@ TEST(atomic_file, a_trial_leaves_everything_as_it_was) {
   require_writable(folder / "pipe");  // does not wait for a reader
   EXPECT_EQ(folder.entries(), 2u);
   EXPECT_EQ(read_file(folder / "kept"), "old");
-  EXPECT_TRUE(unreadable([&] { require_writable(folder / "no/file"); }, "no/file"));
-  EXPECT_TRUE(unreadable([&] { require_writable(folder / ""); }, "Is a directory"));
+  EXPECT_NE(unreadable([&] { require_writable(folder / "no/file"); }).find("No such file"),
+            std::string::npos);
+  EXPECT_NE(unreadable([&] { require_writable(folder.path()); }).find("Is a directory"), std::string::npos);
 }
 
 TEST(atomic_file, replaces_the_bytes_and_keeps_the_permissions) {

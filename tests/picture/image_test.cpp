@@ -8,7 +8,6 @@
 
 #include <snug/base/error.h>
 
-
 namespace snug {
 namespace {
 

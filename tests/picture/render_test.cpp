@@ -9,7 +9,6 @@
 
 #include <snug/base/error.h>
 
-
 namespace snug {
 namespace {
 

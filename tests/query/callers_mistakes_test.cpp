@@ -73,8 +73,10 @@ TEST(callers_mistakes, a_surface_needs_a_library_and_the_standard_rule) {
 
 TEST(callers_mistakes, bound_needs_a_positive_tolerance_and_a_level_that_there_is) {
   const Surface surface = surface_of(square(), Scheme::catmark);
-  const auto run = [&](const BoundOptions& options) { bound(surface, options, [](const PieceEnclosure&) {}); };
-  for (const double tolerance : {NAN, INFINITY, -INFINITY, 0.0, -0.0, -1e-300}) {
+  const auto run = [&](const BoundOptions& options) {
+    bound(surface, options, [](const PieceEnclosure&) {});
+  };
+  for (const double tolerance : std::vector<double>{NAN, INFINITY, -INFINITY, 0, -1e-300}) {
     expect_refused("tolerance", [&] { run({.tolerance = tolerance}); });
   }
   expect_refused("level", [&] { run({.level = 61}); });
@@ -92,8 +94,12 @@ TEST(callers_mistakes, points_of_a_surface_have_parameters_on_it) {
     expect_refused("evaluator of a quad", [&] { static_cast<void>(of_quad(SurfaceParameter{0, 0, x, 0})); });
     expect_refused("evaluator of a triangle", [&] { static_cast<void>(of_loop(TriangleParameter{0, x})); });
     expect_refused("position", [&] { static_cast<void>(of_loop.position({x, 0})); });
-    expect_refused("patch", [&] { static_cast<void>(limit_point(loop.patch(PatchId(0)), {x, 0})); });
-    expect_refused("half", [&] { static_cast<void>(limit_point(quad.patch(PatchId(0)), QuadParameter{x, 0})); });
+    expect_refused("patch", [&] {
+      static_cast<void>(limit_point(loop.patch(PatchId(0)), TriangleParameter{x, 0}));
+    });
+    expect_refused("half", [&] {
+      static_cast<void>(limit_point(quad.patch(PatchId(0)), QuadParameter{x, 0}));
+    });
   }
   expect_refused("sum", [&] { static_cast<void>(evaluate(loop, {0, 0, 0.5, 0.5 + 0x1p-52})); });
   expect_refused("owner", [&] { static_cast<void>(evaluate(quad, {1, 0, 0, 0})); });
@@ -117,7 +123,7 @@ TEST(callers_mistakes, curves_have_edges_parameters_and_no_tables) {
   expect_refused("tolerance", [&] { run({.tolerance = -1}); });
   expect_refused("level", [&] { run({.level = 61}); });
   expect_refused("edge", [&] { static_cast<void>(evaluate(curves, EdgeId(2), 0)); });
-  for (const double t : {NAN, -1e-300, 1 + 0x1p-52}) {
+  for (const double t : std::vector<double>{NAN, -1e-300, 1 + 0x1p-52}) {
     expect_refused("t", [&] { static_cast<void>(evaluate(curves, EdgeId(0), t)); });
   }
 }
@@ -142,7 +148,9 @@ TEST(callers_mistakes, queries_take_finite_numbers_and_a_scratch_for_each_model)
   QueryScratch at_a(a), at_b(b), at_boxes(boxes);
   for (const double x : no_numbers) {
     expect_refused("point", [&] { static_cast<void>(closest_point(at_a, {x, 0, 0}, {})); });
-    expect_refused("points", [&] { static_cast<void>(closest_points(a, std::vector<Point3>{{0, 0, x}}, {}, 2)); });
+    expect_refused("points", [&] {
+      static_cast<void>(closest_points(a, std::vector<Point3>{{0, 0, x}}, {}, 2));
+    });
     expect_refused("precision", [&] { static_cast<void>(closest_point(at_a, {}, {.absolute = x})); });
     expect_refused("tolerance", [&] {
       static_cast<void>(collide({a, at_a, {}}, {b, at_b, {}}, {.tolerance = x}));
@@ -154,9 +162,7 @@ TEST(callers_mistakes, queries_take_finite_numbers_and_a_scratch_for_each_model)
   expect_refused("one scratch for two", [&] {
     static_cast<void>(collide({a, at_a, {}}, {a, at_a, {}}, {.tolerance = 1}));
   });
-  expect_refused("another's scratch", [&] {
-    static_cast<void>(distance({a, at_b, {}}, {b, at_a, {}}, {}));
-  });
+  expect_refused("another's scratch", [&] { static_cast<void>(distance({a, at_b, {}}, {b, at_a, {}}, {})); });
   expect_refused("two sorts of volume", [&] {
     static_cast<void>(collide({a, at_a, {}}, {boxes, at_boxes, {}}, {.tolerance = 1}));
   });

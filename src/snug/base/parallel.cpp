@@ -48,10 +48,22 @@ class Loop {
   }
 
  private:
+  // The C library ends the process where it has no memory for the destructors of a thread's own objects, which are made in
+  // its first steps: without some room to begin with there is an exception instead.
+  void run_with_headroom() noexcept {
+    try {
+      constexpr std::size_t headroom = std::size_t{64} << 10;
+      ::operator delete(::operator new(headroom));
+    } catch (const std::bad_alloc&) {
+      return;  // the others do its share
+    }
+    run();
+  }
+
   // False where the system has no thread to give.
   bool start() {
     try {
-      helpers_.emplace_back([this] { run(); });
+      helpers_.emplace_back([this] { run_with_headroom(); });
       return true;
     } catch (const std::system_error&) {
     } catch (const std::bad_alloc&) {

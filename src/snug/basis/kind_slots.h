@@ -53,7 +53,8 @@ class KindSlots {
 
   std::atomic<const T*>& slot(std::size_t index) {
     if (index / block_size >= blocks_.size()) {
-      throw InputError(InputProblem::refused, "more than 16 million kinds of patches: use a library for each mesh");
+      throw InputError(InputProblem::refused,
+                       "more than 16 million kinds of patches: use a library for each mesh");
     }
     std::atomic<Block*>& place = blocks_[index / block_size];
     Block* block = place.load(std::memory_order_acquire);

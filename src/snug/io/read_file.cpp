@@ -85,7 +85,8 @@ std::string read_file(const std::string& path, const WorkMonitor& monitor) {
     if (got > 0) {
       size += static_cast<std::size_t>(got);
       if (size > most) {
-        fail(path, "does not end after 2^" + std::to_string(limits.most_bits) + " bytes: name a file that does");
+        fail(path,
+             "does not end after 2^" + std::to_string(limits.most_bits) + " bytes: name a file that does");
       }
     } else if (errno != EINTR) {
       fail_with_reason(path, errno);

@@ -120,7 +120,8 @@ LimitPoint LimitEvaluator::operator()(TriangleParameter parameter) {
 }
 
 void LimitEvaluator::operator()(std::span<const TriangleParameter> at, std::span<LimitPoint> out) {
-  require_value(out.size() == at.size(), "limit evaluator: there must be room for as many points as parameters");
+  require_value(out.size() == at.size(),
+                "limit evaluator: there must be room for as many points as parameters");
   for (std::size_t i = 0; i < at.size(); ++i) out[i] = (*this)(at[i]);
 }
 

@@ -12,8 +12,7 @@ constexpr double margin = 0.05;
 
 Vector3 unit(Vector3 v) {
   const double largest = max_abs(v);
-  require_value(is_finite(v) && largest > 0,
-                "camera: view and up must be finite, not zero and not parallel");
+  require_value(is_finite(v) && largest > 0, "camera: view and up must be finite, not zero and not parallel");
   // The length of v itself might overflow or underflow.
   const Vector3 scaled{v.x / largest, v.y / largest, v.z / largest};
   return (1 / length(scaled)) * scaled;

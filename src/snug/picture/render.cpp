@@ -74,7 +74,8 @@ void expect_sound(const Scene& scene, const Camera& camera, const RenderOptions&
                   "render: colour, opacity and gloss of a material must be from 0 to 1");
   }
   for (const ShadedTriangle& t : scene.triangles) {
-    require_value(t.material < scene.materials.size(), "render: a triangle is of a material that is not there");
+    require_value(t.material < scene.materials.size(),
+                  "render: a triangle is of a material that is not there");
     for (const Point3& p : t.corner) require_value(is_finite(p), "render: a triangle is not finite");
     for (const Vector3& n : t.normal) require_value(is_finite(n), "render: a normal is not finite");
   }
@@ -387,7 +388,8 @@ CountedImage render_counted(const Scene& scene, const Camera& camera, const Rend
 
   std::mutex mutex;  // guards the next three, and the calls of progress
   std::size_t done = 0;
-  std::vector<std::unique_ptr<Renderer::Scratch>> spare;  // of ranges that are done; as many as are drawn at once
+  std::vector<std::unique_ptr<Renderer::Scratch>>
+      spare;  // of ranges that are done; as many as are drawn at once
   std::exception_ptr failure;
   const auto take = [&] {
     const std::lock_guard lock(mutex);

@@ -130,7 +130,7 @@ BoundSummary bound(const Surface& surface, const BoundOptions& options,
   require_sound(options);
   const double target = options.tolerance ? surface.scale().apply(*options.tolerance / 2) : INFINITY;
   // Patches worked on at once: as many as their pieces are few, so that memory stays small and threads are busy.
-  constexpr std::size_t most_patches = 256, most_pieces = 1 << 16;
+  constexpr std::size_t most_patches = 1024, most_pieces = 1 << 16;
   std::size_t chunk = 1;
   BoundSummary summary;
   std::vector<PatchPieces> results;

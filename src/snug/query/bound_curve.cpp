@@ -74,7 +74,8 @@ class CurveBounder {
 
 BoundSummary bound(const CurveSet& curves, const BoundOptions& options,
                    const std::function<void(const CurveEnclosure&)>& sink, const WorkMonitor& monitor) {
-  require_value(options.method != BoundMethod::table, "bound: curves have no tables; give rows or control boxes");
+  require_value(options.method != BoundMethod::table,
+                "bound: curves have no tables; give rows or control boxes");
   require_sound(options);
   CurveBounder bounder(curves, options, sink, monitor);
   const std::size_t edges = curves.edge_count(), stride = 1 + edges / 1000;

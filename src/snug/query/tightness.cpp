@@ -80,7 +80,8 @@ std::vector<TightnessRow> measure_tightness(const TightnessOptions& options, con
         }
       }
     };
-    parallel_for_with(all.size(), options.threads, [] { return HullPoints{}; }, measure);
+    parallel_for_with(
+        all.size(), options.threads, [] { return HullPoints{}; }, measure);
     for (std::size_t s = 0; s < all_bound_sources.size(); ++s) {
       std::vector<double> ratios, over_rows;
       for (const auto& patch : all) {

@@ -24,7 +24,8 @@ void Stencils::add(std::uint32_t source, double weight, double error) {
 
 void Stencils::end_row() {
   if (sources_.size() > UINT32_MAX) {
-    throw InputError(InputProblem::refused, "a mesh this large takes more than 2^32 weights: take a lower level");
+    throw InputError(InputProblem::refused,
+                     "a mesh this large takes more than 2^32 weights: take a lower level");
   }
   const std::size_t entries = sources_.size() - offsets_.back();
   offsets_.push_back(static_cast<std::uint32_t>(sources_.size()));

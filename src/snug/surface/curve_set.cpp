@@ -28,7 +28,8 @@ CurveSet::CurveSet(ControlMesh mesh, CurveDegree degree) : mesh_(std::move(mesh)
 }
 
 CurvePiece CurveSet::piece(EdgeId edge) const {
-  require_value(edge.index() < edges_.size(), "curves: there is no such edge; they count from 0 to edge_count() - 1");
+  require_value(edge.index() < edges_.size(),
+                "curves: there is no such edge; they count from 0 to edge_count() - 1");
   const Window& window = edges_[edge.index()];
   const auto point = [&](VertexId v) { return scale_.apply(mesh_.points[v.index()]); };
   const auto neighbour = [&](VertexId v) { return v.valid() ? std::optional(point(v)) : std::nullopt; };
