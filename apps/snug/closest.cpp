@@ -8,6 +8,7 @@
 #include "length.h"
 #include "placed_pair.h"
 #include "progress_bar.h"
+#include "witness.h"
 #include "words.h"
 
 namespace snug::command {
@@ -78,7 +79,7 @@ void write_sign(JsonWriter& json, const SignedDistance& found) {
 }
 
 void write_result(Report& report, const Surface& surface, const Result& result) {
-  const bool primal = is_primal(surface.options().scheme), loop = surface.options().scheme == Scheme::loop;
+  const bool loop = surface.options().scheme == Scheme::loop;
   const ClosestPoint& near = result.nearest;
   if (!report.json()) {
     report.text(fmt::format("{}  {} {} {}  {} {} {}{}",
@@ -93,8 +94,7 @@ void write_result(Report& report, const Surface& surface, const Result& result) 
   json.begin_object().key("distance").begin_array().value(near.lower).value(near.upper).end_array();
   if (result.with_sign) write_sign(json, *result.with_sign);
   json.field("reached", result.reached()).field("point", near.point).field("error", near.point_error);
-  json.field(primal ? "face" : "vertex", near.at.owner).field("u", near.at.u).field("v", near.at.v);
-  if (!loop) json.field("corner", near.at.corner);
+  write_place(json, surface, near.at);
   json.end_object();
 }
 
@@ -123,6 +123,10 @@ ExitStatus run(const Options& options) {
     report.write().field("precision", wanted.absolute).field("relative", wanted.relative);
     report.write().key("results").begin_array();
   }
+  report.text(fmt::format("# {}  x y z  {} u v{}",
+                          options.with_sign ? "signed distance: lower upper" : "distance: lower upper",
+                          is_primal(surface.options().scheme) ? "face" : "vertex",
+                          surface.options().scheme == Scheme::loop ? "" : " corner"));
   bool reached = true;
   for (const Result& result : results) {
     write_result(report, surface, result);

@@ -7,6 +7,7 @@
 #include "pose_answers.h"
 #include "progress_bar.h"
 #include "solids.h"
+#include "witness.h"
 
 namespace snug::command {
 namespace {
@@ -18,7 +19,7 @@ struct Options : PairOptions {
   bool exit_code = false;
 };
 
-void write_answer(JsonWriter& json, const Collision& answer) {
+void write_answer(JsonWriter& json, const Sides& sides, const Collision& answer) {
   json.field("verdict", name_of(answer.verdict));
   json.key("distance").begin_array().value(answer.lower);
   answer.upper ? json.value(*answer.upper) : json.null();
@@ -29,6 +30,7 @@ void write_answer(JsonWriter& json, const Collision& answer) {
   } else {
     json.null().key("witness_error").null();
   }
+  write_places(json, sides, answer.witness ? &answer.at : nullptr);
   write_inner(json, answer.inner);
   json.key("stats").begin_object();
   json.field("box_tests", answer.stats.box_tests).field("triangle_tests", answer.stats.triangle_tests);
@@ -39,8 +41,9 @@ void write_answer(JsonWriter& json, const Collision& answer) {
 std::string sentence(const Collision& answer, double tolerance, double margin) {
   switch (answer.verdict) {
     case Verdict::separated:
-      return fmt::format("separated: proved, the limit surfaces are at least {} apart",
-                         text_at_most(answer.lower));
+      return fmt::format("separated: proved, the limit surfaces are at least {} apart{}",
+                         text_at_most(answer.lower),
+                         answer.upper ? ", at most " + text_at_most(*answer.upper, true) : "");
     case Verdict::within:
       return fmt::format("within: two points of the limit surfaces are at most {} apart (asked: {:.6g})",
                          text_at_most(*answer.upper, true), margin + tolerance);
@@ -88,7 +91,7 @@ ExitStatus run_poses(PairArguments& pair, Report& report, const CollideOptions& 
   const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
   const auto ask = [&](const PlacedModel& a, const PlacedModel& b) {
     Collision answer = collide(a, b, wanted, stop_only);
-    return PoseAnswer{.fields = [answer](JsonWriter& json) { write_answer(json, answer); },
+    return PoseAnswer{.fields = [answer, sides = sides_of(a, b)](JsonWriter& json) { write_answer(json, sides, answer); },
                       .row = row(answer),
                       .reached = answer.verdict != Verdict::undecided};
   };
@@ -107,6 +110,7 @@ ExitStatus run(const Options& options) {
   wanted.budget = options.budget;
   wanted.prove_contact = true;
   wanted.solid = options.solid;
+  wanted.measure = true;
   ProgressBar bar("colliding", options.quiet);
   const WorkMonitor monitor = bar.monitor();
   pair.prepare(monitor);
@@ -120,10 +124,11 @@ ExitStatus run(const Options& options) {
   if (options.penetration) depth = penetration(pair.a(), pair.b(), {}, monitor);
   if (report.json()) {
     write_poses(report.write(), {pair.pose_a(), pair.pose_b()});
-    write_answer(report.write(), answer);
+    write_answer(report.write(), sides_of(pair.a(), pair.b()), answer);
     if (depth) write_penetration(report.write(), *depth);
   }
   report.text(sentence(answer, wanted.tolerance, wanted.margin));
+  if (answer.witness) report.text(witness_table(sides_of(pair.a(), pair.b()), *answer.witness, answer.at));
   if (depth) report.text(penetration_sentence(*depth));
   if (answer.verdict == Verdict::separated && !options.solid)
     note_nesting(options, pair.a(), pair.b(), monitor);

@@ -7,6 +7,7 @@
 #include "pose_answers.h"
 #include "progress_bar.h"
 #include "solids.h"
+#include "witness.h"
 
 namespace snug::command {
 namespace {
@@ -17,11 +18,12 @@ struct Options : PairOptions {
   bool solid = false;
 };
 
-void write_answer(JsonWriter& json, const Distance& answer) {
+void write_answer(JsonWriter& json, const Sides& sides, const Distance& answer) {
   json.field("reached", answer.reached);
   json.key("distance").begin_array().value(answer.lower).value(answer.upper).end_array();
   json.key("witness").begin_array().value(answer.witness[0]).value(answer.witness[1]).end_array();
   json.field("witness_error", answer.witness_error);
+  write_places(json, sides, &answer.at);
   write_inner(json, answer.inner);
   json.key("stats").begin_object();
   json.field("box_tests", answer.stats.box_tests).field("triangle_tests", answer.stats.triangle_tests);
@@ -40,7 +42,7 @@ ExitStatus run_poses(PairArguments& pair, Report& report, const DistanceOptions&
   const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
   const auto ask = [&](const PlacedModel& a, const PlacedModel& b) {
     Distance answer = distance(a, b, wanted, stop_only);
-    return PoseAnswer{.fields = [answer](JsonWriter& json) { write_answer(json, answer); },
+    return PoseAnswer{.fields = [answer, sides = sides_of(a, b)](JsonWriter& json) { write_answer(json, sides, answer); },
                       .row = row(answer),
                       .reached = answer.reached};
   };
@@ -68,17 +70,20 @@ ExitStatus run(const Options& options) {
   const Distance answer = distance(pair.a(), pair.b(), wanted, monitor);
   if (report.json()) {
     write_poses(report.write(), {pair.pose_a(), pair.pose_b()});
-    write_answer(report.write(), answer);
+    write_answer(report.write(), sides_of(pair.a(), pair.b()), answer);
   }
   if (answer.upper == 0) {
     report.text(answer.inner ? inner_sentence(*answer.inner) + ": proved, the solids meet"
                              : "the limit surfaces have a point in common: proved");
   } else {
-    report.text(
-        fmt::format("the limit surfaces are at least {} and at most {} apart{}", text_at_most(answer.lower),
-                    text_at_most(answer.upper, true),
-                    answer.reached ? "" : "; that is not as precise as asked, give a larger --budget"));
+    report.text(fmt::format("the limit surfaces are at least {} and at most {} apart{}",
+                            text_at_most(answer.lower), text_at_most(answer.upper, true),
+                            answer.reached ? ""
+                            : answer.stats.splits >= options.budget
+                                ? "; that is not as precise as asked, give a larger --budget"
+                                : "; that is not as precise as asked, rounding or memory stands in the way"));
   }
+  report.text(witness_table(sides_of(pair.a(), pair.b()), answer.witness, answer.at));
   if (answer.lower > 0 && !options.solid) note_nesting(options, pair.a(), pair.b(), monitor);
   report.finish();
   return answer.reached ? ExitStatus::answered : ExitStatus::not_reached;

@@ -124,6 +124,8 @@ ExitStatus run(const Options& options) {
   Report report("eval", options);
   report.heads({options.mesh}, {name_of(surface.options().scheme)});
   if (report.json()) report.write().key("points").begin_array();
+  report.text(fmt::format("# {} u v{}  x y z", owner_word(surface.options().scheme),
+                          surface.options().scheme == Scheme::loop ? "" : " corner"));
   std::size_t count = 0;
   naming(options.mesh, [&] {
     if (!options.at.empty()) {

@@ -75,6 +75,7 @@ ExitStatus eval_curve(ControlMesh mesh, const std::string& path, const CommonOpt
   Report report("eval", options);
   curve_heads(report, path, which.degree);
   if (report.json()) report.write().key("points").begin_array();
+  report.text("# edge t  x y z");
   std::size_t count = requests.size();
   naming(path, [&] {
     for (const Request& request : requests) {

@@ -211,6 +211,58 @@ TEST_F(queries, distance_and_closest_refuse_bad_input_and_leave_no_file) {
   EXPECT_TRUE(out.empty());
 }
 
+TEST_F(queries, witnesses_say_where_they_lie) {
+  const std::string ball = write("ball.obj", octahedron(1, 1, 1)), points = write("points.txt", "3 0 0\n");
+  // B is turned a quarter about z.
+  const std::string turned = "0 -1 0 3 1 0 0 0 0 0 1 0";
+  for (const std::string scheme : {"loop", "catmark", "doo-sabin"}) {
+    const bool loop = scheme == "loop", dual = scheme == "doo-sabin";
+    const auto expect_place = [&](const json& at) {
+      EXPECT_EQ(at.contains("face"), !dual) << at;
+      EXPECT_EQ(at.contains("vertex"), dual) << at;
+      EXPECT_EQ(at.contains("corner"), !loop) << at;
+      for (const char* name : {"u", "v"}) EXPECT_TRUE(at[name] >= 0 && at[name] <= 1) << at;
+      EXPECT_TRUE(at.contains("normal") && at.contains("normal_error")) << at;
+    };
+    for (const std::string command : {"collide", "distance"}) {
+      const json found = answer({command, ball, ball, "--scheme", scheme, "--place-b", turned});
+      ASSERT_EQ(found["witness_at"].size(), 2u) << found;
+      for (const json& at : found["witness_at"]) expect_place(at);
+      const double lower = found["distance"][0], upper = found["distance"][1];
+      EXPECT_GE(2 * lower, upper) << found;
+      // Nearest along x: the normals face each other.
+      for (std::size_t s = 0; s < 2 && command == "distance"; ++s) {
+        const json& normal = found["witness_at"][s]["normal"];
+        if (normal.is_null()) continue;
+        EXPECT_NEAR(normal[0].get<double>(), s == 0 ? 1 : -1, 0.05) << found;
+      }
+    }
+    const json nearest = answer({"closest", ball, "--scheme", scheme, "--points", points})["results"][0];
+    expect_place(nearest);
+    const Outcome text = run_snug({"distance", ball, ball, "--scheme", scheme, "--place-b", turned});
+    EXPECT_NE(text.out.find(dual ? " vertex " : " face "), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("place"), std::string::npos) << text.out;
+    const Outcome table = run_snug({"closest", ball, "--scheme", scheme, "--points", points});
+    EXPECT_EQ(table.out.substr(0, 2), "# ") << table.out;
+  }
+}
+
+TEST_F(queries, surfaces_at_any_distance_are_separated_at_once) {
+  const std::string star = model("star.obj");
+  for (const double far : {1e20, 1e80, 1e150, 1e200, 1e300}) {
+    for (const char* side : {"--place-a", "--place-b"}) {
+      const json found = answer({"collide", star, star, side, moved(far)});
+      EXPECT_EQ(found["verdict"], "separated") << far;
+      EXPECT_EQ(found["stats"]["splits"], 0) << far;
+      EXPECT_GE(found["distance"][0].get<double>(), far * (1 - 2e-14)) << far;
+      const json apart = answer({"distance", star, star, side, moved(far), "--relative", "1e-13"});
+      EXPECT_GE(apart["distance"][0].get<double>(), far * (1 - 2e-14)) << far;
+      EXPECT_LE(apart["distance"][1].get<double>(), far * (1 + 2e-14)) << far;
+      EXPECT_LE(apart["seconds"].get<double>(), 1) << far;
+    }
+  }
+}
+
 TEST_F(queries, interruption_leaves_no_file) {
   const TemporaryFolder out;
   const Outcome outcome =

@@ -10,7 +10,9 @@
 #include <snug/query/solid.h>
 #include <testing/patches.h>
 #include <testing/placements.h>
+
 #include <testing/tagged.h>
+#include <cstdio>
 
 #include <cfloat>
 
@@ -118,6 +120,71 @@ TEST(collide, works_at_the_ends_of_the_doubles) {
     Pair pair(twin, twin);
     EXPECT_EQ(pair.ask(moved(4 * size, 0, 0), {0.01 * size, 0}).verdict, Verdict::separated) << size;
     EXPECT_EQ(pair.ask(moved(size, 0, 0), {0.01 * size, 0}).verdict, Verdict::within) << size;
+  }
+}
+
+// Octahedra tip to tip along x: the distance is that of the middles less both tips.
+TEST(collide, surfaces_far_apart_are_separated_at_once_wherever_they_are) {
+  const double tip = 24.0 / 55;  // of an octahedron, from its middle
+  for (const double size_a : {1.0, 1e-150, 1e150, 1e-300}) {
+    for (const double size_b : {1.0, 1e-150, 1e150, 1e300}) {
+      for (const double far : {1e20, 1e80, 1e150, 1e200, 1e300, 1.5e308}) {
+        if (!(far > 10 * std::max(size_a, size_b))) continue;
+        const auto sized = [](double size) {
+          oracle::TwinMesh twin = oracle::meshes::octahedron();
+          for (oracle::Point& p : twin.points) p = {size * p[0], size * p[1], size * p[2]};
+          return twin;
+        };
+        Pair pair(sized(size_a), sized(size_b));
+        for (const double sign : {1.0, -1.0}) {
+          char where[100];
+          std::snprintf(where, sizeof where, "sizes %g and %g, %g apart", size_a, size_b, sign * far);
+          const Collision answer = pair.ask(moved(sign * far, 0, 0), {0.01 * size_a, 0});
+          EXPECT_EQ(answer.verdict, Verdict::separated) << where;
+          EXPECT_EQ(answer.stats.splits, 0u) << where;
+          // Not above the truth, and not far below it.
+          EXPECT_LE(answer.lower, far - tip * (size_a + size_b) * (1 - 1e-15)) << where;
+          EXPECT_GE(answer.lower, far * (1 - 2e-14) - 2 * (size_a + size_b)) << where;
+          const bool very_far = far > 1e18 * std::max(size_a, size_b);
+          const Distance apart =
+              distance({pair.model_a, pair.scratch_a, {}},
+                       {pair.model_b, pair.scratch_b, moved(sign * far, 0, 0)}, {0, very_far ? 1e-13 : 1e-6});
+          EXPECT_LE(apart.stats.splits, 4000u) << where;
+          EXPECT_LE(apart.lower, far - tip * (size_a + size_b) * (1 - 1e-15)) << where;
+          EXPECT_GE(apart.upper, far - tip * (size_a + size_b) * (1 + 1e-15)) << where;
+          // Where the sizes are nothing beside it, the distance is known to some roundings.
+          if (very_far) {
+            EXPECT_GE(answer.lower, far * (1 - 2e-14)) << where;
+            EXPECT_GE(apart.lower, far * (1 - 2e-14)) << where;
+            EXPECT_LE(apart.upper, far * (1 + 2e-14)) << where;
+          }
+        }
+      }
+    }
+  }
+}
+
+// The far corner of the range: an upper bound of the distance does not fit a double, the verdict does.
+TEST(collide, separates_what_is_farther_apart_than_a_double_can_say) {
+  Pair pair(oracle::meshes::octahedron(), oracle::meshes::octahedron());
+  CollideOptions options;
+  options.measure = true;
+  const Collision answer = pair.ask(moved(1.7e308, 1.7e308, 1.7e308), options);
+  EXPECT_EQ(answer.verdict, Verdict::separated);
+  EXPECT_GE(answer.lower, 1.7e308);
+  EXPECT_TRUE(std::isfinite(answer.lower));
+}
+
+TEST(collide, measures_the_gap_if_asked) {
+  Pair pair(oracle::meshes::icosahedron(), oracle::meshes::octahedron());
+  CollideOptions options;
+  options.measure = true;
+  for (const double x : {1.6, 1.7, 2.0, 3.0, 10.0}) {
+    const Collision answer = pair.ask(moved(x, 0.3, 0.2), options);
+    ASSERT_EQ(answer.verdict, Verdict::separated) << x;
+    ASSERT_TRUE(answer.upper && answer.witness);
+    EXPECT_GE(answer.lower, *answer.upper / 2) << x;
+    EXPECT_TRUE(answer.at[0] && answer.at[1]);
   }
 }
 

@@ -114,6 +114,17 @@ TEST(distance, intervals_hold_the_truth) {
            error);
     expect(pair.twin(1).on_surface(trial.b, witness[1], near), "the witness on B is on the surface", near,
            error);
+    for (std::size_t s = 0; s < 2; ++s) {
+      const SurfaceParameter at = answer.at[s].value();
+      const oracle::Placement& m = s == 0 ? trial.a : trial.b;
+      const Point local = pair.twin(s).limit_point(at.owner, at.u, at.v);
+      Point placed;
+      for (std::size_t r = 0; r < 3; ++r) {
+        placed[r] = m[4 * r] * local[0] + m[4 * r + 1] * local[1] + m[4 * r + 2] * local[2] + m[4 * r + 3];
+      }
+      expect(between(placed, witness[s]) <= 2 * error + 1e-12 * size + 4 * rounding,
+             "face, u and v are those of the witness", between(placed, witness[s]), error);
+    }
     ContactGoal goal;
     goal.effort = 4000;
     goal.threshold = lower > 0 ? std::optional<double>(lower) : std::nullopt;

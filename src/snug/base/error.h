@@ -35,7 +35,7 @@ inline void require_value(bool holds, const char* message) {
 }
 
 /// Throws InputError (value), naming `what`, unless x is finite and >= 0.
-void require_length(double x, const std::string& what);
+void require_length(double x, const char* what);
 
 /// Thrown at the next check point after an interruption was asked for (base/progress.h).
 class Interrupted : public std::runtime_error {

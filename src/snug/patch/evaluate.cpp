@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <snug/base/contract.h>
 #include <snug/base/rounding.h>
@@ -70,13 +71,27 @@ LimitPoint polynomial_point(const Patch& piece, const Barycentric& parameter) {
 }
 
 // Derivatives along the kind's u and v in a polynomial piece: de Casteljau on a triangle down to degree 1.
-std::array<Vector3, 2> polynomial_derivatives(const Patch& piece, const Barycentric& parameter) {
+struct Derivatives {
+  std::array<Vector3, 2> along;
+  double error;  // upper bound, a coordinate
+};
+Derivatives polynomial_derivatives(const Patch& piece, const Barycentric& parameter) {
   const PolynomialForm& form = piece.kind->form();
   const auto [part, p] = to_part(form, parameter);
   const auto [w, u, v] = p.at;
   std::array<Vector3, bezier_count(max_degree)> b;
   const std::size_t count = bezier_count(form.degree);
-  for (std::size_t r = 0; r < count; ++r) b[r] = form.rows.apply<Vector3>(part * count + r, piece.points);
+  double largest = 0;
+  for (std::size_t r = 0; r < count; ++r) {
+    b[r] = form.rows.apply<Vector3>(part * count + r, piece.points);
+    largest = std::max(largest, max_abs(b[r]));
+  }
+  // derivations/rounding.md, "Normals".
+  const double row_error = form.rows.result_error(piece.largest, piece.error),
+               d_max = static_cast<double>(form.degree);
+  const double error =
+      4 * d_max * (2 * row_error + 2 * d_max * (8 * unit_roundoff + p.off) * (largest + row_error)) +
+      0x1p20 * underflow_error;
   for (std::size_t degree = form.degree; degree > 1; --degree) {
     std::size_t to = 0, row = 0;
     for (std::size_t j = 0; j < degree; ++j) {
@@ -89,9 +104,10 @@ std::array<Vector3, 2> polynomial_derivatives(const Patch& piece, const Barycent
   }
   const auto degree = static_cast<double>(form.degree);
   const Vector3 along_u = degree * (b[1] - b[0]), along_v = degree * (b[2] - b[0]);
-  if (form.parts == 1) return {along_u, along_v};
-  if (part == 0) return {along_u, 2.0 * along_v};  // (u, 2 v)
-  return {along_u + along_v, 2.0 * along_v};       // (u, v - w), w = 1 - u - v:  (u, u + 2 v - 1)
+  if (form.parts == 1) return {{along_u, along_v}, enlarged(error)};
+  if (part == 0) return {{along_u, 2.0 * along_v}, enlarged(2 * error)};  // (u, 2 v)
+  // (u, v - w), w = 1 - u - v:  (u, u + 2 v - 1)
+  return {{along_u + along_v, 2.0 * along_v}, enlarged(3 * error)};
 }
 
 struct Located {
@@ -153,6 +169,19 @@ LimitFrame corner_frame(const Patch& patch, std::size_t corner) {
 
 }  // namespace
 
+std::optional<double> normal_error(const std::array<Vector3, 2>& tangents, double tangent_error) {
+  const double a = max_abs(tangents[0]), b = max_abs(tangents[1]);
+  // As in unit_normal(): of about length 1.
+  if (!(a > 0x1p-900) || !(b > 0x1p-900)) return std::nullopt;
+  const Vector3 s = (1 / a) * tangents[0], t = (1 / b) * tangents[1];
+  const double s_error = spatial_error(tangent_error / a + 2 * unit_roundoff),
+               t_error = spatial_error(tangent_error / b + 2 * unit_roundoff);
+  const double size = length(cross(s, t));
+  const double error = 2 * (s_error + t_error) + s_error * t_error + 32 * unit_roundoff;
+  if (!(size > 4 * error)) return std::nullopt;
+  return enlarged(2 * error / size + 16 * unit_roundoff);
+}
+
 LimitPoint corner_point(const Patch& patch, std::size_t corner) {
   const Stencils& limits = patch.kind->corner_limits();
   return {limits.apply<Vector3>(patch.to_kind(corner), patch.points),
@@ -190,16 +219,17 @@ LimitFrame limit_frame(const Patch& patch, TriangleParameter parameter) {
     return frame;
   }
   const Barycentric p = to_kind(piece, here.at, here.drift);
-  const std::array<Vector3, 2> derivatives = polynomial_derivatives(piece, p);
+  const Derivatives derivatives = polynomial_derivatives(piece, p);
   LimitFrame frame;
   frame.point = polynomial_point(piece, p);
   // Derivatives along the kind's edges 01 and 02; those along the patch's are differences of these.
-  const std::array<Vector3, 3> towards{Vector3{}, derivatives[0], derivatives[1]};
+  const std::array<Vector3, 3> towards{Vector3{}, derivatives.along[0], derivatives.along[1]};
   const auto corner_at_plane = [&](std::size_t corner) { return towards[piece.to_kind(corner)]; };
   frame.tangents = {here.turned * (corner_at_plane(1) - corner_at_plane(0)),
                     here.turned * (corner_at_plane(2) - corner_at_plane(0))};
   frame.differentiable = true;
   frame.normal = unit_normal(frame.tangents);
+  frame.tangent_error = enlarged(std::fabs(here.turned) * 3 * derivatives.error);
   return frame;
 }
 

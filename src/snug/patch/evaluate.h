@@ -21,6 +21,8 @@ struct LimitFrame {
   std::array<Vector3, 2> tangents;
   bool differentiable;            ///< tangents are derivatives in (u, v)
   std::optional<Vector3> normal;  ///< of length 1; absent where the tangents are parallel or vanish
+  /// Upper bound, a coordinate, of |tangent - exact derivative|, where derivatives are those of a polynomial.
+  std::optional<double> tangent_error{};
 };
 
 /// Limit point at any parameter, extraordinary corners included.
@@ -33,7 +35,13 @@ struct LimitFrame {
 ///            (Catmull-Clark: 28); near an extraordinary corner one split a level more, at most 60.
 [[nodiscard]] LimitPoint limit_point(const Patch& patch, TriangleParameter at);
 
-/// The same with tangents and normal, in double precision without a bound for these.
+/// Upper bound of the length of normal - exact normal for tangents that are off by `tangent_error` a coordinate; nothing where
+/// they are too small, or too nearly parallel, for one.
+/// Source:    derivations/rounding.md, "Normals".
+[[nodiscard]] std::optional<double> normal_error(const std::array<Vector3, 2>& tangents,
+                                                 double tangent_error);
+
+/// The same with tangents and normal, in double precision without a bound for the normal: see normal_error().
 [[nodiscard]] LimitFrame limit_frame(const Patch& patch, TriangleParameter at);
 
 /// Limit position of corner 0, 1 or 2 of the patch.

@@ -62,6 +62,11 @@ LimitFrame limit_frame(const Patch& patch, QuadParameter at) {
     const std::array<Vector3, 2> t = frame.tangents;
     const double sign = here.part == 0 ? 1 : -1;
     frame.tangents = {sign * here.scale * t[0], sign * here.scale * (t[1] - t[0])};
+    // The rounding of on_triangle(), too: second derivatives are at most 1024 largest.
+    if (frame.tangent_error) {
+      frame.tangent_error =
+          enlarged(here.scale * (2 * *frame.tangent_error + 8192 * unit_roundoff * here.piece.largest));
+    }
   }
   return frame;
 }

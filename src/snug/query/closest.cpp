@@ -27,18 +27,6 @@ struct Candidate {
 
 bool farther(const Candidate& x, const Candidate& y) { return x.gap > y.gap; }
 
-// The parameter of a patch as one of its owner.
-SurfaceParameter owner_parameter(const Surface& surface, PatchId patch, TriangleParameter at) {
-  const auto [owner, part] = surface.place(patch);
-  if (surface.options().scheme == Scheme::loop) return {owner, 0, at.u, at.v};
-  // Half a quad: from (0,0) by (1,0) to (1,1), or from (1,1) by (0,1) to (0,0).
-  SurfaceParameter result{owner, part / 2, at.u + at.v, at.v};
-  if (part % 2 == 1) result = {owner, part / 2, 1 - at.u - at.v, 1 - at.v};
-  result.u = std::clamp(result.u, 0.0, 1.0);
-  result.v = std::clamp(result.v, 0.0, 1.0);
-  return result;
-}
-
 class Query {
  public:
   Query(QueryScratch& scratch, const Point3& to, const ClosestOptions& options, const WorkMonitor& monitor)
@@ -120,14 +108,15 @@ class Query {
       const Point3 point = piece.patch.origin + limit.relative;
       const double error = limit.error + unit_roundoff * max_abs(point - Point3{});
       const Vector3 between = point - to_;
-      const double upper =
-          enlarged(std::sqrt(length_sq(between) + 8 * underflow_error) + spatial_error(error + point_error_) +
-                   8 * unit_roundoff * max_abs(between));
+      // Not enlarged(): of a point far away that would be more than all else.
+      const double upper = (std::sqrt(length_sq(between) + 8 * underflow_error) +
+                            spatial_error(error + point_error_) + 8 * unit_roundoff * max_abs(between)) *
+                           (1 + 16 * unit_roundoff);
       if (upper < bounds_.upper()) {
         bounds_.found(upper);
         point_ = point;
         error_ = error;
-        at_ = owner_parameter(surface_, piece.root, to_face(piece.patch.path, at));
+        at_ = place_of(surface_, piece.root, to_face(piece.patch.path, at));
       }
     }
     // A plane between the point and the piece's hull, across the direction of the closest point so far.

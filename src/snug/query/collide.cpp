@@ -4,8 +4,10 @@
 #include <cmath>
 #include <vector>
 
+#include <snug/base/error.h>
 #include <snug/base/rounding.h>
 #include <snug/query/containment.h>
+#include <snug/query/distance.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {
@@ -127,6 +129,7 @@ class Query {
                         require_representable(back.apply(best_.points[1]))};
       answer.upper = require_representable(unscaled_up(best_.distance, back));
       answer.witness_error = unscaled_up(best_.error, back) + underflow_error;
+      answer.at = search_.places(best_);
     }
     if (crossing_) answer.upper = 0;
     return answer;
@@ -174,11 +177,53 @@ Collision as_solids(const PlacedModel& a, const PlacedModel& b, Collision answer
     answer.upper = 0;
     answer.witness = {found.point, found.point};
     answer.witness_error = found.error;
+    answer.at = {};
+    answer.at[*found.inner] = found.at;
   } else if (answer.verdict == Verdict::separated && !found.certain) {
     answer.verdict = Verdict::undecided;
     answer.lower = 0;
   }
   return answer;
+}
+
+}  // namespace
+
+namespace {
+
+Collision ask(const PlacedModel& a, const PlacedModel& b, const CollideOptions& options,
+              const WorkMonitor& monitor) {
+  if (const double gap = outer_gap(a, b); gap > options.margin) {
+    Collision answer;
+    answer.verdict = Verdict::separated;
+    answer.lower = gap;
+    return answer;
+  }
+  Collision answer = Query(a, b, options, monitor).run();
+  const bool proved = answer.verdict == Verdict::intersecting ||
+                      (answer.verdict == Verdict::within && !options.prove_contact);
+  return options.solid && !proved ? as_solids(a, b, answer, monitor) : answer;
+}
+
+// Brings the bounds of separated surfaces, which hold for their solids too, to within a factor of 2.
+void measure(const PlacedModel& a, const PlacedModel& b, std::uint64_t budget, const WorkMonitor& monitor,
+             Collision& answer) {
+  DistanceOptions precision;
+  precision.relative = 0.5;
+  precision.budget = budget;
+  Distance found;
+  try {
+    found = distance(a, b, precision, monitor);
+  } catch (const InputError& error) {
+    // An upper bound that does not fit a double takes nothing from the verdict.
+    if (error.problem() == InputProblem::unrepresentable) return;
+    throw;
+  }
+  answer.lower = std::max(answer.lower, found.lower);
+  if (answer.upper && *answer.upper <= found.upper) return;
+  answer.upper = found.upper;
+  answer.witness = found.witness;
+  answer.witness_error = found.witness_error;
+  answer.at = found.at;
 }
 
 }  // namespace
@@ -191,14 +236,12 @@ Collision collide(const PlacedModel& a, const PlacedModel& b, const CollideOptio
     static_cast<void>(a.model.solid());
     static_cast<void>(b.model.solid());
   }
-  if (const double gap = outer_gap(a, b); gap > options.margin) {
-    return {
-        .verdict = Verdict::separated, .lower = gap, .upper = {}, .witness = {}, .inner = {}, .stats = {}};
+  Collision answer = ask(a, b, options, monitor);
+  const bool measured = answer.upper && answer.lower >= *answer.upper / 2;
+  if (options.measure && answer.verdict == Verdict::separated && !measured) {
+    measure(a, b, options.budget, monitor, answer);
   }
-  Collision answer = Query(a, b, options, monitor).run();
-  const bool proved = answer.verdict == Verdict::intersecting ||
-                      (answer.verdict == Verdict::within && !options.prove_contact);
-  return options.solid && !proved ? as_solids(a, b, answer, monitor) : answer;
+  return answer;
 }
 
 }  // namespace snug

@@ -27,7 +27,8 @@ struct Sample {
   double error;
 };
 
-Sample sample_of(const Patch& patch, const LimitPoint& limit) {
+Sample sample_of(const Patch& patch, TriangleParameter at) {
+  const LimitPoint limit = limit_point(patch, at);
   const Point3 local = patch.origin + limit.relative;
   return {local, limit.error + unit_roundoff * max_abs(local - Point3{})};
 }
@@ -48,8 +49,7 @@ class Asking {
   Nesting components() {
     for (std::size_t s = 0; s < 2 && !found_.inner; ++s) {
       for (const PatchId p : side_[s]->model.solid().components()) {
-        const Patch patch = side_[s]->model.surface().patch(p);
-        ask(s, sample_of(patch, corner_point(patch, 0)));
+        ask(s, p, {0, 0});
         if (found_.inner) break;
       }
     }
@@ -60,8 +60,7 @@ class Asking {
   Nesting deep_patches() {
     for (std::size_t s = 0; s < 2 && !found_.inner; ++s) {
       for (const PatchId p : deepest(s)) {
-        const Patch patch = side_[s]->model.surface().patch(p);
-        ask(s, sample_of(patch, limit_point(patch, {1.0 / 3, 1.0 / 3})));
+        ask(s, p, {1.0 / 3, 1.0 / 3});
         if (found_.inner) break;
       }
     }
@@ -70,7 +69,9 @@ class Asking {
 
  private:
   // Is a limit point of `side` in the other solid?
-  void ask(std::size_t side, const Sample& sample) {
+  void ask(std::size_t side, PatchId p, TriangleParameter at) {
+    const Surface& surface = side_[side]->model.surface();
+    const Sample sample = sample_of(surface.patch(p), at);
     const PlacedModel& other = *side_[1 - side];
     const PlacedFrame& frame = search_.frame(side);
     const Point3 placed = frame.apply(sample.local);
@@ -88,6 +89,7 @@ class Asking {
     found_.inner = side;
     found_.point = require_representable(search_.to_mesh_units().apply(placed));
     found_.error = unscaled_up(error, search_.to_mesh_units()) + underflow_error;
+    found_.at = place_of(surface, p, at);
   }
 
   [[nodiscard]] std::vector<PatchId> deepest(std::size_t side) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 
+#include <snug/query/evaluate.h>
 #include <snug/query/query_model.h>
 
 namespace snug {
@@ -17,6 +18,7 @@ struct Nesting {
   Point3 point;  ///< of the inner surface, in the outer solid; mesh units, world coordinates
   double error =
       0;  ///< upper bound, a coordinate, of how far `point` is from the limit point that it stands for
+  SurfaceParameter at{};  ///< where it lies on the inner surface
 };
 
 /// Asks one limit point of each component of two placed surfaces whether it lies in the other solid.

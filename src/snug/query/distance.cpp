@@ -27,13 +27,15 @@ class Query {
       : search_(a, b),
         options_(options),
         monitor_(monitor),
-        bounds_(search_.length_down(options.absolute), options.relative, noise) {}
+        bounds_(search_.length_down(options.absolute), options.relative, noise) {
+    bounds_.raise(search_.length_down(outer_gap(a, b)));
+  }
 
   // Best first.
   Distance run() {
     dive();
     heap_.assign(1, search_.roots());
-    while (!heap_.empty() && bounds_.upper() > 0) {
+    while (!heap_.empty() && !bounds_.done()) {
       std::pop_heap(heap_.begin(), heap_.end(), farther);
       const NodePair pair = heap_.back();
       heap_.pop_back();
@@ -44,6 +46,7 @@ class Query {
         break;
       }
     }
+    if (!heap_.empty()) bounds_.settle(std::max(static_cast<double>(heap_.front().gap), 0.0));
     return result();
   }
 
@@ -175,6 +178,7 @@ class Query {
       answer.witness[s] = require_representable(back.apply(witness_.points[s]));
     }
     answer.witness_error = unscaled_up(witness_.error, back) + underflow_error;
+    answer.at = search_.places(witness_);
     return answer;
   }
 
@@ -201,13 +205,13 @@ Distance distance(const PlacedModel& a, const PlacedModel& b, const DistanceOpti
   if (!options.solid || answer.upper == 0) return answer;
   const Nesting found = answer.lower > 0 ? nesting(a, b, monitor) : common_point(a, b, monitor);
   if (found.inner) {
-    answer = {.lower = 0,
-              .upper = 0,
-              .reached = true,
-              .witness = {found.point, found.point},
-              .witness_error = found.error,
-              .inner = found.inner,
-              .stats = answer.stats};
+    answer.lower = answer.upper = 0;
+    answer.reached = true;
+    answer.witness = {found.point, found.point};
+    answer.witness_error = found.error;
+    answer.at = {};
+    answer.at[*found.inner] = found.at;
+    answer.inner = found.inner;
   } else if (!found.certain) {
     answer.lower = 0;
     answer.reached = near_enough(answer.lower, answer.upper, options);

@@ -15,7 +15,8 @@ struct Distance {
   bool reached = false;           ///< are they as near as was asked for?
   std::array<Point3, 2> witness;  ///< two points as near as were found, on A and on B
   double witness_error =
-      0;  ///< upper bound, a coordinate, of how far one is from the limit point it stands for
+      0;             ///< upper bound, a coordinate, of how far one is from the limit point it stands for
+  WitnessPlaces at;  ///< where the witnesses lie, as in Collision
   std::optional<std::size_t> inner;  ///< with `solid`: as in Collision
   QueryStats stats;
 };

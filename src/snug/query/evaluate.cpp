@@ -48,7 +48,21 @@ SurfacePoint PatchEvaluator::placed_frame(const LimitFrame& frame) const {
   }
   result.differentiable = frame.differentiable;
   result.normal = frame.normal;
+  if (frame.normal && frame.tangent_error) {
+    result.normal_error = normal_error(frame.tangents, *frame.tangent_error);
+  }
   return result;
+}
+
+SurfaceParameter place_of(const Surface& surface, PatchId patch, TriangleParameter at) {
+  const auto [owner, part] = surface.place(patch);
+  if (surface.options().scheme == Scheme::loop) {
+    const double u = std::clamp(at.u, 0.0, 1.0);
+    return {owner, 0, u, std::clamp(at.v, 0.0, 1 - u)};
+  }
+  // Half a quad: from (0,0) by (1,0) to (1,1), or from (1,1) by (0,1) to (0,0).
+  const double u = part % 2 == 0 ? at.u + at.v : 1 - at.u - at.v, v = part % 2 == 0 ? at.v : 1 - at.v;
+  return {owner, part / 2, std::clamp(u, 0.0, 1.0), std::clamp(v, 0.0, 1.0)};
 }
 
 std::optional<PatchId> patch_at(const Surface& surface, const SurfaceParameter& at) {
@@ -63,6 +77,20 @@ std::optional<PatchId> patch_at(const Surface& surface, const SurfaceParameter& 
   }
   if (patch >= range.end || !surface.has_patch(PatchId(patch))) return {};
   return PatchId(patch);
+}
+
+std::optional<SurfaceNormal> normal_at(const Surface& surface, const SurfaceParameter& at,
+                                       const Motion& pose) {
+  const SurfacePoint point = evaluate(surface, at);
+  if (!point.normal) return std::nullopt;
+  const Vector3 turned = pose.rotate(*point.normal);
+  SurfaceNormal result{(1 / length(turned)) * turned, {}};
+  // derivations/rounding.md, "Normals".
+  const double defect = pose.defect();
+  if (point.normal_error) {
+    result.error = enlarged((1 + 2 * defect) * *point.normal_error + 8 * defect + 32 * unit_roundoff);
+  }
+  return result;
 }
 
 SurfacePoint evaluate(const Surface& surface, const SurfaceParameter& at) {

@@ -10,6 +10,7 @@
 #include <snug/base/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/query/crossing.h>
+#include <snug/surface/unscale.h>
 
 namespace snug {
 namespace {
@@ -36,42 +37,51 @@ constexpr float both_opened = 3;
 // And where they do not overlap by more than this part of the smaller one: else one of them is enough to find out where.
 constexpr float deep_overlap = 0.4F;
 
-// Distance of a ball to the box of a placed model, but for roundings; `between`: how far apart the middles of the balls
-// around both are.
-double ball_to_box(const PlacedModel& model, const Point3& p, double radius, double between) {
-  const Obb& box = model.model.box();
-  if (between <= radius + std::min({box.half.x, box.half.y, box.half.z})) return -INFINITY;
-  const Vector3 d = p - model.pose.apply(box.centre);
-  const Vector3 local = d.x * model.pose.row(0) + d.y * model.pose.row(1) + d.z * model.pose.row(2);
-  double sum = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double beyond = std::max(0.0, std::fabs(dot(box.axes[k], local)) - box.half[k]);
-    sum += beyond * beyond;
+// A placed model as a polytope, in some units: `to_units` leads there from its own.
+struct Outline {
+  const Dop26& dop;
+  std::array<Vector3, 3> rows;
+  double to_units;
+  Point3 centre;  // of the polytope, placed
+  double size;    // of what was summed up for it
+
+  Outline(const PlacedModel& model, PowerOfTwo units)
+      : dop(model.model.tree().dop()),
+        rows{model.pose.row(0), model.pose.row(1), model.pose.row(2)},
+        to_units((model.model.surface().scale().inverse() * units).apply(1.0)) {
+    const Vector3 local = to_units * (model.model.tree().box().centre - Point3{});
+    const Vector3 translation = units.apply(model.pose.translation());
+    centre =
+        Point3{} + (Vector3{dot(rows[0], local), dot(rows[1], local), dot(rows[2], local)} + translation);
+    size = 2 * max_abs(local) + max_abs(translation) + to_units * dop.radius();
   }
-  return std::sqrt(sum) - radius;
+  // Upper bound, but for roundings, of dot(direction, x - centre) over the surface.
+  [[nodiscard]] double reach(const Vector3& direction) const {
+    return to_units * dop.reach(direction.x * rows[0] + direction.y * rows[1] + direction.z * rows[2]);
+  }
+};
+
+// Far enough from the ends of the range for squares and products of three.
+bool tame(double x) { return x > 0x1p-300 && x < 0x1p300; }
+
+// A lower bound of the distance along the line between the middles, in some units; not positive where none shows. NaN where
+// numbers come near the ends of the range in these units.
+double gap_between(const PlacedModel& a, const PlacedModel& b, PowerOfTwo units) {
+  const Outline one(a, units), other(b, units);
+  const Vector3 between = other.centre - one.centre;
+  const double apart_sq = length_sq(between), apart = std::sqrt(apart_sq);
+  if (!tame(apart)) return NAN;
+  const double gap = (apart_sq - (one.reach(between) + other.reach(-between))) / apart;
+  return gap - 32 * unit_roundoff * (apart + one.size + other.size);
 }
 
 }  // namespace
 
 double outer_gap(const PlacedModel& a, const PlacedModel& b) {
-  const Ball& ball_a = a.model.ball();
-  const Ball& ball_b = b.model.ball();
-  const Point3 centre_a = a.pose.apply(ball_a.centre), centre_b = b.pose.apply(ball_b.centre);
-  const double between = length(centre_b - centre_a);
-  if (!(between > 0x1p-400 && between < 0x1p400))
-    return -INFINITY;  // squares are far from both ends of the range
-  // Rotations within rigidity_tolerance: their inverses, which are their transposes but for that, and radii; products and
-  // sums of three, far below that.
-  const double reach = between + max_abs(ball_a.centre - Point3{}) + max_abs(ball_b.centre - Point3{}) +
-                       max_abs(a.pose.translation()) * 0x1p-20 + max_abs(b.pose.translation()) * 0x1p-20 +
-                       ball_a.radius + ball_b.radius;
-  const double doubt = 16 * rigidity_tolerance * reach;
-  const double balls = between - ball_a.radius - ball_b.radius - doubt;
-  if (balls > 0) return balls;
-  const double boxes = std::max(ball_to_box(a, centre_b, ball_b.radius, between),
-                                ball_to_box(b, centre_a, ball_a.radius, between)) -
-                       doubt;
-  return boxes > 0 ? boxes : -INFINITY;
+  if (const double gap = gap_between(a, b, PowerOfTwo()); !std::isnan(gap)) return gap;
+  const PowerOfTwo world = joint_scale(a, b);
+  const double gap = gap_between(a, b, world);
+  return gap > 0 ? unscaled_down(gap, world.inverse()) : -INFINITY;
 }
 
 void nearest_last(std::vector<NodePair>& pairs, std::size_t from) {
@@ -303,16 +313,30 @@ PairSearch::Witness PairSearch::witness(const Pieces& pieces) {
   const std::array<Barycentric, 2> at{pieces.near.on_a, pieces.near.on_b};
   for (std::size_t s = 0; s < 2; ++s) {
     const Patch& patch = scratch_[s]->pieces()[pieces.ids[s]].patch;
-    const LimitPoint limit = limit_point(patch, clamped(at[s]));
+    found.pieces[s] = pieces.ids[s];
+    found.at[s] = clamped(at[s]);
+    const LimitPoint limit = limit_point(patch, found.at[s]);
     const Point3 local = patch.origin + limit.relative;
     double error = limit.error + unit_roundoff * max_abs(local - Point3{});
     found.points[s] = placed(s, local, error);
     found.error = std::max(found.error, error);
   }
   const Vector3 between = found.points[1] - found.points[0];
-  found.distance = enlarged(std::sqrt(length_sq(between) + 8 * underflow_error) +
-                            2 * spatial_error(found.error) + 8 * unit_roundoff * max_abs(between));
+  // Not enlarged(): of surfaces far apart that would be more than all else.
+  found.distance = (std::sqrt(length_sq(between) + 8 * underflow_error) + 2 * spatial_error(found.error) +
+                    8 * unit_roundoff * max_abs(between)) *
+                   (1 + 16 * unit_roundoff);
   return found;
+}
+
+WitnessPlaces PairSearch::places(const Witness& witness) const {
+  WitnessPlaces places;
+  for (std::size_t s = 0; s < 2; ++s) {
+    const Piece& piece = scratch_[s]->pieces()[witness.pieces[s]];
+    places[s] =
+        place_of(scratch_[s]->model().surface(), piece.root, to_face(piece.patch.path, witness.at[s]));
+  }
+  return places;
 }
 
 bool PairSearch::certainly_cross(const Pieces& pieces) {

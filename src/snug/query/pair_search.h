@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <snug/enclose/triangle_distance.h>
+#include <snug/query/evaluate.h>
 #include <snug/query/query_model.h>
 
 namespace snug {
@@ -17,6 +18,9 @@ struct QueryStats {
   std::uint64_t evaluations = 0;     ///< of limit points, pairs of them
   std::uint64_t splits = 0;          ///< of pieces, each time one is opened
 };
+
+/// Where two witnesses lie on their surfaces, of A and of B; nothing for one that is a point of the other surface alone.
+using WitnessPlaces = std::array<std::optional<SurfaceParameter>, 2>;
 
 /// Two nodes, of A and of B.
 struct NodePair {
@@ -99,7 +103,11 @@ class PairSearch {
     std::array<Point3, 2> points;
     double error = 0;  ///< upper bound, a coordinate, of |point - exact point|
     double distance = INFINITY;
+    std::array<PieceId, 2> pieces;        ///< that they lie on
+    std::array<TriangleParameter, 2> at;  ///< and where there
   };
+  /// Where the points of a witness of this search lie.
+  [[nodiscard]] WitnessPlaces places(const Witness& witness) const;
   /// At the parameters where the base triangles are nearest.
   [[nodiscard]] Witness witness(const Pieces& pieces);
 

@@ -92,13 +92,9 @@ QueryModel::QueryModel(const Surface& surface, const QueryModelOptions& options,
       solid_(std::make_unique<LazySolid>()) {
   const PowerOfTwo back = surface.scale().inverse();
   ball_ = {back.apply(tree_.ball().centre), enlarged(back.apply(tree_.ball().radius))};
-  box_ = tree_.box();
-  box_.centre = back.apply(box_.centre);
-  box_.half = back.apply(box_.half);
   // Beyond these sizes products lose digits to the ends of the range.
   if (!is_finite(ball_.centre) || !(ball_.radius < 0x1p500) || std::abs(back.exponent()) > 500) {
     ball_ = {Point3{}, INFINITY};
-    box_.half = {INFINITY, INFINITY, INFINITY};
   }
 }
 

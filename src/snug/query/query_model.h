@@ -46,7 +46,6 @@ class QueryModel {
   [[nodiscard]] PatchId patch(std::uint32_t item) const { return patches_[item]; }
   /// Around the surface, in mesh units; infinite where that does not fit a double.
   [[nodiscard]] const Ball& ball() const { return ball_; }
-  [[nodiscard]] const Obb& box() const { return box_; }
   /// The solid that the surface bounds, made on first use.
   /// Errors:    those of Solid: InputError (refused) for a surface that is not closed.
   [[nodiscard]] const Solid& solid() const;
@@ -59,7 +58,6 @@ class QueryModel {
   std::vector<PatchId> patches_;
   BoundingTree tree_;
   Ball ball_;
-  Obb box_;
   struct LazySolid;
   std::unique_ptr<LazySolid> solid_;
 };

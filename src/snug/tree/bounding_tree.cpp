@@ -92,6 +92,7 @@ BoundingTree::BoundingTree(Volume volume, std::span<const Point3> centres, int t
       names[i] = static_cast<std::uint32_t>(i) | cluster_bit;
     }
   });
+  const std::vector<BoundingVolume> clusters = volumes;
   // Level by level: eight neighbours in a row make a block.
   while (volumes.size() > 1) {
     std::vector<BoundingVolume> parents;
@@ -108,6 +109,7 @@ BoundingTree::BoundingTree(Volume volume, std::span<const Point3> centres, int t
   blocks_.add(volumes, names);
   ball_ = ball_around(volume, volumes[0]);
   box_ = box_around(volume, volumes[0]);
+  dop_ = Dop26(volume, clusters, box_.centre);
 }
 
 std::span<const std::uint32_t> BoundingTree::cluster(std::size_t i) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <snug/tree/blocks.h>
+#include <snug/tree/dop26.h>
 
 namespace snug {
 
@@ -32,6 +33,8 @@ class BoundingTree {
   [[nodiscard]] const Ball& ball() const { return ball_; }
   /// A box around everything.
   [[nodiscard]] const Obb& box() const { return box_; }
+  /// A polytope around all clusters' volumes, relative to the box's centre.
+  [[nodiscard]] const Dop26& dop() const { return dop_; }
   [[nodiscard]] std::size_t cluster_count() const {
     return (items_.size() + cluster_size - 1) / cluster_size;
   }
@@ -43,6 +46,7 @@ class BoundingTree {
   Blocks blocks_;
   Ball ball_;
   Obb box_;
+  Dop26 dop_;
 };
 
 }  // namespace snug

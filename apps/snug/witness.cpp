@@ -1,0 +1,59 @@
+#include "witness.h"
+
+#include <fmt/core.h>
+
+namespace snug::command {
+
+void write_place(JsonWriter& json, const Surface& surface, const SurfaceParameter& at, const Motion& pose) {
+  const Scheme scheme = surface.options().scheme;
+  json.field(is_primal(scheme) ? "face" : "vertex", at.owner);
+  if (scheme != Scheme::loop) json.field("corner", at.corner);
+  json.field("u", at.u).field("v", at.v);
+  const std::optional<SurfaceNormal> normal = normal_at(surface, at, pose);
+  json.key("normal");
+  normal ? json.value(normal->direction) : json.null();
+  json.key("normal_error");
+  normal && normal->error ? json.value(*normal->error) : json.null();
+}
+
+void write_places(JsonWriter& json, const Sides& sides, const WitnessPlaces* places) {
+  json.key("witness_at");
+  if (places == nullptr) {
+    json.null();
+    return;
+  }
+  json.begin_array();
+  for (std::size_t s = 0; s < 2; ++s) {
+    if (!(*places)[s]) {
+      json.null();
+      continue;
+    }
+    json.begin_object();
+    write_place(json, *sides.surfaces[s], *(*places)[s], sides.poses[s]);
+    json.end_object();
+  }
+  json.end_array();
+}
+
+std::string witness_table(const Sides& sides, const std::array<Point3, 2>& witness,
+                          const WitnessPlaces& places) {
+  const auto line = [](const std::string& on, const std::string& x, const std::string& y,
+                       const std::string& z, const std::string& place) {
+    return fmt::format("  {:<2}  {:>12}  {:>12}  {:>12}  {}", on, x, y, z, place);
+  };
+  const auto number = [](double x) { return fmt::format("{:.8g}", x); };
+  std::string table = line("on", "x", "y", "z", "place");
+  for (std::size_t s = 0; s < 2; ++s) {
+    if (!places[s]) continue;
+    const SurfaceParameter& at = *places[s];
+    const Scheme scheme = sides.surfaces[s]->options().scheme;
+    const std::string place =
+        fmt::format("{} {}{} u {:.6g} v {:.6g}", is_primal(scheme) ? "face" : "vertex", at.owner,
+                    scheme == Scheme::loop ? "" : fmt::format(" corner {}", at.corner), at.u, at.v);
+    table += "\n" + line(s == 0 ? "A" : "B", number(witness[s].x), number(witness[s].y), number(witness[s].z),
+                         place);
+  }
+  return table;
+}
+
+}  // namespace snug::command

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include <snug/query/pair_search.h>
+
+#include "json_writer.h"
+
+namespace snug::command {
+
+/// The fields face (dual: vertex), part or corner of its split, u, v, normal and normal_error of a place, into the object that is
+/// open.
+void write_place(JsonWriter& json, const Surface& surface, const SurfaceParameter& at,
+                 const Motion& pose = {});
+
+/// Two surfaces where they are placed.
+struct Sides {
+  std::array<const Surface*, 2> surfaces;
+  std::array<Motion, 2> poses;
+};
+[[nodiscard]] inline Sides sides_of(const PlacedModel& a, const PlacedModel& b) {
+  return {{&a.model.surface(), &b.model.surface()}, {a.pose, b.pose}};
+}
+
+/// Witnesses and where they lie: "witness_at": two objects, null for a witness that is a point of the other surface alone, or null
+/// without witnesses.
+void write_places(JsonWriter& json, const Sides& sides, const WitnessPlaces* places);
+
+/// Columns of witnesses, for people: a header line, and one for each surface.
+[[nodiscard]] std::string witness_table(const Sides& sides, const std::array<Point3, 2>& witness,
+                                        const WitnessPlaces& places);
+
+}  // namespace snug::command
