@@ -91,9 +91,10 @@ ExitStatus run_poses(PairArguments& pair, Report& report, const CollideOptions& 
   const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
   const auto ask = [&](const PlacedModel& a, const PlacedModel& b) {
     Collision answer = collide(a, b, wanted, stop_only);
-    return PoseAnswer{.fields = [answer, sides = sides_of(a, b)](JsonWriter& json) { write_answer(json, sides, answer); },
-                      .row = row(answer),
-                      .reached = answer.verdict != Verdict::undecided};
+    return PoseAnswer{
+        .fields = [answer, sides = sides_of(a, b)](JsonWriter& json) { write_answer(json, sides, answer); },
+        .row = row(answer),
+        .reached = answer.verdict != Verdict::undecided};
   };
   const ExitStatus status = answer_poses(pair, report, "verdict lower upper ax ay az bx by bz", ask, monitor);
   report.finish();

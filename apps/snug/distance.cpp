@@ -42,9 +42,10 @@ ExitStatus run_poses(PairArguments& pair, Report& report, const DistanceOptions&
   const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
   const auto ask = [&](const PlacedModel& a, const PlacedModel& b) {
     Distance answer = distance(a, b, wanted, stop_only);
-    return PoseAnswer{.fields = [answer, sides = sides_of(a, b)](JsonWriter& json) { write_answer(json, sides, answer); },
-                      .row = row(answer),
-                      .reached = answer.reached};
+    return PoseAnswer{
+        .fields = [answer, sides = sides_of(a, b)](JsonWriter& json) { write_answer(json, sides, answer); },
+        .row = row(answer),
+        .reached = answer.reached};
   };
   const ExitStatus status = answer_poses(pair, report, "lower upper ax ay az bx by bz", ask, monitor);
   report.finish();

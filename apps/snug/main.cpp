@@ -84,7 +84,7 @@ int guarded_answer(int argc, char** argv) {
     return fail(ExitStatus::usage, error.what());
   } catch (const snug::InputError& error) {
     // A wait for a file that a signal ended.
-    if (interrupted.load()) return interruption();
+    if (stop_requested.load()) return interruption();
     return fail(
         error.problem() == snug::InputProblem::unreadable ? ExitStatus::unreadable : ExitStatus::refused,
         error.what());

@@ -28,7 +28,7 @@ fs::path own_folder() {
 std::string read_all(int file) {
   std::string text;
   char block[4096];
-  for (ssize_t got = 0; !interrupted.load() && (got = read(file, block, sizeof block)) != 0;) {
+  for (ssize_t got = 0; !stop_requested.load() && (got = read(file, block, sizeof block)) != 0;) {
     if (got > 0) text.append(block, static_cast<std::size_t>(got));
     if (got < 0 && errno != EINTR) break;
   }
@@ -83,10 +83,10 @@ std::optional<std::string> output_of_neighbour(const std::string& program,
   std::string text;
   if (failed == 0) text = read_all(ends[0]);
   close(ends[0]);
-  if (failed == 0 && interrupted.load()) kill(child, SIGTERM);
+  if (failed == 0 && stop_requested.load()) kill(child, SIGTERM);
   int status = 0;
   const bool ended = failed == 0 && waitpid(child, &status, 0) == child;
-  if (interrupted.load()) throw Interrupted();
+  if (stop_requested.load()) throw Interrupted();
   if (!ended || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     throw InputError(InputProblem::unreadable, words[0] + " failed; take it away to do without its columns");
   }

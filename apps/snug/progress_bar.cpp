@@ -13,7 +13,7 @@
 
 namespace snug::command {
 
-std::atomic<bool> interrupted{false};
+std::atomic<bool> stop_requested{false};
 
 namespace {
 
@@ -32,7 +32,7 @@ std::atomic<bool> told{false};
 
 void note_interrupt(int signal) {
   const int before = errno;
-  if (signal == SIGALRM || interrupted.exchange(true)) end_at_once();
+  if (signal == SIGALRM || stop_requested.exchange(true)) end_at_once();
   // A plain system call on Linux, and so safe here.
   const itimerval until_the_end{{0, 0}, {0, grace}};
   setitimer(ITIMER_REAL, &until_the_end, nullptr);
@@ -64,7 +64,7 @@ void tell_interrupted() noexcept {
 
 WorkMonitor stopped_by_interrupts() {
   WorkMonitor result;
-  result.stop = &interrupted;
+  result.stop = &stop_requested;
   return result;
 }
 
