@@ -129,7 +129,11 @@ ExitStatus run(const Options& options) {
     if (depth) write_penetration(report.write(), *depth);
   }
   report.text(sentence(answer, wanted.tolerance, wanted.margin));
-  if (answer.witness) report.text(witness_table(sides_of(pair.a(), pair.b()), *answer.witness, answer.at));
+  if (answer.witness) {
+    for (const std::string& line : witness_lines(sides_of(pair.a(), pair.b()), *answer.witness, answer.at)) {
+      report.text(line);
+    }
+  }
   if (depth) report.text(penetration_sentence(*depth));
   if (answer.verdict == Verdict::separated && !options.solid)
     note_nesting(options, pair.a(), pair.b(), monitor);

@@ -84,7 +84,9 @@ ExitStatus run(const Options& options) {
                                 ? "; that is not as precise as asked, give a larger --budget"
                                 : "; that is not as precise as asked, rounding or memory stands in the way"));
   }
-  report.text(witness_table(sides_of(pair.a(), pair.b()), answer.witness, answer.at));
+  for (const std::string& line : witness_lines(sides_of(pair.a(), pair.b()), answer.witness, answer.at)) {
+    report.text(line);
+  }
   if (answer.lower > 0 && !options.solid) note_nesting(options, pair.a(), pair.b(), monitor);
   report.finish();
   return answer.reached ? ExitStatus::answered : ExitStatus::not_reached;

@@ -35,14 +35,14 @@ void write_places(JsonWriter& json, const Sides& sides, const WitnessPlaces* pla
   json.end_array();
 }
 
-std::string witness_table(const Sides& sides, const std::array<Point3, 2>& witness,
-                          const WitnessPlaces& places) {
+std::vector<std::string> witness_lines(const Sides& sides, const std::array<Point3, 2>& witness,
+                                       const WitnessPlaces& places) {
   const auto line = [](const std::string& on, const std::string& x, const std::string& y,
                        const std::string& z, const std::string& place) {
     return fmt::format("  {:<2}  {:>12}  {:>12}  {:>12}  {}", on, x, y, z, place);
   };
   const auto number = [](double x) { return fmt::format("{:.8g}", x); };
-  std::string table = line("on", "x", "y", "z", "place");
+  std::vector<std::string> lines{line("on", "x", "y", "z", "place")};
   for (std::size_t s = 0; s < 2; ++s) {
     if (!places[s]) continue;
     const SurfaceParameter& at = *places[s];
@@ -50,10 +50,10 @@ std::string witness_table(const Sides& sides, const std::array<Point3, 2>& witne
     const std::string place =
         fmt::format("{} {}{} u {:.6g} v {:.6g}", is_primal(scheme) ? "face" : "vertex", at.owner,
                     scheme == Scheme::loop ? "" : fmt::format(" corner {}", at.corner), at.u, at.v);
-    table += "\n" + line(s == 0 ? "A" : "B", number(witness[s].x), number(witness[s].y), number(witness[s].z),
-                         place);
+    lines.push_back(
+        line(s == 0 ? "A" : "B", number(witness[s].x), number(witness[s].y), number(witness[s].z), place));
   }
-  return table;
+  return lines;
 }
 
 }  // namespace snug::command

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include <snug/query/pair_search.h>
 
@@ -28,7 +29,7 @@ struct Sides {
 void write_places(JsonWriter& json, const Sides& sides, const WitnessPlaces* places);
 
 /// Columns of witnesses, for people: a header line, and one for each surface.
-[[nodiscard]] std::string witness_table(const Sides& sides, const std::array<Point3, 2>& witness,
-                                        const WitnessPlaces& places);
+[[nodiscard]] std::vector<std::string> witness_lines(const Sides& sides, const std::array<Point3, 2>& witness,
+                                                     const WitnessPlaces& places);
 
 }  // namespace snug::command
