@@ -13,7 +13,11 @@
 #include <snug/query/distance.h>
 
 #include <gtest/gtest.h>
+#include <oracle/polygon_twin.h>
+#include <oracle/tagged_shapes.h>
+#include <snug/query/evaluate.h>
 #include <testing/ground_trials.h>
+#include <testing/tagged.h>
 
 #include <algorithm>
 #include <chrono>
@@ -289,7 +293,9 @@ class Checks {
            found.lower);
     counts_["twin left open"] += found.spent;
     const Point same = side(s).twin->limit_point(answer.at.owner, answer.at.corner, answer.at.u, answer.at.v);
-    expect(between(same, point) <= 2 * answer.point_error + 1e-9 * size_,
+    // The twin goes down 46 levels, which at large faces of a dual scheme are still wide.
+    const bool by_twin = is_primal(side(s).made.scheme) && !side(s).has_many();
+    expect(between(same, point) <= 2 * answer.point_error + (by_twin ? 1e-9 : 1e-3) * size_,
            "owner, u and v are those of the point", between(same, point), answer.point_error);
     if (trial_->number % 3 == 0) {
       QueryScratch fresh(*side(s).model);
@@ -355,6 +361,50 @@ class Checks {
   std::map<std::string, std::pair<double, std::uint64_t>> slowest_;
   int failures_ = 0;
 };
+
+// Where a patch's kind once left out what its surface depends on.
+void expect_limit_points(const oracle::TaggedMesh& mesh, const oracle::Rules& rules) {
+  const Surface surface(testing::control_mesh(mesh, rules), testing::options_of(rules),
+                        std::make_shared<BoundLibrary>(), 1);
+  const std::vector<oracle::FaceSample> samples = oracle::sample_faces(mesh, rules, 3);
+  EXPECT_FALSE(samples.empty());
+  for (const oracle::FaceSample& s : samples) {
+    const SurfacePoint found = evaluate(surface, {s.face, s.part, s.u, s.v});
+    for (std::size_t x = 0; x < 3; ++x)
+      EXPECT_LE(std::fabs(found.position[x] - s.position[x]), found.error + s.error)
+          << "face " << s.face << '.' << s.part << " at " << s.u << ", " << s.v;
+  }
+}
+
+// With Chaikin an edge of sharpness 0.5 stays sharp beside sharper ones at both of its ends: faces that touch one end
+// alone have to know of the other.
+TEST(ground, chaikin_looks_beyond_the_faces_around) {
+  std::mt19937_64 random(5);
+  for (const oracle::PrimalScheme scheme :
+       {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
+    oracle::Rules rules;
+    rules.scheme = scheme;
+    rules.chaikin = rules.clamp_dart_edges = true;
+    for (const double middle : {0.5, 0.3, 1.7}) {
+      oracle::TaggedMesh mesh = oracle::meshes::shaken(oracle::meshes::quad_grid(5, 4), 0.2, random);
+      if (scheme == oracle::PrimalScheme::loop) mesh = oracle::meshes::triangulated(mesh);
+      mesh.creases = {{13, 14, 3.2}, {14, 15, middle}, {15, 16, 3.2}};
+      expect_limit_points(mesh, rules);
+    }
+  }
+}
+
+// A corner whose faces run from one sharp edge back to it, beside vertices of three faces.
+TEST(ground, fans_from_an_edge_back_to_it_are_told) {
+  oracle::Rules rules;
+  rules.scheme = oracle::PrimalScheme::loop;
+  oracle::TaggedMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0.1, 0}, {0.2, 1, 0.1}, {0.3, 0.2, 1}};
+  mesh.polygons = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  mesh.creases = {{0, 1, 10}};
+  mesh.corners = {{0, 10}};
+  expect_limit_points(mesh, rules);
+}
 
 TEST(ground, meshes_have_what_was_chosen) {
   std::mt19937_64 random(3);

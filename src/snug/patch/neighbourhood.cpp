@@ -71,8 +71,9 @@ CornerView view_of(const Topology& topology, const Sharpness& sharpness, HalfEdg
     ++fan.before;
     standard = standard && is_standard(h);
   }
-  // From an edge of many faces back to it: the crease goes on elsewhere.
-  fan.odd = fan.odd || (cutting && !fan.sharp && topology.edge_of(h) == last);
+  // From an edge of many faces, or a cut, back to it. At a crease it goes on elsewhere; at a corner the first and the last
+  // vertex of the fan are one, which vertices of three faces beside it, or a fan of one's own, cannot tell.
+  fan.odd = fan.odd || (cutting && topology.edge_of(h) == last);
   if (!cutting && !fan.odd) {  // the short way: nothing is sharp but what connectivity makes so
     fan.sharp = vertex_sharpness(topology, sharpness, v, options.boundary) >= infinite_sharpness;
   }
@@ -100,8 +101,28 @@ KindKey dual_key(const Topology& topology, HalfEdge start, Scheme scheme) {
   return key;
 }
 
-// The faces around the corners of a face, its own first, each as the half-edge that leaves the corner where it was met.
-std::vector<HalfEdge> faces_around(const Topology& topology, HalfEdge start) {
+// The other ends of the edges at the corners of a face, each once.
+std::vector<VertexId> spoke_ends(const Topology& topology, HalfEdge start) {
+  std::vector<VertexId> ends;
+  const auto add = [&](VertexId v) {
+    if (std::find(ends.begin(), ends.end(), v) == ends.end()) ends.push_back(v);
+  };
+  HalfEdge corner = start;
+  do {
+    topology.for_each_fan(topology.from(corner), [&](HalfEdge first) {
+      topology.walk_fan(first, [&](HalfEdge h) {
+        add(topology.to(h));
+        add(topology.from(topology.prev(h)));
+      });
+    });
+    corner = topology.next(corner);
+  } while (corner != start);
+  return ends;
+}
+
+// The faces around the corners of a face, its own first, each as the half-edge that leaves the corner where it was met; then, if
+// wide, those around the far ends of the edges at the corners.
+std::vector<HalfEdge> faces_around(const Topology& topology, HalfEdge start, bool wide) {
   thread_local FirstMet met;
   met.begin(topology.face_count());
   std::vector<HalfEdge> found;
@@ -118,7 +139,26 @@ std::vector<HalfEdge> faces_around(const Topology& topology, HalfEdge start) {
     topology.for_each_fan(topology.from(corner), [&](HalfEdge first) { topology.walk_fan(first, add); });
     corner = topology.next(corner);
   } while (corner != start);
+  if (!wide) return found;
+  for (const VertexId end : spoke_ends(topology, start)) {
+    topology.for_each_fan(end, [&](HalfEdge first) { topology.walk_fan(first, add); });
+  }
   return found;
+}
+
+bool is_corner(const Topology& topology, HalfEdge start, VertexId v) {
+  const auto corners = topology.face(topology.face_of(start));
+  return std::find(corners.begin(), corners.end(), v) != corners.end();
+}
+
+// Does the sharpness of edges at the corners depend on that of edges which do not touch them?
+bool is_wide(const Topology& topology, HalfEdge start, const SchemeOptions& options,
+             const Sharpness& sharpness) {
+  std::vector<VertexId> ends;
+  for (const VertexId v : topology.face(topology.face_of(start))) {
+    add_far_ends(topology, sharpness, v, options, ends);
+  }
+  return std::any_of(ends.begin(), ends.end(), [&](VertexId v) { return !is_corner(topology, start, v); });
 }
 
 // Details of a primal kind: rules; faces; sharpness of vertices and edges.
@@ -135,12 +175,14 @@ class DetailWriter {
 
 std::vector<std::uint32_t> primal_details(const Topology& topology, HalfEdge start,
                                           const SchemeOptions& options, const Sharpness& sharpness) {
-  const PartOfMesh part = part_of(topology, sharpness, options.boundary, faces_around(topology, start));
+  const bool wide = is_wide(topology, start, options, sharpness);
+  const PartOfMesh part = part_of(topology, sharpness, options.boundary, faces_around(topology, start, wide));
   // The corners are the first vertices; fewer than the face has if it names one twice.
   std::size_t corners = 0;
   for (const VertexId v : part.topology.face(FaceId(0))) corners = std::max(corners, v.index() + 1);
   DetailWriter out;
-  out.add(static_cast<std::size_t>(options.creases) | static_cast<std::size_t>(options.triangles) << 1);
+  out.add(static_cast<std::size_t>(options.creases) | static_cast<std::size_t>(options.triangles) << 1 |
+          static_cast<std::size_t>(wide) << 2);
   out.add(part.names.size());
   out.add(part.topology.face_count());
   for (std::size_t f = 0; f < part.topology.face_count(); ++f) {
@@ -148,7 +190,7 @@ std::vector<std::uint32_t> primal_details(const Topology& topology, HalfEdge sta
     out.add(face.size());
     for (const VertexId v : face) out.add(v.index());
   }
-  // Nothing beyond the edges and vertices of the face's corners counts.
+  // Nothing beyond the edges and vertices of the face's corners counts; if it is wide, of the edges' far ends.
   std::vector<std::pair<std::size_t, double>> sharp;
   if (!part.sharpness.vertices.empty()) {
     for (std::size_t v = 0; v < corners; ++v) {
@@ -161,9 +203,15 @@ std::vector<std::uint32_t> primal_details(const Topology& topology, HalfEdge sta
     out.add(s);
   }
   sharp.clear();
+  std::vector<bool> near(part.names.size(), false);
+  std::fill_n(near.begin(), corners, true);
+  if (wide) {
+    for (const VertexId v : spoke_ends(part.topology, part.topology.first_of(FaceId(0))))
+      near[v.index()] = true;
+  }
   for (std::size_t e = 0; e < part.sharpness.edges.size(); ++e) {
     const HalfEdge h = part.topology.half_of(EdgeId(e));
-    const bool counts = part.topology.from(h).index() < corners || part.topology.to(h).index() < corners;
+    const bool counts = near[part.topology.from(h).index()] || near[part.topology.to(h).index()];
     if (counts && part.sharpness.edges[e] > 0 && !part.topology.ends_fans(EdgeId(e))) {
       sharp.emplace_back(e, part.sharpness.edges[e]);
     }
@@ -186,7 +234,7 @@ Neighbourhood from_details(const KindKey& key) {
   Neighbourhood result;
   const std::uint32_t rules = next();
   result.options = {key.scheme, BoundaryRule::edge_only, static_cast<CreaseMethod>(rules & 1u),
-                    static_cast<SmoothTriangles>(rules >> 1), CatmarkVertexRule::standard};
+                    static_cast<SmoothTriangles>(rules >> 1 & 1u), CatmarkVertexRule::standard};
   const std::size_t vertices = next(), faces = next();
   std::vector<std::uint32_t> offsets{0};
   std::vector<VertexId> corners;
@@ -497,7 +545,8 @@ void control_vertices(const Topology& topology, HalfEdge start, const KindKey& k
   if (!is_primal(key.scheme)) {
     dual_control(topology, start, out);
   } else if (!key.plain()) {
-    vertices_of(topology, faces_around(topology, start), out);
+    const bool wide = (key.details[0] >> 2 & 1u) != 0;
+    vertices_of(topology, faces_around(topology, start, wide), out);
   } else if (key.scheme == Scheme::loop) {
     loop_control(topology, start, key.corners, out);
   } else {

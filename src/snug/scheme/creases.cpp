@@ -160,6 +160,21 @@ double decayed(const Star& star, const Spoke& spoke, CreaseMethod method) {
   return std::max(0.0, 0.75 * spoke.sharpness + 0.25 * others - 1);
 }
 
+void add_far_ends(const Topology& topology, const Sharpness& sharpness, VertexId v,
+                  const SchemeOptions& options, std::vector<VertexId>& out) {
+  if (options.creases == CreaseMethod::uniform || sharpness.edges.empty()) return;
+  Star here, there;
+  gather_star(topology, sharpness, v, options.boundary, here);
+  for (const Spoke& spoke : here.spokes) {
+    if (!is_semi_sharp(spoke.sharpness)) continue;
+    gather_star(topology, sharpness, spoke.end, options.boundary, there);
+    const auto another = [&](const Spoke& other) {
+      return other.edge != spoke.edge && is_semi_sharp(other.sharpness);
+    };
+    if (std::any_of(there.spokes.begin(), there.spokes.end(), another)) out.push_back(spoke.end);
+  }
+}
+
 bool is_stationary(const Star& star) {
   return !is_semi_sharp(star.sharpness) &&
          std::none_of(star.spokes.begin(), star.spokes.end(),

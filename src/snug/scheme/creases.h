@@ -67,6 +67,12 @@ enum class VertexRule : std::uint8_t { corner, crease, smooth };
 /// Source:    [DeRose98, sec. 3]; OpenSubdiv's Sdc::Crease.
 [[nodiscard]] double decayed(const Star& star, const Spoke& spoke, CreaseMethod method);
 
+/// With Chaikin the half of an edge at its far end depends on what is semi-sharp there, and with it the middle of the edge
+/// (whether both halves stay sharp) and all that follows at this end. Adds to `out` the ends of semi-sharp spokes of v at which
+/// other edges are semi-sharp, too; none with the uniform method.
+void add_far_ends(const Topology& topology, const Sharpness& sharpness, VertexId v,
+                  const SchemeOptions& options, std::vector<VertexId>& out);
+
 /// Is everything here at rest: no sharpness that decays?
 [[nodiscard]] bool is_stationary(const Star& star);
 

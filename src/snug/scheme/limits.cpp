@@ -47,7 +47,7 @@ bool is_settled(const Topology& topology, const Star& star, Scheme scheme) {
          (among_quads(topology, star) && (!is_dart(star) || has_distinct_places(topology, star)));
 }
 
-// The star of a vertex one step on, and the rows that lead there. The vertex comes first.
+// The star of a vertex one step on, with what the sharpness of its edges depends on, and the rows that lead there. The vertex comes first.
 struct NextStar {
   PartOfMesh part;
   RefinedTopology refined;
@@ -56,9 +56,17 @@ struct NextStar {
 NextStar next_star(const Topology& topology, const Sharpness& sharpness, const SchemeOptions& options,
                    const Star& star) {
   std::vector<HalfEdge> firsts;  // a face may meet the vertex twice
-  for (const HalfEdge h : star.faces) {
+  const auto add = [&](HalfEdge h) {
     const auto same = [&](HalfEdge g) { return topology.face_of(g) == topology.face_of(h); };
     if (std::none_of(firsts.begin(), firsts.end(), same)) firsts.push_back(h);
+  };
+  for (const HalfEdge h : star.faces) add(h);
+  std::vector<VertexId> far_ends;
+  if (!star.faces.empty()) {
+    add_far_ends(topology, sharpness, topology.from(star.faces[0]), options, far_ends);
+  }
+  for (const VertexId end : far_ends) {
+    topology.for_each_fan(end, [&](HalfEdge first) { topology.walk_fan(first, add); });
   }
   NextStar next{part_of(topology, sharpness, options.boundary, firsts), {}};
   SchemeOptions inside = options;
