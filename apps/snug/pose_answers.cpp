@@ -92,6 +92,7 @@ class PoseAnswers {
 
   void write(const Item& item, const PoseFile& file, std::size_t line) {
     if (item.error) {
+      report_.flush_text();  // answers before it stand
       throw InputError(item.error->problem(), file.name_of(line) + ": " + item.error->what());
     }
     if (report_.json()) report_.write().spliced(item.json);
