@@ -32,7 +32,7 @@ demo:  ## two surfaces: do they touch? and a picture of them, build/demo.png
 test: install-packages build  ## every test, on the release build
 	@$(ctest) --preset release
 
-test-long: install-packages build  ## every test with ten times the random cases, then with address sanitizer
+test-long: install-packages build  ## every test with many more random cases (docs/derivations/README.md), then with address sanitizer
 	@RC_PARAMS="max_success=1000" SNUG_PLACEMENTS=20000 $(ctest) --timeout 7200 --preset release
 	@SNUG_PLACEMENTS=150000 build/release/bin/tests/sound_solids_test --gtest_filter='solids.*'
 	@SNUG_PLACEMENTS=1000000 build/release/bin/tests/sound_solids_test --gtest_filter='signed_distance.*'
