@@ -1,16 +1,14 @@
 #include <snug/query/closest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include <snug/base/direction.h>
 #include <snug/base/error.h>
-#include <snug/base/parallel.h>
 #include <snug/base/rounding.h>
 #include <snug/enclose/triangle_distance.h>
 #include <snug/patch/evaluate.h>
-#include <snug/query/spatial_order.h>
+#include <snug/query/point_batch.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {
@@ -177,20 +175,9 @@ std::vector<ClosestPoint> closest_points(const QueryModel& model, std::span<cons
                                          const ClosestOptions& options, int threads,
                                          const WorkMonitor& monitor) {
   std::vector<ClosestPoint> results(to.size());
-  const std::vector<std::uint32_t> order = spatial_order(to);
-  std::atomic<std::size_t> done{0};
-  // A scratch a thread: pieces that one point made serve the next ones.
-  parallel_for_with(
-      to.size(), threads, [&] { return QueryScratch(model); },
-      [&](QueryScratch& scratch, std::size_t begin, std::size_t end) {
-        for (const std::uint32_t i : std::span(order).subspan(begin, end - begin)) {
-          results[i] = closest_point(scratch, to[i], options, monitor);
-          const std::size_t count = ++done;
-          if (count % (1 + to.size() / 1000) == 0) {
-            monitor.report(static_cast<double>(count) / static_cast<double>(to.size()));
-          }
-        }
-      });
+  for_each_point(model, to, threads, monitor, [&](QueryScratch& scratch, std::size_t i) {
+    results[i] = closest_point(scratch, to[i], options, monitor);
+  });
   return results;
 }
 

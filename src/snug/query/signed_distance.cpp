@@ -1,11 +1,8 @@
 #include <snug/query/signed_distance.h>
 
-#include <atomic>
-
-#include <snug/base/parallel.h>
 #include <snug/query/containment.h>
+#include <snug/query/point_batch.h>
 #include <snug/query/solid.h>
-#include <snug/query/spatial_order.h>
 
 namespace snug {
 
@@ -27,19 +24,9 @@ std::vector<SignedDistance> signed_distances(const QueryModel& model, std::span<
                                              const WorkMonitor& monitor) {
   static_cast<void>(model.solid());
   std::vector<SignedDistance> results(points.size());
-  std::atomic<std::size_t> done{0};
-  const std::vector<std::uint32_t> order = spatial_order(points);
-  parallel_for_with(
-      points.size(), threads, [&] { return QueryScratch(model); },
-      [&](QueryScratch& scratch, std::size_t begin, std::size_t end) {
-        for (const std::uint32_t i : std::span(order).subspan(begin, end - begin)) {
-          results[i] = signed_distance(scratch, points[i], options, monitor);
-          const std::size_t count = ++done;
-          if (count % (1 + points.size() / 1000) == 0) {
-            monitor.report(static_cast<double>(count) / static_cast<double>(points.size()));
-          }
-        }
-      });
+  for_each_point(model, points, threads, monitor, [&](QueryScratch& scratch, std::size_t i) {
+    results[i] = signed_distance(scratch, points[i], options, monitor);
+  });
   return results;
 }
 

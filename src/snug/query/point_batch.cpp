@@ -1,7 +1,12 @@
-#include <snug/query/spatial_order.h>
+#include <snug/query/point_batch.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cstdint>
 #include <utility>
+#include <vector>
+
+#include <snug/base/parallel.h>
 
 namespace snug {
 namespace {
@@ -14,8 +19,7 @@ std::uint32_t spread(std::uint32_t bits) {
   return (bits | bits << 2) & 0x09249249u;
 }
 
-}  // namespace
-
+// Where the points stand along the curve.
 std::vector<std::uint32_t> spatial_order(std::span<const Point3> points) {
   Box3 box;
   for (const Point3& p : points) box.add(p);
@@ -35,6 +39,25 @@ std::vector<std::uint32_t> spatial_order(std::span<const Point3> points) {
   order.reserve(places.size());
   for (const auto& place : places) order.push_back(place.second);
   return order;
+}
+
+}  // namespace
+
+void for_each_point(const QueryModel& model, std::span<const Point3> points, int threads,
+                    const WorkMonitor& monitor, const std::function<void(QueryScratch&, std::size_t)>& ask) {
+  const std::vector<std::uint32_t> order = spatial_order(points);
+  std::atomic<std::size_t> done{0};
+  parallel_for_with(
+      points.size(), threads, [&] { return QueryScratch(model); },
+      [&](QueryScratch& scratch, std::size_t begin, std::size_t end) {
+        for (const std::uint32_t i : std::span(order).subspan(begin, end - begin)) {
+          ask(scratch, i);
+          const std::size_t count = ++done;
+          if (count % (1 + points.size() / 1000) == 0) {
+            monitor.report(static_cast<double>(count) / static_cast<double>(points.size()));
+          }
+        }
+      });
 }
 
 }  // namespace snug
