@@ -271,7 +271,7 @@ FileProof prove_file(std::span<const std::byte> bytes) {
     std::optional<std::string> failure;
   };
   std::vector<Outcome> outcomes(file.kinds.size());
-  snug::parallel_for(file.kinds.size(), 0, [&](std::size_t begin, std::size_t end) {
+  const auto prove = [&](const KeptByThread&, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const StoredKind& kind = file.kinds[i];
       try {
@@ -283,7 +283,9 @@ FileProof prove_file(std::span<const std::byte> bytes) {
             "kind " + std::to_string(i) + ", " + to_text(kind.scheme, kind.key) + ": " + rejected.what();
       }
     }
-  });
+  };
+  snug::parallel_for_with(
+      file.kinds.size(), 0, [] { return KeptByThread(); }, prove);
   FileProof proof;
   for (std::size_t i = 0; i < file.kinds.size(); ++i) {
     const Outcome& outcome = outcomes[i];

@@ -5,6 +5,14 @@
 
 namespace checker {
 
+/// What the arithmetic keeps for a thread between operations is given back when this goes.
+struct KeptByThread {
+  KeptByThread() = default;
+  ~KeptByThread() { mpfr_free_cache(); }
+  KeptByThread(const KeptByThread&) = delete;
+  KeptByThread& operator=(const KeptByThread&) = delete;
+};
+
 /// A real number known to lie between two ends of 160 bits; every operation contains the exact result.
 class Real {
  public:
