@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <utility>
@@ -75,9 +76,11 @@ BoundingTree make_tree(const Surface& surface, std::span<const PatchId> patches,
 
 }  // namespace
 
+// Not std::call_once: an exception that leaves it, as of a surface that is not closed, may end the process or lock it up.
 struct QueryModel::LazySolid {
-  std::once_flag once;
+  std::mutex mutex;
   std::optional<Solid> solid;
+  std::atomic<const Solid*> ready{nullptr};
 };
 
 QueryModel::~QueryModel() = default;
@@ -99,7 +102,10 @@ QueryModel::QueryModel(const Surface& surface, const QueryModelOptions& options,
 }
 
 const Solid& QueryModel::solid() const {
-  std::call_once(solid_->once, [&] { solid_->solid.emplace(*surface_, tree_.blocks().volume()); });
+  if (const Solid* const ready = solid_->ready.load(std::memory_order_acquire)) return *ready;
+  const std::lock_guard lock(solid_->mutex);
+  if (!solid_->solid) solid_->solid.emplace(*surface_, tree_.blocks().volume());
+  solid_->ready.store(&*solid_->solid, std::memory_order_release);
   return *solid_->solid;
 }
 
