@@ -23,7 +23,7 @@ help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-17s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
 # A fresh clone builds the command alone, without the libraries of tests; where they are configured their objects serve.
-demo_preset = $(if $(wildcard build/release/CMakeCache.txt),release,command)
+demo_preset = $(if $(wildcard build/release/CMakeCache.txt),release,demo)
 demo:  ## two surfaces: do they touch? and a picture of them, build/demo.png
 	@scripts/install_packages build
 	@$(call build,$(demo_preset),snug_command)
