@@ -9,7 +9,6 @@
 #include <tuple>
 #include <utility>
 
-#include <snug/base/contract.h>
 #include <snug/base/error.h>
 #include <snug/mesh/half_edges.h>
 
@@ -360,7 +359,9 @@ void find_near_vertices(const ControlMesh& mesh, const std::vector<std::pair<Ver
 
 std::vector<std::uint32_t> first_of_welded(std::span<const Point3> points, double distance) {
   require_length(distance, "the distance of welding");
-  SNUG_EXPECT(points.size() < UINT32_MAX);
+  if (points.size() >= UINT32_MAX) {
+    throw InputError(InputProblem::refused, "2^32 points and more cannot be welded: split the mesh");
+  }
   double largest = 0;
   for (const Point3& point : points) {
     if (!is_finite(point))
