@@ -93,7 +93,7 @@ docs: install-packages  ## plots and tables of docs/convergence.md, pictures of 
 
 tables:  ## make the rows and tables again that are compiled in, then prove them
 	@$(call build,release,tablegen)
-	@build/release/bin/tablegen src/snug/basis/shipped.bin
+	@build/release/bin/tablegen src/snug/bounds/shipped.bin
 	@scripts/check_tables
 
 install-packages:  ## what building, testing and checking need, where it is missing (scripts/packages.txt has it in sections)

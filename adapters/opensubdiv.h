@@ -17,7 +17,7 @@
 /// needs nor links OpenSubdiv, and this header asks for nothing but OpenSubdiv's headers.
 namespace snug::opensubdiv {
 
-/// What a Surface is made of.
+/// What a LimitSurface is made of.
 struct MeshAndOptions {
   ControlMesh mesh;
   SchemeOptions options;
@@ -168,7 +168,7 @@ MeshAndOptions read_strided(const Far::TopologyRefiner& refiner, std::span<const
 /// surface:
 ///
 ///     auto [mesh, options] = snug::opensubdiv::from_refiner(refiner, points);
-///     const snug::Surface surface(std::move(mesh), options, library);
+///     const snug::LimitSurface surface(std::move(mesh), options, library);
 ///
 /// Guarantee: the limit surface is the refiner's. Vertices and faces keep their numbers, faces their first
 ///            vertex, points and sharpnesses their values. Creases are sorted, a < b; corners and holes
@@ -181,7 +181,7 @@ MeshAndOptions read_strided(const Far::TopologyRefiner& refiner, std::span<const
 /// Requires:  a point for each vertex of the base level; points after these, as of refined levels, are not
 ///            read.
 /// Errors:    InputError (refused) for the scheme bilinear; (value) on too few points. What snug does not
-///            answer for, non-manifold meshes for instance, Surface refuses.
+///            answer for, non-manifold meshes for instance, LimitSurface refuses.
 /// Cost:      linear, but for the sorting of creases; copies the points.
 [[nodiscard]] inline MeshAndOptions from_refiner(const OpenSubdiv::Far::TopologyRefiner& refiner,
                                                  std::span<const Point3> points) {

@@ -20,7 +20,7 @@ namespace {
 using namespace snug;
 using namespace snug::bench;
 
-void bench_patches(const char* title, ControlMesh mesh, std::shared_ptr<BoundLibrary> library,
+void bench_patches(const char* title, ControlMesh mesh, std::shared_ptr<BoundsCache> library,
                    const Options& options) {
   Subject subject(std::move(mesh), std::move(library));
   std::printf("%s: %zu patches, %zu kinds\n", title, subject.surface().face_count(),
@@ -53,9 +53,9 @@ Motion random_pose(std::mt19937_64& random, double half_room) {
                            1 - 2 * (x * x + y * y), half_room * unit()});
 }
 
-void bench_queries(const Surface& a, const Surface& b, const Options& options) {
-  const QueryModel model_a(a, {.threads = 1}), model_b(b, {.threads = 1});
-  QueryScratch scratch_a(model_a), scratch_b(model_b);
+void bench_queries(const LimitSurface& a, const LimitSurface& b, const Options& options) {
+  const SurfaceBvh model_a(a, {.threads = 1}), model_b(b, {.threads = 1});
+  SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
   const double size = std::max(a.size(), b.size());
   const int count = options.size(5000, 200);
   for (const double room : {6.0, 3.0}) {
@@ -85,12 +85,12 @@ void bench_queries(const Surface& a, const Surface& b, const Options& options) {
 
 int main(int argc, char** argv) {
   const Options options = start(argc, argv, 2, " A B");
-  const auto library = std::make_shared<BoundLibrary>();
+  const auto library = std::make_shared<BoundsCache>();
   const ControlMesh mesh = read_mesh(options.files[0]);
   const SchemeOptions rules;
   bench_patches("control mesh", mesh, library, options);
   bench_patches("refined three times", subdivide(mesh, rules, 3, false), library, options);
-  bench_queries(Surface(mesh, rules, library, 1), Surface(read_mesh(options.files[1]), rules, library, 1),
-                options);
+  bench_queries(LimitSurface(mesh, rules, library, 1),
+                LimitSurface(read_mesh(options.files[1]), rules, library, 1), options);
   return 0;
 }

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/quantile.h>
-#include <snug/query/printed_hierarchy.h>
+#include <experiments/printed_hierarchy.h>
+#include <experiments/quantile.h>
 
 #include "peers.h"
 #ifdef SNUG_BENCH_MESHOPT
@@ -22,7 +22,7 @@ namespace {
 using namespace snug;
 using namespace snug::bench;
 
-using Library = std::shared_ptr<BoundLibrary>;
+using Library = std::shared_ptr<BoundsCache>;
 
 constexpr double one_percent = 0.01;
 
@@ -39,7 +39,7 @@ void bench_leaves(const std::vector<Model>& models) {
               "dissertation", "uniform", "rows/dissertation, rows/tables, rows/uniform");
   std::vector<double> over_printed, over_uniform;
   for (const Model& model : models) {
-    const Surface surface(model.mesh, loop_rules(), std::make_shared<BoundLibrary>(), 1);
+    const LimitSurface surface(model.mesh, loop_rules(), std::make_shared<BoundsCache>(), 1);
     const auto count = [&](const LeafOptions& options) {
       return static_cast<double>(leaves(surface, options).size());
     };
@@ -74,7 +74,7 @@ double first_answer(const Model& a, const Model& b, const PosePair& at, double t
 
 void bench_first_answer(const Model& a, const Model& b, const Options& options) {
   const std::vector<PosePair> near = contact_placements(a, b, 3, 0.01, 5, 7);
-  const Library library = std::make_shared<BoundLibrary>();
+  const Library library = std::make_shared<BoundsCache>();
   for (const double percent : {2.0, 1.0, 0.5, 0.1}) {
     if (options.quick && percent < 1) continue;
     const double tolerance = percent / 100;
@@ -92,7 +92,7 @@ void bench_first_answer(const Model& a, const Model& b, const Options& options) 
     const double items = static_cast<double>(near.size());
     group.add("snug, kinds known", items, [&] { return answers([&] { return library; }); });
     group.add("snug, nothing known", items,
-              [&] { return answers([] { return std::make_shared<BoundLibrary>(); }); });
+              [&] { return answers([] { return std::make_shared<BoundsCache>(); }); });
 #ifdef SNUG_BENCH_FCL
     const auto add_peer = [&](const char* name, int level_a, int level_b, bool snapped) {
       std::printf("# %s: levels %d and %d, %zu and %zu triangles\n", name, level_a, level_b,
@@ -141,7 +141,7 @@ void bench_memory(const Model& a, const Model& b, const Options& options) {
   const PosePair first = contact_placements(a, b, 3, 0.01, 1, 7)[0];
 
   const std::size_t before = heap_bytes();
-  const Library library = std::make_shared<BoundLibrary>();
+  const Library library = std::make_shared<BoundsCache>();
   {
     SnugPair pair(a, b, library);
     static_cast<void>(pair.queries.collide(first, one_percent));
@@ -150,7 +150,7 @@ void bench_memory(const Model& a, const Model& b, const Options& options) {
   const std::size_t known = heap_bytes();
   double surfaces = 0;
   {
-    const Surface alone_a(a.mesh, loop_rules(), library, 1), alone_b(b.mesh, loop_rules(), library, 1);
+    const LimitSurface alone_a(a.mesh, loop_rules(), library, 1), alone_b(b.mesh, loop_rules(), library, 1);
     surfaces = static_cast<double>(heap_bytes() - known) / mib;
   }
   const auto pair = std::make_unique<SnugPair>(a, b, library);
@@ -195,10 +195,10 @@ struct Contest {
   std::vector<FclPair> obb, obbrss;
 #endif
   explicit Contest(const std::vector<Model>& models) {
-    const auto library = std::make_shared<BoundLibrary>();
+    const auto library = std::make_shared<BoundsCache>();
     for (const auto& [a, b] : model_pairs) {
       snug.push_back(std::make_unique<SnugPair>(named(models, a), named(models, b), library));
-      QueryModelOptions model_options;
+      SurfaceBvhOptions model_options;
       model_options.tight = true;
       tight.push_back(std::make_unique<SnugPair>(named(models, a), named(models, b), library, model_options));
 #ifdef SNUG_BENCH_FCL
@@ -252,7 +252,7 @@ std::vector<Times> run_contest(Contest& contest, const std::string& title, const
 // The same queries with each volume that a tree may have: what the default rests on.
 void bench_volumes(const std::vector<Model>& models, const std::string& room, const PlacementsOfPairs& at,
                    const Options& options) {
-  const Library library = std::make_shared<BoundLibrary>();
+  const Library library = std::make_shared<BoundsCache>();
   Group group("boolean query, 1 %, " + room + ", by volume", "query", options);
   std::vector<std::vector<std::unique_ptr<SnugPair>>> pairs;
   double items = 0;
@@ -260,7 +260,7 @@ void bench_volumes(const std::vector<Model>& models, const std::string& room, co
   for (const auto& [name, volume] :
        {std::pair{"obb", Volume::obb}, std::pair{"aabb", Volume::aabb}, std::pair{"dop14", Volume::dop14},
         std::pair{"dop18", Volume::dop18}, std::pair{"dop26", Volume::dop26}}) {
-    QueryModelOptions model_options;
+    SurfaceBvhOptions model_options;
     model_options.volume = volume;
     auto& subjects = pairs.emplace_back();
     for (const auto& [a, b] : model_pairs) {
@@ -347,7 +347,7 @@ void bench_wrong_answers(const std::vector<Model>& models, bool near_contact, co
   counts.push_back({"snapped, simplified by 1 %"});
 #endif
   std::size_t hits = 0, misses = 0, unsure = 0;
-  const Library library = std::make_shared<BoundLibrary>();
+  const Library library = std::make_shared<BoundsCache>();
   std::mt19937_64 random(6);
   const std::size_t count = options.size<std::size_t>(10'000, 200) / model_pairs.size();
   for (const auto& [name_a, name_b] : model_pairs) {

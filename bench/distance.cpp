@@ -20,7 +20,7 @@ constexpr double mesh_tolerance = 0.01, precision = 0.001;
 int main(int argc, char** argv) {
   const Options options = start(argc, argv, 7, " SEVEN-MODELS");
   const std::vector<Model> models = read_models(options.files);
-  const auto library = std::make_shared<BoundLibrary>();
+  const auto library = std::make_shared<BoundsCache>();
   std::vector<std::unique_ptr<SnugPair>> snug, tight;
   std::vector<std::vector<Placed>> placements;
 #ifdef SNUG_BENCH_FCL
@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
   for (const auto& [a, b] : model_pairs) {
     const Model &model_a = named(models, a), &model_b = named(models, b);
     snug.push_back(std::make_unique<SnugPair>(model_a, model_b, library));
-    QueryModelOptions model_options;
+    SurfaceBvhOptions model_options;
     model_options.tight = true;
     tight.push_back(std::make_unique<SnugPair>(model_a, model_b, library, model_options));
     placements.push_back(sorted_placements(model_a, model_b, 3, options.size<std::size_t>(600, 30), 3));

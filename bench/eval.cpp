@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <snug/base/quantile.h>
+#include <experiments/quantile.h>
 
 #include "meshes.h"
 #include "runner.h"

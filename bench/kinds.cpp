@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string>
 
-#include <snug/basis/bound_library.h>
+#include <snug/bounds/bounds_cache.h>
 
 #include "runner.h"
 
@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
                                                                                  {6, 6, 500}}) {
     if (options.quick && c == 500) continue;
     const KindKey key{Scheme::loop, {inside(a), inside(b), inside(c)}};
-    BoundLibrary library;
+    BoundsCache library;
     const BoundRows rows = make_bound_rows(library.kinds().find(key));
     const std::string name = "valences " + std::to_string(a) + " " + std::to_string(b) + " " +
                              std::to_string(c) + ", " + std::to_string(rows.count()) + " rows of " +
@@ -40,12 +40,12 @@ int main(int argc, char** argv) {
                              std::to_string(rows.bytes() / 1024) + " KiB";
     // Rows to the full depth, whether or not they are shipped, or composed of those of other kinds.
     group.add(name, 1, [key] {
-      KindLibrary cold;
+      KindCache cold;
       return static_cast<double>(make_bound_rows(cold.find(key)).count());
     });
     if (c > 50) continue;
     group.add("  its table", 1, [key] {
-      KindLibrary cold;
+      KindCache cold;
       const Kind& kind = cold.find(key);
       return make_bound_table(kind, make_bound_rows(kind)).upper.back()[0];
     });

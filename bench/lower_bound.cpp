@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <snug/base/quantile.h>
+#include <experiments/quantile.h>
 
 #include "peers.h"
 #include "placements.h"
@@ -22,7 +22,7 @@ constexpr double one_percent = 0.01;
 struct Pairs {
   std::vector<std::unique_ptr<SnugPair>> of_models;
   explicit Pairs(const std::vector<Model>& models) {
-    const auto library = std::make_shared<BoundLibrary>();
+    const auto library = std::make_shared<BoundsCache>();
     for (const auto& [a, b] : model_pairs) {
       of_models.push_back(std::make_unique<SnugPair>(named(models, a), named(models, b), library));
     }

@@ -230,7 +230,7 @@ std::size_t extraordinary_corners(const Kind& kind) {
   return count;
 }
 
-std::vector<PatchId> faces_with(const Surface& surface, std::size_t corners) {
+std::vector<PatchId> faces_with(const LimitSurface& surface, std::size_t corners) {
   std::vector<PatchId> faces;
   for (std::size_t f = 0; f < surface.face_count(); ++f) {
     if (surface.has_patch(PatchId(f)) && extraordinary_corners(surface.kind(PatchId(f))) == corners) {
@@ -240,7 +240,7 @@ std::vector<PatchId> faces_with(const Surface& surface, std::size_t corners) {
   return faces;
 }
 
-void print_statistics(const char* name, const Surface& surface) {
+void print_statistics(const char* name, const LimitSurface& surface) {
   std::map<std::size_t, std::size_t> valences;
   for (std::size_t v = 0; v < surface.topology().vertex_count(); ++v) {
     ++valences[surface.topology().face_valence(VertexId(v))];

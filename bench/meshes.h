@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <snug/mesh/control_mesh.h>
-#include <snug/surface/surface.h>
+#include <snug/surface/limit_surface.h>
 
 namespace snug::bench {
 
@@ -42,9 +42,9 @@ struct Irregularity {
 /// Corners of a face's patch that are not regular.
 [[nodiscard]] std::size_t extraordinary_corners(const Kind& kind);
 /// Faces with `corners` extraordinary corners.
-[[nodiscard]] std::vector<PatchId> faces_with(const Surface& surface, std::size_t corners);
+[[nodiscard]] std::vector<PatchId> faces_with(const LimitSurface& surface, std::size_t corners);
 
 /// Prints sizes, the histogram of valences, the number of kinds, the shares of faces by extraordinary corners.
-void print_statistics(const char* name, const Surface& surface);
+void print_statistics(const char* name, const LimitSurface& surface);
 
 }  // namespace snug::bench

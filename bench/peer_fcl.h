@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <memory>
 
-#include <snug/base/motion.h>
+#include <snug/geometry/motion.h>
 
 #include "triangle_mesh.h"
 

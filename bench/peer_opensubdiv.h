@@ -7,7 +7,7 @@
 
 #include <snug/mesh/control_mesh.h>
 #include <snug/patch/piece_path.h>
-#include <snug/surface/surface.h>
+#include <snug/surface/limit_surface.h>
 
 #include "triangle_mesh.h"
 

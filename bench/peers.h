@@ -13,10 +13,10 @@ namespace snug::bench {
 
 /// Two models as snug queries them.
 struct SnugPair {
-  Surface a, b;
+  LimitSurface a, b;
   Queries queries;
-  SnugPair(const Model& model_a, const Model& model_b, const std::shared_ptr<BoundLibrary>& library,
-           const QueryModelOptions& options = {})
+  SnugPair(const Model& model_a, const Model& model_b, const std::shared_ptr<BoundsCache>& library,
+           const SurfaceBvhOptions& options = {})
       : a(model_a.mesh, loop_rules(), library, 1),
         b(model_b.mesh, loop_rules(), library, 1),
         queries(a, b, options) {}

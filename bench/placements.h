@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <experiments/rooms.h>
 #include <snug/mesh/control_mesh.h>
-#include <snug/query/rooms.h>
 
 #include "query.h"
 #include "runner.h"

@@ -32,11 +32,11 @@ double sum_of(const std::vector<Distance>& answers) {
 
 // `ask` answers one pose, `ask_all` all of them. Scratch memory is warm, as in a long run of either.
 template <class Ask, class AskAll>
-void bench_pair(const std::string& title, const QueryModel& a, const QueryModel& b,
+void bench_pair(const std::string& title, const SurfaceBvh& a, const SurfaceBvh& b,
                 const std::vector<PosePair>& poses, const Options& options, const Ask& ask,
                 const AskAll& ask_all) {
-  QueryScratch scratch_a(a), scratch_b(b);
-  PairScratches one(a, b, 1), two(a, b, 2);
+  SurfaceWorkspace scratch_a(a), scratch_b(b);
+  PairWorkspaces one(a, b, 1), two(a, b, 2);
   const auto count = static_cast<double>(poses.size());
   Group group(title, "pose", options);
   group.add("one by one", count, [&] {
@@ -56,11 +56,11 @@ void bench_pair(const std::string& title, const QueryModel& a, const QueryModel&
 int main(int argc, char** argv) {
   const Options options = start(argc, argv, 7, " SEVEN-MODELS");
   const std::vector<Model> models = read_models(options.files);
-  const auto library = std::make_shared<BoundLibrary>();
+  const auto library = std::make_shared<BoundsCache>();
   for (const auto& [name_a, name_b] : model_pairs) {
-    const Surface surface_a(named(models, name_a).mesh, loop_rules(), library, 1),
+    const LimitSurface surface_a(named(models, name_a).mesh, loop_rules(), library, 1),
         surface_b(named(models, name_b).mesh, loop_rules(), library, 1);
-    const QueryModel a(surface_a, {.threads = 1}), b(surface_b, {.threads = 1});
+    const SurfaceBvh a(surface_a, {.threads = 1}), b(surface_b, {.threads = 1});
     std::mt19937_64 random(9);
     std::vector<PosePair> poses(options.size<std::size_t>(20'000, 400));
     for (PosePair& pair : poses) pair = place_in_room(3, random);
@@ -68,16 +68,16 @@ int main(int argc, char** argv) {
     const CollideOptions touch{.tolerance = tolerance};
     bench_pair(
         "collide, room 3, 1 %: " + names, a, b, poses, options,
-        [&](const PlacedModel& x, const PlacedModel& y) {
+        [&](const PlacedBvh& x, const PlacedBvh& y) {
           return static_cast<double>(collide(x, y, touch).verdict);
         },
-        [&](PairScratches& scratches) { return collide_poses(scratches, poses, touch); });
+        [&](PairWorkspaces& scratches) { return collide_poses(scratches, poses, touch); });
     poses.resize(poses.size() / 10);
     const DistanceOptions far{.absolute = precision};
     bench_pair(
         "distance, room 3, 0.1 %: " + names, a, b, poses, options,
-        [&](const PlacedModel& x, const PlacedModel& y) { return distance(x, y, far).upper; },
-        [&](PairScratches& scratches) { return distance_poses(scratches, poses, far); });
+        [&](const PlacedBvh& x, const PlacedBvh& y) { return distance(x, y, far).upper; },
+        [&](PairWorkspaces& scratches) { return distance_poses(scratches, poses, far); });
   }
   return 0;
 }

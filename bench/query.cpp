@@ -5,14 +5,14 @@
 namespace snug::bench {
 namespace {
 
-QueryModelOptions one_thread(QueryModelOptions options) {
+SurfaceBvhOptions one_thread(SurfaceBvhOptions options) {
   options.threads = 1;
   return options;
 }
 
 }  // namespace
 
-Queries::Queries(const Surface& a, const Surface& b, const QueryModelOptions& options)
+Queries::Queries(const LimitSurface& a, const LimitSurface& b, const SurfaceBvhOptions& options)
     : a_(a, one_thread(options)), b_(b, one_thread(options)), scratch_a_(a_), scratch_b_(b_) {}
 
 Collision Queries::collide(const PosePair& at, double tolerance, double margin) {
@@ -48,7 +48,7 @@ std::size_t Queries::bytes() const {
   return a_.bytes() + b_.bytes() + scratch_a_.bytes() + scratch_b_.bytes();
 }
 
-void Work::add(const QueryStats& stats) {
+void Work::add(const SearchStats& stats) {
   queries_ += 1;
   box_tests_ += static_cast<double>(stats.box_tests);
   triangle_tests_ += static_cast<double>(stats.triangle_tests);

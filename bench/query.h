@@ -3,17 +3,17 @@
 #include <cstddef>
 #include <optional>
 
+#include <experiments/rooms.h>
 #include <snug/query/collide.h>
 #include <snug/query/distance.h>
-#include <snug/query/query_model.h>
-#include <snug/query/rooms.h>
+#include <snug/search/surface_bvh.h>
 
 namespace snug::bench {
 
 /// Two surfaces ready for queries on one thread. All calls of queries in bench/ are in here.
 class Queries {
  public:
-  Queries(const Surface& a, const Surface& b, const QueryModelOptions& options = {});
+  Queries(const LimitSurface& a, const LimitSurface& b, const SurfaceBvhOptions& options = {});
 
   [[nodiscard]] Collision collide(const PosePair& at, double tolerance, double margin = 0);
   /// Do the limit surfaces meet? Nothing where neither is certain.
@@ -24,14 +24,14 @@ class Queries {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
-  QueryModel a_, b_;
-  QueryScratch scratch_a_, scratch_b_;
+  SurfaceBvh a_, b_;
+  SurfaceWorkspace scratch_a_, scratch_b_;
 };
 
 /// What queries did, in all.
 class Work {
  public:
-  void add(const QueryStats& stats);
+  void add(const SearchStats& stats);
   /// Prints "# name, a query: ... box tests, ... triangle tests, ... evaluations, ... splits".
   void print(const char* name) const;
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <snug/query/corner_nets.h>
+#include <experiments/corner_nets.h>
 
 #include "meshes.h"
 #include "runner.h"

@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <snug/base/quantile.h>
+#include <experiments/quantile.h>
 
 #include "calibration.h"
 

@@ -37,7 +37,7 @@ void bench_family(const char* name, bool regular, const Options& options) {
       std::vector<OffsetTriangle> out;
       return subject.enclose_all(out);
     });
-    const auto library = std::make_shared<BoundLibrary>();
+    const auto library = std::make_shared<BoundsCache>();
     std::unique_ptr<Subject> subject;
     std::vector<OffsetTriangle> out;
     Group group(std::string(name) + ", " + std::to_string(mesh.face_count()) + " faces", "patch", options);

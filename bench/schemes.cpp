@@ -30,8 +30,8 @@ SchemeOptions catmark() { return {Scheme::catmark, BoundaryRule::edge_and_corner
 
 // Rows of all kinds and the bounds of all patches, from a mesh in memory and nothing known.
 double cold(const ControlMesh& mesh, std::size_t* kinds = nullptr, std::size_t* bytes = nullptr) {
-  const auto library = std::make_shared<BoundLibrary>();
-  const Surface surface(mesh, catmark(), library, 1);
+  const auto library = std::make_shared<BoundsCache>();
+  const LimitSurface surface(mesh, catmark(), library, 1);
   PatchBounds bounds(surface, {}, 1);
   std::vector<OffsetTriangle> out(bounds.patches().size());
   if (kinds) *kinds = surface.kind_count();
@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
   const Options options = start(argc, argv, 0, "");
   {
     const ControlMesh mesh = quad_torus(options.size(500'000, 2'000));
-    const Surface surface(mesh, catmark(), std::make_shared<BoundLibrary>(), 1);
+    const LimitSurface surface(mesh, catmark(), std::make_shared<BoundsCache>(), 1);
     PatchBounds bounds(surface, {}, 1);
     std::vector<OffsetTriangle> out(bounds.patches().size());
     Group group("regular quads", "quad", options);

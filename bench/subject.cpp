@@ -2,13 +2,13 @@
 
 #include <utility>
 
-#include <snug/surface/refinement.h>
+#include <snug/search/piece_cache.h>
 
 namespace snug::bench {
 
-Subject::Subject(ControlMesh mesh, std::shared_ptr<BoundLibrary> library)
+Subject::Subject(ControlMesh mesh, std::shared_ptr<BoundsCache> library)
     : library_(std::move(library)),
-      surface_(std::make_unique<Surface>(std::move(mesh), SchemeOptions{}, library_, 1)) {}
+      surface_(std::make_unique<LimitSurface>(std::move(mesh), SchemeOptions{}, library_, 1)) {}
 
 double Subject::enclose(std::span<const PatchId> faces, std::vector<OffsetTriangle>& out) {
   out.resize(faces.size());

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include <snug/enclose/hull_points.h>
-#include <snug/enclose/offset_triangle.h>
+#include <snug/bounds/hull_points.h>
+#include <snug/bounds/offset_triangle.h>
 #include <snug/patch/limit_evaluator.h>
+#include <snug/surface/limit_surface.h>
 #include <snug/surface/patch_bounds.h>
-#include <snug/surface/surface.h>
 
 namespace snug::bench {
 
@@ -18,10 +18,9 @@ namespace snug::bench {
 class Subject {
  public:
   /// Everything before the first bound, with a library of kinds of its own.
-  explicit Subject(ControlMesh mesh,
-                   std::shared_ptr<BoundLibrary> library = std::make_shared<BoundLibrary>());
+  explicit Subject(ControlMesh mesh, std::shared_ptr<BoundsCache> library = std::make_shared<BoundsCache>());
 
-  [[nodiscard]] const Surface& surface() const { return *surface_; }
+  [[nodiscard]] const LimitSurface& surface() const { return *surface_; }
 
   /// Offset triangles of some faces, in scaled units, a patch at a time as queries make them.
   /// Returns:   the sum of the radii.
@@ -44,8 +43,8 @@ class Subject {
   double evaluate(LimitEvaluator& face, std::span<const TriangleParameter> at, std::span<Point3> out) const;
 
  private:
-  std::shared_ptr<BoundLibrary> library_;
-  std::unique_ptr<Surface> surface_;
+  std::shared_ptr<BoundsCache> library_;
+  std::unique_ptr<LimitSurface> surface_;
   HullPoints scratch_;
   LimitEvaluator evaluator_;
 };

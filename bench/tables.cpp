@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include <snug/base/quantile.h>
-#include <snug/query/room_tables.h>
+#include <experiments/quantile.h>
+#include <experiments/room_tables.h>
 
 #include "peer_fcl.h"
 #include "peer_opensubdiv.h"

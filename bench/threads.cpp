@@ -11,16 +11,16 @@
 #include <string>
 #include <vector>
 
+#include <experiments/convergence.h>
+#include <experiments/quantile.h>
+#include <experiments/tightness.h>
 #include <snug/base/parallel.h>
-#include <snug/base/quantile.h>
 #include <snug/query/bound.h>
 #include <snug/query/closest.h>
-#include <snug/query/convergence.h>
-#include <snug/query/query_model.h>
-#include <snug/query/tightness.h>
+#include <snug/search/surface_bvh.h>
 #include <snug/surface/patch_bounds.h>
 #ifdef SNUG_BENCH_PICTURE
-#include <snug/picture/render.h>
+#include <picture/render.h>
 #endif
 
 #include "meshes.h"
@@ -69,21 +69,21 @@ void compare(const Options& options, const std::string& name, const Work& work) 
   std::fflush(stdout);
 }
 
-Surface surface_of(const ControlMesh& mesh, std::shared_ptr<BoundLibrary> library, int threads) {
+LimitSurface surface_of(const ControlMesh& mesh, std::shared_ptr<BoundsCache> library, int threads) {
   return {mesh, {Scheme::loop, BoundaryRule::edge_and_corner}, std::move(library), threads};
 }
 
-void compare_surfaces(const Options& options, const ControlMesh& mesh, const Surface& surface) {
-  const auto library = std::make_shared<BoundLibrary>();
+void compare_surfaces(const Options& options, const ControlMesh& mesh, const LimitSurface& surface) {
+  const auto library = std::make_shared<BoundsCache>();
   compare(options, "surface",
           [&](int threads) { return static_cast<double>(surface_of(mesh, library, threads).kind_count()); });
   compare(options, "surface, kinds and rows not known", [&](int threads) {
-    const Surface fresh = surface_of(mesh, std::make_shared<BoundLibrary>(), threads);
+    const LimitSurface fresh = surface_of(mesh, std::make_shared<BoundsCache>(), threads);
     return static_cast<double>(PatchBounds(fresh, {}, threads).patches().size());
   });
   for (const bool tight : {false, true}) {
     compare(options, tight ? "model, tight" : "model", [&, tight](int threads) {
-      return QueryModel(surface, {.tight = tight, .threads = threads}).ball().radius;
+      return SurfaceBvh(surface, {.tight = tight, .threads = threads}).ball().radius;
     });
   }
   PatchBounds bounds(surface, {}, 1);
@@ -106,8 +106,8 @@ void compare_surfaces(const Options& options, const ControlMesh& mesh, const Sur
   }
 }
 
-void compare_closest(const Options& options, const Surface& surface) {
-  const QueryModel model(surface);
+void compare_closest(const Options& options, const LimitSurface& surface) {
+  const SurfaceBvh model(surface);
   std::mt19937_64 random(1);
   const auto draw = [&](double reach) { return reach * (static_cast<double>(random() >> 11) * 0x1p-52 - 1); };
   for (const double reach : {5.0, 100.0}) {
@@ -179,7 +179,7 @@ int main(int argc, char** argv) {
       "thread's; %d cores\n",
       options.rounds, hardware_threads());
   const ControlMesh mesh = irregular_mesh(options.size(100'000, 2'000));
-  const Surface surface = surface_of(mesh, std::make_shared<BoundLibrary>(), 1);
+  const LimitSurface surface = surface_of(mesh, std::make_shared<BoundsCache>(), 1);
   compare_surfaces(options, mesh, surface);
   compare_closest(options, surface);
 #ifdef SNUG_BENCH_PICTURE

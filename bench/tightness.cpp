@@ -1,5 +1,5 @@
 // bench_tightness MODEL...: radius of the offset triangles over the least possible for the same base triangles
-// (query/tightness.h), on real meshes and on patches with several extraordinary corners. The ratios are upper
+// (experiments/tightness.h), on real meshes and on patches with several extraordinary corners. The ratios are upper
 // bounds. `snug experiment tightness` has patches with one extraordinary corner, and tables.
 
 #include <algorithm>
@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include <snug/base/quantile.h>
+#include <experiments/quantile.h>
+#include <experiments/tightness.h>
 #include <snug/io/mesh_file.h>
 #include <snug/query/subdivide.h>
-#include <snug/query/tightness.h>
 
 #include "meshes.h"
 #include "runner.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <snug/base/point.h>
+#include <snug/geometry/point.h>
 
 namespace snug::bench {
 

@@ -1,8 +1,7 @@
-# One static target a layer. Flags that the proofs rest on are set here, once.
+# Targets of the library. Flags that the proofs rest on are set here, once.
 #
-#   snug_layer(NAME SOURCES a.cpp ... [USES layer ...] [LINK target ...])
-#
-# USES names the layers whose headers this one may include; scripts/check_layers.py reads the same order.
+#   snug          libsnug, static or shared by BUILD_SHARED_LIBS; others see include/snug alone
+#   snug_private  the same code with its private headers, <snug/room/file.h>: for the command, tests, experiments, measurements
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
@@ -17,18 +16,33 @@ add_library(snug_warnings INTERFACE)
 target_compile_options(snug_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
                        -Wold-style-cast -Wnon-virtual-dtor)
 
-function(snug_layer name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;USES;LINK" ${ARGN})
-  set(target snug_${name})
-  add_library(${target} STATIC ${ARG_SOURCES})
-  add_library(snug::${name} ALIAS ${target})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
-  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
-                                              $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  target_compile_features(${target} PUBLIC cxx_std_20)
-  target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:snug_flags> $<BUILD_INTERFACE:snug_warnings>)
-  foreach(layer IN LISTS ARG_USES)
-    target_link_libraries(${target} PUBLIC snug_${layer})
-  endforeach()
-  target_link_libraries(${target} PUBLIC ${ARG_LINK})
+#   snug_library(room/a.cpp ...)
+function(snug_library)
+  find_package(hwy REQUIRED)
+  find_package(Threads REQUIRED)
+  add_library(snug_objects OBJECT ${ARGN})
+  set_target_properties(snug_objects PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
+                                                VISIBILITY_INLINES_HIDDEN ON)
+  target_include_directories(snug_objects PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(snug_objects PRIVATE snug_flags snug_warnings hwy::hwy Threads::Threads)
+
+  add_library(snug $<TARGET_OBJECTS:snug_objects>)
+  add_library(snug::snug ALIAS snug)
+  set_target_properties(snug PROPERTIES VERSION ${PROJECT_VERSION}
+                                        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  target_compile_features(snug PUBLIC cxx_std_20)
+  target_include_directories(snug PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                         $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(snug PRIVATE hwy::hwy Threads::Threads)
+
+  if(BUILD_SHARED_LIBS)  # whose private symbols cannot be linked
+    add_library(snug_private STATIC $<TARGET_OBJECTS:snug_objects>)
+    target_link_libraries(snug_private PUBLIC hwy::hwy Threads::Threads)
+  else()
+    add_library(snug_private INTERFACE)
+    target_link_libraries(snug_private INTERFACE snug)
+  endif()
+  target_include_directories(snug_private INTERFACE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+  target_compile_features(snug_private INTERFACE cxx_std_20)
+  target_link_libraries(snug_private INTERFACE snug_flags)
 endfunction()

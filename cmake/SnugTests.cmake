@@ -1,7 +1,7 @@
 #   snug_test(NAME SOURCES a_test.cpp ... [LINK target ...] [LABELS fast|slow [threads]] [TIMEOUT seconds])
 #
-# One executable, bin/tests/NAME; each TEST in it is a line of ctest, "<folder>.<suite>.<claim>". The layer that the
-# folder mirrors is linked without being named. Labels choose where a test runs besides `make test`:
+# One executable, bin/tests/NAME; each TEST in it is a line of ctest, "<folder>.<suite>.<claim>". The library with its
+# private headers is linked without being named. Labels choose where a test runs besides `make test`:
 #
 #   fast      under address sanitizer too; the default
 #   slow      on the release build only
@@ -43,8 +43,8 @@ function(snug_test name)
   target_compile_definitions(${name} PRIVATE SNUG_MODELS_DIR="${PROJECT_SOURCE_DIR}/examples/models"
                                              SNUG_CORPUS_DIR="${PROJECT_SOURCE_DIR}/tests/corpus")
   target_link_libraries(${name} PRIVATE ${ARG_LINK})
-  if(TARGET snug_${folder} AND NOT folder MATCHES "^(oracle|command)$")
-    target_link_libraries(${name} PRIVATE snug_${folder})
+  if(NOT folder MATCHES "^(oracle|command)$")
+    target_link_libraries(${name} PRIVATE snug_private)
   endif()
   target_link_libraries(${name} PRIVATE snug_flags snug_warnings GTest::gtest_main)
   foreach(label IN ITEMS threads fast)

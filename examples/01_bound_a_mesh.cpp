@@ -16,8 +16,8 @@ int main(int argc, char** argv) {
   }
   try {
     // The library keeps what patches with equal connectivity share; surfaces may share it too.
-    const auto library = std::make_shared<snug::BoundLibrary>();
-    const snug::Surface surface(snug::read_mesh(argv[1]), snug::SchemeOptions{}, library);
+    const auto library = std::make_shared<snug::BoundsCache>();
+    const snug::LimitSurface surface(snug::read_mesh(argv[1]), snug::SchemeOptions{}, library);
 
     snug::BoundOptions options;
     options.tolerance = 0.01 * surface.size();

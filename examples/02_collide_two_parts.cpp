@@ -15,13 +15,13 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    const auto library = std::make_shared<snug::BoundLibrary>();
-    const snug::Surface a(snug::read_mesh(argv[1]), snug::SchemeOptions{}, library);
-    const snug::Surface b(snug::read_mesh(argv[2]), snug::SchemeOptions{}, library);
+    const auto library = std::make_shared<snug::BoundsCache>();
+    const snug::LimitSurface a(snug::read_mesh(argv[1]), snug::SchemeOptions{}, library);
+    const snug::LimitSurface b(snug::read_mesh(argv[2]), snug::SchemeOptions{}, library);
 
     // Trees are made once; the scratch memory is made once a thread and used again by every query.
-    const snug::QueryModel model_a(a), model_b(b);
-    snug::QueryScratch scratch_a(model_a), scratch_b(model_b);
+    const snug::SurfaceBvh model_a(a), model_b(b);
+    snug::SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
     const double size = a.size() > b.size() ? a.size() : b.size();
     for (int step = 4; step >= 0; --step) {
       const snug::Motion pose_b = snug::Motion::from_translation({0.5 * step * size, 0, 0});

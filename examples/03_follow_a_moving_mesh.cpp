@@ -18,8 +18,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    const snug::Surface surface(snug::read_mesh(argv[1]), snug::SchemeOptions{},
-                                std::make_shared<snug::BoundLibrary>());
+    const snug::LimitSurface surface(snug::read_mesh(argv[1]), snug::SchemeOptions{},
+                                     std::make_shared<snug::BoundsCache>());
     // What connectivity decides is done here, once.
     snug::PatchBounds bounds(surface);
     std::vector<snug::OffsetTriangle> triangles(bounds.patches().size());

@@ -42,7 +42,7 @@ int main() {
 
     // Faces, creases, corners, holes and rules come from the refiner, points from the array.
     auto [mesh, options] = snug::opensubdiv::from_refiner(*refiner, points);
-    const snug::Surface surface(std::move(mesh), options, std::make_shared<snug::BoundLibrary>());
+    const snug::LimitSurface surface(std::move(mesh), options, std::make_shared<snug::BoundsCache>());
 
     snug::BoundOptions wanted;
     wanted.tolerance = 0.001 * surface.size();

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Holds the layers of src/snug to their one-way order, and says where they break it.
+"""Holds the rooms of src/snug to their one-way order, and says where they break it.
 
 Checked: each #include <snug/...> against the order below, that it exists, that snug's headers are included in that form
-only, #pragma once, that USES and SOURCES in a layer's CMakeLists.txt are what its files include and what its folder
-holds, and that no layer includes a library it should not know. `--self-test` plants each fault and expects it found.
+only, #pragma once, that public headers include public ones and the C++ standard library alone, that src/snug/CMakeLists.txt
+lists every source, and that no room includes a library it should not know. `--self-test` plants each fault and expects it
+found.
 """
 
 import argparse
@@ -13,25 +14,25 @@ import sys
 import tempfile
 
 # A folder includes itself and folders before it, but for the exceptions.
-ORDER = ["base", "mesh", "scheme", "patch", "basis", "enclose", "tree", "surface", "query", "io", "picture"]
+ORDER = ["base", "geometry", "mesh", "scheme", "patch", "bounds", "bvh", "surface", "search", "query", "io"]
 EXCEPTIONS = {
-    "tree": {"base"},  # knows sets and ids, no surfaces
-    "io": {"base", "mesh"},
+    "bvh": {"base", "geometry"},  # knows sets and ids, no surfaces
+    "io": {"base", "geometry", "mesh"},
 }
 # What a layer may include besides the C++ standard library and snug; all others: nothing.
 LIBRARIES = {
-    "enclose": ("hwy/",),
-    "tree": ("hwy/",),
-    "picture": ("png.h",),
+    "geometry": ("hwy/",),
+    "bounds": ("hwy/",),
+    "bvh": ("hwy/",),
 }
 POSIX = ("fcntl.h", "unistd.h", "sys/")
 # Folders outside src/snug, and the layers they may include: those that must not lean on what they are there to check, and
 # adapters, which is installed and so includes what is installed.
-INDEPENDENT = {"tests/oracle": set(), "checker": {"base"}, "adapters": set(ORDER) - {"picture"}}
+INDEPENDENT = {"tests/oracle": set(), "checker": {"base", "geometry"}, "adapters": set(ORDER)}
 # Headers of this folder are included as <snug/adapters/...>; nothing of src/snug includes them.
 ADAPTERS = "adapters"
 # Folders whose headers are checked for #pragma once and whose includes of snug must exist.
-FOLDERS = ["src", "apps", "adapters", "tests", "examples", "bench", "tablegen", "checker"]
+FOLDERS = ["include", "src", "apps", "experiments", "adapters", "tests", "examples", "bench", "tablegen", "checker"]
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTILINE)
 
@@ -56,24 +57,22 @@ def layer_of(name):
     return parts[1] if parts[0] == "snug" and len(parts) > 2 else None
 
 
-def declared(cmake):
-    """What snug_layer(...) lists, as {"SOURCES": [...], "USES": [...], "LINK": [...]}; None without such a call."""
-    text = re.sub(r"#.*", "", cmake.read_text(encoding="utf-8"))
-    call = re.search(r"\bsnug_layer\s*\(([^)]*)\)", text)
-    if not call:
-        return None
-    lists, key = {"SOURCES": [], "USES": [], "LINK": []}, None
-    for word in call[1].split()[1:]:
-        if word in lists:
-            key = word
-        elif key:
-            lists[key].append(word)
-    return lists
+def public(name):
+    """Is an include <snug/name.h> of a public header?"""
+    return name.startswith("snug/") and name.count("/") == 1
+
+
+def listed(root):
+    """Sources that src/snug/CMakeLists.txt lists, as "room/file.cpp"."""
+    cmake = root / "src/snug/CMakeLists.txt"
+    text = re.sub(r"#.*", "", cmake.read_text(encoding="utf-8")) if cmake.exists() else ""
+    call = re.search(r"\bsnug_library\s*\(([^)]*)\)", text)
+    return set(call[1].split()) if call else set()
 
 
 def check_layer(root, layer):
     """Faults of src/snug/<layer>."""
-    folder, faults, used = root / "src/snug" / layer, [], set()
+    folder, faults = root / "src/snug" / layer, []
     for path in cpp_files(folder):
         where = path.relative_to(root)
         for line, quoted, name in includes(path):
@@ -83,38 +82,38 @@ def check_layer(root, layer):
             elif target:
                 if target not in allowed(layer):
                     faults.append(f"{where}:{line}: {layer} may not include {target} (<{name}>)")
-                elif target != layer:
-                    used.add(target)
-            elif ("." in name or "/" in name) and not name.startswith(POSIX + LIBRARIES.get(layer, ())):
+            elif not public(name) and ("." in name or "/" in name) and not name.startswith(POSIX + LIBRARIES.get(layer, ())):
                 faults.append(f"{where}:{line}: {layer} may not include <{name}>")
 
-    lists = declared(folder / "CMakeLists.txt") if (folder / "CMakeLists.txt").exists() else None
-    where = f"src/snug/{layer}/CMakeLists.txt"
-    if lists is None:
-        return faults + [f"{where}: no snug_layer({layer} ...)"]
-    faults += [f"{where}: USES lacks {name}" for name in ORDER if name in used - set(lists["USES"])]
-    faults += [f"{where}: USES lists {name}, which no file includes" for name in lists["USES"] if name not in used]
-    present = {str(p.relative_to(folder)) for p in cpp_files(folder) if p.suffix == ".cpp"}
-    faults += [f"{where}: SOURCES lacks {name}" for name in sorted(present - set(lists["SOURCES"]))]
-    return faults
+    present = {f"{layer}/{p.relative_to(folder)}" for p in cpp_files(folder) if p.suffix == ".cpp"}
+    return faults + [f"src/snug/CMakeLists.txt: lacks {name}" for name in sorted(present - listed(root))]
+
+
+def check_public(root):
+    """Faults of include/snug."""
+    return [f"{path.relative_to(root)}:{line}: public headers may not include {name}"
+            for path in cpp_files(root / "include/snug")
+            for line, quoted, name in includes(path)
+            if quoted or not (public(name) or re.fullmatch(r"[a-z_]+", name))]
 
 
 def check_tree(root):
     """Faults of a whole checkout, as lines "file:line: what"."""
-    faults = []
+    faults = check_public(root)
     for folder in sorted((root / "src/snug").iterdir()):
         if folder.is_dir() and cpp_files(folder):
             if folder.name in ORDER:
                 faults += check_layer(root, folder.name)
             else:
-                faults.append(f"src/snug/{folder.name}: not a layer of scripts/check_layers.py")
+                faults.append(f"src/snug/{folder.name}: not a room of scripts/check_layers.py")
     for name in FOLDERS:
         for path in cpp_files(root / name):
             where = path.relative_to(root)
             if path.suffix == ".h" and not re.search(r"^#pragma once$", path.read_text(encoding="utf-8"), re.MULTILINE):
                 faults.append(f"{where}:1: no #pragma once")
             for line, _, include in includes(path):
-                source = include.removeprefix("snug/") if layer_of(include) == ADAPTERS else f"src/{include}"
+                source = (f"include/{include}" if public(include) else
+                          include.removeprefix("snug/") if layer_of(include) == ADAPTERS else f"src/{include}")
                 if include.startswith("snug/") and not (root / source).exists():
                     faults.append(f"{where}:{line}: <{include}> does not exist")
     for name, layers in INDEPENDENT.items():
@@ -122,24 +121,24 @@ def check_tree(root):
             if not path.stem.endswith("_test"):
                 faults += [f"{path.relative_to(root)}:{line}: {name} may not include <{include}>"
                            for line, _, include in includes(path)
-                           if layer_of(include) and layer_of(include) not in layers | {name}]
+                           if (layer_of(include) and layer_of(include) not in layers | {name})
+                           or (public(include) and not layers)]
     return faults
 
 
 GOOD_TREE = {
-    "src/snug/base/CMakeLists.txt": "snug_layer(base SOURCES a.cpp)",
-    "src/snug/base/a.h": "#pragma once\n#include <vector>\n",
+    "include/snug/p.h": "#pragma once\n#include <vector>\n",
+    "include/snug/snug.h": "#pragma once\n#include <snug/p.h>\n",
+    "src/snug/CMakeLists.txt": "snug_library(base/a.cpp mesh/m.cpp  # and so on\n  query/q.cpp io/r.cpp)",
+    "src/snug/base/a.h": "#pragma once\n#include <vector>\n#include <snug/p.h>\n",
     "src/snug/base/a.cpp": "#include <snug/base/a.h>\n#include <thread>\n",
-    "src/snug/mesh/CMakeLists.txt": "snug_layer(mesh SOURCES m.cpp USES base)",
     "src/snug/mesh/m.h": "#pragma once\n#include <snug/base/a.h>\n",
     "src/snug/mesh/m.cpp": "#include <snug/mesh/m.h>\n",
-    "src/snug/query/CMakeLists.txt": "snug_layer(query SOURCES q.cpp\n  # above it: all\n  USES mesh)",
     "src/snug/query/q.cpp": "#include <snug/mesh/m.h>\n",
-    "src/snug/io/CMakeLists.txt": "snug_layer(io SOURCES r.cpp USES base)",
     "src/snug/io/r.h": "#pragma once\n",
     "src/snug/io/r.cpp": "#include <snug/base/a.h>\n#include <unistd.h>\n",
     "tests/oracle/o.h": "#pragma once\n#include <gmp.h>\n",
-    "adapters/d.h": "#pragma once\n#include <dear.h>\n#include <snug/mesh/m.h>\n",
+    "adapters/d.h": "#pragma once\n#include <dear.h>\n#include <snug/p.h>\n",
     "examples/e.cpp": "#include <snug/adapters/d.h>\n",
     "tests/oracle/o_test.cpp": "#include <snug/base/a.h>\n",
 }
@@ -148,19 +147,23 @@ BAD_FILES = [
     ("src/snug/base/a.h", "#pragma once\n#include <snug/mesh/m.h>\n", "a.h:2: base may not include mesh"),
     ("src/snug/query/q.cpp", "#include <snug/mesh/m.h>\n#include <snug/io/r.h>\n", "query may not include io"),
     ("src/snug/io/r.cpp", "#include <snug/base/a.h>\n#include <snug/query/q.h>\n", "io may not include query"),
-    ("src/snug/tree/t.cpp", "#include <snug/mesh/m.h>\n", "tree may not include mesh"),
+    ("src/snug/bvh/t.cpp", "#include <snug/mesh/m.h>\n", "bvh may not include mesh"),
     ("src/snug/mesh/m.h", "#include <snug/base/a.h>\n", "m.h:1: no #pragma once"),
     ("src/snug/mesh/m.cpp", '#include "m.h"\n', "included as <snug/...>"),
     ("src/snug/mesh/m.cpp", "#  include <CLI/CLI.hpp>\n", "mesh may not include <CLI/CLI.hpp>"),
     ("src/snug/mesh/m.cpp", "#include <gmp.h>\n", "mesh may not include <gmp.h>"),
     ("src/snug/mesh/m.cpp", "#include <hwy/highway.h>\n", "mesh may not include <hwy"),
     ("src/snug/mesh/m.cpp", "#include <snug/mesh/gone.h>\n", "does not exist"),
-    ("src/snug/mesh/n.cpp", "\n", "SOURCES lacks n.cpp"),
-    ("src/snug/mesh/CMakeLists.txt", "snug_layer(mesh SOURCES m.cpp)", "USES lacks base"),
-    ("src/snug/query/CMakeLists.txt", "snug_layer(query SOURCES q.cpp USES base mesh)", "lists base, which no file"),
-    ("src/snug/extra/e.cpp", "\n", "src/snug/extra: not a layer"),
+    ("src/snug/mesh/m.cpp", "#include <snug/gone.h>\n", "does not exist"),
+    ("src/snug/mesh/n.cpp", "\n", "lacks mesh/n.cpp"),
+    ("src/snug/extra/e.cpp", "\n", "src/snug/extra: not a room"),
+    ("include/snug/p.h", "#pragma once\n#include <snug/base/a.h>\n", "p.h:2: public headers may not include"),
+    ("include/snug/p.h", "#pragma once\n#include <hwy/highway.h>\n", "p.h:2: public headers may not include"),
+    ("include/snug/p.h", '#pragma once\n#include "snug/snug.h"\n', "p.h:2: public headers may not include"),
+    ("include/snug/p.h", "#include <vector>\n", "p.h:1: no #pragma once"),
     ("tests/oracle/o.h", "#pragma once\n#include <snug/base/a.h>\n", "tests/oracle may not include"),
-    ("adapters/d.h", "#include <snug/base/a.h>\n", "d.h:1: no #pragma once"),
+    ("tests/oracle/o.h", "#pragma once\n#include <snug/p.h>\n", "tests/oracle may not include"),
+    ("adapters/d.h", "#include <snug/p.h>\n", "d.h:1: no #pragma once"),
     ("adapters/d.h", "#pragma once\n#include <snug/picture/p.h>\n", "adapters may not include <snug/picture/p.h>"),
     ("examples/e.cpp", "#include <snug/adapters/gone.h>\n", "<snug/adapters/gone.h> does not exist"),
     ("src/snug/mesh/m.cpp", "#include <snug/adapters/d.h>\n", "mesh may not include adapters"),

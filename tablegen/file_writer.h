@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include <snug/basis/bound_rows.h>
-#include <snug/basis/bound_table.h>
+#include <snug/bounds/bound_rows.h>
+#include <snug/bounds/bound_table.h>
 
 namespace tablegen {
 

@@ -1,4 +1,4 @@
-// Makes the file that is compiled into the library, src/snug/basis/shipped.bin:  tablegen FILE
+// Makes the file that is compiled into the library, src/snug/bounds/shipped.bin:  tablegen FILE
 
 #include <cstdio>
 #include <exception>
@@ -15,7 +15,7 @@ constexpr const char* provenance =
     "nearest, error terms by snug/base/rounding.h; proved by checker";
 
 int run(const char* name) {
-  snug::KindLibrary library;
+  snug::KindCache library;
   std::vector<tablegen::KindBounds> kinds;
   for (const snug::KindKey& key : tablegen::shipped_kinds()) {
     const snug::Kind& kind = library.find(key);

@@ -1,9 +1,9 @@
 #include <snug/query/bound.h>
 
 #include <fmt/core.h>
+#include <picture/polyhedron.h>
 #include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
-#include <snug/picture/polyhedron.h>
 
 #include "common.h"
 #include "curve.h"
@@ -39,9 +39,9 @@ void write_triangle(JsonWriter& json, const char* key, const Triangle& triangle)
   json.end_array();
 }
 
-void write_piece(JsonWriter& json, const Surface& surface, const PieceEnclosure& piece) {
+void write_piece(JsonWriter& json, const LimitSurface& surface, const PieceEnclosure& piece) {
   const Scheme scheme = surface.options().scheme;
-  const Surface::PatchPlace place = surface.place(piece.patch);
+  const LimitSurface::PatchPlace place = surface.place(piece.patch);
   json.begin_object();
   json.field(is_primal(scheme) ? "face" : "vertex", place.owner);
   if (scheme != Scheme::loop) json.field("part", place.part);
@@ -132,8 +132,8 @@ ExitStatus run(const Options& options) {
     }
     return bound_curve(std::move(mesh), options.mesh, options, options.degree, how, tolerance);
   }
-  const Surface surface =
-      make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundLibrary>());
+  const LimitSurface surface =
+      make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
   BoundSummary summary;
   Polyhedra polyhedra(triangles);
   Report report("bound", options);

@@ -45,7 +45,7 @@ struct Result {
   [[nodiscard]] bool reached() const { return with_sign ? with_sign->reached : nearest.reached; }
 };
 
-std::vector<Result> find(const QueryModel& model, std::span<const Point3> points,
+std::vector<Result> find(const SurfaceBvh& model, std::span<const Point3> points,
                          const ClosestOptions& wanted, const Options& options, const WorkMonitor& monitor) {
   std::vector<Result> results;
   results.reserve(points.size());
@@ -78,7 +78,7 @@ void write_sign(JsonWriter& json, const SignedDistance& found) {
   }
 }
 
-void write_result(Report& report, const Surface& surface, const Result& result) {
+void write_result(Report& report, const LimitSurface& surface, const Result& result) {
   const bool loop = surface.options().scheme == Scheme::loop;
   const ClosestPoint& near = result.nearest;
   if (!report.json()) {
@@ -101,9 +101,9 @@ void write_result(Report& report, const Surface& surface, const Result& result) 
 ExitStatus run(const Options& options) {
   const Length precision = parse_length(options.precision, "--precision", true);
   const std::vector<Point3> points = read_points(options.points);
-  const QueryModelOptions how = model_options(options, "closest");
-  const Surface surface =
-      load_surface(options.mesh, options, options.scheme, std::make_shared<BoundLibrary>());
+  const SurfaceBvhOptions how = model_options(options, "closest");
+  const LimitSurface surface =
+      load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
   ClosestOptions wanted;
   wanted.absolute = precision.in_mesh_units(surface.size());
   wanted.relative = options.relative;
@@ -113,7 +113,7 @@ ExitStatus run(const Options& options) {
     ProgressBar bar("closest points", options.quiet);
     const WorkMonitor monitor = bar.monitor();
     naming(options.mesh, [&] {
-      const QueryModel model(surface, how, monitor);
+      const SurfaceBvh model(surface, how, monitor);
       results = find(model, points, wanted, options, monitor);
     });
   }

@@ -124,15 +124,15 @@ void naming(const std::string& path, const std::function<void()>& work) {
   }
 }
 
-Surface load_surface(const std::string& path, const CommonOptions& options, const std::string& scheme,
-                     const std::shared_ptr<BoundLibrary>& library) {
+LimitSurface load_surface(const std::string& path, const CommonOptions& options, const std::string& scheme,
+                          const std::shared_ptr<BoundsCache>& library) {
   return make_surface(load_mesh(path, options), path, options, scheme, library);
 }
 
-Surface make_surface(ControlMesh mesh, const std::string& path, const CommonOptions& options,
-                     const std::string& scheme, const std::shared_ptr<BoundLibrary>& library) {
+LimitSurface make_surface(ControlMesh mesh, const std::string& path, const CommonOptions& options,
+                          const std::string& scheme, const std::shared_ptr<BoundsCache>& library) {
   refuse_curves(mesh, scheme, path);
-  std::optional<Surface> surface;
+  std::optional<LimitSurface> surface;
   naming(path, [&] {
     const SchemeOptions rules = choose_rules(options, scheme, mesh);
     ProgressBar bar("preparing " + path, options.quiet);

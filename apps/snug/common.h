@@ -11,7 +11,7 @@
 #include <snug/io/mesh_file.h>
 #include <snug/io/notes.h>
 #include <snug/query/bound.h>
-#include <snug/surface/surface.h>
+#include <snug/surface/limit_surface.h>
 
 #include "command_line.h"
 #include "exit_status.h"
@@ -61,11 +61,13 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 [[nodiscard]] ControlMesh load_mesh(const std::string& path, const CommonOptions& options);
 
 /// Reads a mesh and makes its surface. Refusals name the file.
-[[nodiscard]] Surface load_surface(const std::string& path, const CommonOptions& options,
-                                   const std::string& scheme, const std::shared_ptr<BoundLibrary>& library);
+[[nodiscard]] LimitSurface load_surface(const std::string& path, const CommonOptions& options,
+                                        const std::string& scheme,
+                                        const std::shared_ptr<BoundsCache>& library);
 /// The same for a mesh that has been read from `path`.
-[[nodiscard]] Surface make_surface(ControlMesh mesh, const std::string& path, const CommonOptions& options,
-                                   const std::string& scheme, const std::shared_ptr<BoundLibrary>& library);
+[[nodiscard]] LimitSurface make_surface(ControlMesh mesh, const std::string& path,
+                                        const CommonOptions& options, const std::string& scheme,
+                                        const std::shared_ptr<BoundsCache>& library);
 /// Calls `work` and puts the name of the file in front of refusals it throws.
 void naming(const std::string& path, const std::function<void()>& work);
 

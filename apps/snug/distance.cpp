@@ -40,7 +40,7 @@ std::string row(const Distance& answer) {
 ExitStatus run_poses(PairArguments& pair, Report& report, const DistanceOptions& wanted,
                      const WorkMonitor& monitor) {
   const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
-  const auto ask = [&](const PlacedModel& a, const PlacedModel& b) {
+  const auto ask = [&](const PlacedBvh& a, const PlacedBvh& b) {
     Distance answer = distance(a, b, wanted, stop_only);
     return PoseAnswer{
         .fields = [answer, sides = sides_of(a, b)](JsonWriter& json) { write_answer(json, sides, answer); },

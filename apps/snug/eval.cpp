@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 #include <snug/io/read_file.h>
-#include <snug/query/evaluate.h>
+#include <snug/surface/evaluate.h>
 
 #include "common.h"
 #include "curve.h"
@@ -29,7 +29,7 @@ const char* place_words(Scheme scheme) {
 const char* owner_word(Scheme scheme) { return is_primal(scheme) ? "face" : "vertex"; }
 
 // Lines "face u v"; blank lines and those that begin with # are passed over.
-std::vector<SurfaceParameter> read_requests(const std::string& path, const Surface& surface) {
+std::vector<SurfaceParameter> read_requests(const std::string& path, const LimitSurface& surface) {
   const std::string text = read_file(path, stopped_by_interrupts());
   const Scheme scheme = surface.options().scheme;
   const std::string owner = owner_word(scheme);
@@ -55,7 +55,7 @@ std::vector<SurfaceParameter> read_requests(const std::string& path, const Surfa
       throw unreadable(scheme == Scheme::loop ? "u and v must be >= 0, and u + v <= 1"
                                               : "u and v must be from 0 to 1");
     }
-    const Surface::PatchRange range = surface.patches_of(at.owner);
+    const LimitSurface::PatchRange range = surface.patches_of(at.owner);
     const std::size_t corners = std::max<std::size_t>(1, (range.end - range.begin) / 2);
     if (at.corner >= corners) {
       throw unreadable("corner " + std::to_string(at.corner) + " of " + owner + " " +
@@ -71,7 +71,7 @@ std::vector<SurfaceParameter> read_requests(const std::string& path, const Surfa
   return requests;
 }
 
-void write_point(Report& report, const Surface& surface, const SurfaceParameter& at,
+void write_point(Report& report, const LimitSurface& surface, const SurfaceParameter& at,
                  const SurfacePoint& point) {
   const Scheme scheme = surface.options().scheme;
   if (!report.json()) {
@@ -91,7 +91,7 @@ void write_point(Report& report, const Surface& surface, const SurfaceParameter&
 
 // Calls visit(place) for a lattice of `steps` on a face, or on each quad of its first split.
 template <class Visit>
-void for_each_place(const Surface& surface, std::uint32_t owner, unsigned steps, Visit&& visit) {
+void for_each_place(const LimitSurface& surface, std::uint32_t owner, unsigned steps, Visit&& visit) {
   if (surface.options().scheme == Scheme::loop) {
     for (unsigned j = 0; j <= steps; ++j) {
       for (unsigned i = 0; i + j <= steps; ++i) {
@@ -102,7 +102,7 @@ void for_each_place(const Surface& surface, std::uint32_t owner, unsigned steps,
     }
     return;
   }
-  const Surface::PatchRange range = surface.patches_of(owner);
+  const LimitSurface::PatchRange range = surface.patches_of(owner);
   for (std::uint32_t corner = 0; corner < (range.end - range.begin) / 2; ++corner) {
     for (unsigned j = 0; j <= steps; ++j) {
       for (unsigned i = 0; i <= steps; ++i) {
@@ -117,8 +117,8 @@ ExitStatus run(const Options& options) {
   ControlMesh mesh = load_mesh(options.mesh, options);
   if (is_curve(mesh, options.scheme))
     return eval_curve(std::move(mesh), options.mesh, options, {options.degree, options.samples, options.at});
-  const Surface surface =
-      make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundLibrary>());
+  const LimitSurface surface =
+      make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
   std::vector<SurfaceParameter> requests;
   if (!options.at.empty()) requests = read_requests(options.at, surface);
   Report report("eval", options);

@@ -1,4 +1,4 @@
-#include <snug/query/evaluate_curve.h>
+#include <snug/surface/evaluate_curve.h>
 
 #include <charconv>
 #include <sstream>

@@ -1,7 +1,7 @@
-#include <snug/query/convergence.h>
-#include <snug/query/curve_rates.h>
-#include <snug/query/printed_pair_test.h>
-#include <snug/query/tightness.h>
+#include <experiments/convergence.h>
+#include <experiments/curve_rates.h>
+#include <experiments/printed_pair_test.h>
+#include <experiments/tightness.h>
 
 #include <cstdint>
 #include <memory>

@@ -5,10 +5,10 @@
 #include <memory>
 #include <optional>
 
+#include <experiments/room_tables.h>
+#include <experiments/rooms.h>
 #include <fmt/core.h>
 #include <snug/base/error.h>
-#include <snug/query/room_tables.h>
-#include <snug/query/rooms.h>
 
 #include "neighbour.h"
 #include "progress_bar.h"
@@ -50,7 +50,7 @@ std::vector<Model> load_models(const TableExperiment& experiment, const CommonOp
     model.mesh.tags = {};
     // Refuses what is no surface, before a size is looked for.
     naming(file,
-           [&] { static_cast<void>(Surface(model.mesh, rules(), std::make_shared<BoundLibrary>(), 1)); });
+           [&] { static_cast<void>(LimitSurface(model.mesh, rules(), std::make_shared<BoundsCache>(), 1)); });
     model.mesh = unit_model(std::move(model.mesh));
     models.push_back(std::move(model));
   }
@@ -147,9 +147,9 @@ ExitStatus leaves_table(const TableExperiment& experiment, const CommonOptions& 
   {
     ProgressBar bar("splitting patches", options.quiet);
     const WorkMonitor monitor = bar.monitor();
-    const auto library = std::make_shared<BoundLibrary>();
+    const auto library = std::make_shared<BoundsCache>();
     for (const Model& model : models) {
-      const Surface surface(model.mesh, rules(), library, options.threads);
+      const LimitSurface surface(model.mesh, rules(), library, options.threads);
       for (const double tolerance : table_tolerances) {
         rows.push_back(count_leaves(surface, tolerance, monitor));
         monitor.report(static_cast<double>(rows.size()) / static_cast<double>(count));
@@ -242,8 +242,8 @@ ExitStatus room_table(const TableExperiment& experiment, const CommonOptions& op
   {
     ProgressBar bar("colliding", options.quiet);
     const WorkMonitor monitor = bar.monitor();
-    const auto library = std::make_shared<BoundLibrary>();
-    std::vector<Surface> surfaces;
+    const auto library = std::make_shared<BoundsCache>();
+    std::vector<LimitSurface> surfaces;
     for (const Model& model : models) surfaces.emplace_back(model.mesh, rules(), library, options.threads);
     for (const Cell& cell : cells) {
       rows.push_back(measure_room(surfaces[2 * cell.pair], surfaces[2 * cell.pair + 1],

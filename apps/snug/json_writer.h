@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include <snug/base/point.h>
+#include <snug/geometry/point.h>
 
 namespace snug::command {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <snug/base/error.h>
-#include <snug/enclose/fit_kernels.h>
+#include <snug/bounds/fit_kernels.h>
 
 #include "common.h"
 #include "length.h"

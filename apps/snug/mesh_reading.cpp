@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include <fmt/core.h>
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 #include <snug/mesh/sharpen.h>
 #include <snug/mesh/weld.h>
 #include <snug/query/face_distance.h>
@@ -95,7 +95,7 @@ bool is_stl(const std::string& path) {
   return ending == ".stl";
 }
 
-std::string how_far(std::optional<double> apart, const Surface& surface) {
+std::string how_far(std::optional<double> apart, const LimitSurface& surface) {
   return apart ? "at most " + text_of_length(*apart, surface.size()) : "which this scheme shrinks";
 }
 
@@ -109,8 +109,8 @@ void note_smooth_facets(const std::string& path, const CommonOptions& options, c
        "; --sharp auto keeps edges and flat faces of a part from CAD");
 }
 
-void note_distance_to_faces(const Surface& surface, const std::string& path, const CommonOptions& options,
-                            std::optional<double> known) {
+void note_distance_to_faces(const LimitSurface& surface, const std::string& path,
+                            const CommonOptions& options, std::optional<double> known) {
   const Notes note = notes_for(options);
   const bool sharp = !options.sharp.empty();
   if (!note || (!sharp && !is_stl(path))) return;

@@ -31,8 +31,8 @@ inline constexpr const char* ask_info = "'snug info' says how far";
 
 /// The same with how far the surface may be from its faces, which is measured unless it is known or the mesh is very large; with
 /// --sharp a note of that alone.
-void note_distance_to_faces(const Surface& surface, const std::string& path, const CommonOptions& options,
-                            std::optional<double> known = {});
+void note_distance_to_faces(const LimitSurface& surface, const std::string& path,
+                            const CommonOptions& options, std::optional<double> known = {});
 
 /// "0.031 (0.25 %)": at least that length, and in percent of the size.
 [[nodiscard]] std::string text_of_length(double length, double size);

@@ -13,8 +13,8 @@ void add_model_options(OptionList& list, ModelOptions& options) {
   add_common_options(list, options);
 }
 
-QueryModelOptions model_options(const ModelOptions& options, const std::string& command) {
-  QueryModelOptions result;
+SurfaceBvhOptions model_options(const ModelOptions& options, const std::string& command) {
+  SurfaceBvhOptions result;
   for (const Volume volume : all_volumes) {
     if (options.volume == name_of(volume)) result.volume = volume;
   }
@@ -53,7 +53,7 @@ PairArguments::PairArguments(const PairOptions& options, const std::string& comm
   const Mending mending{options.nearest_rigid, notes_for(options)};
   pose_a_ = pose_of(options.pose_a, "-a", mending);
   pose_b_ = pose_of(options.pose_b, "-b", mending);
-  const auto library = std::make_shared<BoundLibrary>();
+  const auto library = std::make_shared<BoundsCache>();
   const auto scheme = [&](const std::string& own) { return own.empty() ? options.scheme : own; };
   surface_a_.emplace(load_surface(options.mesh_a, options, scheme(options.scheme_a), library));
   surface_b_.emplace(load_surface(options.mesh_b, options, scheme(options.scheme_b), library));

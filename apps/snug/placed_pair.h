@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include <snug/query/query_model.h>
+#include <snug/search/surface_bvh.h>
 
 #include "common.h"
 #include "pose.h"
@@ -13,11 +13,11 @@ namespace snug::command {
 
 /// Options of the commands that ask about one surface, or two placed ones.
 struct ModelOptions : CommonOptions {
-  std::string volume = name_of(QueryModelOptions{}.volume);
+  std::string volume = name_of(SurfaceBvhOptions{}.volume);
 };
 void add_model_options(OptionList& list, ModelOptions& options);
 /// Errors:    UsageError where `command` has no use for --bounds.
-[[nodiscard]] QueryModelOptions model_options(const ModelOptions& options, const std::string& command);
+[[nodiscard]] SurfaceBvhOptions model_options(const ModelOptions& options, const std::string& command);
 
 struct PairOptions : ModelOptions {
   std::string mesh_a, mesh_b;
@@ -44,10 +44,10 @@ class PairArguments {
   /// Errors:    InputError (refused) that names the mesh which is not closed.
   void require_closed() const;
   /// Requires:  prepare().
-  [[nodiscard]] PlacedModel a() { return {*model_a_, *scratch_a_, pose_a_}; }
-  [[nodiscard]] PlacedModel b() { return {*model_b_, *scratch_b_, pose_b_}; }
-  [[nodiscard]] const QueryModel& model_a() const { return *model_a_; }
-  [[nodiscard]] const QueryModel& model_b() const { return *model_b_; }
+  [[nodiscard]] PlacedBvh a() { return {*model_a_, *scratch_a_, pose_a_}; }
+  [[nodiscard]] PlacedBvh b() { return {*model_b_, *scratch_b_, pose_b_}; }
+  [[nodiscard]] const SurfaceBvh& model_a() const { return *model_a_; }
+  [[nodiscard]] const SurfaceBvh& model_b() const { return *model_b_; }
   [[nodiscard]] const Motion& pose_a() const { return pose_a_; }
   [[nodiscard]] const Motion& pose_b() const { return pose_b_; }
   [[nodiscard]] const std::string& poses() const { return options_.poses; }
@@ -61,11 +61,11 @@ class PairArguments {
 
  private:
   const PairOptions& options_;
-  QueryModelOptions model_options_;
+  SurfaceBvhOptions model_options_;
   Motion pose_a_, pose_b_;
-  std::optional<Surface> surface_a_, surface_b_;
-  std::optional<QueryModel> model_a_, model_b_;
-  std::optional<QueryScratch> scratch_a_, scratch_b_;
+  std::optional<LimitSurface> surface_a_, surface_b_;
+  std::optional<SurfaceBvh> model_a_, model_b_;
+  std::optional<SurfaceWorkspace> scratch_a_, scratch_b_;
 };
 
 }  // namespace snug::command

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include <snug/base/motion.h>
+#include <snug/geometry/motion.h>
 #include <snug/io/notes.h>
 
 #include "options.h"

@@ -61,7 +61,7 @@ class PoseAnswers {
   void answer(const PoseFile& file, const std::vector<PoseLine>& lines, const WorkMonitor& monitor) {
     items_.assign(lines.size(), {});
     scratches_.for_each(lines.size(),
-                        [&](QueryScratch& a, QueryScratch& b, std::size_t i) {
+                        [&](SurfaceWorkspace& a, SurfaceWorkspace& b, std::size_t i) {
                           try {
                             items_[i] = answer_line(lines[i], a, b, monitor);
                           } catch (const InputError& error) {
@@ -78,7 +78,8 @@ class PoseAnswers {
   [[nodiscard]] bool reached() const { return reached_; }
 
  private:
-  Item answer_line(const PoseLine& line, QueryScratch& a, QueryScratch& b, const WorkMonitor& monitor) const {
+  Item answer_line(const PoseLine& line, SurfaceWorkspace& a, SurfaceWorkspace& b,
+                   const WorkMonitor& monitor) const {
     monitor.checkpoint();
     const ReadPoses read = parse_pose_line(line.text, pair_.nearest_rigid());
     const PosePair poses{read.a.value_or(pair_.pose_a()), read.b.value_or(pair_.pose_b())};
@@ -105,7 +106,7 @@ class PoseAnswers {
   PairArguments& pair_;
   Report& report_;
   const AskPose& ask_;
-  PairScratches scratches_;
+  PairWorkspaces scratches_;
   std::vector<Item> items_;
   Mended mended_;
   std::size_t count_ = 0;

@@ -14,7 +14,7 @@ struct PoseAnswer {
   bool reached = true;
 };
 /// Asks about one pose; called by several threads.
-using AskPose = std::function<PoseAnswer(const PlacedModel& a, const PlacedModel& b)>;
+using AskPose = std::function<PoseAnswer(const PlacedBvh& a, const PlacedBvh& b)>;
 
 /// Answers every pose of --poses in the file's order: `results` and `count` of the report, or a row each below `header`.
 ///

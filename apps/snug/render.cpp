@@ -1,4 +1,4 @@
-#include <snug/picture/render.h>
+#include <picture/render.h>
 
 #include <algorithm>
 #include <array>
@@ -130,9 +130,9 @@ struct Enclosures {
 };
 
 // The budget of splits that keeps the enclosures drawable. Refuses what is too much without any split, or at a fixed level.
-std::uint64_t drawable_budget(const Options& options, const std::vector<Surface>& surfaces) {
+std::uint64_t drawable_budget(const Options& options, const std::vector<LimitSurface>& surfaces) {
   std::uint64_t pieces = 0;
-  for (const Surface& surface : surfaces) {
+  for (const LimitSurface& surface : surfaces) {
     for (std::size_t p = 0; p < surface.patch_count(); ++p) pieces += surface.has_patch(PatchId(p)) ? 1 : 0;
   }
   if (pieces > most_enclosures >> (2 * options.level)) {
@@ -147,7 +147,7 @@ std::uint64_t drawable_budget(const Options& options, const std::vector<Surface>
 }
 
 Enclosures enclose(const Options& options, const std::optional<Length>& tolerance,
-                   const std::vector<Surface>& surfaces) {
+                   const std::vector<LimitSurface>& surfaces) {
   Enclosures result;
   if (!options.enclosures) return result;
   BoundOptions how;
@@ -281,8 +281,8 @@ ExitStatus run(const Options& options) {
   to_standard_output.output.clear();
   Report report("render", to_standard_output);
 
-  const auto library = std::make_shared<BoundLibrary>();
-  std::vector<Surface> surfaces;
+  const auto library = std::make_shared<BoundsCache>();
+  std::vector<LimitSurface> surfaces;
   std::vector<std::string> schemes;
   for (const std::string& mesh : options.meshes) {
     surfaces.push_back(load_surface(mesh, options, options.scheme, library));

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <picture/palette.h>
 #include <snug/base/parallel.h>
-#include <snug/picture/palette.h>
-#include <snug/query/evaluate.h>
+#include <snug/surface/evaluate.h>
 
 namespace snug::command {
 namespace {
@@ -50,7 +50,7 @@ PictureUnits::PictureUnits(std::span<const PlacedSurface> parts) {
 Tessellation::Tessellation(const PlacedSurface& part, const PictureUnits& units, std::uint32_t steps,
                            int threads, const WorkMonitor& monitor)
     : steps_(steps), points_a_patch_(std::size_t{steps + 1} * (steps + 2) / 2) {
-  const Surface& surface = *part.surface;
+  const LimitSurface& surface = *part.surface;
   std::vector<std::uint32_t> offsets{0};
   std::vector<VertexId> corners;
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {

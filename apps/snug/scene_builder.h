@@ -5,20 +5,20 @@
 #include <span>
 #include <vector>
 
-#include <snug/base/motion.h>
+#include <picture/camera.h>
+#include <picture/polyhedron.h>
+#include <picture/scene.h>
 #include <snug/base/progress.h>
-#include <snug/picture/camera.h>
-#include <snug/picture/polyhedron.h>
-#include <snug/picture/scene.h>
+#include <snug/geometry/motion.h>
 #include <snug/query/bound.h>
-#include <snug/surface/surface.h>
+#include <snug/surface/limit_surface.h>
 
 namespace snug::command {
 
 /// A surface where it stands in the picture.
 /// Requires:  the surface outlives it.
 struct PlacedSurface {
-  const Surface* surface;
+  const LimitSurface* surface;
   Motion pose;
 };
 

@@ -3,12 +3,12 @@
 #include <fmt/core.h>
 #include <snug/base/error.h>
 #include <snug/query/containment.h>
-#include <snug/query/solid.h>
+#include <snug/search/solid.h>
 
 namespace snug::command {
 namespace {
 
-bool is_closed(const QueryModel& model) {
+bool is_closed(const SurfaceBvh& model) {
   try {
     static_cast<void>(model.solid());
     return true;
@@ -28,7 +28,7 @@ std::string inner_sentence(std::size_t inner) {
   return inner == 0 ? "A, or a part of it, lies inside of B" : "B, or a part of it, lies inside of A";
 }
 
-void note_nesting(const CommonOptions& options, const PlacedModel& a, const PlacedModel& b,
+void note_nesting(const CommonOptions& options, const PlacedBvh& a, const PlacedBvh& b,
                   const WorkMonitor& monitor) {
   const Notes notes = notes_for(options);
   if (!notes || !is_closed(a.model) || !is_closed(b.model)) return;

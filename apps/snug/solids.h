@@ -16,7 +16,7 @@ void write_inner(JsonWriter& json, const std::optional<std::size_t>& inner);
 [[nodiscard]] std::string inner_sentence(std::size_t inner);
 
 /// Two surfaces that do not meet, closed both, one inside of the other: a note that they do as solids.
-void note_nesting(const CommonOptions& options, const PlacedModel& a, const PlacedModel& b,
+void note_nesting(const CommonOptions& options, const PlacedBvh& a, const PlacedBvh& b,
                   const WorkMonitor& monitor);
 
 /// "penetration": {depth, translation, reached}, and as a sentence.

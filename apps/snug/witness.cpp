@@ -4,7 +4,8 @@
 
 namespace snug::command {
 
-void write_place(JsonWriter& json, const Surface& surface, const SurfaceParameter& at, const Motion& pose) {
+void write_place(JsonWriter& json, const LimitSurface& surface, const SurfaceParameter& at,
+                 const Motion& pose) {
   const Scheme scheme = surface.options().scheme;
   json.field(is_primal(scheme) ? "face" : "vertex", at.owner);
   if (scheme != Scheme::loop) json.field("corner", at.corner);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <snug/query/pair_search.h>
+#include <snug/search/pair_search.h>
 
 #include "json_writer.h"
 
@@ -12,15 +12,15 @@ namespace snug::command {
 
 /// The fields face (dual: vertex), part or corner of its split, u, v, normal and normal_error of a place, into the object that is
 /// open.
-void write_place(JsonWriter& json, const Surface& surface, const SurfaceParameter& at,
+void write_place(JsonWriter& json, const LimitSurface& surface, const SurfaceParameter& at,
                  const Motion& pose = {});
 
 /// Two surfaces where they are placed.
 struct Sides {
-  std::array<const Surface*, 2> surfaces;
+  std::array<const LimitSurface*, 2> surfaces;
   std::array<Motion, 2> poses;
 };
-[[nodiscard]] inline Sides sides_of(const PlacedModel& a, const PlacedModel& b) {
+[[nodiscard]] inline Sides sides_of(const PlacedBvh& a, const PlacedBvh& b) {
   return {{&a.model.surface(), &b.model.surface()}, {a.pose, b.pose}};
 }
 

@@ -14,7 +14,7 @@
 #include <snug/adapters/opensubdiv.h>
 #include <snug/io/mesh_file.h>
 #include <snug/io/obj.h>
-#include <snug/surface/surface.h>
+#include <snug/surface/limit_surface.h>
 
 namespace snug {
 namespace {
@@ -398,7 +398,7 @@ TEST(opensubdiv_adapter, hands_on_non_manifold_meshes) {
     expect_round_trip(mesh);
   }
   MeshAndOptions answer = from_refiner(*refiner_of(mesh, Sdc::SCHEME_CATMARK), mesh.points);
-  const Surface surface(std::move(answer.mesh), answer.options, std::make_shared<BoundLibrary>());
+  const LimitSurface surface(std::move(answer.mesh), answer.options, std::make_shared<BoundsCache>());
   EXPECT_EQ(surface.patch_count(), 6u);
 }
 
@@ -427,8 +427,8 @@ TEST(opensubdiv_adapter, hands_loop_meshes_to_surface) {
   for (const ControlMesh& mesh : {icosahedron(), bust}) {
     expect_round_trip(mesh, Scheme::loop);
     MeshAndOptions answer = from_refiner(*refiner_of(mesh, Sdc::SCHEME_LOOP), mesh.points);
-    const auto library = std::make_shared<BoundLibrary>();
-    const Surface surface(std::move(answer.mesh), answer.options, library),
+    const auto library = std::make_shared<BoundsCache>();
+    const LimitSurface surface(std::move(answer.mesh), answer.options, library),
         direct(mesh, SchemeOptions{}, library);
     ASSERT_EQ(surface.face_count(), direct.face_count());
     EXPECT_EQ(surface.kind_count(), direct.kind_count());

@@ -4,7 +4,7 @@
 #include <checker/prove.h>
 #include <checker/rejected.h>
 #include <gtest/gtest.h>
-#include <snug/basis/shipped.h>
+#include <snug/bounds/shipped.h>
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,7 @@ StoredKind stored(const snug::KindKey& key, const snug::BoundRows& rows) {
 }
 
 StoredKind made(const snug::KindKey& key) {
-  snug::KindLibrary library;
+  snug::KindCache library;
   return stored(key, snug::make_bound_rows(library.find(key)));
 }
 

@@ -18,12 +18,12 @@ int main() {
   const char* octahedron =
       "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
       "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
-  const auto library = std::make_shared<snug::BoundLibrary>();
-  const snug::Surface surface(snug::parse_obj(octahedron, "octahedron"), snug::SchemeOptions{}, library);
+  const auto library = std::make_shared<snug::BoundsCache>();
+  const snug::LimitSurface surface(snug::parse_obj(octahedron, "octahedron"), snug::SchemeOptions{}, library);
   const snug::BoundSummary summary = snug::bound(surface, {}, [](const snug::PieceEnclosure&) {});
 
-  const snug::QueryModel model(surface);
-  snug::QueryScratch scratch(model), other(model);
+  const snug::SurfaceBvh model(surface);
+  snug::SurfaceWorkspace scratch(model), other(model);
   const snug::Motion aside = snug::Motion::from_translation({2, 0, 0});
   const snug::Collision answer =
       snug::collide({model, scratch, {}}, {model, other, aside}, {.tolerance = 0.01});

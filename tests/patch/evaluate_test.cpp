@@ -21,7 +21,7 @@ class Patches {
   }
 
  private:
-  KindLibrary library_;
+  KindCache library_;
   ControlMesh mesh_;
   Topology topology_;
   SchemeOptions options_;

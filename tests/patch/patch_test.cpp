@@ -22,7 +22,7 @@ TEST(piece_path, remembers_its_digits_and_maps_parameters) {
 
 // A piece's limit points are the whole patch's at the mapped parameters.
 TEST(split, keeps_the_limit_surface) {
-  KindLibrary library;
+  KindCache library;
   std::mt19937_64 random(16);
   for (const oracle::TwinMesh& twin : testing::assorted_meshes(16)) {
     if (twin.boundary == oracle::Boundary::none) continue;
@@ -51,7 +51,7 @@ TEST(split, keeps_the_limit_surface) {
 
 // Control points that are off by as much as `error` allows: what is made of them is off by no more than it says.
 TEST(patch_error, covers_points_that_are_off_through_splits_and_evaluation) {
-  KindLibrary library;
+  KindCache library;
   std::mt19937_64 random(32);
   for (const oracle::TwinMesh& twin : testing::assorted_meshes(32)) {
     if (twin.boundary == oracle::Boundary::none) continue;

@@ -1,5 +1,5 @@
-#include <snug/picture/polyhedron.h>
-#include <snug/picture/render.h>
+#include <picture/polyhedron.h>
+#include <picture/render.h>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <snug/picture/hierarchy.h>
+#include <picture/hierarchy.h>
 
 #include <gtest/gtest.h>
 

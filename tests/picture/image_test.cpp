@@ -1,4 +1,4 @@
-#include <snug/picture/image.h>
+#include <picture/image.h>
 
 #include <gtest/gtest.h>
 #include <png.h>

@@ -1,4 +1,4 @@
-#include <snug/picture/polyhedron.h>
+#include <picture/polyhedron.h>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <snug/picture/render.h>
+#include <picture/render.h>
 
 #include <gtest/gtest.h>
 

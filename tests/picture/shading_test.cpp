@@ -1,10 +1,10 @@
-#include <snug/picture/shading.h>
+#include <picture/shading.h>
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include <snug/picture/palette.h>
+#include <picture/palette.h>
 
 namespace snug {
 namespace {

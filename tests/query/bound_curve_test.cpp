@@ -1,9 +1,9 @@
+#include <experiments/quantile.h>
 #include <snug/base/error.h>
-#include <snug/base/quantile.h>
-#include <snug/enclose/curve_points.h>
+#include <snug/bounds/curve_points.h>
 #include <snug/query/bound_curve.h>
-#include <snug/query/evaluate_curve.h>
 #include <snug/query/subdivide_curve.h>
+#include <snug/surface/evaluate_curve.h>
 #include <testing/curves.h>
 
 #include <gtest/gtest.h>

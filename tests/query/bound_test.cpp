@@ -1,8 +1,8 @@
 #include <snug/query/bound.h>
 
+#include <experiments/corner_nets.h>
 #include <gtest/gtest.h>
 #include <snug/base/error.h>
-#include <snug/query/corner_nets.h>
 #include <testing/patches.h>
 
 #include <vector>
@@ -15,7 +15,7 @@ struct Collected {
   BoundSummary summary;
 };
 
-Collected collect(const Surface& surface, const BoundOptions& options) {
+Collected collect(const LimitSurface& surface, const BoundOptions& options) {
   Collected result;
   result.summary =
       bound(surface, options, [&](const PieceEnclosure& piece) { result.pieces.push_back(piece); });
@@ -36,7 +36,7 @@ bool same(const Collected& a, const Collected& b) {
 
 TEST(bound, is_the_same_for_any_number_of_threads) {
   std::mt19937_64 random(24);
-  const Surface surface = testing::surface_of(
+  const LimitSurface surface = testing::surface_of(
       oracle::meshes::disturbed(oracle::meshes::quartered(oracle::meshes::icosahedron()), 20, 0.1, random));
   BoundOptions options;
   options.tolerance = 0.005;
@@ -55,7 +55,7 @@ TEST(bound, is_the_same_for_any_number_of_threads) {
 }
 
 TEST(bound, meets_its_tolerance_with_pieces_that_tile_every_face) {
-  const Surface surface = testing::surface_of(oracle::meshes::icosahedron());
+  const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
   BoundOptions options;
   options.tolerance = 0.01;
   const Collected result = collect(surface, options);
@@ -70,8 +70,9 @@ TEST(bound, meets_its_tolerance_with_pieces_that_tile_every_face) {
 // A crease of 2.5 through the middle of a regular mesh: after three splits it is smooth.
 TEST(bound, splits_until_sharpness_has_decayed) {
   for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
-    const Surface surface(bent_net(scheme, {NetCentre::semi_sharp, scheme == Scheme::loop ? 6u : 4u, 2.5}, 1),
-                          {scheme}, std::make_shared<BoundLibrary>(), 1);
+    const LimitSurface surface(
+        bent_net(scheme, {NetCentre::semi_sharp, scheme == Scheme::loop ? 6u : 4u, 2.5}, 1), {scheme},
+        std::make_shared<BoundsCache>(), 1);
     BoundOptions options;
     const Collected whole = collect(surface, options);
     options.passing = PassingMethod::split;
@@ -99,7 +100,7 @@ TEST(bound, splits_until_sharpness_has_decayed) {
 }
 
 TEST(bound, says_so_when_rounding_stops_it) {
-  const Surface surface = testing::surface_of(oracle::meshes::octahedron());
+  const LimitSurface surface = testing::surface_of(oracle::meshes::octahedron());
   BoundOptions options;
   options.tolerance = 1e-17;
   options.budget = 20000;
@@ -108,7 +109,7 @@ TEST(bound, says_so_when_rounding_stops_it) {
 }
 
 TEST(bound, by_control_boxes_contains_corners_and_is_looser) {
-  const Surface surface = testing::surface_of(oracle::meshes::icosahedron());
+  const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
   BoundOptions options;
   const double rows = collect(surface, options).summary.max_radius;
   options.method = BoundMethod::control_box;
@@ -129,14 +130,14 @@ TEST(bound, refuses_results_that_do_not_fit_a_double) {
   for (oracle::Point& p : twin.points) {
     for (double& x : p) x *= 1.79e308;
   }
-  const Surface surface = testing::surface_of(twin);
+  const LimitSurface surface = testing::surface_of(twin);
   BoundOptions options;
   options.level = 0;
   EXPECT_NO_THROW(static_cast<void>(collect(surface, options)));  // inside the control points' hull: it fits
 }
 
 TEST(bound, stops_when_asked) {
-  const Surface surface = testing::surface_of(oracle::meshes::icosahedron());
+  const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
   const std::atomic<bool> stop{true};
   WorkMonitor monitor;
   monitor.stop = &stop;

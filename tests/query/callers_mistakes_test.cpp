@@ -7,19 +7,19 @@
 #include <string>
 #include <vector>
 
+#include <experiments/convergence.h>
+#include <experiments/corner_nets.h>
+#include <experiments/rooms.h>
+#include <experiments/tightness.h>
 #include <snug/patch/evaluate.h>
 #include <snug/patch/quad_parameter.h>
 #include <snug/query/bound.h>
 #include <snug/query/bound_curve.h>
 #include <snug/query/closest.h>
 #include <snug/query/collide.h>
-#include <snug/query/convergence.h>
-#include <snug/query/corner_nets.h>
 #include <snug/query/distance.h>
-#include <snug/query/evaluate.h>
-#include <snug/query/evaluate_curve.h>
-#include <snug/query/rooms.h>
-#include <snug/query/tightness.h>
+#include <snug/surface/evaluate.h>
+#include <snug/surface/evaluate_curve.h>
 #include <snug/surface/patch_bounds.h>
 
 namespace snug {
@@ -52,27 +52,27 @@ ControlMesh triangle() {
   return mesh;
 }
 
-Surface surface_of(ControlMesh mesh, Scheme scheme) {
+LimitSurface surface_of(ControlMesh mesh, Scheme scheme) {
   SchemeOptions options;
   options.scheme = scheme;
-  return {std::move(mesh), options, std::make_shared<BoundLibrary>(), 1};
+  return {std::move(mesh), options, std::make_shared<BoundsCache>(), 1};
 }
 
 const std::vector<double> no_numbers{NAN, INFINITY, -INFINITY};
 
 TEST(callers_mistakes, a_surface_needs_a_library_and_the_standard_rule) {
-  expect_refused("null", [] { Surface(square(), {.scheme = Scheme::catmark}, nullptr, 1); });
+  expect_refused("null", [] { LimitSurface(square(), {.scheme = Scheme::catmark}, nullptr, 1); });
   SchemeOptions older;
   older.scheme = Scheme::catmark;
   older.vertex_rule = CatmarkVertexRule::older;
-  expect_refused("older", [&] { Surface(square(), older, std::make_shared<BoundLibrary>(), 1); });
-  const Surface surface = surface_of(square(), Scheme::catmark);
+  expect_refused("older", [&] { LimitSurface(square(), older, std::make_shared<BoundsCache>(), 1); });
+  const LimitSurface surface = surface_of(square(), Scheme::catmark);
   expect_refused("patch", [&] { static_cast<void>(surface.patch(PatchId(2))); });
   expect_refused("no patch", [&] { static_cast<void>(surface.patch(PatchId())); });
 }
 
 TEST(callers_mistakes, bound_needs_a_positive_tolerance_and_a_level_that_there_is) {
-  const Surface surface = surface_of(square(), Scheme::catmark);
+  const LimitSurface surface = surface_of(square(), Scheme::catmark);
   const auto run = [&](const BoundOptions& options) {
     bound(surface, options, [](const PieceEnclosure&) {});
   };
@@ -84,7 +84,8 @@ TEST(callers_mistakes, bound_needs_a_positive_tolerance_and_a_level_that_there_i
 }
 
 TEST(callers_mistakes, points_of_a_surface_have_parameters_on_it) {
-  const Surface quad = surface_of(square(), Scheme::catmark), loop = surface_of(triangle(), Scheme::loop);
+  const LimitSurface quad = surface_of(square(), Scheme::catmark),
+                     loop = surface_of(triangle(), Scheme::loop);
   PatchEvaluator of_quad(quad, PatchId(0)), of_loop(loop, PatchId(0));
   const std::vector<double> outside{NAN, INFINITY, -INFINITY, -1e-300, 1 + 0x1p-52};
   for (const double x : outside) {
@@ -129,7 +130,7 @@ TEST(callers_mistakes, curves_have_edges_parameters_and_no_tables) {
 }
 
 TEST(callers_mistakes, patch_bounds_take_a_point_a_vertex_and_patches_that_there_are) {
-  const Surface surface = surface_of(square(), Scheme::catmark);
+  const LimitSurface surface = surface_of(square(), Scheme::catmark);
   PatchBounds bounds(surface, {}, 1);
   std::vector<Point3> points = surface.mesh().points;
   std::vector<OffsetTriangle> out(bounds.patches().size());
@@ -142,10 +143,10 @@ TEST(callers_mistakes, patch_bounds_take_a_point_a_vertex_and_patches_that_there
 }
 
 TEST(callers_mistakes, queries_take_finite_numbers_and_a_scratch_for_each_model) {
-  const Surface surface = surface_of(square(), Scheme::catmark);
-  const QueryModel a(surface, {.threads = 1}), b(surface, {.threads = 1}),
+  const LimitSurface surface = surface_of(square(), Scheme::catmark);
+  const SurfaceBvh a(surface, {.threads = 1}), b(surface, {.threads = 1}),
       boxes(surface, {.volume = Volume::aabb, .threads = 1});
-  QueryScratch at_a(a), at_b(b), at_boxes(boxes);
+  SurfaceWorkspace at_a(a), at_b(b), at_boxes(boxes);
   for (const double x : no_numbers) {
     expect_refused("point", [&] { static_cast<void>(closest_point(at_a, {x, 0, 0}, {})); });
     expect_refused("points", [&] {

@@ -6,8 +6,8 @@
 #include <snug/query/closest.h>
 #include <snug/query/containment.h>
 #include <snug/query/distance.h>
-#include <snug/query/pair_search.h>
-#include <snug/query/solid.h>
+#include <snug/search/pair_search.h>
+#include <snug/search/solid.h>
 #include <testing/patches.h>
 #include <testing/placements.h>
 
@@ -20,9 +20,9 @@ namespace snug {
 namespace {
 
 struct Pair {
-  Surface a, b;
-  QueryModel model_a, model_b;
-  QueryScratch scratch_a, scratch_b;
+  LimitSurface a, b;
+  SurfaceBvh model_a, model_b;
+  SurfaceWorkspace scratch_a, scratch_b;
   Pair(const oracle::TwinMesh& x, const oracle::TwinMesh& y, int threads = 1)
       : a(testing::surface_of(x)),
         b(testing::surface_of(y)),
@@ -101,9 +101,9 @@ TEST(collide, is_undecided_when_the_budget_ends) {
 }
 
 TEST(closest, ends_at_rounding_where_the_point_lies_on_the_surface) {
-  const Surface surface = testing::surface_of(oracle::meshes::icosahedron());
-  const QueryModel model(surface);
-  QueryScratch scratch(model);
+  const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
+  const SurfaceBvh model(surface);
+  SurfaceWorkspace scratch(model);
   const Patch patch = surface.patch(PatchId(3));
   const Point3 on = surface.scale().inverse().apply(patch.origin + limit_point(patch, {0, 0}).relative);
   // No distance is small beside none: precision relative to it alone is never reached, and pieces around a vertex
@@ -222,7 +222,7 @@ TEST(collide, lower_bounds_hold_for_placements_of_any_length) {
 // Any direction gives a bound, whatever its length: squares of short ones lose digits.
 TEST(collide, planes_between_hulls_hold_for_directions_of_any_length) {
   Pair pair(oracle::meshes::icosahedron(), oracle::meshes::octahedron());
-  const PlacedModel a{pair.model_a, pair.scratch_a, {}}, b{pair.model_b, pair.scratch_b, moved(3, 0.2, 0.1)};
+  const PlacedBvh a{pair.model_a, pair.scratch_a, {}}, b{pair.model_b, pair.scratch_b, moved(3, 0.2, 0.1)};
   PairSearch search(a, b);
   std::vector<NodePair> pairs{search.roots()};
   while (!search.pieces(pairs.back())) {
@@ -303,9 +303,9 @@ TEST(collide, solids_that_share_planes_intersect) {
         shape.creases.push_back({polygon[k], polygon[(k + 1) % polygon.size()], oracle::kInfinitelySharp});
       }
     }
-    const Surface box(testing::control_mesh(shape), {scheme}, std::make_shared<BoundLibrary>());
-    const QueryModel model_a(box), model_b(box);
-    QueryScratch scratch_a(model_a), scratch_b(model_b);
+    const LimitSurface box(testing::control_mesh(shape), {scheme}, std::make_shared<BoundsCache>());
+    const SurfaceBvh model_a(box), model_b(box);
+    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
     CollideOptions options;
     options.tolerance = 1e-3;
     options.prove_contact = true;
@@ -329,9 +329,9 @@ TEST(collide, edges_between_quads_and_polygons_are_closed) {
     oracle::TaggedMesh shape = oracle::meshes::prism(3);
     if (scheme != Scheme::catmark) shape.polygons = oracle::meshes::pyramid(4).polygons;
     if (scheme != Scheme::catmark) shape.points = oracle::meshes::pyramid(4).points;
-    const Surface surface(testing::control_mesh(shape), {scheme}, std::make_shared<BoundLibrary>());
-    const QueryModel model(surface);
-    QueryScratch scratch(model);
+    const LimitSurface surface(testing::control_mesh(shape), {scheme}, std::make_shared<BoundsCache>());
+    const SurfaceBvh model(surface);
+    SurfaceWorkspace scratch(model);
     ASSERT_FALSE(model.solid().fillers().empty()) << name_of(scheme);
     const PowerOfTwo back = surface.scale().inverse();
     for (const Solid::Filler& filler : model.solid().fillers()) {
@@ -347,8 +347,8 @@ TEST(collide, edges_between_quads_and_polygons_are_closed) {
 }
 
 TEST(collide, answers_the_same_with_every_sort_of_volume) {
-  const Surface a = testing::surface_of(oracle::meshes::icosahedron()),
-                b = testing::surface_of(oracle::meshes::bipyramid(7));
+  const LimitSurface a = testing::surface_of(oracle::meshes::icosahedron()),
+                     b = testing::surface_of(oracle::meshes::bipyramid(7));
   std::mt19937_64 random(31);
   std::vector<Motion> places;
   for (int i = 0; i < 60; ++i) {
@@ -356,11 +356,11 @@ TEST(collide, answers_the_same_with_every_sort_of_volume) {
   }
   for (const bool tight : {false, true}) {
     for (const Volume volume : all_volumes) {
-      QueryModelOptions how;
+      SurfaceBvhOptions how;
       how.volume = volume;
       how.tight = tight;
-      const QueryModel model_a(a, how), model_b(b, how);
-      QueryScratch scratch_a(model_a), scratch_b(model_b);
+      const SurfaceBvh model_a(a, how), model_b(b, how);
+      SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
       for (std::size_t i = 0; i < places.size(); ++i) {
         const Collision answer = collide({model_a, scratch_a, {}}, {model_b, scratch_b, places[i]}, {});
         const Distance far =
@@ -376,8 +376,8 @@ TEST(collide, answers_the_same_with_every_sort_of_volume) {
 }
 
 TEST(collide, refuses_a_model_without_surface) {
-  const Surface nothing = testing::surface_of(oracle::meshes::grid(1, 1, oracle::Boundary::none));
-  EXPECT_THROW(QueryModel{nothing}, InputError);
+  const LimitSurface nothing = testing::surface_of(oracle::meshes::grid(1, 1, oracle::Boundary::none));
+  EXPECT_THROW(SurfaceBvh{nothing}, InputError);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t most_faces = 8000;  // what the twin samples in a few seconds
 
 // Checks samples of every face against the union of its pieces; returns how many there were.
-std::size_t check(const Surface& surface, const BoundOptions& options,
+std::size_t check(const LimitSurface& surface, const BoundOptions& options,
                   const std::vector<oracle::LimitSample>& samples, const std::string& name) {
   std::vector<std::vector<PieceEnclosure>> pieces(surface.face_count());
   bound(surface, options, [&](const PieceEnclosure& piece) { pieces[piece.patch.index()].push_back(piece); });
@@ -52,7 +52,7 @@ TEST(extra_models, limit_points_lie_inside_their_enclosures) {
       const ControlMesh mesh = read_mesh(path);
       if (mesh.face_count() > most_faces) continue;
       SchemeOptions rules{natural_scheme(mesh), mesh.tags.boundary.value_or(BoundaryRule::edge_and_corner)};
-      const Surface surface(mesh, rules, std::make_shared<BoundLibrary>());
+      const LimitSurface surface(mesh, rules, std::make_shared<BoundsCache>());
       // The twin knows plain Loop surfaces.
       const bool tagged =
           !mesh.tags.creases.empty() || !mesh.tags.corners.empty() || !mesh.tags.holes.empty();
@@ -80,7 +80,7 @@ TEST(extra_models, venus_needs_few_leaves) {
   const char* folder = std::getenv("SNUG_EXTRA_MODELS");
   const std::string path = std::string(folder ? folder : "") + "/venus.off";
   if (!folder || !std::filesystem::exists(path)) GTEST_SKIP() << "no venus.off in SNUG_EXTRA_MODELS";
-  const Surface surface(read_mesh(path), {}, std::make_shared<BoundLibrary>());
+  const LimitSurface surface(read_mesh(path), {}, std::make_shared<BoundsCache>());
   for (const auto& [tolerance, most] : {std::pair{0.02, 1450u}, {0.01, 1700u}, {0.005, 3100u}}) {
     BoundOptions options;
     options.tolerance = tolerance * surface.size();
@@ -95,12 +95,12 @@ TEST(extra_models, counter_examples_are_answered_right) {
   if (!folder || !std::filesystem::exists(path)) GTEST_SKIP() << "no folder solid in SNUG_EXTRA_MODELS";
   const auto ask = [&](const std::string& a, const std::string& b, Scheme scheme,
                        std::optional<TableLayout> table) {
-    const Surface surface_a(read_mesh(a), {scheme}, std::make_shared<BoundLibrary>()),
-        surface_b(read_mesh(b), {scheme}, std::make_shared<BoundLibrary>());
-    QueryModelOptions how;
+    const LimitSurface surface_a(read_mesh(a), {scheme}, std::make_shared<BoundsCache>()),
+        surface_b(read_mesh(b), {scheme}, std::make_shared<BoundsCache>());
+    SurfaceBvhOptions how;
     how.table = table;
-    const QueryModel model_a(surface_a, how), model_b(surface_b, how);
-    QueryScratch scratch_a(model_a), scratch_b(model_b);
+    const SurfaceBvh model_a(surface_a, how), model_b(surface_b, how);
+    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
     CollideOptions options;
     options.solid = !table;
     const Collision found = collide({model_a, scratch_a, {}}, {model_b, scratch_b, {}}, options);

@@ -26,9 +26,9 @@ class poses : public ::testing::Test {
     }
   }
 
-  Surface surface_a = testing::surface_of(oracle::meshes::icosahedron()),
-          surface_b = testing::surface_of(oracle::meshes::bipyramid(7));
-  QueryModel a{surface_a}, b{surface_b};
+  LimitSurface surface_a = testing::surface_of(oracle::meshes::icosahedron()),
+               surface_b = testing::surface_of(oracle::meshes::bipyramid(7));
+  SurfaceBvh a{surface_a}, b{surface_b};
   std::vector<PosePair> list;
 };
 
@@ -37,14 +37,14 @@ TEST_F(poses, are_answered_as_one_by_one_whatever_the_threads) {
   touch.prove_contact = true;
   const DistanceOptions far{.absolute = 1e-3};
   for (const int threads : {1, 2, 3, 8}) {
-    PairScratches scratches(a, b, threads);
+    PairWorkspaces scratches(a, b, threads);
     const std::vector<Collision> collisions = collide_poses(scratches, list, touch);
     const std::vector<Distance> distances = distance_poses(scratches, list, far);
     ASSERT_EQ(collisions.size(), list.size());
     std::set<Verdict> verdicts;
     for (std::size_t i = 0; i < list.size(); ++i) {
-      QueryScratch scratch_a(a), scratch_b(b);
-      const PlacedModel at_a{a, scratch_a, list[i].a}, at_b{b, scratch_b, list[i].b};
+      SurfaceWorkspace scratch_a(a), scratch_b(b);
+      const PlacedBvh at_a{a, scratch_a, list[i].a}, at_b{b, scratch_b, list[i].b};
       const Collision collision = collide(at_a, at_b, touch);
       verdicts.insert(collision.verdict);
       ASSERT_EQ(collisions[i].verdict, collision.verdict) << i;
@@ -62,16 +62,16 @@ TEST_F(poses, are_answered_as_one_by_one_whatever_the_threads) {
 }
 
 TEST_F(poses, none_have_no_answers) {
-  PairScratches scratches(a, b, 2);
+  PairWorkspaces scratches(a, b, 2);
   EXPECT_TRUE(collide_poses(scratches, {}, {}).empty());
 }
 
 TEST_F(poses, are_asked_once_each_and_never_two_at_once_in_one_scratch) {
-  PairScratches scratches(a, b, 4);
+  PairWorkspaces scratches(a, b, 4);
   std::vector<std::atomic<int>> asked(1000);
   std::mutex guard;
-  std::set<const QueryScratch*> busy;
-  scratches.for_each(asked.size(), [&](QueryScratch& x, QueryScratch&, std::size_t i) {
+  std::set<const SurfaceWorkspace*> busy;
+  scratches.for_each(asked.size(), [&](SurfaceWorkspace& x, SurfaceWorkspace&, std::size_t i) {
     {
       const std::lock_guard lock(guard);
       EXPECT_TRUE(busy.insert(&x).second);
@@ -85,10 +85,10 @@ TEST_F(poses, are_asked_once_each_and_never_two_at_once_in_one_scratch) {
 }
 
 TEST_F(poses, an_error_ends_all) {
-  PairScratches scratches(a, b, 3);
+  PairWorkspaces scratches(a, b, 3);
   std::atomic<int> asked{0};
   EXPECT_THROW(scratches.for_each(1'000'000,
-                                  [&](QueryScratch&, QueryScratch&, std::size_t i) {
+                                  [&](SurfaceWorkspace&, SurfaceWorkspace&, std::size_t i) {
                                     ++asked;
                                     if (i == 1000) throw InputError(InputProblem::value, "here");
                                   }),
@@ -99,7 +99,7 @@ TEST_F(poses, an_error_ends_all) {
 
 TEST_F(poses, stop_when_asked) {
   std::atomic<bool> stop{true};
-  PairScratches scratches(a, b, 2);
+  PairWorkspaces scratches(a, b, 2);
   EXPECT_THROW(static_cast<void>(collide_poses(scratches, list, {}, {.on_progress = {}, .stop = &stop})),
                Interrupted);
 }

@@ -20,14 +20,14 @@ namespace {
 
 struct Body {
   std::string name;
-  Surface surface;
-  QueryModel model;
+  LimitSurface surface;
+  SurfaceBvh model;
   std::vector<Point3> samples;
   double error = 0;    // of each coordinate of a sample
   double spacing = 0;  // about how far a limit point is from the nearest sample
 
   Body(std::string title, ControlMesh mesh, const SchemeOptions& options,
-       const std::shared_ptr<BoundLibrary>& library)
+       const std::shared_ptr<BoundsCache>& library)
       : name(std::move(title)),
         surface(std::move(mesh), options, library, 1),
         model(surface, {.threads = 1}) {}
@@ -39,7 +39,7 @@ struct Body {
 };
 
 std::unique_ptr<Body> primal_body(const testing::TaggedCase& c, int levels,
-                                  const std::shared_ptr<BoundLibrary>& library) {
+                                  const std::shared_ptr<BoundsCache>& library) {
   auto body = std::make_unique<Body>(c.name, testing::control_mesh(c.mesh, c.rules),
                                      testing::options_of(c.rules), library);
   std::map<std::tuple<std::uint32_t, std::uint32_t, double, double>, Point3> at;
@@ -65,7 +65,7 @@ std::unique_ptr<Body> primal_body(const testing::TaggedCase& c, int levels,
 }
 
 std::unique_ptr<Body> dual_body(const std::string& name, const oracle::TaggedMesh& mesh, Scheme scheme,
-                                int levels, const std::shared_ptr<BoundLibrary>& library) {
+                                int levels, const std::shared_ptr<BoundsCache>& library) {
   auto body = std::make_unique<Body>(name + ", " + name_of(scheme), testing::control_mesh(mesh),
                                      SchemeOptions{scheme}, library);
   const auto twin = scheme == Scheme::doo_sabin ? oracle::DualScheme::doo_sabin : oracle::DualScheme::midedge;
@@ -136,7 +136,7 @@ void check(const Body& a, const Body& b, const Motion& place_a, const Motion& pl
   const double slack = 2 * (a.error + b.error) + rounding;
   const double upper = nearest_pair(on_a, on_b).distance + slack;
   const double lower = upper - 2 * slack - a.spacing - b.spacing;
-  QueryScratch scratch_a(a.model), scratch_b(b.model);
+  SurfaceWorkspace scratch_a(a.model), scratch_b(b.model);
   const double tolerance = 1e-3 * size;
   const Collision answer =
       collide({a.model, scratch_a, place_a}, {b.model, scratch_b, place_b}, {tolerance, 0});
@@ -183,7 +183,7 @@ void check_with_itself(const Body& a, const Body& smaller, std::map<std::string,
   const double size = a.surface.size();
   for (const double hair : {0.0, 1e-15, 1e-9, 1e-4}) {
     const Motion place = Motion::from_translation({hair * size, 0, 0});
-    QueryScratch scratch(a.model), other(a.model);
+    SurfaceWorkspace scratch(a.model), other(a.model);
     const Collision answer = collide({a.model, scratch, {}}, {a.model, other, place}, {1e-3 * size, 0});
     ++counts[name_of(answer.verdict)];
     EXPECT_EQ(answer.verdict, Verdict::within) << a.name << ", " << hair;
@@ -210,7 +210,7 @@ TEST(collide, agrees_with_samples_of_tagged_meshes) {
   std::mt19937_64 random(81);
   std::map<std::string, int> counts;
   for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
-    const auto library = std::make_shared<BoundLibrary>();
+    const auto library = std::make_shared<BoundsCache>();
     std::unique_ptr<Body> before;
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 82)) {
       if (random() % 3 > 0 || c.mesh.points.size() > 20) continue;
@@ -232,7 +232,7 @@ TEST(collide, agrees_with_samples_of_dual_schemes) {
   std::mt19937_64 random(83);
   std::map<std::string, int> counts;
   for (const Scheme scheme : {Scheme::doo_sabin, Scheme::midedge}) {
-    const auto library = std::make_shared<BoundLibrary>();
+    const auto library = std::make_shared<BoundsCache>();
     std::unique_ptr<Body> before;
     for (const auto& [name, plain] : std::vector<std::pair<std::string, oracle::TaggedMesh>>{
              {"cube", meshes::cube()},
@@ -265,11 +265,11 @@ TEST(collide, separates_nested_shells_of_every_scheme) {
     for (oracle::Point& p : inner.points) {
       for (double& x : p) x = 0.5 + 0.3 * (x - 0.5);
     }
-    const auto library = std::make_shared<BoundLibrary>();
-    const Surface a(testing::control_mesh(outer), {scheme}, library, 1),
+    const auto library = std::make_shared<BoundsCache>();
+    const LimitSurface a(testing::control_mesh(outer), {scheme}, library, 1),
         b(testing::control_mesh(inner), {scheme}, library, 1);
-    const QueryModel model_a(a, {.threads = 1}), model_b(b, {.threads = 1});
-    QueryScratch scratch_a(model_a), scratch_b(model_b);
+    const SurfaceBvh model_a(a, {.threads = 1}), model_b(b, {.threads = 1});
+    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
     const Collision answer = collide({model_a, scratch_a, {}}, {model_b, scratch_b, {}}, {1e-4, 0});
     EXPECT_EQ(answer.verdict, Verdict::separated) << name_of(scheme);
     EXPECT_GT(answer.lower, 0) << name_of(scheme);

@@ -1,7 +1,7 @@
 // Evaluation of Catmull-Clark, creases, boundaries, polygons and the dual schemes: positions against the twins and against
 // the general evaluation, derivatives and normals against differences.
 
-#include <snug/query/evaluate.h>
+#include <snug/surface/evaluate.h>
 
 #include <gtest/gtest.h>
 #include <oracle/polygon_twin.h>
@@ -25,9 +25,10 @@ TEST(patch_evaluator, positions_agree_with_the_twin) {
   std::size_t count = 0;
   for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
     const bool loop = scheme == oracle::PrimalScheme::loop;
-    const auto library = std::make_shared<BoundLibrary>();
+    const auto library = std::make_shared<BoundsCache>();
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 91)) {
-      const Surface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), library, 1);
+      const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules),
+                                 library, 1);
       std::map<std::size_t, PatchEvaluator> evaluators;
       for (const oracle::FaceSample& s : oracle::sample_faces(c.mesh, c.rules, 3)) {
         for (unsigned half = 0; half < (loop ? 1u : 2u); ++half) {
@@ -230,7 +231,7 @@ std::vector<std::optional<Vector3>> normals_in_the_middle(oracle::TaggedMesh mes
   std::mt19937_64 random(96);
   mesh = oracle::meshes::shaken(std::move(mesh), 0.2, random);
   if (scheme == Scheme::loop) mesh = oracle::meshes::triangulated(mesh);
-  const Surface surface(testing::control_mesh(mesh), {scheme}, std::make_shared<BoundLibrary>(), 1);
+  const LimitSurface surface(testing::control_mesh(mesh), {scheme}, std::make_shared<BoundsCache>(), 1);
   std::vector<std::optional<Vector3>> normals;
   for (std::size_t f = 0; f < surface.face_count(); ++f) {
     const auto face = surface.topology().face(FaceId(f));

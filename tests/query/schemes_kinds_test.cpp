@@ -2,7 +2,7 @@
 // each other.
 
 #include <snug/patch/limit_evaluator.h>
-#include <snug/query/evaluate.h>
+#include <snug/surface/evaluate.h>
 
 #include <gtest/gtest.h>
 #include <testing/scheme_surfaces.h>
@@ -21,7 +21,7 @@ struct Corner {
 };
 
 // Of every patch, in mesh units.
-std::vector<Corner> corners_of(const Surface& surface) {
+std::vector<Corner> corners_of(const LimitSurface& surface) {
   std::vector<Corner> list;
   testing::for_each_patch(surface, [&](PatchId p) {
     PatchEvaluator evaluator(surface, p);

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
-#include <snug/enclose/table_triangle.h>
-#include <snug/surface/refinement.h>
+#include <snug/bounds/table_triangle.h>
+#include <snug/search/piece_cache.h>
 #include <snug/surface/unscale.h>
 #include <testing/containment.h>
 #include <testing/disguises.h>
@@ -53,7 +53,7 @@ struct Enclosures {
 };
 
 // Of one patch, in mesh units.
-Enclosures enclosures_of(const Surface& surface, const Patch& patch, const Source& source) {
+Enclosures enclosures_of(const LimitSurface& surface, const Patch& patch, const Source& source) {
   const PowerOfTwo back = surface.scale().inverse();
   if (source.method == BoundMethod::table) {
     const TableTriangle triangle = table_triangle(surface.library().table(*patch.kind, source.layout), patch);
@@ -98,7 +98,7 @@ TEST(bounds, contain_a_million_adversarial_limit_points) {
     for (const oracle::TwinMesh& plain : meshes) {
       oracle::TwinMesh twin = plain;
       for (oracle::Point& p : twin.points) p = disguise.change(p);
-      const Surface surface = testing::surface_of(twin);
+      const LimitSurface surface = testing::surface_of(twin);
       std::vector<oracle::LimitSample> samples = oracle::sample_uniform(twin, 4);
       for (std::uint32_t corner = 0; corner < 3; ++corner) {
         const auto deep = oracle::sample_near_corner(twin, 0, corner, 50);
@@ -142,7 +142,7 @@ TEST(bounds, hold_for_a_grain_beside_a_boulder) {
       twin.points.push_back({size * p[0], size * p[1], size * p[2]});
     for (const oracle::Triangle& t : grain.triangles)
       twin.triangles.push_back({t[0] + count, t[1] + count, t[2] + count});
-    const Surface surface = testing::surface_of(twin);
+    const LimitSurface surface = testing::surface_of(twin);
     const auto samples = oracle::sample_uniform(twin, 3);
     for (const Source& source : sources) {
       for (const oracle::LimitSample& s : samples) {
@@ -164,7 +164,7 @@ TEST(bounds, hold_after_thirty_splits_at_valences_3_to_500) {
     std::mt19937_64 random(n);
     oracle::TwinMesh twin = oracle::meshes::disturbed(oracle::meshes::bipyramid(n), 0, 0.1, random);
     for (oracle::Point& p : twin.points) p = {p[0] + 0.7, p[1] / 3, p[2] - 0.2};
-    const Surface surface = testing::surface_of(twin);
+    const LimitSurface surface = testing::surface_of(twin);
     for (std::uint32_t face = 0; face < 2; ++face) {
       for (std::uint32_t corner = 0; corner < 3; ++corner) {
         const auto samples = oracle::sample_near_corner(twin, face, corner, 42);
@@ -196,7 +196,7 @@ TEST(bounds, hold_after_thirty_splits_along_random_paths) {
   std::mt19937_64 random(27);
   for (const oracle::TwinMesh& twin : testing::assorted_meshes(27)) {
     if (twin.boundary == oracle::Boundary::none) continue;
-    const Surface surface = testing::surface_of(twin);
+    const LimitSurface surface = testing::surface_of(twin);
     for (int trial = 0; trial < 6; ++trial) {
       const auto face = static_cast<std::uint32_t>(random() % surface.face_count());
       const double u = static_cast<double>(random() >> 24) * 0x1p-41,

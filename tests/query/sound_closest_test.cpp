@@ -155,7 +155,7 @@ TEST(closest, many_at_once_are_the_same_as_one_by_one) {
       const std::vector<ClosestPoint> all = closest_points(pair.model(0), to, options, threads);
       ASSERT_EQ(all.size(), to.size());
       for (std::size_t k = 0; k < to.size(); ++k) {
-        QueryScratch scratch(pair.model(0));
+        SurfaceWorkspace scratch(pair.model(0));
         const ClosestPoint one = closest_point(scratch, to[k], options);
         EXPECT_EQ(all[k].lower, one.lower);
         EXPECT_EQ(all[k].upper, one.upper);

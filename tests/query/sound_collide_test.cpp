@@ -17,9 +17,9 @@ namespace {
 
 struct Contestants {
   oracle::TwinMesh twin_a, twin_b;
-  Surface a, b;
-  QueryModel model_a, model_b;
-  QueryScratch scratch_a, scratch_b;
+  LimitSurface a, b;
+  SurfaceBvh model_a, model_b;
+  SurfaceWorkspace scratch_a, scratch_b;
   oracle::DistanceTwin distance_twin;
   oracle::SurfaceTwin surface_a, surface_b;
 

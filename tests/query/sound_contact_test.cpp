@@ -8,7 +8,7 @@
 // undecided.
 
 #include <snug/query/collide.h>
-#include <snug/query/winding.h>
+#include <snug/search/winding.h>
 
 #include <gtest/gtest.h>
 #include <testing/contact_trials.h>
@@ -160,7 +160,7 @@ class Checks {
 
   /// No answer depends on what was asked before, nor on a question that was interrupted.
   void check_same(const CollideOptions& options, const Collision& answer) {
-    QueryScratch a(pair_->model(0)), b(pair_->model(1));
+    SurfaceWorkspace a(pair_->model(0)), b(pair_->model(1));
     const std::atomic<bool> stop = true;
     try {
       (void)collide({pair_->model(0), a, pair_->scaled(trial_->a)},
@@ -308,14 +308,14 @@ TEST(contact, verdicts_and_bounds_are_true) {
 
 // A triangle of size 2^a around the origin, another of size 2^b that lies h above it: the distance is h, whatever the sizes.
 TEST(contact, bounds_hold_for_sizes_from_one_end_of_the_doubles_to_the_other) {
-  const auto library = std::make_shared<BoundLibrary>();
+  const auto library = std::make_shared<BoundsCache>();
   const auto surface = [&](int exponent, double height) {
     ControlMesh mesh;
     for (const auto& [x, y] : {std::pair{-1, -1}, std::pair{2, -1}, std::pair{-1, 2}})
       mesh.points.push_back({std::ldexp(x, exponent), std::ldexp(y, exponent), height});
     const VertexId corners[3] = {VertexId(0u), VertexId(1u), VertexId(2u)};
     mesh.add_face(corners);
-    return Surface(std::move(mesh), {Scheme::loop, BoundaryRule::edge_and_corner}, library, 1);
+    return LimitSurface(std::move(mesh), {Scheme::loop, BoundaryRule::edge_and_corner}, library, 1);
   };
   std::size_t apart = 0, near = 0, undecided = 0;
   for (const int a : {-1060, -600, -100, -20, 0, 20, 100, 600, 1020}) {
@@ -323,9 +323,9 @@ TEST(contact, bounds_hold_for_sizes_from_one_end_of_the_doubles_to_the_other) {
       for (const int c : {-1070, -1000, -500, -100, -30, 0, 30, 100, 500, 1000, 0x10000}) {
         const double h = c == 0x10000 ? 0 : std::ldexp(1.0, c);
         for (const bool by_placement : {false, true}) {
-          const Surface low = surface(a, 0), high = surface(b, by_placement ? 0 : h);
-          const QueryModel model_a(low), model_b(high);
-          QueryScratch scratch_a(model_a), scratch_b(model_b);
+          const LimitSurface low = surface(a, 0), high = surface(b, by_placement ? 0 : h);
+          const SurfaceBvh model_a(low), model_b(high);
+          SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
           const Motion place = Motion::from_translation({0, 0, by_placement ? h : 0});
           CollideOptions options;
           options.budget = 300;
@@ -371,7 +371,7 @@ TEST(contact, winding_numbers_tell_inside_from_outside) {
     if (trial.family != "shells") continue;
     for (std::size_t side = 0; side < 2; ++side) {
       oracle::ContactSurface& twin = trial.pair->twin(side);
-      const Surface& surface = trial.pair->model(side).surface();
+      const LimitSurface& surface = trial.pair->model(side).surface();
       for (int k = 0; k < 8; ++k) {
         // Up to a hair from the surface, along a ray from the origin through a limit point.
         std::uniform_real_distribution<double> unit(-1, 1);

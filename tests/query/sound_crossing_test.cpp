@@ -2,7 +2,7 @@
 // of the piece is inside of the strips, no point of it above or below the planes, and what is inside of the strips is, seen
 // along the normal, inside of the triangle of the limit corners.
 
-#include <snug/query/crossing.h>
+#include <snug/search/crossing.h>
 
 #include <snug/patch/evaluate.h>
 #include <testing/disguises.h>
@@ -30,7 +30,7 @@ long double area(const Vector3& n, const Point3& p, const Point3& q, const Point
          part(n.z, p.x, p.y, q.x, q.y, r.x, r.y);
 }
 
-void expect_sound(Refinement& refinement, PieceId id, std::mt19937_64& random, const std::string& name,
+void expect_sound(PieceCache& refinement, PieceId id, std::mt19937_64& random, const std::string& name,
                   Counts& counts) {
   const Piece& piece = refinement[id];
   const Crossed crossed(piece, refinement.heights(id));
@@ -76,19 +76,19 @@ TEST(crossing, prisms_of_all_kinds_in_all_disguises_are_what_the_proof_needs) {
   for (std::uint64_t round = 0; round < rounds; ++round) {
     std::mt19937_64 random(91 + round);
     testing::for_each_surface(91 + round, [&](const testing::NamedSurface& named) {
-      const auto library = std::make_shared<BoundLibrary>();
+      const auto library = std::make_shared<BoundsCache>();
       for (const testing::Disguise& disguise : testing::disguises()) {
         ControlMesh mesh = named.surface.mesh();
         for (Point3& p : mesh.points) {
           const oracle::Point q = disguise.change({p.x, p.y, p.z});
           p = {q[0], q[1], q[2]};
         }
-        const Surface surface(std::move(mesh), named.surface.options(), library, 1);
-        Refinement rows(surface), ngon(surface, TableLayout::ngon),
+        const LimitSurface surface(std::move(mesh), named.surface.options(), library, 1);
+        PieceCache rows(surface), ngon(surface, TableLayout::ngon),
             characteristic(surface, TableLayout::characteristic);
         testing::for_each_patch(surface, [&](PatchId p) {
           if (random() % 6 != 0) return;
-          for (Refinement* const refinement : {&rows, &ngon, &characteristic}) {
+          for (PieceCache* const refinement : {&rows, &ngon, &characteristic}) {
             PieceId id = refinement->root(p);
             for (std::size_t level = random() % 6; level > 0 && refinement->can_split(id); --level) {
               id = PieceId(refinement->split(id).index() + random() % 4);

@@ -1,6 +1,6 @@
-#include <snug/enclose/curve_points.h>
+#include <snug/bounds/curve_points.h>
 #include <snug/query/bound_curve.h>
-#include <snug/query/evaluate_curve.h>
+#include <snug/surface/evaluate_curve.h>
 #include <testing/curves.h>
 
 #include <gtest/gtest.h>

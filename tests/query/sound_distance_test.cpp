@@ -76,7 +76,7 @@ TEST(distance, intervals_hold_the_truth) {
       ADD_FAILURE() << claim << numbers << testing::describe(trial);
     };
     if (trial.number % 16 == 5) {  // no answer depends on what was asked before
-      QueryScratch a(pair.model(0)), b(pair.model(1));
+      SurfaceWorkspace a(pair.model(0)), b(pair.model(1));
       const Distance fresh = distance({pair.model(0), a, pair.scaled(trial.a)},
                                       {pair.model(1), b, pair.scaled(trial.b)}, options);
       expect(fresh.lower == answer.lower && fresh.upper == answer.upper && fresh.witness == answer.witness,

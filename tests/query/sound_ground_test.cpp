@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 #include <oracle/polygon_twin.h>
 #include <oracle/tagged_shapes.h>
-#include <snug/query/evaluate.h>
+#include <snug/surface/evaluate.h>
 #include <testing/ground_trials.h>
 #include <testing/tagged.h>
 
@@ -184,7 +184,7 @@ class Checks {
       expect_on_surfaces(*answer.witness, answer.witness_error);
     }
     if (trial_->number % 3 == 1) {
-      QueryScratch a(*side(0).model), b(*side(1).model);
+      SurfaceWorkspace a(*side(0).model), b(*side(1).model);
       for (const bool fresh : {true, false}) {
         const Collision again = fresh ? collide(trial_->placed(0, a), trial_->placed(1, b), options)
                                       : collide(trial_->placed(0), trial_->placed(1), options);
@@ -234,7 +234,7 @@ class Checks {
     }
     expect_on_surfaces(answer.witness, answer.witness_error);
     if (trial_->number % 3 == 2) {
-      QueryScratch a(*side(0).model), b(*side(1).model);
+      SurfaceWorkspace a(*side(0).model), b(*side(1).model);
       const Distance again = distance(trial_->placed(0, a), trial_->placed(1, b), options);
       expect(again.lower == answer.lower && again.upper == answer.upper && again.witness == answer.witness,
              "the same answer again", again.lower, again.upper);
@@ -298,7 +298,7 @@ class Checks {
     expect(between(same, point) <= 2 * answer.point_error + (by_twin ? 1e-9 : 1e-3) * size_,
            "owner, u and v are those of the point", between(same, point), answer.point_error);
     if (trial_->number % 3 == 0) {
-      QueryScratch fresh(*side(s).model);
+      SurfaceWorkspace fresh(*side(s).model);
       const ClosestPoint again = closest_point(fresh, {to[0], to[1], to[2]}, options);
       expect(again.lower == answer.lower && again.upper == answer.upper && again.point == answer.point,
              "the same answer again", again.lower, again.upper);
@@ -364,8 +364,8 @@ class Checks {
 
 // Where a patch's kind once left out what its surface depends on.
 void expect_limit_points(const oracle::TaggedMesh& mesh, const oracle::Rules& rules) {
-  const Surface surface(testing::control_mesh(mesh, rules), testing::options_of(rules),
-                        std::make_shared<BoundLibrary>(), 1);
+  const LimitSurface surface(testing::control_mesh(mesh, rules), testing::options_of(rules),
+                             std::make_shared<BoundsCache>(), 1);
   const std::vector<oracle::FaceSample> samples = oracle::sample_faces(mesh, rules, 3);
   EXPECT_FALSE(samples.empty());
   for (const oracle::FaceSample& s : samples) {

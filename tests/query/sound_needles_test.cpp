@@ -95,17 +95,17 @@ ControlMesh grid(const Lattice& lattice, Scheme scheme, std::int64_t origin, std
 }
 
 struct Side {
-  Surface surface;
-  QueryModel model;
-  QueryScratch scratch;
-  Side(ControlMesh mesh, Scheme scheme, const std::shared_ptr<BoundLibrary>& library,
-       const QueryModelOptions& options)
+  LimitSurface surface;
+  SurfaceBvh model;
+  SurfaceWorkspace scratch;
+  Side(ControlMesh mesh, Scheme scheme, const std::shared_ptr<BoundsCache>& library,
+       const SurfaceBvhOptions& options)
       : surface(std::move(mesh), {scheme}, library, 1), model(surface, options), scratch(model) {}
 };
 
 struct Setting {
   Scheme scheme;
-  QueryModelOptions options;
+  SurfaceBvhOptions options;
   Motion motion;  // of whole numbers
   Lattice lattice;
   std::string text;
@@ -142,7 +142,7 @@ struct Setting {
 // One surface lies in layers 0 and below, the other in 1 and above: they are at least a layer apart.
 TEST(needles, in_layers_apart_are_never_called_intersecting) {
   std::mt19937_64 random(71);
-  const auto library = std::make_shared<BoundLibrary>();
+  const auto library = std::make_shared<BoundsCache>();
   std::size_t separated = 0;
   const std::size_t count = trial_count(500);
   for (std::size_t trial = 0; trial < count; ++trial) {
@@ -162,7 +162,7 @@ TEST(needles, in_layers_apart_are_never_called_intersecting) {
            here.scheme, library, here.options);
     Side b(grid(here.lattice, here.scheme, shift, 1, 4, [&](auto i, auto j) { return 1 + some(i, j); }),
            here.scheme, library, here.options);
-    const PlacedModel at_a{a.model, a.scratch, here.motion}, at_b{b.model, b.scratch, here.motion};
+    const PlacedBvh at_a{a.model, a.scratch, here.motion}, at_b{b.model, b.scratch, here.motion};
     const double layer = here.lattice.layer() * (1 - 1e-12);
     CollideOptions options;
     options.budget = 2000;
@@ -195,7 +195,7 @@ TEST(needles, in_layers_apart_are_never_called_intersecting) {
 // A flat surface in layer 0 whose sharp border is wide around the other one, which goes from below layer 0 to above it.
 TEST(needles, through_each_other_are_never_called_apart) {
   std::mt19937_64 random(72);
-  const auto library = std::make_shared<BoundLibrary>();
+  const auto library = std::make_shared<BoundsCache>();
   std::size_t intersecting = 0;
   const std::size_t count = trial_count(500);
   for (std::size_t trial = 0; trial < count; ++trial) {
@@ -211,7 +211,7 @@ TEST(needles, through_each_other_are_never_called_apart) {
                                             : static_cast<std::int64_t>(random() % 3) - 1;
                 }),
            here.scheme, library, here.options);
-    const PlacedModel at_a{a.model, a.scratch, here.motion}, at_b{b.model, b.scratch, here.motion};
+    const PlacedBvh at_a{a.model, a.scratch, here.motion}, at_b{b.model, b.scratch, here.motion};
     CollideOptions options;
     options.budget = 2000;
     const Collision collision = collide(at_a, at_b, options);

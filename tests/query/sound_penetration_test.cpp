@@ -8,7 +8,7 @@
 #include <snug/patch/evaluate.h>
 #include <snug/query/collide.h>
 #include <snug/query/containment.h>
-#include <snug/query/evaluate.h>
+#include <snug/surface/evaluate.h>
 #include <testing/patches.h>
 #include <testing/placements.h>
 
@@ -21,7 +21,7 @@ namespace {
 double unit(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
 // Limit points all over a surface.
-std::vector<Point3> samples_of(const Surface& surface, unsigned steps) {
+std::vector<Point3> samples_of(const LimitSurface& surface, unsigned steps) {
   std::vector<Point3> points;
   for (std::uint32_t f = 0; f < surface.face_count(); ++f) {
     for (unsigned i = 0; i <= steps; ++i) {
@@ -56,9 +56,9 @@ TEST(penetration, of_convex_solids_is_the_least_overlap_of_their_supports) {
   double worst_upper = 0, worst_lower = INFINITY;
   int deep = 0;
   for (int trial = 0; trial < 24; ++trial) {
-    const Surface a = testing::surface_of(egg(random)), b = testing::surface_of(egg(random));
-    const QueryModel model_a(a), model_b(b);
-    QueryScratch scratch_a(model_a), scratch_b(model_b);
+    const LimitSurface a = testing::surface_of(egg(random)), b = testing::surface_of(egg(random));
+    const SurfaceBvh model_a(a), model_b(b);
+    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
     const Motion place_a = testing::random_placement(random, testing::random_vector(random, 0.5)),
                  place_b = testing::random_placement(random, testing::random_vector(random, 0.5));
     const Penetration found = penetration({model_a, scratch_a, place_a}, {model_b, scratch_b, place_b});
@@ -108,12 +108,12 @@ TEST(penetration, bounds_hold_for_solids_with_dents) {
   std::mt19937_64 random(92);
   int deep = 0;
   for (int trial = 0; trial < 10; ++trial) {
-    const Surface a = testing::surface_of(
-                      oracle::meshes::disturbed(oracle::meshes::icosahedron(), 6, 0.4, random)),
-                  b = testing::surface_of(
-                      oracle::meshes::disturbed(oracle::meshes::octahedron(), 6, 0.4, random));
-    const QueryModel model_a(a), model_b(b);
-    QueryScratch scratch_a(model_a), scratch_b(model_b);
+    const LimitSurface a = testing::surface_of(
+                           oracle::meshes::disturbed(oracle::meshes::icosahedron(), 6, 0.4, random)),
+                       b = testing::surface_of(
+                           oracle::meshes::disturbed(oracle::meshes::octahedron(), 6, 0.4, random));
+    const SurfaceBvh model_a(a), model_b(b);
+    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
     const Motion place_b = testing::random_placement(random, testing::random_vector(random, 0.7));
     const Penetration found = penetration({model_a, scratch_a, {}}, {model_b, scratch_b, place_b});
     EXPECT_LE(found.lower, found.upper);
@@ -140,10 +140,10 @@ TEST(penetration, bounds_hold_for_solids_with_dents) {
 }
 
 TEST(penetration, of_separated_solids_is_zero_and_open_surfaces_are_refused) {
-  const Surface ball = testing::surface_of(oracle::meshes::icosahedron()),
-                sheet = testing::surface_of(oracle::meshes::grid(2, 2));
-  const QueryModel model(ball), same(ball), open(sheet);
-  QueryScratch scratch(model), other(same), flat(open);
+  const LimitSurface ball = testing::surface_of(oracle::meshes::icosahedron()),
+                     sheet = testing::surface_of(oracle::meshes::grid(2, 2));
+  const SurfaceBvh model(ball), same(ball), open(sheet);
+  SurfaceWorkspace scratch(model), other(same), flat(open);
   const Penetration none =
       penetration({model, scratch, {}}, {same, other, Motion::from_translation({5, 0, 0})});
   EXPECT_EQ(none.upper, 0);

@@ -2,7 +2,7 @@
 // twins outside its enclosures, and evaluation within its error.
 
 #include <snug/query/bound.h>
-#include <snug/query/evaluate.h>
+#include <snug/surface/evaluate.h>
 
 #include <gtest/gtest.h>
 #include <oracle/dual_twin.h>
@@ -46,7 +46,7 @@ bool contains(const PieceEnclosure& piece, const Sample& s, const char*& what) {
   return testing::in_interval_triangle(p, *piece.interval, slack);
 }
 
-std::vector<BoundOptions> bound_options(const Surface& surface) {
+std::vector<BoundOptions> bound_options(const LimitSurface& surface) {
   std::vector<BoundOptions> list(4);
   list[1].level = 2;
   list[2].tolerance = surface.size() > 0 ? 0.2 * surface.size() : 1;
@@ -62,7 +62,7 @@ std::vector<BoundOptions> bound_options(const Surface& surface) {
   return list;
 }
 
-std::vector<Pieces> pieces_of(const Surface& surface, const BoundOptions& options) {
+std::vector<Pieces> pieces_of(const LimitSurface& surface, const BoundOptions& options) {
   std::vector<Pieces> pieces(surface.patch_count());
   bound(surface, options, [&](const PieceEnclosure& e) { pieces[e.patch.index()][e.path.text()] = e; });
   return pieces;
@@ -97,10 +97,11 @@ struct Counted {
 };
 
 // Each sample on each patch that it is on: inside the piece that holds its parameter, and where evaluation says.
-void check_primal(const testing::TaggedCase& c, int levels, const std::shared_ptr<BoundLibrary>& library,
+void check_primal(const testing::TaggedCase& c, int levels, const std::shared_ptr<BoundsCache>& library,
                   Counted& counted) {
   const std::string name = c.name + ", " + testing::text_of(c.rules);
-  const Surface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), library, 1);
+  const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), library,
+                             1);
   const bool loop = surface.options().scheme == Scheme::loop;
   const std::vector<oracle::FaceSample> samples = oracle::sample_faces(c.mesh, c.rules, levels);
   std::set<std::uint32_t> with_samples;
@@ -151,7 +152,7 @@ void print(const char* name, const Counted& counted) {
 
 TEST(catmark, limit_points_lie_inside_their_enclosures) {
   Counted counted;
-  const auto library = std::make_shared<BoundLibrary>();
+  const auto library = std::make_shared<BoundsCache>();
   for (const testing::TaggedCase& c : testing::tagged_cases(oracle::PrimalScheme::catmull_clark, 71)) {
     check_primal(c, 4, library, counted);
     if (HasFailure()) FAIL() << c.name << ", " << testing::text_of(c.rules);
@@ -162,7 +163,7 @@ TEST(catmark, limit_points_lie_inside_their_enclosures) {
 
 TEST(loop_with_tags, limit_points_lie_inside_their_enclosures) {
   Counted counted;
-  const auto library = std::make_shared<BoundLibrary>();
+  const auto library = std::make_shared<BoundsCache>();
   for (const testing::TaggedCase& c : testing::tagged_cases(oracle::PrimalScheme::loop, 72)) {
     check_primal(c, 4, library, counted);
     if (HasFailure()) FAIL() << c.name << ", " << testing::text_of(c.rules);
@@ -176,7 +177,7 @@ TEST(catmark, limit_points_of_disguised_meshes_lie_inside_their_enclosures) {
   const std::vector<testing::Disguise> disguises =
       testing::disguises({"tiny", "huge", "far", "flat and tilted", "needle", "line", "spiked"});
   Counted counted;
-  const auto library = std::make_shared<BoundLibrary>();
+  const auto library = std::make_shared<BoundsCache>();
   const std::vector<testing::TaggedCase> cases =
       testing::tagged_cases(oracle::PrimalScheme::catmull_clark, 73);
   for (std::size_t i = 0; i < cases.size(); i += 7) {
@@ -197,7 +198,7 @@ TEST(crowded_corners, limit_points_lie_inside_their_enclosures) {
   std::mt19937_64 random(74);
   for (const oracle::PrimalScheme scheme :
        {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
-    const auto library = std::make_shared<BoundLibrary>();
+    const auto library = std::make_shared<BoundsCache>();
     const auto check = [&](std::string name, oracle::TaggedMesh mesh) {
       if (scheme == oracle::PrimalScheme::loop) mesh = oracle::meshes::triangulated(mesh);
       oracle::Rules rules;
@@ -224,8 +225,8 @@ TEST(crowded_corners, limit_points_lie_inside_their_enclosures) {
 // Samples of a dual scheme name their patch, no parameter: each lies in one of the pieces; and the grid of parameters meets
 // the samples of the patch, all of them.
 void check_dual(const std::string& name, const oracle::TaggedMesh& mesh, Scheme scheme, int levels,
-                const std::shared_ptr<BoundLibrary>& library, Counted& counted) {
-  const Surface surface(testing::control_mesh(mesh), {scheme}, library, 1);
+                const std::shared_ptr<BoundsCache>& library, Counted& counted) {
+  const LimitSurface surface(testing::control_mesh(mesh), {scheme}, library, 1);
   const auto twin = scheme == Scheme::doo_sabin ? oracle::DualScheme::doo_sabin : oracle::DualScheme::midedge;
   std::vector<std::vector<Sample>> samples(surface.owner_count());
   for (const oracle::DualSample& s : oracle::sample_dual(mesh, twin, levels)) {
@@ -289,7 +290,7 @@ TEST(dual_schemes, limit_points_lie_inside_their_enclosures_and_evaluation_meets
   std::mt19937_64 random(74);
   for (const Scheme scheme : {Scheme::doo_sabin, Scheme::midedge}) {
     Counted counted;
-    const auto library = std::make_shared<BoundLibrary>();
+    const auto library = std::make_shared<BoundsCache>();
     const std::vector<std::pair<std::string, oracle::TaggedMesh>> list{
         {"cube", meshes::cube()},
         {"grid", meshes::quad_grid(5, 4)},

@@ -11,7 +11,7 @@
 #include <oracle/polyhedron_twin.h>
 #include <snug/base/error.h>
 #include <snug/query/containment.h>
-#include <snug/query/solid.h>
+#include <snug/search/solid.h>
 #include <testing/solid_cases.h>
 
 #include <cmath>
@@ -61,8 +61,8 @@ TEST(signed_distance, agrees_with_refined_meshes) {
     const testing::SolidCase c = testing::solid_case(i);
     std::mt19937_64 random(i + 5);
     try {
-      const Surface surface(testing::control_mesh(c), c.options, std::make_shared<BoundLibrary>(), 1);
-      const QueryModel model(surface);
+      const LimitSurface surface(testing::control_mesh(c), c.options, std::make_shared<BoundsCache>(), 1);
+      const SurfaceBvh model(surface);
       const oracle::WindingTwin twin(c.mesh, c.scheme, testing::twin_levels(c.mesh, 400));
       const std::vector<Point3> limit_points = limit_points_of(c);
       const Ball& ball = model.ball();
@@ -133,17 +133,17 @@ TEST(signed_distance, of_sharp_polyhedra_is_exact) {
     std::vector<oracle::Triangle> triangles;
     for (const auto& t : shape.polygons) triangles.push_back({t[0], t[1], t[2]});
     const oracle::PolyhedronTwin twin(shape.points, triangles);
-    std::optional<Surface> surface;
-    std::optional<QueryModel> model;
+    std::optional<LimitSurface> surface;
+    std::optional<SurfaceBvh> model;
     try {
       surface.emplace(sharp_mesh(shape), SchemeOptions{i % 2 == 0 ? Scheme::loop : Scheme::catmark},
-                      std::make_shared<BoundLibrary>(), 1);
+                      std::make_shared<BoundsCache>(), 1);
       model.emplace(*surface);
       static_cast<void>(model->solid());
     } catch (const InputError&) {
       continue;  // the same triangle twice, or four at an edge
     }
-    QueryScratch scratch(*model);
+    SurfaceWorkspace scratch(*model);
     for (int k = 0; k < 60; ++k) {
       // Lattice points lie in planes of faces, on edges and at corners; others a hair away from them.
       Point3 q;
@@ -184,18 +184,18 @@ TEST(signed_distance, of_sharp_polyhedra_is_exact) {
 }
 
 TEST(signed_distance, is_refused_for_open_surfaces_and_bad_points) {
-  const Surface open(testing::control_mesh(oracle::meshes::quad_grid(3, 3)), {Scheme::catmark},
-                     std::make_shared<BoundLibrary>());
-  const QueryModel model(open);
-  QueryScratch scratch(model);
+  const LimitSurface open(testing::control_mesh(oracle::meshes::quad_grid(3, 3)), {Scheme::catmark},
+                          std::make_shared<BoundsCache>());
+  const SurfaceBvh model(open);
+  SurfaceWorkspace scratch(model);
   for (const Point3& q : {Point3{0, 0, 1}, Point3{1e9, 0, 0}}) {
     EXPECT_THROW(static_cast<void>(signed_distance(scratch, q, {})), InputError);
     EXPECT_THROW(static_cast<void>(contains(scratch, q)), InputError);
   }
-  const Surface cube(testing::control_mesh(oracle::meshes::cube()), {Scheme::catmark},
-                     std::make_shared<BoundLibrary>());
-  const QueryModel closed(cube);
-  QueryScratch other(closed);
+  const LimitSurface cube(testing::control_mesh(oracle::meshes::cube()), {Scheme::catmark},
+                          std::make_shared<BoundsCache>());
+  const SurfaceBvh closed(cube);
+  SurfaceWorkspace other(closed);
   EXPECT_THROW(static_cast<void>(contains(other, {NAN, 0, 0})), InputError);
   EXPECT_THROW(static_cast<void>(signed_distance(other, {0, INFINITY, 0}, {})), InputError);
   EXPECT_EQ(contains(other, {1e300, 0, 0}), std::optional<bool>(false));

@@ -8,8 +8,8 @@
 #include <snug/query/collide.h>
 #include <snug/query/containment.h>
 #include <snug/query/distance.h>
-#include <snug/query/solid.h>
-#include <snug/query/winding.h>
+#include <snug/search/solid.h>
+#include <snug/search/winding.h>
 
 #include <gtest/gtest.h>
 #include <snug/base/error.h>
@@ -51,7 +51,7 @@ class Trials {
       : case_(c),
         random_(seed),
         twin_(c.mesh, c.scheme, testing::twin_levels(c.mesh, 1500)),
-        surface_(testing::control_mesh(c), c.options, std::make_shared<BoundLibrary>(), 1),
+        surface_(testing::control_mesh(c), c.options, std::make_shared<BoundsCache>(), 1),
         model_(surface_, volume(seed)),
         scratch_(model_) {}
 
@@ -74,8 +74,8 @@ class Trials {
   static inline std::map<int, std::size_t> numbers;
 
  private:
-  static QueryModelOptions volume(std::uint64_t seed) {
-    QueryModelOptions options;
+  static SurfaceBvhOptions volume(std::uint64_t seed) {
+    SurfaceBvhOptions options;
     options.volume = all_volumes[seed % all_volumes.size()];
     options.threads = 1;
     return options;
@@ -147,11 +147,11 @@ class Trials {
       const std::array corners{VertexId(f[0]), VertexId(f[1]), VertexId(f[2])};
       mesh.add_face(corners);
     }
-    const Surface surface(std::move(mesh), {Scheme::loop}, std::make_shared<BoundLibrary>(), 1);
-    QueryModelOptions options;
+    const LimitSurface surface(std::move(mesh), {Scheme::loop}, std::make_shared<BoundsCache>(), 1);
+    SurfaceBvhOptions options;
     options.volume = model_.tree().blocks().volume();
-    const QueryModel model(surface, options);
-    QueryScratch scratch(model);
+    const SurfaceBvh model(surface, options);
+    SurfaceWorkspace scratch(model);
     CollideOptions wanted;
     wanted.solid = true;
     const Collision answer = collide({model_, scratch_, {}}, {model, scratch, {}}, wanted);
@@ -183,9 +183,9 @@ class Trials {
   std::mt19937_64 random_;
   bool aimed_ = false;
   oracle::WindingTwin twin_;
-  Surface surface_;
-  QueryModel model_;
-  QueryScratch scratch_;
+  LimitSurface surface_;
+  SurfaceBvh model_;
+  SurfaceWorkspace scratch_;
 };
 
 TEST(solids, winding_numbers_are_those_of_refined_meshes) {

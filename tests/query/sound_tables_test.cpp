@@ -77,7 +77,7 @@ bool contains(const PieceEnclosure& piece, const oracle::Point& position, double
 
 using Pieces = std::map<std::pair<std::size_t, std::string>, PieceEnclosure>;
 
-Pieces pieces_of(const Surface& surface, unsigned level) {
+Pieces pieces_of(const LimitSurface& surface, unsigned level) {
   Pieces pieces;
   BoundOptions options;
   options.method = BoundMethod::table;
@@ -133,7 +133,7 @@ std::vector<Case> primal_cases() {
   return cases;
 }
 
-// Which patch of the owner's, and where on its triangle: surface/surface.h says how quads are halved.
+// Which patch of the owner's, and where on its triangle: surface/limit_surface.h says how quads are halved.
 struct OnTriangle {
   std::size_t part;
   double u, v;
@@ -153,7 +153,8 @@ TEST(tables, contain_limit_points_of_faces) {
       const SchemeOptions options =
           with_tags({loop ? Scheme::loop : Scheme::catmark, boundary_of(plain.rules)},
                     control_mesh(twin, plain.rules).tags);
-      const Surface surface(control_mesh(twin, plain.rules), options, std::make_shared<BoundLibrary>(), 1);
+      const LimitSurface surface(control_mesh(twin, plain.rules), options, std::make_shared<BoundsCache>(),
+                                 1);
       const auto samples = oracle::sample_faces(twin, plain.rules, 4);
       ASSERT_TRUE(!samples.empty() || plain.rules.boundary == oracle::Boundary::none) << plain.name;
       for (const unsigned level : {0u, 2u}) {
@@ -192,8 +193,8 @@ TEST(tables, contain_limit_points_of_dual_schemes) {
       oracle::TaggedMesh twin = plain.mesh;
       for (oracle::Point& p : twin.points) p = disguise.change(p);
       for (const bool midedge : {false, true}) {
-        const Surface surface(control_mesh(twin, {}), {midedge ? Scheme::midedge : Scheme::doo_sabin},
-                              std::make_shared<BoundLibrary>(), 1);
+        const LimitSurface surface(control_mesh(twin, {}), {midedge ? Scheme::midedge : Scheme::doo_sabin},
+                                   std::make_shared<BoundsCache>(), 1);
         const auto samples = oracle::sample_dual(
             twin, midedge ? oracle::DualScheme::midedge : oracle::DualScheme::doo_sabin, 3);
         ASSERT_FALSE(samples.empty()) << plain.name;
@@ -224,9 +225,9 @@ TEST(tables, give_patch_bounds_that_contain_limit_points) {
   for (const Case& c : primal_cases()) {
     const bool loop = c.rules.scheme == oracle::PrimalScheme::loop;
     const ControlMesh mesh = control_mesh(c.mesh, c.rules);
-    const Surface surface(mesh,
-                          with_tags({loop ? Scheme::loop : Scheme::catmark, boundary_of(c.rules)}, mesh.tags),
-                          std::make_shared<BoundLibrary>(), 1);
+    const LimitSurface surface(
+        mesh, with_tags({loop ? Scheme::loop : Scheme::catmark, boundary_of(c.rules)}, mesh.tags),
+        std::make_shared<BoundsCache>(), 1);
     PatchBounds bounds(surface, TableLayout::ngon, 1);
     std::vector<OffsetTriangle> found(bounds.patches().size());
     bounds.update(mesh.points, found);

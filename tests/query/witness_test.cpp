@@ -24,7 +24,7 @@ using testing::NamedSurface;
 using testing::unit;
 
 // The general evaluation at the very doubles of a place.
-void expect_on(const Surface& surface, const Motion& pose, const std::optional<SurfaceParameter>& at,
+void expect_on(const LimitSurface& surface, const Motion& pose, const std::optional<SurfaceParameter>& at,
                const Point3& witness, double error, const std::string& where) {
   ASSERT_TRUE(at) << where;
   ASSERT_TRUE(patch_at(surface, *at)) << where << " u " << at->u << " v " << at->v;
@@ -45,13 +45,13 @@ TEST(witnesses, lie_where_they_say_with_every_scheme) {
     std::size_t patches = 0;
     for (std::size_t p = 0; p < s.surface.patch_count(); ++p) patches += s.surface.has_patch(PatchId(p));
     if (patches == 0) return;
-    const QueryModel model(s.surface, {.threads = 1});
-    QueryScratch one(model), other(model);
+    const SurfaceBvh model(s.surface, {.threads = 1});
+    SurfaceWorkspace one(model), other(model);
     for (int trial = 0; trial < 3; ++trial) {
       const double far = s.surface.size() * (trial == 0 ? 0.3 : 2);
       const Motion a = testing::random_placement(random, testing::random_vector(random, far)),
                    b = testing::random_placement(random, testing::random_vector(random, far));
-      const PlacedModel placed_a{model, one, a}, placed_b{model, other, b};
+      const PlacedBvh placed_a{model, one, a}, placed_b{model, other, b};
       CollideOptions options;
       options.tolerance = 0.01 * s.surface.size();
       options.measure = trial != 1;
@@ -87,16 +87,17 @@ TEST(witnesses, lie_between_the_samples_of_the_twin) {
   std::mt19937_64 random(72);
   std::size_t checked = 0;
   for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
-    const auto library = std::make_shared<BoundLibrary>();
+    const auto library = std::make_shared<BoundsCache>();
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 72, 0)) {
-      const Surface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), library, 1);
+      const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules),
+                                 library, 1);
       std::map<std::array<std::uint32_t, 2>, std::vector<oracle::FaceSample>> samples;
       for (const oracle::FaceSample& s : oracle::sample_faces(c.mesh, c.rules, level)) {
         samples[{s.face, s.part}].push_back(s);
       }
       if (samples.empty()) continue;
-      const QueryModel model(surface, {.threads = 1});
-      QueryScratch scratch(model);
+      const SurfaceBvh model(surface, {.threads = 1});
+      SurfaceWorkspace scratch(model);
       for (int trial = 0; trial < 40; ++trial) {
         const Point3 to = Point3{} + testing::random_vector(random, 2 * surface.size());
         const ClosestPoint near = closest_point(scratch, to, {1e-3 * surface.size(), 0});
@@ -220,9 +221,10 @@ TEST(normals, are_within_their_error_of_tangents_refined_in_113_bits) {
   long double most = 0;
   for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
     const bool loop = scheme == oracle::PrimalScheme::loop;
-    const auto library = std::make_shared<BoundLibrary>();
+    const auto library = std::make_shared<BoundsCache>();
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 73)) {
-      const Surface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), library, 1);
+      const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules),
+                                 library, 1);
       PolygonNet net = oracle::detail::control_net(c.mesh, c.rules).net;
       for (int i = 0; i < level; ++i) net = oracle::detail::refine(net, c.rules);
       const oracle::detail::Neighbours near(net);
@@ -268,7 +270,8 @@ TEST(normals, are_within_their_error_of_tangents_refined_in_113_bits) {
 
 TEST(normals, have_no_bound_where_there_is_none) {
   const oracle::TaggedMesh mesh = oracle::meshes::pyramid(7);
-  const Surface surface(testing::control_mesh(mesh), {Scheme::catmark}, std::make_shared<BoundLibrary>(), 1);
+  const LimitSurface surface(testing::control_mesh(mesh), {Scheme::catmark}, std::make_shared<BoundsCache>(),
+                             1);
   const auto tip = normal_at(surface, {0, 0, 0, 0});
   if (tip) {
     EXPECT_FALSE(tip->error.has_value());

@@ -33,9 +33,9 @@ namespace snug {
 namespace {
 
 // Triangles of many valences under Loop; polygons and creases under Catmull-Clark.
-std::vector<Surface> surfaces() {
+std::vector<LimitSurface> surfaces() {
   std::mt19937_64 random(8);
-  std::vector<Surface> list;
+  std::vector<LimitSurface> list;
   list.push_back(
       testing::surface_of(oracle::meshes::disturbed(oracle::meshes::grid(20, 20), 40, 0.2, random)));
   oracle::TaggedMesh mixed = oracle::meshes::pyramid(7);
@@ -43,12 +43,12 @@ std::vector<Surface> surfaces() {
   for (const oracle::TaggedMesh& mesh :
        {mixed, oracle::meshes::mixed_strip(), oracle::meshes::pole(20, true)}) {
     list.emplace_back(testing::control_mesh(mesh), SchemeOptions{Scheme::catmark},
-                      std::make_shared<BoundLibrary>(), 1);
+                      std::make_shared<BoundsCache>(), 1);
   }
   return list;
 }
 
-void expect_none_after_the_first_update(const Surface& surface) {
+void expect_none_after_the_first_update(const LimitSurface& surface) {
   for (const std::optional<TableLayout> table :
        {std::optional<TableLayout>(), std::optional(TableLayout::ngon)}) {
     PatchBounds bounds(surface, table);
@@ -65,7 +65,7 @@ void expect_none_after_the_first_update(const Surface& surface) {
 
 TEST(allocation, patch_bounds_take_none_after_their_first_update) {
   if (!counting) GTEST_SKIP() << "a sanitizer has the allocator";
-  for (const Surface& surface : surfaces()) expect_none_after_the_first_update(surface);
+  for (const LimitSurface& surface : surfaces()) expect_none_after_the_first_update(surface);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include <snug/surface/control_hull.h>
 
 #include <snug/patch/evaluate.h>
-#include <snug/surface/refinement.h>
+#include <snug/search/piece_cache.h>
 #include <testing/scheme_surfaces.h>
 
 namespace snug {
@@ -17,7 +17,7 @@ TEST(control_hull, contains_limit_points_of_its_patches) {
   std::mt19937_64 random(61);
   std::size_t samples = 0;
   testing::for_each_surface(61, [&](const NamedSurface& named) {
-    const Surface& surface = named.surface;
+    const LimitSurface& surface = named.surface;
     std::vector<PatchId> patches;
     testing::for_each_patch(surface, [&](PatchId p) { patches.push_back(p); });
     ControlHull hull;
@@ -51,7 +51,7 @@ TEST(control_hull, contains_limit_points_of_its_patches) {
 TEST(kind, outer_weight_is_that_of_the_ring_at_a_corner) {
   std::mt19937_64 random(62);
   testing::for_each_surface(62, [&](const NamedSurface& named) {
-    const Surface& surface = named.surface;
+    const LimitSurface& surface = named.surface;
     testing::for_each_patch(surface, [&](PatchId p) {
       const Kind& kind = surface.kind(p);
       const double w = kind.outer_weight();
@@ -76,7 +76,7 @@ TEST(kind, outer_weight_is_that_of_the_ring_at_a_corner) {
 TEST(refinement, heights_hold_the_piece) {
   std::mt19937_64 random(63);
   testing::for_each_surface(63, [&](const NamedSurface& named) {
-    Refinement refinement(named.surface);
+    PieceCache refinement(named.surface);
     testing::for_each_patch(named.surface, [&](PatchId p) {
       PieceId id = refinement.root(p);
       for (int level = 0; level < 2; ++level) {

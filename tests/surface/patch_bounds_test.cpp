@@ -4,8 +4,8 @@
 #include <oracle/loop_twin.h>
 #include <oracle/polygon_twin.h>
 #include <snug/base/error.h>
-#include <snug/enclose/table_triangle.h>
-#include <snug/surface/refinement.h>
+#include <snug/bounds/table_triangle.h>
+#include <snug/search/piece_cache.h>
 #include <snug/surface/unscale.h>
 #include <testing/containment.h>
 #include <testing/patches.h>
@@ -36,7 +36,7 @@ void expect_near(const OffsetTriangle& actual, const OffsetTriangle& expected, d
 
 TEST(patch_bounds, are_those_of_single_patches) {
   for (const oracle::TwinMesh& twin : twins()) {
-    const Surface surface = testing::surface_of(twin);
+    const LimitSurface surface = testing::surface_of(twin);
     for (const std::optional<TableLayout> table :
          {std::optional<TableLayout>(), std::optional(TableLayout::ngon),
           std::optional(TableLayout::characteristic)}) {
@@ -58,7 +58,7 @@ TEST(patch_bounds, cover_the_limit_points_at_every_scale_and_place) {
     std::size_t count = 0;
     for (oracle::TwinMesh twin : twins()) {
       for (oracle::Point& p : twin.points) p = {size * (p[0] + 7), size * p[1], size * (p[2] - 3)};
-      const Surface surface = testing::surface_of(twin);
+      const LimitSurface surface = testing::surface_of(twin);
       for (const std::optional<TableLayout> table :
            {std::optional<TableLayout>(), std::optional(TableLayout::ngon)}) {
         PatchBounds bounds(surface, table);
@@ -79,7 +79,7 @@ TEST(patch_bounds, cover_the_limit_points_at_every_scale_and_place) {
 }
 
 TEST(patch_bounds, of_chosen_faces_come_in_their_order) {
-  const Surface surface = testing::surface_of(oracle::meshes::grid(9, 7));
+  const LimitSurface surface = testing::surface_of(oracle::meshes::grid(9, 7));
   PatchBounds all(surface), some(surface, {PatchId(50), PatchId(3), PatchId(51)});
   std::vector<OffsetTriangle> of_all(all.patches().size()), of_some(3);
   all.update(surface.mesh().points, of_all);
@@ -92,12 +92,12 @@ TEST(patch_bounds, of_chosen_faces_come_in_their_order) {
 TEST(patch_bounds, follow_the_control_points_and_do_not_depend_on_threads) {
   std::mt19937_64 random(6);
   oracle::TwinMesh twin = oracle::meshes::disturbed(oracle::meshes::grid(30, 30), 60, 0.2, random);
-  const Surface surface = testing::surface_of(twin);
+  const LimitSurface surface = testing::surface_of(twin);
   PatchBounds bounds(surface);
   std::vector<OffsetTriangle> one(bounds.patches().size()), two = one, fresh = one;
   bounds.update(surface.mesh().points, one);
   for (oracle::Point& p : twin.points) p = {p[1] * 5, p[2] + 0.1 * p[0], p[0]};
-  const Surface moved = testing::surface_of(twin);
+  const LimitSurface moved = testing::surface_of(twin);
   bounds.update(moved.mesh().points, one, 1);
   bounds.update(moved.mesh().points, two, 2);
   PatchBounds(moved).update(moved.mesh().points, fresh);
@@ -110,7 +110,7 @@ TEST(patch_bounds, follow_the_control_points_and_do_not_depend_on_threads) {
 }
 
 TEST(patch_bounds, refuse_points_that_are_not_finite) {
-  const Surface surface = testing::surface_of(oracle::meshes::grid(3, 3));
+  const LimitSurface surface = testing::surface_of(oracle::meshes::grid(3, 3));
   PatchBounds bounds(surface);
   std::vector<OffsetTriangle> out(bounds.patches().size());
   std::vector<Point3> points = surface.mesh().points;
@@ -127,7 +127,7 @@ TEST(patch_bounds, pass_over_vertices_without_faces) {
   mesh.points.insert(mesh.points.begin(), Point3{1e200, 0, 0});
   for (VertexId& v : mesh.face_vertices) v = VertexId(v.index() + 1);
   mesh.points.push_back({-1e200, 0, 0});
-  const Surface surface(mesh, {}, std::make_shared<BoundLibrary>(), 1);
+  const LimitSurface surface(mesh, {}, std::make_shared<BoundsCache>(), 1);
   PatchBounds bounds(surface);
   std::vector<OffsetTriangle> out(20);
   bounds.update(mesh.points, out);
@@ -145,8 +145,8 @@ TEST(patch_bounds, of_quads_contain_the_limit_and_are_a_little_wider_than_of_sin
         for (double& x : p) x *= size;
       }
       const oracle::Rules rules;
-      const Surface surface(testing::control_mesh(twin), testing::options_of(rules),
-                            std::make_shared<BoundLibrary>(), 1);
+      const LimitSurface surface(testing::control_mesh(twin), testing::options_of(rules),
+                                 std::make_shared<BoundsCache>(), 1);
       PatchBounds bounds(surface);
       std::vector<OffsetTriangle> out(bounds.patches().size());
       bounds.update(surface.mesh().points, out);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <snug/base/point.h>
+#include <snug/geometry/point.h>
 #include <snug/mesh/control_mesh.h>
 
 #include <array>

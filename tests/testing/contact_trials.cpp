@@ -23,8 +23,8 @@ namespace meshes = oracle::meshes;
 /// Trials of a block share the surfaces that are dear to make.
 constexpr std::uint64_t trials_a_block = 2000;
 
-std::shared_ptr<BoundLibrary> library() {
-  static const auto shared = std::make_shared<BoundLibrary>();
+std::shared_ptr<BoundsCache> library() {
+  static const auto shared = std::make_shared<BoundsCache>();
   return shared;
 }
 
@@ -79,8 +79,8 @@ int random_exponent(Dice& dice) {
   return exponents[dice.below(6)];
 }
 
-QueryModelOptions random_options(Dice& dice) {
-  QueryModelOptions options;
+SurfaceBvhOptions random_options(Dice& dice) {
+  SurfaceBvhOptions options;
   options.threads = 1;
   constexpr Volume volumes[] = {Volume::obb,   Volume::obb,   Volume::obb,  Volume::aabb,
                                 Volume::dop14, Volume::dop18, Volume::dop26};
@@ -204,34 +204,34 @@ struct Heights {
 
 }  // namespace
 
-Contestants::Contestants(TwinMesh a, TwinMesh b, int exponent, const QueryModelOptions& options)
+Contestants::Contestants(TwinMesh a, TwinMesh b, int exponent, const SurfaceBvhOptions& options)
     : exponent_(exponent), options_(options) {
   make(0, std::move(a), options);
   make(1, std::move(b), options);
 }
 
-Contestants::Contestants(TwinMesh both, int exponent, const QueryModelOptions& options)
+Contestants::Contestants(TwinMesh both, int exponent, const SurfaceBvhOptions& options)
     : exponent_(exponent), options_(options) {
   make(0, std::move(both), options);
   sides_[1].mesh = sides_[0].mesh;
   sides_[1].surface = sides_[0].surface;
   sides_[1].model = sides_[0].model;
-  sides_[1].scratch = std::make_unique<QueryScratch>(*sides_[1].model);
+  sides_[1].scratch = std::make_unique<SurfaceWorkspace>(*sides_[1].model);
 }
 
-void Contestants::make(std::size_t side, TwinMesh mesh, const QueryModelOptions& options) {
+void Contestants::make(std::size_t side, TwinMesh mesh, const SurfaceBvhOptions& options) {
   Side& s = sides_[side];
   size_ = std::max(size_, size_of(mesh));
   TwinMesh large = mesh;
   for (Point& p : large.points)
     for (double& x : p) x = scaled(x);
   s.mesh = std::make_shared<TwinMesh>(std::move(mesh));
-  s.surface = std::make_shared<Surface>(control_mesh(large), rules(large), library(), 1);
-  s.model = std::make_shared<QueryModel>(*s.surface, options);
-  s.scratch = std::make_unique<QueryScratch>(*s.model);
+  s.surface = std::make_shared<LimitSurface>(control_mesh(large), rules(large), library(), 1);
+  s.model = std::make_shared<SurfaceBvh>(*s.surface, options);
+  s.scratch = std::make_unique<SurfaceWorkspace>(*s.model);
 }
 
-PlacedModel Contestants::placed(std::size_t side, const oracle::Placement& place) {
+PlacedBvh Contestants::placed(std::size_t side, const oracle::Placement& place) {
   return {*sides_[side].model, *sides_[side].scratch, scaled(place)};
 }
 
@@ -794,7 +794,7 @@ std::string describe(const Trial& trial) {
   number(" upper ", trial.truth.upper);
   text += std::string(trial.truth.apart ? " apart" : "") + (trial.truth.meet ? " meet" : "") +
           (trial.truth.crossing ? " crossing" : "");
-  const QueryModelOptions& options = trial.pair->options();
+  const SurfaceBvhOptions& options = trial.pair->options();
   text += std::string("; ") + name_of(options.volume) +
           (!options.table                        ? ""
            : *options.table == TableLayout::ngon ? ", n-gon tables"

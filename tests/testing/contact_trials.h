@@ -10,8 +10,8 @@
 #include <string>
 
 #include <oracle/contact_twin.h>
-#include <snug/query/query_model.h>
-#include <snug/surface/surface.h>
+#include <snug/search/surface_bvh.h>
+#include <snug/surface/limit_surface.h>
 
 /// Placed pairs of Loop surfaces on which the queries are tried, with what is known about them beforehand.
 namespace snug::testing {
@@ -19,16 +19,16 @@ namespace snug::testing {
 /// Two surfaces as the library and as the twin see them. The library's coordinates are the twin's times 2^exponent.
 class Contestants {
  public:
-  Contestants(oracle::TwinMesh a, oracle::TwinMesh b, int exponent, const QueryModelOptions& options = {});
+  Contestants(oracle::TwinMesh a, oracle::TwinMesh b, int exponent, const SurfaceBvhOptions& options = {});
   /// One surface twice.
-  Contestants(oracle::TwinMesh both, int exponent, const QueryModelOptions& options = {});
+  Contestants(oracle::TwinMesh both, int exponent, const SurfaceBvhOptions& options = {});
 
-  [[nodiscard]] PlacedModel placed(std::size_t side, const oracle::Placement& place);
-  [[nodiscard]] const QueryModel& model(std::size_t side) const { return *sides_[side].model; }
-  [[nodiscard]] QueryScratch& scratch(std::size_t side) { return *sides_[side].scratch; }
+  [[nodiscard]] PlacedBvh placed(std::size_t side, const oracle::Placement& place);
+  [[nodiscard]] const SurfaceBvh& model(std::size_t side) const { return *sides_[side].model; }
+  [[nodiscard]] SurfaceWorkspace& scratch(std::size_t side) { return *sides_[side].scratch; }
   [[nodiscard]] oracle::ContactSurface& twin(std::size_t side);
   [[nodiscard]] const oracle::TwinMesh& mesh(std::size_t side) const { return *sides_[side].mesh; }
-  [[nodiscard]] const QueryModelOptions& options() const { return options_; }
+  [[nodiscard]] const SurfaceBvhOptions& options() const { return options_; }
   [[nodiscard]] int exponent() const { return exponent_; }
   [[nodiscard]] double size() const {
     return size_;
@@ -43,16 +43,16 @@ class Contestants {
  private:
   struct Side {
     std::shared_ptr<oracle::TwinMesh> mesh;
-    std::shared_ptr<Surface> surface;
-    std::shared_ptr<QueryModel> model;
-    std::unique_ptr<QueryScratch> scratch;
+    std::shared_ptr<LimitSurface> surface;
+    std::shared_ptr<SurfaceBvh> model;
+    std::unique_ptr<SurfaceWorkspace> scratch;
     std::shared_ptr<oracle::ContactSurface> twin;  // made when it is asked for
   };
-  void make(std::size_t side, oracle::TwinMesh mesh, const QueryModelOptions& options);
+  void make(std::size_t side, oracle::TwinMesh mesh, const SurfaceBvhOptions& options);
 
   std::array<Side, 2> sides_;
   int exponent_;
-  QueryModelOptions options_;
+  SurfaceBvhOptions options_;
   double size_ = 0;
 };
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include <snug/enclose/interval_triangle.h>
-#include <snug/enclose/offset_triangle.h>
+#include <snug/bounds/interval_triangle.h>
+#include <snug/bounds/offset_triangle.h>
 
-/// Containment in extended precision, written anew: shares no arithmetic with enclose/. Long double is fast,
+/// Containment in extended precision, written anew: shares no arithmetic with bounds/. Long double is fast,
 /// quadruple precision has the last word on slivers.
 namespace snug::testing {
 

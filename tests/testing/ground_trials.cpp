@@ -562,7 +562,7 @@ bool GroundSide::is_solid() const {
          (choices[static_cast<std::size_t>(Factor::holes)] == 0 || !is_primal(made.scheme));
 }
 
-PlacedModel GroundTrial::placed(std::size_t side, QueryScratch& scratch) const {
+PlacedBvh GroundTrial::placed(std::size_t side, SurfaceWorkspace& scratch) const {
   return {*(*sides)[side].model, scratch, motion(places[side])};
 }
 
@@ -570,7 +570,7 @@ PlacedModel GroundTrial::placed(std::size_t side, QueryScratch& scratch) const {
 struct GroundTrials::Shared {
   static constexpr std::uint64_t rows = 30;
   std::uint64_t block = UINT64_MAX;
-  std::shared_ptr<BoundLibrary> library;
+  std::shared_ptr<BoundsCache> library;
   std::map<std::tuple<Scheme, int, bool, bool>, std::shared_ptr<oracle::LimitRules>> rules;
 
   std::shared_ptr<oracle::LimitRules> rules_of(const GroundMesh& made) {
@@ -595,7 +595,7 @@ void GroundTrials::make_sides(std::uint64_t row) {
   made_ = row;
   if (row / Shared::rows != shared_->block) {
     shared_->block = row / Shared::rows;
-    shared_->library = std::make_shared<BoundLibrary>();
+    shared_->library = std::make_shared<BoundsCache>();
     shared_->rules.clear();
   }
   std::mt19937_64 random(0x960d + 7919 * row);
@@ -618,15 +618,15 @@ void GroundTrials::make_sides(std::uint64_t row) {
     SchemeOptions options = options_of(s.made.rules);
     options.scheme = s.made.scheme;
     s.surface =
-        std::make_unique<Surface>(control_mesh(s.made.mesh, s.made.rules), options, shared_->library, 1);
-    QueryModelOptions model;
+        std::make_unique<LimitSurface>(control_mesh(s.made.mesh, s.made.rules), options, shared_->library, 1);
+    SurfaceBvhOptions model;
     model.threads = 1;
     model.volume = volume;
     const Sets sets = choice<Sets>(s.choices, Factor::sets);
     if (sets != Sets::rows)
       model.table = sets == Sets::ngon ? TableLayout::ngon : TableLayout::characteristic;
-    s.model = std::make_unique<QueryModel>(*s.surface, model);
-    s.scratch = std::make_unique<QueryScratch>(*s.model);
+    s.model = std::make_unique<SurfaceBvh>(*s.surface, model);
+    s.scratch = std::make_unique<SurfaceWorkspace>(*s.model);
     s.twin = std::make_unique<oracle::LimitTwin>(s.made.mesh, shared_->rules_of(s.made));
   }
 }

@@ -12,8 +12,8 @@
 
 #include <oracle/limit_twin.h>
 #include <oracle/tagged_mesh.h>
-#include <snug/query/query_model.h>
-#include <snug/surface/surface.h>
+#include <snug/search/surface_bvh.h>
+#include <snug/surface/limit_surface.h>
 
 /// Placed pairs of surfaces of every scheme, tag and rule, so that each two cases that can go together do.
 namespace snug::testing {
@@ -59,9 +59,9 @@ struct GroundMesh {
 struct GroundSide {
   Choices choices{};
   GroundMesh made;
-  std::unique_ptr<Surface> surface;
-  std::unique_ptr<QueryModel> model;
-  std::unique_ptr<QueryScratch> scratch;
+  std::unique_ptr<LimitSurface> surface;
+  std::unique_ptr<SurfaceBvh> model;
+  std::unique_ptr<SurfaceWorkspace> scratch;
   std::unique_ptr<oracle::LimitTwin> twin;
   double size = 0;  ///< longest side of the used vertices' box
   /// Of a solid: closed, without holes, and its edges have two faces.
@@ -80,8 +80,8 @@ struct GroundTrial {
 
   [[nodiscard]] double size() const { return std::max((*sides)[0].size, (*sides)[1].size); }
   /// A side as queries take it.
-  [[nodiscard]] PlacedModel placed(std::size_t side, QueryScratch& scratch) const;
-  [[nodiscard]] PlacedModel placed(std::size_t side) const { return placed(side, *(*sides)[side].scratch); }
+  [[nodiscard]] PlacedBvh placed(std::size_t side, SurfaceWorkspace& scratch) const;
+  [[nodiscard]] PlacedBvh placed(std::size_t side) const { return placed(side, *(*sides)[side].scratch); }
 };
 
 /// The same number, the same trial. The first trials go through row_count() rows, so many of each; then rows are random.

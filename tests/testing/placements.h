@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include <snug/base/motion.h>
+#include <snug/geometry/motion.h>
 
 namespace snug::testing {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <snug/surface/surface.h>
+#include <snug/surface/limit_surface.h>
 #include <testing/tagged.h>
 
 #include <functional>
@@ -24,23 +24,23 @@ namespace snug::testing {
 
 struct NamedSurface {
   std::string name;
-  Surface surface;
+  LimitSurface surface;
 };
 
 /// Surfaces of every scheme, tagged and plain, until a test fails.
 inline void for_each_surface(std::uint64_t seed, const std::function<void(const NamedSurface&)>& visit) {
   namespace meshes = oracle::meshes;
   for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
-    const auto library = std::make_shared<BoundLibrary>();
+    const auto library = std::make_shared<BoundsCache>();
     for (const TaggedCase& c : tagged_cases(scheme, seed)) {
       const std::string name = c.name + ", " + text_of(c.rules);
-      visit({name, Surface(control_mesh(c.mesh, c.rules), options_of(c.rules), library, 1)});
+      visit({name, LimitSurface(control_mesh(c.mesh, c.rules), options_of(c.rules), library, 1)});
       if (::testing::Test::HasFailure()) return;
     }
   }
   std::mt19937_64 random(seed);
   for (const Scheme scheme : {Scheme::doo_sabin, Scheme::midedge}) {
-    const auto library = std::make_shared<BoundLibrary>();
+    const auto library = std::make_shared<BoundsCache>();
     for (const auto& [name, plain] : std::vector<std::pair<std::string, oracle::TaggedMesh>>{
              {"cube", meshes::cube()},
              {"grid", meshes::quad_grid(5, 4)},
@@ -49,14 +49,14 @@ inline void for_each_surface(std::uint64_t seed, const std::function<void(const 
              {"mixed strip", meshes::mixed_strip()},
              {"triangles", meshes::triangulated(meshes::quad_grid(4, 4))}}) {
       visit({name + ", " + name_of(scheme),
-             Surface(control_mesh(meshes::shaken(plain, 0.3, random)), {scheme}, library, 1)});
+             LimitSurface(control_mesh(meshes::shaken(plain, 0.3, random)), {scheme}, library, 1)});
       if (::testing::Test::HasFailure()) return;
     }
   }
 }
 
 /// Every patch that is there, until a test fails.
-inline void for_each_patch(const Surface& surface, const std::function<void(PatchId)>& visit) {
+inline void for_each_patch(const LimitSurface& surface, const std::function<void(PatchId)>& visit) {
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
     if (surface.has_patch(PatchId(p))) visit(PatchId(p));
     if (::testing::Test::HasFailure()) return;

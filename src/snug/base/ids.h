@@ -27,7 +27,7 @@ using VertexId = Id<struct VertexTag>;
 using EdgeId = Id<struct EdgeTag>;
 using FaceId = Id<struct FaceTag>;
 using PolylineId = Id<struct PolylineTag>;
-/// A patch kind in a KindLibrary (patch/kind_library.h).
+/// A patch kind in a KindCache (patch/kind_cache.h).
 using KindId = Id<struct KindTag>;
 
 }  // namespace snug

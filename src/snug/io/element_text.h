@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include <snug/base/point.h>
+#include <snug/geometry/point.h>
 #include <snug/io/text_cursor.h>
 
 namespace snug {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <snug/base/point.h>
+#include <snug/geometry/point.h>
 #include <snug/io/notes.h>
 
 namespace snug {

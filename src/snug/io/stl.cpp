@@ -8,7 +8,7 @@
 
 #include <snug/base/contract.h>
 #include <snug/base/error.h>
-#include <snug/base/scaling.h>
+#include <snug/geometry/scaling.h>
 #include <snug/io/binary.h>
 #include <snug/io/element_text.h>
 #include <snug/io/number.h>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <snug/base/ids.h>
-#include <snug/base/point.h>
+#include <snug/geometry/point.h>
 
 namespace snug {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include <snug/base/error.h>
-#include <snug/base/scaling.h>
+#include <snug/geometry/scaling.h>
 #include <snug/mesh/split_polygon.h>
 #include <snug/mesh/topology.h>
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include <snug/base/point.h>
+#include <snug/geometry/point.h>
 
 namespace snug {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include <snug/base/scaling.h>
+#include <snug/geometry/scaling.h>
 #include <snug/mesh/half_edges.h>
 
 namespace snug {

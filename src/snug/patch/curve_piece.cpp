@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include <snug/base/error.h>
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 
 namespace snug {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <snug/base/error.h>
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 #include <snug/patch/patch.h>
 
 /// How a parameter goes down to the pieces of a patch. For the files of patch/ alone.

@@ -5,23 +5,23 @@
 #include <cmath>
 
 #include <snug/base/contract.h>
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 #include <snug/patch/descent.h>
 #include <snug/patch/monomials.h>
 
 namespace snug {
 namespace {
 
-// Barycentric coordinates on a piece, in its kind's order of corners. `off` bounds the sum of their errors.
-struct Barycentric {
+// PieceParameter coordinates on a piece, in its kind's order of corners. `off` bounds the sum of their errors.
+struct PieceParameter {
   std::array<double, 3> at;
   double off;
 };
 
 // Drift bounds the errors of u and v; 1 - u - v is off by one roundoff more.
-Barycentric to_kind(const Patch& patch, TriangleParameter p, double drift) {
+PieceParameter to_kind(const Patch& patch, TriangleParameter p, double drift) {
   const std::array<double, 3> at{1 - p.u - p.v, p.u, p.v};
-  Barycentric result{{}, 4 * drift + unit_roundoff};
+  PieceParameter result{{}, 4 * drift + unit_roundoff};
   for (std::size_t corner = 0; corner < 3; ++corner) result.at[patch.to_kind(corner)] = at[corner];
   return result;
 }
@@ -30,10 +30,10 @@ Barycentric to_kind(const Patch& patch, TriangleParameter p, double drift) {
 // w c0 + u c1 + v c2 = (w - v) c0 + u c1 + 2 v m = 2 w m + u c1 + (v - w) c2.
 struct InPart {
   std::size_t part;
-  Barycentric p;
+  PieceParameter p;
 };
 
-InPart to_part(const PolynomialForm& form, const Barycentric& p) {
+InPart to_part(const PolynomialForm& form, const PieceParameter& p) {
   if (form.parts == 1) return {0, p};
   const auto [w, u, v] = p.at;
   const double off = 3 * p.off + unit_roundoff;
@@ -42,7 +42,7 @@ InPart to_part(const PolynomialForm& form, const Barycentric& p) {
 }
 
 // Limit point in a polynomial piece: first the weights of the control points, then their sum.
-LimitPoint polynomial_point(const Patch& piece, const Barycentric& parameter) {
+LimitPoint polynomial_point(const Patch& piece, const PieceParameter& parameter) {
   const PolynomialForm& form = piece.kind->form();
   const auto [part, p] = to_part(form, parameter);
   const std::size_t count = bezier_count(form.degree), controls = piece.points.size();
@@ -75,7 +75,7 @@ struct Derivatives {
   std::array<Vector3, 2> along;
   double error;  // upper bound, a coordinate
 };
-Derivatives polynomial_derivatives(const Patch& piece, const Barycentric& parameter) {
+Derivatives polynomial_derivatives(const Patch& piece, const PieceParameter& parameter) {
   const PolynomialForm& form = piece.kind->form();
   const auto [part, p] = to_part(form, parameter);
   const auto [w, u, v] = p.at;
@@ -218,7 +218,7 @@ LimitFrame limit_frame(const Patch& patch, TriangleParameter parameter) {
     frame.point = stopped_point(here);
     return frame;
   }
-  const Barycentric p = to_kind(piece, here.at, here.drift);
+  const PieceParameter p = to_kind(piece, here.at, here.drift);
   const Derivatives derivatives = polynomial_derivatives(piece, p);
   LimitFrame frame;
   frame.point = polynomial_point(piece, p);

@@ -6,7 +6,7 @@
 
 #include <snug/base/contract.h>
 #include <snug/base/error.h>
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 #include <snug/patch/descent.h>
 #include <snug/patch/monomials.h>
 

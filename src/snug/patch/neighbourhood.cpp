@@ -4,8 +4,8 @@
 #include <bit>
 #include <utility>
 
+#include <snug/base/compact_numbering.h>
 #include <snug/base/contract.h>
-#include <snug/base/first_met.h>
 #include <snug/scheme/limits.h>
 
 namespace snug {
@@ -123,7 +123,7 @@ std::vector<VertexId> spoke_ends(const Topology& topology, HalfEdge start) {
 // The faces around the corners of a face, its own first, each as the half-edge that leaves the corner where it was met; then, if
 // wide, those around the far ends of the edges at the corners.
 std::vector<HalfEdge> faces_around(const Topology& topology, HalfEdge start, bool wide) {
-  thread_local FirstMet met;
+  thread_local CompactNumbering met;
   met.begin(topology.face_count());
   std::vector<HalfEdge> found;
   const auto add = [&](HalfEdge h) {

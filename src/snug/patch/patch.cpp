@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include <snug/base/contract.h>
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 
 namespace snug {
 namespace {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include <snug/patch/kind_library.h>
+#include <snug/patch/kind_cache.h>
 #include <snug/patch/piece_path.h>
 
 namespace snug {
@@ -29,7 +29,7 @@ struct Patch {
 
 /// The patch of some control points, in the kind's order (control_vertices).
 ///
-/// Requires:  finite points of at most about 2 (base/scaling.h); points.size() == kind.control_count().
+/// Requires:  finite points of at most about 2 (geometry/scaling.h); points.size() == kind.control_count().
 [[nodiscard]] Patch make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> points);
 /// The same, gathered from the points of a whole mesh.
 [[nodiscard]] Patch make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> all,

@@ -5,6 +5,7 @@
 #include <string>
 
 #include <snug/base/contract.h>
+#include <snug/geometry/triangle.h>
 
 namespace snug {
 
@@ -34,11 +35,6 @@ class PiecePath {
  private:
   std::array<std::uint64_t, 2> bits_{};
   std::uint8_t level_ = 0;
-};
-
-/// Parameters on a triangle: its point is (1 - u - v) c0 + u c1 + v c2.
-struct TriangleParameter {
-  double u = 0, v = 0;
 };
 
 /// A piece's own parameter as one of the whole face. Exact while the digits fit a double.

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <utility>
 
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 #include <snug/patch/monomials.h>
 
 namespace snug {

@@ -1,7 +1,7 @@
 #include <snug/patch/quad_parameter.h>
 
 #include <snug/base/error.h>
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 
 namespace snug {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <snug/base/parallel.h>
-#include <snug/base/rounding.h>
-#include <snug/enclose/table_triangle.h>
+#include <snug/bounds/table_triangle.h>
+#include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/surface/unscale.h>
 
@@ -23,7 +23,8 @@ struct PatchPieces {
 
 class PatchBounder {
  public:
-  PatchBounder(const Surface& surface, const BoundOptions& options, double target, const WorkMonitor& monitor)
+  PatchBounder(const LimitSurface& surface, const BoundOptions& options, double target,
+               const WorkMonitor& monitor)
       : surface_(surface),
         options_(options),
         target_(target),
@@ -98,7 +99,7 @@ class PatchBounder {
 
   [[nodiscard]] double mesh_target() const { return options_.tolerance ? *options_.tolerance / 2 : INFINITY; }
 
-  const Surface& surface_;
+  const LimitSurface& surface_;
   const BoundOptions& options_;
   double target_;
   const WorkMonitor& monitor_;
@@ -125,7 +126,7 @@ void require_sound(const BoundOptions& options) {
   require_value(options.level <= PiecePath::max_level, "bound: the level is too high; give at most 60");
 }
 
-BoundSummary bound(const Surface& surface, const BoundOptions& options,
+BoundSummary bound(const LimitSurface& surface, const BoundOptions& options,
                    const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor) {
   require_sound(options);
   const double target = options.tolerance ? surface.scale().apply(*options.tolerance / 2) : INFINITY;

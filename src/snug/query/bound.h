@@ -4,10 +4,10 @@
 #include <functional>
 #include <optional>
 
-#include <snug/enclose/interval_triangle.h>
-#include <snug/enclose/offset_triangle.h>
+#include <snug/bounds/interval_triangle.h>
+#include <snug/bounds/offset_triangle.h>
 #include <snug/patch/piece_path.h>
-#include <snug/surface/surface.h>
+#include <snug/surface/limit_surface.h>
 
 namespace snug {
 
@@ -69,7 +69,7 @@ struct BoundSummary {
 ///            the monitor throws.
 /// Cost:      rows: a piece 3 to 5 microseconds on regular patches. Memory holds the pieces of one face,
 ///            or some 65,000; it does not grow with the output.
-BoundSummary bound(const Surface& surface, const BoundOptions& options,
+BoundSummary bound(const LimitSurface& surface, const BoundOptions& options,
                    const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor = {});
 
 }  // namespace snug

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include <snug/base/error.h>
-#include <snug/base/rounding.h>
-#include <snug/enclose/curve_points.h>
+#include <snug/bounds/curve_points.h>
+#include <snug/geometry/rounding.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include <snug/base/direction.h>
 #include <snug/base/error.h>
-#include <snug/base/rounding.h>
-#include <snug/enclose/triangle_distance.h>
+#include <snug/geometry/direction.h>
+#include <snug/geometry/rounding.h>
+#include <snug/geometry/triangle_distance.h>
 #include <snug/patch/evaluate.h>
-#include <snug/query/point_batch.h>
+#include <snug/search/point_batch.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {
@@ -28,7 +28,8 @@ bool farther(const Candidate& x, const Candidate& y) { return x.gap > y.gap; }
 
 class Query {
  public:
-  Query(QueryScratch& scratch, const Point3& to, const ClosestOptions& options, const WorkMonitor& monitor)
+  Query(SurfaceWorkspace& scratch, const Point3& to, const ClosestOptions& options,
+        const WorkMonitor& monitor)
       : scratch_(scratch),
         surface_(scratch.model().surface()),
         to_(surface_.scale().apply(to)),
@@ -79,7 +80,7 @@ class Query {
     }
     if (splits_ >= options_.budget || scratch_.full()) return false;
     splits_ += node.piece;
-    const QueryScratch::Opened opened = scratch_.open(node);
+    const SurfaceWorkspace::Opened opened = scratch_.open(node);
     const Blocks& blocks = scratch_.blocks(opened.piece);
     Blocks::Distances found;
     blocks.distances(opened.block, to_, point_error_, found);
@@ -146,8 +147,8 @@ class Query {
     return answer;
   }
 
-  QueryScratch& scratch_;
-  const Surface& surface_;
+  SurfaceWorkspace& scratch_;
+  const LimitSurface& surface_;
   Point3 to_;
   const ClosestOptions& options_;
   const WorkMonitor& monitor_;
@@ -161,7 +162,7 @@ class Query {
 
 }  // namespace
 
-ClosestPoint closest_point(QueryScratch& scratch, const Point3& to, const ClosestOptions& options,
+ClosestPoint closest_point(SurfaceWorkspace& scratch, const Point3& to, const ClosestOptions& options,
                            const WorkMonitor& monitor) {
   if (!is_finite(to)) {
     throw InputError(InputProblem::value,
@@ -171,11 +172,11 @@ ClosestPoint closest_point(QueryScratch& scratch, const Point3& to, const Closes
   return Query(scratch, to, options, monitor).run();
 }
 
-std::vector<ClosestPoint> closest_points(const QueryModel& model, std::span<const Point3> to,
+std::vector<ClosestPoint> closest_points(const SurfaceBvh& model, std::span<const Point3> to,
                                          const ClosestOptions& options, int threads,
                                          const WorkMonitor& monitor) {
   std::vector<ClosestPoint> results(to.size());
-  for_each_point(model, to, threads, monitor, [&](QueryScratch& scratch, std::size_t i) {
+  for_each_point(model, to, threads, monitor, [&](SurfaceWorkspace& scratch, std::size_t i) {
     results[i] = closest_point(scratch, to[i], options, monitor);
   });
   return results;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <snug/base/error.h>
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 #include <snug/query/containment.h>
 #include <snug/query/distance.h>
 #include <snug/surface/unscale.h>
@@ -18,7 +18,7 @@ constexpr int most_attempts = 2000, most_attempts_within = 64;
 
 class Query {
  public:
-  Query(const PlacedModel& a, const PlacedModel& b, const CollideOptions& options, const WorkMonitor& monitor)
+  Query(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options, const WorkMonitor& monitor)
       : search_(a, b), options_(options), monitor_(monitor) {
     margin_ = search_.length_up(options.margin);
     reach_ = search_.length_down((options.margin + options.tolerance) * (1 - unit_roundoff));
@@ -166,8 +166,7 @@ namespace {
 
 // What the answer about two closed surfaces is for the solids that they bound. A point of one surface in the other solid is
 // a common point of both solids, whatever is known of the surfaces.
-Collision as_solids(const PlacedModel& a, const PlacedModel& b, Collision answer,
-                    const WorkMonitor& monitor) {
+Collision as_solids(const PlacedBvh& a, const PlacedBvh& b, Collision answer, const WorkMonitor& monitor) {
   const Nesting found =
       answer.verdict == Verdict::separated ? nesting(a, b, monitor) : common_point(a, b, monitor);
   if (found.inner) {
@@ -190,7 +189,7 @@ Collision as_solids(const PlacedModel& a, const PlacedModel& b, Collision answer
 
 namespace {
 
-Collision ask(const PlacedModel& a, const PlacedModel& b, const CollideOptions& options,
+Collision ask(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
               const WorkMonitor& monitor) {
   if (const double gap = outer_gap(a, b); gap > options.margin) {
     Collision answer;
@@ -205,7 +204,7 @@ Collision ask(const PlacedModel& a, const PlacedModel& b, const CollideOptions& 
 }
 
 // Brings the bounds of separated surfaces, which hold for their solids too, to within a factor of 2.
-void measure(const PlacedModel& a, const PlacedModel& b, std::uint64_t budget, const WorkMonitor& monitor,
+void measure(const PlacedBvh& a, const PlacedBvh& b, std::uint64_t budget, const WorkMonitor& monitor,
              Collision& answer) {
   DistanceOptions precision;
   precision.relative = 0.5;
@@ -228,7 +227,7 @@ void measure(const PlacedModel& a, const PlacedModel& b, std::uint64_t budget, c
 
 }  // namespace
 
-Collision collide(const PlacedModel& a, const PlacedModel& b, const CollideOptions& options,
+Collision collide(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
                   const WorkMonitor& monitor) {
   require_length(options.tolerance, "collide: the tolerance");
   require_length(options.margin, "collide: the margin");

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include <snug/query/pair_search.h>
+#include <snug/search/pair_search.h>
 
 namespace snug {
 
@@ -40,7 +40,7 @@ struct Collision {
   /// With `solid`, where no crossing was proved: 0 where a point of A's surface lies in the solid of B, 1 the other way round.
   /// Both witnesses are then that point.
   std::optional<std::size_t> inner;
-  QueryStats stats;
+  SearchStats stats;
 };
 
 /// Do two placed limit surfaces touch?
@@ -58,7 +58,7 @@ struct Collision {
 ///            (refused) with `solid` if a surface is not closed, wherever it is; Interrupted.
 /// Cost:      some 100 ns for surfaces far apart, microseconds in contact (bench/results/collide.txt).
 /// Source:    [Wu05, sec. 5.1]; differs: the printed pair test is not sound, see derivations/leaf_rule.md.
-[[nodiscard]] Collision collide(const PlacedModel& a, const PlacedModel& b, const CollideOptions& options,
+[[nodiscard]] Collision collide(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
                                 const WorkMonitor& monitor = {});
 
 }  // namespace snug

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include <snug/base/error.h>
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
-#include <snug/query/pair_search.h>
-#include <snug/query/solid.h>
-#include <snug/query/winding.h>
+#include <snug/search/pair_search.h>
+#include <snug/search/solid.h>
+#include <snug/search/winding.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {
@@ -43,7 +43,7 @@ bool beyond(const PlacedFrame& frame, const Ball& ball, const Point3& placed, do
 
 class Asking {
  public:
-  Asking(const PlacedModel& a, const PlacedModel& b, const WorkMonitor& monitor)
+  Asking(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor)
       : side_{&a, &b}, search_(a, b), monitor_(monitor) {}
 
   Nesting components() {
@@ -70,9 +70,9 @@ class Asking {
  private:
   // Is a limit point of `side` in the other solid?
   void ask(std::size_t side, PatchId p, TriangleParameter at) {
-    const Surface& surface = side_[side]->model.surface();
+    const LimitSurface& surface = side_[side]->model.surface();
     const Sample sample = sample_of(surface.patch(p), at);
-    const PlacedModel& other = *side_[1 - side];
+    const PlacedBvh& other = *side_[1 - side];
     const PlacedFrame& frame = search_.frame(side);
     const Point3 placed = frame.apply(sample.local);
     const double error =
@@ -95,7 +95,7 @@ class Asking {
   [[nodiscard]] std::vector<PatchId> deepest(std::size_t side) {
     const RelativeFrame& seen = search_.seen_from(1 - side);
     if (!seen.comparable) return {};
-    const Surface& surface = side_[side]->model.surface();
+    const LimitSurface& surface = side_[side]->model.surface();
     const Obb& box = side_[1 - side]->model.tree().box();
     std::vector<std::pair<double, PatchId>> inside;
     for (std::size_t p = 0; p < surface.patch_count(); ++p) {
@@ -116,7 +116,7 @@ class Asking {
     return patches;
   }
 
-  std::array<const PlacedModel*, 2> side_;
+  std::array<const PlacedBvh*, 2> side_;
   PairSearch search_;
   const WorkMonitor& monitor_;
   Nesting found_;
@@ -124,18 +124,18 @@ class Asking {
 
 }  // namespace
 
-Nesting nesting(const PlacedModel& a, const PlacedModel& b, const WorkMonitor& monitor) {
+Nesting nesting(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor) {
   static_cast<void>(a.model.solid());
   static_cast<void>(b.model.solid());
   return Asking(a, b, monitor).components();
 }
 
-Nesting common_point(const PlacedModel& a, const PlacedModel& b, const WorkMonitor& monitor) {
+Nesting common_point(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor) {
   const Nesting found = nesting(a, b, monitor);
   return found.inner ? found : Asking(a, b, monitor).deep_patches();
 }
 
-std::optional<bool> contains(QueryScratch& scratch, const Point3& point, const WorkMonitor& monitor) {
+std::optional<bool> contains(SurfaceWorkspace& scratch, const Point3& point, const WorkMonitor& monitor) {
   if (!is_finite(point)) {
     throw InputError(InputProblem::value,
                      "contains: a coordinate of the point is not finite; give three numbers");

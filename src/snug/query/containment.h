@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <optional>
 
-#include <snug/query/evaluate.h>
-#include <snug/query/query_model.h>
+#include <snug/search/surface_bvh.h>
+#include <snug/surface/evaluate.h>
 
 namespace snug {
 
@@ -25,25 +25,24 @@ struct Nesting {
 ///
 /// Guarantee: a point that is named lies on one surface and in the solid of the other one. Surfaces that do not meet bound
 ///            solids that do not meet if `certain` and there is no `inner`.
-/// Errors:    those of QueryModel::solid(); InputError if the point does not fit a double; Interrupted.
+/// Errors:    those of SurfaceBvh::solid(); InputError if the point does not fit a double; Interrupted.
 /// Cost:      a walk along a ray for each component.
 /// Source:    derivations/contact.md, "Two solids".
-[[nodiscard]] Nesting nesting(const PlacedModel& a, const PlacedModel& b, const WorkMonitor& monitor = {});
+[[nodiscard]] Nesting nesting(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor = {});
 
 /// Looks for a point of one surface in the other solid where the surfaces may meet: also in the middles of some patches,
 /// those deepest in the box around the other one. Where faces of two parts lie in each other no crossing proves contact; a
 /// point of this sort does.
 ///
 /// Guarantee: as nesting(); nothing follows where none is found.
-[[nodiscard]] Nesting common_point(const PlacedModel& a, const PlacedModel& b,
-                                   const WorkMonitor& monitor = {});
+[[nodiscard]] Nesting common_point(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor = {});
 
 /// Is a point, in mesh units, in the solid that a closed limit surface bounds?
 ///
 /// Guarantee: the answer is right; nothing where it cannot be told, as on the surface and within rounding of it.
-/// Errors:    InputError: (refused) from QueryModel::solid(), (value) for a point that is not finite.
+/// Errors:    InputError: (refused) from SurfaceBvh::solid(), (value) for a point that is not finite.
 /// Cost:      that of winding_number().
-[[nodiscard]] std::optional<bool> contains(QueryScratch& scratch, const Point3& point,
+[[nodiscard]] std::optional<bool> contains(SurfaceWorkspace& scratch, const Point3& point,
                                            const WorkMonitor& monitor = {});
 
 }  // namespace snug

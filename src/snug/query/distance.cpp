@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 #include <snug/query/containment.h>
 #include <snug/surface/unscale.h>
 
@@ -22,8 +22,7 @@ bool nearer(const NodePair& x, const NodePair& y) { return x.gap < y.gap; }
 
 class Query {
  public:
-  Query(const PlacedModel& a, const PlacedModel& b, const DistanceOptions& options,
-        const WorkMonitor& monitor)
+  Query(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options, const WorkMonitor& monitor)
       : search_(a, b),
         options_(options),
         monitor_(monitor),
@@ -194,7 +193,7 @@ class Query {
 
 }  // namespace
 
-Distance distance(const PlacedModel& a, const PlacedModel& b, const DistanceOptions& options,
+Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options,
                   const WorkMonitor& monitor) {
   require_precision(options);
   if (options.solid) {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include <snug/query/pair_search.h>
-#include <snug/query/precision.h>
+#include <snug/search/pair_search.h>
+#include <snug/search/precision.h>
 
 namespace snug {
 
@@ -18,7 +18,7 @@ struct Distance {
       0;             ///< upper bound, a coordinate, of how far one is from the limit point it stands for
   WitnessPlaces at;  ///< where the witnesses lie, as in Collision
   std::optional<std::size_t> inner;  ///< with `solid`: as in Collision
-  QueryStats stats;
+  SearchStats stats;
 };
 
 /// Distance of two placed limit surfaces.
@@ -32,7 +32,7 @@ struct Distance {
 ///            scratches that are not of their models; (unrepresentable) if a result does not fit a double; (refused) with `solid`
 ///            if a surface is not closed, wherever it is; Interrupted.
 /// Cost:      some 200 microseconds at 0.1 % of the size (bench/results/distance.txt).
-[[nodiscard]] Distance distance(const PlacedModel& a, const PlacedModel& b, const DistanceOptions& options,
+[[nodiscard]] Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options,
                                 const WorkMonitor& monitor = {});
 
 }  // namespace snug

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 #include <snug/surface/patch_bounds.h>
 #include <snug/surface/unscale.h>
 
@@ -12,7 +12,7 @@ namespace snug {
 namespace {
 
 /// Which faces are their own limit surface, or hold it: with infinitely sharp edges and corners alone.
-std::vector<bool> sharp_faces(const Surface& surface) {
+std::vector<bool> sharp_faces(const LimitSurface& surface) {
   const Topology& topology = surface.topology();
   const Sharpness sharpness = sharpness_of(surface.mesh(), topology);
   std::vector<bool> edge_sharp(topology.edge_count());
@@ -51,7 +51,7 @@ double distance_at_most(const Point3& p, const Point3& a, const Point3& b, const
 }
 
 /// At least the distance of a point from the hull of a face: that of the nearest of some triangles in it.
-double distance_at_most(const Point3& p, const Surface& surface, std::span<const VertexId> face) {
+double distance_at_most(const Point3& p, const LimitSurface& surface, std::span<const VertexId> face) {
   const auto corner = [&](std::size_t k) { return surface.scaled_point(face[k]); };
   double least = INFINITY;
   for (std::size_t k = 1; k + 1 < face.size(); ++k) {
@@ -66,7 +66,7 @@ double distance_at_most(const Point3& p, const Surface& surface, std::span<const
 
 }  // namespace
 
-std::optional<double> limit_to_faces(const Surface& surface, int threads) {
+std::optional<double> limit_to_faces(const LimitSurface& surface, int threads) {
   if (!is_primal(surface.options().scheme)) return {};
   const std::vector<bool> sharp = sharp_faces(surface);
   std::vector<PatchId> patches;

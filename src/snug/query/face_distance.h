@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include <snug/surface/surface.h>
+#include <snug/surface/limit_surface.h>
 
 namespace snug {
 
@@ -17,6 +17,6 @@ namespace snug {
 /// Errors:    InputError if a result does not fit a double.
 /// Cost:      that of PatchBounds and 1 microsecond a patch: 0.8 s for the 96,966 triangles of the horse.
 /// Source:    derivations/sharp_parts.md.
-[[nodiscard]] std::optional<double> limit_to_faces(const Surface& surface, int threads = 0);
+[[nodiscard]] std::optional<double> limit_to_faces(const LimitSurface& surface, int threads = 0);
 
 }  // namespace snug

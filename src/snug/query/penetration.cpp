@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <snug/base/error.h>
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 #include <snug/query/collide.h>
 #include <snug/query/distance.h>
 #include <snug/query/signed_distance.h>
@@ -43,7 +43,7 @@ std::vector<Vector3> some_directions() {
 
 class Search {
  public:
-  Search(const PlacedModel& a, const PlacedModel& b, const PenetrationOptions& options,
+  Search(const PlacedBvh& a, const PlacedBvh& b, const PenetrationOptions& options,
          const WorkMonitor& monitor)
       : a_(a), b_(b), options_(options), monitor_(monitor) {}
 
@@ -71,7 +71,7 @@ class Search {
     return enlarged(length((b_.pose.translation() + d) - b_.pose.translation()));
   }
 
-  [[nodiscard]] PlacedModel moved(const Vector3& d) const {
+  [[nodiscard]] PlacedBvh moved(const Vector3& d) const {
     return {b_.model, b_.scratch, b_.pose.with_translation(b_.pose.translation() + d)};
   }
   [[nodiscard]] bool separated(const Vector3& d) {
@@ -238,7 +238,7 @@ class Search {
     return {back.apply(touch), back.apply(b_.pose.apply(b_.model.ball().centre)), a_.model.ball().centre};
   }
 
-  const PlacedModel &a_, &b_;
+  const PlacedBvh &a_, &b_;
   const PenetrationOptions& options_;
   const WorkMonitor& monitor_;
   Candidate best_{{}, INFINITY};
@@ -251,7 +251,7 @@ class Search {
 
 }  // namespace
 
-Penetration penetration(const PlacedModel& a, const PlacedModel& b, const PenetrationOptions& options,
+Penetration penetration(const PlacedBvh& a, const PlacedBvh& b, const PenetrationOptions& options,
                         const WorkMonitor& monitor) {
   require_length(options.relative, "penetration: the precision");
   return Search(a, b, options, monitor).run();

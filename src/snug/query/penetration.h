@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include <snug/query/query_model.h>
+#include <snug/search/surface_bvh.h>
 
 namespace snug {
 
@@ -30,11 +30,11 @@ struct Penetration {
 /// Guarantee: lower <= depth <= upper; with B's pose so moved the solids are separated. The upper bound is
 ///            that of the best translation found, a local minimum, and may be far from the depth where parts interlock.
 /// Requires:  models with the same sort of volume, two scratches.
-/// Errors:    those of QueryModel::solid(); InputError (value) for a precision that is negative or not finite,
+/// Errors:    those of SurfaceBvh::solid(); InputError (value) for a precision that is negative or not finite,
 ///            (unrepresentable) if no translation that separates them fits a double; Interrupted.
 /// Cost:      some hundred collision and closest-point queries.
 /// Source:    derivations/contact.md, "How deep".
-[[nodiscard]] Penetration penetration(const PlacedModel& a, const PlacedModel& b,
+[[nodiscard]] Penetration penetration(const PlacedBvh& a, const PlacedBvh& b,
                                       const PenetrationOptions& options = {},
                                       const WorkMonitor& monitor = {});
 

@@ -13,13 +13,13 @@ namespace {
 constexpr std::size_t most_at_a_time = 32;
 
 template <class Answer, class Query>
-std::vector<Answer> answers(PairScratches& scratches, std::span<const PosePair> poses,
+std::vector<Answer> answers(PairWorkspaces& scratches, std::span<const PosePair> poses,
                             const WorkMonitor& monitor, const Query& query) {
   std::vector<Answer> result(poses.size());
   const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
   scratches.for_each(
       poses.size(),
-      [&](QueryScratch& a, QueryScratch& b, std::size_t i) {
+      [&](SurfaceWorkspace& a, SurfaceWorkspace& b, std::size_t i) {
         result[i] = query({a.model(), a, poses[i].a}, {b.model(), b, poses[i].b}, stop_only);
       },
       monitor);
@@ -28,18 +28,19 @@ std::vector<Answer> answers(PairScratches& scratches, std::span<const PosePair> 
 
 }  // namespace
 
-PairScratches::PairScratches(const QueryModel& a, const QueryModel& b, int threads) {
+PairWorkspaces::PairWorkspaces(const SurfaceBvh& a, const SurfaceBvh& b, int threads) {
   const int count = threads > 0 ? threads : hardware_threads();
-  for (int i = 0; i < count; ++i) pairs_.push_back(std::make_unique<Pair>(QueryScratch(a), QueryScratch(b)));
+  for (int i = 0; i < count; ++i)
+    pairs_.push_back(std::make_unique<Pair>(SurfaceWorkspace(a), SurfaceWorkspace(b)));
 }
 
-std::size_t PairScratches::bytes() const {
+std::size_t PairWorkspaces::bytes() const {
   std::size_t sum = 0;
   for (const auto& pair : pairs_) sum += pair->a.bytes() + pair->b.bytes();
   return sum;
 }
 
-void PairScratches::for_each(std::size_t count, const Ask& ask, const WorkMonitor& monitor) {
+void PairWorkspaces::for_each(std::size_t count, const Ask& ask, const WorkMonitor& monitor) {
   const std::size_t threads = std::min(pairs_.size(), count);
   if (threads == 0) return;
   const std::size_t step = std::clamp<std::size_t>(count / (threads * 16), 1, most_at_a_time);
@@ -65,18 +66,18 @@ void PairScratches::for_each(std::size_t count, const Ask& ask, const WorkMonito
   });
 }
 
-std::vector<Collision> collide_poses(PairScratches& scratches, std::span<const PosePair> poses,
+std::vector<Collision> collide_poses(PairWorkspaces& scratches, std::span<const PosePair> poses,
                                      const CollideOptions& options, const WorkMonitor& monitor) {
   return answers<Collision>(scratches, poses, monitor,
-                            [&](const PlacedModel& a, const PlacedModel& b, const WorkMonitor& stop) {
+                            [&](const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& stop) {
                               return collide(a, b, options, stop);
                             });
 }
 
-std::vector<Distance> distance_poses(PairScratches& scratches, std::span<const PosePair> poses,
+std::vector<Distance> distance_poses(PairWorkspaces& scratches, std::span<const PosePair> poses,
                                      const DistanceOptions& options, const WorkMonitor& monitor) {
   return answers<Distance>(scratches, poses, monitor,
-                           [&](const PlacedModel& a, const PlacedModel& b, const WorkMonitor& stop) {
+                           [&](const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& stop) {
                              return distance(a, b, options, stop);
                            });
 }

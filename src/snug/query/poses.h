@@ -12,16 +12,16 @@
 namespace snug {
 
 /// Scratch memory of two models, one pair a thread.
-class PairScratches {
+class PairWorkspaces {
  public:
   /// `threads`: 0 for all cores.
   /// Requires:  the models outlive it.
-  PairScratches(const QueryModel& a, const QueryModel& b, int threads = 0);
+  PairWorkspaces(const SurfaceBvh& a, const SurfaceBvh& b, int threads = 0);
 
   [[nodiscard]] std::size_t bytes() const;
 
   /// Asks about one pose of the two models.
-  using Ask = std::function<void(QueryScratch& a, QueryScratch& b, std::size_t pose)>;
+  using Ask = std::function<void(SurfaceWorkspace& a, SurfaceWorkspace& b, std::size_t pose)>;
   /// Calls `ask` for each number in [0, count), on the threads, no two at once with the same scratch.
   ///
   /// Errors:    what `ask` throws ends the loop and is thrown again, of several one.
@@ -29,7 +29,7 @@ class PairScratches {
 
  private:
   struct Pair {
-    QueryScratch a, b;
+    SurfaceWorkspace a, b;
   };
   std::vector<std::unique_ptr<Pair>> pairs_;
 };
@@ -39,7 +39,7 @@ class PairScratches {
 /// Guarantee: the same bits as from collide() alone, for any number of threads.
 /// Requires, Errors: those of collide().
 /// Cost:      that of collide(), shared by the threads (bench/poses.cpp).
-[[nodiscard]] std::vector<Collision> collide_poses(PairScratches& scratches, std::span<const PosePair> poses,
+[[nodiscard]] std::vector<Collision> collide_poses(PairWorkspaces& scratches, std::span<const PosePair> poses,
                                                    const CollideOptions& options,
                                                    const WorkMonitor& monitor = {});
 
@@ -48,7 +48,7 @@ class PairScratches {
 /// Guarantee: the same bits as from distance() alone, for any number of threads.
 /// Requires, Errors: those of distance().
 /// Cost:      that of distance(), shared by the threads.
-[[nodiscard]] std::vector<Distance> distance_poses(PairScratches& scratches, std::span<const PosePair> poses,
+[[nodiscard]] std::vector<Distance> distance_poses(PairWorkspaces& scratches, std::span<const PosePair> poses,
                                                    const DistanceOptions& options,
                                                    const WorkMonitor& monitor = {});
 

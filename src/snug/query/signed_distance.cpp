@@ -1,12 +1,12 @@
 #include <snug/query/signed_distance.h>
 
 #include <snug/query/containment.h>
-#include <snug/query/point_batch.h>
-#include <snug/query/solid.h>
+#include <snug/search/point_batch.h>
+#include <snug/search/solid.h>
 
 namespace snug {
 
-SignedDistance signed_distance(QueryScratch& scratch, const Point3& point, const ClosestOptions& options,
+SignedDistance signed_distance(SurfaceWorkspace& scratch, const Point3& point, const ClosestOptions& options,
                                const WorkMonitor& monitor) {
   static_cast<void>(scratch.model().solid());
   SignedDistance answer;
@@ -19,12 +19,12 @@ SignedDistance signed_distance(QueryScratch& scratch, const Point3& point, const
   return answer;
 }
 
-std::vector<SignedDistance> signed_distances(const QueryModel& model, std::span<const Point3> points,
+std::vector<SignedDistance> signed_distances(const SurfaceBvh& model, std::span<const Point3> points,
                                              const ClosestOptions& options, int threads,
                                              const WorkMonitor& monitor) {
   static_cast<void>(model.solid());
   std::vector<SignedDistance> results(points.size());
-  for_each_point(model, points, threads, monitor, [&](QueryScratch& scratch, std::size_t i) {
+  for_each_point(model, points, threads, monitor, [&](SurfaceWorkspace& scratch, std::size_t i) {
     results[i] = signed_distance(scratch, points[i], options, monitor);
   });
   return results;

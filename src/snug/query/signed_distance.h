@@ -17,13 +17,13 @@ struct SignedDistance {
 /// The signed distance of a point. The sign is that of the winding number, never that of a normal.
 ///
 /// Guarantee: lower <= signed distance <= upper, also where precision is not reached. The result depends on the input alone.
-/// Errors:    those of closest_point(), and of QueryModel::solid() for a surface that is not closed, wherever the point is.
+/// Errors:    those of closest_point(), and of SurfaceBvh::solid() for a surface that is not closed, wherever the point is.
 /// Cost:      those of closest_point() and winding_number().
-[[nodiscard]] SignedDistance signed_distance(QueryScratch& scratch, const Point3& point,
+[[nodiscard]] SignedDistance signed_distance(SurfaceWorkspace& scratch, const Point3& point,
                                              const ClosestOptions& options, const WorkMonitor& monitor = {});
 
 /// The same for many points, in their order; results do not depend on threads.
-[[nodiscard]] std::vector<SignedDistance> signed_distances(const QueryModel& model,
+[[nodiscard]] std::vector<SignedDistance> signed_distances(const SurfaceBvh& model,
                                                            std::span<const Point3> points,
                                                            const ClosestOptions& options, int threads = 0,
                                                            const WorkMonitor& monitor = {});

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/scaling.h>
+#include <snug/geometry/scaling.h>
 #include <snug/scheme/limits.h>
 #include <snug/scheme/refine.h>
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include <snug/base/error.h>
-#include <snug/base/scaling.h>
+#include <snug/geometry/scaling.h>
 #include <snug/surface/curve_set.h>
 
 namespace snug {

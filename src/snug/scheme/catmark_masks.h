@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include <snug/base/interval.h>
+#include <snug/geometry/interval.h>
 
 /// Catmull-Clark's masks, all of them. Curves of creases and boundaries are those of Loop (loop_masks.h).
 /// [CatmullClark78]; boundaries and creases as in [DeRose98] and OpenSubdiv.

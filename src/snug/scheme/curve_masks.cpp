@@ -8,7 +8,7 @@
 
 #include <snug/base/contract.h>
 #include <snug/base/error.h>
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 #include <snug/mesh/validate.h>
 
 namespace snug {

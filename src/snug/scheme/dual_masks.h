@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <snug/base/interval.h>
+#include <snug/geometry/interval.h>
 
 /// Masks of the dual schemes: each corner of a face of n vertices moves by these weights, its own first, then around.
 /// Regular are quads.

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <utility>
 
+#include <snug/base/compact_numbering.h>
 #include <snug/base/contract.h>
-#include <snug/base/first_met.h>
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 #include <snug/scheme/catmark_masks.h>
 #include <snug/scheme/loop_masks.h>
 #include <snug/scheme/refine.h>
@@ -405,7 +405,7 @@ void add_corner_tangents(const Topology& topology, const Sharpness& sharpness, V
 
 void vertices_of(const Topology& topology, std::span<const HalfEdge> firsts, std::vector<VertexId>& names,
                  std::vector<VertexId>* corners) {
-  thread_local FirstMet met;
+  thread_local CompactNumbering met;
   met.begin(topology.vertex_count());
   names.clear();
   for (const HalfEdge first : firsts) {

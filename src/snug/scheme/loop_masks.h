@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include <snug/base/interval.h>
+#include <snug/geometry/interval.h>
 
 /// Loop's masks, all of them, and nothing else. A ring is listed counter-clockwise; at a boundary vertex it
 /// runs from one boundary neighbour to the other. [Loop87]; boundary rules as in [DeRose98] and OpenSubdiv.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 
 namespace snug {
 

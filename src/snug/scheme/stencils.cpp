@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include <snug/base/error.h>
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 
 namespace snug {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include <snug/base/interval.h>
-#include <snug/base/point.h>
+#include <snug/geometry/interval.h>
+#include <snug/geometry/point.h>
 
 namespace snug {
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 
 namespace snug {
 
-void ControlHull::assign(const Surface& surface, std::span<const PatchId> patches) {
+void ControlHull::assign(const LimitSurface& surface, std::span<const PatchId> patches) {
   const Topology& topology = surface.topology();
   numbers_.begin(topology.vertex_count());
   points_.clear();

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <snug/base/first_met.h>
-#include <snug/surface/surface.h>
-#include <snug/tree/volume.h>
+#include <snug/base/compact_numbering.h>
+#include <snug/bvh/volume.h>
+#include <snug/surface/limit_surface.h>
 
 namespace snug {
 
@@ -18,14 +18,14 @@ namespace snug {
 class ControlHull final : public Enclosed {
  public:
   /// Keeps its memory from one set to the next.
-  void assign(const Surface& surface, std::span<const PatchId> patches);
+  void assign(const LimitSurface& surface, std::span<const PatchId> patches);
 
   [[nodiscard]] Extent extent(const Vector3& direction) const override;
   /// The corners of the patches' faces.
   [[nodiscard]] std::span<const Point3> points() const override { return {points_.data(), inner_count_}; }
 
  private:
-  FirstMet numbers_;
+  CompactNumbering numbers_;
   std::vector<VertexId> corners_;
   std::vector<Point3> points_;  // corners first
   std::size_t inner_count_ = 0;

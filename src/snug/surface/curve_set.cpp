@@ -4,7 +4,7 @@
 #include <utility>
 
 #include <snug/base/error.h>
-#include <snug/base/rounding.h>
+#include <snug/geometry/rounding.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {

@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include <snug/base/scaling.h>
-#include <snug/enclose/interval_segment.h>
-#include <snug/enclose/offset_segment.h>
+#include <snug/bounds/interval_segment.h>
+#include <snug/bounds/offset_segment.h>
+#include <snug/geometry/scaling.h>
 #include <snug/mesh/control_mesh.h>
 #include <snug/patch/curve_piece.h>
 
@@ -14,7 +14,7 @@ namespace snug {
 /// The limit curves of a mesh's polylines. Immutable; may be read by many threads. Edges are counted along
 /// the polylines, one polyline after the other; the closing edge of a closed one is its last.
 ///
-/// Inside, coordinates are scaled as those of a Surface.
+/// Inside, coordinates are scaled as those of a LimitSurface.
 ///
 /// Errors:    InputError (refused) from require_curves.
 /// Cost:      linear; 16 bytes an edge beside the mesh.

@@ -7,10 +7,10 @@
 
 #include <snug/base/error.h>
 #include <snug/base/parallel.h>
-#include <snug/base/rounding.h>
-#include <snug/enclose/fit_kernels.h>
-#include <snug/enclose/table_kernel.h>
-#include <snug/enclose/table_triangle.h>
+#include <snug/bounds/fit_kernels.h>
+#include <snug/bounds/table_kernel.h>
+#include <snug/bounds/table_triangle.h>
+#include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/surface/unscale.h>
 
@@ -54,7 +54,7 @@ void turn_and_scale(const kernels::BatchFit& fit, std::uint8_t first, double fac
   out.rounding = enlarged(factor * fit.rounding + 4 * underflow_error);
 }
 
-std::vector<PatchId> all_patches(const Surface& surface) {
+std::vector<PatchId> all_patches(const LimitSurface& surface) {
   std::vector<PatchId> patches;
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
     if (surface.has_patch(PatchId(p))) patches.push_back(PatchId(p));
@@ -85,10 +85,10 @@ std::size_t PatchBounds::control_count(const Group& group) {
   return (group.polygon ? group.polygon : group.kind)->control_count();
 }
 
-PatchBounds::PatchBounds(const Surface& surface, std::optional<TableLayout> table, int threads)
+PatchBounds::PatchBounds(const LimitSurface& surface, std::optional<TableLayout> table, int threads)
     : PatchBounds(surface, all_patches(surface), table, threads) {}
 
-PatchBounds::PatchBounds(const Surface& surface, std::vector<PatchId> patches,
+PatchBounds::PatchBounds(const LimitSurface& surface, std::vector<PatchId> patches,
                          std::optional<TableLayout> table, int threads)
     : library_(&surface.library()), patches_(std::move(patches)) {
   for (const PatchId p : patches_) {
@@ -111,7 +111,7 @@ PatchBounds::PatchBounds(const Surface& surface, std::vector<PatchId> patches,
 }
 
 // Groups, chunks and places: a counting sort.
-void PatchBounds::sort_by_kind(const Surface& surface) {
+void PatchBounds::sort_by_kind(const LimitSurface& surface) {
   constexpr std::uint32_t none = UINT32_MAX;
   std::vector<std::uint32_t> group_of_kind(library_->kinds().size(), none), group_of(patches_.size()), sizes;
   std::map<std::pair<KindId, std::uint32_t>, std::uint32_t> group_of_part;
@@ -149,7 +149,7 @@ void PatchBounds::sort_by_kind(const Surface& surface) {
   }
 }
 
-void PatchBounds::collect_control(const Surface& surface) {
+void PatchBounds::collect_control(const LimitSurface& surface) {
   std::vector<bool> used(surface.mesh().vertex_count());
   std::vector<VertexId> vertices;
   auto to = control_.begin();

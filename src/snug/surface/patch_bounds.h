@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include <snug/enclose/offset_triangle.h>
-#include <snug/surface/surface.h>
+#include <snug/bounds/offset_triangle.h>
+#include <snug/surface/limit_surface.h>
 
 namespace snug {
 
@@ -19,10 +19,10 @@ class PatchBounds {
   /// Makes what the kinds of the surface need: their rows, or their tables in a layout.
   /// Requires:  the surface outlives the bounds.
   /// Errors:    InputError (value) for a patch that is not there.
-  explicit PatchBounds(const Surface& surface, std::optional<TableLayout> table = {}, int threads = 0);
+  explicit PatchBounds(const LimitSurface& surface, std::optional<TableLayout> table = {}, int threads = 0);
   /// The same for some of the patches, in any order.
-  PatchBounds(const Surface& surface, std::vector<PatchId> patches, std::optional<TableLayout> table = {},
-              int threads = 0);
+  PatchBounds(const LimitSurface& surface, std::vector<PatchId> patches,
+              std::optional<TableLayout> table = {}, int threads = 0);
 
   /// The patches that update() answers for, in this order; all that are there unless chosen.
   [[nodiscard]] std::span<const PatchId> patches() const { return patches_; }
@@ -58,11 +58,11 @@ class PatchBounds {
     std::uint8_t first;
   };
   [[nodiscard]] static std::size_t control_count(const Group& group);
-  void sort_by_kind(const Surface& surface);
-  void collect_control(const Surface& surface);
+  void sort_by_kind(const LimitSurface& surface);
+  void collect_control(const LimitSurface& surface);
   void fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTriangle> out) const;
 
-  BoundLibrary* library_;
+  BoundsCache* library_;
   std::vector<PatchId> patches_;
   std::vector<Group> groups_;
   std::vector<Chunk> chunks_;

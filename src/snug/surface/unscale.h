@@ -1,8 +1,8 @@
 #pragma once
 
-#include <snug/base/scaling.h>
-#include <snug/enclose/interval_triangle.h>
-#include <snug/enclose/offset_triangle.h>
+#include <snug/bounds/interval_triangle.h>
+#include <snug/bounds/offset_triangle.h>
+#include <snug/geometry/scaling.h>
 
 namespace snug {
 

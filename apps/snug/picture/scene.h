@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <picture/colour.h>
+#include <snug/geometry/point.h>
+
+namespace snug {
+
+/// How a surface looks.
+struct Material {
+  Colour colour;
+  double opacity = 1;     ///< share of the light from behind that it stops, in [0, 1]
+  double gloss = 0;       ///< 0 matte, 1 polished: strength and sharpness of the highlights
+  bool two_sided = true;  ///< otherwise triangles whose corners run clockwise for the viewer are not drawn
+  bool lit = true;        ///< otherwise exactly `colour`, wherever the lights are
+};
+
+/// A triangle; corners run counterclockwise when seen from its outside. One without area is not drawn.
+struct ShadedTriangle {
+  Point3 corner[3];
+  Vector3 normal[3];  ///< interpolated, of any length and either side; a zero one makes the triangle flat
+  std::uint32_t material = 0;  ///< index into Scene::materials
+};
+
+/// A straight stroke with round ends, equally wide on the picture near and far; opaque.
+struct Line {
+  Point3 a, b;
+  double width_in_pixels = 1;
+  Colour colour;
+};
+
+/// What is drawn. Triangles that share an edge share its end points exactly, or the seam may show.
+struct Scene {
+  std::vector<Material> materials;
+  std::vector<ShadedTriangle> triangles;
+  std::vector<Line> lines;
+};
+
+}  // namespace snug

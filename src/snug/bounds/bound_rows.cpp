@@ -1,0 +1,268 @@
+#include <snug/bounds/bound_rows.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include <snug/base/contract.h>
+#include <snug/geometry/rounding.h>
+#include <snug/scheme/catmark_masks.h>
+#include <snug/scheme/dual_masks.h>
+#include <snug/scheme/loop_masks.h>
+
+namespace snug {
+namespace {
+
+// Dense rows over the control points of the root kind: middle and radius, the radius kept for a whole row as
+// a bound of the sum of its entries' errors (interval arithmetic in midpoint-radius form).
+struct DenseRows {
+  std::size_t width = 0;
+  std::vector<double> entries;   // row-major
+  std::vector<double> errors;    // a row
+  std::vector<double> abs_sums;  // a row: of the entries as stored
+  [[nodiscard]] std::size_t count() const { return errors.size(); }
+  void clear() {
+    entries.clear();
+    errors.clear();
+    abs_sums.clear();
+  }
+};
+
+DenseRows identity(std::size_t count) {
+  DenseRows rows{count, std::vector<double>(count * count, 0.0), std::vector<double>(count, 0.0),
+                 std::vector<double>(count, 1.0)};
+  for (std::size_t i = 0; i < count; ++i) rows.entries[i * count + i] = 1;
+  return rows;
+}
+
+void append_all(const DenseRows& from, DenseRows& to) {
+  to.entries.insert(to.entries.end(), from.entries.begin(), from.entries.end());
+  to.errors.insert(to.errors.end(), from.errors.begin(), from.errors.end());
+  to.abs_sums.insert(to.abs_sums.end(), from.abs_sums.begin(), from.abs_sums.end());
+}
+
+// The chosen rows of stencils * net, appended to out.
+//
+// For a row sum_k a_k N_k with a_k off by d_k and N_k off by e_k:  the sum of entries' errors is at most
+//   sum |a_k| e_k  +  sum d_k (|N_k| + e_k)  +  gamma(n) sum |a_k| |N_k|.
+void append_product(const Stencils& stencils, std::size_t r, const DenseRows& net, DenseRows& out) {
+  const Stencils::Row row = stencils.row(r);
+  const std::size_t begin = out.entries.size();
+  out.entries.resize(begin + net.width);
+  double* const __restrict target = out.entries.data() + begin;
+  double error = 0, largest = 0, magnitude = 0;
+  for (std::size_t i = 0; i < row.sources.size(); ++i) {
+    const std::size_t k = row.sources[i];
+    const double weight = row.weights[i];
+    const double* const source = net.entries.data() + k * net.width;
+    for (std::size_t c = 0; c < net.width; ++c) target[c] += weight * source[c];
+    error += std::fabs(weight) * net.errors[k];
+    magnitude += std::fabs(weight) * net.abs_sums[k];
+    largest = std::max(largest, net.abs_sums[k] + net.errors[k]);
+  }
+  double abs_sum = 0;
+  for (std::size_t c = 0; c < net.width; ++c) abs_sum += std::fabs(target[c]);
+  const double tiny = static_cast<double>(net.width * row.sources.size()) * underflow_error;
+  out.errors.push_back(
+      enlarged(error + row.error * largest + gamma_bound(row.sources.size()) * magnitude + tiny));
+  out.abs_sums.push_back(abs_sum * (1 + gamma_bound(net.width)));
+}
+
+// Writes stencils * net over `out`, which keeps its memory.
+void multiply(const Stencils& stencils, const DenseRows& net, DenseRows& out) {
+  out.clear();
+  out.width = net.width;
+  out.entries.reserve(stencils.row_count() * net.width);
+  for (std::size_t r = 0; r < stencils.row_count(); ++r) append_product(stencils, r, net, out);
+}
+
+// Edges of a piece, named by the corner they face, along which a polynomial neighbour's Bezier points are in
+// the hull already: this piece's own there are convex combinations of those, as rows.
+using CoveredEdges = std::array<bool, 3>;
+
+// Place (i, j) lies on the edge that faces corner k when its k-th barycentric index is 0.
+bool on_covered_edge(std::size_t degree, std::size_t i, std::size_t j, const CoveredEdges& covered) {
+  return (covered[0] && i + j == degree) || (covered[1] && i == 0) || (covered[2] && j == 0);
+}
+
+// Levels of the rows of passing and crowded kinds, which tables alone are made of: patches are split instead
+// (bounds/hull_points.h).
+constexpr unsigned levels_of_unshared_rows = 3;
+
+class Collector {
+ public:
+  Collector(const Kind& kind, unsigned most_levels) : most_levels_(most_levels) {
+    rows_.width = kind.control_count();
+    // At most: four pieces, three a ring, the nets of the tips.
+    std::size_t most = 112;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!kind.regular_corner(i)) most += 70 * std::size_t{levels(kind, i)} + kind.corner(i).faces() + 20;
+    }
+    if (kind.shared()) rows_.entries.reserve(most * rows_.width);
+  }
+
+  // Rows of one piece; `covered` counts corners as the kind does.
+  void collect(const Kind& kind, const DenseRows& net, unsigned depth, const CoveredEdges& covered) {
+    if (kind.polynomial() && depth > 0) {
+      const PolynomialForm& form = kind.form();
+      const std::size_t count = bezier_count(form.degree);
+      for (std::size_t part = 0; part < form.parts; ++part) {
+        const CoveredEdges& own = form.parts == 1 ? covered : CoveredEdges{false, false, false};
+        for (std::size_t j = 0; j <= form.degree; ++j) {
+          for (std::size_t i = 0; i + j <= form.degree; ++i) {
+            if (on_covered_edge(form.degree, i, j, own)) continue;
+            append_product(form.rows, part * count + bezier_index(form.degree, i, j), net, rows_);
+          }
+        }
+      }
+      return;
+    }
+    if (depth >= depth_limit(kind, depth)) {
+      append_all(net, tips_);
+      return;
+    }
+    const auto& children = kind.children();
+    const bool middle_polynomial = children[3].kind->polynomial();
+    for (const bool polynomial : {true, false}) {
+      for (const std::size_t c : {std::size_t{3}, std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
+        const KindChild& child = children[c];
+        if (child.kind->polynomial() != polynomial) continue;
+        // In the parent's order, child c keeps corner c: its edges that face the other corners lie on the
+        // parent's.
+        CoveredEdges inherited{false, false, false};
+        if (c < 3) {
+          inherited = covered;
+          inherited[c] = middle_polynomial;
+        }
+        CoveredEdges own;
+        for (std::size_t k = 0; k < 3; ++k) own[k] = inherited[(k + child.first) % 3];
+        DenseRows& child_net = nets_[depth];
+        multiply(child.stencils, net, child_net);
+        collect(*child.kind, child_net, depth + 1, own);
+      }
+    }
+  }
+
+  // Tips last.
+  [[nodiscard]] DenseRows take() {
+    append_all(tips_, rows_);
+    return std::move(rows_);
+  }
+
+ private:
+  [[nodiscard]] unsigned levels(const Kind& kind, std::size_t corner) const {
+    return std::min(most_levels_, tip_depth(kind.corner(corner), kind.scheme()));
+  }
+  [[nodiscard]] unsigned depth_limit(const Kind& kind, unsigned depth) const {
+    if (!kind.shared()) return std::min(most_levels_, levels_of_unshared_rows);
+    unsigned limit = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!kind.regular_corner(i)) limit = std::max(limit, levels(kind, i));
+    }
+    // Half a quad whose far corner alone is irregular: its children are polynomial.
+    return limit > 0 ? limit : depth + 1;
+  }
+
+  unsigned most_levels_;
+  DenseRows rows_, tips_;
+  std::array<DenseRows, deepest_tip + 2> nets_;  // of the piece at work, a depth each
+};
+
+// Kinds of the first pieces at a corner, one a level. All others are as the last one: their other corners are regular, and
+// vertices of the ring that are the same by accident of few faces have come apart. None: they have not.
+using TipKinds = std::array<const Kind*, 3>;
+std::optional<TipKinds> tip_kinds(const KindChild& child, std::size_t corner) {
+  TipKinds kinds;
+  const KindChild* piece = &child;
+  std::size_t own = corner;
+  for (const Kind*& kind : kinds) {
+    kind = piece->kind;
+    own = (3 + own - piece->first) % 3;
+    piece = &kind->children()[own];
+  }
+  if (piece->kind != kinds.back()) return {};
+  return kinds;
+}
+
+}  // namespace
+
+double BoundRows::result_error(double largest, double error) const {
+  return enlarged((gamma_bound(control_count_) * abs_sum_ + entry_error_) * largest +
+                  (abs_sum_ + entry_error_) * error) +
+         3 * static_cast<double>(control_count_) * underflow_error;
+}
+
+void BoundRows::find_tips(const Kind& kind, unsigned levels) {
+  tips_ = {};
+  if (kind.polynomial() || !has_lasting_tips(kind)) return;
+  std::size_t found = 0, end = 0;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    const KindChild& child = kind.children()[corner];
+    if (child.kind->polynomial()) continue;
+    const Kind* const there =
+        (*tip_kinds(child, corner))[std::clamp(levels, 1u, unsigned{TipKinds{}.size()}) - 1];
+    tips_[found++] = {there, end};
+    end += there->control_count();
+  }
+  for (std::size_t i = 0; i < found; ++i) tips_[i].begin += count_ - end;
+}
+
+bool has_lasting_tips(const Kind& kind) {
+  if (!kind.shared()) return false;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    const KindChild& child = kind.children()[corner];
+    if (!child.kind->polynomial() && !tip_kinds(child, corner)) return false;
+  }
+  return true;
+}
+
+unsigned tip_depth(const CornerFan& fan, Scheme scheme) {
+  if (fan.sharp && !fan.closed && fan.faces() == 1)
+    return 4;  // the net of a lone corner is the corner of a polygon: no overhang
+  const std::size_t n = fan.closed ? fan.faces() : 2 * fan.faces();
+  double shrink = 0.5;
+  switch (scheme) {
+    case Scheme::loop:
+      shrink =
+          fan.closed ? loop::subdominant(n) : std::max(0.5, loop::subdominant_across_boundary(fan.faces()));
+      break;
+    case Scheme::catmark:
+      shrink = catmark::subdominant(n);
+      break;
+    case Scheme::doo_sabin:
+      shrink = dual::doo_sabin_subdominant(n);
+      break;
+    case Scheme::midedge:
+      shrink = dual::midedge_subdominant(n);
+      break;
+  }
+  // Corners that are sharp or darts shrink by 1/2 and more along their edges, and by up to 2/3 within.
+  if (fan.sharp || fan.odd) shrink = std::max(shrink, 2.0 / 3);
+  const double width =
+      std::min(1.0, 2 * std::sin(std::numbers::pi / static_cast<double>(std::max<std::size_t>(n, 3))));
+  const double levels = std::log(0.01 * width) / std::log(shrink);
+  return std::clamp(static_cast<unsigned>(std::ceil(levels)), 3u, deepest_tip);
+}
+
+BoundRows make_bound_rows(const Kind& kind, unsigned most_levels) {
+  SNUG_EXPECT(!kind.key().polygon);
+  Collector collector(kind, most_levels);
+  collector.collect(kind, identity(kind.control_count()), 0, {false, false, false});
+  const DenseRows rows = collector.take();
+  BoundRows result;
+  result.count_ = rows.count();
+  result.control_count_ = rows.width;
+  result.weights_.resize(rows.entries.size());
+  for (std::size_t r = 0; r < rows.count(); ++r) {
+    for (std::size_t c = 0; c < rows.width; ++c)
+      result.weights_[c * rows.count() + r] = rows.entries[r * rows.width + c];
+    result.entry_error_ = std::max(result.entry_error_, rows.errors[r]);
+    result.abs_sum_ = std::max(result.abs_sum_, rows.abs_sums[r]);
+  }
+  result.find_tips(kind, most_levels);
+  return result;
+}
+
+}  // namespace snug

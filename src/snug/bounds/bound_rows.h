@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include <snug/patch/kind_cache.h>
+
+namespace snug {
+
+/// Levels at an extraordinary corner after which rows end at the latest.
+inline constexpr unsigned deepest_tip = 24;
+
+/// Hull rows of a kind: a matrix M such that, whatever the control points c, the limit patch lies in the
+/// convex hull of the points M c.
+///
+/// Guarantee: the exact rows have that property; every stored row differs from the exact one by at most
+///            entry_error() in the sum of its entries' absolute values.
+/// Source:    derivations/hull_rows.md.
+class BoundRows {
+ public:
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] std::size_t control_count() const { return control_count_; }
+  /// Weights of one control point in all rows; control points in the kind's order.
+  [[nodiscard]] const double* column(std::size_t control) const { return weights_.data() + control * count_; }
+  [[nodiscard]] double weight(std::size_t row, std::size_t control) const { return column(control)[row]; }
+  [[nodiscard]] double entry_error() const { return entry_error_; }
+  /// Upper bound of a row's sum of absolute values: 1 but for ghost points.
+  [[nodiscard]] double abs_sum() const { return abs_sum_; }
+  [[nodiscard]] std::size_t bytes() const { return weights_.size() * sizeof(double); }
+
+  /// The control net of the piece at an extraordinary corner, some levels down: the last rows are those of the
+  /// tips, in the order of their kinds' control points.
+  struct Tip {
+    const Kind* kind = nullptr;  ///< none: no tip
+    std::size_t begin = 0;       ///< first row
+  };
+  /// Tips in the order of the kind's corners; those without one are left out.
+  [[nodiscard]] const std::array<Tip, 3>& tips() const { return tips_; }
+  /// Number of rows before the first tip's.
+  [[nodiscard]] std::size_t tips_begin() const { return tips_[0].kind ? tips_[0].begin : count_; }
+
+  /// Upper bound, a coordinate, of |M c computed - M c exact| for points of at most `largest`, off by at most
+  /// `error`.
+  [[nodiscard]] double result_error(double largest, double error) const;
+
+ private:
+  friend BoundRows make_bound_rows(const Kind& kind, unsigned most_levels);
+  friend class ShippedBounds;
+  void find_tips(const Kind& kind, unsigned levels);
+  std::size_t count_ = 0, control_count_ = 0;
+  std::vector<double> weights_;
+  std::array<Tip, 3> tips_;
+  double entry_error_ = 0, abs_sum_ = 0;
+};
+
+/// Requires:  a patch, no polygon.
+/// Makes the rows of a kind: Bezier points of the polynomial pieces after one split; at an extraordinary
+/// corner of the rings of pieces around it down to tip_depth() levels, and the control net of the last tip.
+/// Tips end at `most_levels` if that is less. Where sharpness decays, or polygons are about, control nets of pieces a few
+/// levels down end it.
+///
+/// Cost:      up to valence 12 well below a millisecond; for valence n about 20 n^2 multiply-adds a level.
+[[nodiscard]] BoundRows make_bound_rows(const Kind& kind, unsigned most_levels = deepest_tip);
+
+/// Is the quarter at each extraordinary corner, after a few levels, of a kind that comes again at every level? Only such
+/// tips are kept apart.
+/// Requires:  a kind that is no polynomial.
+[[nodiscard]] bool has_lasting_tips(const Kind& kind);
+
+/// Levels of rings around an extraordinary corner until the control net of the tip sticks out behind the
+/// corner by less than 1 % of the width of the patch there.
+[[nodiscard]] unsigned tip_depth(const CornerFan& fan, Scheme scheme);
+
+}  // namespace snug

@@ -1,0 +1,38 @@
+#include <snug/bounds/bounds_cache.h>
+
+#include <optional>
+#include <utility>
+
+#include <snug/bounds/shipped.h>
+
+namespace snug {
+namespace {
+
+bool has_several_tips(const Kind& kind) {
+  if (!has_lasting_tips(kind)) return false;
+  int irregular = 0;
+  for (std::size_t i = 0; i < 3; ++i) irregular += !kind.regular_corner(i);
+  return irregular > 1;
+}
+
+}  // namespace
+
+const BoundRows& BoundsCache::rows(const Kind& kind) {
+  return rows_.get(kind.id(), [&] {
+    if (has_several_tips(kind)) return make_bound_rows(kind, 1);
+    std::optional<BoundRows> shipped = ShippedBounds::compiled_in().rows(kind);
+    return shipped ? *std::move(shipped) : make_bound_rows(kind);
+  });
+}
+
+const BoundTable& BoundsCache::table(const Kind& kind, TableLayout layout) {
+  return tables_[static_cast<std::size_t>(layout)].get(kind.id(), [&] {
+    std::optional<BoundTable> shipped = ShippedBounds::compiled_in().table(kind.key(), layout);
+    if (shipped) return *std::move(shipped);
+    const bool kept = kind.shared() && !has_several_tips(kind);  // the rows that patches need
+    return kept ? make_bound_table(kind, rows(kind), layout)
+                : make_bound_table(kind, make_bound_rows(kind), layout);
+  });
+}
+
+}  // namespace snug

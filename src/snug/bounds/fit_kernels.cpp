@@ -1,0 +1,705 @@
+// Compiled once for each instruction set: this file includes itself through foreach_target.h.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "snug/bounds/fit_kernels.cpp"
+#include <hwy/foreach_target.h>
+// After it, as the library wants it.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <type_traits>
+
+#include <snug/bounds/fit_kernels.h>
+#include <snug/bounds/lanes.h>
+#include <snug/geometry/rounding.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace snug::kernels::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// No operators of Highway's: the portable target lacks them.
+template <class V>
+struct Vec3 {
+  V x, y, z;
+};
+
+template <class V>
+HWY_INLINE V dot(const Vec3<V>& a, const Vec3<V>& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+template <class V>
+HWY_INLINE Vec3<V> add(const Vec3<V>& a, const Vec3<V>& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+template <class V>
+HWY_INLINE Vec3<V> sub(const Vec3<V>& a, const Vec3<V>& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+template <class V>
+HWY_INLINE Vec3<V> scaled(V s, const Vec3<V>& a) {
+  return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
+}
+template <class V>
+HWY_INLINE Vec3<V> cross(const Vec3<V>& a, const Vec3<V>& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+template <class V>
+HWY_INLINE V hypotenuse_sq(V a, V b) {
+  return hn::Add(hn::Mul(a, a), hn::Mul(b, b));
+}
+template <class V>
+HWY_INLINE V max3(V a, V b, V c) {
+  return hn::Max(a, hn::Max(b, c));
+}
+
+// A triangle in a frame (t1, t2, n) of its own: corners (0, 0), (l0, 0), (xc, yc), counter-clockwise. Names and the
+// error terms are those of derivations/rounding.md, "Distance in the triangle's plane".
+template <class V>
+struct PlanarTriangle {
+  Vec3<V> a, t1, t2, n;
+  V l0, l1, l2;          // lengths of the edges ab, bc, ca
+  V d1x, d1y, d2x, d2y;  // directions of bc and of ac
+  V longest;
+  V deviation;  // of the true corners from those in the plane
+  V amplify;    // 2 / the least sine of an angle: at least 1 / sin of half the sharpest angle
+  V stretch;    // of lengths by the frame, at most
+};
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE PlanarTriangle<V> planar_triangle(D d, const Vec3<V>& a, const Vec3<V>& b, const Vec3<V>& c) {
+  PlanarTriangle<V> t;
+  const V one = hn::Set(d, 1.0);
+  const Vec3<V> eb = sub(b, a), ec = sub(c, a);
+  const Vec3<V> area = cross(eb, ec);
+  t.a = a;
+  t.n = scaled(hn::Div(one, hn::Sqrt(dot(area, area))), area);
+  t.t1 = scaled(hn::Div(one, hn::Sqrt(dot(eb, eb))), eb);
+  t.t2 = cross(t.n, t.t1);
+  t.l0 = dot(t.t1, eb);
+  const V xc = dot(t.t1, ec), yc = dot(t.t2, ec);
+  const V bx = hn::Sub(xc, t.l0);
+  t.l1 = hn::Sqrt(hypotenuse_sq(bx, yc));
+  t.l2 = hn::Sqrt(hypotenuse_sq(xc, yc));
+  const V over_l1 = hn::Div(one, t.l1), over_l2 = hn::Div(one, t.l2);
+  t.d1x = hn::Mul(bx, over_l1);
+  t.d1y = hn::Mul(yc, over_l1);
+  t.d2x = hn::Mul(xc, over_l2);
+  t.d2y = hn::Mul(yc, over_l2);
+  t.longest = max3(t.l0, t.l1, t.l2);
+  const V off_b = hn::Add(hn::Abs(dot(t.t2, eb)), hn::Abs(dot(t.n, eb)));
+  t.deviation =
+      hn::Add(hn::Max(off_b, hn::Abs(dot(t.n, ec))), hn::Mul(hn::Set(d, 16 * unit_roundoff), t.longest));
+  const V products = max3(hn::Mul(t.l0, t.l1), hn::Mul(t.l1, t.l2), hn::Mul(t.l2, t.l0));
+  t.amplify = hn::Div(hn::Add(products, products), hn::Mul(t.l0, yc));
+  const V diagonal = max3(hn::Abs(hn::Sub(dot(t.t1, t.t1), one)), hn::Abs(hn::Sub(dot(t.t2, t.t2), one)),
+                          hn::Abs(hn::Sub(dot(t.n, t.n), one)));
+  const V mixed =
+      hn::Add(hn::Add(hn::Abs(dot(t.t1, t.t2)), hn::Abs(dot(t.t1, t.n))), hn::Abs(dot(t.t2, t.n)));
+  t.stretch = hn::Add(hn::Add(diagonal, mixed), hn::Set(d, 16 * unit_roundoff));
+  return t;
+}
+
+// False for needles and whatever is not finite. Of a needle in a coordinate plane rounding may turn the normal round:
+// then the third corner's yc, and with it `amplify`, is negative.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE hn::Mask<D> well_shaped(D d, const PlanarTriangle<V>& t) {
+  const V zero = hn::Zero(d);
+  const auto turned = hn::And(hn::Gt(t.amplify, zero), hn::Gt(t.l0, zero));
+  const auto round = hn::And(hn::Le(t.amplify, hn::Set(d, 64.0)), turned);
+  return hn::And(round, hn::Le(t.stretch, hn::Set(d, 0x1p-40)));
+}
+
+// A point in the triangle's frame, and the signed distances of its foot from the edges' lines, positive outside.
+template <class V>
+struct Foot {
+  V x, y, height_sq;
+  V s0, s1, s2;
+};
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Foot<V> foot(D d, const PlanarTriangle<V>& t, const Vec3<V>& p) {
+  const Vec3<V> r = sub(p, t.a);
+  const V x = dot(t.t1, r), y = dot(t.t2, r), h = dot(t.n, r);
+  return {x,
+          y,
+          hn::Mul(h, h),
+          hn::Sub(hn::Zero(d), y),
+          hn::Sub(hn::Mul(hn::Sub(x, t.l0), t.d1y), hn::Mul(y, t.d1x)),
+          hn::Sub(hn::Mul(y, t.d2x), hn::Mul(x, t.d2y))};
+}
+
+// Squared distance in the plane from edge 0, 1 or 2.
+template <std::size_t edge, class D, class V = hn::Vec<D>>
+HWY_INLINE V aside_sq(D d, const PlanarTriangle<V>& t, const Foot<V>& f) {
+  // How far the foot lies beyond either end of the edge.
+  const V zero = hn::Zero(d), xb = hn::Sub(f.x, t.l0);
+  if constexpr (edge == 0) return hypotenuse_sq(f.s0, max3(zero, xb, hn::Sub(zero, f.x)));
+  if constexpr (edge == 1) {
+    const V along = hn::Add(hn::Mul(xb, t.d1x), hn::Mul(f.y, t.d1y));
+    return hypotenuse_sq(f.s1, max3(zero, hn::Sub(along, t.l1), hn::Sub(zero, along)));
+  }
+  const V along = hn::Add(hn::Mul(f.x, t.d2x), hn::Mul(f.y, t.d2y));
+  return hypotenuse_sq(f.s2, max3(zero, hn::Sub(along, t.l2), hn::Sub(zero, along)));
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V distance_sq(D d, const PlanarTriangle<V>& t, const Vec3<V>& p) {
+  const Foot<V> f = foot(d, t, p);
+  const auto outside = hn::Gt(max3(f.s0, f.s1, f.s2), hn::Zero(d));
+  if (hn::AllFalse(d, outside)) return f.height_sq;
+  const V nearest = hn::Min(aside_sq<0>(d, t, f), hn::Min(aside_sq<1>(d, t, f), aside_sq<2>(d, t, f)));
+  return hn::Add(f.height_sq, hn::IfThenElseZero(outside, nearest));
+}
+
+// The same, but outside only from one edge: for points that lie near it.
+template <std::size_t edge, class D, class V = hn::Vec<D>>
+HWY_INLINE V distance_sq_by_edge(D d, const PlanarTriangle<V>& t, const Vec3<V>& p) {
+  const Foot<V> f = foot(d, t, p);
+  const auto outside = hn::Gt(max3(f.s0, f.s1, f.s2), hn::Zero(d));
+  return hn::Add(f.height_sq, hn::IfThenElseZero(outside, aside_sq<edge>(d, t, f)));
+}
+
+template <class V>
+struct ReachV {
+  V distance, rounding;
+};
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE ReachV<V> reach_of(D d, const PlanarTriangle<V>& t, V farthest_sq) {
+  const V far = hn::Sqrt(hn::Add(farthest_sq, hn::Set(d, 8 * underflow_error)));
+  const V size = hn::Add(far, hn::Add(t.longest, t.longest));
+  const V factor = hn::Add(hn::Set(d, 8.0), hn::Mul(hn::Set(d, 48.0), t.amplify));
+  const V rounding = hn::Add(t.deviation, hn::Mul(hn::Mul(hn::Set(d, unit_roundoff), factor), size));
+  const V one = hn::Set(d, 1.0);
+  return {hn::Mul(hn::Add(far, rounding), hn::Add(one, t.stretch)), rounding};
+}
+
+HWY_INLINE Vec3<hn::Vec<hn::CappedTag<double, 1>>> single(const Vector3& v) {
+  const hn::CappedTag<double, 1> d1;
+  return {hn::Set(d1, v.x), hn::Set(d1, v.y), hn::Set(d1, v.z)};
+}
+
+// Calls work(i) for vectors that cover [0, count); the last may overlap the one before. Needs count >= lanes.
+template <class D, class Work>
+HWY_INLINE void each_vector(D d, std::size_t count, const Work& work) {
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes) work(i);
+  if (i < count) work(count - lanes);
+}
+
+// Calls work(0), ..., work(count - 1) with constants: loops over arrays of vectors stay in registers only so.
+template <std::size_t count, std::size_t i = 0, class Work>
+HWY_INLINE void unrolled(const Work& work) {
+  if constexpr (i < count) {
+    work(std::integral_constant<std::size_t, i>());
+    unrolled<count, i + 1>(work);
+  }
+}
+
+// `blocks` vectors of rows from row r on: each point is loaded once for all of them, and their sums do not wait for
+// each other.
+template <std::size_t blocks, class D>
+HWY_INLINE void apply_block(D d, const double* weights, std::size_t rows, std::span<const Vector3> points,
+                            std::size_t r, double* x, double* y, double* z) {
+  using V = hn::Vec<D>;
+  const std::size_t lanes = hn::Lanes(d);
+  V sum[3][blocks];
+  unrolled<blocks>([&](auto b) HWY_ATTR { sum[0][b] = sum[1][b] = sum[2][b] = hn::Zero(d); });
+  const double* weight = weights + r;
+  for (const Vector3& p : points) {
+    const V px = hn::Set(d, p.x), py = hn::Set(d, p.y), pz = hn::Set(d, p.z);
+    unrolled<blocks>([&](auto b) HWY_ATTR {
+      const V w = hn::LoadU(d, weight + b * lanes);
+      sum[0][b] = hn::Add(sum[0][b], hn::Mul(w, px));
+      sum[1][b] = hn::Add(sum[1][b], hn::Mul(w, py));
+      sum[2][b] = hn::Add(sum[2][b], hn::Mul(w, pz));
+    });
+    weight += rows;
+  }
+  unrolled<blocks>([&](auto b) HWY_ATTR {
+    hn::StoreU(sum[0][b], d, x + r + b * lanes);
+    hn::StoreU(sum[1][b], d, y + r + b * lanes);
+    hn::StoreU(sum[2][b], d, z + r + b * lanes);
+  });
+}
+
+template <class D>
+HWY_INLINE void apply_rows_with(D d, const double* weights, std::size_t rows, std::span<const Vector3> points,
+                                double* x, double* y, double* z) {
+  constexpr std::size_t blocks = 3;
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t r = 0;
+  for (; r + blocks * lanes <= rows; r += blocks * lanes) {
+    apply_block<blocks>(d, weights, rows, points, r, x, y, z);
+  }
+  for (; r + lanes <= rows; r += lanes) apply_block<1>(d, weights, rows, points, r, x, y, z);
+  if (r < rows) apply_block<1>(d, weights, rows, points, rows - lanes, x, y, z);
+}
+
+void ApplyRows(const double* weights, std::size_t rows, std::span<const Vector3> points, double* x, double* y,
+               double* z) {
+  const hn::ScalableTag<double> wide;
+  if (rows >= hn::Lanes(wide)) {
+    apply_rows_with(wide, weights, rows, points, x, y, z);
+  } else {
+    apply_rows_with(hn::CappedTag<double, 1>(), weights, rows, points, x, y, z);
+  }
+}
+
+template <class D>
+HWY_INLINE Range heights_with(D d, const Coordinates& points, const Vector3& from, const Vector3& normal) {
+  using V = hn::Vec<D>;
+  const Vec3<V> origin{hn::Set(d, from.x), hn::Set(d, from.y), hn::Set(d, from.z)};
+  const Vec3<V> n{hn::Set(d, normal.x), hn::Set(d, normal.y), hn::Set(d, normal.z)};
+  V lower = hn::Set(d, INFINITY), upper = hn::Set(d, -INFINITY);
+  each_vector(d, points.count, [&](std::size_t i) HWY_ATTR {
+    const Vec3<V> p{hn::LoadU(d, points.x + i), hn::LoadU(d, points.y + i), hn::LoadU(d, points.z + i)};
+    const V height = dot(n, sub(p, origin));
+    lower = hn::Min(height, lower);  // in this order a NaN is passed over
+    upper = hn::Max(height, upper);
+  });
+  // Which of two zeros is the least depends on their order, and so on the number of lanes: -0 + 0 is 0.
+  return {hn::GetLane(hn::MinOfLanes(d, lower)) + 0.0, hn::GetLane(hn::MaxOfLanes(d, upper)) + 0.0};
+}
+
+Range Heights(const Coordinates& points, const Vector3& from, const Vector3& normal) {
+  const hn::ScalableTag<double> wide;
+  if (points.count >= hn::Lanes(wide)) return heights_with(wide, points, from, normal);
+  return heights_with(hn::CappedTag<double, 1>(), points, from, normal);
+}
+
+template <class D, class V1>
+HWY_INLINE double farthest_sq_with(D d, const Coordinates& points, const PlanarTriangle<V1>& one) {
+  using V = hn::Vec<D>;
+  const auto all = [&](const V1& v) HWY_ATTR { return hn::Set(d, hn::GetLane(v)); };
+  const auto all3 = [&](const Vec3<V1>& v) HWY_ATTR { return Vec3<V>{all(v.x), all(v.y), all(v.z)}; };
+  const PlanarTriangle<V> t{all3(one.a),        all3(one.t1),     all3(one.t2),    all3(one.n),
+                            all(one.l0),        all(one.l1),      all(one.l2),     all(one.d1x),
+                            all(one.d1y),       all(one.d2x),     all(one.d2y),    all(one.longest),
+                            all(one.deviation), all(one.amplify), all(one.stretch)};
+  V farthest = hn::Zero(d);
+  auto finite = hn::Le(farthest, farthest);
+  each_vector(d, points.count, [&](std::size_t i) HWY_ATTR {
+    const Vec3<V> p{hn::LoadU(d, points.x + i), hn::LoadU(d, points.y + i), hn::LoadU(d, points.z + i)};
+    const V dist_sq = distance_sq(d, t, p);
+    finite = hn::And(finite, hn::Lt(dist_sq, hn::Set(d, INFINITY)));
+    farthest = hn::Max(farthest, dist_sq);
+  });
+  return hn::AllTrue(d, finite) ? hn::GetLane(hn::MaxOfLanes(d, farthest)) : INFINITY;
+}
+
+bool Farthest(const Coordinates& points, std::size_t split, const Vector3& a, const Vector3& b,
+              const Vector3& c, std::array<Reach, 2>& out) {
+  const hn::CappedTag<double, 1> d1;
+  const auto t = planar_triangle(d1, single(a), single(b), single(c));
+  if (!hn::AllTrue(d1, well_shaped(d1, t))) return false;
+  const hn::ScalableTag<double> wide;
+  const std::array<Coordinates, 2> parts{points.first(split), points.from(split)};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double farthest_sq = parts[i].count >= hn::Lanes(wide) ? farthest_sq_with(wide, parts[i], t)
+                                                                 : farthest_sq_with(d1, parts[i], t);
+    const auto reach = reach_of(d1, t, hn::Set(d1, farthest_sq));
+    out[i] = {hn::GetLane(reach.distance), hn::GetLane(reach.rounding)};
+    if (parts[i].count == 0) out[i] = {0, 0};
+  }
+  return true;
+}
+
+// ---- regular patches, one a lane ----
+
+constexpr std::size_t bezier_count = 15;
+
+template <class V>
+HWY_INLINE V mean(V half, V a, V b) {
+  return hn::Mul(half, hn::Add(a, b));
+}
+
+// Bezier points of one coordinate from the twelve control points; 24 times these are the integer sums of
+// patch/polynomial.cpp. A term meets at most six roundings (derivations/rounding.md, "Batches").
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void bezier(D d, const V* c, V* b) {
+  const auto times = [&](double k, V v) HWY_ATTR { return hn::Mul(hn::Set(d, k), v); };
+  const V part = hn::Set(d, 1.0 / 24);
+  const V s01 = hn::Add(c[0], c[1]), s12 = hn::Add(c[1], c[2]), s20 = hn::Add(c[2], c[0]);
+  const auto corner = [&](std::size_t v, V r0, V r1, V r2, V r3, V r4, V r5) HWY_ATTR {
+    const V ring = hn::Add(hn::Add(hn::Add(r0, r1), hn::Add(r2, r3)), hn::Add(r4, r5));
+    return hn::Mul(part, hn::Add(times(12, c[v]), hn::Add(ring, ring)));
+  };
+  // Next to corner v on the edge towards w: wings of the edge, then the ring's next ones.
+  const auto beside = [&](std::size_t v, std::size_t w, V wings, V next) HWY_ATTR {
+    const V sum = hn::Add(hn::Add(times(12, c[v]), times(4, c[w])), hn::Add(times(3, wings), next));
+    return hn::Mul(part, sum);
+  };
+  const auto middle = [&](V ends, V wings)
+                          HWY_ATTR { return hn::Mul(part, hn::Add(times(8, ends), times(4, wings))); };
+  const auto inner = [&](std::size_t v, V others, V across) HWY_ATTR {
+    return hn::Mul(part, hn::Add(times(10, c[v]), hn::Add(times(6, others), across)));
+  };
+  const V w01 = hn::Add(c[2], c[3]), w12 = hn::Add(c[0], c[4]), w20 = hn::Add(c[1], c[5]);
+  b[0] = corner(0, c[1], c[2], c[3], c[5], c[6], c[7]);
+  b[4] = corner(1, c[0], c[2], c[3], c[4], c[8], c[9]);
+  b[14] = corner(2, c[0], c[1], c[4], c[5], c[10], c[11]);
+  b[1] = beside(0, 1, w01, hn::Add(c[5], c[7]));
+  b[2] = middle(s01, w01);
+  b[3] = beside(1, 0, w01, hn::Add(c[4], c[8]));
+  b[5] = beside(0, 2, w20, hn::Add(c[3], c[6]));
+  b[9] = middle(s20, w20);
+  b[12] = beside(2, 0, w20, hn::Add(c[4], c[11]));
+  b[8] = beside(1, 2, w12, hn::Add(c[3], c[9]));
+  b[11] = middle(s12, w12);
+  b[13] = beside(2, 1, w12, hn::Add(c[5], c[10]));
+  b[6] = inner(0, s12, hn::Add(c[3], c[5]));
+  b[7] = inner(1, s20, hn::Add(c[3], c[4]));
+  b[10] = inner(2, s01, hn::Add(c[4], c[5]));
+}
+
+// De Casteljau's scheme at 1/2: step i has the points at[i][0], ..., at[i][n - 1 - i].
+template <class V, std::size_t n>
+struct Pyramid {
+  V at[n][n];
+  HWY_INLINE Pyramid(V half, const V* q, std::size_t stride) {
+    unrolled<n>([&](auto k) HWY_ATTR { at[0][k] = q[k * stride]; });
+    rise(half);
+  }
+  // The points take(0), take(1), ...
+  template <class Take>
+  HWY_INLINE Pyramid(V half, const Take& take) {
+    unrolled<n>([&](auto k) HWY_ATTR { at[0][k] = take(k); });
+    rise(half);
+  }
+  HWY_INLINE void rise(V half) {
+    unrolled<n - 1>([&](auto i) HWY_ATTR {
+      unrolled<n - 1 - i>([&](auto k) HWY_ATTR { at[i + 1][k] = mean(half, at[i][k], at[i][k + 1]); });
+    });
+  }
+};
+
+// The 45 different Bezier points of the four quarters, as blossoms f(...) of the edges' midpoints and the corners:
+// corner children f(mid^i, other mid^j, corner^(4-i-j)), then three inner ones of the middle child. First come, for
+// edges 01, 12, 20 in turn, its first corner and the points inside it.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void split_once(D d, const V* b, V* out) {
+  const V half = hn::Set(d, 0.5);
+  V left[5][5], right[5][5];  // f(m01^i, v0 or v1^(4-i-j), v2^j) at [i][j]
+  V once[4][4], twice[3][3];  // f(m01, ...) and f(m01, m01, ...) in full, at [j][k]: k of v1, j of v2
+  V upper[5][5];              // f(m20^i, v1^j, v2^(4-i-j)) at [i][j]
+  constexpr std::array<std::size_t, 5> row_start{0, 5, 9, 12, 14};
+  unrolled<5>([&](auto j) HWY_ATTR {
+    const Pyramid<V, 5 - j> p(half, b + row_start[j], 1);
+    unrolled<5 - j>([&](auto i) HWY_ATTR {
+      left[i][j] = p.at[i][0];
+      right[i][j] = p.at[i][4 - j - i];
+    });
+    if constexpr (j < 4) unrolled<4 - j>([&](auto k) HWY_ATTR { once[j][k] = p.at[1][k]; });
+    if constexpr (j < 3) unrolled<3 - j>([&](auto k) HWY_ATTR { twice[j][k] = p.at[2][k]; });
+  });
+  unrolled<5>([&](auto k) HWY_ATTR {
+    const Pyramid<V, 5 - k> p(half, [&](auto j) HWY_ATTR { return b[row_start[j] + k]; });
+    unrolled<5 - k>([&](auto i) HWY_ATTR { upper[i][k] = p.at[i][4 - k - i]; });
+  });
+  constexpr std::size_t of_edge = 8;
+  std::array<V*, 3> next{out + 1, out + of_edge + 1, out + 2 * of_edge + 1};
+  V* inner = out + 3 * of_edge;
+  unrolled<3>([&](auto child) HWY_ATTR {
+    const auto& along = child == 0 ? left : child == 1 ? right : upper;
+    // Edges of the patch that i alone and j alone walk along.
+    constexpr std::size_t edge_i = child == 2 ? 2 : 0, edge_j = child == 0 ? 2 : 1;
+    unrolled<5>([&](auto i) HWY_ATTR {
+      const Pyramid<V, 5 - i> p(half, along[i], 1);
+      unrolled<5 - i>([&](auto j) HWY_ATTR {
+        if constexpr (i == 0 && j == 0) {
+          out[child * of_edge] = p.at[0][0];
+        } else if constexpr ((child == 1 ? i : j) == 4) {
+          // The midpoint of this edge is another child's.
+        } else if constexpr (j == 0) {
+          *next[edge_i]++ = p.at[j][0];
+        } else if constexpr (i == 0) {
+          *next[edge_j]++ = p.at[j][0];
+        } else {
+          *inner++ = p.at[j][0];
+        }
+      });
+    });
+  });
+  const auto blossom2 = [&](V aa, V ab, V bb)
+                            HWY_ATTR { return mean(half, mean(half, aa, ab), mean(half, ab, bb)); };
+  *inner++ = mean(half, mean(half, twice[0][1], twice[1][0]), mean(half, twice[1][1], twice[2][0]));
+  *inner++ =
+      mean(half, blossom2(once[0][2], once[1][1], once[2][0]), blossom2(once[1][2], once[2][1], once[3][0]));
+  *inner++ =
+      mean(half, blossom2(once[0][1], once[1][1], once[2][1]), blossom2(once[1][0], once[2][0], once[3][0]));
+}
+
+// A regular Loop patch inside the surface. First come, for edges 01, 12, 20 in turn, the first corner and the points
+// inside the edge.
+struct LoopShape {
+  static constexpr std::size_t controls = 12, hull_count = 45, of_edge = 8;
+  template <class D, class V = hn::Vec<D>>
+  static HWY_INLINE void hull(D d, const V* c, V* out) {
+    V b[bezier_count];
+    bezier(d, c, b);
+    split_once(d, b, out);
+  }
+};
+
+// Half a bicubic quad: its 28 Bezier points as a triangle of degree 6, derivations/tensor_bezier.md.
+struct BicubicShape {
+  static constexpr std::size_t controls = 16, hull_count = 28, of_edge = 6;
+
+  // Place of each control point in the lattice of 4 x 4, as patch/neighbourhood.h draws it.
+  static constexpr std::array<std::size_t, 16> place{5, 6, 10, 9, 1, 2, 7, 11, 14, 13, 8, 4, 0, 3, 15, 12};
+
+  // The bicubic Bezier points (i, j), at i + 4 j, that each hull point is a sum of.
+  struct Sums {
+    std::size_t begin[hull_count + 1] = {};
+    std::size_t point[8 * hull_count] = {};
+    double weight[8 * hull_count] = {};
+  };
+  static constexpr Sums make_sums() {
+    constexpr int binomial[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
+    constexpr int factorial[7] = {1, 1, 2, 6, 24, 120, 720};
+    int sums[7][7][16] = {};
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) {
+        for (int p = 0; p <= i; ++p) {
+          for (int q = 0; q <= 3 - j; ++q) {
+            sums[p + q][i - p + j][i + 4 * j] +=
+                binomial[3][i] * binomial[3][j] * binomial[i][p] * binomial[3 - j][q];
+          }
+        }
+      }
+    }
+    int u_of[hull_count] = {}, v_of[hull_count] = {};
+    std::size_t inner = 3 * of_edge;
+    for (int v = 0; v <= 6; ++v) {
+      for (int u = 0; u + v <= 6; ++u) {
+        const int w = 6 - u - v;
+        const std::size_t at = v == 0 && u < 6   ? static_cast<std::size_t>(u)
+                               : w == 0 && v < 6 ? of_edge + static_cast<std::size_t>(v)
+                               : u == 0 && v > 0 ? 2 * of_edge + static_cast<std::size_t>(w)
+                                                 : inner++;
+        u_of[at] = u;
+        v_of[at] = v;
+      }
+    }
+    Sums result{};
+    std::size_t count = 0;
+    for (std::size_t at = 0; at < hull_count; ++at) {
+      const int u = u_of[at], v = v_of[at];
+      const double multinomial = factorial[6] / (factorial[u] * factorial[v] * factorial[6 - u - v]);
+      for (std::size_t b = 0; b < 16; ++b) {
+        if (sums[u][v][b] == 0) continue;
+        result.point[count] = b;
+        result.weight[count++] = sums[u][v][b] / multinomial;
+      }
+      result.begin[at + 1] = count;
+    }
+    return result;
+  }
+
+  template <class V>
+  static HWY_INLINE void segment(V four, V two, const V& a, const V& b, const V& c, const V& e, V* out,
+                                 std::size_t stride) {
+    out[0] = hn::Add(hn::Add(a, c), hn::Mul(four, b));
+    out[stride] = hn::Add(hn::Mul(four, b), hn::Mul(two, c));
+    out[2 * stride] = hn::Add(hn::Mul(two, b), hn::Mul(four, c));
+    out[3 * stride] = hn::Add(hn::Add(b, e), hn::Mul(four, c));
+  }
+
+  template <class D, class V = hn::Vec<D>>
+  static HWY_INLINE void hull(D d, const V* control, V* out) {
+    static constexpr Sums sums = make_sums();
+    const V four = hn::Set(d, 4.0), two = hn::Set(d, 2.0), part = hn::Set(d, 1.0 / 36);
+    V c[16], along[16], b[16];
+    for (std::size_t k = 0; k < 16; ++k) c[place[k]] = control[k];
+    for (std::size_t y = 0; y < 16; y += 4)
+      segment(four, two, c[y], c[y + 1], c[y + 2], c[y + 3], along + y, 1);
+    for (std::size_t x = 0; x < 4; ++x) {
+      segment(four, two, along[x], along[4 + x], along[8 + x], along[12 + x], b + x, 4);
+    }
+    for (V& point : b) point = hn::Mul(part, point);
+#ifndef __SANITIZE_ADDRESS__  // whose checks take minutes to compile then
+#pragma GCC unroll 28
+#endif
+    for (std::size_t p = 0; p < hull_count; ++p) {
+      V sum = hn::Zero(d);
+#ifndef __SANITIZE_ADDRESS__
+#pragma GCC unroll 8
+#endif
+      for (std::size_t t = sums.begin[p]; t < sums.begin[p + 1]; ++t) {
+        sum = hn::Add(sum, hn::Mul(hn::Set(d, sums.weight[t]), b[sums.point[t]]));
+      }
+      out[p] = sum;
+    }
+  }
+};
+
+template <class Shape, class D, class V = hn::Vec<D>>
+HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* out) {
+  constexpr std::size_t controls = Shape::controls, hull_count = Shape::hull_count, of_edge = Shape::of_edge;
+  const std::size_t lanes = hn::Lanes(d);
+  V hull[3][hull_count];
+  Vec3<V> origin;
+  V* const origins[3] = {&origin.x, &origin.y, &origin.z};
+  V largest = hn::Zero(d);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    V c[controls];
+    const double* from = gathered + axis * lanes;
+    const V o = hn::Load(d, from);
+    *origins[axis] = o;
+    for (std::size_t k = 0; k < controls; ++k) {
+      c[k] = hn::Sub(hn::Load(d, from + 3 * k * lanes), o);
+      largest = hn::Max(largest, hn::Abs(c[k]));
+    }
+    Shape::hull(d, c, hull[axis]);
+  }
+  const auto at = [&](std::size_t i) HWY_ATTR { return Vec3<V>{hull[0][i], hull[1][i], hull[2][i]}; };
+
+  // The corners are points of the hull, at height 0. The frame is theirs before they are shifted along its normal.
+  Vec3<V> corner[3] = {at(0), at(of_edge), at(2 * of_edge)};
+  PlanarTriangle<V> t = planar_triangle(d, corner[0], corner[1], corner[2]);
+  V lower = hn::Zero(d), upper = lower;
+  const V from = dot(t.n, corner[0]);
+  for (std::size_t i = 1; i < hull_count; ++i) {
+    const V height = hn::Sub(dot(t.n, at(i)), from);
+    lower = hn::Min(lower, height);
+    upper = hn::Max(upper, height);
+  }
+  // No -0, as in heights_with().
+  const V both = hn::Add(hn::Add(lower, upper), hn::Zero(d));
+  const Vec3<V> shift = scaled(hn::Mul(hn::Set(d, 0.5), both), t.n);
+  for (auto& c : corner) c = add(c, shift);
+  t.a = corner[0];
+
+  V farthest = hn::Zero(d);
+  auto good = well_shaped(d, t);
+  const auto meet = [&](V dist_sq) HWY_ATTR {
+    good = hn::And(good, hn::Lt(dist_sq, hn::Set(d, INFINITY)));
+    farthest = hn::Max(farthest, dist_sq);
+  };
+  meet(dot(shift, shift));  // the corners
+  for (std::size_t i = 1; i < of_edge; ++i) {
+    meet(distance_sq_by_edge<0>(d, t, at(i)));
+    meet(distance_sq_by_edge<1>(d, t, at(of_edge + i)));
+    meet(distance_sq_by_edge<2>(d, t, at(2 * of_edge + i)));
+  }
+  for (std::size_t i = 3 * of_edge; i < hull_count; ++i) meet(distance_sq(d, t, at(i)));
+  const ReachV<V> reach = reach_of(d, t, farthest);
+
+  // What control points, hull points and the placed base are off by, a coordinate.
+  V placed = hn::Zero(d);
+  for (auto& c : corner) {
+    c = add(origin, c);
+    placed = hn::Max(placed, max3(hn::Abs(c.x), hn::Abs(c.y), hn::Abs(c.z)));
+  }
+  constexpr double hull_error = unit_roundoff + gamma_bound(24);
+  const V error = hn::Add(hn::Add(hn::Mul(hn::Set(d, hull_error * (1 + 0x1p-42)), largest),
+                                  hn::Mul(hn::Set(d, unit_roundoff * (1 + 0x1p-42)), placed)),
+                          hn::Set(d, 64 * underflow_error));
+  const V given = hn::Mul(hn::Set(d, spatial_error(1)), error);
+  const V rounding = hn::Add(reach.rounding, given), radius = hn::Add(reach.distance, given);
+  const V widened = hn::Add(hn::Mul(radius, hn::Set(d, 1 + 0x1p-42)), hn::Set(d, underflow_error));
+  const V answer =
+      hn::IfThenElse(hn::And(good, hn::Lt(widened, hn::Set(d, INFINITY))), widened, hn::Set(d, -1.0));
+
+  HWY_ALIGN double lane[11][HWY_MAX_BYTES / sizeof(double)];
+  for (std::size_t k = 0; k < 3; ++k) {
+    hn::Store(corner[k].x, d, lane[3 * k]);
+    hn::Store(corner[k].y, d, lane[3 * k + 1]);
+    hn::Store(corner[k].z, d, lane[3 * k + 2]);
+  }
+  hn::Store(answer, d, lane[9]);
+  hn::Store(rounding, d, lane[10]);
+  for (std::size_t l = 0; l < lanes; ++l) {
+    for (std::size_t k = 0; k < 3; ++k)
+      out[l].base[k] = {lane[3 * k][l], lane[3 * k + 1][l], lane[3 * k + 2][l]};
+    out[l].radius = lane[9][l];
+    out[l].rounding = lane[10][l];
+  }
+}
+
+template <class Shape>
+void FitAll(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
+  constexpr std::size_t controls = Shape::controls;
+  const hn::ScalableTag<double> d;
+  const std::size_t lanes = hn::Lanes(d);
+  HWY_ALIGN double gathered[3 * controls * HWY_MAX_BYTES / sizeof(double)];
+  BatchFit answers[HWY_MAX_BYTES / sizeof(double)];
+  for (std::size_t begin = 0; begin < out.size(); begin += lanes) {
+    // The last group is filled up with copies of its last patch.
+    const std::size_t here = std::min(lanes, out.size() - begin);
+    gather_lanes(points, control.data() + controls * begin, controls, 0, controls, here, lanes, gathered);
+    if (here == lanes) {
+      fit_group<Shape>(d, gathered, out.data() + begin);
+    } else {
+      fit_group<Shape>(d, gathered, answers);
+      std::copy_n(answers, here, out.data() + begin);
+    }
+  }
+}
+
+void FitRegular(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
+  FitAll<LoopShape>(points, control, out);
+}
+
+void FitBicubic(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
+  FitAll<BicubicShape>(points, control, out);
+}
+
+const char* InstructionSet() { return hwy::TargetName(HWY_TARGET); }
+
+}  // namespace
+}  // namespace snug::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace snug::kernels {
+
+HWY_EXPORT(ApplyRows);
+HWY_EXPORT(Heights);
+HWY_EXPORT(Farthest);
+HWY_EXPORT(FitRegular);
+HWY_EXPORT(FitBicubic);
+HWY_EXPORT(InstructionSet);
+
+const char* instruction_set() { return HWY_DYNAMIC_DISPATCH(InstructionSet)(); }
+
+void apply_rows(const double* weights, std::size_t rows, std::span<const Vector3> points, double* x,
+                double* y, double* z) {
+  HWY_DYNAMIC_DISPATCH(ApplyRows)(weights, rows, points, x, y, z);
+}
+
+Range heights(const Coordinates& points, const Vector3& from, const Vector3& normal) {
+  return HWY_DYNAMIC_DISPATCH(Heights)(points, from, normal);
+}
+
+std::optional<std::array<Reach, 2>> farthest(const Coordinates& points, std::size_t split, const Vector3& a,
+                                             const Vector3& b, const Vector3& c) {
+  std::array<Reach, 2> reach;
+  if (!HWY_DYNAMIC_DISPATCH(Farthest)(points, split, a, b, c, reach)) return std::nullopt;
+  return reach;
+}
+
+std::optional<Reach> farthest(const Coordinates& points, const Vector3& a, const Vector3& b,
+                              const Vector3& c) {
+  const auto both = farthest(points, points.count, a, b, c);
+  if (!both) return std::nullopt;
+  return (*both)[0];
+}
+
+void fit_regular(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
+  HWY_DYNAMIC_DISPATCH(FitRegular)(points, control, out);
+}
+
+void fit_bicubic(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
+  HWY_DYNAMIC_DISPATCH(FitBicubic)(points, control, out);
+}
+
+}  // namespace snug::kernels
+#endif

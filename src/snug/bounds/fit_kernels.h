@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include <snug/base/ids.h>
+#include <snug/geometry/point.h>
+
+/// The loops that bounds spend their time in, on the widest vectors that the processor has; chosen at run time.
+///
+/// Guarantee: every lane does the same operations in the same order on every instruction set, none of them
+///            fused, and lanes meet only in minima and maxima: results are the same everywhere, bit by bit.
+namespace snug::kernels {
+
+/// The instruction set in use, such as AVX2.
+[[nodiscard]] const char* instruction_set();
+
+/// Coordinates of many points, one array each, `count` long.
+struct Coordinates {
+  const double* x;
+  const double* y;
+  const double* z;
+  std::size_t count;
+  [[nodiscard]] Coordinates first(std::size_t n) const { return {x, y, z, n}; }
+  [[nodiscard]] Coordinates from(std::size_t i) const { return {x + i, y + i, z + i, count - i}; }
+};
+
+/// x, y, z = M points, for a column-major matrix of `rows` rows. Sums run over the columns in order.
+/// Cost:      3 rows points.size() multiply-adds, four to eight at once.
+void apply_rows(const double* weights, std::size_t rows, std::span<const Vector3> points, double* x,
+                double* y, double* z);
+
+/// Least and largest dot(normal, p - from). NaN where a point is not finite is passed over.
+struct Range {
+  double lower, upper;
+};
+[[nodiscard]] Range heights(const Coordinates& points, const Vector3& from, const Vector3& normal);
+
+/// How far points are from a triangle.
+struct Reach {
+  double distance;  ///< upper bound of the largest distance, but for the points' own error; infinite where a
+                    ///< point is not finite
+  double rounding;  ///< the part of it that accounts for rounding
+};
+
+/// Largest distance of the points to the triangle; nothing for a triangle that is too flat for its own plane:
+/// the sine of its sharpest angle below 1/32, without area, not finite, or of a size whose fourth power leaves
+/// the range of doubles.
+///
+/// Guarantee: largest distance <= distance, for the triangle of these very doubles; distance <= largest
+///            distance + 3 rounding, times 1 + 2^-39 where its longest edge is below 1e-70;
+///            rounding <= (16 + 112 / sine) u (distance + 2 longest edge).
+/// Requires:  points in scaled coordinates (geometry/scaling.h), or not finite.
+/// Source:    derivations/rounding.md, "Distance in the triangle's plane".
+[[nodiscard]] std::optional<Reach> farthest(const Coordinates& points, const Vector3& a, const Vector3& b,
+                                            const Vector3& c);
+/// The same for the first `split` points and for the others; no distance for none.
+/// Requires:  split <= points.count.
+[[nodiscard]] std::optional<std::array<Reach, 2>> farthest(const Coordinates& points, std::size_t split,
+                                                           const Vector3& a, const Vector3& b,
+                                                           const Vector3& c);
+
+/// What the batch says of one patch.
+struct BatchFit {
+  Point3 base[3];
+  double radius;    ///< negative: not answered, take the general way
+  double rounding;  ///< part of the radius
+};
+
+/// Offset triangles of regular patches inside the surface, straight from their control points: Bezier points,
+/// one split of de Casteljau's, fit; a patch a lane.
+///
+/// Guarantee: as offset_triangle() on the patch's hull points. A triangle that farthest() does not answer is
+///            marked.
+/// Requires:  control: twelve vertices of `points` a patch, in the kind's order; out.size() patches; points as
+///            in farthest().
+/// Cost:      about 0.15 to 0.2 microseconds a patch with four lanes.
+void fit_regular(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out);
+
+/// The same of regular Catmull-Clark patches inside the surface, halves of bicubic quads: their Bezier points without a
+/// split, sixteen control points a patch.
+///
+/// Guarantee: the patch lies in the offset triangle; its radius is at least that of fits to points after a split.
+/// Cost:      about 0.15 microseconds a half with four lanes.
+void fit_bicubic(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out);
+
+}  // namespace snug::kernels

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+#include <snug/base/ids.h>
+#include <snug/geometry/point.h>
+
+namespace snug::kernels {
+
+/// Control points [from, to) of the next `lanes` patches, for vectors with a patch a lane: coordinate a of
+/// control point i of patch l at out[(3 (i - from) + a) lanes + l]. Lanes beyond the `here` patches that are left
+/// repeat the last one.
+///
+/// Requires:  control: `count` vertices a patch, from the first of these patches on; 0 < here <= lanes.
+inline void gather_lanes(std::span<const Point3> points, const VertexId* control, std::size_t count,
+                         std::size_t from, std::size_t to, std::size_t here, std::size_t lanes, double* out) {
+  for (std::size_t l = 0; l < lanes; ++l) {
+    const VertexId* const index = control + count * std::min(l, here - 1);
+    double* at = out + l;
+    for (std::size_t i = from; i < to; ++i) {
+      const Point3& p = points[index[i].index()];
+      at[0] = p.x;
+      at[lanes] = p.y;
+      at[2 * lanes] = p.z;
+      at += 3 * lanes;
+    }
+  }
+}
+
+}  // namespace snug::kernels

@@ -1,0 +1,214 @@
+#include <snug/bounds/layout.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include <snug/base/contract.h>
+#include <snug/bounds/fair_layout.h>
+#include <snug/geometry/interval.h>
+#include <snug/scheme/loop_masks.h>
+#include <snug/scheme/refine.h>
+
+namespace snug {
+namespace {
+
+LayoutPoint operator+(LayoutPoint a, LayoutPoint b) { return {a[0] + b[0], a[1] + b[1]}; }
+LayoutPoint operator-(LayoutPoint a, LayoutPoint b) { return {a[0] - b[0], a[1] - b[1]}; }
+LayoutPoint operator*(double s, LayoutPoint a) { return {s * a[0], s * a[1]}; }
+
+constexpr std::array<LayoutPoint, 3> unit_triangle{{{0, 0}, {1, 0}, {0, 1}}};
+
+// The ring of a corner, counter-clockwise from corner + 1: so corner + 2 comes second. At a boundary those
+// clockwise of corner + 1 are apart, nearest first.
+struct Ring {
+  std::vector<std::size_t> after, before;
+};
+
+Ring ring_of(const Topology& topology, std::size_t corner) {
+  const HalfEdge own = topology.first_of(FaceId(0)) + static_cast<HalfEdge>(corner);
+  Ring ring;
+  HalfEdge h = own;
+  do {
+    ring.after.push_back(topology.to(h).index());
+    const HalfEdge next = topology.ccw(h);
+    if (next == no_half_edge) {
+      ring.after.push_back(topology.from(topology.prev(h)).index());
+      for (h = topology.cw(own); h != no_half_edge; h = topology.cw(h))
+        ring.before.push_back(topology.to(h).index());
+      return ring;
+    }
+    h = next;
+  } while (h != own);
+  return ring;
+}
+
+// Twice the cosine of the angle between spokes: equal angles, half a turn in all at a boundary.
+double twice_cosine(const CornerFan& fan) {
+  const auto faces = static_cast<unsigned>(fan.faces());
+  return 2 * cos_of_turn(1, fan.closed ? faces : 2 * faces).middle();
+}
+
+// Calls place(vertex, where) for the ring of a corner as the affine image of a regular fan:
+// u_{j+1} = 2 cos u_j - u_{j-1}.
+template <class Place>
+void lay_ring(const Topology& topology, const CornerFan& fan, std::size_t corner, Place&& place) {
+  const LayoutPoint centre = unit_triangle[corner];
+  const LayoutPoint first = unit_triangle[(corner + 1) % 3] - centre;
+  const LayoutPoint second = unit_triangle[(corner + 2) % 3] - centre;
+  const double c = twice_cosine(fan);
+  const Ring ring = ring_of(topology, corner);
+  LayoutPoint last = first, here = second;
+  for (std::size_t j = 2; j < ring.after.size(); ++j) {
+    const LayoutPoint next = c * here - last;
+    last = here, here = next;
+    place(ring.after[j], centre + here);
+  }
+  last = second, here = first;
+  for (const std::size_t v : ring.before) {
+    const LayoutPoint next = c * here - last;
+    last = here, here = next;
+    place(v, centre + here);
+  }
+}
+
+// The corner that the dissertation's layout is built around: the extraordinary one, or any of a regular kind.
+std::optional<std::size_t> lone_centre(const Kind& kind) {
+  std::size_t centre = 0, extraordinary = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!kind.corner(i).closed) return {};
+    if (kind.regular_corner(i)) continue;
+    centre = i;
+    ++extraordinary;
+  }
+  return extraordinary <= 1 ? std::optional(centre) : std::nullopt;
+}
+
+std::vector<LayoutPoint> ngon_layout(const Kind& kind, const Topology& topology, std::size_t centre) {
+  std::vector<LayoutPoint> layout(kind.control_count());
+  std::copy(unit_triangle.begin(), unit_triangle.end(), layout.begin());
+  const CornerFan& fan = kind.corner(centre);
+  lay_ring(topology, fan, centre, [&](std::size_t v, LayoutPoint where) { layout[v] = where; });
+  const std::size_t one = (centre + 1) % 3, two = (centre + 2) % 3;
+  const LayoutPoint origin = unit_triangle[centre];
+  const LayoutPoint u1 = unit_triangle[one] - origin, u2 = unit_triangle[two] - origin;
+  const double k = outer_spoke(fan.faces());
+  const double c = 1 + twice_cosine(fan);
+  const Ring around_one = ring_of(topology, one);  // u2, u0, un, a, b, c
+  const Ring around_two = ring_of(topology, two);  // u0, u1, c, d, e, u3
+  layout[around_one.after[3]] = origin + (k / 2) * (c * u1 - u2);
+  layout[around_one.after[4]] = origin + k * u1;
+  layout[around_one.after[5]] = origin + (k / 2) * (u1 + u2);
+  layout[around_two.after[3]] = origin + k * u2;
+  layout[around_two.after[4]] = origin + (k / 2) * (c * u2 - u1);
+  return layout;
+}
+
+// Subdivision around the extraordinary corner shrinks the ring by its eigenvalue; the outer points follow by
+// iteration, for their own eigenvalues are at most 1/8.
+void relax_to_characteristic(const Kind& kind, std::size_t centre, std::vector<LayoutPoint>& layout) {
+  std::vector<bool> fixed(kind.control_count(), false);
+  const Neighbourhood around = neighbourhood(kind.key());
+  const Topology& topology = around.topology;
+  // The quarter at the corner has the kind again, and here in the same order.
+  const RefinedTopology refined = refine(topology, around.options, around.sharpness);
+  std::vector<VertexId> control;
+  control_vertices(refined.topology, FaceId(centre), 0, kind.key(), control);
+  SNUG_EXPECT(control.size() == layout.size());
+  fixed[centre] = true;
+  for (const std::size_t v : ring_of(topology, centre).after) fixed[v] = true;
+  const double grow = 1 / loop::subdominant(kind.corner(centre).faces());
+  const LayoutPoint origin = unit_triangle[centre];
+  for (int step = 0; step < 200; ++step) {
+    const std::vector<LayoutPoint> old = layout;
+    for (std::size_t r = 0; r < layout.size(); ++r) {
+      if (fixed[r]) continue;
+      LayoutPoint sum{0, 0};
+      const Stencils::Row row = refined.stencils.row(control[r].index());
+      for (std::size_t i = 0; i < row.sources.size(); ++i)
+        sum = sum + row.weights[i] * (old[row.sources[i]] - origin);
+      layout[r] = origin + grow * sum;
+    }
+    if (layout == old) break;
+  }
+}
+
+// Moves the points that are not corners as little as makes the limits of the corners the corners.
+void pull_limits_to_corners(const Kind& kind, std::vector<LayoutPoint>& layout) {
+  const std::size_t count = kind.control_count();
+  std::array<std::vector<double>, 3> rows;
+  std::array<LayoutPoint, 3> miss;
+  for (std::size_t k = 0; k < 3; ++k) {
+    rows[k].assign(count, 0.0);
+    const Stencils::Row row = kind.corner_limits().row(k);
+    miss[k] = unit_triangle[k];
+    for (std::size_t i = 0; i < row.sources.size(); ++i) {
+      rows[k][row.sources[i]] += row.weights[i];
+      miss[k] = miss[k] - row.weights[i] * layout[row.sources[i]];
+    }
+    for (std::size_t i = 0; i < 3; ++i) rows[k][i] = 0;  // these stay
+  }
+  // Least squares: rows' multipliers from the 3 x 3 Gram matrix, by Gauss and Jordan. A sharp corner moves
+  // nothing.
+  std::array<std::array<double, 5>, 3> system{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t l = 0; l < 3; ++l) {
+      for (std::size_t i = 0; i < count; ++i) system[k][l] += rows[k][i] * rows[l][i];
+    }
+    if (system[k][k] == 0) system[k][k] = 1;
+    system[k][3] = miss[k][0];
+    system[k][4] = miss[k][1];
+  }
+  for (std::size_t pivot = 0; pivot < 3; ++pivot) {
+    if (!(system[pivot][pivot] > 1e-9)) return;  // dependent: leave the layout as it is
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (k == pivot) continue;
+      const double factor = system[k][pivot] / system[pivot][pivot];
+      for (std::size_t l = 0; l < 5; ++l) system[k][l] -= factor * system[pivot][l];
+    }
+  }
+  for (std::size_t i = 3; i < count; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double by = rows[k][i] / system[k][k];
+      layout[i] = layout[i] + by * LayoutPoint{system[k][3], system[k][4]};
+    }
+  }
+}
+
+std::vector<LayoutPoint> blended_layout(const Kind& kind, const Topology& topology) {
+  std::vector<LayoutPoint> layout(kind.control_count(), LayoutPoint{0, 0});
+  std::vector<double> places(kind.control_count(), 0.0);
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    lay_ring(topology, kind.corner(corner), corner, [&](std::size_t v, LayoutPoint where) {
+      layout[v] = layout[v] + where;
+      ++places[v];
+    });
+  }
+  for (std::size_t i = 3; i < layout.size(); ++i) layout[i] = (1 / places[i]) * layout[i];
+  std::copy(unit_triangle.begin(), unit_triangle.end(), layout.begin());
+  pull_limits_to_corners(kind, layout);
+  return layout;
+}
+
+}  // namespace
+
+double outer_spoke(std::size_t n) {
+  SNUG_EXPECT(n >= 3);
+  const double c = cos_of_turn(1, static_cast<unsigned>(n)).middle();  // of the angle between spokes
+  return n >= 6 ? (6 - 2 * c) / (2 + c) : (36 - 6 * c) / (16 + c);
+}
+
+bool laid_by_rings(const KindKey& key) { return key.scheme == Scheme::loop && key.plain(); }
+
+std::vector<LayoutPoint> make_layout(const Kind& kind, TableLayout layout) {
+  if (!laid_by_rings(kind.key())) return fair_layout(kind);
+  const Topology topology = neighbourhood(kind.key()).topology;
+  const std::optional<std::size_t> centre = lone_centre(kind);
+  if (!centre) return blended_layout(kind, topology);
+  std::vector<LayoutPoint> result = ngon_layout(kind, topology, *centre);
+  if (layout == TableLayout::characteristic) relax_to_characteristic(kind, *centre, result);
+  return result;
+}
+
+}  // namespace snug

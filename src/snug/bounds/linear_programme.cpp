@@ -1,0 +1,110 @@
+#include <snug/bounds/linear_programme.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include <snug/base/contract.h>
+
+namespace snug {
+namespace {
+
+constexpr double steepest = 4096;
+// Violations below this are left to the caller, who moves the plane up.
+constexpr double negligible = 1e-14;
+
+struct Slopes {
+  double x, y;
+};
+
+struct Place {
+  double x, y, z;  // relative to the centre
+};
+
+// Every order with equal probability, from a fixed seed.
+void shuffle(std::vector<Place>& points) {
+  std::uint64_t state = 0x9e3779b97f4a7c15u;
+  for (std::size_t i = points.size(); i > 1; --i) {
+    state ^= state << 13, state ^= state >> 7, state ^= state << 17;
+    std::swap(points[i - 1], points[state % i]);
+  }
+}
+
+// The largest t * gain within the box and the half-planes of the first `count` points, on the line
+// start + t * along; all as seen from the plane that holds `tight`.
+class Line {
+ public:
+  Line(Slopes start, Slopes along) : start_(start), along_(along) {
+    hold(-1, 0, -steepest);
+    hold(1, 0, -steepest);
+    hold(0, -1, -steepest);
+    hold(0, 1, -steepest);
+  }
+
+  // p x + q y >= least
+  void hold(double p, double q, double least) {
+    const double rate = p * along_.x + q * along_.y;
+    const double rest = least - (p * start_.x + q * start_.y);
+    if (std::fabs(rate) <= 1e-13 * (std::fabs(p) + std::fabs(q))) return;  // parallel: decides nothing here
+    const double t = rest / rate;
+    if (rate > 0) {
+      lower_ = std::max(lower_, t);
+    } else {
+      upper_ = std::min(upper_, t);
+    }
+  }
+
+  [[nodiscard]] Slopes best(double gain) const {
+    // Rounding may cross the ends where the line touches what is allowed in a point.
+    const double t = lower_ > upper_ ? lower_ + (upper_ - lower_) / 2 : gain > 0 ? upper_ : lower_;
+    return {start_.x + t * along_.x, start_.y + t * along_.y};
+  }
+
+ private:
+  Slopes start_, along_;
+  double lower_ = -INFINITY, upper_ = INFINITY;
+};
+
+// Least at the centre of the planes through `tight` above the first `count` points: maximises
+// x tight.x + y tight.y.
+Slopes best_through(const Place& tight, const std::vector<Place>& points, std::size_t count) {
+  Slopes slopes{std::copysign(steepest, tight.x), std::copysign(steepest, tight.y)};
+  for (std::size_t i = 0; i < count; ++i) {
+    const double p = tight.x - points[i].x, q = tight.y - points[i].y;  // p x + q y <= most
+    const double most = tight.z - points[i].z;
+    if (p * slopes.x + q * slopes.y <= most + negligible) continue;
+    const double size_sq = p * p + q * q;
+    if (size_sq <= 1e-28) continue;  // the same place
+    Line line({p * most / size_sq, q * most / size_sq}, {-q, p});
+    for (std::size_t k = 0; k < i; ++k) {
+      line.hold(points[k].x - tight.x, points[k].y - tight.y, points[k].z - tight.z);
+    }
+    slopes = line.best(p * tight.y - q * tight.x);
+  }
+  return slopes;
+}
+
+}  // namespace
+
+Plane lowest_plane_above(std::span<const double> x, std::span<const double> y, std::span<const double> z,
+                         double centre_x, double centre_y) {
+  SNUG_EXPECT(!x.empty() && x.size() == y.size() && x.size() == z.size());
+  std::vector<Place> points(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) points[i] = {x[i] - centre_x, y[i] - centre_y, z[i]};
+  shuffle(points);
+  Slopes slopes{0, 0};
+  double at_centre = -INFINITY;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Place& p = points[i];
+    if (p.z <= at_centre + slopes.x * p.x + slopes.y * p.y + negligible) continue;
+    slopes = best_through(p, points, i);
+    at_centre = p.z - slopes.x * p.x - slopes.y * p.y;
+  }
+  return {at_centre, slopes.x, slopes.y, centre_x, centre_y};
+}
+
+}  // namespace snug

@@ -1,0 +1,413 @@
+// Compiled once for each instruction set: this file includes itself through foreach_target.h.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "snug/bvh/block_kernels.cpp"
+#include <hwy/foreach_target.h>
+// After it, as the library wants it.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include <snug/bvh/block_kernels.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace snug::kernels::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Tag = hn::CappedTag<float, 8>;
+using V = hn::Vec<Tag>;
+
+// More than what roundings to single precision can do to any of the gaps, in units of 2^-24 of all that is involved.
+constexpr float roundings = 64 * 0x1p-24F;
+// The same where the other box, too, was placed in single precision.
+constexpr float pair_roundings = 256 * 0x1p-24F;
+
+template <class D>
+HWY_INLINE V dot3(D d, const V* a, const float* b) {
+  return hn::Add(hn::Add(hn::Mul(a[0], hn::Set(d, b[0])), hn::Mul(a[1], hn::Set(d, b[1]))),
+                 hn::Mul(a[2], hn::Set(d, b[2])));
+}
+
+HWY_INLINE V sum3(V a, V b, V c) { return hn::Add(hn::Add(a, b), c); }
+HWY_INLINE V max3(V a, V b, V c) { return hn::Max(hn::Max(a, b), c); }
+
+// Squares of shorter lengths lose digits to the end of single precision, or all of them.
+constexpr float least_squared = 0x1p-50F;
+
+// Length of the vector of the positive ones of three gaps, or the largest if there are none or squares are too small.
+template <class D>
+HWY_INLINE V outside(D d, V x, V y, V z) {
+  const V zero = hn::Zero(d), largest = max3(x, y, z);
+  const V px = hn::Max(x, zero), py = hn::Max(y, zero), pz = hn::Max(z, zero);
+  const V length = hn::Mul(hn::Sqrt(sum3(hn::Mul(px, px), hn::Mul(py, py), hn::Mul(pz, pz))),
+                           hn::Set(d, 1 - 16 * 0x1p-24F));
+  return hn::IfThenElse(hn::Gt(largest, hn::Set(d, least_squared)), length, largest);
+}
+
+// The same of two sorts of gaps, by the better one.
+HWY_INLINE V outside(const V* one, const V* two) {
+  const Tag d;
+  const V zero = hn::Zero(d);
+  const auto square = [&](V x) {
+    const V positive = hn::Max(x, zero);
+    return hn::Mul(positive, positive);
+  };
+  const V largest = hn::Max(max3(one[0], one[1], one[2]), max3(two[0], two[1], two[2]));
+  const V length_sq = hn::Max(sum3(square(one[0]), square(one[1]), square(one[2])),
+                              sum3(square(two[0]), square(two[1]), square(two[2])));
+  const V length = hn::Mul(hn::Sqrt(length_sq), hn::Set(d, 1 - 16 * 0x1p-24F));
+  return hn::IfThenElse(hn::Gt(largest, hn::Set(d, least_squared)), length, largest);
+}
+
+// Minus infinity for what is not a number, or too large to be one of ours.
+HWY_INLINE V computed(V gap) {
+  const Tag d;
+  return hn::IfThenElse(hn::Lt(gap, hn::Set(d, 1e30F)), gap, hn::Set(d, -INFINITY));
+}
+
+HWY_INLINE std::uint32_t bits(hn::Mask<Tag> mask) {
+  const Tag d;
+  std::uint8_t result = 0;
+  hn::StoreMaskBits(d, mask, &result);
+  return result & ((1u << hn::Lanes(d)) - 1);
+}
+
+// The lanes from `at` on, and what they add to `near`.
+HWY_INLINE void store(V gap, float enough, std::size_t at, float* out, Near& near) {
+  const Tag d;
+  gap = computed(gap);
+  hn::StoreU(gap, d, out + at);
+  const auto beyond = hn::Gt(gap, hn::Set(d, enough));
+  near.lanes |= bits(hn::Not(beyond)) << at;
+  near.others = std::min(near.others,
+                         hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(beyond, gap, hn::Set(d, INFINITY)))));
+}
+
+// Gaps of the lanes from `at` on. `other`: a row of the other boxes, as in a block.
+template <class Row>
+HWY_INLINE V gaps(const float* block, std::size_t at, const Row& other, V all_slack, float enough) {
+  const Tag d;
+  const V zero = hn::Zero(d);
+  const auto row = [&](std::size_t r) { return hn::LoadU(d, block + 8 * r + at); };
+  const auto along_axis = [&](const V* v, std::size_t j) {
+    return sum3(hn::Mul(v[0], other(6 + 3 * j)), hn::Mul(v[1], other(7 + 3 * j)),
+                hn::Mul(v[2], other(8 + 3 * j)));
+  };
+  V delta[3], half[3];
+  V t[3], c[3][3];  // of the offset along the block's axes; cosines
+  V own[3], others[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    delta[k] = hn::Sub(other(k), row(k));
+    others[k] = other(3 + k);
+  }
+  // An axis of the block at a time, so that all fits the registers.
+  for (std::size_t i = 0; i < 3; ++i) {
+    const V axis[3] = {row(6 + 3 * i), row(7 + 3 * i), row(8 + 3 * i)};
+    half[i] = row(3 + i);
+    t[i] = sum3(hn::Mul(axis[0], delta[0]), hn::Mul(axis[1], delta[1]), hn::Mul(axis[2], delta[2]));
+    V far = half[i];
+    for (std::size_t j = 0; j < 3; ++j) {
+      c[i][j] = along_axis(axis, j);
+      const V m = hn::Abs(c[i][j]);
+      far = hn::Add(far, hn::Mul(other(3 + j), m));
+      others[j] = hn::Add(others[j], hn::Mul(half[i], m));
+    }
+    own[i] = hn::Sub(hn::Sub(hn::Abs(t[i]), far), all_slack);
+  }
+  // Along the line of the centres: what both boxes take of it, times its length.
+  const V between_sq =
+      sum3(hn::Mul(delta[0], delta[0]), hn::Mul(delta[1], delta[1]), hn::Mul(delta[2], delta[2]));
+  V taken =
+      sum3(hn::Mul(half[0], hn::Abs(t[0])), hn::Mul(half[1], hn::Abs(t[1])), hn::Mul(half[2], hn::Abs(t[2])));
+  for (std::size_t j = 0; j < 3; ++j) {
+    const V along = hn::Abs(along_axis(delta, j));
+    taken = hn::Add(taken, hn::Mul(other(3 + j), along));
+    others[j] = hn::Sub(hn::Sub(along, others[j]), all_slack);
+  }
+  V gap = outside(own, others);
+  const V central = hn::Sub(hn::Div(hn::Sub(between_sq, taken), hn::Sqrt(between_sq)), all_slack);
+  const auto apart =
+      hn::And(hn::Gt(central, zero), hn::Gt(between_sq, hn::Set(d, least_squared * least_squared)));
+  gap = hn::IfThenElse(apart, hn::Max(gap, central), gap);
+  // Lane by lane, so that it makes no difference how many a vector has.
+  const auto settled = hn::Gt(gap, hn::Set(d, enough));
+  if (!hn::AllTrue(d, settled)) {
+    // Cross products of axes are at most 1 long: an overlap along a short one says little, so only gaps count.
+    V across = all_slack;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+      for (std::size_t j = 0; j < 3; ++j) {
+        const std::size_t j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+        const V along = hn::Abs(hn::Sub(hn::Mul(t[i2], c[i1][j]), hn::Mul(t[i1], c[i2][j])));
+        const V far = hn::Add(
+            hn::Add(hn::Mul(half[i1], hn::Abs(c[i2][j])), hn::Mul(half[i2], hn::Abs(c[i1][j]))),
+            hn::Add(hn::Mul(other(3 + j1), hn::Abs(c[i][j2])), hn::Mul(other(3 + j2), hn::Abs(c[i][j1]))));
+        across = hn::Max(across, hn::Sub(along, far));
+      }
+    }
+    across = hn::Sub(across, all_slack);
+    const auto wider = hn::AndNot(settled, hn::Gt(across, zero));
+    gap = hn::IfThenElse(wider, hn::Max(gap, across), gap);
+  }
+  return gap;
+}
+
+Near boxes(const float* block, float reach, const OtherBox& other, float slack, float enough, float* out) {
+  const Tag d;
+  Near near{0, INFINITY};
+  const V all_slack = hn::Set(d, roundings * reach + slack);
+  const auto row = [&](std::size_t r) {
+    return hn::Set(d, r < 3 ? other.centre[r] : r < 6 ? other.half[r - 3] : other.axes[(r - 6) / 3][r % 3]);
+  };
+  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+    store(gaps(block, at, row, all_slack, enough), enough, at, out, near);
+  }
+  return near;
+}
+
+// Centres of a block's boxes in the coordinates of another block.
+HWY_INLINE void place_centres(const BoxBlock& block, const SeenBlock& seen, float* out) {
+  const Tag d;
+  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+    const auto row = [&](std::size_t r) { return hn::LoadU(d, block.rows + 8 * r + at); };
+    const V x[3] = {row(0), row(1), row(2)};
+    for (std::size_t i = 0; i < 3; ++i) {
+      hn::Store(hn::Add(dot3(d, x, seen.rows[i]), hn::Set(d, seen.offset[i])), d, out + 8 * i + at);
+    }
+  }
+}
+
+// Their half sizes and axes, in the rows after these.
+HWY_INLINE void place_axes(const BoxBlock& block, const SeenBlock& seen, float* out) {
+  const Tag d;
+  const V scale = hn::Set(d, seen.scale), inverse = hn::Set(d, 1 / seen.scale);
+  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+    const auto row = [&](std::size_t r) { return hn::LoadU(d, block.rows + 8 * r + at); };
+    for (std::size_t k = 3; k < 6; ++k) hn::Store(hn::Mul(scale, row(k)), d, out + 8 * k + at);
+    for (std::size_t k = 6; k < obb_rows; k += 3) {
+      const V x[3] = {row(k), row(k + 1), row(k + 2)};
+      for (std::size_t i = 0; i < 3; ++i) {
+        hn::Store(hn::Mul(inverse, dot3(d, x, seen.rows[i])), d, out + 8 * (k + i) + at);
+      }
+    }
+  }
+}
+
+// Eight lanes of a block's rows in another order.
+HWY_INLINE void pick(const float* rows, const std::int32_t* lanes, float* out) {
+  const Tag d;
+  const hn::RebindToSigned<Tag> di;
+  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+    const auto places = hn::LoadU(di, lanes + at);
+    for (std::size_t r = 0; r < obb_rows; ++r) {
+#if HWY_MAX_BYTES >= 32
+      const V row = hn::TableLookupLanes(hn::LoadU(d, rows + 8 * r), hn::IndicesFromVec(d, places));
+#else
+      const V row = hn::GatherIndex(d, rows + 8 * r, places);
+#endif
+      hn::Store(row, d, out + 8 * r + at);
+    }
+  }
+}
+
+// Half of what boxes extend along a direction.
+HWY_INLINE V half_extents(const BoxBlock& block, std::size_t at, const float* direction) {
+  const Tag d;
+  const auto row = [&](std::size_t r) { return hn::LoadU(d, block.rows + 8 * r + at); };
+  V sum = hn::Zero(d);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const V axis[3] = {row(6 + 3 * k), row(7 + 3 * k), row(8 + 3 * k)};
+    sum = hn::Add(sum, hn::Mul(row(3 + k), hn::Abs(dot3(d, axis, direction))));
+  }
+  return sum;
+}
+
+Near box_pairs(const BoxBlock& block, const BoxBlock& other, const SeenBlock& seen, float slack, float enough,
+               LanePair* out) {
+  const Tag d;
+  const float offset = std::fabs(seen.offset[0]) + std::fabs(seen.offset[1]) + std::fabs(seen.offset[2]);
+  const float reach = block.reach + 2 * seen.scale * other.reach + offset;
+  Near near{0, INFINITY};
+  if (!(reach < 1e18F)) {  // nor a NaN
+    for (std::uint32_t j = 0; j < other.count; ++j) {
+      for (std::uint32_t i = 0; i < block.count; ++i) {
+        out[near.lanes++] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), -INFINITY};
+      }
+    }
+    return near;
+  }
+  const V all_slack = hn::Set(d, pair_roundings * reach + slack), most = hn::Set(d, enough);
+  V others = hn::Set(d, INFINITY);
+  HWY_ALIGN float placed[obb_rows * 8];
+  place_centres(other, seen, placed);
+  // Where boxes end along the direction: those of the block above, the others below.
+  HWY_ALIGN float ends[8];
+  HWY_ALIGN float other_ends[8];
+  const float* const n = seen.direction;
+  const bool directed = n[0] != 0 || n[1] != 0 || n[2] != 0;
+  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+    V end = hn::Set(d, INFINITY), other_end = hn::Zero(d);
+    if (directed) {
+      const auto row = [&](std::size_t r) { return hn::LoadU(d, block.rows + 8 * r + at); };
+      const auto other_row = [&](std::size_t r) { return hn::Load(d, placed + 8 * r + at); };
+      const V centre[3] = {row(0), row(1), row(2)};
+      const V other_centre[3] = {other_row(0), other_row(1), other_row(2)};
+      end = hn::Add(dot3(d, centre, n), half_extents(block, at, n));
+      other_end = hn::Sub(dot3(d, other_centre, n), half_extents(other, at, seen.other_direction));
+    }
+    hn::Store(end, d, ends + at);
+    hn::Store(other_end, d, other_ends + at);
+  }
+  // Balls and the direction first.
+  std::int32_t own_lanes[64 + 8], other_lanes[64 + 8];  // of pairs that are left; eight at a time are read
+  std::size_t left = 0;
+  HWY_ALIGN float first_gaps[8][8];  // by lane of the other block
+  for (std::uint32_t j = 0; j < other.count; ++j) {
+    const V radius = hn::Set(d, 0.5F * seen.scale * other.sizes[j]);
+    std::uint32_t near_lanes = 0;
+    for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+      V between_sq = hn::Zero(d);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const V delta = hn::Sub(hn::Set(d, placed[8 * k + j]), hn::LoadU(d, block.rows + 8 * k + at));
+        between_sq = hn::Add(between_sq, hn::Mul(delta, delta));
+      }
+      const V radii = hn::Add(hn::Mul(hn::Set(d, 0.5F), hn::LoadU(d, block.sizes + at)), radius);
+      const V along = hn::Sub(hn::Set(d, other_ends[j]), hn::Load(d, ends + at));
+      const V gap = hn::Sub(hn::Max(hn::Sub(hn::Sqrt(between_sq), radii), along), all_slack);
+      const auto apart = hn::Gt(gap, most);
+      hn::Store(gap, d, first_gaps[j] + at);
+      others = hn::Min(others, hn::IfThenElse(apart, gap, hn::Set(d, INFINITY)));
+      near_lanes |= bits(hn::Not(apart)) << at;
+    }
+    for (near_lanes &= (1u << block.count) - 1; near_lanes != 0; near_lanes &= near_lanes - 1) {
+      own_lanes[left] = std::countr_zero(near_lanes);
+      other_lanes[left++] = static_cast<std::int32_t>(j);
+    }
+  }
+  if (left != 0) place_axes(other, seen, placed);
+  // Then axes, eight pairs at a time.
+  for (std::size_t begin = 0; begin < left; begin += 8) {
+    const std::size_t count = std::min<std::size_t>(8, left - begin);
+    for (std::size_t l = count; l < 8; ++l) {
+      own_lanes[begin + l] = own_lanes[begin];
+      other_lanes[begin + l] = other_lanes[begin];
+    }
+    HWY_ALIGN float own_rows[obb_rows * 8];
+    HWY_ALIGN float other_rows[obb_rows * 8];
+    HWY_ALIGN float found[8];
+    pick(block.rows, own_lanes + begin, own_rows);
+    pick(placed, other_lanes + begin, other_rows);
+    for (std::size_t l = 0; l < 8; ++l) {
+      found[l] = first_gaps[other_lanes[begin + l]][own_lanes[begin + l]];
+    }
+    std::uint32_t near_lanes = 0;
+    for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+      const auto row = [&](std::size_t r) { return hn::Load(d, other_rows + 8 * r + at); };
+      // How deep balls overlap says little.
+      const V first = hn::Load(d, found + at), own = computed(gaps(own_rows, at, row, all_slack, enough));
+      const V gap = hn::IfThenElse(hn::Gt(first, hn::Zero(d)), hn::Max(own, first), own);
+      const auto apart = hn::Gt(gap, most);
+      hn::Store(gap, d, found + at);
+      others = hn::Min(others, hn::IfThenElse(apart, gap, hn::Set(d, INFINITY)));
+      near_lanes |= bits(hn::Not(apart)) << at;
+    }
+    for (near_lanes &= (1u << count) - 1; near_lanes != 0; near_lanes &= near_lanes - 1) {
+      const auto l = static_cast<std::size_t>(std::countr_zero(near_lanes));
+      out[near.lanes++] = {static_cast<std::uint8_t>(own_lanes[begin + l]),
+                           static_cast<std::uint8_t>(other_lanes[begin + l]), found[l]};
+    }
+  }
+  near.others = hn::GetLane(hn::MinOfLanes(d, others));
+  return near;
+}
+
+void boxes_to_point(const float* block, const float* point, float slack, float* out) {
+  const Tag d;
+  const std::size_t n = hn::Lanes(d);
+  for (std::size_t at = 0; at < 8; at += n) {
+    const auto row = [&](std::size_t r) { return hn::LoadU(d, block + 8 * r + at); };
+    V delta[3], gap[3];
+    V reach = hn::Zero(d);
+    for (std::size_t k = 0; k < 3; ++k) {
+      delta[k] = hn::Sub(hn::Set(d, point[k]), row(k));
+      reach = hn::Add(reach, hn::Add(hn::Abs(delta[k]), row(3 + k)));
+    }
+    const V all_slack = hn::Add(hn::Mul(hn::Set(d, roundings), reach), hn::Set(d, slack));
+    for (std::size_t i = 0; i < 3; ++i) {
+      const V along = hn::Abs(sum3(hn::Mul(row(6 + 3 * i), delta[0]), hn::Mul(row(7 + 3 * i), delta[1]),
+                                   hn::Mul(row(8 + 3 * i), delta[2])));
+      gap[i] = hn::Sub(hn::Sub(along, row(3 + i)), all_slack);
+    }
+    const V gap_of_all = outside(d, gap[0], gap[1], gap[2]);
+    const V known = hn::IfThenElse(hn::Lt(reach, hn::Set(d, 1e18F)), gap_of_all, hn::Set(d, -INFINITY));
+    hn::StoreU(computed(known), d, out + at);
+  }
+}
+
+Near dops(const float* block, std::size_t directions, const OtherIntervals& other, float slack, float enough,
+          float* out) {
+  const Tag d;
+  Near near{0, INFINITY};
+  const std::size_t n = hn::Lanes(d);
+  for (std::size_t at = 0; at < 8; at += n) {
+    const auto gap_along = [&](std::size_t i) {
+      const V lower = hn::LoadU(d, block + 16 * i + at), upper = hn::LoadU(d, block + 16 * i + 8 + at);
+      const V other_lower = hn::Set(d, other.lower[i]), other_upper = hn::Set(d, other.upper[i]);
+      const V reach = hn::Add(hn::Add(hn::Abs(lower), hn::Abs(upper)),
+                              hn::Add(hn::Abs(other_lower), hn::Abs(other_upper)));
+      const V own = hn::Add(hn::Mul(hn::Set(d, roundings), reach), hn::Set(d, slack * other.length[i]));
+      const V gap = hn::Max(hn::Sub(other_lower, upper), hn::Sub(lower, other_upper));
+      return hn::IfThenElse(hn::Lt(reach, hn::Set(d, 1e18F)), hn::Sub(gap, own), hn::Set(d, -INFINITY));
+    };
+    V gap = outside(d, gap_along(0), gap_along(1), gap_along(2));
+    for (std::size_t i = 3; i < directions; ++i) {
+      gap = hn::Max(gap, hn::Mul(gap_along(i), hn::Set(d, 1 / other.length[i])));
+    }
+    store(gap, enough, at, out, near);
+  }
+  return near;
+}
+
+}  // namespace
+}  // namespace snug::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace snug::kernels {
+
+HWY_EXPORT(boxes);
+HWY_EXPORT(box_pairs);
+HWY_EXPORT(boxes_to_point);
+HWY_EXPORT(dops);
+
+Near obb_distances(const float* block, float reach, const OtherBox& other, float slack, float enough,
+                   float* out) {
+  reach += other.reach();
+  // A NaN may be lost in a maximum.
+  if (!(reach < 1e18F)) {
+    std::fill(out, out + 8, -INFINITY);
+    return {0xff, INFINITY};
+  }
+  return HWY_DYNAMIC_DISPATCH(boxes)(block, reach, other, slack, enough, out);
+}
+
+Near obb_pairs(const BoxBlock& block, const BoxBlock& other, const SeenBlock& seen, float slack, float enough,
+               LanePair* out) {
+  return HWY_DYNAMIC_DISPATCH(box_pairs)(block, other, seen, slack, enough, out);
+}
+
+void obb_distances(const float* block, const float point[3], float slack, float* out) {
+  HWY_DYNAMIC_DISPATCH(boxes_to_point)(block, point, slack, out);
+}
+
+Near dop_distances(const float* block, std::size_t directions, const OtherIntervals& other, float slack,
+                   float enough, float* out) {
+  return HWY_DYNAMIC_DISPATCH(dops)(block, directions, other, slack, enough, out);
+}
+
+}  // namespace snug::kernels
+#endif

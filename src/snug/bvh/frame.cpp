@@ -1,0 +1,41 @@
+#include <snug/bvh/frame.h>
+
+#include <cmath>
+
+#include <snug/geometry/rounding.h>
+
+namespace snug {
+
+double PlacedFrame::apply_error(const Point3& p) const {
+  // Rows of R have length at most 1 + defect, so their absolute sums are below 2.
+  const double size = 2 * scale * max_abs(p - Point3{}) + max_abs(translation);
+  return enlarged(8 * unit_roundoff * size) + 8 * underflow_error;
+}
+
+RelativeFrame::RelativeFrame(const PlacedFrame& target, const PlacedFrame& source) {
+  const auto transposed = [&](const Vector3& v) {
+    return v.x * target.rows[0] + v.y * target.rows[1] + v.z * target.rows[2];
+  };
+  scale = source.scale / target.scale;
+  // Squares of what is beyond would leave the range of single precision.
+  comparable = scale < 0x1p20 && target.scale > 0;
+  if (!comparable) return;
+  const double inverse = 1 / target.scale;
+  std::array<Vector3, 3> columns;
+  for (std::size_t j = 0; j < 3; ++j) {
+    columns[j] = scale * transposed({source.rows[0][j], source.rows[1][j], source.rows[2][j]});
+  }
+  for (std::size_t i = 0; i < 3; ++i) rows[i] = {columns[0][i], columns[1][i], columns[2][i]};
+  translation = transposed(inverse * (source.translation - target.translation));
+  const double defects = target.defect + source.defect;
+  // Translations may have underflowed when they were brought to the search's units.
+  slack = enlarged(16 * (defects + 16 * unit_roundoff) * (1 + scale + max_abs(translation)) +
+                   8 * inverse * underflow_error) +
+          0x1p-100;
+  slack = static_cast<double>(static_cast<float>(slack * (1 + 0x1p-22)));
+  comparable = slack < 0x1p20;
+  to_world = target.scale * (1 - 8 * defects);
+  from_world = (1 + 0x1p-20) / to_world;
+}
+
+}  // namespace snug

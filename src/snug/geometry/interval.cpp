@@ -1,0 +1,71 @@
+#include <snug/geometry/interval.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include <snug/base/contract.h>
+
+namespace snug {
+
+Interval operator+(Interval a, Interval b) {
+  return {rounded_down(a.lower + b.lower), rounded_up(a.upper + b.upper)};
+}
+
+Interval operator-(Interval a, Interval b) {
+  return {rounded_down(a.lower - b.upper), rounded_up(a.upper - b.lower)};
+}
+
+Interval operator-(Interval a) { return {-a.upper, -a.lower}; }
+
+Interval operator*(Interval a, Interval b) {
+  const auto [low, high] =
+      std::minmax({a.lower * b.lower, a.lower * b.upper, a.upper * b.lower, a.upper * b.upper});
+  return {rounded_down(low), rounded_up(high)};
+}
+
+Interval operator/(Interval a, Interval b) {
+  if (b.contains(0)) return {-INFINITY, INFINITY};
+  const auto [low, high] =
+      std::minmax({a.lower / b.lower, a.lower / b.upper, a.upper / b.lower, a.upper / b.upper});
+  return {rounded_down(low), rounded_up(high)};
+}
+
+namespace {
+
+// Taylor of sin and cos on [0, pi/4]: terms alternate and fall, so the first one left out bounds the
+// remainder.
+Interval alternating_series(Interval first, Interval x_sq, unsigned factor) {
+  Interval term = first, sum = first;
+  for (unsigned i = factor; i < 26; i += 2) {
+    term = -(term * x_sq) / Interval(static_cast<double>(i * (i + 1)));
+    sum = sum + term;
+  }
+  const double rest = std::fmax(std::fabs(term.lower), std::fabs(term.upper));
+  return {rounded_down(sum.lower - rest), rounded_up(sum.upper + rest)};
+}
+
+}  // namespace
+
+Interval cos_of_turn(unsigned k, unsigned n) {
+  SNUG_EXPECT(n >= 1);
+  std::uint64_t num = static_cast<std::uint64_t>(k % n), den = n;
+  if (2 * num > den) num = den - num;  // cos(2 pi - x) = cos x: now 0 <= num/den <= 1/2
+  if (4 * num > den) {                 // cos(pi - x) = -cos x
+    if (2 * num == den) return -1.0;
+    if (3 * num == den) return -0.5;
+    const std::uint64_t top = den - 2 * num;  // x' = 2 pi (den - 2 num) / (2 den)
+    return -cos_of_turn(static_cast<unsigned>(top), static_cast<unsigned>(2 * den));
+  }
+  if (num == 0) return 1.0;
+  if (4 * num == den) return 0.0;
+  if (6 * num == den) return 0.5;
+  // pi lies between these two neighbours.
+  const Interval pi(0x1.921fb54442d18p+1, 0x1.921fb54442d19p+1);
+  const Interval x =
+      Interval(2) * pi * Interval(static_cast<double>(num)) / Interval(static_cast<double>(den));
+  if (8 * num <= den) return alternating_series(1.0, x * x, 1);
+  const Interval y = pi / Interval(2) - x;  // in (0, pi/4): cos x = sin y
+  return alternating_series(y, y * y, 2);
+}
+
+}  // namespace snug

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+
+#include <snug/geometry/point.h>
+
+namespace snug {
+
+using Triangle = std::array<Point3, 3>;
+
+/// Parameters on a triangle: its point is (1 - u - v) c0 + u c1 + v c2.
+struct TriangleParameter {
+  double u = 0, v = 0;
+};
+
+/// Weights of the second and third corner; the first has the rest.
+struct Barycentric {
+  double b = 0, c = 0;
+};
+
+/// Feet of many points on one triangle, prepared once. The triangle may be a needle or a point.
+///
+/// Guarantee: b >= 0, c >= 0 and b + c <= 1, in doubles: whatever the rounding, the foot is a point of the
+/// triangle up
+///            to 2 unit roundoffs of its edges, so |p - foot| is never below the distance by more than that.
+///            That it is the nearest point is true up to rounding only, and no proof rests on it.
+/// Source:    [Ericson05, sec. 5.1.5]; differs: the plane's foot by dual vectors, edges each on their own.
+class TriangleFoot {
+ public:
+  TriangleFoot(const Vector3& a, const Vector3& b, const Vector3& c);
+  [[nodiscard]] Barycentric operator()(const Vector3& p) const;
+  [[nodiscard]] Vector3 edge_b() const { return edge_b_; }
+  [[nodiscard]] Vector3 edge_c() const { return edge_c_; }
+
+ private:
+  Vector3 a_, edge_b_, edge_c_, edge_bc_;
+  Vector3 dual_b_, dual_c_;
+  double inverse_b_, inverse_c_, inverse_bc_;  // of squared lengths; 0 for an edge without length
+  bool flat_;                                  // no area: the edges are all there is
+};
+
+/// Largest |coordinate difference| of two corners.
+[[nodiscard]] double extent(const Vector3& a, const Vector3& b, const Vector3& c);
+
+}  // namespace snug

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+
+#include <snug/geometry/triangle.h>
+
+namespace snug {
+
+/// Two triangles as near as they come.
+struct NearestTriangles {
+  Barycentric on_a, on_b;  ///< of the points that were found nearest, in double precision
+  /// Lower bound of the distance: that of the planes through the triangles' supports along the direction
+  /// between those points. At most the distance; equal to it up to rounding where the points are the nearest
+  /// ones. Never below zero.
+  double certain_distance;
+};
+
+/// Nearest points of two triangles, with a lower bound of their distance that does not depend on the points
+/// being nearest.
+///
+/// Guarantee: the exact distance of the triangles is at least certain_distance.
+/// Requires:  finite corners of at most about 4.
+/// Cost:      about 0.17 microseconds with four lanes.
+/// Source:    [Ericson05, sec. 5.1.9, 5.1.10]; differs: a supporting slab certifies the result; searched by
+///            geometry/triangle_kernels.h.
+[[nodiscard]] NearestTriangles nearest(const Triangle& a, const Triangle& b);
+
+/// Weights that roundings may have left a little outside of the triangle, as a parameter inside.
+[[nodiscard]] TriangleParameter clamped(Barycentric weights);
+
+/// A point of each of two triangles.
+struct PairOfPoints {
+  Barycentric on_a, on_b;
+};
+
+/// About the middle of the segment in which two triangles cut each other, in double precision; nothing if they do not, or lie in
+/// one plane.
+[[nodiscard]] std::optional<PairOfPoints> middle_of_contact(const Triangle& a, const Triangle& b);
+
+}  // namespace snug

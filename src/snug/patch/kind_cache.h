@@ -1,0 +1,107 @@
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <shared_mutex>
+#include <unordered_map>
+#include <vector>
+
+#include <snug/patch/neighbourhood.h>
+#include <snug/patch/polynomial.h>
+#include <snug/scheme/stencils.h>
+
+namespace snug {
+
+class Kind;
+class KindCache;
+
+/// A quarter of a patch after one step of subdivision; of a polygon half a quad.
+struct KindChild {
+  const Kind* kind;
+  std::uint8_t
+      first;          ///< corner of the child, in the parent's order (scheme/refine.h), that its kind calls 0
+  Stencils stencils;  ///< its control points from the parent's
+};
+
+/// What all patches with equal connectivity share. Immutable; parts that cost much are made on first use.
+/// Thread-safe.
+class Kind {
+ public:
+  Kind(KindCache& library, KindId id, const KindKey& key);
+  Kind(const Kind&) = delete;
+  Kind& operator=(const Kind&) = delete;
+
+  [[nodiscard]] KindId id() const { return id_; }
+  [[nodiscard]] const KindKey& key() const { return key_; }
+  [[nodiscard]] Scheme scheme() const { return key_.scheme; }
+  [[nodiscard]] std::size_t control_count() const { return control_count_; }
+  [[nodiscard]] const CornerFan& corner(std::size_t i) const { return key_.corners[i]; }
+  /// Is the surface near corner 0, 1 or 2 as on a regular lattice, at least a few levels down?
+  [[nodiscard]] bool regular_corner(std::size_t i) const { return key_.corners[i].regular(key_.scheme); }
+  /// Not for ever: sharpness decays, or polygons that are no quads lie around it.
+  [[nodiscard]] bool passing() const { return passing_; }
+  /// Is a corner one of very many faces between creases or boundaries? All its patches are of kinds of their own, and the
+  /// matrix of points that bound one would be as large as the fan for each of many levels.
+  [[nodiscard]] bool crowded() const;
+  /// Do many patches share such kinds, so that rows are kept for them? Patches of others are split where they are bounded.
+  [[nodiscard]] bool shared() const { return !passing() && !crowded(); }
+
+  /// Is the patch polynomial, or made of two polynomials (Midedge)? Then bezier() gives them.
+  [[nodiscard]] bool polynomial() const { return form_.has_value(); }
+  /// Requires:  polynomial().
+  [[nodiscard]] const PolynomialForm& form() const { return *form_; }
+  /// Bezier points of the patch, as form() counts them.
+  /// Requires:  polynomial().
+  [[nodiscard]] const Stencils& bezier() const { return form_->rows; }
+
+  /// Limit positions of the corners: three rows.
+  /// Requires:  a patch, no polygon; so do the tangents.
+  [[nodiscard]] const Stencils& corner_limits() const;
+  /// Two tangent rows a corner, those of corner i at 2 i and 2 i + 1 (scheme/limits.h).
+  [[nodiscard]] const Stencils& corner_tangents() const;
+
+  /// The control points 0 to inner_count() - 1 are the corners of the face, or the vertex, that the patch belongs to; none
+  /// where what surrounds the patch needs details.
+  [[nodiscard]] std::size_t inner_count() const;
+  /// Upper bound, over the patch, of the sum of the weights of all other control points: the patch lies in the sum of
+  /// 1 - outer_weight() times the hull of the inner ones and outer_weight() times the hull of all.
+  /// Requires:  a patch, no polygon.
+  /// Cost:      made on first use by some splits.
+  [[nodiscard]] double outer_weight() const;
+
+  /// The four children of a patch; 0 to 2 keep that corner, 3 is the middle one. Of a polygon with n corners 2 n: at
+  /// corner k the half of its quad that begins there, then the other one, which begins at the centre.
+  [[nodiscard]] const std::vector<KindChild>& children() const;
+
+ private:
+  KindCache& library_;
+  KindId id_;
+  KindKey key_;
+  bool passing_ = false;
+  std::size_t control_count_ = 0;
+  std::optional<PolynomialForm> form_;
+  mutable std::once_flag limits_made_, tangents_made_, children_made_, outer_weight_made_;
+  mutable double outer_weight_ = 1;
+  mutable Stencils corner_limits_, corner_tangents_;
+  mutable std::vector<KindChild> children_;
+};
+
+/// All kinds met so far. Grows, never forgets; kinds stay where they are as long as the library lives.
+///
+/// Guarantee: thread-safe; a kind is made once.
+/// Cost:      find: one hash look-up; a new kind with its rows 0.05 to 0.5 ms up to valence 12 (bench/).
+class KindCache {
+ public:
+  KindCache() = default;
+  KindCache(const KindCache&) = delete;
+  KindCache& operator=(const KindCache&) = delete;
+
+  [[nodiscard]] const Kind& find(const KindKey& key);
+  [[nodiscard]] std::size_t size() const;
+
+ private:
+  mutable std::shared_mutex mutex_;
+  std::unordered_map<KindKey, std::unique_ptr<Kind>, KindKeyHash> kinds_;
+};
+
+}  // namespace snug

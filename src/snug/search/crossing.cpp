@@ -1,0 +1,212 @@
+#include <snug/search/crossing.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <snug/geometry/direction.h>
+#include <snug/geometry/rounding.h>
+#include <snug/patch/descent.h>
+#include <snug/patch/evaluate.h>
+
+namespace snug {
+namespace {
+
+// Levels that a piece near the border's extraordinary corners is split before its whole net stands for its edge.
+constexpr unsigned edge_levels = 8;
+// Levels from the piece that was asked about to one that is small enough to pass between the strips.
+constexpr unsigned probe_levels = 16;
+// Least sine of the angle between the normal of a base triangle and an edge of the limit triangle. They are across each
+// other but for what the base triangle's plane and the limit triangle's differ.
+constexpr double least_sine = 0.5;
+
+// Bezier points of the polynomial `part` whose hull holds its edge from corner k to k + 1.
+template <class Visit>
+void visit_bezier_edge(const Patch& patch, std::size_t part, std::size_t edge, const Visit& visit) {
+  const PolynomialForm& form = patch.kind->form();
+  const std::size_t degree = form.degree, first = part * bezier_count(degree);
+  const double error = form.rows.result_error(patch.largest, patch.error);
+  for (std::size_t t = 0; t <= degree; ++t) {
+    const std::size_t at = edge == 0   ? bezier_index(degree, t, 0)
+                           : edge == 1 ? bezier_index(degree, degree - t, t)
+                                       : bezier_index(degree, 0, t);
+    visit(form.rows.apply<Vector3>(first + at, patch.points), error);
+  }
+}
+
+// Points, relative to the patch's origin, whose hull holds the curve from its corner k to k + 1, each with its error.
+template <class Visit>
+void visit_edge(const Patch& patch, std::size_t edge, unsigned level, const Visit& visit) {
+  if (!patch.kind->polynomial()) {
+    if (level == edge_levels) {
+      for (const Vector3& p : patch.points) visit(p, patch.error);
+      return;
+    }
+    visit_edge(split(patch, static_cast<unsigned>(edge)), edge, level + 1, visit);
+    visit_edge(split(patch, static_cast<unsigned>((edge + 1) % 3)), edge, level + 1, visit);
+    return;
+  }
+  const std::size_t own = patch.to_kind(edge);  // corner of the kind that the edge begins at
+  if (patch.kind->form().parts == 1) {
+    visit_bezier_edge(patch, 0, own, visit);
+  } else if (own == 0) {  // parts are 0, 1, m and m, 1, 2
+    visit_bezier_edge(patch, 0, 0, visit);
+  } else if (own == 1) {
+    visit_bezier_edge(patch, 1, 1, visit);
+  } else {
+    visit_bezier_edge(patch, 0, 2, visit);
+    visit_bezier_edge(patch, 1, 2, visit);
+  }
+}
+
+}  // namespace
+
+Crossed::Crossed(const Piece& piece, const Heights& heights) {
+  const OffsetTriangle& offset = piece.offset;
+  normal_ = unit_normal(offset.base);
+  if (normal_ == Vector3{} || !std::isfinite(heights.lower) || !std::isfinite(heights.upper)) return;
+  from_ = offset.base[0];
+  lower_ = heights.lower;
+  upper_ = heights.upper;
+  const Patch& patch = piece.patch;
+  double corner_error = 0;
+  std::array<Point3, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k) {
+    corners[k] = patch.origin + piece.corners[k];
+    const LimitPoint corner = corner_point(patch, k);
+    corner_error = std::max(corner_error, corner.error + unit_roundoff * max_abs(corners[k] - Point3{}));
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    Strip& strip = strips_[k];
+    const Vector3 edge = corners[(k + 1) % 3] - corners[k];
+    // Of an edge nearly along the normal the product is mostly rounding: then it is not across either.
+    const Vector3 along = normalized(edge), inward = cross(normal_, along);
+    if (!(length(inward) > least_sine)) return;
+    strip.inward = normalized(inward);
+    strip.from = corners[k];
+    // Both ends of the edge belong to its curve: the exact corners are within their error of these.
+    double widest = std::max(0.0, dot(strip.inward, edge)) + 2 * spatial_error(corner_error);
+    const Vector3 from = strip.from - patch.origin;
+    double largest = max_abs(from);
+    visit_edge(patch, k, 0, [&](const Vector3& p, double error) {
+      widest = std::max(widest, dot(strip.inward, p - from) + 2 * spatial_error(error));
+      largest = std::max(largest, max_abs(p));
+    });
+    strip.width = enlarged(widest + gamma_bound(64) * largest);
+    // Nothing is free unless the opposite corner lies beyond the strip.
+    if (!(dot(strip.inward, corners[(k + 2) % 3] - strip.from) > strip.width)) return;
+  }
+  possible_ = true;
+}
+
+double Crossed::rounding(const Triangle& points) const {
+  double largest = 0;
+  for (const Point3& p : points) largest = std::max(largest, max_abs(p - from_));
+  return gamma_bound(32) * (largest + 4);
+}
+
+bool Crossed::holds(const Triangle& around, double radius) const {
+  const double reach = enlarged(radius) + rounding(around);
+  for (const Strip& strip : strips_) {
+    for (const Point3& p : around) {
+      if (!(dot(strip.inward, p - strip.from) - reach > strip.width)) return false;
+    }
+  }
+  return true;
+}
+
+Crossed::Sides Crossed::sides(const Triangle& points, double error) const {
+  const double reach = enlarged(error) + rounding(points);
+  Sides found;
+  for (const Point3& p : points) {
+    const double height = dot(normal_, p - from_);
+    found.below = found.below || height + reach < lower_;
+    found.above = found.above || height - reach > upper_;
+  }
+  return found;
+}
+
+namespace {
+
+// A piece, and a parameter of it. Of no use to anything but this question, so it is not kept: surfaces that nearly lie in
+// each other ask at every pair.
+struct Probe {
+  Piece piece;
+  TriangleParameter at;
+};
+
+// The parameter in the middle child; nothing if it rounds.
+std::optional<TriangleParameter> in_middle_child(TriangleParameter p) {
+  const TriangleParameter turned{1 - 2 * p.u, 1 - 2 * p.v};
+  // In [0, 1]; a difference that was rounded does not lead back.
+  if (1 - turned.u != 2 * p.u || 1 - turned.v != 2 * p.v) return std::nullopt;
+  return turned;
+}
+
+// Adds the children whose closed triangles hold the parameter: all have its limit point in common, so together they are
+// connected. False, with the child that descend() names alone, where its parameter there rounds: what holds that need not
+// hold the others'.
+bool add_children(PieceCache& pieces, const Probe& probe, std::vector<Probe>& out) {
+  const auto [u, v] = probe.at;
+  const Descent certain = descend(probe.at);
+  const auto add = [&](unsigned child, TriangleParameter at) {
+    out.push_back({pieces.child_of(probe.piece, child), at});
+  };
+  if (certain.child == 3) {
+    const bool exact = in_middle_child(probe.at).has_value();
+    if (!exact) out.clear();
+    add(3, certain.at);
+    return exact;
+  }
+  // Doubling and subtracting 1 from [1, 2] are exact.
+  if (sum_at_most(u, v, 0.5)) add(0, {2 * u, 2 * v});
+  if (u >= 0.5) add(1, {2 * u - 1, 2 * v});
+  if (v >= 0.5) add(2, {2 * u, 2 * v - 1});
+  const bool on_far_edge = sum_at_most(u, v, 0.5) && u + v == 0.5;
+  if (u <= 0.5 && v <= 0.5 && (on_far_edge || !sum_at_most(u, v, 0.5))) {
+    if (const auto at = in_middle_child(probe.at)) add(3, *at);
+  }
+  return true;
+}
+
+}  // namespace
+
+bool crosses_near(PieceCache& pieces, PieceId id, TriangleParameter at, const Crossed& crossed,
+                  const RelativeFrame& seen) {
+  if (!seen.comparable) return false;
+  std::vector<Probe> probes{{pieces[id], on_triangle(at)}}, children;
+  for (unsigned level = 0;; ++level) {
+    // seen.slack covers the mapping; lengths grow by its scale.
+    const double growth = seen.scale * (1 + 0x1p-20);
+    double extent = 0;
+    bool inside = true, below = false, above = false, last = false;
+    for (const Probe& probe : probes) {
+      const Piece& piece = probe.piece;
+      Triangle around, corners;
+      double error = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        around[k] = seen.apply(piece.offset.base[k]);
+        const Point3 corner = piece.patch.origin + piece.corners[k];
+        corners[k] = seen.apply(corner);
+        error =
+            std::max(error, corner_point(piece.patch, k).error + unit_roundoff * max_abs(corner - Point3{}));
+        extent = std::max(extent, length(corners[k] - corners[0]));
+      }
+      inside = inside && crossed.holds(around, growth * piece.offset.radius + seen.slack);
+      const Crossed::Sides sides = crossed.sides(corners, growth * spatial_error(error) + seen.slack);
+      below = below || sides.below;
+      above = above || sides.above;
+      last = last || piece.patch.path.level() == PiecePath::max_level;
+    }
+    if (inside && below && above) return true;
+    if (2 * extent < crossed.thickness() || level == probe_levels || last) return false;
+    children.clear();
+    for (const Probe& probe : probes) {
+      if (!add_children(pieces, probe, children)) break;
+    }
+    probes.swap(children);
+  }
+}
+
+}  // namespace snug

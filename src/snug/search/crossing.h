@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+
+#include <snug/bvh/frame.h>
+#include <snug/search/piece_cache.h>
+
+namespace snug {
+
+/// What a connected set must do to be proved to meet a piece: run from below it to above it inside the prism over what its
+/// border leaves free.
+///
+///              . above .           The piece lies between two planes across n. Its border lies, seen along n, within
+///          ___/_________\___       three strips along the edges of the limit triangle. A set that stays inside of the
+///         /   | . . . . |   \      strips and has a point below and one above is cut by the piece: else the degree of
+///        /____|_________|____\     the map (point of the piece) - (point of the set) on the sphere around the product of
+///              \ below /           both would be zero, and it is one.
+///
+/// Guarantee: a connected set meets the piece if holds() all its parts and some of its points are certainly on either side.
+/// Source:    derivations/contact.md.
+class Crossed {
+ public:
+  Crossed(const Piece& piece, const Heights& heights);
+
+  /// False if the border leaves nothing free, or the piece has no normal.
+  [[nodiscard]] bool possible() const { return possible_; }
+  /// Is all that lies within `radius` of the hull of `around` certainly inside of the strips? In the frame of the piece's
+  /// surface, and so below.
+  [[nodiscard]] bool holds(const Triangle& around, double radius) const;
+  struct Sides {
+    bool below = false, above = false;
+  };
+  /// Is one of three points, each known up to `error`, certainly below, is one above?
+  [[nodiscard]] Sides sides(const Triangle& points, double error) const;
+  /// How far apart the planes are.
+  [[nodiscard]] double thickness() const { return upper_ - lower_; }
+
+ private:
+  [[nodiscard]] double rounding(const Triangle& points) const;
+
+  bool possible_ = false;
+  Point3 from_;
+  Vector3 normal_;
+  double lower_ = 0, upper_ = 0;
+  struct Strip {
+    Vector3 inward;
+    Point3 from;
+    double width;  // upper bound of dot(inward, x - from) on the border curve
+  };
+  std::array<Strip, 3> strips_;
+};
+
+/// Do pieces of `id` around a parameter cross, those that meet there together? Splits some levels down, and keeps nothing.
+/// Requires:  seen: the pieces' frame as seen from that of the crossed piece.
+[[nodiscard]] bool crosses_near(PieceCache& pieces, PieceId id, TriangleParameter at, const Crossed& crossed,
+                                const RelativeFrame& seen);
+
+}  // namespace snug

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include <snug/bounds/interval_triangle.h>
+#include <snug/bounds/offset_triangle.h>
+#include <snug/bvh/volume.h>
+#include <snug/surface/limit_surface.h>
+
+namespace snug {
+
+/// A piece in a PieceCache.
+using PieceId = Id<struct PieceTag>;
+
+/// A piece of a limit surface with its offset triangle, in scaled units.
+struct Piece {
+  PatchId root;
+  Patch patch;
+  std::array<Vector3, 3> corners;  ///< limit corners, relative to patch.origin
+  OffsetTriangle offset;
+  PieceId first_child;  ///< of four in a row; invalid while the piece is whole
+};
+
+/// The normal of a triangle, of length 1 up to a few roundings; zero if it has none.
+[[nodiscard]] Vector3 unit_normal(const Triangle& triangle);
+
+/// Bounds of dot(unit_normal(piece.offset.base), x - piece.offset.base[0]) over the piece, rounding included: narrower than
+/// its radius, which must cover what bulges sideways too.
+struct Heights {
+  double lower, upper;
+};
+
+/// A piece with its offset triangle, made from a patch: fitted to hull rows, for which `scratch` is used, or
+/// from the tables of a layout.
+[[nodiscard]] Piece make_piece(BoundsCache& library, PatchId root, Patch patch, HullPoints& scratch,
+                               std::optional<TableLayout> table = {});
+
+/// Patches of one surface, split lazily and in place, pieces with their heights. Scratch memory of a query: one a thread.
+///
+/// Guarantee: what it returns depends on the surface alone, not on the order of calls.
+/// Cost:      a piece about 1 KB; a split four small products and fits. Memory grows with what was touched; a
+///            query that splits counts its own steps against its budget.
+class PieceCache {
+ public:
+  /// Requires:  the surface outlives the refinement.
+  explicit PieceCache(const LimitSurface& surface, std::optional<TableLayout> table = {});
+
+  [[nodiscard]] const LimitSurface& surface() const { return surface_; }
+  /// A whole patch.
+  /// Requires:  surface().has_patch(patch).
+  [[nodiscard]] PieceId root(PatchId patch);
+  [[nodiscard]] const Piece& operator[](PieceId id) const { return pieces_[id.index()]; }
+  [[nodiscard]] const Heights& heights(PieceId id) const { return heights_[id.index()]; }
+  /// A box around the piece: along its base triangle and its normal, or the coordinate axes where it has none.
+  [[nodiscard]] const Obb& box(PieceId id) const { return boxes_[id.index()]; }
+  /// Points whose hull holds the piece closely, kept once they are made.
+  [[nodiscard]] const HullPoints& hull(PieceId id);
+  /// First of the four children, making them if need be.
+  /// Requires:  below the last level, PiecePath::max_level.
+  [[nodiscard]] PieceId split(PieceId id);
+  /// A child of a piece that is not kept, here or elsewhere.
+  /// Requires:  below the last level.
+  [[nodiscard]] Piece child_of(const Piece& piece, unsigned child);
+  /// False at the last level, and where rounding alone makes up the radius: children would be no smaller.
+  [[nodiscard]] bool can_split(PieceId id) const;
+
+  /// Pieces made so far.
+  [[nodiscard]] std::size_t size() const { return pieces_.size(); }
+  [[nodiscard]] std::size_t bytes() const { return bytes_ + roots_.capacity() * sizeof(PieceId); }
+  /// Forgets all pieces.
+  void clear();
+
+ private:
+  void add(PatchId root, Patch patch);
+
+  const LimitSurface& surface_;
+  std::optional<TableLayout> table_;
+  std::vector<PieceId> roots_;
+  std::deque<Piece> pieces_;
+  std::vector<Heights> heights_;
+  std::vector<Obb> boxes_;
+  std::deque<HullPoints> hulls_;
+  std::vector<std::uint32_t> hull_places_;  // in hulls_, from 1 on; 0 where there is none
+  std::size_t bytes_ = 0;                   // of pieces
+  HullPoints scratch_;
+};
+
+}  // namespace snug

@@ -1,0 +1,64 @@
+#include <snug/search/point_batch.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include <snug/base/parallel.h>
+
+namespace snug {
+namespace {
+
+// The low 10 bits, two zeros before each.
+std::uint32_t spread(std::uint32_t bits) {
+  bits = (bits | bits << 16) & 0x030000ffu;
+  bits = (bits | bits << 8) & 0x0300f00fu;
+  bits = (bits | bits << 4) & 0x030c30c3u;
+  return (bits | bits << 2) & 0x09249249u;
+}
+
+// Where the points stand along the curve.
+std::vector<std::uint32_t> spatial_order(std::span<const Point3> points) {
+  Box3 box;
+  for (const Point3& p : points) box.add(p);
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> places;
+  places.reserve(points.size());
+  for (const Point3& p : points) {
+    std::uint32_t code = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double share = (p[k] - box.lower[k]) / (box.upper[k] - box.lower[k]);
+      const double cell = share >= 0 && share <= 1 ? 1023 * share : 0;
+      code |= spread(static_cast<std::uint32_t>(cell)) << k;
+    }
+    places.emplace_back(code, static_cast<std::uint32_t>(places.size()));
+  }
+  std::sort(places.begin(), places.end());
+  std::vector<std::uint32_t> order;
+  order.reserve(places.size());
+  for (const auto& place : places) order.push_back(place.second);
+  return order;
+}
+
+}  // namespace
+
+void for_each_point(const SurfaceBvh& model, std::span<const Point3> points, int threads,
+                    const WorkMonitor& monitor,
+                    const std::function<void(SurfaceWorkspace&, std::size_t)>& ask) {
+  const std::vector<std::uint32_t> order = spatial_order(points);
+  std::atomic<std::size_t> done{0};
+  parallel_for_with(
+      points.size(), threads, [&] { return SurfaceWorkspace(model); },
+      [&](SurfaceWorkspace& scratch, std::size_t begin, std::size_t end) {
+        for (const std::uint32_t i : std::span(order).subspan(begin, end - begin)) {
+          ask(scratch, i);
+          const std::size_t count = ++done;
+          if (count % (1 + points.size() / 1000) == 0) {
+            monitor.report(static_cast<double>(count) / static_cast<double>(points.size()));
+          }
+        }
+      });
+}
+
+}  // namespace snug

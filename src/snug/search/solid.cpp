@@ -1,0 +1,118 @@
+#include <snug/search/solid.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <string>
+
+#include <snug/base/error.h>
+#include <snug/geometry/rounding.h>
+#include <snug/patch/evaluate.h>
+#include <snug/search/enclosed_pieces.h>
+
+namespace snug {
+namespace {
+
+void require_closed(const LimitSurface& surface) {
+  const Topology& topology = surface.topology();
+  for (std::size_t e = 0; e < topology.edge_count(); ++e) {
+    if (!topology.ends_fans(EdgeId(e))) continue;
+    const HalfEdge h = topology.half_of(EdgeId(e));
+    throw InputError(InputProblem::refused,
+                     "solids are bounded by closed surfaces, and edge (" +
+                         std::to_string(topology.from(h).value()) + ", " +
+                         std::to_string(topology.to(h).value()) + ") of face " +
+                         std::to_string(topology.face_of(h).value()) +
+                         " has not two faces that run along it in opposite directions; close the mesh or ask "
+                         "about its surface");
+  }
+  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+    if (surface.has_patch(PatchId(p))) continue;
+    throw InputError(InputProblem::refused, "solids are bounded by closed surfaces, and face " +
+                                                std::to_string(surface.place(PatchId(p)).owner) +
+                                                " is a hole; fill it or ask about its surface");
+  }
+}
+
+std::vector<PatchId> component_patches(const LimitSurface& surface) {
+  std::vector<std::uint32_t> parent(surface.corner_name_count());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto find = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+    const auto names = surface.corner_names(PatchId(p));
+    for (std::size_t k = 1; k < 3; ++k) {
+      const std::uint32_t x = find(names[0]), y = find(names[k]);
+      parent[std::max(x, y)] = std::min(x, y);
+    }
+  }
+  std::vector<bool> seen(parent.size());
+  std::vector<PatchId> patches;
+  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+    const std::uint32_t component = find(surface.corner_names(PatchId(p))[0]);
+    if (!seen[component]) {
+      seen[component] = true;
+      patches.emplace_back(p);
+    }
+  }
+  return patches;
+}
+
+// Calls visit(first, second, edge) for each edge of an owner that its first split cuts in two: the patches on the first and
+// on the second half of it. Their corners there are 0 and 1, and 1 and 2.
+template <class Visit>
+void for_each_cut_edge(const LimitSurface& surface, const Visit& visit) {
+  for (std::size_t owner = 0; owner < surface.owner_count(); ++owner) {
+    const auto [begin, end] = surface.patches_of(owner);
+    if (begin == end || !surface.after_first_split(PatchId(begin))) continue;
+    for (std::size_t first = begin; first < end; first += 2) {
+      const std::size_t second = first + 2 < end ? first + 3 : begin + 1;
+      visit(PatchId(first), PatchId(second), surface.corner_names(PatchId(first))[1]);
+    }
+  }
+}
+
+Solid::Filler make_filler(const LimitSurface& surface, PatchId first, PatchId second) {
+  Solid::Filler filler{};
+  const auto set = [&](std::size_t place, const Patch& patch, std::size_t corner) {
+    const LimitPoint limit = corner_point(patch, corner);
+    const Point3 p = patch.origin + limit.relative;
+    filler.corners[place] = p;
+    filler.error = std::max(filler.error, spatial_error(limit.error + unit_roundoff * max_abs(p - Point3{})));
+  };
+  const Patch patch = surface.patch(first);
+  set(0, patch, 0);
+  set(2, patch, 1);
+  set(1, surface.patch(second), 2);
+  return filler;
+}
+
+}  // namespace
+
+Solid::Solid(const LimitSurface& surface, Volume volume) {
+  require_closed(surface);
+  components_ = component_patches(surface);
+  // Where both sides of an edge are cut, their fillers cancel.
+  std::vector<std::uint8_t> cuts(surface.corner_name_count());
+  for_each_cut_edge(surface, [&](PatchId, PatchId, std::uint32_t edge) { ++cuts[edge]; });
+  for_each_cut_edge(surface, [&](PatchId first, PatchId second, std::uint32_t edge) {
+    if (cuts[edge] == 1) fillers_.push_back(make_filler(surface, first, second));
+  });
+  if (fillers_.empty()) return;
+  std::vector<Point3> centres;
+  centres.reserve(fillers_.size());
+  for (const Filler& filler : fillers_) centres.push_back(filler.corners[2]);
+  tree_ = std::make_unique<WideBvh>(volume, centres, 1, [&](std::span<const std::uint32_t> items) {
+    std::vector<OffsetTriangle> triangles;
+    std::vector<Point3> spread;
+    for (const std::uint32_t i : items) {
+      triangles.push_back({fillers_[i].corners, fillers_[i].error});
+      spread.insert(spread.end(), fillers_[i].corners.begin(), fillers_[i].corners.end());
+    }
+    return fit(volume, EnclosedTriangles(triangles, spread));
+  });
+}
+
+}  // namespace snug

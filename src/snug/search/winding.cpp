@@ -1,0 +1,280 @@
+#include <snug/search/winding.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <snug/geometry/rounding.h>
+#include <snug/patch/evaluate.h>
+#include <snug/search/solid.h>
+
+namespace snug {
+namespace {
+
+constexpr std::uint64_t most_splits = 20'000;
+
+// Of no particular slope to anything that people model.
+constexpr std::array<Vector3, 8> directions{{{0.8236391, 0.2941752, 0.4848613},
+                                             {-0.3912744, 0.8123906, 0.4324018},
+                                             {0.1748203, -0.5321907, 0.8283922},
+                                             {-0.6723481, -0.5610927, -0.4829115},
+                                             {0.5519373, 0.7218405, -0.4176331},
+                                             {-0.9321904, 0.1293847, 0.3381923},
+                                             {0.2639471, -0.8931207, -0.3642918},
+                                             {-0.1173952, 0.2387164, -0.9639721}}};
+
+// The direction that leads away from the middle.
+std::size_t shortest_way_out(const Vector3& from_middle) {
+  const auto along = [&](const Vector3& x, const Vector3& y) {
+    return dot(x, from_middle) < dot(y, from_middle);
+  };
+  return static_cast<std::size_t>(std::max_element(directions.begin(), directions.end(), along) -
+                                  directions.begin());
+}
+
+double determinant(const Vector3& a, const Vector3& b, const Vector3& c) { return dot(a, cross(b, c)); }
+
+// A ray from a point, and what it meets.
+class Ray {
+ public:
+  Ray(const Point3& from, double error, const Vector3& direction)
+      : from_(from), error_(error), direction_(direction) {}
+
+  // Adds the signed crossing with a triangle whose exact corners lie within `error` of these; false if it is not certain.
+  [[nodiscard]] bool add(const Triangle& triangle, double error) {
+    std::array<Vector3, 3> v;
+    double largest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      v[k] = triangle[k] - from_;
+      largest = std::max(largest, max_abs(v[k]));
+    }
+    // Determinants of three vectors: a sum of six products, each off by its factors' errors and by roundings.
+    const double off = enlarged(error + error_);
+    const double doubt = enlarged(12 * largest * off + 64 * unit_roundoff * largest * largest +
+                                  12 * off * off + 16 * underflow_error);
+    int positive = 0, negative = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double side = determinant(direction_, v[k], v[(k + 1) % 3]);
+      positive += side > doubt;
+      negative += side < -doubt;
+    }
+    if (positive > 0 && negative > 0) return true;  // the line passes by
+    const double volume = determinant(v[0], v[1], v[2]);
+    const double volume_doubt = enlarged(largest * doubt * 4 + 36 * off * off * off + 16 * underflow_error);
+    // All three alike: the line goes through; ahead if the volume has the same sign.
+    if (positive == 3 || negative == 3) {
+      if (std::fabs(volume) <= volume_doubt) return false;
+      const int sign = positive == 3 ? 1 : -1;
+      if ((volume > 0) == (sign > 0)) crossings_ += sign;
+      return true;
+    }
+    // Perhaps through an edge; behind, that does not matter.
+    for (const Vector3& corner : v) {
+      if (!(dot(corner, direction_) < -(4 * off + 16 * unit_roundoff * largest))) return false;
+    }
+    return true;
+  }
+  [[nodiscard]] int crossings() const { return crossings_; }
+
+ private:
+  Point3 from_;
+  double error_;
+  Vector3 direction_;
+  int crossings_ = 0;
+};
+
+class Winding {
+ public:
+  Winding(SurfaceWorkspace& scratch, const Point3& point, double error, const WorkMonitor& monitor)
+      : scratch_(scratch), point_(point), error_(error), monitor_(monitor) {}
+
+  std::optional<int> along(const Vector3& direction) {
+    const Ball& ball = scratch_.model().tree().ball();
+    const double length = distance(point_, ball.centre) + ball.radius + 1;
+    if (!std::isfinite(length)) return std::nullopt;
+    segment(direction, length);
+    Ray ray(point_, error_, direction);
+    if (!add_first_fillers(ray)) return std::nullopt;
+    stack_.assign(1, scratch_.root());
+    std::uint64_t splits = 0;
+    while (!stack_.empty()) {
+      const Node node = stack_.back();
+      stack_.pop_back();
+      if (node.piece) {
+        monitor_.checkpoint();
+        if (++splits > most_splits || !scratch_.can_open(node)) {
+          on_surface_ = true;
+          return std::nullopt;
+        }
+        if (!add_fillers(node, ray)) return std::nullopt;
+      }
+      const SurfaceWorkspace::Opened opened = scratch_.open(node);
+      const Blocks& blocks = scratch_.blocks(opened.piece);
+      Blocks::Distances to_segment, to_point;
+      blocks.distances(opened.block, segment_, error_, 0, to_segment);
+      blocks.distances(opened.block, point_, error_, to_point);
+      for (std::uint32_t i = 0; i < blocks.count(opened.block); ++i) {
+        if (to_segment[i] > 0) continue;
+        const Node next{opened.block, static_cast<std::uint8_t>(i), opened.piece};
+        if (!opened.piece || !(to_point[i] > 0)) {
+          stack_.push_back(next);
+        } else if (!add_triangle(scratch_.piece(next), ray)) {
+          return std::nullopt;
+        }
+      }
+    }
+    return ray.crossings();
+  }
+
+  /// Has a direction failed since pieces around the point could not be made small enough? Then all do.
+  [[nodiscard]] bool on_surface() const { return on_surface_; }
+
+  /// Lower bound of the distance of the surface: the least gap to the sets around pieces, which are split where they hold the
+  /// point. Not positive if that takes too long.
+  double clearance() {
+    const auto farther = [](const Candidate& x, const Candidate& y) { return x.gap > y.gap; };
+    std::vector<Candidate> heap{{scratch_.root(), -INFINITY}};
+    std::uint64_t splits = 0;
+    while (!heap.empty()) {
+      std::pop_heap(heap.begin(), heap.end(), farther);
+      const Candidate nearest = heap.back();
+      heap.pop_back();
+      if (nearest.node.piece && nearest.gap > 0) return static_cast<double>(nearest.gap);
+      if (nearest.node.piece && (++splits > most_splits || !scratch_.can_open(nearest.node))) return 0;
+      const SurfaceWorkspace::Opened opened = scratch_.open(nearest.node);
+      const Blocks& blocks = scratch_.blocks(opened.piece);
+      Blocks::Distances gaps;
+      blocks.distances(opened.block, point_, error_, gaps);
+      for (std::uint32_t i = 0; i < blocks.count(opened.block); ++i) {
+        heap.push_back({{opened.block, static_cast<std::uint8_t>(i), opened.piece}, gaps[i]});
+        std::push_heap(heap.begin(), heap.end(), farther);
+      }
+    }
+    return 0;
+  }
+
+ private:
+  struct Candidate {
+    Node node;
+    float gap;
+  };
+
+  // The part of the ray that matters, as a set.
+  void segment(const Vector3& direction, double length) {
+    segment_.centre = point_ + (length / 2) * direction;
+    const Vector3 unit = (1 / snug::length(direction)) * direction;
+    segment_.box = {};
+    segment_.box.half[0] = static_cast<float>(length);
+    for (std::size_t k = 0; k < 3; ++k) segment_.box.axes[0][k] = static_cast<float>(unit[k]);
+    const auto places = directions_of(scratch_.blocks(false).volume());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const double half = std::fabs(dot(all_directions[places[i]], direction)) * length;
+      segment_.lower[i] = -half;
+      segment_.upper[i] = half;
+    }
+  }
+
+  struct Corners {
+    Triangle points;
+    double error;
+  };
+  [[nodiscard]] Corners corners(PieceId id) const {
+    const Piece& piece = scratch_.pieces()[id];
+    Corners result{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const LimitPoint corner = corner_point(piece.patch, k);
+      result.points[k] = piece.patch.origin + corner.relative;
+      result.error =
+          std::max(result.error, corner.error + unit_roundoff * max_abs(result.points[k] - Point3{}));
+    }
+    result.error = spatial_error(result.error);
+    return result;
+  }
+
+  [[nodiscard]] bool add_triangle(PieceId id, Ray& ray) const {
+    const Corners c = corners(id);
+    return ray.add(c.points, c.error);
+  }
+
+  // A split piece: its children's triangles and these have the same border as its own one.
+  [[nodiscard]] bool add_fillers(Node node, Ray& ray) const {
+    const PieceId id = scratch_.piece(node), first = scratch_.pieces().split(id);
+    const Corners whole = corners(id);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Corners child = corners(PieceId(first.index() + k));
+      const Point3& middle = child.points[(k + 1) % 3];
+      if (!ray.add({whole.points[k], whole.points[(k + 1) % 3], middle},
+                   std::max(whole.error, child.error))) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  // The fillers of first splits that the segment may meet.
+  [[nodiscard]] bool add_first_fillers(Ray& ray) {
+    const Solid& solid = scratch_.model().solid();
+    const WideBvh* const tree = solid.filler_tree();
+    if (tree == nullptr) return true;
+    const Blocks& blocks = tree->blocks();
+    std::vector<std::uint32_t> open{tree->root().block};
+    while (!open.empty()) {
+      const std::uint32_t block = open.back();
+      open.pop_back();
+      Blocks::Distances gaps;
+      blocks.distances(block, segment_, error_, 0, gaps);
+      for (std::uint32_t i = 0; i < blocks.count(block); ++i) {
+        if (gaps[i] > 0) continue;
+        const std::uint32_t name = blocks.name({block, i});
+        if ((name & WideBvh::cluster_bit) == 0) {
+          open.push_back(name);
+          continue;
+        }
+        for (const std::uint32_t item : tree->cluster(name & ~WideBvh::cluster_bit)) {
+          const Solid::Filler& filler = solid.fillers()[item];
+          if (!ray.add(filler.corners, filler.error)) return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  SurfaceWorkspace& scratch_;
+  Point3 point_;
+  double error_;
+  const WorkMonitor& monitor_;
+  PlacedVolume segment_{};
+  std::vector<Node> stack_;
+  bool on_surface_ = false;
+};
+
+// By the first direction that decides, the shortest way out first.
+std::optional<int> along_some_ray(Winding& winding, const Vector3& from_middle) {
+  const std::size_t first = shortest_way_out(from_middle);
+  for (std::size_t i = 0; i < directions.size() && !winding.on_surface(); ++i) {
+    if (const std::optional<int> number = winding.along(directions[(first + i) % directions.size()]))
+      return number;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<int> winding_number(SurfaceWorkspace& scratch, const Point3& point, double error,
+                                  const WorkMonitor& monitor) {
+  const Vector3 from_middle = point - scratch.model().tree().ball().centre;
+  Winding winding(scratch, point, error, monitor);
+  if (const std::optional<int> number = along_some_ray(winding, from_middle)) return number;
+  if (winding.on_surface()) return std::nullopt;
+  // In the plane of a filler no ray decides. All points that are nearer than the surface have the same number.
+  const double clearance = winding.clearance();
+  if (!(clearance > 8 * error + 0x1p-45)) return std::nullopt;
+  for (const Vector3& direction : directions) {
+    Winding beside(scratch, point + (clearance / 4) * direction, error, monitor);
+    if (const std::optional<int> number = along_some_ray(beside, from_middle)) return number;
+  }
+  return std::nullopt;
+}
+
+}  // namespace snug

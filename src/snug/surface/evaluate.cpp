@@ -1,0 +1,103 @@
+#include <snug/surface/evaluate.h>
+
+#include <algorithm>
+
+#include <snug/base/error.h>
+#include <snug/geometry/rounding.h>
+#include <snug/patch/evaluate.h>
+#include <snug/patch/quad_parameter.h>
+#include <snug/surface/unscale.h>
+
+namespace snug {
+
+namespace {
+
+SurfacePosition placed(const LimitPoint& point, const Point3& origin, PowerOfTwo back) {
+  const Point3 scaled = origin + point.relative;
+  const double error = point.error + unit_roundoff * max_abs(scaled - Point3{});
+  return {require_representable(back.apply(scaled)), unscaled_up(enlarged(error), back) + underflow_error};
+}
+
+}  // namespace
+
+PatchEvaluator::PatchEvaluator(const LimitSurface& surface, PatchId p)
+    : evaluator_(surface.patch(p)),
+      back_(surface.scale().inverse()),
+      loop_(surface.options().scheme == Scheme::loop) {}
+
+SurfacePosition PatchEvaluator::position(TriangleParameter at) {
+  const LimitPoint point = evaluator_(at);
+  return placed(point, evaluator_.patch().origin, back_);
+}
+
+SurfacePoint PatchEvaluator::operator()(TriangleParameter at) const {
+  return placed_frame(limit_frame(evaluator_.patch(), at));
+}
+
+SurfacePoint PatchEvaluator::operator()(const SurfaceParameter& at) const {
+  return placed_frame(loop_ ? limit_frame(evaluator_.patch(), TriangleParameter{at.u, at.v})
+                            : limit_frame(evaluator_.patch(), QuadParameter{at.u, at.v}));
+}
+
+SurfacePoint PatchEvaluator::placed_frame(const LimitFrame& frame) const {
+  SurfacePoint result;
+  static_cast<SurfacePosition&>(result) = placed(frame.point, evaluator_.patch().origin, back_);
+  for (std::size_t t = 0; t < 2; ++t) {
+    result.tangents[t] = back_.apply(frame.tangents[t]);
+    if (!is_finite(result.tangents[t])) require_representable(INFINITY);
+  }
+  result.differentiable = frame.differentiable;
+  result.normal = frame.normal;
+  if (frame.normal && frame.tangent_error) {
+    result.normal_error = normal_error(frame.tangents, *frame.tangent_error);
+  }
+  return result;
+}
+
+SurfaceParameter place_of(const LimitSurface& surface, PatchId patch, TriangleParameter at) {
+  const auto [owner, part] = surface.place(patch);
+  if (surface.options().scheme == Scheme::loop) {
+    const double u = std::clamp(at.u, 0.0, 1.0);
+    return {owner, 0, u, std::clamp(at.v, 0.0, 1 - u)};
+  }
+  // Half a quad: from (0,0) by (1,0) to (1,1), or from (1,1) by (0,1) to (0,0).
+  const double u = part % 2 == 0 ? at.u + at.v : 1 - at.u - at.v, v = part % 2 == 0 ? at.v : 1 - at.v;
+  return {owner, part / 2, std::clamp(u, 0.0, 1.0), std::clamp(v, 0.0, 1.0)};
+}
+
+std::optional<PatchId> patch_at(const LimitSurface& surface, const SurfaceParameter& at) {
+  const auto [u, v] = QuadParameter{at.u, at.v};
+  if (at.owner >= surface.owner_count() || !(u >= 0 && v >= 0 && u <= 1 && v <= 1)) return {};
+  const LimitSurface::PatchRange range = surface.patches_of(at.owner);
+  std::size_t patch = range.begin;
+  if (surface.options().scheme == Scheme::loop) {
+    if (!(u + v <= 1) || at.corner != 0) return {};
+  } else {
+    patch += 2 * std::size_t{at.corner} + part_of(QuadParameter{u, v});
+  }
+  if (patch >= range.end || !surface.has_patch(PatchId(patch))) return {};
+  return PatchId(patch);
+}
+
+std::optional<SurfaceNormal> normal_at(const LimitSurface& surface, const SurfaceParameter& at,
+                                       const Motion& pose) {
+  const SurfacePoint point = evaluate(surface, at);
+  if (!point.normal) return std::nullopt;
+  const Vector3 turned = pose.rotate(*point.normal);
+  SurfaceNormal result{(1 / length(turned)) * turned, {}};
+  // derivations/rounding.md, "Normals".
+  const double defect = pose.defect();
+  if (point.normal_error) {
+    result.error = enlarged((1 + 2 * defect) * *point.normal_error + 8 * defect + 32 * unit_roundoff);
+  }
+  return result;
+}
+
+SurfacePoint evaluate(const LimitSurface& surface, const SurfaceParameter& at) {
+  const std::optional<PatchId> patch = patch_at(surface, at);
+  require_value(patch.has_value(),
+                "evaluate: there is no limit surface at this place; patch_at() tells where there is one");
+  return PatchEvaluator(surface, *patch)(at);
+}
+
+}  // namespace snug

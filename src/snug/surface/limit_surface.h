@@ -1,0 +1,121 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include <snug/base/progress.h>
+#include <snug/bounds/bounds_cache.h>
+#include <snug/geometry/scaling.h>
+#include <snug/mesh/topology.h>
+#include <snug/patch/patch.h>
+#include <snug/scheme/creases.h>
+#include <snug/scheme/scheme.h>
+
+namespace snug {
+
+/// A root patch of a surface. Loop: of face f it is number f.
+using PatchId = Id<struct PatchTag>;
+
+/// The limit surface of a control mesh, in triangular patches. Immutable; may be read by many threads.
+///
+/// A patch belongs to an owner: a face, or with a dual scheme a vertex. Loop: one a face. Catmull-Clark: two a quad with
+/// corners c0 to c3, part 0 from c0 by c1 to c2 and part 1 from c2 by c3 to c0; of another face with n corners 2 n after
+/// its first split: parts 2 k and 2 k + 1 those of the quad at corner k, from that corner and from the face's centre.
+/// Dual schemes likewise, with the faces around the vertex, from topology().leaving() on, as corners.
+///
+/// Inside, coordinates are scaled by a power of two so that the largest lies in [1, 2); `scale()` leads there
+/// from mesh units. Everything below surface/ works in scaled units, everything that questions answer with is
+/// in mesh units.
+///
+/// Errors:    InputError (refused) from require_subdividable, and (value) for a library that is null or the older vertex rule.
+/// Cost:      linear; 9 bytes a patch beside mesh and topology. Rows of kinds are made when a patch is first
+///            bounded.
+class LimitSurface {
+ public:
+  /// The mesh's tags name creases, corners, holes, the crease method and how triangles are treated; options.boundary
+  /// alone counts for the boundary.
+  LimitSurface(ControlMesh mesh, const SchemeOptions& options, std::shared_ptr<BoundsCache> library,
+               int threads = 0, const WorkMonitor& monitor = {});
+
+  [[nodiscard]] const ControlMesh& mesh() const { return mesh_; }
+  [[nodiscard]] const Topology& topology() const { return topology_; }
+  [[nodiscard]] const SchemeOptions& options() const { return options_; }
+  [[nodiscard]] BoundsCache& library() const { return *library_; }
+
+  /// From mesh units to scaled ones.
+  [[nodiscard]] PowerOfTwo scale() const { return scale_; }
+  /// Longest side of the box of the used vertices, in mesh units; may overflow to infinity.
+  [[nodiscard]] double size() const { return size_; }
+
+  [[nodiscard]] std::size_t face_count() const { return topology_.face_count(); }
+  /// Faces, or vertices of a dual scheme.
+  [[nodiscard]] std::size_t owner_count() const {
+    return is_primal(options_.scheme) ? topology_.face_count() : topology_.vertex_count();
+  }
+  /// Number of patches, those that are not there included.
+  [[nodiscard]] std::size_t patch_count() const { return kinds_.size(); }
+  /// The patches of an owner: begin, begin + 1, ... end - 1.
+  struct PatchRange {
+    std::size_t begin, end;
+  };
+  [[nodiscard]] PatchRange patches_of(std::size_t owner) const;
+  struct PatchPlace {
+    std::uint32_t owner;
+    std::uint32_t part;
+  };
+  [[nodiscard]] PatchPlace place(PatchId p) const;
+  /// Is the patch half a quad that the first split of its owner made? Then it lies one level down.
+  [[nodiscard]] bool after_first_split(PatchId p) const { return polygon_of(p) != nullptr; }
+
+  /// Is there a limit patch? Not in a hole, not at a boundary with BoundaryRule::none, and with a dual scheme not of a
+  /// boundary vertex.
+  [[nodiscard]] bool has_patch(PatchId p) const { return kinds_[p.index()] != nullptr; }
+  /// Requires:  has_patch(p).
+  [[nodiscard]] const Kind& kind(PatchId p) const { return *kinds_[p.index()]; }
+  /// Which corner of the face its kind calls corner 0; Loop alone.
+  /// Requires:  has_patch(p).
+  [[nodiscard]] std::uint8_t first(PatchId p) const {
+    return firsts_.empty() ? std::uint8_t{0} : firsts_[p.index()];
+  }
+  /// The kind of the polygon that a patch is made of in a first split; none for others.
+  [[nodiscard]] const Kind* polygon_of(PatchId p) const;
+  /// The control vertices of a patch, or of its polygon, in the order of its kind.
+  /// Errors:    InputError (value) unless has_patch(p).
+  void control_vertices(PatchId p, std::vector<VertexId>& out) const;
+  [[nodiscard]] const Point3& scaled_point(VertexId v) const { return scaled_[v.index()]; }
+  /// The middle of its owner's corners, in scaled units.
+  [[nodiscard]] Point3 middle(PatchId p) const;
+  /// The whole patch, in scaled units.
+  /// Errors:    InputError (value) unless has_patch(p).
+  /// Cost:      a walk around its corners; of a polygon a product with its stencils.
+  [[nodiscard]] Patch patch(PatchId p) const;
+  /// Names of the patch's three corners: equal names, equal limit points. Below corner_name_count().
+  [[nodiscard]] std::array<std::uint32_t, 3> corner_names(PatchId p) const;
+  [[nodiscard]] std::size_t corner_name_count() const;
+  /// Number of different kinds among its patches.
+  [[nodiscard]] std::size_t kind_count() const;
+
+ private:
+  void lay_out_patches();
+  [[nodiscard]] bool has_surface(std::size_t owner, const Sharpness& sharpness,
+                                 const std::vector<bool>& holes) const;
+  void find_kinds(std::size_t owner, const Sharpness& sharpness);
+  [[nodiscard]] HalfEdge start_of(std::size_t owner) const;
+
+  ControlMesh mesh_;
+  SchemeOptions options_;
+  std::shared_ptr<BoundsCache> library_;
+  Topology topology_;
+  PowerOfTwo scale_;
+  double size_ = 0;
+  std::vector<Point3> scaled_;
+  std::vector<const Kind*> kinds_;
+  std::vector<std::uint8_t> firsts_;
+  std::vector<std::uint32_t> begins_;  // first patch of each owner and the end; empty for Loop
+  std::vector<std::uint32_t> owners_;  // of each patch; empty for Loop
+  std::vector<const Kind*> polygons_;  // of each owner; empty where there are none
+};
+
+}  // namespace snug

@@ -1,0 +1,56 @@
+#include <snug/bounds/curve_points.h>
+#include <snug/bounds/interval_segment.h>
+#include <snug/bounds/offset_segment.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace snug {
+namespace {
+
+HullPoints points_of(const std::vector<Vector3>& list) {
+  HullPoints points;
+  points.resize(list.size());
+  for (std::size_t i = 0; i < list.size(); ++i) points.set(i, list[i]);
+  return points;
+}
+
+TEST(segment, rests_are_perpendicular_inside_and_reach_to_the_ends_outside) {
+  const SegmentFoot foot({1, 0, 0}, {3, 0, 0});
+  EXPECT_EQ(foot.rest({2, 5, -1}), (Vector3{0, 5, -1}));
+  EXPECT_EQ(foot.rest({0, 1, 0}), (Vector3{-1, 1, 0}));
+  EXPECT_EQ(foot.rest({7, 1, 0}), (Vector3{4, 1, 0}));
+  const SegmentFoot point({1, 1, 1}, {1, 1, 1});
+  EXPECT_EQ(point.rest({2, 0, 1}), (Vector3{1, -1, 0}));
+  // The squared length underflows: the foot stays at the first end.
+  const SegmentFoot grain({0, 0, 0}, {1e-170, 0, 0});
+  EXPECT_EQ(grain.rest({1, 0, 0}), (Vector3{1, 0, 0}));
+}
+
+TEST(segment, is_moved_to_the_middle_of_an_arc) {
+  const HullPoints points = points_of({{0, 0, 0}, {1, 1, 0}, {2, 1, 0}, {3, 0, 0}});
+  const OffsetSegment offset = offset_segment(points, {Vector3{0, 0, 0}, Vector3{3, 0, 0}});
+  EXPECT_EQ(offset.base[0], (Point3{0, 0.5, 0}));
+  EXPECT_EQ(offset.base[1], (Point3{3, 0.5, 0}));
+  EXPECT_GE(offset.radius, 0.5);
+  EXPECT_LT(offset.radius, 0.5 + 1e-12);
+  const IntervalSegment interval = interval_segment(points, {Vector3{0, 0, 0}, Vector3{3, 0, 0}});
+  EXPECT_LE(interval.end[0].lower.y, 0);
+  EXPECT_GE(interval.end[1].upper.y, 1);
+  EXPECT_LT(thickness(interval), 1 + 1e-12);
+}
+
+TEST(segment, of_what_is_not_finite_has_an_infinite_radius) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    const HullPoints points = points_of({{0, 0, 0}, {1, bad, 0}, {3, 0, 0}});
+    EXPECT_EQ(offset_segment(points, {Vector3{0, 0, 0}, Vector3{3, 0, 0}}).radius,
+              std::numeric_limits<double>::infinity());
+  }
+}
+
+}  // namespace
+}  // namespace snug

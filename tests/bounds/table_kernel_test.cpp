@@ -1,0 +1,119 @@
+#include <snug/bounds/table_kernel.h>
+
+#include <gtest/gtest.h>
+#include <snug/bounds/table_triangle.h>
+#include <testing/patches.h>
+
+#include <hwy/targets.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <set>
+#include <string>
+
+namespace snug {
+namespace {
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : bits_(seed) {}
+  [[nodiscard]] double unit() { return static_cast<double>(bits_() >> 11) * 0x1p-52 - 1; }
+  [[nodiscard]] std::size_t below(std::size_t n) { return bits_() % n; }
+  [[nodiscard]] Vector3 vector(double size = 1) { return {size * unit(), size * unit(), size * unit()}; }
+
+ private:
+  std::mt19937_64 bits_;
+};
+
+// Patches of one kind with control points of their own.
+struct Batch {
+  std::vector<Point3> points;
+  std::vector<VertexId> control;
+  std::vector<Patch> patches;
+};
+
+Batch batch(const Kind& kind, std::size_t count, Random& random, double size, const Vector3& at) {
+  Batch result;
+  // Places of a regular kind; further ones anywhere around.
+  constexpr double places[12][2] = {{0, 0},  {1, 0},  {0, 1},  {1, -1}, {1, 1}, {-1, 1},
+                                    {-1, 0}, {0, -1}, {2, -1}, {2, 0},  {0, 2}, {-1, 2}};
+  for (std::size_t i = 0; i < count; ++i) {
+    std::vector<Point3> own;
+    for (std::size_t k = 0; k < kind.control_count(); ++k) {
+      const Vector3 place = k < 12 ? Vector3{places[k][0], places[k][1], 0} : random.vector(2);
+      own.push_back(Point3{} + at + size * (place + random.vector(0.2)));
+      result.control.push_back(VertexId(result.points.size()));
+      result.points.push_back(own.back());
+    }
+    result.patches.push_back(make_patch(kind, 0, own));
+  }
+  return result;
+}
+
+TEST(fit_table, is_the_tables_offset_triangle) {
+  BoundsCache library;
+  Random random(6);
+  for (const std::size_t valence : {6u, 5u, 9u, 40u}) {
+    const CornerFan fan{0, static_cast<std::uint16_t>(valence - 1), true, false};
+    const Kind& kind = library.kinds().find({Scheme::loop, {CornerFan{}, CornerFan{}, fan}});
+    const BoundTable& table = library.table(kind);
+    for (std::size_t count = 1; count < 10; ++count) {
+      Batch b = batch(kind, count, random, 0.5, {});
+      const std::size_t broken = random.below(count + 1);
+      if (broken < count) {
+        b.points[broken * kind.control_count() + 5].x = count % 2 ? NAN : INFINITY;
+      }
+      std::vector<kernels::BatchFit> out(count);
+      kernels::fit_table(table, b.points, b.control, out);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (i == broken) {
+          EXPECT_EQ(out[i].radius, INFINITY);
+          continue;
+        }
+        const OffsetTriangle expected = offset_triangle(table_triangle(table, b.patches[i]));
+        for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(max_abs(out[i].base[k] - expected.base[k]), 1e-12);
+        EXPECT_NEAR(out[i].radius, expected.radius, 1e-12);
+        EXPECT_GT(out[i].rounding, 0);
+        EXPECT_LT(out[i].rounding, 1e-11);
+      }
+    }
+  }
+}
+
+TEST(fit_table, has_the_same_bits_on_every_instruction_set) {
+  BoundsCache library;
+  const Kind& kind = library.kinds().find({});
+  Random random(7);
+  const Batch b = batch(kind, 7, random, 1, {0.1, 0.2, 0.3});
+  const auto everything = [&] {
+    std::vector<double> all;
+    std::vector<kernels::BatchFit> out(7);
+    kernels::fit_table(library.table(kind), b.points, b.control, out);
+    for (const kernels::BatchFit& fit : out) {
+      for (const Point3& p : fit.base) all.insert(all.end(), {p.x, p.y, p.z});
+      all.insert(all.end(), {fit.radius, fit.rounding});
+    }
+    return all;
+  };
+  const std::vector<double> expected = everything();
+  std::set<std::string> names;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    const std::vector<double> found = everything();
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(found[i]), std::bit_cast<std::uint64_t>(expected[i]))
+          << kernels::instruction_set() << " " << i;
+    }
+    names.insert(kernels::instruction_set());
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  EXPECT_GE(names.size(), 2u);
+}
+
+}  // namespace
+}  // namespace snug

@@ -1,0 +1,59 @@
+#include <experiments/printed_hierarchy.h>
+
+#include <gtest/gtest.h>
+#include <snug/query/bound.h>
+#include <testing/patches.h>
+
+namespace snug {
+namespace {
+
+std::uint64_t bound_count(const LimitSurface& surface, BoundMethod method, double tolerance) {
+  BoundOptions options;
+  options.method = method;
+  options.tolerance = tolerance;
+  return bound(surface, options, [](const PieceEnclosure&) {}).count;
+}
+
+TEST(leaves, are_as_many_as_bound_makes) {
+  const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
+  for (const double tolerance : {0.2, 0.02}) {
+    const auto rows = leaves(surface, {tolerance, {}});
+    EXPECT_EQ(rows.size(), bound_count(surface, BoundMethod::rows, tolerance));
+    for (const OffsetTriangle& leaf : rows) EXPECT_LE(leaf.radius, tolerance / 2);
+    const auto tables = leaves(surface, {tolerance, TableLayout::ngon});
+    EXPECT_EQ(tables.size(), bound_count(surface, BoundMethod::table, tolerance));
+    EXPECT_GE(tables.size(), rows.size());
+  }
+}
+
+// Each face is split once, and then no more: every corner of an icosahedron has valence 5, two of each face of this bipyramid
+// have valence 4.
+TEST(leaves, have_one_extraordinary_corner_on_request) {
+  const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
+  EXPECT_EQ(leaves(surface, {100, TableLayout::ngon}).size(), 20u);
+  EXPECT_EQ(leaves(surface, {100, TableLayout::ngon, true}).size(), 80u);
+  const LimitSurface bipyramid = testing::surface_of(oracle::meshes::bipyramid(6));
+  EXPECT_EQ(leaves(bipyramid, {100, TableLayout::ngon, true}).size(), 48u);
+}
+
+TEST(leaves, refuse_what_rounding_forbids) {
+  const LimitSurface surface = testing::surface_of(oracle::meshes::octahedron());
+  EXPECT_THROW(static_cast<void>(leaves(surface, {1e-300, {}})), InputError);
+}
+
+TEST(printed_hierarchy, tells_surfaces_that_are_apart_from_those_that_cross) {
+  const LimitSurface a = testing::surface_of(oracle::meshes::icosahedron()),
+                     b = testing::surface_of(oracle::meshes::octahedron());
+  const PrintedHierarchy tree_a(a, {0.05, TableLayout::ngon}), tree_b(b, {0.05, TableLayout::ngon});
+  EXPECT_EQ(tree_a.leaf_count(), leaves(a, {0.05, TableLayout::ngon}).size());
+  const auto says = [&](double x, double epsilon) {
+    const Motion moved = Motion::from_translation({x, 0, 0});
+    return PrintedHierarchy::says_separated(tree_a, {}, tree_b, moved, epsilon);
+  };
+  EXPECT_TRUE(says(2.5, 0));
+  EXPECT_FALSE(says(0.7, 0));
+  EXPECT_FALSE(says(2.5, 2));  // so near that its tolerance says they meet
+}
+
+}  // namespace
+}  // namespace snug

@@ -1,0 +1,156 @@
+// What queries know of a piece, in pairs of cases that other tests draw apart: every sort of kind in every disguise (scales
+// to the ends of the doubles, far away, flat, needles, lines, points), by rows and by tables of both layouts, some levels down.
+//
+//   SNUG_PLACEMENTS=100000 build/release/bin/tests/sound_pieces_test
+//
+// runs it 21 times with other meshes.
+
+#include <snug/search/piece_cache.h>
+#include <snug/surface/control_hull.h>
+
+#include <snug/bvh/blocks.h>
+#include <snug/patch/evaluate.h>
+#include <snug/search/enclosed_pieces.h>
+#include <testing/disguises.h>
+#include <testing/scheme_surfaces.h>
+
+#include <cstdlib>
+
+namespace snug {
+namespace {
+
+using Extended = std::array<long double, 3>;
+
+long double dot(const Vector3& d, const Extended& x) {
+  return static_cast<long double>(d.x) * x[0] + static_cast<long double>(d.y) * x[1] +
+         static_cast<long double>(d.z) * x[2];
+}
+Extended minus(const Extended& x, const Point3& p) {
+  return {x[0] - static_cast<long double>(p.x), x[1] - static_cast<long double>(p.y),
+          x[2] - static_cast<long double>(p.z)};
+}
+
+// A limit point with a bound of what is wrong with its height along a vector of length 1.
+struct Sample {
+  Extended x;
+  long double error;
+};
+
+std::vector<Sample> samples_of(const Patch& patch, std::mt19937_64& random) {
+  std::vector<Sample> samples;
+  for (int i = 0; i < 9; ++i) {
+    TriangleParameter at = testing::random_parameter(random);
+    if (i < 3) at = std::array<TriangleParameter, 3>{{{0, 0}, {1, 0}, {0, 1}}}[static_cast<std::size_t>(i)];
+    if (i == 3) at.v = 0;
+    if (i == 4) at.v = 1 - at.u;
+    const LimitPoint point = limit_point(patch, at);
+    Sample sample{{}, 1.75L * point.error};
+    for (std::size_t k = 0; k < 3; ++k) {
+      sample.x[k] = static_cast<long double>(patch.origin[k]) + point.relative[k];
+      sample.error += 1e-18L * std::fabs(sample.x[k]);
+    }
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+void expect_holds(PieceCache& refinement, PieceId id, const Vector3& direction,
+                  const std::vector<Sample>& samples, const std::string& name) {
+  const Piece& piece = refinement[id];
+  const Obb& box = refinement.box(id);
+  const Heights& heights = refinement.heights(id);
+  const Vector3 normal = unit_normal(piece.offset.base);
+  const HullPoints* const hull = &refinement.hull(id);
+  const std::array<Enclosed::Extent, 2> extents{EnclosedHulls({&hull, 1}, {}).extent(direction),
+                                                EnclosedTriangles({&piece.offset, 1}, {}).extent(direction)};
+  for (const Sample& sample : samples) {
+    const Extended from_box = minus(sample.x, box.centre);
+    for (std::size_t k = 0; k < 3; ++k) {
+      ASSERT_LE(std::fabs(dot(box.axes[k], from_box)), box.half[k] + sample.error) << name;
+    }
+    const long double height = dot(normal, minus(sample.x, piece.offset.base[0]));
+    ASSERT_LE(heights.lower, height + sample.error) << name;
+    ASSERT_GE(heights.upper, height - sample.error) << name;
+    for (const Enclosed::Extent& extent : extents) {
+      ASSERT_LE(extent.lower, dot(direction, sample.x) + 2 * sample.error) << name;
+      ASSERT_GE(extent.upper, dot(direction, sample.x) - 2 * sample.error) << name;
+    }
+  }
+}
+
+// The set in single precision is not apart from any of the points.
+void expect_near(Volume volume, const BoundingVolume& set, const std::vector<Sample>& samples,
+                 const std::string& name) {
+  Blocks blocks(volume);
+  const std::uint32_t number = 0;
+  blocks.add({&set, 1}, {&number, 1});
+  for (const Sample& sample : samples) {
+    Blocks::Distances gaps;
+    blocks.distances(0,
+                     Point3{static_cast<double>(sample.x[0]), static_cast<double>(sample.x[1]),
+                            static_cast<double>(sample.x[2])},
+                     static_cast<double>(2 * sample.error), gaps);
+    ASSERT_LE(gaps[0], 0) << name;
+  }
+}
+
+void expect_sound(const LimitSurface& surface, std::mt19937_64& random, const std::string& name,
+                  std::size_t& pieces) {
+  PieceCache rows(surface), ngon(surface, TableLayout::ngon),
+      characteristic(surface, TableLayout::characteristic);
+  ControlHull hull;
+  testing::for_each_patch(surface, [&](PatchId p) {
+    if (random() % 6 != 0) return;
+    const Vector3 direction{testing::unit(random) - 0.5, testing::unit(random) - 0.5,
+                            testing::unit(random) - 0.5};
+    const std::vector<Sample> whole = samples_of(surface.patch(p), random);
+    hull.assign(surface, {&p, 1});
+    const Enclosed::Extent extent = hull.extent(direction);
+    for (const Sample& sample : whole) {
+      ASSERT_LE(extent.lower, dot(direction, sample.x) + 2 * sample.error) << name;
+      ASSERT_GE(extent.upper, dot(direction, sample.x) - 2 * sample.error) << name;
+    }
+    for (const Volume volume : all_volumes) expect_near(volume, fit(volume, hull), whole, name);
+    for (PieceCache* const refinement : {&rows, &ngon, &characteristic}) {
+      PieceId id = refinement->root(p);
+      for (std::size_t level = random() % 5; level > 0 && refinement->can_split(id); --level) {
+        id = PieceId(refinement->split(id).index() + random() % 4);
+      }
+      const std::vector<Sample> samples = samples_of((*refinement)[id].patch, random);
+      expect_holds(*refinement, id, direction, samples, name);
+      BoundingVolume box;
+      box.box = refinement->box(id);
+      expect_near(Volume::obb, box, samples, name);
+      const OffsetTriangle& offset = (*refinement)[id].offset;
+      const Volume volume = all_volumes[random() % all_volumes.size()];
+      expect_near(volume, fit(volume, EnclosedTriangles({&offset, 1}, offset.base)), samples, name);
+      ++pieces;
+    }
+  });
+}
+
+TEST(pieces, of_all_kinds_in_all_disguises_are_in_what_queries_know_of_them) {
+  const char* const text = std::getenv("SNUG_PLACEMENTS");
+  const std::uint64_t rounds = text != nullptr ? 1 + std::strtoull(text, nullptr, 10) / 5000 : 1;
+  std::size_t pieces = 0;
+  for (std::uint64_t round = 0; round < rounds; ++round) {
+    std::mt19937_64 random(81 + round);
+    testing::for_each_surface(81 + round, [&](const testing::NamedSurface& named) {
+      const auto library = std::make_shared<BoundsCache>();
+      for (const testing::Disguise& disguise : testing::disguises()) {
+        ControlMesh mesh = named.surface.mesh();
+        for (Point3& p : mesh.points) {
+          const oracle::Point q = disguise.change({p.x, p.y, p.z});
+          p = {q[0], q[1], q[2]};
+        }
+        const LimitSurface surface(std::move(mesh), named.surface.options(), library, 1);
+        expect_sound(surface, random, named.name + ", " + disguise.name, pieces);
+        if (::testing::Test::HasFailure()) return;
+      }
+    });
+  }
+  EXPECT_GT(pieces, 3'000u);
+}
+
+}  // namespace
+}  // namespace snug
