@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include <experiments/kdop_tree.h>
 #include <experiments/printed_hierarchy.h>
 #include <experiments/quantile.h>
 
@@ -249,35 +250,42 @@ std::vector<Times> run_contest(Contest& contest, const std::string& title, const
   return times;
 }
 
-// The same queries with each volume that a tree may have: what the default rests on.
+// The same queries by a plain walk over trees of each sort of volume: why the product's trees are of oriented boxes.
 void bench_volumes(const std::vector<Model>& models, const std::string& room, const PlacementsOfPairs& at,
                    const Options& options) {
   const Library library = std::make_shared<BoundsCache>();
   Group group("boolean query, 1 %, " + room + ", by volume", "query", options);
-  std::vector<std::vector<std::unique_ptr<SnugPair>>> pairs;
+  std::vector<LimitSurface> surfaces;
+  for (const auto& pair : model_pairs) {
+    for (const char* name : pair) surfaces.emplace_back(named(models, name).mesh, loop_rules(), library, 1);
+  }
   double items = 0;
   for (const auto& list : at) items += static_cast<double>(list.size());
-  for (const auto& [name, volume] :
-       {std::pair{"obb", Volume::obb}, std::pair{"aabb", Volume::aabb}, std::pair{"dop14", Volume::dop14},
-        std::pair{"dop18", Volume::dop18}, std::pair{"dop26", Volume::dop26}}) {
-    SurfaceBvhOptions model_options;
-    model_options.volume = volume;
-    auto& subjects = pairs.emplace_back();
-    for (const auto& [a, b] : model_pairs) {
-      subjects.push_back(
-          std::make_unique<SnugPair>(named(models, a), named(models, b), library, model_options));
-    }
-    group.add(name, items, [&at, &pairs, index = pairs.size() - 1] {
-      double sum = 0;
+  std::vector<std::vector<KdopTree>> trees(all_volumes.size());
+  std::vector<KdopTree::Answer> sums(all_volumes.size());
+  for (std::size_t v = 0; v < all_volumes.size(); ++v) {
+    for (const LimitSurface& surface : surfaces) trees[v].emplace_back(surface, all_volumes[v]);
+    group.add(name_of(all_volumes[v]), items, [&, v] {
+      double separated = 0;
+      sums[v] = {};
       for (std::size_t p = 0; p < at.size(); ++p) {
         for (const PosePair& placed : at[p]) {
-          sum += pairs[index][p]->queries.collide(placed, one_percent).verdict == Verdict::separated;
+          const KdopTree::Answer found =
+              KdopTree::compare(trees[v][2 * p], placed.a, trees[v][2 * p + 1], placed.b, one_percent);
+          separated += found.separated;
+          sums[v].volume_tests += found.volume_tests;
+          sums[v].triangle_tests += found.triangle_tests;
         }
       }
-      return sum;
+      return separated;
     });
   }
   static_cast<void>(group.run());
+  for (std::size_t v = 0; v < all_volumes.size(); ++v) {
+    std::printf("# %s, a query: %.1f volume tests, %.2f triangle tests\n", name_of(all_volumes[v]),
+                static_cast<double>(sums[v].volume_tests) / items,
+                static_cast<double>(sums[v].triangle_tests) / items);
+  }
 }
 
 void bench_queries(const std::vector<Model>& models, const Options& options) {

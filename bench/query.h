@@ -6,7 +6,7 @@
 #include <experiments/rooms.h>
 #include <snug/query/collide.h>
 #include <snug/query/distance.h>
-#include <snug/search/surface_bvh.h>
+#include <snug/search/workspace.h>
 
 namespace snug::bench {
 

@@ -48,31 +48,23 @@ class LeafMaker {
   std::vector<OffsetTriangle>& out_;
 };
 
-// Offset triangles as a box is fitted around them.
-class Members final : public Enclosed {
- public:
-  explicit Members(std::span<const OffsetTriangle* const> members) : members_(members) {
-    for (const OffsetTriangle* member : members) {
-      corners_.insert(corners_.end(), member->base.begin(), member->base.end());
-    }
+// A box around offset triangles, along the principal axes of their corners.
+Obb box_of(std::span<const OffsetTriangle* const> members) {
+  std::vector<Point3> corners;
+  for (const OffsetTriangle* member : members) {
+    corners.insert(corners.end(), member->base.begin(), member->base.end());
   }
-  [[nodiscard]] Extent extent(const Vector3& direction) const override {
-    Extent extent{INFINITY, -INFINITY};
-    for (const OffsetTriangle* member : members_) {
+  return fit_box(principal_axes(corners), [&](const Vector3& direction) {
+    Extent extent;
+    for (const OffsetTriangle* member : members) {
       for (const Point3& p : member->base) {
         const double x = dot(direction, p - Point3{}), reach = enlarged(member->radius * length(direction));
-        extent.lower = std::min(extent.lower, x - reach);
-        extent.upper = std::max(extent.upper, x + reach);
+        extent.add({x - reach, x + reach});
       }
     }
     return extent;
-  }
-  [[nodiscard]] std::span<const Point3> points() const override { return corners_; }
-
- private:
-  std::span<const OffsetTriangle* const> members_;
-  std::vector<Point3> corners_;
-};
+  });
+}
 
 double middle_along(const OffsetTriangle& triangle, const Vector3& axis) {
   return dot(axis, triangle.base[0] - Point3{}) + dot(axis, triangle.base[1] - Point3{}) +
@@ -132,8 +124,7 @@ PrintedHierarchy::PrintedHierarchy(const LimitSurface& surface, const LeafOption
   while (!tasks.empty()) {
     const Task task = tasks.back();
     tasks.pop_back();
-    const Members set(task.members);
-    nodes_[task.node].box = fit(principal_axes(set.points()), set);
+    nodes_[task.node].box = box_of(task.members);
     if (task.members.size() == 1) {
       nodes_[task.node].leaf = static_cast<std::uint32_t>(task.members[0] - leaves_.data());
       continue;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <snug/bounds/offset_triangle.h>
-#include <snug/bvh/volume.h>
+#include <snug/bvh/obb.h>
 #include <snug/geometry/motion.h>
 #include <snug/surface/limit_surface.h>
 

@@ -12,7 +12,7 @@
 #include <experiments/rooms.h>
 #include <snug/base/error.h>
 #include <snug/query/collide.h>
-#include <snug/search/surface_bvh.h>
+#include <snug/search/workspace.h>
 
 namespace snug {
 namespace {

@@ -14,7 +14,7 @@
 namespace snug::command {
 namespace {
 
-struct Options : ModelOptions {
+struct Options : CommonOptions {
   std::string mesh, points;
   std::string precision = "0.01%";
   double relative = 0;
@@ -152,7 +152,7 @@ Command closest_command() {
       .between(0, 1);
   list.add(Group::own, "--signed", &options->with_sign,
            "Signed distances of a closed surface: negative inside, a sign that is proved");
-  add_model_options(list, *options);
+  add_common_options(list, *options);
   return {"closest",
           Topic::one_surface,
           "The limit points closest to given points",

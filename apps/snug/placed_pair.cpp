@@ -1,23 +1,11 @@
 #include "placed_pair.h"
 
-#include <vector>
-
 #include "length.h"
 
 namespace snug::command {
 
-void add_model_options(OptionList& list, ModelOptions& options) {
-  std::vector<std::string> names;
-  for (const Volume volume : all_volumes) names.emplace_back(name_of(volume));
-  list.add(Group::research, "--volume NAME", &options.volume, "Sets that trees are made of").one_of(names);
-  add_common_options(list, options);
-}
-
-SurfaceBvhOptions model_options(const ModelOptions& options, const std::string& command) {
+SurfaceBvhOptions model_options(const CommonOptions& options, const std::string& command) {
   SurfaceBvhOptions result;
-  for (const Volume volume : all_volumes) {
-    if (options.volume == name_of(volume)) result.volume = volume;
-  }
   const BoundMethod method = bound_method(options);
   if (method == BoundMethod::control_box) {
     throw UsageError(command + ": --bounds control-box is not available; give rows or table");
@@ -35,7 +23,7 @@ void add_pair_options(OptionList& list, PairOptions& options) {
   add_nearest_rigid_option(list, options.nearest_rigid);
   list.add(Group::placement, "--poses FILE", &options.poses,
            "Answers each line, a pose of B or JSON with a, b or both; - for standard input");
-  add_model_options(list, options);
+  add_common_options(list, options);
   add_scheme_option(list, "--scheme-a", options.scheme_a, "Scheme of A, before --scheme");
   add_scheme_option(list, "--scheme-b", options.scheme_b, "Scheme of B, before --scheme");
 }

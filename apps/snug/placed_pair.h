@@ -4,22 +4,17 @@
 #include <optional>
 #include <string>
 
-#include <snug/search/surface_bvh.h>
+#include <snug/search/workspace.h>
 
 #include "common.h"
 #include "pose.h"
 
 namespace snug::command {
 
-/// Options of the commands that ask about one surface, or two placed ones.
-struct ModelOptions : CommonOptions {
-  std::string volume = name_of(SurfaceBvhOptions{}.volume);
-};
-void add_model_options(OptionList& list, ModelOptions& options);
 /// Errors:    UsageError where `command` has no use for --bounds.
-[[nodiscard]] SurfaceBvhOptions model_options(const ModelOptions& options, const std::string& command);
+[[nodiscard]] SurfaceBvhOptions model_options(const CommonOptions& options, const std::string& command);
 
-struct PairOptions : ModelOptions {
+struct PairOptions : CommonOptions {
   std::string mesh_a, mesh_b;
   std::string scheme_a, scheme_b;
   PoseOptions pose_a, pose_b;

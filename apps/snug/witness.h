@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <snug/search/pair_search.h>
+#include <snug/search/answers.h>
+#include <snug/search/workspace.h>
 
 #include "json_writer.h"
 

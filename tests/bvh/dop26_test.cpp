@@ -9,19 +9,17 @@
 namespace snug {
 namespace {
 
-struct Points final : Enclosed {
-  std::vector<Point3> all;
-  [[nodiscard]] Extent extent(const Vector3& d) const override {
-    Extent e{INFINITY, -INFINITY};
-    for (const Point3& p : all) {
+// A box around points along the coordinate axes, or along the principal ones.
+Obb box_around(const std::vector<Point3>& points, bool aligned) {
+  return fit_box(aligned ? Obb{}.axes : principal_axes(points), [&](const Vector3& d) {
+    Extent extent;
+    for (const Point3& p : points) {
       const double x = dot(d, p - Point3{}), error = 1e-15 * (1 + max_abs(p - Point3{}));
-      e.lower = std::min(e.lower, x - error);
-      e.upper = std::max(e.upper, x + error);
+      extent.add({x - error, x + error});
     }
-    return e;
-  }
-  [[nodiscard]] std::span<const Point3> points() const override { return all; }
-};
+    return extent;
+  });
+}
 
 long double exact_dot(const Vector3& d, const Vector3& x) {
   return static_cast<long double>(d.x) * x.x + static_cast<long double>(d.y) * x.y +
@@ -43,20 +41,19 @@ TEST(dop26, no_point_reaches_farther_than_it_says) {
   std::mt19937_64 random(26);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int trial = 0; trial < 2000; ++trial) {
-    const Volume volume = all_volumes[random() % all_volumes.size()];
     const double spread = std::ldexp(1.0, -static_cast<int>(random() % 40)), off = random() % 2 == 0 ? 0 : 1;
-    std::vector<BoundingVolume> parts;
+    std::vector<Obb> parts;
     std::vector<Point3> all;
     for (std::size_t part = 0; part < 1 + random() % 6; ++part) {
-      Points set;
+      std::vector<Point3> set;
       for (std::size_t i = 0; i < 1 + random() % 12; ++i) {
-        set.all.push_back({off + spread * unit(random), spread * unit(random), spread * unit(random) - off});
+        set.push_back({off + spread * unit(random), spread * unit(random), spread * unit(random) - off});
       }
-      parts.push_back(fit(volume, set));
-      all.insert(all.end(), set.all.begin(), set.all.end());
+      parts.push_back(box_around(set, random() % 2 == 0));
+      all.insert(all.end(), set.begin(), set.end());
     }
     const Point3 centre{off + spread * unit(random), spread * unit(random), -off};
-    const Dop26 dop(volume, parts, centre);
+    const Dop26 dop(parts, centre);
     for (int i = 0; i < 100; ++i) {
       const Vector3 d = random_direction(random);
       const long double slack =
@@ -70,11 +67,8 @@ TEST(dop26, no_point_reaches_farther_than_it_says) {
 }
 
 TEST(dop26, is_as_far_as_the_points_along_its_own_directions) {
-  Points box;
-  box.all = {{-1, -2, -3}, {1, 2, 3},  {-1, 2, -3}, {1, -2, 3},
-             {-1, -2, 3},  {1, 2, -3}, {-1, 2, 3},  {1, -2, -3}};
-  const BoundingVolume part = fit(Volume::aabb, box);
-  const Dop26 dop(Volume::aabb, {&part, 1}, {});
+  const Obb box = box_around({{-1, -2, -3}, {1, 2, 3}}, true);
+  const Dop26 dop({&box, 1}, {});
   for (int place = 0; place < 27; ++place) {
     const Vector3 d{static_cast<double>(place % 3 - 1), static_cast<double>(place / 3 % 3 - 1),
                     static_cast<double>(place / 9 - 1)};
@@ -83,12 +77,12 @@ TEST(dop26, is_as_far_as_the_points_along_its_own_directions) {
 }
 
 TEST(dop26, what_is_not_finite_reaches_no_number) {
-  BoundingVolume part;
-  part.box.half = {INFINITY, INFINITY, INFINITY};
-  const Dop26 dop(Volume::obb, {&part, 1}, {});
+  Obb box;
+  box.half = {INFINITY, INFINITY, INFINITY};
+  const Dop26 dop({&box, 1}, {});
   EXPECT_FALSE(std::isfinite(dop.reach({1, 2, 3})));
   EXPECT_FALSE(std::isfinite(dop.radius()));
-  EXPECT_FALSE(std::isfinite(Dop26(Volume::obb, std::vector{BoundingVolume{}, part}, {}).reach({0, 0, -1})));
+  EXPECT_FALSE(std::isfinite(Dop26(std::vector{Obb{}, box}, {}).reach({0, 0, -1})));
 }
 
 }  // namespace

@@ -198,7 +198,7 @@ TEST(help, is_in_groups_with_an_example_and_options_for_research_last) {
       run_snug({"collide", "--help"}),
       {"Usage: snug collide A B [OPTIONS]", "Options:\n", "--tolerance LENGTH", "(default 0.1%)",
        "Where the meshes stand:\n", "--place-a", "Meshes:\n", "--scheme", "Output:\n", "--json", "Effort:\n",
-       "--threads", "For research:\n", "--volume", "--bounds", "--layout", "Example:\n  snug collide "});
+       "--threads", "For research:\n", "--bounds", "--layout", "Example:\n  snug collide "});
   expect_help(run_snug({"bound", "-h"}), {"--tolerance", "For research:\n", "--creases", "--bounds"});
   expect_help(run_snug({"subdivide", "--help"}), {"--level", "For research:\n", "--vertex-rule"});
   for (const char* command : {"info", "eval", "distance", "closest", "render", "experiment"}) {

@@ -144,9 +144,8 @@ TEST(callers_mistakes, patch_bounds_take_a_point_a_vertex_and_patches_that_there
 
 TEST(callers_mistakes, queries_take_finite_numbers_and_a_scratch_for_each_model) {
   const LimitSurface surface = surface_of(square(), Scheme::catmark);
-  const SurfaceBvh a(surface, {.threads = 1}), b(surface, {.threads = 1}),
-      boxes(surface, {.volume = Volume::aabb, .threads = 1});
-  SurfaceWorkspace at_a(a), at_b(b), at_boxes(boxes);
+  const SurfaceBvh a(surface, {.threads = 1}), b(surface, {.threads = 1});
+  SurfaceWorkspace at_a(a), at_b(b);
   for (const double x : no_numbers) {
     expect_refused("point", [&] { static_cast<void>(closest_point(at_a, {x, 0, 0}, {})); });
     expect_refused("points", [&] {
@@ -164,9 +163,6 @@ TEST(callers_mistakes, queries_take_finite_numbers_and_a_scratch_for_each_model)
     static_cast<void>(collide({a, at_a, {}}, {a, at_a, {}}, {.tolerance = 1}));
   });
   expect_refused("another's scratch", [&] { static_cast<void>(distance({a, at_b, {}}, {b, at_a, {}}, {})); });
-  expect_refused("two sorts of volume", [&] {
-    static_cast<void>(collide({a, at_a, {}}, {boxes, at_boxes, {}}, {.tolerance = 1}));
-  });
 }
 
 TEST(callers_mistakes, experiments_need_something_to_measure) {

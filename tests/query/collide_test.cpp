@@ -6,7 +6,7 @@
 #include <snug/query/closest.h>
 #include <snug/query/containment.h>
 #include <snug/query/distance.h>
-#include <snug/search/pair_search.h>
+#include <snug/search/piece_pairs.h>
 #include <snug/search/solid.h>
 #include <testing/patches.h>
 #include <testing/placements.h>
@@ -223,21 +223,24 @@ TEST(collide, lower_bounds_hold_for_placements_of_any_length) {
 TEST(collide, planes_between_hulls_hold_for_directions_of_any_length) {
   Pair pair(oracle::meshes::icosahedron(), oracle::meshes::octahedron());
   const PlacedBvh a{pair.model_a, pair.scratch_a, {}}, b{pair.model_b, pair.scratch_b, moved(3, 0.2, 0.1)};
-  PairSearch search(a, b);
-  std::vector<NodePair> pairs{search.roots()};
-  while (!search.pieces(pairs.back())) {
+  PairFrames frames(a, b);
+  SearchStats stats;
+  PairWalk walk(frames, stats);
+  PiecePairs pieces(frames, stats);
+  std::vector<NodePair> pairs{walk.roots()};
+  while (!pairs.back().of_pieces()) {
     const NodePair next = pairs.back();
     pairs.pop_back();
-    search.open(next, search.opening(next, PairSearch::Bounding::eager), INFINITY, pairs);
+    walk.open(next, walk.opening(next, PairWalk::Bounding::eager), INFINITY, pairs);
   }
   const Vector3 direction{3, 0.2, 0.1};
-  const double gap = search.hull_gap(pairs.back(), direction);
+  const double gap = pieces.hull_gap(pairs.back(), direction);
   ASSERT_GT(gap, 0);
   for (int exponent = -1073; exponent < 1000; ++exponent) {
     const Vector3 scaled{std::ldexp(direction.x, exponent), std::ldexp(direction.y, exponent),
                          std::ldexp(direction.z, exponent)};
     if (scaled.z * 2 < DBL_MIN) continue;  // another direction
-    EXPECT_LE(search.hull_gap(pairs.back(), scaled), gap * (1 + 1e-12)) << exponent;
+    EXPECT_LE(pieces.hull_gap(pairs.back(), scaled), gap * (1 + 1e-12)) << exponent;
   }
 }
 
@@ -346,7 +349,7 @@ TEST(collide, edges_between_quads_and_polygons_are_closed) {
   }
 }
 
-TEST(collide, answers_the_same_with_every_sort_of_volume) {
+TEST(collide, answers_the_same_with_tight_trees) {
   const LimitSurface a = testing::surface_of(oracle::meshes::icosahedron()),
                      b = testing::surface_of(oracle::meshes::bipyramid(7));
   std::mt19937_64 random(31);
@@ -355,22 +358,16 @@ TEST(collide, answers_the_same_with_every_sort_of_volume) {
     places.push_back(testing::random_placement(random, testing::random_vector(random, 2)));
   }
   for (const bool tight : {false, true}) {
-    for (const Volume volume : all_volumes) {
-      SurfaceBvhOptions how;
-      how.volume = volume;
-      how.tight = tight;
-      const SurfaceBvh model_a(a, how), model_b(b, how);
-      SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
-      for (std::size_t i = 0; i < places.size(); ++i) {
-        const Collision answer = collide({model_a, scratch_a, {}}, {model_b, scratch_b, places[i]}, {});
-        const Distance far =
-            snug::distance({model_a, scratch_a, {}}, {model_b, scratch_b, places[i]}, {1e-4, 0});
-        ASSERT_NE(answer.verdict, Verdict::undecided) << name_of(volume) << ' ' << i;
-        EXPECT_TRUE(far.reached);
-        EXPECT_EQ(answer.verdict == Verdict::separated, far.lower > 0 || far.upper > 1e-4)
-            << name_of(volume) << ' ' << i;
-        EXPECT_LE(answer.lower, far.upper);
-      }
+    const SurfaceBvh model_a(a, {.tight = tight}), model_b(b, {.tight = tight});
+    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const Collision answer = collide({model_a, scratch_a, {}}, {model_b, scratch_b, places[i]}, {});
+      const Distance far =
+          snug::distance({model_a, scratch_a, {}}, {model_b, scratch_b, places[i]}, {1e-4, 0});
+      ASSERT_NE(answer.verdict, Verdict::undecided) << i;
+      EXPECT_TRUE(far.reached);
+      EXPECT_EQ(answer.verdict == Verdict::separated, far.lower > 0 || far.upper > 1e-4) << i;
+      EXPECT_LE(answer.lower, far.upper);
     }
   }
 }

@@ -9,7 +9,7 @@
 #include <snug/query/collide.h>
 #include <snug/query/distance.h>
 #include <snug/query/face_distance.h>
-#include <snug/search/surface_bvh.h>
+#include <snug/search/workspace.h>
 #include <snug/surface/evaluate.h>
 #include <testing/cad_parts.h>
 

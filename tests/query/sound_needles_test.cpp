@@ -1,5 +1,5 @@
 // Needles, flat and nearly flat surfaces a hair apart or through each other, in exact arithmetic: rows and tables of both
-// layouts, every sort of volume, all schemes, moved and not.
+// layouts, all schemes, moved and not.
 //
 //   SNUG_PLACEMENTS=40000 build/release/bin/tests/sound_needles_test
 //
@@ -119,7 +119,6 @@ struct Setting {
       const double hair = 0x1p-53 * static_cast<double>(most);
       if (lattice.layer() < 64 * hair && lattice.layer() > hair / 64) break;
     }
-    options.volume = all_volumes[random() % all_volumes.size()];
     options.tight = random() % 3 == 0;
     options.threads = 1;
     if (random() % 3 != 0) options.table = random() % 2 ? TableLayout::ngon : TableLayout::characteristic;
@@ -131,7 +130,7 @@ struct Setting {
       motion = Motion::from_axis_degrees(axes[random() % 3], 90.0 * static_cast<double>(random() % 4));
       motion = motion.with_translation({whole(), whole(), whole()});
     }
-    text = "trial " + std::to_string(trial) + ", " + name_of(scheme) + ", " + name_of(options.volume) +
+    text = "trial " + std::to_string(trial) + ", " + name_of(scheme) +
            (!options.table                        ? ", rows"
             : *options.table == TableLayout::ngon ? ", n-gon"
                                                   : ", characteristic") +

@@ -52,7 +52,7 @@ class Trials {
         random_(seed),
         twin_(c.mesh, c.scheme, testing::twin_levels(c.mesh, 1500)),
         surface_(testing::control_mesh(c), c.options, std::make_shared<BoundsCache>(), 1),
-        model_(surface_, volume(seed)),
+        model_(surface_, {.threads = 1}),
         scratch_(model_) {}
 
   void run() {
@@ -74,13 +74,6 @@ class Trials {
   static inline std::map<int, std::size_t> numbers;
 
  private:
-  static SurfaceBvhOptions volume(std::uint64_t seed) {
-    SurfaceBvhOptions options;
-    options.volume = all_volumes[seed % all_volumes.size()];
-    options.threads = 1;
-    return options;
-  }
-
   Point3 anywhere() {
     const Ball& ball = model_.ball();
     Point3 q = ball.centre;
@@ -148,9 +141,7 @@ class Trials {
       mesh.add_face(corners);
     }
     const LimitSurface surface(std::move(mesh), {Scheme::loop}, std::make_shared<BoundsCache>(), 1);
-    SurfaceBvhOptions options;
-    options.volume = model_.tree().blocks().volume();
-    const SurfaceBvh model(surface, options);
+    const SurfaceBvh model(surface);
     SurfaceWorkspace scratch(model);
     CollideOptions wanted;
     wanted.solid = true;

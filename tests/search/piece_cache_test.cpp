@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <snug/bounds/table_triangle.h>
 #include <snug/patch/evaluate.h>
-#include <snug/search/enclosed_pieces.h>
+#include <snug/search/piece_extents.h>
 #include <testing/containment.h>
 #include <testing/patches.h>
 #include <testing/scheme_surfaces.h>
@@ -76,11 +76,9 @@ TEST(refinement, boxes_and_extents_hold_the_pieces) {
         const Obb& box = refinement->box(id);
         const Vector3 direction{testing::unit(random) - 0.5, testing::unit(random) - 0.5,
                                 testing::unit(random) - 0.5};
-        const HullPoints* const hull = &refinement->hull(id);
+        const HullPoints& hull = refinement->hull(id);
         const Piece& piece = (*refinement)[id];
-        const std::array<Enclosed::Extent, 2> extents{
-            EnclosedHulls({&hull, 1}, {}).extent(direction),
-            EnclosedTriangles({&piece.offset, 1}, {}).extent(direction)};
+        const std::array<Extent, 2> extents{extent_of(hull, direction), extent_of(piece.offset, direction)};
         for (int i = 0; i < 12; ++i) {
           TriangleParameter at = testing::random_parameter(random);
           if (i < 3)
@@ -93,7 +91,7 @@ TEST(refinement, boxes_and_extents_hold_the_pieces) {
           for (std::size_t k = 0; k < 3; ++k) {
             ASSERT_LE(std::fabs(dot(box.axes[k], x - box.centre)), box.half[k] + error) << named.name;
           }
-          for (const Enclosed::Extent& extent : extents) {
+          for (const Extent& extent : extents) {
             ASSERT_LE(extent.lower, dot(direction, x - Point3{}) + error) << named.name;
             ASSERT_GE(extent.upper, dot(direction, x - Point3{}) - error) << named.name;
           }

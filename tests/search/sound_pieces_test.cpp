@@ -8,9 +8,9 @@
 #include <snug/search/piece_cache.h>
 #include <snug/surface/control_hull.h>
 
-#include <snug/bvh/blocks.h>
+#include <snug/bvh/wide_nodes.h>
 #include <snug/patch/evaluate.h>
-#include <snug/search/enclosed_pieces.h>
+#include <snug/search/piece_extents.h>
 #include <testing/disguises.h>
 #include <testing/scheme_surfaces.h>
 
@@ -60,9 +60,8 @@ void expect_holds(PieceCache& refinement, PieceId id, const Vector3& direction,
   const Obb& box = refinement.box(id);
   const Heights& heights = refinement.heights(id);
   const Vector3 normal = unit_normal(piece.offset.base);
-  const HullPoints* const hull = &refinement.hull(id);
-  const std::array<Enclosed::Extent, 2> extents{EnclosedHulls({&hull, 1}, {}).extent(direction),
-                                                EnclosedTriangles({&piece.offset, 1}, {}).extent(direction)};
+  const HullPoints& hull = refinement.hull(id);
+  const std::array<Extent, 2> extents{extent_of(hull, direction), extent_of(piece.offset, direction)};
   for (const Sample& sample : samples) {
     const Extended from_box = minus(sample.x, box.centre);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -71,7 +70,7 @@ void expect_holds(PieceCache& refinement, PieceId id, const Vector3& direction,
     const long double height = dot(normal, minus(sample.x, piece.offset.base[0]));
     ASSERT_LE(heights.lower, height + sample.error) << name;
     ASSERT_GE(heights.upper, height - sample.error) << name;
-    for (const Enclosed::Extent& extent : extents) {
+    for (const Extent& extent : extents) {
       ASSERT_LE(extent.lower, dot(direction, sample.x) + 2 * sample.error) << name;
       ASSERT_GE(extent.upper, dot(direction, sample.x) - 2 * sample.error) << name;
     }
@@ -79,17 +78,16 @@ void expect_holds(PieceCache& refinement, PieceId id, const Vector3& direction,
 }
 
 // The set in single precision is not apart from any of the points.
-void expect_near(Volume volume, const BoundingVolume& set, const std::vector<Sample>& samples,
-                 const std::string& name) {
-  Blocks blocks(volume);
+void expect_near(const Obb& box, const std::vector<Sample>& samples, const std::string& name) {
+  WideNodes nodes;
   const std::uint32_t number = 0;
-  blocks.add({&set, 1}, {&number, 1});
+  nodes.add({&box, 1}, {&number, 1});
   for (const Sample& sample : samples) {
-    Blocks::Distances gaps;
-    blocks.distances(0,
-                     Point3{static_cast<double>(sample.x[0]), static_cast<double>(sample.x[1]),
-                            static_cast<double>(sample.x[2])},
-                     static_cast<double>(2 * sample.error), gaps);
+    WideNodes::Distances gaps;
+    nodes.distances(0,
+                    Point3{static_cast<double>(sample.x[0]), static_cast<double>(sample.x[1]),
+                           static_cast<double>(sample.x[2])},
+                    static_cast<double>(2 * sample.error), gaps);
     ASSERT_LE(gaps[0], 0) << name;
   }
 }
@@ -105,12 +103,12 @@ void expect_sound(const LimitSurface& surface, std::mt19937_64& random, const st
                             testing::unit(random) - 0.5};
     const std::vector<Sample> whole = samples_of(surface.patch(p), random);
     hull.assign(surface, {&p, 1});
-    const Enclosed::Extent extent = hull.extent(direction);
+    const Extent extent = hull.extent(direction);
     for (const Sample& sample : whole) {
       ASSERT_LE(extent.lower, dot(direction, sample.x) + 2 * sample.error) << name;
       ASSERT_GE(extent.upper, dot(direction, sample.x) - 2 * sample.error) << name;
     }
-    for (const Volume volume : all_volumes) expect_near(volume, fit(volume, hull), whole, name);
+    expect_near(hull.box(), whole, name);
     for (PieceCache* const refinement : {&rows, &ngon, &characteristic}) {
       PieceId id = refinement->root(p);
       for (std::size_t level = random() % 5; level > 0 && refinement->can_split(id); --level) {
@@ -118,12 +116,9 @@ void expect_sound(const LimitSurface& surface, std::mt19937_64& random, const st
       }
       const std::vector<Sample> samples = samples_of((*refinement)[id].patch, random);
       expect_holds(*refinement, id, direction, samples, name);
-      BoundingVolume box;
-      box.box = refinement->box(id);
-      expect_near(Volume::obb, box, samples, name);
+      expect_near(refinement->box(id), samples, name);
       const OffsetTriangle& offset = (*refinement)[id].offset;
-      const Volume volume = all_volumes[random() % all_volumes.size()];
-      expect_near(volume, fit(volume, EnclosedTriangles({&offset, 1}, offset.base)), samples, name);
+      expect_near(box_around(principal_axes(offset.base), std::span(&offset, 1)), samples, name);
       ++pieces;
     }
   });

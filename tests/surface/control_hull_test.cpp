@@ -27,7 +27,7 @@ TEST(control_hull, contains_limit_points_of_its_patches) {
       hull.assign(surface, here);
       for (int trial = 0; trial < 4; ++trial) {
         const Vector3 direction = random_direction(random);
-        const Enclosed::Extent extent = hull.extent(direction);
+        const Extent extent = hull.extent(direction);
         for (const PatchId p : here) {
           const Patch patch = surface.patch(p);
           for (int i = 0; i < 6; ++i) {

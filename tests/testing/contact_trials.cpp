@@ -82,9 +82,6 @@ int random_exponent(Dice& dice) {
 SurfaceBvhOptions random_options(Dice& dice) {
   SurfaceBvhOptions options;
   options.threads = 1;
-  constexpr Volume volumes[] = {Volume::obb,   Volume::obb,   Volume::obb,  Volume::aabb,
-                                Volume::dop14, Volume::dop18, Volume::dop26};
-  options.volume = volumes[dice.below(7)];
   if (dice.one_in(6)) options.table = dice.one_in(2) ? TableLayout::ngon : TableLayout::characteristic;
   options.tight = dice.one_in(3);
   return options;
@@ -795,10 +792,10 @@ std::string describe(const Trial& trial) {
   text += std::string(trial.truth.apart ? " apart" : "") + (trial.truth.meet ? " meet" : "") +
           (trial.truth.crossing ? " crossing" : "");
   const SurfaceBvhOptions& options = trial.pair->options();
-  text += std::string("; ") + name_of(options.volume) +
-          (!options.table                        ? ""
-           : *options.table == TableLayout::ngon ? ", n-gon tables"
-                                                 : ", characteristic tables") +
+  text += std::string("; ") +
+          (!options.table                        ? "rows"
+           : *options.table == TableLayout::ngon ? "n-gon tables"
+                                                 : "characteristic tables") +
           (options.tight ? ", tight" : "");
   if (const char* folder = std::getenv("SNUG_DUMP")) {
     for (std::size_t side = 0; side < 2; ++side) {

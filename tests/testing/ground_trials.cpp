@@ -603,8 +603,6 @@ void GroundTrials::make_sides(std::uint64_t row) {
   const auto& rows = covering_rows();
   const bool solids = row >= rows.size() && (row < row_count() || dice.one_in(6));
   row_ = row < rows.size() ? rows[row] : random_row(dice, solids);
-  constexpr Volume volumes[] = {Volume::obb, Volume::obb, Volume::aabb, Volume::dop14, Volume::dop26};
-  const Volume volume = volumes[dice.below(5)];
   for (std::size_t side = 0; side < 2; ++side) {
     GroundSide& s = sides_[side];
     s.scratch.reset(), s.model.reset(), s.surface.reset();
@@ -621,7 +619,6 @@ void GroundTrials::make_sides(std::uint64_t row) {
         std::make_unique<LimitSurface>(control_mesh(s.made.mesh, s.made.rules), options, shared_->library, 1);
     SurfaceBvhOptions model;
     model.threads = 1;
-    model.volume = volume;
     const Sets sets = choice<Sets>(s.choices, Factor::sets);
     if (sets != Sets::rows)
       model.table = sets == Sets::ngon ? TableLayout::ngon : TableLayout::characteristic;

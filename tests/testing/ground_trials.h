@@ -12,7 +12,7 @@
 
 #include <oracle/limit_twin.h>
 #include <oracle/tagged_mesh.h>
-#include <snug/search/surface_bvh.h>
+#include <snug/search/workspace.h>
 #include <snug/surface/limit_surface.h>
 
 /// Placed pairs of surfaces of every scheme, tag and rule, so that each two cases that can go together do.

@@ -19,12 +19,11 @@ Vector3 direction_at(std::size_t place) {
 
 }  // namespace
 
-Dop26::Dop26(Volume volume, std::span<const BoundingVolume> parts, const Point3& centre) {
-  SNUG_EXPECT(!parts.empty());
+Dop26::Dop26(std::span<const Obb> boxes, const Point3& centre) {
+  SNUG_EXPECT(!boxes.empty());
   reach_.fill(-INFINITY);
   reach_[half] = 0;
-  for (const BoundingVolume& part : parts) {
-    const Obb box = box_around(volume, part);
+  for (const Obb& box : boxes) {
     if (!is_finite(box.centre) || !std::isfinite(box.half.x + box.half.y + box.half.z)) {
       reach_.fill(INFINITY);
       radius_ = INFINITY;

@@ -5,25 +5,25 @@
 #include <cstddef>
 #include <span>
 
-#include <snug/bvh/volume.h>
+#include <snug/bvh/obb.h>
 
 namespace snug {
 
-/// A polytope around a set: half spaces across the 26 directions whose coordinates are -1, 0 and 1. Other than a box it says at
+/// A k-DOP around a set: half spaces across the 26 directions whose coordinates are -1, 0 and 1. Other than a box it says at
 /// once how far the set reaches along any direction.
 class Dop26 {
  public:
   /// Holds nothing.
   Dop26() = default;
-  /// Around volumes of one sort, relative to `centre`.
+  /// Around boxes, relative to `centre`.
   /// Requires:  at least one.
-  /// Cost:      some 100 ns a volume.
-  Dop26(Volume volume, std::span<const BoundingVolume> parts, const Point3& centre);
+  /// Cost:      some 100 ns a box.
+  Dop26(std::span<const Obb> boxes, const Point3& centre);
 
   /// Upper bound of dot(direction, x - centre) over the set, but for roundings.
   ///
   /// Guarantee: the exact maximum is at most the result plus 16 u |direction|_1 radius(). For doubles in between 2^-400 and 2^400
-  ///            in size, or 0. Infinite or NaN where a part is not finite.
+  ///            in size, or 0. Infinite or NaN where a box is not finite.
   /// Source:    derivations/boxes.md.
   [[nodiscard]] double reach(const Vector3& direction) const {
     // Coordinates by size, without branches that depend on them; places of directions count 1, 3 and 9 a coordinate.

@@ -9,16 +9,12 @@
 namespace snug {
 namespace {
 
-// Clusters under each of the eight children of a node with so many clusters: as even as full subtrees allow.
-std::size_t child_capacity(std::size_t clusters) {
+// Leaves under each of the eight children of a node with so many leaves: as even as full subtrees allow.
+std::size_t child_capacity(std::size_t leaves) {
   std::size_t capacity = 1;
-  while (capacity * Blocks::lanes < clusters) capacity *= Blocks::lanes;
+  while (capacity * WideNodes::width < leaves) capacity *= WideNodes::width;
   return capacity;
 }
-
-}  // namespace
-
-namespace {
 
 // A centre in single precision: enough to sort by.
 struct Item {
@@ -26,11 +22,11 @@ struct Item {
   std::uint32_t number;
 };
 
-// Eight parts by three halvings, each across the longest side of its box; parts are of whole clusters, so that all but the
+// Eight parts by three halvings, each across the longest side of its box; parts are of whole leaves, so that all but the
 // last of these are full.
 void sort_items(std::span<Item> items, int threads) {
-  constexpr std::size_t cluster_size = WideBvh::cluster_size;
-  const std::size_t part = child_capacity((items.size() + cluster_size - 1) / cluster_size) * cluster_size;
+  constexpr std::size_t leaf_size = WideBvh::leaf_size;
+  const std::size_t part = child_capacity((items.size() + leaf_size - 1) / leaf_size) * leaf_size;
   std::vector<std::span<Item>> ranges{items};
   for (int halving = 0; halving < 3; ++halving) {
     std::vector<std::span<Item>> finer;
@@ -61,7 +57,7 @@ void sort_items(std::span<Item> items, int threads) {
     }
     ranges = std::move(finer);
   }
-  if (part <= cluster_size) return;
+  if (part <= leaf_size) return;
   parallel_for(ranges.size(), items.size() > 4096 ? threads : 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) sort_items(ranges[i], 1);
   });
@@ -69,10 +65,9 @@ void sort_items(std::span<Item> items, int threads) {
 
 }  // namespace
 
-WideBvh::WideBvh(Volume volume, std::span<const Point3> centres, int threads,
-                 const std::function<BoundingVolume(std::span<const std::uint32_t>)>& fit)
-    : blocks_(volume) {
-  SNUG_EXPECT(!centres.empty() && centres.size() < cluster_bit);
+WideBvh::WideBvh(std::span<const Point3> centres, int threads,
+                 const std::function<Obb(std::span<const std::uint32_t>)>& fit) {
+  SNUG_EXPECT(!centres.empty() && centres.size() < leaf_bit);
   std::vector<Item> items;
   items.reserve(centres.size());
   for (std::size_t i = 0; i < centres.size(); ++i) {
@@ -84,39 +79,39 @@ WideBvh::WideBvh(Volume volume, std::span<const Point3> centres, int threads,
   items_.reserve(items.size());
   for (const Item& item : items) items_.push_back(item.number);
 
-  std::vector<BoundingVolume> volumes(cluster_count());
-  std::vector<std::uint32_t> names(cluster_count());
-  parallel_for(volumes.size(), threads, [&](std::size_t begin, std::size_t end) {
+  std::vector<Obb> leaves(leaf_count());
+  std::vector<std::uint32_t> names(leaf_count());
+  parallel_for(leaves.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      volumes[i] = fit(cluster(i));
-      names[i] = static_cast<std::uint32_t>(i) | cluster_bit;
+      leaves[i] = fit(leaf(i));
+      names[i] = static_cast<std::uint32_t>(i) | leaf_bit;
     }
   });
-  const std::vector<BoundingVolume> clusters = volumes;
-  // Level by level: eight neighbours in a row make a block.
-  while (volumes.size() > 1) {
-    std::vector<BoundingVolume> parents;
+  // Level by level: eight neighbours in a row make a node.
+  std::vector<Obb> boxes = leaves;
+  while (boxes.size() > 1) {
+    std::vector<Obb> parents;
     std::vector<std::uint32_t> parent_names;
-    for (std::size_t i = 0; i < volumes.size(); i += Blocks::lanes) {
-      const std::size_t n = std::min(Blocks::lanes, volumes.size() - i);
-      const std::span<const BoundingVolume> children = std::span(volumes).subspan(i, n);
-      parents.push_back(merge(volume, children));
-      parent_names.push_back(blocks_.add(children, std::span(names).subspan(i, n)));
+    for (std::size_t i = 0; i < boxes.size(); i += WideNodes::width) {
+      const std::size_t n = std::min(WideNodes::width, boxes.size() - i);
+      const std::span<const Obb> children = std::span(boxes).subspan(i, n);
+      parents.push_back(merge(children));
+      parent_names.push_back(nodes_.add(children, std::span(names).subspan(i, n)));
     }
-    volumes = std::move(parents);
+    boxes = std::move(parents);
     names = std::move(parent_names);
   }
-  blocks_.add(volumes, names);
-  ball_ = ball_around(volume, volumes[0]);
-  box_ = box_around(volume, volumes[0]);
-  dop_ = Dop26(volume, clusters, box_.centre);
+  nodes_.add(boxes, names);
+  box_ = boxes[0];
+  ball_ = ball_around(box_);
+  dop_ = Dop26(leaves, box_.centre);
 }
 
-std::span<const std::uint32_t> WideBvh::cluster(std::size_t i) const {
-  const std::size_t begin = i * cluster_size;
-  return std::span(items_).subspan(begin, std::min(cluster_size, items_.size() - begin));
+std::span<const std::uint32_t> WideBvh::leaf(std::size_t i) const {
+  const std::size_t begin = i * leaf_size;
+  return std::span(items_).subspan(begin, std::min(leaf_size, items_.size() - begin));
 }
 
-std::size_t WideBvh::bytes() const { return blocks_.bytes() + items_.capacity() * sizeof(std::uint32_t); }
+std::size_t WideBvh::bytes() const { return nodes_.bytes() + items_.capacity() * sizeof(std::uint32_t); }
 
 }  // namespace snug

@@ -5,45 +5,43 @@
 #include <span>
 #include <vector>
 
-#include <snug/bvh/blocks.h>
 #include <snug/bvh/dop26.h>
+#include <snug/bvh/wide_nodes.h>
 
 namespace snug {
 
-/// A tree of volumes over items, eight to a block; its leaves are clusters of up to eight items that lie near each other.
-/// Knows sets and ids only: what a cluster opens to is its owner's business.
+/// A tree of oriented boxes over items, eight children a node; its leaves are up to eight items that lie near each other.
+/// Knows boxes and numbers only: what a leaf opens to is its owner's business.
 ///
-/// Guarantee: a node's volume contains those of all clusters below it. Same tree for any number of threads.
-/// Cost:      n log n for sorting items by position, one fit a cluster.
+/// Guarantee: a child's box contains those of all leaves below it. Same tree for any number of threads.
+/// Cost:      n log n for sorting items by position, one fit a leaf.
 class WideBvh {
  public:
-  static constexpr std::size_t cluster_size = Blocks::lanes;
+  static constexpr std::size_t leaf_size = WideNodes::width;
 
-  /// Name of a lane: another block, or a cluster with this bit set.
-  static constexpr std::uint32_t cluster_bit = 0x80000000u;
+  /// Name of a child: another node, or a leaf with this bit set.
+  static constexpr std::uint32_t leaf_bit = 0x80000000u;
 
-  /// `fit` makes the volume of some items; it is called from several threads.
+  /// `fit` makes the box of some items; it is called from several threads.
   /// Requires:  at least one item, fewer than 2^31; `centres` finite.
-  WideBvh(Volume volume, std::span<const Point3> centres, int threads,
-          const std::function<BoundingVolume(std::span<const std::uint32_t>)>& fit);
+  WideBvh(std::span<const Point3> centres, int threads,
+          const std::function<Obb(std::span<const std::uint32_t>)>& fit);
 
-  [[nodiscard]] const Blocks& blocks() const { return blocks_; }
-  /// The root is the one lane of this block.
-  [[nodiscard]] Lane root() const { return {static_cast<std::uint32_t>(blocks_.size() - 1), 0}; }
+  [[nodiscard]] const WideNodes& nodes() const { return nodes_; }
+  /// The root is the one child of this node.
+  [[nodiscard]] Child root() const { return {static_cast<std::uint32_t>(nodes_.size() - 1), 0}; }
   [[nodiscard]] const Ball& ball() const { return ball_; }
   /// A box around everything.
   [[nodiscard]] const Obb& box() const { return box_; }
-  /// A polytope around all clusters' volumes, relative to the box's centre.
+  /// A k-DOP around all leaves' boxes, relative to the centre of box().
   [[nodiscard]] const Dop26& dop() const { return dop_; }
-  [[nodiscard]] std::size_t cluster_count() const {
-    return (items_.size() + cluster_size - 1) / cluster_size;
-  }
-  [[nodiscard]] std::span<const std::uint32_t> cluster(std::size_t i) const;
+  [[nodiscard]] std::size_t leaf_count() const { return (items_.size() + leaf_size - 1) / leaf_size; }
+  [[nodiscard]] std::span<const std::uint32_t> leaf(std::size_t i) const;
   [[nodiscard]] std::size_t bytes() const;
 
  private:
   std::vector<std::uint32_t> items_;
-  Blocks blocks_;
+  WideNodes nodes_;
   Ball ball_;
   Obb box_;
   Dop26 dop_;

@@ -8,6 +8,7 @@
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
 #include <snug/patch/evaluate.h>
+#include <snug/search/nearest_first.h>
 #include <snug/search/point_batch.h>
 #include <snug/surface/unscale.h>
 
@@ -19,19 +20,12 @@ constexpr double farthest_point = 0x1p40;
 // Bounds of gaps err by some hundred roundings of coordinates.
 constexpr double noise = 0x1p-45;
 
-struct Candidate {
-  Node node;
-  float gap;
-};
-
-bool farther(const Candidate& x, const Candidate& y) { return x.gap > y.gap; }
-
 class Query {
  public:
-  Query(SurfaceWorkspace& scratch, const Point3& to, const ClosestOptions& options,
+  Query(SurfaceWorkspace& workspace, const Point3& to, const ClosestOptions& options,
         const WorkMonitor& monitor)
-      : scratch_(scratch),
-        surface_(scratch.model().surface()),
+      : workspace_(workspace),
+        surface_(workspace.model().surface()),
         to_(surface_.scale().apply(to)),
         options_(options),
         monitor_(monitor),
@@ -49,16 +43,14 @@ class Query {
   }
 
   ClosestPoint run() {
-    scratch_.begin();
-    thread_local std::vector<Candidate> heap;
-    heap.assign(1, {scratch_.root(), 0});
-    while (!heap.empty()) {
-      std::pop_heap(heap.begin(), heap.end(), farther);
-      const Candidate candidate = heap.back();
-      heap.pop_back();
-      const double gap = static_cast<double>(candidate.gap);
-      if (gap >= bounds_.enough() || !visit(candidate, heap)) {
-        bounds_.settle(gap);
+    workspace_.begin();
+    thread_local NearestFirst<NodeGap> open;
+    open.start({workspace_.root(), 0});
+    while (!open.empty()) {
+      const NodeGap nearest = open.take();
+      const double gap = static_cast<double>(nearest.gap);
+      if (gap >= bounds_.prune_distance() || !visit(nearest.node, gap, open)) {
+        bounds_.prune(gap);
         break;
       }
     }
@@ -67,38 +59,35 @@ class Query {
 
  private:
   // False when the budget ends.
-  bool visit(const Candidate& candidate, std::vector<Candidate>& heap) {
-    const Node node = candidate.node;
-    double gap = static_cast<double>(candidate.gap);
+  bool visit(Node node, double gap, NearestFirst<NodeGap>& open) {
     if (node.piece) {
       monitor_.checkpoint();
-      gap = std::max(gap, look_at(scratch_.piece(node)));
-      if (gap >= bounds_.enough() || !scratch_.can_open(node)) {
-        bounds_.settle(gap);
+      gap = std::max(gap, look_at(workspace_.piece(node)));
+      if (gap >= bounds_.prune_distance() || !workspace_.can_open(node)) {
+        bounds_.prune(gap);
         return true;
       }
     }
-    if (splits_ >= options_.budget || scratch_.full()) return false;
+    if (splits_ >= options_.budget || workspace_.full()) return false;
     splits_ += node.piece;
-    const SurfaceWorkspace::Opened opened = scratch_.open(node);
-    const Blocks& blocks = scratch_.blocks(opened.piece);
-    Blocks::Distances found;
-    blocks.distances(opened.block, to_, point_error_, found);
-    for (std::size_t i = 0; i < blocks.count(opened.block); ++i) {
-      const float least = std::max({found[i], single_down(gap), 0.0F});
-      if (static_cast<double>(least) >= bounds_.enough()) {
-        bounds_.settle(static_cast<double>(least));
-        continue;
+    const SurfaceWorkspace::Opened opened = workspace_.open(node);
+    const WideNodes& nodes = workspace_.nodes(opened.pieces);
+    WideNodes::Distances gaps;
+    nodes.distances(opened.parent, to_, point_error_, gaps);
+    for (std::uint8_t i = 0; i < nodes.count(opened.parent); ++i) {
+      const float least = std::max({gaps[i], single_down(gap), 0.0F});
+      if (static_cast<double>(least) >= bounds_.prune_distance()) {
+        bounds_.prune(static_cast<double>(least));
+      } else {
+        open.add({{opened.parent, i, opened.pieces}, least});
       }
-      heap.push_back({{opened.block, static_cast<std::uint8_t>(i), opened.piece}, least});
-      std::push_heap(heap.begin(), heap.end(), farther);
     }
     return true;
   }
 
   // A lower bound of the distance of a piece; evaluates the limit point where its base triangle is nearest.
   double look_at(PieceId id) {
-    const Piece& piece = scratch_.pieces()[id];
+    const Piece& piece = workspace_.pieces()[id];
     const NearestTriangles near = nearest({to_, to_, to_}, piece.offset.base);
     double gap =
         rounded_down(near.certain_distance - enlarged(piece.offset.radius + spatial_error(point_error_)));
@@ -113,21 +102,21 @@ class Query {
                             spatial_error(error + point_error_) + 8 * unit_roundoff * max_abs(between)) *
                            (1 + 16 * unit_roundoff);
       if (upper < bounds_.upper()) {
-        bounds_.found(upper);
+        bounds_.reduce_upper(upper);
         point_ = point;
         error_ = error;
         at_ = place_of(surface_, piece.root, to_face(piece.patch.path, at));
       }
     }
     // A plane between the point and the piece's hull, across the direction of the closest point so far.
-    if (gap < bounds_.enough()) gap = std::max(gap, plane_gap(id, point_ - to_));
+    if (gap < bounds_.prune_distance()) gap = std::max(gap, plane_gap(id, point_ - to_));
     return gap;
   }
 
   [[nodiscard]] double plane_gap(PieceId id, const Vector3& direction) {
     const Vector3 w = normalized(direction);
     if (w == Vector3{}) return 0;
-    const HullPoints& hull = scratch_.pieces().hull(id);
+    const HullPoints& hull = workspace_.pieces().hull(id);
     const Slab slab = outer_slab(hull, w);
     const Vector3 from = hull.origin - to_;
     const double reach = max_abs(from) + hull.largest;
@@ -147,7 +136,7 @@ class Query {
     return answer;
   }
 
-  SurfaceWorkspace& scratch_;
+  SurfaceWorkspace& workspace_;
   const LimitSurface& surface_;
   Point3 to_;
   const ClosestOptions& options_;
@@ -162,22 +151,22 @@ class Query {
 
 }  // namespace
 
-ClosestPoint closest_point(SurfaceWorkspace& scratch, const Point3& to, const ClosestOptions& options,
+ClosestPoint closest_point(SurfaceWorkspace& workspace, const Point3& to, const ClosestOptions& options,
                            const WorkMonitor& monitor) {
   if (!is_finite(to)) {
     throw InputError(InputProblem::value,
                      "closest: a coordinate of the point is not finite; give three numbers");
   }
   require_precision(options);
-  return Query(scratch, to, options, monitor).run();
+  return Query(workspace, to, options, monitor).run();
 }
 
 std::vector<ClosestPoint> closest_points(const SurfaceBvh& model, std::span<const Point3> to,
                                          const ClosestOptions& options, int threads,
                                          const WorkMonitor& monitor) {
   std::vector<ClosestPoint> results(to.size());
-  for_each_point(model, to, threads, monitor, [&](SurfaceWorkspace& scratch, std::size_t i) {
-    results[i] = closest_point(scratch, to[i], options, monitor);
+  for_each_point(model, to, threads, monitor, [&](SurfaceWorkspace& workspace, std::size_t i) {
+    results[i] = closest_point(workspace, to[i], options, monitor);
   });
   return results;
 }

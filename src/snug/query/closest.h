@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <snug/search/precision.h>
-#include <snug/search/surface_bvh.h>
+#include <snug/search/workspace.h>
 #include <snug/surface/evaluate.h>
 
 namespace snug {
@@ -28,7 +28,7 @@ struct ClosestPoint {
 /// Errors:    InputError (value) for a point that is not finite or more than 10^12 sizes of the surface away, and for a
 ///            precision that is negative or not finite; (unrepresentable) for a result that does not fit a double.
 /// Cost:      some 10 microseconds at 0.1 % of the size, some 100 at 1e-9 (bench/results/distance.txt).
-[[nodiscard]] ClosestPoint closest_point(SurfaceWorkspace& scratch, const Point3& to,
+[[nodiscard]] ClosestPoint closest_point(SurfaceWorkspace& workspace, const Point3& to,
                                          const ClosestOptions& options, const WorkMonitor& monitor = {});
 
 /// The same for many points, in their order; results do not depend on threads.

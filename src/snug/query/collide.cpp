@@ -8,20 +8,22 @@
 #include <snug/geometry/rounding.h>
 #include <snug/query/containment.h>
 #include <snug/query/distance.h>
+#include <snug/search/crossing.h>
+#include <snug/search/outer_gap.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {
 namespace {
 
 // Attempts to prove that surfaces intersect: of surfaces that nearly lie in each other every pair looks like a crossing.
-constexpr int most_attempts = 2000, most_attempts_within = 64;
+constexpr int max_attempts = 2000, max_attempts_within = 64;
 
 class Query {
  public:
   Query(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options, const WorkMonitor& monitor)
-      : search_(a, b), options_(options), monitor_(monitor) {
-    margin_ = search_.length_up(options.margin);
-    reach_ = search_.length_down((options.margin + options.tolerance) * (1 - unit_roundoff));
+      : frames_(a, b), options_(options), monitor_(monitor) {
+    margin_ = frames_.length_up(options.margin);
+    reach_ = frames_.length_down((options.margin + options.tolerance) * (1 - unit_roundoff));
   }
 
   Collision run() {
@@ -34,7 +36,7 @@ class Query {
   void descend() {
     thread_local std::vector<NodePair> stack;
     stack.clear();
-    const NodePair roots = search_.roots();
+    const NodePair roots = walk_.roots();
     // Points so near cannot be found sooner than a crossing is proved.
     proving_ = options_.prove_contact ||
                reach_ <= 0x1p-14 * static_cast<double>(std::max(roots.sizes[0], roots.sizes[1]));
@@ -42,21 +44,21 @@ class Query {
     while (!stack.empty() && !finished()) {
       const NodePair pair = stack.back();
       stack.pop_back();
-      if (search_.pieces(pair) && worth_a_look(pair)) {
+      if (pair.of_pieces() && worth_a_look(pair)) {
         monitor_.checkpoint();
         if (!look_at(pair)) continue;
       }
-      const PairSearch::Opening opening = search_.opening(pair, PairSearch::Bounding::sparing);
-      if (opening == PairSearch::Opening::none) {
+      const PairWalk::Opening opening = walk_.opening(pair, PairWalk::Bounding::sparing);
+      if (opening == PairWalk::Opening::none) {
         unresolved_ = true;
         continue;
       }
-      if (!search_.may_open(pair, opening, options_.budget)) {
+      if (!walk_.may_open(pair, opening, options_.budget)) {
         exhausted_ = true;
         break;
       }
       const std::size_t before = stack.size();
-      lower_ = std::min(lower_, static_cast<double>(search_.open(pair, opening, margin_, stack)));
+      lower_ = std::min(lower_, static_cast<double>(walk_.open(pair, opening, margin_, stack)));
       nearest_last(stack, before);
     }
     exhausted_ = exhausted_ || !stack.empty();
@@ -64,43 +66,43 @@ class Query {
 
   [[nodiscard]] bool finished() const {
     if (crossing_) return true;
-    return found_ && (!options_.prove_contact || attempts_ >= most_attempts_within);
+    return found_ && (!options_.prove_contact || attempts_ >= max_attempts_within);
   }
 
   // Are the pieces small enough for rules (a) and (b)? Sets of larger ones are compared faster.
   [[nodiscard]] bool worth_a_look(const NodePair& pair) const {
-    const double radii = search_.radii(pair);
+    const double radii = pieces_.radii(pair);
     if (!found_ && radii <= reach_) return true;
     const double smaller = static_cast<double>(std::min(pair.sizes[0], pair.sizes[1]));
     // To prove a crossing both must be flat.
-    if (proving_ && attempts_ < most_attempts && radii <= smaller / 16) return true;
+    if (proving_ && attempts_ < max_attempts && radii <= smaller / 16) return true;
     // Smaller ones gain more from planes between them than from more splitting.
     return radii <= smaller / 64 ||
-           search_.opening(pair, PairSearch::Bounding::sparing) == PairSearch::Opening::none;
+           walk_.opening(pair, PairWalk::Bounding::sparing) == PairWalk::Opening::none;
   }
 
   // Rules (a) and (b). False if the pair is done with.
   bool look_at(const NodePair& pair) {
-    const PairSearch::Pieces pieces = search_.nearest_pieces(pair);
+    const PiecePair pieces = pieces_.nearest(pair);
     double gap = pieces.gap;
     const double farthest = pieces.near.certain_distance + pieces.radii[0] + pieces.radii[1];
     const bool likely_witness = !found_ && farthest <= reach_;
     if (!(gap > margin_) && !likely_witness && pieces.near.certain_distance > margin_) {
-      gap = search_.hull_gap(pair, pieces.direction());
+      gap = pieces_.hull_gap(pair, pieces.direction());
     }
     if (gap > margin_) {
       lower_ = std::min(lower_, gap);
       return false;
     }
     if (!found_ && (pieces.radii[0] + pieces.radii[1] < best_.distance)) {
-      const PairSearch::Witness witness = search_.witness(pieces);
+      const Witness witness = pieces_.witness(pieces);
       if (witness.distance < best_.distance) best_ = witness;
       found_ = best_.distance <= reach_;
     }
-    if (proving_ && attempts_ < most_attempts) {
+    if (proving_ && attempts_ < max_attempts) {
       if (pieces.near.certain_distance == 0) {
         ++attempts_;
-        crossing_ = search_.certainly_cross(pieces);
+        crossing_ = certainly_cross(frames_, pieces);
       } else if (found_) {
         ++attempts_;
       }
@@ -110,7 +112,7 @@ class Query {
 
   Collision result() {
     Collision answer;
-    answer.stats = search_.stats;
+    answer.stats = stats_;
     if (crossing_) {
       answer.verdict = Verdict::intersecting;
     } else if (found_) {
@@ -120,7 +122,7 @@ class Query {
     } else {
       answer.verdict = Verdict::separated;
     }
-    const PowerOfTwo back = search_.to_mesh_units();
+    const PowerOfTwo back = frames_.to_mesh_units();
     // Pairs that were not looked at, or not resolved, may be as near as 0.
     const bool whole = answer.verdict == Verdict::separated;
     answer.lower = whole ? unscaled_down(std::min(lower_, best_.distance), back) : 0.0;
@@ -129,18 +131,21 @@ class Query {
                         require_representable(back.apply(best_.points[1]))};
       answer.upper = require_representable(unscaled_up(best_.distance, back));
       answer.witness_error = unscaled_up(best_.error, back) + underflow_error;
-      answer.at = search_.places(best_);
+      answer.at = pieces_.places(best_);
     }
     if (crossing_) answer.upper = 0;
     return answer;
   }
 
-  PairSearch search_;
+  PairFrames frames_;
+  SearchStats stats_;
+  PairWalk walk_{frames_, stats_};
+  PiecePairs pieces_{frames_, stats_};
   const CollideOptions& options_;
   const WorkMonitor& monitor_;
   double margin_ = 0, reach_ = 0;
   double lower_ = INFINITY;
-  PairSearch::Witness best_;
+  Witness best_;
   int attempts_ = 0;
   bool proving_ = false;
   bool found_ = false, crossing_ = false, exhausted_ = false, unresolved_ = false;

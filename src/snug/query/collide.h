@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include <snug/search/pair_search.h>
+#include <snug/search/answers.h>
+#include <snug/search/workspace.h>
 
 namespace snug {
 
@@ -53,9 +54,9 @@ struct Collision {
 ///            solids with a common point), all in exact arithmetic for these very doubles; lower and upper bound the distance of
 ///            the surfaces, with `solid` that of the solids. Where several verdicts are true the choice depends on the input alone, not on threads or
 ///            earlier queries.
-/// Errors:    InputError (value) for a tolerance or margin that is negative or not finite, models with different sorts of
-///            volume, and scratches that are not of their models; (unrepresentable) if a result does not fit a double;
-///            (refused) with `solid` if a surface is not closed, wherever it is; Interrupted.
+/// Errors:    InputError (value) for a tolerance or margin that is negative or not finite, and scratches that are not of
+///            their models; (unrepresentable) if a result does not fit a double; (refused) with `solid` if a surface is
+///            not closed, wherever it is; Interrupted.
 /// Cost:      some 100 ns for surfaces far apart, microseconds in contact (bench/results/collide.txt).
 /// Source:    [Wu05, sec. 5.1]; differs: the printed pair test is not sound, see derivations/leaf_rule.md.
 [[nodiscard]] Collision collide(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,

@@ -8,7 +8,7 @@
 #include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
-#include <snug/search/pair_search.h>
+#include <snug/search/pair_frames.h>
 #include <snug/search/solid.h>
 #include <snug/search/winding.h>
 #include <snug/surface/unscale.h>
@@ -19,7 +19,7 @@ namespace {
 // Points farther from a surface than this, in sizes of it, are outside without a look.
 constexpr double farthest_point = 0x1p40;
 // Of each surface, patches that are asked where the surfaces may meet.
-constexpr std::size_t most_patches = 32;
+constexpr std::size_t max_patches = 32;
 
 // A limit point of a component.
 struct Sample {
@@ -44,7 +44,7 @@ bool beyond(const PlacedFrame& frame, const Ball& ball, const Point3& placed, do
 class Asking {
  public:
   Asking(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor)
-      : side_{&a, &b}, search_(a, b), monitor_(monitor) {}
+      : side_{&a, &b}, frames_(a, b), monitor_(monitor) {}
 
   Nesting components() {
     for (std::size_t s = 0; s < 2 && !found_.inner; ++s) {
@@ -73,12 +73,12 @@ class Asking {
     const LimitSurface& surface = side_[side]->model.surface();
     const Sample sample = sample_of(surface.patch(p), at);
     const PlacedBvh& other = *side_[1 - side];
-    const PlacedFrame& frame = search_.frame(side);
+    const PlacedFrame& frame = frames_.frame(side);
     const Point3 placed = frame.apply(sample.local);
     const double error =
         enlarged(frame.growth() * spatial_error(sample.error)) + frame.apply_error(sample.local);
-    if (beyond(search_.frame(1 - side), other.model.tree().ball(), placed, error)) return;
-    const RelativeFrame& seen = search_.seen_from(1 - side);
+    if (beyond(frames_.frame(1 - side), other.model.tree().ball(), placed, error)) return;
+    const RelativeFrame& seen = frames_.view(1 - side).frame;
     std::optional<int> number;
     if (seen.comparable) {
       number = winding_number(other.scratch, seen.apply(sample.local),
@@ -87,13 +87,13 @@ class Asking {
     found_.certain = found_.certain && number.has_value();
     if (number.value_or(0) == 0) return;
     found_.inner = side;
-    found_.point = require_representable(search_.to_mesh_units().apply(placed));
-    found_.error = unscaled_up(error, search_.to_mesh_units()) + underflow_error;
+    found_.point = require_representable(frames_.to_mesh_units().apply(placed));
+    found_.error = unscaled_up(error, frames_.to_mesh_units()) + underflow_error;
     found_.at = place_of(surface, p, at);
   }
 
   [[nodiscard]] std::vector<PatchId> deepest(std::size_t side) {
-    const RelativeFrame& seen = search_.seen_from(1 - side);
+    const RelativeFrame& seen = frames_.view(1 - side).frame;
     if (!seen.comparable) return {};
     const LimitSurface& surface = side_[side]->model.surface();
     const Obb& box = side_[1 - side]->model.tree().box();
@@ -106,7 +106,7 @@ class Asking {
       }
       if (depth > 0) inside.emplace_back(depth, PatchId(p));
     }
-    const std::size_t count = std::min(most_patches, inside.size());
+    const std::size_t count = std::min(max_patches, inside.size());
     std::partial_sort(inside.begin(), inside.begin() + static_cast<std::ptrdiff_t>(count), inside.end(),
                       [](const auto& x, const auto& y) {
                         return x.first != y.first ? x.first > y.first : x.second.index() < y.second.index();
@@ -117,7 +117,7 @@ class Asking {
   }
 
   std::array<const PlacedBvh*, 2> side_;
-  PairSearch search_;
+  PairFrames frames_;
   const WorkMonitor& monitor_;
   Nesting found_;
 };

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <optional>
 
-#include <snug/search/surface_bvh.h>
+#include <snug/search/workspace.h>
 #include <snug/surface/evaluate.h>
 
 namespace snug {

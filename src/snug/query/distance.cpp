@@ -6,62 +6,61 @@
 
 #include <snug/geometry/rounding.h>
 #include <snug/query/containment.h>
+#include <snug/search/crossing.h>
+#include <snug/search/nearest_first.h>
+#include <snug/search/outer_gap.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {
 namespace {
 
-constexpr int most_attempts = 64;
+constexpr int max_attempts = 64;
 // Pairs that are followed down at the same time for a first upper bound.
 constexpr std::size_t beam = 4;
 // Bounds of gaps err by some hundred roundings of what is about 4 large.
 constexpr double noise = 0x1p-43;
 
-bool farther(const NodePair& x, const NodePair& y) { return x.gap > y.gap; }
 bool nearer(const NodePair& x, const NodePair& y) { return x.gap < y.gap; }
 
 class Query {
  public:
   Query(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options, const WorkMonitor& monitor)
-      : search_(a, b),
+      : frames_(a, b),
         options_(options),
         monitor_(monitor),
-        bounds_(search_.length_down(options.absolute), options.relative, noise) {
-    bounds_.raise(search_.length_down(outer_gap(a, b)));
+        bounds_(frames_.length_down(options.absolute), options.relative, noise) {
+    bounds_.raise_lower(frames_.length_down(outer_gap(a, b)));
   }
 
   // Best first.
   Distance run() {
     dive();
-    heap_.assign(1, search_.roots());
-    while (!heap_.empty() && !bounds_.done()) {
-      std::pop_heap(heap_.begin(), heap_.end(), farther);
-      const NodePair pair = heap_.back();
-      heap_.pop_back();
+    open_.start(walk_.roots());
+    while (!open_.empty() && !bounds_.done()) {
+      const NodePair pair = open_.take();
       // All others are as far or farther.
       const double gap = std::max(static_cast<double>(pair.gap), 0.0);
-      if (gap >= bounds_.enough() || !visit(pair)) {
-        bounds_.settle(gap);
+      if (gap >= bounds_.prune_distance() || !visit(pair)) {
+        bounds_.prune(gap);
         break;
       }
     }
-    if (!heap_.empty()) bounds_.settle(std::max(static_cast<double>(heap_.front().gap), 0.0));
+    if (!open_.empty()) bounds_.prune(std::max(static_cast<double>(open_.nearest().gap), 0.0));
     return result();
   }
 
  private:
   // Straight down to pieces that are near each other, so that there is an upper bound from the beginning.
   void dive() {
-    std::vector<NodePair> front{search_.roots()}, next;
-    const auto whole = [&](const NodePair& pair) { return search_.pieces(pair); };
+    std::vector<NodePair> front{walk_.roots()}, next;
+    const auto whole = [&](const NodePair& pair) { return pair.of_pieces(); };
     while (!std::all_of(front.begin(), front.end(), whole)) {
       next.clear();
       for (const NodePair& pair : front) {
         if (whole(pair)) {
           next.push_back(pair);
         } else {
-          static_cast<void>(
-              search_.open(pair, search_.opening(pair, PairSearch::Bounding::eager), INFINITY, next));
+          static_cast<void>(walk_.open(pair, walk_.opening(pair, PairWalk::Bounding::eager), INFINITY, next));
         }
       }
       const auto end = next.begin() + static_cast<std::ptrdiff_t>(std::min(beam, next.size()));
@@ -71,7 +70,7 @@ class Query {
     double least = INFINITY;
     NodePair best = front[0];
     for (const NodePair& pair : front) {
-      const double distance = search_.nearest_pieces(pair).near.certain_distance;
+      const double distance = pieces_.nearest(pair).near.certain_distance;
       if (distance < least) {
         least = distance;
         best = pair;
@@ -82,76 +81,77 @@ class Query {
 
   // From two pieces on to smaller ones, until limit points there are as near as the surfaces come around them.
   void follow(NodePair pair) {
-    std::vector<NodePair> children;
-    while (search_.radii(pair) > bounds_.precision() / 8) {
-      const PairSearch::Opening opening = search_.opening(pair, PairSearch::Bounding::eager);
-      if (opening == PairSearch::Opening::none || !search_.may_open(pair, opening, options_.budget)) break;
-      children.clear();
-      static_cast<void>(search_.open(pair, opening, INFINITY, children));
-      pair = *std::min_element(children.begin(), children.end(), nearer);
+    while (pieces_.radii(pair) > bounds_.precision() / 8) {
+      const PairWalk::Opening opening = walk_.opening(pair, PairWalk::Bounding::eager);
+      if (opening == PairWalk::Opening::none || !walk_.may_open(pair, opening, options_.budget)) break;
+      children_.clear();
+      static_cast<void>(walk_.open(pair, opening, INFINITY, children_));
+      pair = *std::min_element(children_.begin(), children_.end(), nearer);
     }
-    improve(pair, search_.nearest_pieces(pair));
+    improve(pair, pieces_.nearest(pair));
   }
 
   // False when the budget ends.
   bool visit(NodePair pair) {
     double gap = std::max(static_cast<double>(pair.gap), 0.0);
-    if (search_.pieces(pair)) {
+    if (pair.of_pieces()) {
       monitor_.checkpoint();
       gap = std::max(gap, gap_of_pieces(pair));
       pair.gap = single_down(gap);
     }
-    const PairSearch::Opening opening = search_.opening(pair, PairSearch::Bounding::eager);
-    if (opening == PairSearch::Opening::none || gap >= bounds_.enough()) {
-      bounds_.settle(gap);
+    const PairWalk::Opening opening = walk_.opening(pair, PairWalk::Bounding::eager);
+    if (opening == PairWalk::Opening::none || gap >= bounds_.prune_distance()) {
+      bounds_.prune(gap);
       return true;
     }
-    if (!search_.may_open(pair, opening, options_.budget)) return false;
-    const std::size_t before = heap_.size();
-    bounds_.settle(static_cast<double>(search_.open(pair, opening, bounds_.enough(), heap_)));
-    for (std::size_t at = before; at < heap_.size();) {
-      if (search_.pieces(heap_[at])) {
-        const double along = search_.gap_along(heap_[at]);
-        if (along >= bounds_.enough()) {
-          bounds_.settle(along);
-          heap_[at] = heap_.back();
-          heap_.pop_back();
+    if (!walk_.may_open(pair, opening, options_.budget)) return false;
+    children_.clear();
+    bounds_.prune(static_cast<double>(walk_.open(pair, opening, bounds_.prune_distance(), children_)));
+    for (std::size_t at = 0; at < children_.size();) {
+      NodePair& child = children_[at];
+      if (child.of_pieces()) {
+        const double along = pieces_.gap_along(child);
+        if (along >= bounds_.prune_distance()) {
+          bounds_.prune(along);
+          child = children_.back();
+          children_.pop_back();
           continue;
         }
-        heap_[at].gap = std::max(heap_[at].gap, single_down(along));
+        child.gap = std::max(child.gap, single_down(along));
       }
-      std::push_heap(heap_.begin(), heap_.begin() + static_cast<std::ptrdiff_t>(++at), farther);
+      open_.add(child);
+      ++at;
     }
     return true;
   }
 
   // A lower bound of the distance of two pieces; improves the upper one.
   double gap_of_pieces(const NodePair& pair) {
-    const double along = search_.gap_along(pair);
-    if (along >= bounds_.enough()) return along;
-    const PairSearch::Pieces pieces = search_.nearest_pieces(pair);
+    const double along = pieces_.gap_along(pair);
+    if (along >= bounds_.prune_distance()) return along;
+    const PiecePair pieces = pieces_.nearest(pair);
     improve(pair, pieces);
     // Base triangles lie in the middle of what pieces may be.
     const double likely = pieces.near.certain_distance + (pieces.radii[0] + pieces.radii[1]) / 2;
-    if (likely < bounds_.enough()) follow(pair);
-    return std::max({along, pieces.gap, search_.hull_gap(pair, pieces.direction())});
+    if (likely < bounds_.prune_distance()) follow(pair);
+    return std::max({along, pieces.gap, pieces_.hull_gap(pair, pieces.direction())});
   }
 
   // The upper bound, by limit points or by a proof of contact.
-  void improve(const NodePair& pair, const PairSearch::Pieces& pieces) {
+  void improve(const NodePair& pair, const PiecePair& pieces) {
     if (pieces.near.certain_distance < bounds_.upper()) {
-      const PairSearch::Witness witness = search_.witness(pieces);
+      const Witness witness = pieces_.witness(pieces);
       if (witness.distance < witness_.distance) {
         witness_ = witness;
         look_along_witness();
       }
-      bounds_.found(witness.distance);
+      bounds_.reduce_upper(witness.distance);
     }
     const double radii = pieces.radii[0] + pieces.radii[1];
     const bool flat = radii <= static_cast<double>(std::min(pair.sizes[0], pair.sizes[1])) / 16;
-    if (pieces.near.certain_distance == 0 && flat && attempts_ < most_attempts) {
+    if (pieces.near.certain_distance == 0 && flat && attempts_ < max_attempts) {
       ++attempts_;
-      if (search_.certainly_cross(pieces)) bounds_.found(0);
+      if (certainly_cross(frames_, pieces)) bounds_.reduce_upper(0);
     }
   }
 
@@ -163,13 +163,13 @@ class Query {
     const Vector3 direction = (1 / size) * between;
     if (length_sq(direction - direction_) <= bounds_.precision() / 8) return;
     direction_ = direction;
-    search_.look_along(direction);
+    pieces_.look_along(direction);
   }
 
   Distance result() {
     Distance answer;
-    answer.stats = search_.stats;
-    const PowerOfTwo back = search_.to_mesh_units();
+    answer.stats = stats_;
+    const PowerOfTwo back = frames_.to_mesh_units();
     answer.lower = unscaled_down(bounds_.lower(), back);
     answer.upper = require_representable(unscaled_up(bounds_.upper(), back));
     answer.reached = near_enough(answer.lower, answer.upper, options_);
@@ -177,16 +177,20 @@ class Query {
       answer.witness[s] = require_representable(back.apply(witness_.points[s]));
     }
     answer.witness_error = unscaled_up(witness_.error, back) + underflow_error;
-    answer.at = search_.places(witness_);
+    answer.at = pieces_.places(witness_);
     return answer;
   }
 
-  PairSearch search_;
+  PairFrames frames_;
+  SearchStats stats_;
+  PairWalk walk_{frames_, stats_};
+  PiecePairs pieces_{frames_, stats_};
   const DistanceOptions& options_;
   const WorkMonitor& monitor_;
   DistanceBounds bounds_;
-  std::vector<NodePair> heap_;
-  PairSearch::Witness witness_;
+  NearestFirst<NodePair> open_;
+  std::vector<NodePair> children_;
+  Witness witness_;
   Vector3 direction_;
   int attempts_ = 0;
 };

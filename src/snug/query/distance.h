@@ -4,8 +4,9 @@
 #include <cstdint>
 #include <optional>
 
-#include <snug/search/pair_search.h>
+#include <snug/search/answers.h>
 #include <snug/search/precision.h>
+#include <snug/search/workspace.h>
 
 namespace snug {
 
@@ -28,9 +29,9 @@ struct Distance {
 ///
 /// Guarantee: lower <= distance <= upper for these very doubles, also where precision is not reached. The result depends on
 ///            the input alone, not on threads or earlier queries.
-/// Errors:    InputError (value) for a precision that is negative or not finite, models with different sorts of volume, and
-///            scratches that are not of their models; (unrepresentable) if a result does not fit a double; (refused) with `solid`
-///            if a surface is not closed, wherever it is; Interrupted.
+/// Errors:    InputError (value) for a precision that is negative or not finite, and scratches that are not of their
+///            models; (unrepresentable) if a result does not fit a double; (refused) with `solid` if a surface is not
+///            closed, wherever it is; Interrupted.
 /// Cost:      some 200 microseconds at 0.1 % of the size (bench/results/distance.txt).
 [[nodiscard]] Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options,
                                 const WorkMonitor& monitor = {});

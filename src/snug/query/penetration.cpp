@@ -17,10 +17,10 @@ namespace {
 
 // Steps in which a length is doubled until a translation separates, and halved towards the last that did not.
 constexpr int doublings = 12, halvings = 5;
-constexpr std::size_t most_descended = 4;  // of the best directions, along the normals of their contacts
-constexpr int most_descents = 24;
+constexpr std::size_t max_descended = 4;  // of the best directions, along the normals of their contacts
+constexpr int max_descents = 24;
 // Steps of the search for a point deep in both solids, each of six neighbours, and how it shrinks.
-constexpr int most_steps = 40;
+constexpr int max_steps = 40;
 constexpr double smallest_step = 1e-3;
 
 struct Candidate {
@@ -103,7 +103,7 @@ class Search {
     }
     std::sort(found.begin(), found.end(),
               [](const Candidate& x, const Candidate& y) { return x.length < y.length; });
-    found.resize(std::min(found.size(), most_descended));
+    found.resize(std::min(found.size(), max_descended));
     best_ = found[0];
     for (const Candidate& start : found) descend(start);
   }
@@ -138,7 +138,7 @@ class Search {
   // Along the normal of the contact that a translation leaves, the shortest one that stays on its side of the plane; where
   // that is blocked, straight back.
   void descend(Candidate at) {
-    for (int i = 0; i < most_descents; ++i) {
+    for (int i = 0; i < max_descents; ++i) {
       DistanceOptions precision;
       precision.relative = 0.05;
       precision.absolute = 1e-3 * at.length;
@@ -195,7 +195,7 @@ class Search {
     for (const Point3& start : starts()) {
       Point3 at = start;
       double step = best_.length, deepest = depth_at(at), guide = guide_;
-      for (int i = 0; i < most_steps && step > smallest_step * best_.length; ++i) {
+      for (int i = 0; i < max_steps && step > smallest_step * best_.length; ++i) {
         bool better = false;
         for (std::size_t axis = 0; axis < 3 && !better; ++axis) {
           for (const double side : {-step, step}) {

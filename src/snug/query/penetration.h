@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include <snug/search/surface_bvh.h>
+#include <snug/search/workspace.h>
 
 namespace snug {
 
@@ -29,7 +29,7 @@ struct Penetration {
 ///
 /// Guarantee: lower <= depth <= upper; with B's pose so moved the solids are separated. The upper bound is
 ///            that of the best translation found, a local minimum, and may be far from the depth where parts interlock.
-/// Requires:  models with the same sort of volume, two scratches.
+/// Requires:  two scratches.
 /// Errors:    those of SurfaceBvh::solid(); InputError (value) for a precision that is negative or not finite,
 ///            (unrepresentable) if no translation that separates them fits a double; Interrupted.
 /// Cost:      some hundred collision and closest-point queries.

@@ -209,4 +209,19 @@ bool crosses_near(PieceCache& pieces, PieceId id, TriangleParameter at, const Cr
   }
 }
 
+bool certainly_cross(PairFrames& frames, const PiecePair& pieces) {
+  const std::optional<PairOfPoints> middle = middle_of_contact(pieces.base[0], pieces.base[1]);
+  if (!middle) return false;
+  const std::array<Barycentric, 2> at{middle->on_a, middle->on_b};
+  for (std::size_t s = 0; s < 2; ++s) {
+    PieceCache &own = frames.workspace(s).pieces(), &others = frames.workspace(1 - s).pieces();
+    const Crossed crossed(own[pieces.ids[s]], own.heights(pieces.ids[s]));
+    if (crossed.possible() &&
+        crosses_near(others, pieces.ids[1 - s], clamped(at[1 - s]), crossed, frames.view(s).frame)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace snug

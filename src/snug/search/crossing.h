@@ -2,8 +2,7 @@
 
 #include <array>
 
-#include <snug/bvh/frame.h>
-#include <snug/search/piece_cache.h>
+#include <snug/search/piece_pairs.h>
 
 namespace snug {
 
@@ -54,5 +53,9 @@ class Crossed {
 /// Requires:  seen: the pieces' frame as seen from that of the crossed piece.
 [[nodiscard]] bool crosses_near(PieceCache& pieces, PieceId id, TriangleParameter at, const Crossed& crossed,
                                 const RelativeFrame& seen);
+
+/// Is it proved that the two pieces, or smaller ones around where their base triangles are nearest, cross each other?
+/// Source:    derivations/contact.md.
+[[nodiscard]] bool certainly_cross(PairFrames& frames, const PiecePair& pieces);
 
 }  // namespace snug

@@ -8,7 +8,7 @@
 #include <snug/bounds/table_triangle.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
-#include <snug/search/enclosed_pieces.h>
+#include <snug/search/piece_extents.h>
 
 namespace snug {
 
@@ -99,12 +99,8 @@ void PieceCache::add(PatchId root, Patch patch) {
   }
   heights_.push_back(heights);
   const std::array<Vector3, 3> axes = box_axes(piece.offset.base);
-  if (table_) {
-    boxes_.push_back(fit(axes, EnclosedTriangles({&piece.offset, 1}, {})));
-  } else {
-    const HullPoints* const hull = &scratch_;
-    boxes_.push_back(fit(axes, EnclosedHulls({&hull, 1}, {})));
-  }
+  boxes_.push_back(fit_box(
+      axes, [&](const Vector3& d) { return table_ ? extent_of(piece.offset, d) : extent_of(scratch_, d); }));
   bytes_ += sizeof(Piece) + sizeof(Heights) + sizeof(Obb) + piece.patch.points.capacity() * sizeof(Vector3);
 }
 

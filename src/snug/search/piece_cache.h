@@ -7,7 +7,7 @@
 
 #include <snug/bounds/interval_triangle.h>
 #include <snug/bounds/offset_triangle.h>
-#include <snug/bvh/volume.h>
+#include <snug/bvh/obb.h>
 #include <snug/surface/limit_surface.h>
 
 namespace snug {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 
-#include <snug/search/surface_bvh.h>
+#include <snug/search/workspace.h>
 
 namespace snug {
 

@@ -34,22 +34,22 @@ class DistanceBounds {
       : absolute_(std::max(absolute, noise)), relative_(relative) {}
 
   [[nodiscard]] double upper() const { return upper_; }
-  [[nodiscard]] double lower() const { return std::min(std::max(settled_, floor_), upper_); }
+  [[nodiscard]] double lower() const { return std::min(std::max(pruned_, floor_), upper_); }
   [[nodiscard]] double precision() const { return std::max(absolute_, relative_ * upper_); }
-  /// What is as far as this need not be looked at.
-  [[nodiscard]] double enough() const { return upper_ == INFINITY ? INFINITY : upper_ - precision(); }
+  /// Distance beyond which pairs are pruned.
+  [[nodiscard]] double prune_distance() const { return upper_ == INFINITY ? INFINITY : upper_ - precision(); }
   /// The distance is at least this, whatever is left to be searched.
-  void raise(double floor) { floor_ = std::max(floor_, floor); }
+  void raise_lower(double floor) { floor_ = std::max(floor_, floor); }
   /// Is what is left to be searched of no interest?
-  [[nodiscard]] bool done() const { return upper_ <= 0 || floor_ >= enough(); }
+  [[nodiscard]] bool done() const { return upper_ <= 0 || floor_ >= prune_distance(); }
   /// The distance is at most this.
-  void found(double upper) { upper_ = std::min(upper_, upper); }
-  /// A part of the search is done with: it is no nearer than this.
-  void settle(double lower) { settled_ = std::min(settled_, lower); }
+  void reduce_upper(double upper) { upper_ = std::min(upper_, upper); }
+  /// A part of the search was pruned, and is no nearer than this.
+  void prune(double lower) { pruned_ = std::min(pruned_, lower); }
 
  private:
   double absolute_, relative_;
-  double upper_ = INFINITY, settled_ = INFINITY, floor_ = 0;
+  double upper_ = INFINITY, pruned_ = INFINITY, floor_ = 0;
 };
 
 /// Are bounds, in mesh units, as near as was asked for?

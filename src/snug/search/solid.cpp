@@ -8,7 +8,7 @@
 #include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
-#include <snug/search/enclosed_pieces.h>
+#include <snug/search/piece_extents.h>
 
 namespace snug {
 namespace {
@@ -91,7 +91,7 @@ Solid::Filler make_filler(const LimitSurface& surface, PatchId first, PatchId se
 
 }  // namespace
 
-Solid::Solid(const LimitSurface& surface, Volume volume) {
+Solid::Solid(const LimitSurface& surface) {
   require_closed(surface);
   components_ = component_patches(surface);
   // Where both sides of an edge are cut, their fillers cancel.
@@ -104,14 +104,14 @@ Solid::Solid(const LimitSurface& surface, Volume volume) {
   std::vector<Point3> centres;
   centres.reserve(fillers_.size());
   for (const Filler& filler : fillers_) centres.push_back(filler.corners[2]);
-  tree_ = std::make_unique<WideBvh>(volume, centres, 1, [&](std::span<const std::uint32_t> items) {
+  tree_ = std::make_unique<WideBvh>(centres, 1, [&](std::span<const std::uint32_t> items) {
     std::vector<OffsetTriangle> triangles;
     std::vector<Point3> spread;
     for (const std::uint32_t i : items) {
       triangles.push_back({fillers_[i].corners, fillers_[i].error});
       spread.insert(spread.end(), fillers_[i].corners.begin(), fillers_[i].corners.end());
     }
-    return fit(volume, EnclosedTriangles(triangles, spread));
+    return box_around(principal_axes(spread), triangles);
   });
 }
 

@@ -16,12 +16,12 @@ namespace snug {
 /// Source:    derivations/contact.md, "Inside or outside of a closed surface".
 class Solid {
  public:
-  /// Requires:  the surface outlives it; `volume`: of the model's tree.
+  /// Requires:  the surface outlives it.
   /// Errors:    InputError (refused), naming an edge or a face, unless every edge of the surface's mesh has two faces that
   ///            run along it in opposite directions, and all have a limit surface.
   /// Cost:      linear in the edges; some microseconds for each edge between an owner that a first split makes quads of and
   ///            one that it does not.
-  Solid(const LimitSurface& surface, Volume volume);
+  explicit Solid(const LimitSurface& surface);
 
   /// The triangle (a, b, m) over an edge from a to b whose middle m belongs to the first split of one side alone. Exact
   /// limit points are within `error`, a length, of its corners.

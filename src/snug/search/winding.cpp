@@ -7,12 +7,13 @@
 
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <snug/search/nearest_first.h>
 #include <snug/search/solid.h>
 
 namespace snug {
 namespace {
 
-constexpr std::uint64_t most_splits = 20'000;
+constexpr std::uint64_t max_splits = 20'000;
 
 // Of no particular slope to anything that people model.
 constexpr std::array<Vector3, 8> directions{{{0.8236391, 0.2941752, 0.4848613},
@@ -86,40 +87,40 @@ class Ray {
 
 class Winding {
  public:
-  Winding(SurfaceWorkspace& scratch, const Point3& point, double error, const WorkMonitor& monitor)
-      : scratch_(scratch), point_(point), error_(error), monitor_(monitor) {}
+  Winding(SurfaceWorkspace& workspace, const Point3& point, double error, const WorkMonitor& monitor)
+      : workspace_(workspace), point_(point), error_(error), monitor_(monitor) {}
 
   std::optional<int> along(const Vector3& direction) {
-    const Ball& ball = scratch_.model().tree().ball();
+    const Ball& ball = workspace_.model().tree().ball();
     const double length = distance(point_, ball.centre) + ball.radius + 1;
     if (!std::isfinite(length)) return std::nullopt;
     segment(direction, length);
     Ray ray(point_, error_, direction);
     if (!add_first_fillers(ray)) return std::nullopt;
-    stack_.assign(1, scratch_.root());
+    stack_.assign(1, workspace_.root());
     std::uint64_t splits = 0;
     while (!stack_.empty()) {
       const Node node = stack_.back();
       stack_.pop_back();
       if (node.piece) {
         monitor_.checkpoint();
-        if (++splits > most_splits || !scratch_.can_open(node)) {
+        if (++splits > max_splits || !workspace_.can_open(node)) {
           on_surface_ = true;
           return std::nullopt;
         }
         if (!add_fillers(node, ray)) return std::nullopt;
       }
-      const SurfaceWorkspace::Opened opened = scratch_.open(node);
-      const Blocks& blocks = scratch_.blocks(opened.piece);
-      Blocks::Distances to_segment, to_point;
-      blocks.distances(opened.block, segment_, error_, 0, to_segment);
-      blocks.distances(opened.block, point_, error_, to_point);
-      for (std::uint32_t i = 0; i < blocks.count(opened.block); ++i) {
+      const SurfaceWorkspace::Opened opened = workspace_.open(node);
+      const WideNodes& nodes = workspace_.nodes(opened.pieces);
+      WideNodes::Distances to_segment, to_point;
+      nodes.distances(opened.parent, segment_, error_, 0, to_segment);
+      nodes.distances(opened.parent, point_, error_, to_point);
+      for (std::uint8_t i = 0; i < nodes.count(opened.parent); ++i) {
         if (to_segment[i] > 0) continue;
-        const Node next{opened.block, static_cast<std::uint8_t>(i), opened.piece};
-        if (!opened.piece || !(to_point[i] > 0)) {
+        const Node next{opened.parent, i, opened.pieces};
+        if (!opened.pieces || !(to_point[i] > 0)) {
           stack_.push_back(next);
-        } else if (!add_triangle(scratch_.piece(next), ray)) {
+        } else if (!add_triangle(workspace_.piece(next), ray)) {
           return std::nullopt;
         }
       }
@@ -133,33 +134,25 @@ class Winding {
   /// Lower bound of the distance of the surface: the least gap to the sets around pieces, which are split where they hold the
   /// point. Not positive if that takes too long.
   double clearance() {
-    const auto farther = [](const Candidate& x, const Candidate& y) { return x.gap > y.gap; };
-    std::vector<Candidate> heap{{scratch_.root(), -INFINITY}};
+    NearestFirst<NodeGap> open;
+    open.start({workspace_.root(), -INFINITY});
     std::uint64_t splits = 0;
-    while (!heap.empty()) {
-      std::pop_heap(heap.begin(), heap.end(), farther);
-      const Candidate nearest = heap.back();
-      heap.pop_back();
-      if (nearest.node.piece && nearest.gap > 0) return static_cast<double>(nearest.gap);
-      if (nearest.node.piece && (++splits > most_splits || !scratch_.can_open(nearest.node))) return 0;
-      const SurfaceWorkspace::Opened opened = scratch_.open(nearest.node);
-      const Blocks& blocks = scratch_.blocks(opened.piece);
-      Blocks::Distances gaps;
-      blocks.distances(opened.block, point_, error_, gaps);
-      for (std::uint32_t i = 0; i < blocks.count(opened.block); ++i) {
-        heap.push_back({{opened.block, static_cast<std::uint8_t>(i), opened.piece}, gaps[i]});
-        std::push_heap(heap.begin(), heap.end(), farther);
+    while (!open.empty()) {
+      const auto [node, gap] = open.take();
+      if (node.piece && gap > 0) return static_cast<double>(gap);
+      if (node.piece && (++splits > max_splits || !workspace_.can_open(node))) return 0;
+      const SurfaceWorkspace::Opened opened = workspace_.open(node);
+      const WideNodes& nodes = workspace_.nodes(opened.pieces);
+      WideNodes::Distances gaps;
+      nodes.distances(opened.parent, point_, error_, gaps);
+      for (std::uint8_t i = 0; i < nodes.count(opened.parent); ++i) {
+        open.add({{opened.parent, i, opened.pieces}, gaps[i]});
       }
     }
     return 0;
   }
 
  private:
-  struct Candidate {
-    Node node;
-    float gap;
-  };
-
   // The part of the ray that matters, as a set.
   void segment(const Vector3& direction, double length) {
     segment_.centre = point_ + (length / 2) * direction;
@@ -167,12 +160,6 @@ class Winding {
     segment_.box = {};
     segment_.box.half[0] = static_cast<float>(length);
     for (std::size_t k = 0; k < 3; ++k) segment_.box.axes[0][k] = static_cast<float>(unit[k]);
-    const auto places = directions_of(scratch_.blocks(false).volume());
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const double half = std::fabs(dot(all_directions[places[i]], direction)) * length;
-      segment_.lower[i] = -half;
-      segment_.upper[i] = half;
-    }
   }
 
   struct Corners {
@@ -180,7 +167,7 @@ class Winding {
     double error;
   };
   [[nodiscard]] Corners corners(PieceId id) const {
-    const Piece& piece = scratch_.pieces()[id];
+    const Piece& piece = workspace_.pieces()[id];
     Corners result{};
     for (std::size_t k = 0; k < 3; ++k) {
       const LimitPoint corner = corner_point(piece.patch, k);
@@ -199,7 +186,7 @@ class Winding {
 
   // A split piece: its children's triangles and these have the same border as its own one.
   [[nodiscard]] bool add_fillers(Node node, Ray& ray) const {
-    const PieceId id = scratch_.piece(node), first = scratch_.pieces().split(id);
+    const PieceId id = workspace_.piece(node), first = workspace_.pieces().split(id);
     const Corners whole = corners(id);
     for (std::size_t k = 0; k < 3; ++k) {
       const Corners child = corners(PieceId(first.index() + k));
@@ -214,24 +201,24 @@ class Winding {
 
   // The fillers of first splits that the segment may meet.
   [[nodiscard]] bool add_first_fillers(Ray& ray) {
-    const Solid& solid = scratch_.model().solid();
+    const Solid& solid = workspace_.model().solid();
     const WideBvh* const tree = solid.filler_tree();
     if (tree == nullptr) return true;
-    const Blocks& blocks = tree->blocks();
-    std::vector<std::uint32_t> open{tree->root().block};
+    const WideNodes& nodes = tree->nodes();
+    std::vector<std::uint32_t> open{tree->root().parent};
     while (!open.empty()) {
-      const std::uint32_t block = open.back();
+      const std::uint32_t node = open.back();
       open.pop_back();
-      Blocks::Distances gaps;
-      blocks.distances(block, segment_, error_, 0, gaps);
-      for (std::uint32_t i = 0; i < blocks.count(block); ++i) {
+      WideNodes::Distances gaps;
+      nodes.distances(node, segment_, error_, 0, gaps);
+      for (std::uint32_t i = 0; i < nodes.count(node); ++i) {
         if (gaps[i] > 0) continue;
-        const std::uint32_t name = blocks.name({block, i});
-        if ((name & WideBvh::cluster_bit) == 0) {
+        const std::uint32_t name = nodes.name({node, i});
+        if ((name & WideBvh::leaf_bit) == 0) {
           open.push_back(name);
           continue;
         }
-        for (const std::uint32_t item : tree->cluster(name & ~WideBvh::cluster_bit)) {
+        for (const std::uint32_t item : tree->leaf(name & ~WideBvh::leaf_bit)) {
           const Solid::Filler& filler = solid.fillers()[item];
           if (!ray.add(filler.corners, filler.error)) return false;
         }
@@ -240,11 +227,11 @@ class Winding {
     return true;
   }
 
-  SurfaceWorkspace& scratch_;
+  SurfaceWorkspace& workspace_;
   Point3 point_;
   double error_;
   const WorkMonitor& monitor_;
-  PlacedVolume segment_{};
+  PlacedBox segment_{};
   std::vector<Node> stack_;
   bool on_surface_ = false;
 };
@@ -261,17 +248,17 @@ std::optional<int> along_some_ray(Winding& winding, const Vector3& from_middle) 
 
 }  // namespace
 
-std::optional<int> winding_number(SurfaceWorkspace& scratch, const Point3& point, double error,
+std::optional<int> winding_number(SurfaceWorkspace& workspace, const Point3& point, double error,
                                   const WorkMonitor& monitor) {
-  const Vector3 from_middle = point - scratch.model().tree().ball().centre;
-  Winding winding(scratch, point, error, monitor);
+  const Vector3 from_middle = point - workspace.model().tree().ball().centre;
+  Winding winding(workspace, point, error, monitor);
   if (const std::optional<int> number = along_some_ray(winding, from_middle)) return number;
   if (winding.on_surface()) return std::nullopt;
   // In the plane of a filler no ray decides. All points that are nearer than the surface have the same number.
   const double clearance = winding.clearance();
   if (!(clearance > 8 * error + 0x1p-45)) return std::nullopt;
   for (const Vector3& direction : directions) {
-    Winding beside(scratch, point + (clearance / 4) * direction, error, monitor);
+    Winding beside(workspace, point + (clearance / 4) * direction, error, monitor);
     if (const std::optional<int> number = along_some_ray(beside, from_middle)) return number;
   }
   return std::nullopt;

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include <snug/search/surface_bvh.h>
+#include <snug/search/workspace.h>
 
 namespace snug {
 
@@ -18,7 +18,7 @@ namespace snug {
 /// Errors:    those of SurfaceBvh::solid().
 /// Cost:      a walk along a ray, some microseconds; more pieces are split the nearer the point is to the surface.
 /// Source:    derivations/contact.md.
-[[nodiscard]] std::optional<int> winding_number(SurfaceWorkspace& scratch, const Point3& point, double error,
-                                                const WorkMonitor& monitor = {});
+[[nodiscard]] std::optional<int> winding_number(SurfaceWorkspace& workspace, const Point3& point,
+                                                double error, const WorkMonitor& monitor = {});
 
 }  // namespace snug

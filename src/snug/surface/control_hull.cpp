@@ -56,33 +56,34 @@ void ControlHull::assign(const LimitSurface& surface, std::span<const PatchId> p
   for (const Point3& p : points_) largest_ = std::max(largest_, max_abs(p - Point3{}));
 }
 
-Enclosed::Extent ControlHull::extent(const Vector3& direction) const {
+Extent ControlHull::extent(const Vector3& direction) const {
   heights_.resize(points_.size());
   for (std::size_t i = 0; i < points_.size(); ++i) heights_[i] = dot(direction, points_[i] - Point3{});
   rings_.resize(corners_.size());
   std::size_t at = 0;
   for (std::size_t c = 0; c < corners_.size(); ++c) {
     Extent& ring = rings_[c] = {heights_[c], heights_[c]};
-    for (; at < ring_ends_[c]; ++at) {
-      ring.lower = std::min(ring.lower, heights_[ring_[at]]);
-      ring.upper = std::max(ring.upper, heights_[ring_[at]]);
-    }
+    for (; at < ring_ends_[c]; ++at) ring.add(heights_[ring_[at]]);
   }
-  Extent all{INFINITY, -INFINITY};
+  Extent all;
   at = 0;
   for (std::size_t p = 0; p < weights_.size(); ++p) {
-    Extent inner{INFINITY, -INFINITY}, outer = inner;
+    Extent inner, outer;
     for (; at < patch_ends_[p]; ++at) {
       const std::uint32_t c = patch_[at];
-      inner = {std::min(inner.lower, heights_[c]), std::max(inner.upper, heights_[c])};
-      outer = {std::min(outer.lower, rings_[c].lower), std::max(outer.upper, rings_[c].upper)};
+      inner.add(heights_[c]);
+      outer.add(rings_[c]);
     }
     const double w = weights_[p];
-    all.lower = std::min(all.lower, inner.lower + w * (outer.lower - inner.lower));
-    all.upper = std::max(all.upper, inner.upper + w * (outer.upper - inner.upper));
+    all.add({inner.lower + w * (outer.lower - inner.lower), inner.upper + w * (outer.upper - inner.upper)});
   }
   const double error = enlarged(32 * unit_roundoff * largest_) + 8 * underflow_error;
   return {all.lower - error, all.upper + error};
+}
+
+Obb ControlHull::box() const {
+  const std::span<const Point3> corners = std::span(points_).first(inner_count_);
+  return fit_box(principal_axes(corners), [this](const Vector3& axis) { return extent(axis); });
 }
 
 }  // namespace snug

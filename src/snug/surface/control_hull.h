@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <snug/base/compact_numbering.h>
-#include <snug/bvh/volume.h>
+#include <snug/bvh/obb.h>
 #include <snug/surface/limit_surface.h>
 
 namespace snug {
@@ -15,14 +15,14 @@ namespace snug {
 ///
 /// Guarantee: contains the patches, rounding included.
 /// Source:    derivations/boxes.md.
-class ControlHull final : public Enclosed {
+class ControlHull {
  public:
   /// Keeps its memory from one set to the next.
   void assign(const LimitSurface& surface, std::span<const PatchId> patches);
 
-  [[nodiscard]] Extent extent(const Vector3& direction) const override;
-  /// The corners of the patches' faces.
-  [[nodiscard]] std::span<const Point3> points() const override { return {points_.data(), inner_count_}; }
+  [[nodiscard]] Extent extent(const Vector3& direction) const;
+  /// A box around them, along the principal axes of the corners of their faces.
+  [[nodiscard]] Obb box() const;
 
  private:
   CompactNumbering numbers_;

@@ -1,7 +1,7 @@
 // Compiled once for each instruction set: this file includes itself through foreach_target.h.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "snug/bvh/block_kernels.cpp"
+#define HWY_TARGET_INCLUDE "snug/bvh/node_kernels.cpp"
 #include <hwy/foreach_target.h>
 // After it, as the library wants it.
 #include <hwy/highway.h>
@@ -10,7 +10,7 @@
 #include <bit>
 #include <cmath>
 
-#include <snug/bvh/block_kernels.h>
+#include <snug/bvh/node_kernels.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {
@@ -77,34 +77,34 @@ HWY_INLINE std::uint32_t bits(hn::Mask<Tag> mask) {
 }
 
 // The lanes from `at` on, and what they add to `near`.
-HWY_INLINE void store(V gap, float enough, std::size_t at, float* out, Near& near) {
+HWY_INLINE void store(V gap, float prune_distance, std::size_t at, float* out, Near& near) {
   const Tag d;
   gap = computed(gap);
   hn::StoreU(gap, d, out + at);
-  const auto beyond = hn::Gt(gap, hn::Set(d, enough));
-  near.lanes |= bits(hn::Not(beyond)) << at;
+  const auto beyond = hn::Gt(gap, hn::Set(d, prune_distance));
+  near.places |= bits(hn::Not(beyond)) << at;
   near.others = std::min(near.others,
                          hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(beyond, gap, hn::Set(d, INFINITY)))));
 }
 
-// Gaps of the lanes from `at` on. `other`: a row of the other boxes, as in a block.
+// Gaps of the lanes from `at` on. `other`: a row of the other boxes, as in a node.
 template <class Row>
-HWY_INLINE V gaps(const float* block, std::size_t at, const Row& other, V all_slack, float enough) {
+HWY_INLINE V gaps(const float* node, std::size_t at, const Row& other, V all_slack, float prune_distance) {
   const Tag d;
   const V zero = hn::Zero(d);
-  const auto row = [&](std::size_t r) { return hn::LoadU(d, block + 8 * r + at); };
+  const auto row = [&](std::size_t r) { return hn::LoadU(d, node + 8 * r + at); };
   const auto along_axis = [&](const V* v, std::size_t j) {
     return sum3(hn::Mul(v[0], other(6 + 3 * j)), hn::Mul(v[1], other(7 + 3 * j)),
                 hn::Mul(v[2], other(8 + 3 * j)));
   };
   V delta[3], half[3];
-  V t[3], c[3][3];  // of the offset along the block's axes; cosines
+  V t[3], c[3][3];  // of the offset along the node's axes; cosines
   V own[3], others[3];
   for (std::size_t k = 0; k < 3; ++k) {
     delta[k] = hn::Sub(other(k), row(k));
     others[k] = other(3 + k);
   }
-  // An axis of the block at a time, so that all fits the registers.
+  // An axis of the node at a time, so that all fits the registers.
   for (std::size_t i = 0; i < 3; ++i) {
     const V axis[3] = {row(6 + 3 * i), row(7 + 3 * i), row(8 + 3 * i)};
     half[i] = row(3 + i);
@@ -134,7 +134,7 @@ HWY_INLINE V gaps(const float* block, std::size_t at, const Row& other, V all_sl
       hn::And(hn::Gt(central, zero), hn::Gt(between_sq, hn::Set(d, least_squared * least_squared)));
   gap = hn::IfThenElse(apart, hn::Max(gap, central), gap);
   // Lane by lane, so that it makes no difference how many a vector has.
-  const auto settled = hn::Gt(gap, hn::Set(d, enough));
+  const auto settled = hn::Gt(gap, hn::Set(d, prune_distance));
   if (!hn::AllTrue(d, settled)) {
     // Cross products of axes are at most 1 long: an overlap along a short one says little, so only gaps count.
     V across = all_slack;
@@ -156,7 +156,8 @@ HWY_INLINE V gaps(const float* block, std::size_t at, const Row& other, V all_sl
   return gap;
 }
 
-Near boxes(const float* block, float reach, const OtherBox& other, float slack, float enough, float* out) {
+Near boxes(const float* node, float reach, const OtherBox& other, float slack, float prune_distance,
+           float* out) {
   const Tag d;
   Near near{0, INFINITY};
   const V all_slack = hn::Set(d, roundings * reach + slack);
@@ -164,16 +165,16 @@ Near boxes(const float* block, float reach, const OtherBox& other, float slack, 
     return hn::Set(d, r < 3 ? other.centre[r] : r < 6 ? other.half[r - 3] : other.axes[(r - 6) / 3][r % 3]);
   };
   for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
-    store(gaps(block, at, row, all_slack, enough), enough, at, out, near);
+    store(gaps(node, at, row, all_slack, prune_distance), prune_distance, at, out, near);
   }
   return near;
 }
 
-// Centres of a block's boxes in the coordinates of another block.
-HWY_INLINE void place_centres(const BoxBlock& block, const SeenBlock& seen, float* out) {
+// Centres of a node's boxes in the coordinates of another node.
+HWY_INLINE void place_centres(const BoxNode& node, const SeenNode& seen, float* out) {
   const Tag d;
   for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
-    const auto row = [&](std::size_t r) { return hn::LoadU(d, block.rows + 8 * r + at); };
+    const auto row = [&](std::size_t r) { return hn::LoadU(d, node.rows + 8 * r + at); };
     const V x[3] = {row(0), row(1), row(2)};
     for (std::size_t i = 0; i < 3; ++i) {
       hn::Store(hn::Add(dot3(d, x, seen.rows[i]), hn::Set(d, seen.offset[i])), d, out + 8 * i + at);
@@ -182,11 +183,11 @@ HWY_INLINE void place_centres(const BoxBlock& block, const SeenBlock& seen, floa
 }
 
 // Their half sizes and axes, in the rows after these.
-HWY_INLINE void place_axes(const BoxBlock& block, const SeenBlock& seen, float* out) {
+HWY_INLINE void place_axes(const BoxNode& node, const SeenNode& seen, float* out) {
   const Tag d;
   const V scale = hn::Set(d, seen.scale), inverse = hn::Set(d, 1 / seen.scale);
   for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
-    const auto row = [&](std::size_t r) { return hn::LoadU(d, block.rows + 8 * r + at); };
+    const auto row = [&](std::size_t r) { return hn::LoadU(d, node.rows + 8 * r + at); };
     for (std::size_t k = 3; k < 6; ++k) hn::Store(hn::Mul(scale, row(k)), d, out + 8 * k + at);
     for (std::size_t k = 6; k < obb_rows; k += 3) {
       const V x[3] = {row(k), row(k + 1), row(k + 2)};
@@ -197,12 +198,12 @@ HWY_INLINE void place_axes(const BoxBlock& block, const SeenBlock& seen, float* 
   }
 }
 
-// Eight lanes of a block's rows in another order.
-HWY_INLINE void pick(const float* rows, const std::int32_t* lanes, float* out) {
+// Eight columns of a node's rows in another order.
+HWY_INLINE void pick(const float* rows, const std::int32_t* order, float* out) {
   const Tag d;
   const hn::RebindToSigned<Tag> di;
   for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
-    const auto places = hn::LoadU(di, lanes + at);
+    const auto places = hn::LoadU(di, order + at);
     for (std::size_t r = 0; r < obb_rows; ++r) {
 #if HWY_MAX_BYTES >= 32
       const V row = hn::TableLookupLanes(hn::LoadU(d, rows + 8 * r), hn::IndicesFromVec(d, places));
@@ -215,9 +216,9 @@ HWY_INLINE void pick(const float* rows, const std::int32_t* lanes, float* out) {
 }
 
 // Half of what boxes extend along a direction.
-HWY_INLINE V half_extents(const BoxBlock& block, std::size_t at, const float* direction) {
+HWY_INLINE V half_extents(const BoxNode& node, std::size_t at, const float* direction) {
   const Tag d;
-  const auto row = [&](std::size_t r) { return hn::LoadU(d, block.rows + 8 * r + at); };
+  const auto row = [&](std::size_t r) { return hn::LoadU(d, node.rows + 8 * r + at); };
   V sum = hn::Zero(d);
   for (std::size_t k = 0; k < 3; ++k) {
     const V axis[3] = {row(6 + 3 * k), row(7 + 3 * k), row(8 + 3 * k)};
@@ -226,110 +227,134 @@ HWY_INLINE V half_extents(const BoxBlock& block, std::size_t at, const float* di
   return sum;
 }
 
-Near box_pairs(const BoxBlock& block, const BoxBlock& other, const SeenBlock& seen, float slack, float enough,
-               LanePair* out) {
+// Extents along the first direction to try: upper ones of the node's boxes, lower ones of the others.
+struct Extents {
+  HWY_ALIGN float own[8];
+  HWY_ALIGN float other[8];
+};
+HWY_INLINE void extents_along(const BoxNode& node, const BoxNode& other, const SeenNode& seen,
+                              const float* placed, Extents& out) {
+  const Tag d;
+  const float* const n = seen.direction;
+  const bool directed = n[0] != 0 || n[1] != 0 || n[2] != 0;
+  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+    V extent = hn::Set(d, INFINITY), other_extent = hn::Zero(d);
+    if (directed) {
+      const auto row = [&](std::size_t r) { return hn::LoadU(d, node.rows + 8 * r + at); };
+      const auto other_row = [&](std::size_t r) { return hn::Load(d, placed + 8 * r + at); };
+      const V centre[3] = {row(0), row(1), row(2)};
+      const V other_centre[3] = {other_row(0), other_row(1), other_row(2)};
+      extent = hn::Add(dot3(d, centre, n), half_extents(node, at, n));
+      other_extent = hn::Sub(dot3(d, other_centre, n), half_extents(other, at, seen.other_direction));
+    }
+    hn::Store(extent, d, out.own + at);
+    hn::Store(other_extent, d, out.other + at);
+  }
+}
+
+// Pairs of boxes that are left, by their places; eight at a time are read.
+struct Left {
+  std::int32_t own[64 + 8], other[64 + 8];
+  std::size_t count = 0;
+  HWY_ALIGN float gaps[8][8];  // that are known, by place in the other node
+};
+
+// Balls and the first direction: the pairs that they leave, and what they add to the least gap of the others.
+HWY_INLINE void compare_balls(const BoxNode& node, const BoxNode& other, const SeenNode& seen,
+                              const float* placed, V all_slack, V beyond, Left& left, V& others) {
+  const Tag d;
+  Extents extents;
+  extents_along(node, other, seen, placed, extents);
+  for (std::uint32_t j = 0; j < other.count; ++j) {
+    const V radius = hn::Set(d, 0.5F * seen.scale * other.sizes[j]);
+    std::uint32_t near_bits = 0;
+    for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+      V between_sq = hn::Zero(d);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const V delta = hn::Sub(hn::Set(d, placed[8 * k + j]), hn::LoadU(d, node.rows + 8 * k + at));
+        between_sq = hn::Add(between_sq, hn::Mul(delta, delta));
+      }
+      const V radii = hn::Add(hn::Mul(hn::Set(d, 0.5F), hn::LoadU(d, node.sizes + at)), radius);
+      const V along = hn::Sub(hn::Set(d, extents.other[j]), hn::Load(d, extents.own + at));
+      const V gap = hn::Sub(hn::Max(hn::Sub(hn::Sqrt(between_sq), radii), along), all_slack);
+      const auto apart = hn::Gt(gap, beyond);
+      hn::Store(gap, d, left.gaps[j] + at);
+      others = hn::Min(others, hn::IfThenElse(apart, gap, hn::Set(d, INFINITY)));
+      near_bits |= bits(hn::Not(apart)) << at;
+    }
+    for (near_bits &= (1u << node.count) - 1; near_bits != 0; near_bits &= near_bits - 1) {
+      left.own[left.count] = std::countr_zero(near_bits);
+      left.other[left.count++] = static_cast<std::int32_t>(j);
+    }
+  }
+}
+
+// Axes of eight of these pairs from `begin` on: those that are left go to `out`.
+HWY_INLINE void compare_axes(const float* rows, const float* placed, Left& left, std::size_t begin,
+                             V all_slack, float prune_distance, ChildPair* out, NearPairs& near, V& others) {
+  const Tag d;
+  const std::size_t count = std::min<std::size_t>(8, left.count - begin);
+  std::int32_t* const own = left.own + begin;
+  std::int32_t* const other = left.other + begin;
+  std::fill(own + count, own + 8, own[0]);
+  std::fill(other + count, other + 8, other[0]);
+  HWY_ALIGN float own_rows[obb_rows * 8];
+  HWY_ALIGN float other_rows[obb_rows * 8];
+  HWY_ALIGN float found[8];
+  pick(rows, own, own_rows);
+  pick(placed, other, other_rows);
+  for (std::size_t l = 0; l < 8; ++l) found[l] = left.gaps[other[l]][own[l]];
+  std::uint32_t near_bits = 0;
+  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+    const auto row = [&](std::size_t r) { return hn::Load(d, other_rows + 8 * r + at); };
+    // How deep balls overlap says little.
+    const V first = hn::Load(d, found + at),
+            by_axes = computed(gaps(own_rows, at, row, all_slack, prune_distance));
+    const V gap = hn::IfThenElse(hn::Gt(first, hn::Zero(d)), hn::Max(by_axes, first), by_axes);
+    const auto apart = hn::Gt(gap, hn::Set(d, prune_distance));
+    hn::Store(gap, d, found + at);
+    others = hn::Min(others, hn::IfThenElse(apart, gap, hn::Set(d, INFINITY)));
+    near_bits |= bits(hn::Not(apart)) << at;
+  }
+  for (near_bits &= (1u << count) - 1; near_bits != 0; near_bits &= near_bits - 1) {
+    const auto l = static_cast<std::size_t>(std::countr_zero(near_bits));
+    out[near.count++] = {static_cast<std::uint8_t>(own[l]), static_cast<std::uint8_t>(other[l]), found[l]};
+  }
+}
+
+NearPairs box_pairs(const BoxNode& node, const BoxNode& other, const SeenNode& seen, float slack,
+                    float prune_distance, ChildPair* out) {
   const Tag d;
   const float offset = std::fabs(seen.offset[0]) + std::fabs(seen.offset[1]) + std::fabs(seen.offset[2]);
-  const float reach = block.reach + 2 * seen.scale * other.reach + offset;
-  Near near{0, INFINITY};
+  const float reach = node.reach + 2 * seen.scale * other.reach + offset;
+  NearPairs near{0, INFINITY};
   if (!(reach < 1e18F)) {  // nor a NaN
     for (std::uint32_t j = 0; j < other.count; ++j) {
-      for (std::uint32_t i = 0; i < block.count; ++i) {
-        out[near.lanes++] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), -INFINITY};
+      for (std::uint32_t i = 0; i < node.count; ++i) {
+        out[near.count++] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), -INFINITY};
       }
     }
     return near;
   }
-  const V all_slack = hn::Set(d, pair_roundings * reach + slack), most = hn::Set(d, enough);
+  const V all_slack = hn::Set(d, pair_roundings * reach + slack);
   V others = hn::Set(d, INFINITY);
   HWY_ALIGN float placed[obb_rows * 8];
   place_centres(other, seen, placed);
-  // Where boxes end along the direction: those of the block above, the others below.
-  HWY_ALIGN float ends[8];
-  HWY_ALIGN float other_ends[8];
-  const float* const n = seen.direction;
-  const bool directed = n[0] != 0 || n[1] != 0 || n[2] != 0;
-  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
-    V end = hn::Set(d, INFINITY), other_end = hn::Zero(d);
-    if (directed) {
-      const auto row = [&](std::size_t r) { return hn::LoadU(d, block.rows + 8 * r + at); };
-      const auto other_row = [&](std::size_t r) { return hn::Load(d, placed + 8 * r + at); };
-      const V centre[3] = {row(0), row(1), row(2)};
-      const V other_centre[3] = {other_row(0), other_row(1), other_row(2)};
-      end = hn::Add(dot3(d, centre, n), half_extents(block, at, n));
-      other_end = hn::Sub(dot3(d, other_centre, n), half_extents(other, at, seen.other_direction));
-    }
-    hn::Store(end, d, ends + at);
-    hn::Store(other_end, d, other_ends + at);
-  }
-  // Balls and the direction first.
-  std::int32_t own_lanes[64 + 8], other_lanes[64 + 8];  // of pairs that are left; eight at a time are read
-  std::size_t left = 0;
-  HWY_ALIGN float first_gaps[8][8];  // by lane of the other block
-  for (std::uint32_t j = 0; j < other.count; ++j) {
-    const V radius = hn::Set(d, 0.5F * seen.scale * other.sizes[j]);
-    std::uint32_t near_lanes = 0;
-    for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
-      V between_sq = hn::Zero(d);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const V delta = hn::Sub(hn::Set(d, placed[8 * k + j]), hn::LoadU(d, block.rows + 8 * k + at));
-        between_sq = hn::Add(between_sq, hn::Mul(delta, delta));
-      }
-      const V radii = hn::Add(hn::Mul(hn::Set(d, 0.5F), hn::LoadU(d, block.sizes + at)), radius);
-      const V along = hn::Sub(hn::Set(d, other_ends[j]), hn::Load(d, ends + at));
-      const V gap = hn::Sub(hn::Max(hn::Sub(hn::Sqrt(between_sq), radii), along), all_slack);
-      const auto apart = hn::Gt(gap, most);
-      hn::Store(gap, d, first_gaps[j] + at);
-      others = hn::Min(others, hn::IfThenElse(apart, gap, hn::Set(d, INFINITY)));
-      near_lanes |= bits(hn::Not(apart)) << at;
-    }
-    for (near_lanes &= (1u << block.count) - 1; near_lanes != 0; near_lanes &= near_lanes - 1) {
-      own_lanes[left] = std::countr_zero(near_lanes);
-      other_lanes[left++] = static_cast<std::int32_t>(j);
-    }
-  }
-  if (left != 0) place_axes(other, seen, placed);
-  // Then axes, eight pairs at a time.
-  for (std::size_t begin = 0; begin < left; begin += 8) {
-    const std::size_t count = std::min<std::size_t>(8, left - begin);
-    for (std::size_t l = count; l < 8; ++l) {
-      own_lanes[begin + l] = own_lanes[begin];
-      other_lanes[begin + l] = other_lanes[begin];
-    }
-    HWY_ALIGN float own_rows[obb_rows * 8];
-    HWY_ALIGN float other_rows[obb_rows * 8];
-    HWY_ALIGN float found[8];
-    pick(block.rows, own_lanes + begin, own_rows);
-    pick(placed, other_lanes + begin, other_rows);
-    for (std::size_t l = 0; l < 8; ++l) {
-      found[l] = first_gaps[other_lanes[begin + l]][own_lanes[begin + l]];
-    }
-    std::uint32_t near_lanes = 0;
-    for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
-      const auto row = [&](std::size_t r) { return hn::Load(d, other_rows + 8 * r + at); };
-      // How deep balls overlap says little.
-      const V first = hn::Load(d, found + at), own = computed(gaps(own_rows, at, row, all_slack, enough));
-      const V gap = hn::IfThenElse(hn::Gt(first, hn::Zero(d)), hn::Max(own, first), own);
-      const auto apart = hn::Gt(gap, most);
-      hn::Store(gap, d, found + at);
-      others = hn::Min(others, hn::IfThenElse(apart, gap, hn::Set(d, INFINITY)));
-      near_lanes |= bits(hn::Not(apart)) << at;
-    }
-    for (near_lanes &= (1u << count) - 1; near_lanes != 0; near_lanes &= near_lanes - 1) {
-      const auto l = static_cast<std::size_t>(std::countr_zero(near_lanes));
-      out[near.lanes++] = {static_cast<std::uint8_t>(own_lanes[begin + l]),
-                           static_cast<std::uint8_t>(other_lanes[begin + l]), found[l]};
-    }
+  Left left;
+  compare_balls(node, other, seen, placed, all_slack, hn::Set(d, prune_distance), left, others);
+  if (left.count != 0) place_axes(other, seen, placed);
+  for (std::size_t begin = 0; begin < left.count; begin += 8) {
+    compare_axes(node.rows, placed, left, begin, all_slack, prune_distance, out, near, others);
   }
   near.others = hn::GetLane(hn::MinOfLanes(d, others));
   return near;
 }
 
-void boxes_to_point(const float* block, const float* point, float slack, float* out) {
+void boxes_to_point(const float* node, const float* point, float slack, float* out) {
   const Tag d;
   const std::size_t n = hn::Lanes(d);
   for (std::size_t at = 0; at < 8; at += n) {
-    const auto row = [&](std::size_t r) { return hn::LoadU(d, block + 8 * r + at); };
+    const auto row = [&](std::size_t r) { return hn::LoadU(d, node + 8 * r + at); };
     V delta[3], gap[3];
     V reach = hn::Zero(d);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -348,30 +373,6 @@ void boxes_to_point(const float* block, const float* point, float slack, float* 
   }
 }
 
-Near dops(const float* block, std::size_t directions, const OtherIntervals& other, float slack, float enough,
-          float* out) {
-  const Tag d;
-  Near near{0, INFINITY};
-  const std::size_t n = hn::Lanes(d);
-  for (std::size_t at = 0; at < 8; at += n) {
-    const auto gap_along = [&](std::size_t i) {
-      const V lower = hn::LoadU(d, block + 16 * i + at), upper = hn::LoadU(d, block + 16 * i + 8 + at);
-      const V other_lower = hn::Set(d, other.lower[i]), other_upper = hn::Set(d, other.upper[i]);
-      const V reach = hn::Add(hn::Add(hn::Abs(lower), hn::Abs(upper)),
-                              hn::Add(hn::Abs(other_lower), hn::Abs(other_upper)));
-      const V own = hn::Add(hn::Mul(hn::Set(d, roundings), reach), hn::Set(d, slack * other.length[i]));
-      const V gap = hn::Max(hn::Sub(other_lower, upper), hn::Sub(lower, other_upper));
-      return hn::IfThenElse(hn::Lt(reach, hn::Set(d, 1e18F)), hn::Sub(gap, own), hn::Set(d, -INFINITY));
-    };
-    V gap = outside(d, gap_along(0), gap_along(1), gap_along(2));
-    for (std::size_t i = 3; i < directions; ++i) {
-      gap = hn::Max(gap, hn::Mul(gap_along(i), hn::Set(d, 1 / other.length[i])));
-    }
-    store(gap, enough, at, out, near);
-  }
-  return near;
-}
-
 }  // namespace
 }  // namespace snug::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -382,9 +383,8 @@ namespace snug::kernels {
 HWY_EXPORT(boxes);
 HWY_EXPORT(box_pairs);
 HWY_EXPORT(boxes_to_point);
-HWY_EXPORT(dops);
 
-Near obb_distances(const float* block, float reach, const OtherBox& other, float slack, float enough,
+Near obb_distances(const float* node, float reach, const OtherBox& other, float slack, float prune_distance,
                    float* out) {
   reach += other.reach();
   // A NaN may be lost in a maximum.
@@ -392,21 +392,16 @@ Near obb_distances(const float* block, float reach, const OtherBox& other, float
     std::fill(out, out + 8, -INFINITY);
     return {0xff, INFINITY};
   }
-  return HWY_DYNAMIC_DISPATCH(boxes)(block, reach, other, slack, enough, out);
+  return HWY_DYNAMIC_DISPATCH(boxes)(node, reach, other, slack, prune_distance, out);
 }
 
-Near obb_pairs(const BoxBlock& block, const BoxBlock& other, const SeenBlock& seen, float slack, float enough,
-               LanePair* out) {
-  return HWY_DYNAMIC_DISPATCH(box_pairs)(block, other, seen, slack, enough, out);
+NearPairs obb_pairs(const BoxNode& node, const BoxNode& other, const SeenNode& seen, float slack,
+                    float prune_distance, ChildPair* out) {
+  return HWY_DYNAMIC_DISPATCH(box_pairs)(node, other, seen, slack, prune_distance, out);
 }
 
-void obb_distances(const float* block, const float point[3], float slack, float* out) {
-  HWY_DYNAMIC_DISPATCH(boxes_to_point)(block, point, slack, out);
-}
-
-Near dop_distances(const float* block, std::size_t directions, const OtherIntervals& other, float slack,
-                   float enough, float* out) {
-  return HWY_DYNAMIC_DISPATCH(dops)(block, directions, other, slack, enough, out);
+void obb_distances(const float* node, const float point[3], float slack, float* out) {
+  HWY_DYNAMIC_DISPATCH(boxes_to_point)(node, point, slack, out);
 }
 
 }  // namespace snug::kernels

@@ -1,0 +1,140 @@
+#include <snug/bvh/obb.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <snug/base/contract.h>
+#include <snug/geometry/rounding.h>
+
+namespace snug {
+namespace {
+
+using Matrix = std::array<std::array<double, 3>, 3>;
+
+// Eigenvectors of a symmetric matrix by cyclic Jacobi rotations, as columns.
+Matrix eigenvectors(Matrix m) {
+  Matrix v{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  for (int sweep = 0; sweep < 8; ++sweep) {
+    const double off = std::fabs(m[0][1]) + std::fabs(m[0][2]) + std::fabs(m[1][2]);
+    const double diagonal = std::fabs(m[0][0]) + std::fabs(m[1][1]) + std::fabs(m[2][2]);
+    if (!(off > 1e-4 * diagonal)) break;  // any axes are right, nearly principal ones are as good
+    for (std::size_t p = 0; p < 2; ++p) {
+      for (std::size_t q = p + 1; q < 3; ++q) {
+        if (m[p][q] == 0) continue;
+        const double theta = (m[q][q] - m[p][p]) / (2 * m[p][q]);
+        const double t = (theta >= 0 ? 1.0 : -1.0) / (std::fabs(theta) + std::sqrt(theta * theta + 1));
+        const double c = 1 / std::sqrt(t * t + 1), s = t * c;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double kp = m[k][p], kq = m[k][q];
+          m[k][p] = c * kp - s * kq;
+          m[k][q] = s * kp + c * kq;
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double pk = m[p][k], qk = m[q][k];
+          m[p][k] = c * pk - s * qk;
+          m[q][k] = s * pk + c * qk;
+          const double vp = v[k][p], vq = v[k][q];
+          v[k][p] = c * vp - s * vq;
+          v[k][q] = s * vp + c * vq;
+        }
+      }
+    }
+  }
+  return v;
+}
+
+// Two eigenvectors made orthonormal again, the third their cross product; the coordinate axes if that fails.
+std::array<Vector3, 3> axes_of(const Matrix& covariance) {
+  const Matrix v = eigenvectors(covariance);
+  Vector3 a{v[0][0], v[1][0], v[2][0]}, b{v[0][1], v[1][1], v[2][1]};
+  const double size_a = length(a);
+  if (!(size_a > 0.5)) return Obb{}.axes;
+  a = (1 / size_a) * a;
+  b = b - dot(a, b) * a;
+  const double size_b = length(b);
+  if (!(size_b > 0.5) || !std::isfinite(size_b)) return Obb{}.axes;
+  b = (1 / size_b) * b;
+  return {a, b, cross(a, b)};
+}
+
+void add_outer(Matrix& m, const Vector3& d, double weight) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) m[i][j] += weight * d[i] * d[j];
+  }
+}
+
+// Bounds of dot(direction, x) over boxes.
+Extent extent_of(std::span<const Obb> boxes, const Vector3& direction) {
+  Extent all;
+  for (const Obb& box : boxes) {
+    // Infinite sides times cosines of zero are no numbers, which minima pass over.
+    if (!std::isfinite(box.half.x + box.half.y + box.half.z)) return unbounded;
+    double reach = 0;
+    for (std::size_t k = 0; k < 3; ++k) reach += box.half[k] * std::fabs(dot(direction, box.axes[k]));
+    const double middle = dot(direction, box.centre - Point3{});
+    // The box as a set of inequalities lies in that of the combinations of its axes, made larger by what the axes lack of
+    // orthonormality; at most 64 roundings.
+    const double error =
+        128 * unit_roundoff * (max_abs(box.centre - Point3{}) + box.half.x + box.half.y + box.half.z);
+    all.add({middle - reach - error, middle + reach + error});
+  }
+  return all;
+}
+
+}  // namespace
+
+std::array<Vector3, 3> principal_axes(std::span<const Point3> points) {
+  Vector3 sum;
+  for (const Point3& p : points) sum = sum + (p - Point3{});
+  const Point3 mean = Point3{} + (1.0 / static_cast<double>(std::max<std::size_t>(points.size(), 1))) * sum;
+  Matrix covariance{};
+  for (const Point3& p : points) add_outer(covariance, p - mean, 1);
+  return axes_of(covariance);
+}
+
+// Where x is a corner of what the extents hold, dot(axis, x - centre) is off from dot(axis, x) - dot(axis, centre) by no more
+// than the roundings counted here.
+Obb box_of(const std::array<Vector3, 3>& axes, const std::array<Extent, 3>& extents) {
+  Obb box;
+  for (const Extent& extent : extents) {
+    if (!std::isfinite(extent.lower) || !std::isfinite(extent.upper)) {
+      box.half = {INFINITY, INFINITY, INFINITY};
+      return box;
+    }
+  }
+  box.axes = axes;
+  Vector3 from_origin;
+  for (std::size_t k = 0; k < 3; ++k) {
+    from_origin = from_origin + ((extents[k].lower + extents[k].upper) / 2) * axes[k];
+  }
+  box.centre = Point3{} + from_origin;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double middle = dot(axes[k], from_origin);
+    const double error = 8 * unit_roundoff * max_abs(from_origin) + 8 * underflow_error;
+    const double half = std::max(extents[k].upper - middle, middle - extents[k].lower);
+    box.half[k] = enlarged(std::max(half, 0.0) + error);
+  }
+  return box;
+}
+
+Obb merge(std::span<const Obb> boxes) {
+  SNUG_EXPECT(!boxes.empty());
+  Vector3 sum;
+  for (const Obb& box : boxes) sum = sum + (box.centre - Point3{});
+  const Point3 mean = Point3{} + (1.0 / static_cast<double>(boxes.size())) * sum;
+  Matrix covariance{};
+  for (const Obb& box : boxes) {
+    add_outer(covariance, box.centre - mean, 1);
+    for (std::size_t k = 0; k < 3; ++k) {
+      add_outer(covariance, box.axes[k], box.half[k] * box.half[k] / 3);
+    }
+  }
+  return fit_box(axes_of(covariance), [&](const Vector3& axis) { return extent_of(boxes, axis); });
+}
+
+Ball ball_around(const Obb& box) {
+  const double reach = std::sqrt(length_sq(box.half));
+  return {box.centre, std::isfinite(reach) ? enlarged(reach) : INFINITY};
+}
+
+}  // namespace snug
