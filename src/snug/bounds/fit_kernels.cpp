@@ -1,10 +1,6 @@
-// Compiled once for each instruction set: this file includes itself through foreach_target.h.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "snug/bounds/fit_kernels.cpp"
-#include <hwy/foreach_target.h>
-// After it, as the library wants it.
-#include <hwy/highway.h>
+#include <snug/geometry/vector_code-inl.h>
 
 #include <algorithm>
 #include <array>
@@ -19,35 +15,6 @@ HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-// No operators of Highway's: the portable target lacks them.
-template <class V>
-struct Vec3 {
-  V x, y, z;
-};
-
-template <class V>
-HWY_INLINE V dot(const Vec3<V>& a, const Vec3<V>& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-template <class V>
-HWY_INLINE Vec3<V> add(const Vec3<V>& a, const Vec3<V>& b) {
-  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-template <class V>
-HWY_INLINE Vec3<V> sub(const Vec3<V>& a, const Vec3<V>& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-template <class V>
-HWY_INLINE Vec3<V> scaled(V s, const Vec3<V>& a) {
-  return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
-}
-template <class V>
-HWY_INLINE Vec3<V> cross(const Vec3<V>& a, const Vec3<V>& b) {
-  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
-}
 template <class V>
 HWY_INLINE V hypotenuse_sq(V a, V b) {
   return hn::Add(hn::Mul(a, a), hn::Mul(b, b));

@@ -1,10 +1,6 @@
-// Compiled once for each instruction set: this file includes itself through foreach_target.h.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "snug/bvh/node_kernels.cpp"
-#include <hwy/foreach_target.h>
-// After it, as the library wants it.
-#include <hwy/highway.h>
+#include <snug/geometry/vector_code-inl.h>
 
 #include <algorithm>
 #include <bit>
@@ -15,8 +11,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {
 namespace {
-
-namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag = hn::CappedTag<float, 8>;
 using V = hn::Vec<Tag>;

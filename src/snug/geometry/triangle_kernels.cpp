@@ -1,10 +1,6 @@
-// Compiled once for each instruction set: this file includes itself through foreach_target.h.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "snug/geometry/triangle_kernels.cpp"
-#include <hwy/foreach_target.h>
-// After it, as the library wants it.
-#include <hwy/highway.h>
+#include <snug/geometry/vector_code-inl.h>
 
 #include <cmath>
 
@@ -14,33 +10,19 @@ HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
 using Tag = hn::CappedTag<double, 4>;
 using V = hn::Vec<Tag>;
 
-struct Vec3 {
-  V x, y, z;
-};
-
-HWY_INLINE V dot(const Vec3& a, const Vec3& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE Vec3 sub(const Vec3& a, const Vec3& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE Vec3 cross(const Vec3& a, const Vec3& b) {
-  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
-}
 // a + s b and a - s b.
-HWY_INLINE Vec3 plus(const Vec3& a, V s, const Vec3& b) {
+HWY_INLINE Vec3<V> plus(const Vec3<V>& a, V s, const Vec3<V>& b) {
   return {hn::Add(a.x, hn::Mul(s, b.x)), hn::Add(a.y, hn::Mul(s, b.y)), hn::Add(a.z, hn::Mul(s, b.z))};
 }
-HWY_INLINE Vec3 minus(const Vec3& a, V s, const Vec3& b) {
+HWY_INLINE Vec3<V> minus(const Vec3<V>& a, V s, const Vec3<V>& b) {
   return {hn::Sub(a.x, hn::Mul(s, b.x)), hn::Sub(a.y, hn::Mul(s, b.y)), hn::Sub(a.z, hn::Mul(s, b.z))};
 }
-HWY_INLINE Vec3 all(Tag d, const Vector3& v) { return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)}; }
+HWY_INLINE Vec3<V> all(Tag d, const Vector3& v) {
+  return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
+}
 
 // To [0, 1]; a NaN becomes 0.
 HWY_INLINE V clamped(Tag d, V t) {
@@ -67,7 +49,7 @@ struct Prepared {
 
 // Corner i + from in lane i, counted round. Put together in registers: wide loads of what narrow stores have left have
 // to wait for those.
-HWY_INLINE Vec3 corners(Tag d, std::size_t at, const Prepared& t, std::size_t from) {
+HWY_INLINE Vec3<V> corners(Tag d, std::size_t at, const Prepared& t, std::size_t from) {
   static constexpr double number[4] = {0, 1, 2, 3};
   const V lane = hn::LoadU(d, number + at);
   const auto second = hn::Eq(lane, hn::Set(d, 1.0)), third = hn::Eq(lane, hn::Set(d, 2.0));
@@ -77,7 +59,7 @@ HWY_INLINE Vec3 corners(Tag d, std::size_t at, const Prepared& t, std::size_t fr
   };
   return {pick(c0.x, c1.x, c2.x), pick(c0.y, c1.y, c2.y), pick(c0.z, c1.z, c2.z)};
 }
-HWY_INLINE Vec3 edges(Tag d, std::size_t at, const Prepared& t) {
+HWY_INLINE Vec3<V> edges(Tag d, std::size_t at, const Prepared& t) {
   return sub(corners(d, at, t, 1), corners(d, at, t, 0));
 }
 
@@ -109,12 +91,12 @@ struct Piercing {
   double along[width], b[width], c[width];
 };
 HWY_INLINE bool pierce(Tag d, const Prepared& from, const Prepared& face, Piercing& out) {
-  const Vec3 e1 = all(d, face.edge[0]), e2 = all(d, face.side);
+  const Vec3<V> e1 = all(d, face.edge[0]), e2 = all(d, face.side);
   bool any = false;
   for (std::size_t at = 0; at < width; at += hn::Lanes(d)) {
-    const Vec3 e = edges(d, at, from);
-    const Vec3 s = sub(corners(d, at, from, 0), all(d, face.corner[0]));
-    const Vec3 h = cross(e, e2), q = cross(s, e1);
+    const Vec3<V> e = edges(d, at, from);
+    const Vec3<V> s = sub(corners(d, at, from, 0), all(d, face.corner[0]));
+    const Vec3<V> h = cross(e, e2), q = cross(s, e1);
     const V det = dot(e1, h);  // 0 for parallel ones: quotients are not finite then
     const V b = hn::Div(dot(s, h), det), c = hn::Div(dot(e, q), det), t = hn::Div(dot(e2, q), det);
     const auto on_edge = hn::And(hn::Ge(t, hn::Zero(d)), hn::Le(t, hn::Set(d, 1.0)));
@@ -179,34 +161,35 @@ struct FootV {
   V distance_sq;
   PointV at;
 };
-HWY_INLINE FootV foot_inside(Tag d, const Vec3& corners, const Prepared& face, const Dual& dual) {
-  const Vec3 r = sub(corners, all(d, face.corner[0]));
+HWY_INLINE FootV foot_inside(Tag d, const Vec3<V>& corners, const Prepared& face, const Dual& dual) {
+  const Vec3<V> r = sub(corners, all(d, face.corner[0]));
   const V b = dot(all(d, dual.b), r), c = dot(all(d, dual.c), r);
-  const Vec3 w = minus(minus(r, b, all(d, face.edge[0])), c, all(d, face.side));
+  const Vec3<V> w = minus(minus(r, b, all(d, face.edge[0])), c, all(d, face.side));
   return {hn::IfThenElse(in_triangle(d, b, c), dot(w, w), hn::Set(d, INFINITY)), {b, c}};
 }
 
 // Edges q + t f with their squared lengths and the inverses of those.
 struct Edges {
-  Vec3 q, f;
+  Vec3<V> q, f;
   V ff, inverse;
 };
 
 // One edge p + s e of a and edges of b.
-HWY_INLINE BestOnEdges nearest_on_edges(Tag d, const Vec3& p, const Vec3& e, V inverse_e, const Edges& b) {
-  const Vec3 r = sub(p, b.q);
+HWY_INLINE BestOnEdges nearest_on_edges(Tag d, const Vec3<V>& p, const Vec3<V>& e, V inverse_e,
+                                        const Edges& b) {
+  const Vec3<V> r = sub(p, b.q);
   const V ee = dot(e, e), ef = dot(e, b.f), er = dot(e, r), fr = dot(b.f, r);
   const V t_at_p = clamped(d, hn::Mul(fr, b.inverse));
-  const Vec3 from_p = minus(r, t_at_p, b.f);
+  const Vec3<V> from_p = minus(r, t_at_p, b.f);
   BestOnEdges best{dot(from_p, from_p), hn::Zero(d), t_at_p};
   const V s_at_q = clamped(d, hn::Mul(hn::Neg(er), inverse_e));
-  const Vec3 from_q = plus(r, s_at_q, e);
+  const Vec3<V> from_q = plus(r, s_at_q, e);
   best.offer({dot(from_q, from_q), s_at_q, hn::Zero(d)});
   // Of parallel edges this is any pair of points.
   const V across = hn::Sub(hn::Mul(ee, b.ff), hn::Mul(ef, ef));
   const V s = clamped(d, hn::Div(hn::Sub(hn::Mul(ef, fr), hn::Mul(er, b.ff)), across));
   const V t = clamped(d, hn::Mul(hn::Add(hn::Mul(ef, s), fr), b.inverse));
-  const Vec3 between = minus(plus(r, s, e), t, b.f);
+  const Vec3<V> between = minus(plus(r, s, e), t, b.f);
   best.offer({dot(between, between), s, t});
   return best;
 }
@@ -215,7 +198,7 @@ HWY_INLINE void search(Tag d, const Prepared& a, const Prepared& b, PairOfPoints
   const Dual dual_a(a), dual_b(b);
   double inverse[width];
   for (std::size_t at = 0; at < width; at += hn::Lanes(d)) {
-    const Vec3 e = edges(d, at, a);
+    const Vec3<V> e = edges(d, at, a);
     hn::StoreU(hn::Div(hn::Set(d, 1.0), dot(e, e)), d, inverse + at);
   }
   double distance_sq[width], a_b[width], a_c[width], b_b[width], b_c[width];
@@ -228,7 +211,7 @@ HWY_INLINE void search(Tag d, const Prepared& a, const Prepared& b, PairOfPoints
     const auto on_edges_of_b = [&](V t) HWY_ATTR {
       return PointV{hn::Add(from_b, hn::Mul(t, along_b)), hn::Add(from_c, hn::Mul(t, along_c))};
     };
-    const Vec3 q = corners(d, at, b, 0), f = edges(d, at, b);
+    const Vec3<V> q = corners(d, at, b, 0), f = edges(d, at, b);
     const V ff = dot(f, f);
     const Edges of_b{q, f, ff, hn::Div(one, ff)};
     const auto with_edge = [&](std::size_t i) HWY_ATTR {
