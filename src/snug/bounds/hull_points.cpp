@@ -78,92 +78,97 @@ void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out) {
 
 namespace {
 
+// What a patch is bounded by as it is; nothing where it has to be split first.
+enum class Source : std::uint8_t { bezier, rows, net, none };
+
 // Levels that a patch is split, before the nets of its pieces do: one of a passing kind, and at a crowded corner.
 constexpr unsigned passing_levels = 5, crowded_levels = 12;
 
-unsigned levels_of(const Kind& kind) { return kind.passing() ? passing_levels : crowded_levels; }
+Source source_of(const Kind& kind, unsigned level) {
+  if (kind.polynomial()) return Source::bezier;
+  if (kind.shared()) return Source::rows;
+  return level >= (kind.passing() ? passing_levels : crowded_levels) ? Source::net : Source::none;
+}
 
-// Adds points whose hull holds the patch, which `level` splits have made; `scratch` has a patch for each of the next ones.
-void collect(BoundsCache& library, const Patch& patch, unsigned level, std::span<Patch> scratch,
-             HullPoints& out) {
-  const Kind& kind = *patch.kind;
-  if (kind.polynomial()) {
-    const Stencils& rows = kind.bezier();
-    std::size_t at = out.size();
-    out.resize(at + rows.row_count());
-    for (std::size_t r = 0; r < rows.row_count(); ++r) out.set(at++, rows.apply<Vector3>(r, patch.points));
-    out.error = std::max(out.error, rows.result_error(patch.largest, patch.error));
-    out.largest = std::max(out.largest, enlarged(rows.max_abs_sum() * patch.largest));
-  } else if (kind.shared()) {
-    apply(library.rows(kind), patch, out.size(), out);
-  } else if (level >= levels_of(kind)) {
-    std::size_t at = out.size();
-    out.resize(at + patch.points.size());
-    for (const Vector3& p : patch.points) out.set(at++, p);
-    out.error = std::max(out.error, patch.error);
-    out.largest = std::max(out.largest, patch.largest);
-  } else {
-    for (unsigned child = 0; child < 4; ++child) {
-      split(patch, child, scratch[0]);
-      collect(library, scratch[0], level + 1, scratch.subspan(1), out);
-    }
+// Calls visit(part, source) for the parts of a patch that `level` splits have made; `scratch` has a patch for each of the
+// next ones.
+template <class Visit>
+void for_each_part(const Patch& patch, unsigned level, std::span<Patch> scratch, const Visit& visit) {
+  const Source source = source_of(*patch.kind, level);
+  if (source != Source::none) return visit(patch, source);
+  for (unsigned child = 0; child < 4; ++child) {
+    split(patch, child, scratch[0]);
+    for_each_part(scratch[0], level + 1, scratch.subspan(1), visit);
   }
 }
 
-void prepare(BoundsCache& library, const Kind& kind, unsigned level) {
-  if (kind.polynomial()) return;
-  if (kind.shared()) {
-    static_cast<void>(library.rows(kind));
-  } else if (level < levels_of(kind)) {
-    for (const KindChild& child : kind.children()) {
-      if (child.kind != &kind) prepare(library, *child.kind, level + 1);
+void clear(const Patch& patch, HullPoints& out) {
+  out.origin = patch.origin;
+  out.error = out.largest = 0;
+  out.tips = {};
+  out.resize(0);
+}
+
+void add_bezier_points(const Patch& patch, HullPoints& out) {
+  const Stencils& rows = patch.kind->bezier();
+  std::size_t at = out.size();
+  out.resize(at + rows.row_count());
+  for (std::size_t r = 0; r < rows.row_count(); ++r) out.set(at++, rows.apply<Vector3>(r, patch.points));
+  out.error = std::max(out.error, rows.result_error(patch.largest, patch.error));
+  out.largest = std::max(out.largest, enlarged(rows.max_abs_sum() * patch.largest));
+}
+
+void add_net(const Patch& patch, HullPoints& out) {
+  std::size_t at = out.size();
+  out.resize(at + patch.points.size());
+  for (const Vector3& p : patch.points) out.set(at++, p);
+  out.error = std::max(out.error, patch.error);
+  out.largest = std::max(out.largest, patch.largest);
+}
+
+// The points of a kind that few patches share: those of its parts.
+void points_of_parts(BoundsCache& library, const Patch& patch, HullPoints& out) {
+  thread_local std::array<Patch, crowded_levels> scratch;
+  clear(patch, out);
+  for_each_part(patch, 0, scratch, [&](const Patch& part, Source source) {
+    if (source == Source::bezier) {
+      add_bezier_points(part, out);
+    } else if (source == Source::rows) {
+      apply(library.rows(*part.kind), part, out.size(), out);
+    } else {
+      add_net(part, out);
     }
-  }
+  });
 }
 
 }  // namespace
 
 void hull_points(BoundsCache& library, const Patch& patch, HullPoints& out) {
-  if (!patch.kind->shared()) {
-    thread_local std::array<Patch, crowded_levels> scratch;
-    out.origin = patch.origin;
-    out.error = out.largest = 0;
-    out.tips = {};
-    out.resize(0);
-    collect(library, patch, 0, scratch, out);
-    return;
-  }
+  if (!patch.kind->shared()) return points_of_parts(library, patch, out);
   hull_points(library.rows(*patch.kind), patch, out);
-  std::size_t most = out.size();
+  std::size_t count = out.size();
   for (std::size_t i = 0; i < 3 && out.tips[i].kind; ++i) {
-    most += (most_tip_refinements + 1) * library.rows(*out.tips[i].kind).count();
+    count += (max_tip_refinements + 1) * library.rows(*out.tips[i].kind).count();
   }
-  out.reserve(most);
+  out.reserve(count);
   if (out.tips[1].kind) refine_tips(library, {true, true, true}, out);
 }
 
 void close_points(BoundsCache& library, const Patch& patch, HullPoints& out) {
-  if (!patch.kind->polynomial()) {
-    hull_points(library, patch, out);
-    return;
-  }
-  out.origin = patch.origin;
-  out.error = out.largest = 0;
-  out.tips = {};
-  out.resize(0);
-  collect(library, patch, 0, {}, out);
+  if (!patch.kind->polynomial()) return hull_points(library, patch, out);
+  clear(patch, out);
+  add_bezier_points(patch, out);
 }
 
+// A patch of the kind asks for all that the others will.
 void prepare_hull_points(BoundsCache& library, const Kind& kind) {
-  if (!kind.shared()) {
-    prepare(library, kind, 0);
-    return;
-  }
-  for (const BoundRows::Tip& tip : library.rows(kind).tips()) {
-    if (!tip.kind) continue;
-    for (const BoundRows::Tip& deeper : library.rows(*tip.kind).tips()) {
-      if (deeper.kind) static_cast<void>(library.rows(*deeper.kind));
-    }
+  Patch patch;
+  patch.kind = &kind;
+  patch.points.resize(kind.control_count());
+  HullPoints points;
+  hull_points(library, patch, points);
+  for (std::size_t i = 0; i < max_tip_refinements && points.tips[0].kind; ++i) {
+    refine_tips(library, {true, true, true}, points);
   }
 }
 
@@ -192,12 +197,8 @@ void refine_tips(BoundsCache& library, const std::array<bool, 3>& which, HullPoi
 }
 
 void control_points(const Patch& patch, HullPoints& out) {
-  out.origin = patch.origin;
-  out.resize(patch.points.size());
-  for (std::size_t i = 0; i < patch.points.size(); ++i) out.set(i, patch.points[i]);
-  out.largest = patch.largest;
-  out.error = patch.error;
-  out.tips = {};
+  clear(patch, out);
+  add_net(patch, out);
 }
 
 Box3 outer_box(const HullPoints& points) {

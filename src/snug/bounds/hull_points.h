@@ -44,7 +44,7 @@ class HullPoints {
 };
 
 /// How often offset_triangle() refines tips.
-inline constexpr std::size_t most_tip_refinements = 3;
+inline constexpr std::size_t max_tip_refinements = 3;
 
 /// The points M c of a patch, written over `out`, which keeps its memory.
 ///

@@ -74,7 +74,7 @@ OffsetTriangle offset_triangle(BoundsCache& library, HullPoints& points,
     }
     const auto& [rest, tips] = *reach;
     const bool tight = !base.tips_stick_out && tips.distance <= (1 + notable_excess) * rest.distance;
-    if (tight || round == most_tip_refinements ||
+    if (tight || round == max_tip_refinements ||
         !refine_what_sticks_out(library, base, rest.distance, points)) {
       return finished(base, points, rest.distance >= tips.distance ? rest : tips);
     }
