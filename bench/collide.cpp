@@ -250,7 +250,8 @@ std::vector<Times> run_contest(Contest& contest, const std::string& title, const
   return times;
 }
 
-// The same queries by a plain walk over trees of each sort of volume: why the product's trees are of oriented boxes.
+// The same queries by a plain walk over trees of each sort of volume, in scalars and a pair at a time: how many tests each
+// sort needs (docs/decisions/0010).
 void bench_volumes(const std::vector<Model>& models, const std::string& room, const PlacementsOfPairs& at,
                    const Options& options) {
   const Library library = std::make_shared<BoundsCache>();

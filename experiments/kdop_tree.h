@@ -56,7 +56,7 @@ struct VolumeView {
                          const VolumeView& view);
 
 /// A tree of volumes of one sort over a surface, eight children a node, and over its pieces where a walk came near them.
-/// Compares sorts of volumes in one plain, scalar walk: what the product's choice of boxes rests on.
+/// Compares sorts of volumes in one plain walk, a pair at a time in double.
 class KdopTree {
  public:
   /// Requires:  the surface outlives the tree, and has a patch.
