@@ -9,6 +9,7 @@
 #include <snug/geometry/triangle_distance.h>
 #include <snug/patch/evaluate.h>
 #include <snug/search/nearest_first.h>
+#include <snug/search/piece_extents.h>
 #include <snug/search/point_batch.h>
 #include <snug/surface/unscale.h>
 
@@ -116,12 +117,9 @@ class Query {
   [[nodiscard]] double plane_gap(PieceId id, const Vector3& direction) {
     const Vector3 w = normalized(direction);
     if (w == Vector3{}) return 0;
-    const HullPoints& hull = workspace_.pieces().hull(id);
-    const Slab slab = outer_slab(hull, w);
-    const Vector3 from = hull.origin - to_;
-    const double reach = max_abs(from) + hull.largest;
-    return (slab.lower + dot(w, from)) * (1 - 16 * unit_roundoff) - 32 * unit_roundoff * reach -
-           spatial_error(point_error_) - 16 * underflow_error;
+    // |w| is 1 up to 5 roundings.
+    const double gap = extent_of(workspace_.pieces().hull(id), w, to_).lower;
+    return gap * (1 - 16 * unit_roundoff) - spatial_error(point_error_) - 16 * underflow_error;
   }
 
   ClosestPoint result() const {

@@ -7,14 +7,15 @@
 
 namespace snug {
 
-Extent extent_of(const HullPoints& hull, const Vector3& direction) {
+Extent extent_of(const HullPoints& hull, const Vector3& direction, const Point3& from) {
   const Slab slab = outer_slab(hull, direction);
   if (std::isnan(slab.lower) || std::isnan(slab.upper)) return unbounded;
   const double sum = std::fabs(direction.x) + std::fabs(direction.y) + std::fabs(direction.z);
-  const double from = dot(direction, hull.origin - Point3{});
-  const double error = enlarged(8 * unit_roundoff * sum * (max_abs(hull.origin - Point3{}) + hull.largest)) +
-                       8 * underflow_error;
-  return {from + slab.lower - error, from + slab.upper + error};
+  const Vector3 between = hull.origin - from;
+  const double height = dot(direction, between);
+  const double error =
+      enlarged(8 * unit_roundoff * sum * (max_abs(between) + hull.largest)) + 8 * underflow_error;
+  return {height + slab.lower - error, height + slab.upper + error};
 }
 
 Extent extent_of(const OffsetTriangle& triangle, const Vector3& direction) {

@@ -8,9 +8,9 @@
 
 namespace snug {
 
-/// Bounds of dot(direction, x) over a patch known by points whose hull holds it.
-[[nodiscard]] Extent extent_of(const HullPoints& hull, const Vector3& direction);
-/// The same over an offset triangle.
+/// Bounds of dot(direction, x - from) over a patch known by points whose hull holds it.
+[[nodiscard]] Extent extent_of(const HullPoints& hull, const Vector3& direction, const Point3& from = {});
+/// Bounds of dot(direction, x) over an offset triangle.
 [[nodiscard]] Extent extent_of(const OffsetTriangle& triangle, const Vector3& direction);
 
 /// A box with given axes around hulls, or around offset triangles.

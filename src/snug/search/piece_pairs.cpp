@@ -6,6 +6,7 @@
 #include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <snug/search/piece_extents.h>
 
 namespace snug {
 namespace {
@@ -57,13 +58,13 @@ double PiecePairs::placed_extent(std::size_t side, PieceId piece, const Vector3&
   const HullPoints& hull = frames_.workspace(side).pieces().hull(piece);
   // w . (scale R x + t) = scale (R' w) . x + w . t
   const Vector3 local = w.x * frame.rows[0] + w.y * frame.rows[1] + w.z * frame.rows[2];
-  const Slab slab = outer_slab(hull, local);
-  const double from = frame.scale * dot(local, hull.origin - Point3{}) + dot(w, frame.translation);
+  const Extent own = extent_of(hull, local);
+  const double moved = dot(w, frame.translation);
   const double reach =
       frame.scale * (max_abs(hull.origin - Point3{}) + hull.largest) + max_abs(frame.translation);
   // |w| <= 1 + 4 u; R' w is off by 4 roundings of its rows' sums, which multiply coordinates.
   const double error = 40 * unit_roundoff * reach + 8 * underflow_error;
-  return side == 0 ? from + frame.scale * slab.upper + error : from + frame.scale * slab.lower - error;
+  return side == 0 ? frame.scale * own.upper + moved + error : frame.scale * own.lower + moved - error;
 }
 
 double PiecePairs::hull_gap(const NodePair& pair, const Vector3& direction) {
