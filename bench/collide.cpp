@@ -44,8 +44,9 @@ void bench_leaves(const std::vector<Model>& models) {
     const auto count = [&](const LeafOptions& options) {
       return static_cast<double>(leaves(surface, options).size());
     };
-    const double rows = count({tolerance, {}}), tables = count({tolerance, TableLayout::ngon}),
-                 printed = count({tolerance, TableLayout::ngon, true});
+    const double rows = count({tolerance, BoundMethod::rows}),
+                 tables = count({tolerance, BoundMethod::table}),
+                 printed = count({tolerance, BoundMethod::table, true});
     over_printed.push_back(rows / printed);
     std::printf("  %-8s %9zu %9.0f %9.0f %12.0f", model.name.c_str(), model.mesh.face_count(), rows, tables,
                 printed);

@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
   std::vector<OffsetTriangle> triangles;
   std::vector<Box3> boxes;
   Group group("new positions", "patch", options);
-  PatchBounds rows = subject.bounds(faces), by_tables = subject.bounds(faces, TableLayout::ngon);
+  PatchBounds rows = subject.bounds(faces), by_tables = subject.bounds(faces, BoundMethod::table);
   group.add("snug: offset triangles", count, [&] { return update(rows, moved.points, triangles); });
   group.add("snug: offset triangles from tables", count,
             [&] { return update(by_tables, moved.points, triangles); });

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include <experiments/control_box.h>
 #include <snug/search/piece_cache.h>
 
 namespace snug::bench {
@@ -29,12 +30,12 @@ std::size_t Subject::hull_point_count() {
   return sum;
 }
 
-PatchBounds Subject::bounds(std::span<const PatchId> faces, std::optional<TableLayout> table) const {
-  return PatchBounds(*surface_, {faces.begin(), faces.end()}, table, 1);
+PatchBounds Subject::bounds(std::span<const PatchId> faces, BoundMethod method) const {
+  return PatchBounds(*surface_, {faces.begin(), faces.end()}, method, 1);
 }
 
 double Subject::enclose_all(std::vector<OffsetTriangle>& out) {
-  PatchBounds bounds(*surface_, std::nullopt, 1);
+  PatchBounds bounds(*surface_, BoundMethod::rows, 1);
   return update(bounds, surface_->mesh().points, out);
 }
 
@@ -42,8 +43,7 @@ double Subject::box(std::span<const PatchId> faces, std::vector<Box3>& out) {
   out.resize(faces.size());
   double sum = 0;
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    control_points(surface_->patch(faces[i]), scratch_);
-    out[i] = outer_box(scratch_);
+    out[i] = control_box(surface_->patch(faces[i]), scratch_);
     sum += out[i].longest_side();
   }
   return sum;

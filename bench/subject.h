@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,7 +28,7 @@ class Subject {
   [[nodiscard]] std::size_t hull_point_count();
   /// Bounds of some faces at once, their kinds' rows or tables made.
   [[nodiscard]] PatchBounds bounds(std::span<const PatchId> faces,
-                                   std::optional<TableLayout> table = {}) const;
+                                   BoundMethod method = BoundMethod::rows) const;
   /// Offset triangles of all faces, with all that it takes to make them.
   /// Returns:   the sum of the radii.
   double enclose_all(std::vector<OffsetTriangle>& out);

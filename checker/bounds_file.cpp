@@ -73,8 +73,6 @@ class Reader {
 
 StoredTable read_table(Reader& reader, Scheme scheme, std::uint32_t controls) {
   StoredTable table;
-  table.name = reader.whole(8);
-  require(scheme == Scheme::loop ? table.name <= 1 : table.name == 2, "a layout that has no name");
   reader.expect_reals(std::uint64_t{2} * controls);
   table.layout.resize(controls);
   for (auto& place : table.layout) reader.reals(place);
@@ -113,8 +111,8 @@ StoredKind read_kind(Reader& reader) {
   kind.weights.resize(count);
   for (double& weight : kind.weights) weight = reader.real();
   const std::uint64_t tables = reader.whole(8);
-  for (std::uint64_t i = 0; i < tables; ++i)
-    kind.tables.push_back(read_table(reader, kind.scheme, kind.controls));
+  require(tables <= 1, "more than one table of a kind");
+  if (tables == 1) kind.table = read_table(reader, kind.scheme, kind.controls);
   require(reader.place() - begin == size, "a record is not as long as it says");
   return kind;
 }
@@ -158,13 +156,12 @@ void write_kind(const StoredKind& kind, Writer& out) {
   out.real(kind.entry_error);
   out.real(kind.abs_sum);
   for (const double weight : kind.weights) out.real(weight);
-  out.whole(kind.tables.size(), 8);
-  for (const StoredTable& table : kind.tables) {
-    out.whole(table.name, 8);
-    out.table_of_reals(table.layout);
-    out.table_of_reals(table.triangle);
-    out.table_of_reals(table.lower);
-    out.table_of_reals(table.upper);
+  out.whole(kind.table ? 1 : 0, 8);
+  if (kind.table) {
+    out.table_of_reals(kind.table->layout);
+    out.table_of_reals(kind.table->triangle);
+    out.table_of_reals(kind.table->lower);
+    out.table_of_reals(kind.table->upper);
   }
   put(out.bytes(), begin, out.bytes().size() - begin);
 }
@@ -215,7 +212,7 @@ BoundsFile parse(std::span<const std::byte> bytes) {
   require(bytes.size() >= sizeof magic && std::memcmp(bytes.data(), magic, sizeof magic) == 0,
           "not a file of bounds: the first bytes are others");
   static_cast<void>(reader.whole(8));
-  require(reader.whole(4) == 2, "another version of the format");
+  require(reader.whole(4) == 3, "another version of the format");
   const std::uint64_t kinds = reader.whole(4);
   require(reader.whole(8) == bytes.size() && bytes.size() % 8 == 0, "the file is not as long as it says");
   const std::uint64_t hash = reader.whole(8);
@@ -233,7 +230,7 @@ BoundsFile parse(std::span<const std::byte> bytes) {
 std::vector<std::byte> to_bytes(const BoundsFile& file) {
   Writer out;
   for (const char c : magic) out.whole(static_cast<unsigned char>(c), 1);
-  out.whole(2, 4);
+  out.whole(3, 4);
   out.whole(file.kinds.size(), 4);
   out.whole(0, 8);
   out.whole(0, 8);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,7 +33,6 @@ inline constexpr Fan no_corner{0, 5, true, false};
 
 struct StoredTable {
   using Plane = std::array<double, 3>;
-  std::uint64_t name = 0;
   std::vector<std::array<double, 2>> layout;
   std::array<std::array<double, 2>, 3> triangle{};
   std::vector<Plane> lower, upper;  // of control points first_bounded(), ...
@@ -47,7 +47,7 @@ struct StoredKind {
   std::uint32_t rows = 0, controls = 0;
   double entry_error = 0, abs_sum = 0;
   std::vector<double> weights;  // [control][row]
-  std::vector<StoredTable> tables;
+  std::optional<StoredTable> table;
   [[nodiscard]] double& weight(std::size_t row, std::size_t control) { return weights[control * rows + row]; }
   [[nodiscard]] double weight(std::size_t row, std::size_t control) const {
     return weights[control * rows + row];
@@ -59,7 +59,7 @@ struct BoundsFile {
   std::vector<StoredKind> kinds;
 };
 
-/// Reads a file of the format in snug/basis/shipped.h, version 2. Any bytes may come.
+/// Reads a file of the format in snug/bounds/shipped.h, version 3. Any bytes may come.
 /// Errors:    Rejected if it is not one: magic, version, sizes, hash, flags that are neither 0 nor 1, padding
 ///            that is not zero, numbers that are not finite.
 [[nodiscard]] BoundsFile parse(std::span<const std::byte> bytes);

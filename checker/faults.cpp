@@ -71,7 +71,7 @@ Scheme another(Scheme scheme) { return schemes[(static_cast<std::size_t>(scheme)
 
 StoredTable& first_table(BoundsFile& file) {
   for (StoredKind& kind : file.kinds) {
-    if (!kind.tables.empty()) return kind.tables.front();
+    if (kind.table) return *kind.table;
   }
   throw Rejected("no table to spoil");
 }
@@ -131,7 +131,7 @@ std::vector<Fault> faults(const BoundsFile& file) {
     all.push_back(of_contents("entry_error too small", [](BoundsFile& f) { f.kinds[0].entry_error = 0; }));
   }
   const bool tables = std::any_of(file.kinds.begin(), file.kinds.end(),
-                                  [](const StoredKind& k) { return !k.tables.empty(); });
+                                  [](const StoredKind& k) { return k.table.has_value(); });
   if (!tables) return all;
   all.insert(all.end(), {
                             of_contents("an upper plane lowered by 1e-10",

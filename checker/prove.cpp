@@ -276,7 +276,7 @@ FileProof prove_file(std::span<const std::byte> bytes) {
       const StoredKind& kind = file.kinds[i];
       try {
         outcomes[i].rows = prove_rows(kind);
-        for (const StoredTable& table : kind.tables) prove_table(table, kind.scheme, outcomes[i].rows);
+        if (kind.table) prove_table(*kind.table, kind.scheme, outcomes[i].rows);
         outcomes[i].rows.hull.clear();
       } catch (const Rejected& rejected) {
         outcomes[i].failure =
@@ -295,7 +295,7 @@ FileProof prove_file(std::span<const std::byte> bytes) {
         throw Rejected("a key that comes twice: " + to_text(file.kinds[i].scheme, file.kinds[i].key));
     }
     ++proof.kinds;
-    proof.tables += file.kinds[i].tables.size();
+    proof.tables += file.kinds[i].table.has_value();
     proof.stored_rows += file.kinds[i].rows;
     proof.pieces += outcome.rows.pieces;
     proof.covered += outcome.rows.covered;

@@ -167,19 +167,19 @@ const char* name_of(ThicknessMeasure measure) {
   }
 }
 
-std::array<Thicknesses, 3> corner_thicknesses(const LimitSurface& surface, PatchId p, BoundSource source,
-                                              unsigned levels) {
+std::array<Thicknesses, 3> corner_thicknesses(const LimitSurface& surface, PatchId p, LayoutTables& tables,
+                                              BoundSource source, unsigned levels) {
   require_value(levels <= PiecePath::max_level, "thicknesses: there are too many levels; give at most 60");
   Patch patch = surface.patch(p);
   const std::optional<Vector3> normal = limit_frame(patch, {0, 0}).normal;
   const PowerOfTwo back = surface.scale().inverse();
-  BoundsCache& library = surface.library();
   std::array<Thicknesses, 3> result;
   HullPoints points;
   for (unsigned level = 0;; ++level) {
     const Vector3 across = normal.value_or(Vector3{0, 0, 1});
-    const PieceThickness piece = source ? by_table(library.table(*patch.kind, *source), patch, across)
-                                        : by_rows(library, patch, across, points);
+    const PieceThickness piece = source == BoundSource::rows
+                                     ? by_rows(tables.library(), patch, across, points)
+                                     : by_table(tables.get(*patch.kind, source), patch, across);
     for (std::size_t m = 0; m < (normal ? 3 : 2); ++m) {
       const bool ended = result[m].size() < level;
       if (!ended && piece.value[m] > 1000 * piece.rounding) result[m].push_back(back.apply(piece.value[m]));
@@ -208,12 +208,14 @@ double expected_factor(std::size_t n, BoundSource source, ThicknessMeasure measu
   if (scheme != Scheme::loop) {
     // Hull rows: below valence 4 the limit leaves the triangle of its corners sideways. The fair layout of
     // tables is that of the characteristic map at regular corners alone.
-    const bool vanishes = measure == ThicknessMeasure::normal || n == 4 || (!source && n > 4);
+    const bool vanishes =
+        measure == ThicknessMeasure::normal || n == 4 || (source == BoundSource::rows && n > 4);
     return vanishes ? eigenvalues.next : eigenvalues.subdominant;
   }
   // Hull rows: below valence 6 the limit leaves the triangle of its corners sideways.
   const bool affine_part_vanishes = n == 6 || measure == ThicknessMeasure::normal ||
-                                    source == TableLayout::characteristic || (!source && n > 6);
+                                    source == BoundSource::characteristic ||
+                                    (source == BoundSource::rows && n > 6);
   return affine_part_vanishes ? eigenvalues.next : eigenvalues.subdominant;
 }
 
@@ -228,7 +230,7 @@ double expected_factor(Scheme scheme, const NetPlace& place, BoundSource source,
     const bool slow = place.centre != NetCentre::dart && eigenvalues.second > 0.5 + 1e-6;
     return slow ? eigenvalues.second : eigenvalues.next;
   }
-  if (source) {
+  if (source != BoundSource::rows) {
     // Beside a boundary curve with few faces the layout has the slow direction, which is that of the curve.
     const bool few =
         (place.centre == NetCentre::boundary && n < 3) || (place.centre == NetCentre::crease && n < 6);
@@ -246,6 +248,7 @@ std::vector<RateRow> measure_rates(const RateOptions& options, const WorkMonitor
   require_value(is_primal(options.scheme) || options.centre == NetCentre::interior,
                 "rates: nets of dual schemes have an inner centre; give NetCentre::interior");
   const auto library = std::make_shared<BoundsCache>();
+  LayoutTables tables(*library);
   std::vector<RateRow> rows;
   const std::span<const BoundSource> sources = sources_of(options.scheme, options.centre);
   const std::vector<NetPlace> places = places_of(options.scheme, options.centre);
@@ -258,7 +261,7 @@ std::vector<RateRow> measure_rates(const RateOptions& options, const WorkMonitor
         monitor.checkpoint();
         const LimitSurface surface = net_surface(options.scheme, places[i], options.seed + net, library);
         for (std::size_t s = 0; s < sources.size(); ++s) {
-          all[net][s] = corner_thicknesses(surface, first_patch(surface), sources[s], options.levels);
+          all[net][s] = corner_thicknesses(surface, first_patch(surface), tables, sources[s], options.levels);
         }
       }
     });

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <experiments/bound_source.h>
 #include <experiments/corner_nets.h>
 #include <snug/base/progress.h>
 #include <snug/surface/limit_surface.h>
@@ -46,9 +47,11 @@ using Thicknesses = std::vector<double>;
 /// ThicknessMeasure. Without a normal at the corner there are no values of
 /// ThicknessMeasure::normal.
 ///
+/// Requires:  tables of surface.library().
 /// Errors:    InputError (value) unless surface.has_patch(p) and levels <= PiecePath::max_level.
 [[nodiscard]] std::array<Thicknesses, 3> corner_thicknesses(const LimitSurface& surface, PatchId p,
-                                                            BoundSource source, unsigned levels);
+                                                            LayoutTables& tables, BoundSource source,
+                                                            unsigned levels);
 
 /// The factor a level of the geometric sequence nearest to the second half of `values`: least squares of
 /// logarithms. Levels below values.size() / 2 are left out.

@@ -3,13 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 
-#include <snug/bounds/layout.h>
 #include <snug/mesh/control_mesh.h>
 #include <snug/scheme/scheme.h>
 
-/// Control nets around one extraordinary vertex, and what bounds them: the input of the experiments
+/// Control nets around one extraordinary vertex: the input of the experiments
 /// (convergence.h, tightness.h).
 namespace snug {
 
@@ -84,11 +82,6 @@ struct NetPlace {
 ///
 /// Errors:    InputError (value) unless n >= 3, on a boundary n >= 1; is_primal(scheme) for all but the interior.
 [[nodiscard]] ControlMesh bent_net(Scheme scheme, const NetPlace& place, std::uint64_t seed);
-
-/// What bounds a patch: hull rows (no layout), or tables of a layout.
-using BoundSource = std::optional<TableLayout>;
-inline constexpr std::array<BoundSource, 3> all_bound_sources{std::nullopt, TableLayout::ngon,
-                                                              TableLayout::characteristic};
 
 /// The valences of the experiments.
 inline constexpr std::array<std::size_t, 12> experiment_valences{3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 20, 50};

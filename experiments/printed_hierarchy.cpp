@@ -25,7 +25,7 @@ class LeafMaker {
       : surface_(surface), options_(options), back_(surface.scale().inverse()), out_(out) {}
 
   void visit(PatchId root, Patch patch) {
-    const Piece piece = make_piece(surface_.library(), root, std::move(patch), scratch_, options_.table);
+    const Piece piece = make_piece(surface_.library(), root, std::move(patch), scratch_, options_.method);
     OffsetTriangle leaf = unscaled(piece.offset, back_);
     const bool one = !options_.one_extraordinary || has_one_extraordinary(*piece.patch.kind);
     if (one && leaf.radius <= options_.tolerance / 2) {

@@ -2,9 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
+#include <snug/bounds/bound_method.h>
 #include <snug/bounds/offset_triangle.h>
 #include <snug/bvh/obb.h>
 #include <snug/geometry/motion.h>
@@ -13,8 +13,8 @@
 namespace snug {
 
 struct LeafOptions {
-  double tolerance = 0;              ///< > 0, mesh units: a leaf's radius is at most half of it
-  std::optional<TableLayout> table;  ///< bounds from these tables instead of hull rows
+  double tolerance = 0;  ///< > 0, mesh units: a leaf's radius is at most half of it
+  BoundMethod method = BoundMethod::rows;
   /// Split until a piece has at most one extraordinary corner, too: the dissertation has bounds for no others.
   bool one_extraordinary = false;
 };

@@ -1,12 +1,14 @@
 #include <experiments/room_tables.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <ctime>
 #include <functional>
 #include <memory>
 #include <random>
 #include <vector>
 
+#include <experiments/bound_counts.h>
 #include <experiments/printed_hierarchy.h>
 #include <experiments/quantile.h>
 #include <experiments/rooms.h>
@@ -22,9 +24,9 @@ constexpr double moeller_epsilon = 1e-6;
 // Surfaces this near are counted as hits.
 constexpr double contact = 1e-7;
 
-constexpr LeafOptions with_rows(double tolerance) { return {tolerance, {}, false}; }
-constexpr LeafOptions with_tables(double tolerance) { return {tolerance, TableLayout::ngon, false}; }
-constexpr LeafOptions as_printed(double tolerance) { return {tolerance, TableLayout::ngon, true}; }
+constexpr LeafOptions with_rows(double tolerance) { return {tolerance, BoundMethod::rows, false}; }
+constexpr LeafOptions with_tables(double tolerance) { return {tolerance, BoundMethod::table, false}; }
+constexpr LeafOptions as_printed(double tolerance) { return {tolerance, BoundMethod::table, true}; }
 
 double seconds_of(const std::function<void()>& work) {
   const std::clock_t start = std::clock();
@@ -32,9 +34,9 @@ double seconds_of(const std::function<void()>& work) {
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
-SurfaceBvhOptions model_options(std::optional<TableLayout> table, bool tight) {
+SurfaceBvhOptions model_options(BoundMethod method, bool tight) {
   SurfaceBvhOptions options;
-  options.table = table;
+  options.method = method;
   options.tight = tight;
   options.threads = 1;
   return options;
@@ -43,9 +45,9 @@ SurfaceBvhOptions model_options(std::optional<TableLayout> table, bool tight) {
 // Two models and the memory of their queries.
 class QueryPair {
  public:
-  QueryPair(const LimitSurface& a, const LimitSurface& b, std::optional<TableLayout> table)
-      : a_(a, model_options(table, true)),
-        b_(b, model_options(table, true)),
+  QueryPair(const LimitSurface& a, const LimitSurface& b, BoundMethod method)
+      : a_(a, model_options(method, true)),
+        b_(b, model_options(method, true)),
         scratch_a_(a_),
         scratch_b_(b_) {}
 
@@ -64,9 +66,12 @@ class QueryPair {
 }  // namespace
 
 LeafCounts count_leaves(const LimitSurface& surface, double tolerance, const WorkMonitor& monitor) {
+  LayoutTables tables(surface.library());
   return {leaves(surface, with_rows(tolerance), monitor).size(),
           leaves(surface, with_tables(tolerance), monitor).size(),
-          leaves(surface, as_printed(tolerance), monitor).size()};
+          leaves(surface, as_printed(tolerance), monitor).size(),
+          count_pieces(surface, tables, BoundWay::control_box, {.tolerance = tolerance, .budget = UINT64_MAX})
+              .count};
 }
 
 CreationTimes measure_creation(const ControlMesh& mesh, const SchemeOptions& rules, double tolerance,
@@ -102,7 +107,7 @@ RoomRow measure_room(const LimitSurface& a, const LimitSurface& b, const RoomOpt
                      const WorkMonitor& monitor) {
   require_value(options.placements >= 1, "room: give at least one placement");
   const double tolerance = options.tolerance;
-  QueryPair rows(a, b, {}), tables(a, b, TableLayout::ngon);
+  QueryPair rows(a, b, BoundMethod::rows), tables(a, b, BoundMethod::table);
   const PrintedHierarchy printed_a(a, as_printed(tolerance), monitor),
       printed_b(b, as_printed(tolerance), monitor);
   std::mt19937_64 random(options.seed);

@@ -20,6 +20,8 @@ struct LeafCounts {
   std::uint64_t rows = 0;     ///< hull rows
   std::uint64_t tables = 0;   ///< the dissertation's tables, for every kind of patch
   std::uint64_t printed = 0;  ///< its tables, and at most one extraordinary corner, as it has it
+  std::uint64_t boxes =
+      0;  ///< AABBs around control points, until half the longest side is half the tolerance
 };
 [[nodiscard]] LeafCounts count_leaves(const LimitSurface& surface, double tolerance,
                                       const WorkMonitor& monitor = {});

@@ -8,7 +8,7 @@
 #include <snug/base/error.h>
 #include <snug/base/parallel.h>
 #include <snug/patch/evaluate.h>
-#include <snug/search/piece_cache.h>
+#include <snug/surface/limit_surface.h>
 
 namespace snug {
 
@@ -56,6 +56,7 @@ std::vector<TightnessRow> measure_tightness(const TightnessOptions& options, con
     double ratio = 0, over_rows = 0;
   };
   const auto library = std::make_shared<BoundsCache>();
+  LayoutTables tables(*library);
   std::vector<TightnessRow> rows;
   const std::size_t jobs = all_net_shapes.size() * experiment_valences.size();
   for (std::size_t job = 0; job < jobs; ++job) {
@@ -72,9 +73,8 @@ std::vector<TightnessRow> measure_tightness(const TightnessOptions& options, con
         const LimitLattice lattice(patch, options.steps);
         double of_rows = 0;
         for (std::size_t s = 0; s < all_bound_sources.size(); ++s) {
-          const OffsetTriangle offset =
-              make_piece(*library, face, patch, scratch, all_bound_sources[s]).offset;
-          if (!all_bound_sources[s]) of_rows = offset.radius;
+          const OffsetTriangle offset = tables.offset(patch, all_bound_sources[s], scratch);
+          if (all_bound_sources[s] == BoundSource::rows) of_rows = offset.radius;
           if (offset.radius <= 1000 * offset.rounding) continue;
           all[i][s] = {offset.radius / lattice.least_radius(offset.base), offset.radius / of_rows};
         }

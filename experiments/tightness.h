@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <experiments/bound_source.h>
 #include <experiments/corner_nets.h>
 #include <snug/base/progress.h>
 #include <snug/geometry/triangle.h>

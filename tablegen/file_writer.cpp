@@ -57,15 +57,11 @@ void add_kind(const KindBounds& kind, Bytes& out) {
   out.add(kind.rows.entry_error());
   out.add(kind.rows.abs_sum());
   for (std::size_t c = 0; c < kind.rows.control_count(); ++c) out.add(kind.rows.column(c), kind.rows.count());
-  out.add(std::uint64_t{kind.tables.size()});
-  for (const NamedTable& named : kind.tables) {
-    constexpr std::uint64_t fair = 2;
-    out.add(snug::laid_by_rings(kind.key) ? static_cast<std::uint64_t>(named.layout) : fair);
-    out.add(named.table.layout.data(), named.table.layout.size());
-    out.add(named.table.triangle);
-    out.add(named.table.lower.data(), named.table.lower.size());
-    out.add(named.table.upper.data(), named.table.upper.size());
-  }
+  out.add(std::uint64_t{1});
+  out.add(kind.table.layout.data(), kind.table.layout.size());
+  out.add(kind.table.triangle);
+  out.add(kind.table.lower.data(), kind.table.lower.size());
+  out.add(kind.table.upper.data(), kind.table.upper.size());
   out.put(begin, out.size() - begin);
 }
 
@@ -76,7 +72,7 @@ std::vector<std::byte> file_of(const std::vector<KindBounds>& kinds, std::string
   constexpr std::size_t size_place = 16, hash_place = 24, hashed = 32;
   Bytes out;
   out.add(magic, 8);
-  out.add(std::uint32_t{2});
+  out.add(std::uint32_t{3});
   out.add(static_cast<std::uint32_t>(kinds.size()));
   out.add(std::uint64_t{0});
   out.add(std::uint64_t{0});

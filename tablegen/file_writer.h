@@ -9,19 +9,14 @@
 
 namespace tablegen {
 
-struct NamedTable {
-  snug::TableLayout layout;  ///< all the same where the kind is not laid by rings
-  snug::BoundTable table;
-};
-
 /// What the file holds of one kind.
 struct KindBounds {
   snug::KindKey key;
   snug::BoundRows rows;
-  std::vector<NamedTable> tables;
+  snug::BoundTable table;
 };
 
-/// The bytes of a file as snug/basis/shipped.h describes it.
+/// The bytes of a file as snug/bounds/shipped.h describes it.
 [[nodiscard]] std::vector<std::byte> file_of(const std::vector<KindBounds>& kinds, std::string_view text);
 
 }  // namespace tablegen

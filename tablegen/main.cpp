@@ -12,19 +12,16 @@ namespace {
 
 constexpr const char* provenance =
     "made by tablegen of snug, no arguments; kinds: tablegen/kinds.h; arithmetic: IEEE doubles rounded to "
-    "nearest, error terms by snug/base/rounding.h; proved by checker";
+    "nearest, error terms by snug/geometry/rounding.h; proved by checker";
 
 int run(const char* name) {
   snug::KindCache library;
   std::vector<tablegen::KindBounds> kinds;
   for (const snug::KindKey& key : tablegen::shipped_kinds()) {
     const snug::Kind& kind = library.find(key);
-    tablegen::KindBounds bounds{key, snug::make_bound_rows(kind), {}};
-    for (const snug::TableLayout layout : {snug::TableLayout::ngon, snug::TableLayout::characteristic}) {
-      if (layout != snug::TableLayout::ngon && !snug::laid_by_rings(key)) continue;  // the same one again
-      bounds.tables.push_back({layout, snug::make_bound_table(kind, bounds.rows, layout)});
-    }
-    kinds.push_back(std::move(bounds));
+    snug::BoundRows rows = snug::make_bound_rows(kind);
+    snug::BoundTable table = snug::make_bound_table(kind, rows);
+    kinds.push_back({key, std::move(rows), std::move(table)});
   }
   const std::vector<std::byte> bytes = tablegen::file_of(kinds, provenance);
   std::ofstream file(name, std::ios::binary);

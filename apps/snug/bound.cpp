@@ -17,19 +17,15 @@ constexpr std::size_t most_facets = 4'000'000;
 
 struct Options : CommonOptions {
   std::string mesh;
-  unsigned degree = 3;
+  Degree degree;
   std::string tolerance;
   std::string polyhedra;
-  std::string creases = "bound";
   unsigned level = 0;
 };
 
 void write_box_corners(JsonWriter& json, const char* key, const PieceEnclosure& piece, Point3 Box3::*end) {
   json.key(key).begin_array();
-  if (piece.box) json.value((*piece.box).*end);
-  if (piece.interval) {
-    for (const Box3& box : piece.interval->corner) json.value(box.*end);
-  }
+  for (const Box3& box : piece.interval.corner) json.value(box.*end);
   json.end_array();
 }
 
@@ -49,13 +45,8 @@ void write_piece(JsonWriter& json, const LimitSurface& surface, const PieceEnclo
   json.field("level", piece.path.level() + (surface.after_first_split(piece.patch) ? 1 : 0));
   write_box_corners(json, "lower", piece, &Box3::lower);
   write_box_corners(json, "upper", piece, &Box3::upper);
-  if (piece.offset) {
-    write_triangle(json, "base", piece.offset->base);
-    json.field("radius", piece.offset->radius);
-  } else {
-    json.key("base").null().key("radius").null();
-  }
-  json.field("growth", 0);
+  write_triangle(json, "base", piece.offset.base);
+  json.field("radius", piece.offset.radius);
   write_triangle(json, "corners", piece.corners);
   json.end_object();
 }
@@ -66,12 +57,10 @@ class Polyhedra {
   explicit Polyhedra(bool triangles) : triangles_(triangles) {}
 
   void add(const PieceEnclosure& piece) {
-    const IntervalTriangle boxes =
-        piece.interval ? *piece.interval : IntervalTriangle{{*piece.box, *piece.box, *piece.box}};
     Box3 all;
-    for (const Box3& box : boxes.corner) all.add(box);
+    for (const Box3& box : piece.interval.corner) all.add(box);
     require_representable(all.longest_side());
-    const Polyhedron solid = hull_of_boxes(boxes);
+    const Polyhedron solid = hull_of_boxes(piece.interval);
     if (solid.facets.empty()) return;  // a segment or a point
     ++count_;
     const std::size_t first = mesh_.vertex_count();
@@ -118,19 +107,17 @@ ExitStatus run(const Options& options) {
   if (!options.polyhedra.empty()) require_writable(options.polyhedra);
   BoundOptions how;
   how.method = bound_method(options);
-  how.layout = table_layout(options);
-  how.passing = options.creases == "split" ? PassingMethod::split : PassingMethod::bound;
   how.level = options.level;
   how.budget = options.budget;
   how.threads = options.threads;
   std::optional<Length> tolerance;
   if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--tolerance");
   ControlMesh mesh = load_mesh(options.mesh, options);
-  if (is_curve(mesh, options.scheme)) {
+  if (asks_for_curves("bound", mesh, options.mesh, options, options.degree)) {
     if (!options.polyhedra.empty()) {
       throw UsageError("bound: --polyhedra is for surfaces; " + options.mesh + " is answered as curves");
     }
-    return bound_curve(std::move(mesh), options.mesh, options, options.degree, how, tolerance);
+    return bound_curve(std::move(mesh), options.mesh, options, curve_degree(options.degree), how, tolerance);
   }
   const LimitSurface surface =
       make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
@@ -188,12 +175,9 @@ Command bound_command() {
       .excludes("--tolerance");
   list.add(Group::own, "--polyhedra FILE", &options->polyhedra,
            "The hulls of the enclosures' boxes as one mesh, for pictures: .obj, .off, .ply, .stl or .glb");
-  list.add(Group::research, "--creases HOW", &options->creases,
-           "Where sharpness decays, or faces that are no quads split: bound the patches as they are, or "
-           "split them first until it has passed")
-      .one_of({"bound", "split"});
   add_degree_option(list, options->degree);
   add_common_options(list, *options);
+  add_bound_options(list, *options);
   return {"bound",
           Topic::one_surface,
           "Enclosures that contain the limit surface, or limit curves",

@@ -15,18 +15,11 @@ void write_points(JsonWriter& json, const char* key, const Segment& points) {
 void write_piece(JsonWriter& json, const CurveEnclosure& piece) {
   json.begin_object().field("edge", piece.edge.index()).field("piece", piece.path.text());
   json.field("level", piece.path.level());
-  if (piece.offset) {
-    const auto& end = piece.interval->end;
-    write_points(json, "lower", {end[0].lower, end[1].lower});
-    write_points(json, "upper", {end[0].upper, end[1].upper});
-    write_points(json, "base", piece.offset->base);
-    json.field("radius", piece.offset->radius);
-  } else {
-    json.key("lower").begin_array().value(piece.box->lower).end_array();
-    json.key("upper").begin_array().value(piece.box->upper).end_array();
-    json.key("base").null().key("radius").null();
-  }
-  json.field("growth", 0);
+  const auto& end = piece.interval.end;
+  write_points(json, "lower", {end[0].lower, end[1].lower});
+  write_points(json, "upper", {end[0].upper, end[1].upper});
+  write_points(json, "base", piece.offset.base);
+  json.field("radius", piece.offset.radius);
   write_points(json, "corners", piece.corners);
   json.end_object();
 }
@@ -34,7 +27,7 @@ void write_piece(JsonWriter& json, const CurveEnclosure& piece) {
 }  // namespace
 
 ExitStatus bound_curve(ControlMesh mesh, const std::string& path, const CommonOptions& options,
-                       unsigned degree, BoundOptions how, const std::optional<Length>& tolerance) {
+                       CurveDegree degree, BoundOptions how, const std::optional<Length>& tolerance) {
   if (how.method == BoundMethod::table) {
     throw UsageError("bound: --bounds table is for surfaces; " + path + " is answered as curves");
   }
@@ -42,7 +35,7 @@ ExitStatus bound_curve(ControlMesh mesh, const std::string& path, const CommonOp
   std::size_t edges = 0;
   Report report("bound", options);
   naming(path, [&] {
-    const CurveSet curves(std::move(mesh), curve_degree(degree));
+    const CurveSet curves(std::move(mesh), degree);
     edges = curves.edge_count();
     if (tolerance) how.tolerance = tolerance->in_mesh_units(curves.size());
     curve_heads(report, path, degree);
@@ -59,9 +52,9 @@ ExitStatus bound_curve(ControlMesh mesh, const std::string& path, const CommonOp
     report.write().end_array().field("count", summary.count).field("max_radius", summary.max_radius);
     report.write().field("reached", summary.reached).field("splits", summary.splits);
   }
-  report.text(
-      fmt::format("{}: {} enclosures of {} edges contain the limit curves of degree {}, largest radius {}",
-                  path, summary.count, edges, degree, text_at_most(summary.max_radius, true)));
+  report.text(fmt::format(
+      "{}: {} enclosures of {} edges contain the limit curves of degree {}, largest radius {}", path,
+      summary.count, edges, static_cast<int>(degree), text_at_most(summary.max_radius, true)));
   if (!summary.reached) {
     const bool spent = summary.splits >= options.budget;
     report.text(fmt::format("{} was not reached everywhere: {}; what is printed is still proved",

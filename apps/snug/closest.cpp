@@ -101,7 +101,7 @@ void write_result(Report& report, const LimitSurface& surface, const Result& res
 ExitStatus run(const Options& options) {
   const Length precision = parse_length(options.precision, "--precision", true);
   const std::vector<Point3> points = read_points(options.points);
-  const SurfaceBvhOptions how = model_options(options, "closest");
+  const SurfaceBvhOptions how = model_options(options);
   const LimitSurface surface =
       load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
   ClosestOptions wanted;
@@ -153,6 +153,7 @@ Command closest_command() {
   list.add(Group::own, "--signed", &options->with_sign,
            "Signed distances of a closed surface: negative inside, a sign that is proved");
   add_common_options(list, *options);
+  add_bound_options(list, *options);
   return {"closest",
           Topic::one_surface,
           "The limit points closest to given points",

@@ -104,7 +104,7 @@ ExitStatus run_poses(PairArguments& pair, Report& report, const CollideOptions& 
 ExitStatus run(const Options& options) {
   const Length tolerance = parse_length(options.tolerance, "--tolerance", true);
   const Length margin = parse_length(options.margin, "--margin", true);
-  PairArguments pair(options, "collide");
+  PairArguments pair(options);
   CollideOptions wanted;
   wanted.tolerance = tolerance.in_mesh_units(pair.size());
   wanted.margin = margin.in_mesh_units(pair.size());

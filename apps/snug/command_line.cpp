@@ -4,6 +4,8 @@
 #include <deque>
 #include <map>
 
+#include <fmt/core.h>
+
 #include "length.h"
 #include "nearest.h"
 
@@ -28,7 +30,9 @@ const Option* find_option(const Command& command, const std::string& name) {
   return nullptr;
 }
 
-std::string see_help(const Command& command) { return std::string("; see snug ") + command.name + " --help"; }
+std::string see_help(const Program& program, const Command& command) {
+  return fmt::format("; see {} {} --help", program.name, command.name);
+}
 
 [[noreturn]] void refuse_option(const Command& command, const std::string& name) {
   std::vector<std::string> names{"--help"};
@@ -87,7 +91,7 @@ Given sort_words(const Command& command, const std::vector<std::string>& words) 
   return given;
 }
 
-void fill_options(const Command& command, const std::vector<std::string>& words) {
+void fill_options(const Program& program, const Command& command, const std::vector<std::string>& words) {
   try {
     if (std::find(words.begin(), words.end(), "%") != words.end()) {
       throw UsageError("'%' stands alone; join it to its number (1%), or put quotes around both (\"1 %\")");
@@ -95,29 +99,34 @@ void fill_options(const Command& command, const std::vector<std::string>& words)
     command.options.assign(sort_words(command, words));
   } catch (const UsageError& error) {
     const std::string message = command.name + (": " + std::string(error.what()));
-    throw UsageError(message.ends_with('?') ? message : message + see_help(command));
+    throw UsageError(message.ends_with('?') ? message : message + see_help(program, command));
   }
 }
 
 }  // namespace
 
-Invocation read_command_line(const std::vector<Command>& commands, const std::vector<std::string>& words,
+Invocation read_command_line(const Program& program, const std::vector<std::string>& words,
                              const std::string& version) {
-  if (words.empty()) return {nullptr, help_of(commands), ExitStatus::usage};
+  const std::vector<Command>& commands = program.commands;
+  if (words.empty()) return {nullptr, help_of(program), ExitStatus::usage};
   const std::string& first = words.front();
   const auto command = std::find_if(commands.begin(), commands.end(),
                                     [&](const Command& candidate) { return first == candidate.name; });
   const bool known = command != commands.end();
   if (!known && !is_option(first)) {
     const std::string guess = did_you_mean(first, names_of(commands));
-    throw UsageError("unknown command '" + first + "'" + (guess.empty() ? "; see snug --help" : guess));
+    throw UsageError("unknown command '" + first + "'" +
+                     (guess.empty() ? fmt::format("; see {} --help", program.name) : guess));
   }
   for (const std::string& word : words) {
-    if (word == "--help" || word == "-h") return {nullptr, known ? help_of(*command) : help_of(commands)};
+    if (word == "--help" || word == "-h")
+      return {nullptr, known ? help_of(program, *command) : help_of(program)};
     if (word == "--version") return {nullptr, version + "\n"};
   }
-  if (!known) throw UsageError("'" + first + "' comes before the command; write snug COMMAND " + first);
-  fill_options(*command, {words.begin() + 1, words.end()});
+  if (!known)
+    throw UsageError(
+        fmt::format("'{}' comes before the command; write {} COMMAND {}", first, program.name, first));
+  fill_options(program, *command, {words.begin() + 1, words.end()});
   return {&*command};
 }
 

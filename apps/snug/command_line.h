@@ -9,8 +9,8 @@
 
 namespace snug::command {
 
-/// What commands are about; `snug --help` lists them by it, in this order.
-enum class Topic { two_surfaces, one_surface, files, research };
+/// What commands are about; --help of the program lists them by it, in this order.
+enum class Topic { two_surfaces, one_surface, files, tables, comparisons };
 
 /// A command: what --help says of it, its options, and what runs when it is chosen.
 struct Command {
@@ -20,6 +20,15 @@ struct Command {
   std::vector<std::string> examples;
   OptionList options;
   std::function<ExitStatus()> run;
+};
+
+/// A program of commands, and what its --help says.
+struct Program {
+  const char* name;
+  const char* summary;   ///< a sentence
+  const char* question;  ///< that the example answers
+  const char* example;
+  std::vector<Command> commands;
 };
 
 /// What a command line asks for.
@@ -32,12 +41,11 @@ struct Invocation {
 /// Reads the words after the program's name and fills the options of the command that they name.
 ///
 /// Errors:    UsageError, one line that names the word and the next step.
-[[nodiscard]] Invocation read_command_line(const std::vector<Command>& commands,
-                                           const std::vector<std::string>& words, const std::string& version);
+[[nodiscard]] Invocation read_command_line(const Program& program, const std::vector<std::string>& words,
+                                           const std::string& version);
 
-/// What `snug --help` prints.
-[[nodiscard]] std::string help_of(const std::vector<Command>& commands);
-/// What `snug COMMAND --help` prints.
-[[nodiscard]] std::string help_of(const Command& command);
+/// What --help prints, of the program and of one of its commands.
+[[nodiscard]] std::string help_of(const Program& program);
+[[nodiscard]] std::string help_of(const Program& program, const Command& command);
 
 }  // namespace snug::command

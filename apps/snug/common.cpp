@@ -59,21 +59,26 @@ void add_common_options(OptionList& list, CommonOptions& options) {
       Group::mesh, "--sharp ANGLE", &options.sharp,
       "Parts from CAD: edges whose faces differ by more degrees are infinitely sharp, and flat faces stay as "
       "they are; auto is 30");
+  add_output_options(list, options);
+}
+
+void add_output_options(OptionList& list, CommonOptions& options) {
   list.add(Group::output, "--json", &options.json, "One JSON document on standard output");
   list.add(Group::output, "-o FILE", &options.output, "Output file; the format follows the ending");
   list.add(Group::output, "--quiet", &options.quiet, "No progress and no notes on standard error");
   list.add(Group::effort, "--threads N", &options.threads,
            "Threads, up to 1024; 0: all cores. Results do not depend on it")
       .between(0, 1024);
-  list.add(Group::effort, "--budget N", &options.budget,
-           "Most patches split before the answer is what was reached")
-      .between(0, std::uint64_t{1} << 40);
-  list.add(Group::research, "--bounds WHAT", &options.bounds,
-           "What encloses: hull rows, the dissertation's tables, or the baseline box of the control points")
-      .one_of({"rows", "table", "control-box"});
-  list.add(Group::research, "--layout WHERE", &options.layout,
-           "Where the tables lay control points: on a regular n-gon, or as the characteristic map")
-      .one_of({"ngon", "characteristic"});
+}
+
+std::array<Option*, 2> add_bound_options(OptionList& list, CommonOptions& options) {
+  Option& budget = list.add(Group::effort, "--budget N", &options.budget,
+                            "Most patches split before the answer is what was reached")
+                       .between(0, std::uint64_t{1} << 40);
+  Option& bounds = list.add(Group::research, "--bounds WHAT", &options.bounds,
+                            "What encloses: hull rows, or the dissertation's tables")
+                       .one_of({"rows", "table"});
+  return {&budget, &bounds};
 }
 
 Scheme choose_scheme(const std::string& name, const ControlMesh& mesh) {
@@ -90,6 +95,10 @@ SchemeOptions choose_rules(const CommonOptions& options, const std::string& sche
   if (!options.sharp.empty() && !is_primal(rules.scheme)) {
     throw UsageError(std::string("--sharp: ") + name_of(rules.scheme) +
                      " has no creases; give --scheme loop or catmark");
+  }
+  if (!options.boundary.empty() && !is_primal(rules.scheme)) {
+    throw UsageError(std::string("--boundary: ") + name_of(rules.scheme) +
+                     " has no patches at boundaries under any rule; leave it out");
   }
   if (options.boundary == "none") {
     rules.boundary = BoundaryRule::none;
@@ -143,12 +152,7 @@ LimitSurface make_surface(ControlMesh mesh, const std::string& path, const Commo
 }
 
 BoundMethod bound_method(const CommonOptions& options) {
-  if (options.bounds == "table") return BoundMethod::table;
-  return options.bounds == "control-box" ? BoundMethod::control_box : BoundMethod::rows;
-}
-
-TableLayout table_layout(const CommonOptions& options) {
-  return options.layout == "characteristic" ? TableLayout::characteristic : TableLayout::ngon;
+  return options.bounds == "table" ? BoundMethod::table : BoundMethod::rows;
 }
 
 struct Report::Target {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -25,12 +26,11 @@ class AtomicFile;
 
 namespace snug::command {
 
-/// Options that every command takes.
+/// Options that several commands take.
 struct CommonOptions {
   std::string scheme = "auto";
   std::string boundary;  ///< empty: the file's tag, else edge-and-corner
   std::string bounds = "rows";
-  std::string layout = "ngon";  ///< of --bounds table
   bool json = false;
   std::string output;  ///< -o; empty for none
   int threads = 0;
@@ -40,8 +40,12 @@ struct CommonOptions {
   bool quiet = false;
 };
 
-/// Adds them to a command's.
+/// Those of every command: --scheme, --boundary, --weld, --sharp, and those below.
 void add_common_options(OptionList& list, CommonOptions& options);
+/// Those of commands without a mesh: --json, -o, --quiet, --threads.
+void add_output_options(OptionList& list, CommonOptions& options);
+/// Those of commands that bound patches: --budget, --bounds. Returns both.
+std::array<Option*, 2> add_bound_options(OptionList& list, CommonOptions& options);
 /// Adds an option that names a scheme of surfaces, under the names of other programs too.
 Option& add_scheme_option(OptionList& list, const std::string& name, std::string& scheme,
                           const std::string& help);
@@ -49,7 +53,7 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 /// The scheme that --scheme (or an override of it) names for this mesh.
 [[nodiscard]] Scheme choose_scheme(const std::string& name, const ControlMesh& mesh);
 /// The rules for a mesh: the option if given, else the file's tag, else edge-and-corner.
-/// Errors:    UsageError for --sharp with a dual scheme.
+/// Errors:    UsageError for --sharp and --boundary with a dual scheme.
 [[nodiscard]] SchemeOptions choose_rules(const CommonOptions& options, const std::string& scheme,
                                          const ControlMesh& mesh);
 
@@ -71,9 +75,8 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 /// Calls `work` and puts the name of the file in front of refusals it throws.
 void naming(const std::string& path, const std::function<void()>& work);
 
-/// What --bounds and --layout name.
+/// What --bounds names.
 [[nodiscard]] BoundMethod bound_method(const CommonOptions& options);
-[[nodiscard]] TableLayout table_layout(const CommonOptions& options);
 
 /// Before any work: can what -o names be written, and is its ending one that the command writes?
 /// Errors:    UsageError for an ending; InputError (unreadable) for what cannot be written. Nothing is left of the trial.
@@ -122,6 +125,5 @@ class Report {
 [[nodiscard]] Command distance_command();
 [[nodiscard]] Command closest_command();
 [[nodiscard]] Command render_command();
-[[nodiscard]] Command experiment_command();
 
 }  // namespace snug::command

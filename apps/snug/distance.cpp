@@ -54,7 +54,7 @@ ExitStatus run_poses(PairArguments& pair, Report& report, const DistanceOptions&
 
 ExitStatus run(const Options& options) {
   const Length precision = parse_length(options.precision, "--precision", true);
-  PairArguments pair(options, "distance");
+  PairArguments pair(options);
   DistanceOptions wanted;
   wanted.absolute = precision.in_mesh_units(pair.size());
   wanted.relative = options.relative;

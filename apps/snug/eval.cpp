@@ -14,7 +14,7 @@ namespace {
 
 struct Options : CommonOptions {
   std::string mesh;
-  unsigned degree = 3;
+  Degree degree;
   unsigned samples = 4;
   std::string at;
 };
@@ -115,8 +115,9 @@ void for_each_place(const LimitSurface& surface, std::uint32_t owner, unsigned s
 
 ExitStatus run(const Options& options) {
   ControlMesh mesh = load_mesh(options.mesh, options);
-  if (is_curve(mesh, options.scheme))
-    return eval_curve(std::move(mesh), options.mesh, options, {options.degree, options.samples, options.at});
+  if (asks_for_curves("eval", mesh, options.mesh, options, options.degree))
+    return eval_curve(std::move(mesh), options.mesh, options,
+                      {curve_degree(options.degree), options.samples, options.at});
   const LimitSurface surface =
       make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
   std::vector<SurfaceParameter> requests;

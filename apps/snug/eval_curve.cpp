@@ -69,7 +69,7 @@ void write_point(Report& report, const Request& request, const CurveSetPoint& po
 ExitStatus eval_curve(ControlMesh mesh, const std::string& path, const CommonOptions& options,
                       const CurveSamples& which) {
   std::optional<CurveSet> curves;
-  naming(path, [&] { curves.emplace(std::move(mesh), curve_degree(which.degree)); });
+  naming(path, [&] { curves.emplace(std::move(mesh), which.degree); });
   std::vector<Request> requests;
   if (!which.at.empty()) requests = read_requests(which.at, *curves);
   Report report("eval", options);

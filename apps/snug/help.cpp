@@ -56,7 +56,8 @@ constexpr std::array topics{
     std::pair{Topic::two_surfaces, "Two surfaces"},
     std::pair{Topic::one_surface, "One surface, or curves"},
     std::pair{Topic::files, "Meshes and pictures"},
-    std::pair{Topic::research, "For research"},
+    std::pair{Topic::tables, "Tables and figures of the dissertation"},
+    std::pair{Topic::comparisons, "What lost a comparison"},
 };
 
 constexpr std::array groups{
@@ -71,24 +72,24 @@ constexpr const char* statuses =
 
 }  // namespace
 
-std::string help_of(const std::vector<Command>& commands) {
+std::string help_of(const Program& program) {
   std::string text =
-      "Tight, proved bounds for the limit surfaces of subdivision meshes, and answers about them.\n\n"
-      "Usage: snug COMMAND [OPTIONS] MESH...\n";
+      fmt::format("{}\n\nUsage: {} COMMAND [OPTIONS] MESH...\n", program.summary, program.name);
   for (const auto& [topic, heading] : topics) {
-    text += fmt::format("\n{}:\n", heading);
-    for (const Command& command : commands) {
-      if (command.topic == topic) text += entry(command.name, command.summary, 10);
+    std::string list;
+    for (const Command& command : program.commands) {
+      if (command.topic == topic) list += entry(command.name, command.summary, 10);
     }
+    if (!list.empty()) text += fmt::format("\n{}:\n{}", heading, list);
   }
-  text += "\nExample: do two parts collide, one of them moved by 3 along x?\n";
-  text += "  snug collide pawn.obj bust.obj --place-b \"1 0 0 3  0 1 0 0  0 0 1 0\"\n\n";
-  text += "snug COMMAND --help lists the options of a command; snug --version names the version.\n";
+  text += fmt::format("\nExample: {}\n  {}\n\n", program.question, program.example);
+  text += fmt::format("{0} COMMAND --help lists the options of a command; {0} --version names the version.\n",
+                      program.name);
   return text + wrapped(statuses, 0);
 }
 
-std::string help_of(const Command& command) {
-  std::string usage = std::string("Usage: snug ") + command.name;
+std::string help_of(const Program& program, const Command& command) {
+  std::string usage = fmt::format("Usage: {} {}", program.name, command.name);
   std::size_t width = 0;
   for (const Option& option : command.options.all()) {
     if (option.is_argument()) usage += " " + (option.must ? option.name : "[" + option.name + "]");

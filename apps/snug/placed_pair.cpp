@@ -4,13 +4,9 @@
 
 namespace snug::command {
 
-SurfaceBvhOptions model_options(const CommonOptions& options, const std::string& command) {
+SurfaceBvhOptions model_options(const CommonOptions& options) {
   SurfaceBvhOptions result;
-  const BoundMethod method = bound_method(options);
-  if (method == BoundMethod::control_box) {
-    throw UsageError(command + ": --bounds control-box is not available; give rows or table");
-  }
-  if (method == BoundMethod::table) result.table = table_layout(options);
+  result.method = bound_method(options);
   result.threads = options.threads;
   return result;
 }
@@ -24,6 +20,7 @@ void add_pair_options(OptionList& list, PairOptions& options) {
   list.add(Group::placement, "--poses FILE", &options.poses,
            "Answers each line, a pose of B or JSON with a, b or both; - for standard input");
   add_common_options(list, options);
+  add_bound_options(list, options);
   add_scheme_option(list, "--scheme-a", options.scheme_a, "Scheme of A, before --scheme");
   add_scheme_option(list, "--scheme-b", options.scheme_b, "Scheme of B, before --scheme");
 }
@@ -36,8 +33,15 @@ void write_poses(JsonWriter& json, const PosePair& poses) {
   }
 }
 
-PairArguments::PairArguments(const PairOptions& options, const std::string& command)
-    : options_(options), model_options_(model_options(options, command)) {
+PairArguments::PairArguments(const PairOptions& options)
+    : options_(options), model_options_(model_options(options)) {
+  const bool unplaced = options.pose_a.place.empty() && options.pose_b.place.empty() && options.poses.empty();
+  if (options.nearest_rigid && unplaced) {
+    throw UsageError("--nearest-rigid needs --place-a, --place-b or --poses");
+  }
+  if (options.scheme != "auto" && !options.scheme_a.empty() && !options.scheme_b.empty()) {
+    throw UsageError("--scheme has nothing to say beside --scheme-a and --scheme-b");
+  }
   const Mending mending{options.nearest_rigid, notes_for(options)};
   pose_a_ = pose_of(options.pose_a, "-a", mending);
   pose_b_ = pose_of(options.pose_b, "-b", mending);

@@ -11,8 +11,8 @@
 
 namespace snug::command {
 
-/// Errors:    UsageError where `command` has no use for --bounds.
-[[nodiscard]] SurfaceBvhOptions model_options(const CommonOptions& options, const std::string& command);
+/// How a surface is made ready for queries.
+[[nodiscard]] SurfaceBvhOptions model_options(const CommonOptions& options);
 
 struct PairOptions : CommonOptions {
   std::string mesh_a, mesh_b;
@@ -30,7 +30,7 @@ void write_poses(JsonWriter& json, const PosePair& poses);
 class PairArguments {
  public:
   /// Errors:    UsageError; InputError that names the mesh or the pose.
-  PairArguments(const PairOptions& options, const std::string& command);
+  explicit PairArguments(const PairOptions& options);
 
   /// Makes the models.
   void prepare(const WorkMonitor& monitor);

@@ -96,8 +96,8 @@ void add_pose_options(OptionList& list, const std::string& suffix, const std::st
       .excludes(place);
 }
 
-void add_nearest_rigid_option(OptionList& list, bool& nearest_rigid) {
-  list.add(
+Option& add_nearest_rigid_option(OptionList& list, bool& nearest_rigid) {
+  return list.add(
       Group::placement, "--nearest-rigid", &nearest_rigid,
       "Takes the nearest rigid motion of a pose that is not rigid within 1e-9, and says how far off it was");
 }

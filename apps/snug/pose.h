@@ -19,7 +19,7 @@ struct PoseOptions {
 /// Adds --place, --rotate and --move with a suffix, such as "-b", for the mesh that --help calls `mesh`.
 void add_pose_options(OptionList& list, const std::string& suffix, const std::string& mesh,
                       PoseOptions& options);
-void add_nearest_rigid_option(OptionList& list, bool& nearest_rigid);
+Option& add_nearest_rigid_option(OptionList& list, bool& nearest_rigid);
 
 /// What is done about matrices that are no motions.
 struct Mending {

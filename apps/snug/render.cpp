@@ -152,16 +152,12 @@ Enclosures enclose(const Options& options, const std::optional<Length>& toleranc
   if (!options.enclosures) return result;
   BoundOptions how;
   how.method = bound_method(options);
-  how.layout = table_layout(options);
   how.level = options.level;
   how.budget = drawable_budget(options, surfaces);
   how.threads = options.threads;
   for (std::size_t part = 0; part < surfaces.size(); ++part) {
     std::vector<IntervalTriangle>& pieces = result.of_part.emplace_back();
-    const auto keep = [&](const PieceEnclosure& piece) {
-      pieces.push_back(piece.interval ? *piece.interval
-                                      : IntervalTriangle{{*piece.box, *piece.box, *piece.box}});
-    };
+    const auto keep = [&](const PieceEnclosure& piece) { pieces.push_back(piece.interval); };
     naming(options.meshes[part], [&] {
       if (tolerance) how.tolerance = tolerance->in_mesh_units(surfaces[part].size());
       ProgressBar bar("bounding " + options.meshes[part], options.quiet);
@@ -361,8 +357,9 @@ Command render_command() {
   list.add(Group::own, "--up \"X Y Z\"", &options->up, "What is up on the picture; default: y");
   list.add(Group::placement, "--place \"NUMBERS\"", &options->poses,
            "Pose of a mesh: a row-major 3x4 matrix of a rigid motion, or 4x4; once a mesh, in their order");
-  add_nearest_rigid_option(list, options->nearest_rigid);
+  add_nearest_rigid_option(list, options->nearest_rigid).needs("--place");
   add_common_options(list, *options);
+  for (Option* option : add_bound_options(list, *options)) option->needs("--enclosures");
   return {"render",
           Topic::files,
           "A shaded picture of limit surfaces",

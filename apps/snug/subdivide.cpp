@@ -14,33 +14,25 @@ namespace {
 
 struct Options : CommonOptions {
   std::string mesh;
-  unsigned degree = 3;
+  Degree degree;
   unsigned level = 1;
   bool limit = false;
-  std::string vertex_rule = "standard";
 };
-
-CatmarkVertexRule older_rule(Scheme scheme, bool limit) {
-  if (scheme != Scheme::catmark || limit) {
-    throw UsageError("subdivide: --vertex-rule older is for the control meshes of --scheme catmark");
-  }
-  return CatmarkVertexRule::older;
-}
 
 ExitStatus run(const Options& options) {
   if (options.output.empty()) throw UsageError("subdivide: -o FILE is missing: where the refined mesh goes");
   if (options.json && options.output == "-")
     throw UsageError("subdivide: --json and -o - both want standard output");
   ControlMesh mesh = load_mesh(options.mesh, options);
-  if (is_curve(mesh, options.scheme)) {
-    return subdivide_curve(mesh, options.mesh, options, {options.degree, options.level, options.limit});
+  if (asks_for_curves("subdivide", mesh, options.mesh, options, options.degree)) {
+    return subdivide_curve(mesh, options.mesh, options,
+                           {curve_degree(options.degree), options.level, options.limit});
   }
   refuse_curves(mesh, options.scheme, options.mesh);
   ControlMesh result;
   Scheme scheme{};
   naming(options.mesh, [&] {
-    SchemeOptions rules = choose_rules(options, options.scheme, mesh);
-    if (options.vertex_rule == "older") rules.vertex_rule = older_rule(rules.scheme, options.limit);
+    const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
     scheme = rules.scheme;
     ProgressBar bar("subdividing " + options.mesh, options.quiet);
     result = subdivide(std::move(mesh), rules, options.level, options.limit, bar.monitor());
@@ -72,9 +64,6 @@ Command subdivide_command() {
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
   list.add(Group::own, "--level N", &options->level, "Steps of subdivision, 0 to 12").between(0, 12);
   list.add(Group::own, "--limit", &options->limit, "Move every vertex to its limit position");
-  list.add(Group::research, "--vertex-rule RULE", &options->vertex_rule,
-           "Catmull-Clark's new place of a vertex: (Q + 2R + (n-3)S)/n, or the older (Q + 2R + S)/4")
-      .one_of({"standard", "older"});
   add_degree_option(list, options->degree);
   add_common_options(list, *options);
   return {"subdivide",

@@ -23,7 +23,7 @@ ExitStatus subdivide_curve(const ControlMesh& mesh, const std::string& path, con
   ControlMesh result;
   naming(path, [&] {
     ProgressBar bar("subdividing " + path, options.quiet);
-    result = subdivide_curves(mesh, curve_degree(which.degree), which.level, which.limit, bar.monitor());
+    result = subdivide_curves(mesh, which.degree, which.level, which.limit, bar.monitor());
   });
   AtomicFile file(options.output);
   write_mesh(result, file, options.output, notes_for(options), stopped_by_interrupts());

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
 #include <snug/bounds/bounds_cache.h>
-#include <snug/scheme/loop_masks.h>
 #include <testing/kinds.h>
 #include <testing/twins.h>
 
@@ -14,8 +13,6 @@ namespace snug {
 namespace {
 
 using testing::inside;
-
-constexpr TableLayout both_layouts[] = {TableLayout::ngon, TableLayout::characteristic};
 
 // The kind's neighbourhood for the twin: points are (s, t) of the layout and one basis function. As a mesh it
 // has a rim, but the patch of face 0 does not see it.
@@ -53,34 +50,32 @@ TEST(bound_table, holds_the_domain_and_every_basis_function) {
   for (const KindKey& key : testing::assorted_kinds()) {
     const Kind& kind = library.find(key);
     const BoundRows rows = make_bound_rows(kind);
-    for (const TableLayout layout : both_layouts) {
-      const BoundTable table = make_bound_table(kind, rows, layout);
-      ASSERT_EQ(table.control_count(), kind.control_count());
-      ASSERT_EQ(table.lower.size() + 3, kind.control_count());
-      const auto& t = table.triangle;
-      ASSERT_EQ(t[0][1], t[1][1]);
-      ASSERT_EQ(t[0][0], t[2][0]);
-      const long double width = static_cast<long double>(t[1][0]) - t[0][0];
-      const long double height = static_cast<long double>(t[2][1]) - t[0][1];
-      const std::size_t stride = 1 + kind.control_count() / 16;
-      for (std::size_t i = 3; i < kind.control_count(); i += stride) {
-        for (const oracle::LimitSample& s : samples_of(twin_of(key, table.layout, i), 20)) {
-          const long double one = (s.position[0] - static_cast<long double>(t[0][0])) / width;
-          const long double two = (s.position[1] - static_cast<long double>(t[0][1])) / height;
-          EXPECT_GE(one, 0);
-          EXPECT_GE(two, 0);
-          EXPECT_LE(one + two, 1);
-          const auto plane = [&](const BoundTable::CornerValues& w) {
-            return w[0] + one * (static_cast<long double>(w[1]) - w[0]) +
-                   two * (static_cast<long double>(w[2]) - w[0]);
-          };
-          const long double slack = 40 * s.error;  // of the sample, times the planes' slopes
-          EXPECT_LE(plane(table.lower[i - 3]), s.position[2] + slack) << i;
-          EXPECT_GE(plane(table.upper[i - 3]), s.position[2] - slack) << i;
-        }
+    const BoundTable table = make_bound_table(kind, rows);
+    ASSERT_EQ(table.control_count(), kind.control_count());
+    ASSERT_EQ(table.lower.size() + 3, kind.control_count());
+    const auto& t = table.triangle;
+    ASSERT_EQ(t[0][1], t[1][1]);
+    ASSERT_EQ(t[0][0], t[2][0]);
+    const long double width = static_cast<long double>(t[1][0]) - t[0][0];
+    const long double height = static_cast<long double>(t[2][1]) - t[0][1];
+    const std::size_t stride = 1 + kind.control_count() / 16;
+    for (std::size_t i = 3; i < kind.control_count(); i += stride) {
+      for (const oracle::LimitSample& s : samples_of(twin_of(key, table.layout, i), 20)) {
+        const long double one = (s.position[0] - static_cast<long double>(t[0][0])) / width;
+        const long double two = (s.position[1] - static_cast<long double>(t[0][1])) / height;
+        EXPECT_GE(one, 0);
+        EXPECT_GE(two, 0);
+        EXPECT_LE(one + two, 1);
+        const auto plane = [&](const BoundTable::CornerValues& w) {
+          return w[0] + one * (static_cast<long double>(w[1]) - w[0]) +
+                 two * (static_cast<long double>(w[2]) - w[0]);
+        };
+        const long double slack = 40 * s.error;  // of the sample, times the planes' slopes
+        EXPECT_LE(plane(table.lower[i - 3]), s.position[2] + slack) << i;
+        EXPECT_GE(plane(table.upper[i - 3]), s.position[2] - slack) << i;
       }
-      if (HasFailure()) FAIL() << kind.control_count() << " control points";
     }
+    if (HasFailure()) FAIL() << kind.control_count() << " control points";
   }
 }
 
@@ -151,36 +146,12 @@ TEST(ngon_layout, touches_the_far_edge_and_keeps_to_its_triangle) {
   EXPECT_EQ(outer_spoke(6), 2);
 }
 
-TEST(characteristic_layout, shrinks_by_the_subdominant_eigenvalue) {
-  KindCache library;
-  for (const std::size_t n : {3u, 4u, 5u, 7u, 8u, 12u, 50u}) {
-    const std::size_t centre = n < 6 ? 0 : 2;
-    KindKey key{Scheme::loop, {inside(6), inside(6), inside(6)}};
-    key.corners[centre] = inside(n);
-    const Kind& kind = library.find(key);
-    const auto layout = make_layout(kind, TableLayout::characteristic);
-    const auto origin = layout[centre];
-    for (std::size_t r = 0; r < layout.size(); ++r) {
-      const auto row = kind.children()[centre].stencils.row(r);
-      for (std::size_t a = 0; a < 2; ++a) {
-        double refined = 0;
-        for (std::size_t i = 0; i < row.sources.size(); ++i)
-          refined += row.weights[i] * layout[row.sources[i]][a];
-        EXPECT_NEAR(refined - origin[a], loop::subdominant(n) * (layout[r][a] - origin[a]), 1e-13) << n;
-      }
-    }
-    EXPECT_NE(layout, make_layout(kind, TableLayout::ngon)) << n;
-  }
-}
-
 TEST(layout, of_regular_kinds_is_the_regular_lattice) {
   KindCache library;
   const Kind& kind = library.find({Scheme::loop, {inside(6), inside(6), inside(6)}});
-  for (const TableLayout which : both_layouts) {
-    for (const LayoutPoint& p : make_layout(kind, which)) {
-      EXPECT_EQ(p[0], std::round(p[0]));
-      EXPECT_EQ(p[1], std::round(p[1]));
-    }
+  for (const LayoutPoint& p : make_layout(kind)) {
+    EXPECT_EQ(p[0], std::round(p[0]));
+    EXPECT_EQ(p[1], std::round(p[1]));
   }
 }
 
@@ -191,7 +162,7 @@ TEST(fair_layout, of_regular_kinds_is_the_regular_lattice) {
   for (const std::array<CornerFan, 4>& fans :
        {std::array{in, in, in, in}, std::array{after, before, in, in}, std::array{in, in, after, before},
         std::array{lone, before, in, after}, std::array{in, after, lone, before}}) {
-    const auto layout = make_layout(library.find({Scheme::catmark, fans}), TableLayout::ngon);
+    const auto layout = make_layout(library.find({Scheme::catmark, fans}));
     EXPECT_EQ(layout[0], (LayoutPoint{0, 0}));
     EXPECT_EQ(layout[1], (LayoutPoint{1, 0}));
     EXPECT_EQ(layout[2], (LayoutPoint{0, 1}));
@@ -202,7 +173,7 @@ TEST(fair_layout, of_regular_kinds_is_the_regular_lattice) {
     }
   }
   for (const Scheme scheme : {Scheme::doo_sabin, Scheme::midedge}) {
-    const auto layout = make_layout(library.find({scheme, {in, in, in, in}}), TableLayout::ngon);
+    const auto layout = make_layout(library.find({scheme, {in, in, in, in}}));
     ASSERT_EQ(layout.size(), 9u);
     EXPECT_EQ(layout[0], (LayoutPoint{0, 0.5}));  // the middle of the edge 02
     for (const LayoutPoint& p : layout) {
@@ -218,8 +189,7 @@ TEST(fair_layout, has_its_limit_corners_at_the_corners_and_stays_near) {
     for (const std::size_t n : {3u, 5u, 7u, 12u, 40u}) {
       for (const std::size_t m : {3u, 4u, 9u}) {
         const Kind& kind = library.find({scheme, {inside(n), inside(m), inside(4), inside(5)}});
-        const auto layout = make_layout(kind, TableLayout::ngon);
-        EXPECT_EQ(layout, make_layout(kind, TableLayout::characteristic));
+        const auto layout = make_layout(kind);
         for (const LayoutPoint& p : layout)
           EXPECT_LT(std::fabs(p[0]) + std::fabs(p[1]), 30) << name_of(scheme) << n << m;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -245,8 +215,7 @@ TEST(layout, of_other_kinds_has_its_limit_corners_at_the_corners) {
                                    [](auto& f) { return !f.regular(Scheme::loop); }) <= 1;
     if (one) continue;
     const Kind& kind = library.find(key);
-    const auto layout = make_layout(kind, TableLayout::ngon);
-    EXPECT_EQ(layout, make_layout(kind, TableLayout::characteristic));
+    const auto layout = make_layout(kind);
     for (std::size_t k = 0; k < 3; ++k) {
       if (key.corners[k].faces() == 1) continue;  // its ring is the other corners: nothing to move
       const auto row = kind.corner_limits().row(k);

@@ -57,12 +57,10 @@ TEST(shipped_bounds, are_bit_by_bit_the_tables_made_at_run_time) {
   BoundsCache library;
   for (const KindKey& key : shipped.keys()) {
     const Kind& kind = library.kinds().find(key);
-    for (const TableLayout layout : {TableLayout::ngon, TableLayout::characteristic}) {
-      const std::optional<BoundTable> table = shipped.table(key, layout);
-      ASSERT_TRUE(table);
-      expect_same(*table, make_bound_table(kind, library.rows(kind), layout));
-      expect_same(library.table(kind, layout), *table);
-    }
+    const std::optional<BoundTable> table = shipped.table(key);
+    ASSERT_TRUE(table);
+    expect_same(*table, make_bound_table(kind, library.rows(kind)));
+    expect_same(library.table(kind), *table);
   }
 }
 
@@ -85,7 +83,7 @@ TEST(shipped_bounds, know_nothing_of_other_kinds) {
   for (const Scheme scheme : {Scheme::loop, Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
     const KindKey key{scheme, {CornerFan{0, 5}, CornerFan{0, 5}, CornerFan{0, 76}}};
     EXPECT_FALSE(ShippedBounds::compiled_in().rows(library.find(key)));
-    EXPECT_FALSE(ShippedBounds::compiled_in().table(key, TableLayout::ngon));
+    EXPECT_FALSE(ShippedBounds::compiled_in().table(key));
   }
 }
 

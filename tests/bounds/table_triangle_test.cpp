@@ -43,19 +43,17 @@ TEST(table_triangle, is_the_formula_rounded_outwards_by_little) {
     for (std::size_t f = 0; f < surface.face_count(); ++f) {
       if (!surface.has_patch(PatchId(f))) continue;
       const Patch patch = surface.patch(PatchId(f));
-      for (const TableLayout layout : {TableLayout::ngon, TableLayout::characteristic}) {
-        const BoundTable& table = surface.library().table(*patch.kind, layout);
-        const Exact exact(table, patch);
-        const TableTriangle found = table_triangle(table, patch);
-        EXPECT_LT(found.rounding, 1e-11);
-        for (std::size_t k = 0; k < 3; ++k) {
-          const Box3& box = found.interval.corner[(k + patch.first) % 3];
-          for (std::size_t a = 0; a < 3; ++a) {
-            EXPECT_LE(Quad(box.lower[a]), exact.lower[k][a]);
-            EXPECT_GE(Quad(box.upper[a]), exact.upper[k][a]);
-            EXPECT_GE(Quad(box.lower[a]), exact.lower[k][a] - Quad(2 * found.rounding));
-            EXPECT_LE(Quad(box.upper[a]), exact.upper[k][a] + Quad(2 * found.rounding));
-          }
+      const BoundTable& table = surface.library().table(*patch.kind);
+      const Exact exact(table, patch);
+      const TableTriangle found = table_triangle(table, patch);
+      EXPECT_LT(found.rounding, 1e-11);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Box3& box = found.interval.corner[(k + patch.first) % 3];
+        for (std::size_t a = 0; a < 3; ++a) {
+          EXPECT_LE(Quad(box.lower[a]), exact.lower[k][a]);
+          EXPECT_GE(Quad(box.upper[a]), exact.upper[k][a]);
+          EXPECT_GE(Quad(box.lower[a]), exact.lower[k][a] - Quad(2 * found.rounding));
+          EXPECT_LE(Quad(box.upper[a]), exact.upper[k][a] + Quad(2 * found.rounding));
         }
       }
     }
@@ -67,15 +65,13 @@ TEST(table_triangle, of_an_affine_image_of_the_layout_is_a_triangle) {
   BoundsCache library;
   for (const KindKey& key : testing::assorted_kinds()) {
     const Kind& kind = library.kinds().find(key);
-    for (const TableLayout layout : {TableLayout::ngon, TableLayout::characteristic}) {
-      const BoundTable& table = library.table(kind, layout);
-      std::vector<Point3> points;
-      for (const LayoutPoint& u : table.layout)
-        points.push_back({1 + 0.05 * u[0], 0.5 + 0.05 * u[1], 0.1 * u[0] - 0.07 * u[1]});
-      const TableTriangle found = table_triangle(table, make_patch(kind, 0, points));
-      EXPECT_LT(thickness(found.interval), 1e-11);
-      EXPECT_LE(thickness(found.interval), 8 * found.rounding);
-    }
+    const BoundTable& table = library.table(kind);
+    std::vector<Point3> points;
+    for (const LayoutPoint& u : table.layout)
+      points.push_back({1 + 0.05 * u[0], 0.5 + 0.05 * u[1], 0.1 * u[0] - 0.07 * u[1]});
+    const TableTriangle found = table_triangle(table, make_patch(kind, 0, points));
+    EXPECT_LT(thickness(found.interval), 1e-11);
+    EXPECT_LE(thickness(found.interval), 8 * found.rounding);
   }
 }
 

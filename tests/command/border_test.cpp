@@ -192,7 +192,7 @@ TEST(border, errors_are_one_line_whatever_an_argument_holds) {
       {"subdivide", model("star.obj"), "-o", "/no/" + strange},
       {"render", model("star.obj"), "-o", strange},
       {"render", strange, "-o", "x.png"},
-      {"experiment", strange}};
+      {"eval", strange}};
   for (const std::vector<std::string>& command : commands) {
     const Outcome outcome = run_snug(command);
     EXPECT_TRUE(outcome.status == 2 || outcome.status == 3) << outcome.status;

@@ -52,7 +52,7 @@ TEST(curve, bound_has_the_fields_of_the_contract) {
         ASSERT_EQ(e[key].size(), 2u) << key;
         for (const json& p : e[key]) EXPECT_EQ(p.size(), 3u);
       }
-      EXPECT_EQ(e["growth"], 0);
+      EXPECT_FALSE(e.contains("growth"));
       EXPECT_FALSE(e.contains("face"));
       largest = std::max(largest, e["radius"].get<double>());
       covered += 1.0 / static_cast<double>(1u << piece.size());
@@ -63,15 +63,19 @@ TEST(curve, bound_has_the_fields_of_the_contract) {
   }
 }
 
-TEST(curve, bound_by_levels_and_by_control_boxes) {
-  EXPECT_EQ(answer({"bound", "-", "--level", "3"}, closed_line)["count"], 32);
-  const json boxes = answer({"bound", "-", "--bounds", "control-box"}, closed_line);
-  EXPECT_EQ(boxes["count"], 4);
-  for (const json& e : boxes["enclosures"]) {
-    EXPECT_EQ(e["lower"].size(), 1u);
-    EXPECT_EQ(e["upper"].size(), 1u);
-    EXPECT_TRUE(e["base"].is_null());
-    EXPECT_TRUE(e["radius"].is_null());
+TEST(curve, bound_by_levels) { EXPECT_EQ(answer({"bound", "-", "--level", "3"}, closed_line)["count"], 32); }
+
+TEST(curve, options_of_surfaces_are_refused) {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("out.obj");
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"bound", "-"}, {"eval", "-"}, {"subdivide", "-", "-o", out}}) {
+    auto bounded = command, of_degree = command;
+    bounded.insert(bounded.end(), {"--boundary", "none"});
+    expect_refused(bounded, open_line, 2, "--boundary is for surfaces; - is answered as curves");
+    of_degree.insert(of_degree.end(), {"--degree", "2"});
+    expect_refused(of_degree, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 2,
+                   "--degree is for curves; - is answered as a surface");
   }
 }
 
@@ -175,14 +179,6 @@ TEST(curve, broken_polylines_are_named) {
   expect_refused({"eval", "-"}, "v 0 nan 0\nv 1 0 0\nl 1 2\n", 3, "vertex 0");
   expect_refused({"bound", "-"}, points + "l 1 2\nt corner 1/1/0 1 10\n", 4, "tagged as a corner");
   expect_refused({"eval", "-"}, "v -1.7e308 0 0\nv 1.7e308 0 0\nl 1 2\n", 4, "no longer fits a double");
-}
-
-TEST(curve, rates_are_measured) {
-  const json document = answer({"experiment", "rates", "--scheme", "curve", "--nets", "3"}, "");
-  ASSERT_EQ(document["rows"].size(), 12u);
-  EXPECT_EQ(document["rows"][0]["degree"], 2);
-  EXPECT_EQ(document["rows"][0]["place"], "closed");
-  EXPECT_NEAR(document["rows"][0]["factor"].get<double>(), 0.25, 0.01);
 }
 
 }  // namespace

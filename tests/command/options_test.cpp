@@ -23,8 +23,7 @@ TEST(threads, change_nothing) {
   for (const std::vector<std::string>& base :
        {std::vector<std::string>{"bound", model("bust.obj"), "--tolerance", "0.5%", "--json"},
         {"collide", model("bust.obj"), model("pawn.obj"), "--tolerance", "0.1%", "--json"},
-        {"eval", model("head.obj"), "--json"},
-        {"experiment", "rates", "--nets", "4", "--levels", "4", "--json"}}) {
+        {"eval", model("head.obj"), "--json"}}) {
     auto one = base, two = base;
     one.insert(one.end(), {"--threads", "1"});
     two.insert(two.end(), {"--threads", "2"});
@@ -45,34 +44,53 @@ TEST(usage, ends_with_2) {
            {"bound", star, "--level", "99"},
            {"bound", star, "--scheme", "butterfly"},
            {"bound", star, "--bounds", "tables"},
-           {"bound", star, "--bounds", "table", "--layout", "hexagon"},
            {"collide", star, star, "--tolerance", "1%", "--bounds", "control-box"},
-           {"bound", star, "--creases", "smooth"},
            {"bound", star, "--threads", "-1"},
            {"collide", star, star, "--tolerance", "1%", "--place-b", "1 0 0"},
            {"collide", star, star, "--tolerance", "1%", "--place-b", "1 0 0 x 0 1 0 0 0 0 1 0"},
            {"subdivide", star},
-           {"render", star},
-           {"experiment", "nothing"},
-           {"experiment", "rates", "--nets", "0"},
-           {"experiment", "rates", "--nets", "-3"},
-           {"experiment", "rates", "--levels", "3"},
-           {"experiment", "rates", "--levels", "41"},
-           {"experiment", "rates", "--json", "-o", "rates.svg"},
-           {"experiment", "rates", "--at", "middle"},
-           {"experiment", "rates", "--at", "crease", "--scheme", "midedge"},
-           {"experiment", "rates", "--at", "boundary", "--scheme", "curve"},
-           {"experiment", "tightness", "--samples", "0"},
-           {"experiment", "tightness", "--seed", "x"},
-           {"experiment", "tightness", "star.obj"},
-           {"experiment", "table-5-3", model("star.obj")},
-           {"experiment", "table-5-1", model("star.obj"), "--scheme", "catmark"},
-           {"experiment", "table-5-3", "--placements", "0"}}) {
+           {"render", star}}) {
     const Outcome outcome = run_snug(arguments);
     EXPECT_EQ(outcome.status, 2) << (arguments.empty() ? "" : arguments[0]) << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
     EXPECT_EQ(outcome.out, "");
   }
+}
+
+TEST(options, that_would_change_nothing_are_refused) {
+  const std::string star = model("star.obj");
+  const TemporaryFolder folder;
+  const std::string png = folder.file("star.png"), obj = folder.file("star.obj");
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"experiment", "rates"},  // another program's
+           {"info", star, "--budget", "9"},
+           {"info", star, "--bounds", "table"},
+           {"eval", star, "--budget", "9"},
+           {"eval", star, "--bounds", "table"},
+           {"eval", star, "--degree", "2"},
+           {"subdivide", star, "-o", obj, "--budget", "9"},
+           {"subdivide", star, "-o", obj, "--bounds", "rows"},
+           {"subdivide", star, "-o", obj, "--degree", "3"},
+           {"subdivide", star, "-o", obj, "--scheme", "catmark", "--vertex-rule", "older"},
+           {"bound", star, "--degree", "3"},
+           {"bound", star, "--bounds", "control-box"},
+           {"bound", star, "--bounds", "table", "--layout", "ngon"},
+           {"bound", star, "--creases", "split"},
+           {"bound", star, "--scheme", "midedge", "--boundary", "none"},
+           {"render", star, "-o", png, "--bounds", "table"},
+           {"render", star, "-o", png, "--budget", "9"},
+           {"render", star, "-o", png, "--nearest-rigid"},
+           {"collide", star, star, "--volume", "obb"},
+           {"collide", star, star, "--nearest-rigid"},
+           {"collide", star, star, "--penetration"},
+           {"distance", star, star, "--scheme", "loop", "--scheme-a", "loop", "--scheme-b", "catmark"},
+           {"closest", star, "--points", "p.txt", "--volume", "obb"}}) {
+    const Outcome outcome = run_snug(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments[0] << ' ' << arguments.back() << outcome.err;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+  }
+  EXPECT_TRUE(folder.empty());
 }
 
 TEST(placements, that_are_not_rigid_are_refused) {
@@ -94,22 +112,20 @@ TEST(verdicts, are_exit_codes_on_request_only) {
 TEST(tables, bound_render_and_collide) {
   const std::string star = model("star.obj");
   const auto rows = comparable({"bound", star, "--json"});
-  for (const char* layout : {"ngon", "characteristic"}) {
-    const auto table = comparable({"bound", star, "--bounds", "table", "--layout", layout, "--json"});
-    EXPECT_EQ(table["count"], rows["count"]);
-    EXPECT_GT(table["max_radius"], rows["max_radius"]);
-    EXPECT_EQ(table["enclosures"][0]["lower"].size(), 3u);
-    EXPECT_EQ(table["enclosures"][0]["corners"], rows["enclosures"][0]["corners"]);
-    for (const char* place : {"1 0 0 9 0 1 0 0 0 0 1 0", "1 0 0 0.2 0 1 0 0 0 0 1 0"}) {
-      const std::vector<std::string> pair{"collide", star,        star,  "--tolerance",
-                                          "1%",      "--place-b", place, "--json"};
-      auto by_table = pair;
-      by_table.insert(by_table.end(), {"--bounds", "table", "--layout", layout});
-      // Of surfaces that meet "within" and "intersecting" are both true.
-      const std::string with_table = comparable(by_table)["verdict"], with_rows = comparable(pair)["verdict"];
-      EXPECT_NE(with_table, "undecided");
-      EXPECT_EQ(with_table == "separated", with_rows == "separated");
-    }
+  const auto table = comparable({"bound", star, "--bounds", "table", "--json"});
+  EXPECT_EQ(table["count"], rows["count"]);
+  EXPECT_GT(table["max_radius"], rows["max_radius"]);
+  EXPECT_EQ(table["enclosures"][0]["lower"].size(), 3u);
+  EXPECT_EQ(table["enclosures"][0]["corners"], rows["enclosures"][0]["corners"]);
+  for (const char* place : {"1 0 0 9 0 1 0 0 0 0 1 0", "1 0 0 0.2 0 1 0 0 0 0 1 0"}) {
+    const std::vector<std::string> pair{"collide", star,        star,  "--tolerance",
+                                        "1%",      "--place-b", place, "--json"};
+    auto by_table = pair;
+    by_table.insert(by_table.end(), {"--bounds", "table"});
+    // Of surfaces that meet "within" and "intersecting" are both true.
+    const std::string with_table = comparable(by_table)["verdict"], with_rows = comparable(pair)["verdict"];
+    EXPECT_NE(with_table, "undecided");
+    EXPECT_EQ(with_table == "separated", with_rows == "separated");
   }
   const TemporaryFolder folder;
   const Outcome picture = run_snug(
@@ -129,7 +145,7 @@ TEST(help_and_version, go_to_standard_output) {
   EXPECT_EQ(version.status, 0);
   EXPECT_TRUE(version.out.starts_with("snug 0.1.0 (")) << version.out;
   EXPECT_EQ(run_snug({"--help"}).status, 0);
-  for (const char* command : {"info", "bound", "eval", "subdivide", "collide", "render", "experiment"}) {
+  for (const char* command : {"info", "bound", "eval", "subdivide", "collide", "render"}) {
     const Outcome help = run_snug({command, "--help"});
     EXPECT_EQ(help.status, 0);
     EXPECT_FALSE(help.out.empty());

@@ -17,10 +17,9 @@ namespace {
 TEST(polyhedra, of_boxes_as_wide_as_doubles_go_are_refused) {
   const std::string mesh = "v -1.7e308 0 0\nv 1.7e308 0 0\nv 0 1.7e308 0\nf 1 2 3\n";
   TemporaryFolder folder;
-  const Outcome bounds = run_snug({"bound", "-", "--bounds", "control-box", "--json"}, mesh);
+  const Outcome bounds = run_snug({"bound", "-", "--json"}, mesh);
   EXPECT_EQ(bounds.status, 0) << bounds.err;
-  const Outcome solids =
-      run_snug({"bound", "-", "--bounds", "control-box", "--polyhedra", folder.file("solids.obj")}, mesh);
+  const Outcome solids = run_snug({"bound", "-", "--polyhedra", folder.file("solids.obj")}, mesh);
   EXPECT_EQ(solids.status, 4) << solids.err;
 }
 
@@ -75,7 +74,7 @@ std::vector<Point3> box_corners(const nlohmann::json& enclosure) {
 }
 
 TEST(polyhedra, contain_the_corners_of_their_boxes) {
-  for (const std::string& bounds : {std::string("rows"), std::string("control-box")}) {
+  for (const std::string& bounds : {std::string("rows"), std::string("table")}) {
     const TemporaryFolder folder;
     const Outcome outcome = run_snug({"bound", model("head.obj"), "--quiet", "--json", "--bounds", bounds,
                                       "--polyhedra", folder.file("hulls.ply")});

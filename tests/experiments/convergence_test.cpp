@@ -44,11 +44,11 @@ TEST(convergence, regular_corners_shrink_by_a_quarter) {
 TEST(convergence, the_characteristic_layout_beats_the_ngon_at_every_extraordinary_corner) {
   for (const std::size_t n : experiment_valences) {
     if (n == 6) continue;
-    const double characteristic = factor(n, TableLayout::characteristic, ThicknessMeasure::radius);
-    EXPECT_LT(characteristic, factor(n, TableLayout::ngon, ThicknessMeasure::radius)) << n;
+    const double characteristic = factor(n, BoundSource::characteristic, ThicknessMeasure::radius);
+    EXPECT_LT(characteristic, factor(n, BoundSource::ngon, ThicknessMeasure::radius)) << n;
   }
-  EXPECT_LT(factor(8, TableLayout::characteristic, ThicknessMeasure::radius), 0.4);
-  EXPECT_GT(factor(8, TableLayout::ngon, ThicknessMeasure::radius), 0.5);
+  EXPECT_LT(factor(8, BoundSource::characteristic, ThicknessMeasure::radius), 0.4);
+  EXPECT_GT(factor(8, BoundSource::ngon, ThicknessMeasure::radius), 0.5);
 }
 
 TEST(convergence, factors_are_the_eigenvalues_of_theory) {
@@ -95,7 +95,7 @@ TEST(convergence, the_characteristic_layout_is_as_the_page_says) {
     const double g = std::cos(2 * std::numbers::pi / static_cast<double>(n));
     const double b = (13 + 2 * g) / (5 + 4 * g), c = 3 / (2 + 2 * g);
     std::size_t on_spoke = 0, between = 0;
-    for (const LayoutPoint& u : make_layout(kind, TableLayout::characteristic)) {
+    for (const LayoutPoint& u : characteristic_layout(kind)) {
       // The extraordinary corner may be any of the kind's: distances are what does not depend on that.
       const std::array<double, 3> all{u[0], u[1], 1 - u[0] - u[1]};
       for (std::size_t k = 0; k < 3; ++k) {
@@ -118,8 +118,9 @@ TEST(convergence, fits_the_second_half_of_a_sequence) {
 
 TEST(convergence, stops_where_rounding_shows) {
   const LimitSurface surface(corner_net(NetShape::bent, 3, 1), {}, std::make_shared<BoundsCache>(), 1);
+  LayoutTables tables(surface.library());
   for (const BoundSource source : all_bound_sources) {
-    for (const Thicknesses& thickness : corner_thicknesses(surface, PatchId(0), source, 40)) {
+    for (const Thicknesses& thickness : corner_thicknesses(surface, PatchId(0), tables, source, 40)) {
       ASSERT_GT(thickness.size(), 8u);
       EXPECT_LT(thickness.size(), 30u);
       for (std::size_t i = 1; i < thickness.size(); ++i) EXPECT_LT(thickness[i], thickness[i - 1]);
@@ -147,8 +148,9 @@ TEST(convergence, slabs_along_the_normal_hold_limit_points) {
       widths.push_back(back * (upper - lower));
       patch = split(patch, 0);
     }
+    LayoutTables tables(surface.library());
     for (const BoundSource source : all_bound_sources) {
-      const Thicknesses across = corner_thicknesses(surface, PatchId(0), source, 6)[2];
+      const Thicknesses across = corner_thicknesses(surface, PatchId(0), tables, source, 6)[2];
       ASSERT_EQ(across.size(), widths.size());
       for (std::size_t i = 0; i < widths.size(); ++i) EXPECT_GE(across[i], widths[i]) << n << " " << i;
     }
@@ -199,7 +201,7 @@ TEST(convergence, tables_of_other_schemes_shrink_by_the_subdominant_eigenvalue) 
     options.nets = 5;
     std::size_t tables = 0;
     for (const RateRow& row : measure_rates(options)) {
-      if (!row.source) continue;
+      if (row.source == BoundSource::rows) continue;
       ++tables;
       // Midedge at 3 faces: j/4^j.
       EXPECT_NEAR(row.factor / row.expected, 1, 0.13) << name_of(scheme) << row.place.faces;
@@ -225,7 +227,8 @@ TEST(convergence, boundaries_and_creases_shrink_by_the_eigenvalues_of_their_rule
         // One face of Catmull-Clark on a smooth boundary: j/4^j, and needles whose tips are refined no
         // further.
         const bool needle =
-            scheme == Scheme::catmark && !row.source && row.measure != ThicknessMeasure::normal &&
+            scheme == Scheme::catmark && row.source == BoundSource::rows &&
+            row.measure != ThicknessMeasure::normal &&
             (row.place == NetPlace{NetCentre::boundary, 1} || row.place == NetPlace{NetCentre::crease, 3});
         EXPECT_GT(row.factor, 0.9 * row.expected) << where;
         EXPECT_LT(row.factor, (needle ? 2 : 1.15) * row.expected) << where;
@@ -289,7 +292,7 @@ TEST(convergence, needles_keep_their_rate) {
   options.nets = 3;
   options.levels = 20;
   for (const RateRow& row : measure_rates(options)) {
-    if (row.place.faces != 2 || row.source) continue;
+    if (row.place.faces != 2 || row.source != BoundSource::rows) continue;
     for (std::size_t i = 4; i < row.thickness.size(); ++i) {
       EXPECT_LT(row.thickness[i], 0.45 * row.thickness[i - 1]) << name_of(row.measure) << i;
     }

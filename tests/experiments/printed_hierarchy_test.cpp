@@ -20,7 +20,7 @@ TEST(leaves, are_as_many_as_bound_makes) {
     const auto rows = leaves(surface, {tolerance, {}});
     EXPECT_EQ(rows.size(), bound_count(surface, BoundMethod::rows, tolerance));
     for (const OffsetTriangle& leaf : rows) EXPECT_LE(leaf.radius, tolerance / 2);
-    const auto tables = leaves(surface, {tolerance, TableLayout::ngon});
+    const auto tables = leaves(surface, {tolerance, BoundMethod::table});
     EXPECT_EQ(tables.size(), bound_count(surface, BoundMethod::table, tolerance));
     EXPECT_GE(tables.size(), rows.size());
   }
@@ -30,10 +30,10 @@ TEST(leaves, are_as_many_as_bound_makes) {
 // have valence 4.
 TEST(leaves, have_one_extraordinary_corner_on_request) {
   const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
-  EXPECT_EQ(leaves(surface, {100, TableLayout::ngon}).size(), 20u);
-  EXPECT_EQ(leaves(surface, {100, TableLayout::ngon, true}).size(), 80u);
+  EXPECT_EQ(leaves(surface, {100, BoundMethod::table}).size(), 20u);
+  EXPECT_EQ(leaves(surface, {100, BoundMethod::table, true}).size(), 80u);
   const LimitSurface bipyramid = testing::surface_of(oracle::meshes::bipyramid(6));
-  EXPECT_EQ(leaves(bipyramid, {100, TableLayout::ngon, true}).size(), 48u);
+  EXPECT_EQ(leaves(bipyramid, {100, BoundMethod::table, true}).size(), 48u);
 }
 
 TEST(leaves, refuse_what_rounding_forbids) {
@@ -44,8 +44,8 @@ TEST(leaves, refuse_what_rounding_forbids) {
 TEST(printed_hierarchy, tells_surfaces_that_are_apart_from_those_that_cross) {
   const LimitSurface a = testing::surface_of(oracle::meshes::icosahedron()),
                      b = testing::surface_of(oracle::meshes::octahedron());
-  const PrintedHierarchy tree_a(a, {0.05, TableLayout::ngon}), tree_b(b, {0.05, TableLayout::ngon});
-  EXPECT_EQ(tree_a.leaf_count(), leaves(a, {0.05, TableLayout::ngon}).size());
+  const PrintedHierarchy tree_a(a, {0.05, BoundMethod::table}), tree_b(b, {0.05, BoundMethod::table});
+  EXPECT_EQ(tree_a.leaf_count(), leaves(a, {0.05, BoundMethod::table}).size());
   const auto says = [&](double x, double epsilon) {
     const Motion moved = Motion::from_translation({x, 0, 0});
     return PrintedHierarchy::says_separated(tree_a, {}, tree_b, moved, epsilon);

@@ -1,3 +1,4 @@
+#include <experiments/control_box.h>
 #include <experiments/quantile.h>
 #include <snug/base/error.h>
 #include <snug/bounds/curve_points.h>
@@ -51,7 +52,7 @@ TEST(bound_curve, of_every_edge_meets_the_tolerance) {
         how.tolerance = tolerance;
         std::vector<double> covered(curves.edge_count(), 0);
         const BoundSummary summary = bound(curves, how, [&](const CurveEnclosure& piece) {
-          EXPECT_LE(piece.offset->radius, tolerance / 2);
+          EXPECT_LE(piece.offset.radius, tolerance / 2);
           const testing::Range range = testing::range_of(piece.path);
           EXPECT_EQ(range.first, covered[piece.edge.index()]);
           covered[piece.edge.index()] += range.size;
@@ -101,8 +102,7 @@ TEST(bound_curve, has_enclosures_at_the_last_level) {
     hull_points(piece, points);
     const auto limits = limit_ends(piece);
     EXPECT_LT(offset_segment(points, {limits[0].relative, limits[1].relative}).radius, 1e-12);
-    control_points(piece, points);
-    EXPECT_LT(outer_box(points).longest_side(), 1e-12);
+    EXPECT_LT(control_box(piece, points).longest_side(), 1e-12);
   }
 }
 
@@ -117,7 +117,7 @@ TEST(bound_curve, is_close_to_the_least_radius) {
           BoundOptions how;
           how.level = level;
           bound(curves, how, [&](const CurveEnclosure& piece) {
-            if (piece.offset->radius < 1e-9) return;
+            if (piece.offset.radius < 1e-9) return;
             std::vector<Point3> samples;
             const testing::Range range = testing::range_of(piece.path);
             for (int i = 0; i <= 64; ++i) {
@@ -135,7 +135,7 @@ TEST(bound_curve, is_close_to_the_least_radius) {
               least = std::min(least, length(farthest));
               for (Point3& end : segment) end = end + (1.0 / (round + 1)) * farthest;
             }
-            ratios[degree - 2].push_back(piece.offset->radius / least);
+            ratios[degree - 2].push_back(piece.offset.radius / least);
           });
         }
       }
@@ -155,7 +155,7 @@ TEST(bound_curve, is_close_to_the_least_radius) {
 TEST(bound_curve, of_a_straight_evenly_spaced_polyline_is_thin) {
   for (const int degree : {2, 3}) {
     const CurveSet curves = testing::curve_set({{{0, 0, 0}, {1, 1, 2}, {2, 2, 4}, {3, 3, 6}}, false}, degree);
-    bound(curves, {}, [](const CurveEnclosure& piece) { EXPECT_LT(piece.offset->radius, 1e-13); });
+    bound(curves, {}, [](const CurveEnclosure& piece) { EXPECT_LT(piece.offset.radius, 1e-13); });
   }
 }
 
@@ -231,7 +231,7 @@ TEST(subdivide_curve, keeps_the_curve) {
       BoundOptions how;
       how.tolerance = 1e-5;
       std::vector<OffsetSegment> pieces;
-      bound(curves, how, [&](const CurveEnclosure& piece) { pieces.push_back(*piece.offset); });
+      bound(curves, how, [&](const CurveEnclosure& piece) { pieces.push_back(piece.offset); });
       const auto on_curve = [&](const Point3& p) {
         return std::any_of(pieces.begin(), pieces.end(), [&](const OffsetSegment& piece) {
           const Triangle flat{piece.base[0], piece.base[1], piece.base[1]};

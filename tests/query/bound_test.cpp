@@ -1,6 +1,5 @@
 #include <snug/query/bound.h>
 
-#include <experiments/corner_nets.h>
 #include <gtest/gtest.h>
 #include <snug/base/error.h>
 #include <testing/patches.h>
@@ -26,8 +25,8 @@ bool same(const Collected& a, const Collected& b) {
   if (a.pieces.size() != b.pieces.size() || a.summary.splits != b.summary.splits) return false;
   for (std::size_t i = 0; i < a.pieces.size(); ++i) {
     const PieceEnclosure &x = a.pieces[i], &y = b.pieces[i];
-    if (x.patch != y.patch || !(x.path == y.path) || x.offset->base != y.offset->base ||
-        x.offset->radius != y.offset->radius || x.interval->corner != y.interval->corner) {
+    if (x.patch != y.patch || !(x.path == y.path) || x.offset.base != y.offset.base ||
+        x.offset.radius != y.offset.radius || x.interval.corner != y.interval.corner) {
       return false;
     }
   }
@@ -67,38 +66,6 @@ TEST(bound, meets_its_tolerance_with_pieces_that_tile_every_face) {
   for (const double a : area) EXPECT_EQ(a, 1);
 }
 
-// A crease of 2.5 through the middle of a regular mesh: after three splits it is smooth.
-TEST(bound, splits_until_sharpness_has_decayed) {
-  for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
-    const LimitSurface surface(
-        bent_net(scheme, {NetCentre::semi_sharp, scheme == Scheme::loop ? 6u : 4u, 2.5}, 1), {scheme},
-        std::make_shared<BoundsCache>(), 1);
-    BoundOptions options;
-    const Collected whole = collect(surface, options);
-    options.passing = PassingMethod::split;
-    const Collected pieces = collect(surface, options);
-    EXPECT_TRUE(pieces.summary.reached);
-    std::vector<double> area(surface.patch_count(), 0);
-    for (const PieceEnclosure& piece : pieces.pieces) {
-      const unsigned level = piece.path.level();
-      EXPECT_LE(level, 3u);
-      area[piece.patch.index()] += std::ldexp(1.0, -2 * static_cast<int>(level));
-      Patch patch = surface.patch(piece.patch);
-      for (const char digit : piece.path.text()) {
-        EXPECT_TRUE(patch.kind->passing());
-        patch = split(patch, static_cast<unsigned>(digit - '0'));
-      }
-      EXPECT_FALSE(patch.kind->passing());
-    }
-    for (const double a : area) EXPECT_EQ(a, 1);
-    EXPECT_GT(pieces.summary.count, whole.summary.count);
-    options.budget = pieces.summary.splits - 1;
-    const Collected fewer = collect(surface, options);
-    EXPECT_FALSE(fewer.summary.reached);
-    EXPECT_EQ(fewer.summary.splits, options.budget);
-  }
-}
-
 TEST(bound, says_so_when_rounding_stops_it) {
   const LimitSurface surface = testing::surface_of(oracle::meshes::octahedron());
   BoundOptions options;
@@ -106,23 +73,6 @@ TEST(bound, says_so_when_rounding_stops_it) {
   options.budget = 20000;
   const Collected result = collect(surface, options);
   EXPECT_FALSE(result.summary.reached);
-}
-
-TEST(bound, by_control_boxes_contains_corners_and_is_looser) {
-  const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
-  BoundOptions options;
-  const double rows = collect(surface, options).summary.max_radius;
-  options.method = BoundMethod::control_box;
-  const Collected boxes = collect(surface, options);
-  EXPECT_GT(boxes.summary.max_radius, rows);
-  for (const PieceEnclosure& piece : boxes.pieces) {
-    for (const Point3& p : piece.corners) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        EXPECT_GE(p[k], piece.box->lower[k]);
-        EXPECT_LE(p[k], piece.box->upper[k]);
-      }
-    }
-  }
 }
 
 TEST(bound, refuses_results_that_do_not_fit_a_double) {

@@ -60,12 +60,8 @@ LimitSurface surface_of(ControlMesh mesh, Scheme scheme) {
 
 const std::vector<double> no_numbers{NAN, INFINITY, -INFINITY};
 
-TEST(callers_mistakes, a_surface_needs_a_library_and_the_standard_rule) {
+TEST(callers_mistakes, a_surface_needs_a_library) {
   expect_refused("null", [] { LimitSurface(square(), {.scheme = Scheme::catmark}, nullptr, 1); });
-  SchemeOptions older;
-  older.scheme = Scheme::catmark;
-  older.vertex_rule = CatmarkVertexRule::older;
-  expect_refused("older", [&] { LimitSurface(square(), older, std::make_shared<BoundsCache>(), 1); });
   const LimitSurface surface = surface_of(square(), Scheme::catmark);
   expect_refused("patch", [&] { static_cast<void>(surface.patch(PatchId(2))); });
   expect_refused("no patch", [&] { static_cast<void>(surface.patch(PatchId())); });

@@ -41,11 +41,8 @@ std::string piece_at(double u, double v, unsigned level) {
 struct Source {
   const char* name;
   BoundMethod method;
-  TableLayout layout;
 };
-constexpr Source sources[] = {{"rows", BoundMethod::rows, TableLayout::ngon},
-                              {"n-gon table", BoundMethod::table, TableLayout::ngon},
-                              {"characteristic table", BoundMethod::table, TableLayout::characteristic}};
+constexpr Source sources[] = {{"rows", BoundMethod::rows}, {"table", BoundMethod::table}};
 
 struct Enclosures {
   OffsetTriangle offset;
@@ -56,7 +53,7 @@ struct Enclosures {
 Enclosures enclosures_of(const LimitSurface& surface, const Patch& patch, const Source& source) {
   const PowerOfTwo back = surface.scale().inverse();
   if (source.method == BoundMethod::table) {
-    const TableTriangle triangle = table_triangle(surface.library().table(*patch.kind, source.layout), patch);
+    const TableTriangle triangle = table_triangle(surface.library().table(*patch.kind), patch);
     return {unscaled(offset_triangle(triangle), back), unscaled(triangle.interval, back)};
   }
   HullPoints points;
@@ -110,7 +107,6 @@ TEST(bounds, contain_a_million_adversarial_limit_points) {
           std::map<std::pair<std::size_t, std::string>, PieceEnclosure> pieces;
           BoundOptions options;
           options.method = source.method;
-          options.layout = source.layout;
           options.level = level;
           options.threads = 1;
           bound(surface, options, [&](const PieceEnclosure& e) {
@@ -119,7 +115,7 @@ TEST(bounds, contain_a_million_adversarial_limit_points) {
           for (const oracle::LimitSample& s : samples) {
             const auto it = pieces.find({s.face, piece_at(s.u, s.v, level)});
             ASSERT_NE(it, pieces.end());
-            checker.check(*it->second.offset, *it->second.interval, s,
+            checker.check(it->second.offset, it->second.interval, s,
                           disguise.name + ", " + source.name + ", level " + std::to_string(level));
           }
         }

@@ -84,11 +84,10 @@ TEST(crossing, prisms_of_all_kinds_in_all_disguises_are_what_the_proof_needs) {
           p = {q[0], q[1], q[2]};
         }
         const LimitSurface surface(std::move(mesh), named.surface.options(), library, 1);
-        PieceCache rows(surface), ngon(surface, TableLayout::ngon),
-            characteristic(surface, TableLayout::characteristic);
+        PieceCache rows(surface), tables(surface, BoundMethod::table);
         testing::for_each_patch(surface, [&](PatchId p) {
           if (random() % 6 != 0) return;
-          for (PieceCache* const refinement : {&rows, &ngon, &characteristic}) {
+          for (PieceCache* const refinement : {&rows, &tables}) {
             PieceId id = refinement->root(p);
             for (std::size_t level = random() % 6; level > 0 && refinement->can_split(id); --level) {
               id = PieceId(refinement->split(id).index() + random() % 4);

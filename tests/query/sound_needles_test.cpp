@@ -121,7 +121,7 @@ struct Setting {
     }
     options.tight = random() % 3 == 0;
     options.threads = 1;
-    if (random() % 3 != 0) options.table = random() % 2 ? TableLayout::ngon : TableLayout::characteristic;
+    if (random() % 3 != 0) options.method = BoundMethod::table;
     const auto whole = [&] {
       return static_cast<double>(static_cast<std::int64_t>(random() % 2'000'001) - 1'000'000);
     };
@@ -131,10 +131,8 @@ struct Setting {
       motion = motion.with_translation({whole(), whole(), whole()});
     }
     text = "trial " + std::to_string(trial) + ", " + name_of(scheme) +
-           (!options.table                        ? ", rows"
-            : *options.table == TableLayout::ngon ? ", n-gon"
-                                                  : ", characteristic") +
-           (options.tight ? ", tight" : "") + ", layer " + std::to_string(lattice.layer());
+           (options.method == BoundMethod::table ? ", tables" : ", rows") + (options.tight ? ", tight" : "") +
+           ", layer " + std::to_string(lattice.layer());
   }
 };
 

@@ -30,34 +30,18 @@ using Pieces = std::map<std::string, PieceEnclosure>;
 bool contains(const PieceEnclosure& piece, const Sample& s, const char*& what) {
   const testing::Extended p{s.position[0], s.position[1], s.position[2]};
   const long double size = std::fabs(p[0]) + std::fabs(p[1]) + std::fabs(p[2]);
-  if (piece.box) {
-    what = "box";
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (s.position[a] < piece.box->lower[a] - s.error || s.position[a] > piece.box->upper[a] + s.error)
-        return false;
-    }
-    return true;
-  }
   // Extended precision adds 1e-18 of what it works on.
-  const long double slack = 1.8L * s.error + 1e-17L * piece.offset->radius + 1e-18L * size;
+  const long double slack = 1.8L * s.error + 1e-17L * piece.offset.radius + 1e-18L * size;
   what = "offset triangle";
-  if (!testing::within_radius(p, piece.offset->base, piece.offset->radius + slack)) return false;
+  if (!testing::within_radius(p, piece.offset.base, piece.offset.radius + slack)) return false;
   what = "interval triangle";
-  return testing::in_interval_triangle(p, *piece.interval, slack);
+  return testing::in_interval_triangle(p, piece.interval, slack);
 }
 
 std::vector<BoundOptions> bound_options(const LimitSurface& surface) {
-  std::vector<BoundOptions> list(4);
+  std::vector<BoundOptions> list(3);
   list[1].level = 2;
   list[2].tolerance = surface.size() > 0 ? 0.2 * surface.size() : 1;
-  list[3].level = 1;
-  list[3].method = BoundMethod::control_box;
-  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
-    if (!is_primal(surface.options().scheme) || !surface.has_patch(PatchId(p))) continue;
-    if (surface.kind(PatchId(p)).key().plain()) continue;
-    list.emplace_back().passing = PassingMethod::split;
-    break;
-  }
   for (BoundOptions& options : list) options.threads = 1;
   return list;
 }
@@ -252,8 +236,8 @@ void check_dual(const std::string& name, const oracle::TaggedMesh& mesh, Scheme 
             const bool inside = contains(piece, s, what);
             found[0] = found[0] || inside || std::string(what) == "interval triangle";
             PieceEnclosure wide = piece;
-            if (wide.offset) wide.offset->radius += 4 * surface.size();
-            found[1] = found[1] || (wide.offset ? contains(wide, s, what) : inside);
+            wide.offset.radius += 4 * surface.size();
+            found[1] = found[1] || contains(wide, s, what);
           }
         }
         EXPECT_TRUE(found[0] && found[1]) << where << ", enclosures " << i;

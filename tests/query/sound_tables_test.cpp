@@ -70,9 +70,9 @@ std::string piece_at(double u, double v, unsigned level) {
 bool contains(const PieceEnclosure& piece, const oracle::Point& position, double error) {
   const testing::Extended p{position[0], position[1], position[2]};
   const long double size = std::fabs(p[0]) + std::fabs(p[1]) + std::fabs(p[2]);
-  const long double slack = 1.8L * error + 1e-17L * piece.offset->radius + 1e-18L * size;
-  return testing::within_radius(p, piece.offset->base, piece.offset->radius + slack) &&
-         testing::in_interval_triangle(p, *piece.interval, slack);
+  const long double slack = 1.8L * error + 1e-17L * piece.offset.radius + 1e-18L * size;
+  return testing::within_radius(p, piece.offset.base, piece.offset.radius + slack) &&
+         testing::in_interval_triangle(p, piece.interval, slack);
 }
 
 using Pieces = std::map<std::pair<std::size_t, std::string>, PieceEnclosure>;
@@ -228,7 +228,7 @@ TEST(tables, give_patch_bounds_that_contain_limit_points) {
     const LimitSurface surface(
         mesh, with_tags({loop ? Scheme::loop : Scheme::catmark, boundary_of(c.rules)}, mesh.tags),
         std::make_shared<BoundsCache>(), 1);
-    PatchBounds bounds(surface, TableLayout::ngon, 1);
+    PatchBounds bounds(surface, BoundMethod::table, 1);
     std::vector<OffsetTriangle> found(bounds.patches().size());
     bounds.update(mesh.points, found);
     std::map<std::size_t, OffsetTriangle> of_patch;

@@ -13,16 +13,14 @@ namespace {
 
 TEST(refinement, by_tables_has_the_offset_triangles_of_the_tables) {
   const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
-  for (const TableLayout layout : {TableLayout::ngon, TableLayout::characteristic}) {
-    PieceCache refinement(surface, layout);
-    const PieceId first = refinement.split(refinement.root(PatchId(0)));
-    for (unsigned child = 0; child < 4; ++child) {
-      const Piece& piece = refinement[PieceId(first.index() + child)];
-      const BoundTable& table = surface.library().table(*piece.patch.kind, layout);
-      const OffsetTriangle expected = offset_triangle(table_triangle(table, piece.patch));
-      EXPECT_EQ(piece.offset.base, expected.base);
-      EXPECT_EQ(piece.offset.radius, expected.radius);
-    }
+  PieceCache refinement(surface, BoundMethod::table);
+  const PieceId first = refinement.split(refinement.root(PatchId(0)));
+  for (unsigned child = 0; child < 4; ++child) {
+    const Piece& piece = refinement[PieceId(first.index() + child)];
+    const BoundTable& table = surface.library().table(*piece.patch.kind);
+    const OffsetTriangle expected = offset_triangle(table_triangle(table, piece.patch));
+    EXPECT_EQ(piece.offset.base, expected.base);
+    EXPECT_EQ(piece.offset.radius, expected.radius);
   }
 }
 
@@ -65,7 +63,7 @@ TEST(refinement, boxes_and_extents_hold_the_pieces) {
   std::size_t samples = 0;
   testing::for_each_surface(63, [&](const testing::NamedSurface& named) {
     const LimitSurface& surface = named.surface;
-    PieceCache rows(surface), tables(surface, TableLayout::ngon);
+    PieceCache rows(surface), tables(surface, BoundMethod::table);
     testing::for_each_patch(surface, [&](PatchId p) {
       if (random() % 4 != 0) return;
       for (PieceCache* refinement : {&rows, &tables}) {
@@ -118,9 +116,8 @@ TEST(refinement, heights_hold_pieces_of_needles) {
       p = {x.x, x.y, x.z};
     }
     const LimitSurface surface = testing::surface_of(mesh);
-    PieceCache rows(surface), ngon(surface, TableLayout::ngon),
-        characteristic(surface, TableLayout::characteristic);
-    for (PieceCache* const refinement : {&rows, &ngon, &characteristic}) {
+    PieceCache rows(surface), tables(surface, BoundMethod::table);
+    for (PieceCache* const refinement : {&rows, &tables}) {
       for (std::size_t f = 0; f < surface.face_count(); ++f) {
         PieceId id = refinement->root(PatchId(f));
         for (std::size_t level = random() % 3; level > 0; --level) {

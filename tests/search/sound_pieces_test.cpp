@@ -94,8 +94,7 @@ void expect_near(const Obb& box, const std::vector<Sample>& samples, const std::
 
 void expect_sound(const LimitSurface& surface, std::mt19937_64& random, const std::string& name,
                   std::size_t& pieces) {
-  PieceCache rows(surface), ngon(surface, TableLayout::ngon),
-      characteristic(surface, TableLayout::characteristic);
+  PieceCache rows(surface), tables(surface, BoundMethod::table);
   ControlHull hull;
   testing::for_each_patch(surface, [&](PatchId p) {
     if (random() % 6 != 0) return;
@@ -109,7 +108,7 @@ void expect_sound(const LimitSurface& surface, std::mt19937_64& random, const st
       ASSERT_GE(extent.upper, dot(direction, sample.x) - 2 * sample.error) << name;
     }
     expect_near(hull.box(), whole, name);
-    for (PieceCache* const refinement : {&rows, &ngon, &characteristic}) {
+    for (PieceCache* const refinement : {&rows, &tables}) {
       PieceId id = refinement->root(p);
       for (std::size_t level = random() % 5; level > 0 && refinement->can_split(id); --level) {
         id = PieceId(refinement->split(id).index() + random() % 4);

@@ -49,9 +49,8 @@ std::vector<LimitSurface> surfaces() {
 }
 
 void expect_none_after_the_first_update(const LimitSurface& surface) {
-  for (const std::optional<TableLayout> table :
-       {std::optional<TableLayout>(), std::optional(TableLayout::ngon)}) {
-    PatchBounds bounds(surface, table);
+  for (const BoundMethod method : {BoundMethod::rows, BoundMethod::table}) {
+    PatchBounds bounds(surface, method);
     std::vector<OffsetTriangle> out(bounds.patches().size());
     bounds.update(surface.mesh().points, out);
     std::vector<Point3> points = surface.mesh().points;

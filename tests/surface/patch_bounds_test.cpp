@@ -37,16 +37,14 @@ void expect_near(const OffsetTriangle& actual, const OffsetTriangle& expected, d
 TEST(patch_bounds, are_those_of_single_patches) {
   for (const oracle::TwinMesh& twin : twins()) {
     const LimitSurface surface = testing::surface_of(twin);
-    for (const std::optional<TableLayout> table :
-         {std::optional<TableLayout>(), std::optional(TableLayout::ngon),
-          std::optional(TableLayout::characteristic)}) {
-      PatchBounds bounds(surface, table);
+    for (const BoundMethod method : {BoundMethod::rows, BoundMethod::table}) {
+      PatchBounds bounds(surface, method);
       std::vector<OffsetTriangle> out(bounds.patches().size());
       bounds.update(surface.mesh().points, out);
       HullPoints scratch;
       for (std::size_t i = 0; i < out.size(); ++i) {
         const PatchId f = bounds.patches()[i];
-        const Piece piece = make_piece(surface.library(), f, surface.patch(f), scratch, table);
+        const Piece piece = make_piece(surface.library(), f, surface.patch(f), scratch, method);
         expect_near(out[i], unscaled(piece.offset, surface.scale().inverse()), surface.size());
       }
     }
@@ -59,9 +57,8 @@ TEST(patch_bounds, cover_the_limit_points_at_every_scale_and_place) {
     for (oracle::TwinMesh twin : twins()) {
       for (oracle::Point& p : twin.points) p = {size * (p[0] + 7), size * p[1], size * (p[2] - 3)};
       const LimitSurface surface = testing::surface_of(twin);
-      for (const std::optional<TableLayout> table :
-           {std::optional<TableLayout>(), std::optional(TableLayout::ngon)}) {
-        PatchBounds bounds(surface, table);
+      for (const BoundMethod method : {BoundMethod::rows, BoundMethod::table}) {
+        PatchBounds bounds(surface, method);
         std::vector<OffsetTriangle> out(bounds.patches().size());
         bounds.update(surface.mesh().points, out);
         std::vector<const OffsetTriangle*> of(surface.face_count(), nullptr);

@@ -82,7 +82,7 @@ int random_exponent(Dice& dice) {
 SurfaceBvhOptions random_options(Dice& dice) {
   SurfaceBvhOptions options;
   options.threads = 1;
-  if (dice.one_in(6)) options.table = dice.one_in(2) ? TableLayout::ngon : TableLayout::characteristic;
+  if (dice.one_in(6)) options.method = BoundMethod::table;
   options.tight = dice.one_in(3);
   return options;
 }
@@ -792,10 +792,7 @@ std::string describe(const Trial& trial) {
   text += std::string(trial.truth.apart ? " apart" : "") + (trial.truth.meet ? " meet" : "") +
           (trial.truth.crossing ? " crossing" : "");
   const SurfaceBvhOptions& options = trial.pair->options();
-  text += std::string("; ") +
-          (!options.table                        ? "rows"
-           : *options.table == TableLayout::ngon ? "n-gon tables"
-                                                 : "characteristic tables") +
+  text += std::string("; ") + (options.method == BoundMethod::table ? "tables" : "rows") +
           (options.tight ? ", tight" : "");
   if (const char* folder = std::getenv("SNUG_DUMP")) {
     for (std::size_t side = 0; side < 2; ++side) {

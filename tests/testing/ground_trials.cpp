@@ -22,7 +22,7 @@ using oracle::TaggedMesh;
 namespace meshes = oracle::meshes;
 using Id = std::uint32_t;
 
-constexpr std::array<std::size_t, factor_count> counts{4, 2, 3, 6, 2, 2, 4, 3};
+constexpr std::array<std::size_t, factor_count> counts{4, 2, 3, 6, 2, 2, 4, 2};
 
 template <class Value>
 Value choice(const Choices& choices, Factor factor) {
@@ -60,7 +60,7 @@ Choices random_choices(Dice& dice, std::uint64_t rare, bool covering) {
       choices[f] = static_cast<std::uint8_t>(dice.below(counts[f]));
     std::uint8_t& valence = choices[static_cast<std::size_t>(Factor::valence)];
     if (!dice.one_in(rare)) valence = 0;
-    if (!covering && choice<Sets>(choices, Factor::sets) != Sets::rows) valence = 0;
+    if (!covering && choice<BoundMethod>(choices, Factor::sets) != BoundMethod::rows) valence = 0;
     if (is_possible(choices)) return choices;
   }
 }
@@ -142,7 +142,7 @@ struct Valence {
 };
 Valence valence_of(const Choices& choices, Dice& dice) {
   const bool plain = choice<Tags>(choices, Factor::tags) == Tags::none,
-             rows = choice<Sets>(choices, Factor::sets) == Sets::rows;
+             rows = choice<BoundMethod>(choices, Factor::sets) == BoundMethod::rows;
   return {choice<std::uint8_t>(choices, Factor::valence) == 1, !rows             ? 200U
                                                                : !plain          ? 230U
                                                                : dice.one_in(30) ? 1000U
@@ -409,7 +409,7 @@ std::string name_of_value(std::size_t factor, std::size_t value) {
       {"plain triangles", "smooth triangles"},
       {"small valence", "valence 200+"},
       {"loop", "catmark", "doo-sabin", "midedge"},
-      {"rows", "ngon tables", "characteristic tables"},
+      {"rows", "tables"},
   }};
   return names[factor][value];
 }
@@ -619,9 +619,7 @@ void GroundTrials::make_sides(std::uint64_t row) {
         std::make_unique<LimitSurface>(control_mesh(s.made.mesh, s.made.rules), options, shared_->library, 1);
     SurfaceBvhOptions model;
     model.threads = 1;
-    const Sets sets = choice<Sets>(s.choices, Factor::sets);
-    if (sets != Sets::rows)
-      model.table = sets == Sets::ngon ? TableLayout::ngon : TableLayout::characteristic;
+    model.method = choice<BoundMethod>(s.choices, Factor::sets);
     s.model = std::make_unique<SurfaceBvh>(*s.surface, model);
     s.scratch = std::make_unique<SurfaceWorkspace>(*s.model);
     s.twin = std::make_unique<oracle::LimitTwin>(s.made.mesh, shared_->rules_of(s.made));

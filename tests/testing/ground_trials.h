@@ -26,7 +26,6 @@ using Choices = std::array<std::uint8_t, factor_count>;
 enum class Border : std::uint8_t { closed, none, edge_only, edge_and_corner };
 enum class Connection : std::uint8_t { manifold, edge, vertex };
 enum class Tags : std::uint8_t { none, sharp, semi_sharp, chaikin, dart, corner };
-enum class Sets : std::uint8_t { rows, ngon, characteristic };
 
 [[nodiscard]] std::size_t value_count(std::size_t factor);
 [[nodiscard]] std::string name_of_value(std::size_t factor, std::size_t value);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <snug/base/contract.h>
 #include <snug/bounds/linear_programme.h>
@@ -93,10 +94,14 @@ class PlaneFitter {
 
 }  // namespace
 
-BoundTable make_bound_table(const Kind& kind, const BoundRows& rows, TableLayout layout) {
-  SNUG_EXPECT(rows.control_count() == kind.control_count());
+BoundTable make_bound_table(const Kind& kind, const BoundRows& rows) {
+  return make_bound_table(kind, rows, make_layout(kind));
+}
+
+BoundTable make_bound_table(const Kind& kind, const BoundRows& rows, std::vector<LayoutPoint> layout) {
+  SNUG_EXPECT(rows.control_count() == kind.control_count() && layout.size() == kind.control_count());
   BoundTable table;
-  table.layout = make_layout(kind, layout);
+  table.layout = std::move(layout);
   const DomainPoints points = domain_points(rows, table.layout);
   table.triangle = triangle_around(points);
   const PlaneFitter fitter(points, table.triangle, rows.entry_error());

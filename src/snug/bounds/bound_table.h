@@ -47,7 +47,9 @@ struct BoundTable {
 ///            function, up to about 1e-12.
 /// Requires:  rows of this kind.
 /// Cost:      two linear programmes a control point, linear in the number of rows (bench/results).
+[[nodiscard]] BoundTable make_bound_table(const Kind& kind, const BoundRows& rows);
+/// The same over any layout; where laid_by_rings(), its first three points are (0, 0), (1, 0), (0, 1).
 [[nodiscard]] BoundTable make_bound_table(const Kind& kind, const BoundRows& rows,
-                                          TableLayout layout = TableLayout::ngon);
+                                          std::vector<LayoutPoint> layout);
 
 }  // namespace snug

@@ -25,13 +25,12 @@ const BoundRows& BoundsCache::rows(const Kind& kind) {
   });
 }
 
-const BoundTable& BoundsCache::table(const Kind& kind, TableLayout layout) {
-  return tables_[static_cast<std::size_t>(layout)].get(kind.id(), [&] {
-    std::optional<BoundTable> shipped = ShippedBounds::compiled_in().table(kind.key(), layout);
+const BoundTable& BoundsCache::table(const Kind& kind) {
+  return tables_.get(kind.id(), [&] {
+    std::optional<BoundTable> shipped = ShippedBounds::compiled_in().table(kind.key());
     if (shipped) return *std::move(shipped);
     const bool kept = kind.shared() && !has_several_tips(kind);  // the rows that patches need
-    return kept ? make_bound_table(kind, rows(kind), layout)
-                : make_bound_table(kind, make_bound_rows(kind), layout);
+    return make_bound_table(kind, kept ? rows(kind) : make_bound_rows(kind));
   });
 }
 

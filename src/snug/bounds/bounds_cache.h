@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 
 #include <snug/bounds/bound_rows.h>
@@ -23,16 +22,16 @@ class BoundsCache {
   /// Errors:    InputError (refused) beyond 16 million kinds.
   [[nodiscard]] const BoundRows& rows(const Kind& kind);
   /// The table of a kind, made from rows that go down to tip_depth().
-  [[nodiscard]] const BoundTable& table(const Kind& kind, TableLayout layout = TableLayout::ngon);
+  [[nodiscard]] const BoundTable& table(const Kind& kind);
 
   /// Kinds that have rows, and the memory of all rows and tables.
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
-  [[nodiscard]] std::size_t bytes() const { return rows_.bytes() + tables_[0].bytes() + tables_[1].bytes(); }
+  [[nodiscard]] std::size_t bytes() const { return rows_.bytes() + tables_.bytes(); }
 
  private:
   KindCache kinds_;
   KindSlots<BoundRows> rows_;
-  std::array<KindSlots<BoundTable>, 2> tables_;  // a layout
+  KindSlots<BoundTable> tables_;
 };
 
 }  // namespace snug

@@ -11,8 +11,4 @@ namespace snug {
 /// Guarantee: the piece lies in the hull of points that differ from these by at most out.error a coordinate.
 void hull_points(const CurvePiece& piece, HullPoints& out);
 
-/// The baseline: the control points themselves, and the end of the polyline in the place of a ghost.
-/// Guarantee: as above; derivations/curves.md shows it for the ends.
-void control_points(const CurvePiece& piece, HullPoints& out);
-
 }  // namespace snug

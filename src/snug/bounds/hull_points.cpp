@@ -196,11 +196,6 @@ void refine_tips(BoundsCache& library, const std::array<bool, 3>& which, HullPoi
   }
 }
 
-void control_points(const Patch& patch, HullPoints& out) {
-  clear(patch, out);
-  add_net(patch, out);
-}
-
 Box3 outer_box(const HullPoints& points) {
   Box3 box;
   const kernels::Coordinates all = points.coordinates();

@@ -67,10 +67,6 @@ void close_points(BoundsCache& library, const Patch& patch, HullPoints& out);
 /// shrinks to the pieces around these corners, and nets some levels farther down.
 void refine_tips(BoundsCache& library, const std::array<bool, 3>& which, HullPoints& points);
 
-/// The baseline: the control points themselves. The limit lies in their hull because all masks are
-/// non-negative.
-void control_points(const Patch& patch, HullPoints& out);
-
 /// Least box around the points, moved to the coordinates' origin.
 /// Guarantee: contains the patch, rounding included.
 [[nodiscard]] Box3 outer_box(const HullPoints& points);

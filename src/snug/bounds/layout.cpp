@@ -8,8 +8,6 @@
 #include <snug/base/contract.h>
 #include <snug/bounds/fair_layout.h>
 #include <snug/geometry/interval.h>
-#include <snug/scheme/loop_masks.h>
-#include <snug/scheme/refine.h>
 
 namespace snug {
 namespace {
@@ -105,35 +103,6 @@ std::vector<LayoutPoint> ngon_layout(const Kind& kind, const Topology& topology,
   return layout;
 }
 
-// Subdivision around the extraordinary corner shrinks the ring by its eigenvalue; the outer points follow by
-// iteration, for their own eigenvalues are at most 1/8.
-void relax_to_characteristic(const Kind& kind, std::size_t centre, std::vector<LayoutPoint>& layout) {
-  std::vector<bool> fixed(kind.control_count(), false);
-  const Neighbourhood around = neighbourhood(kind.key());
-  const Topology& topology = around.topology;
-  // The quarter at the corner has the kind again, and here in the same order.
-  const RefinedTopology refined = refine(topology, around.options, around.sharpness);
-  std::vector<VertexId> control;
-  control_vertices(refined.topology, FaceId(centre), 0, kind.key(), control);
-  SNUG_EXPECT(control.size() == layout.size());
-  fixed[centre] = true;
-  for (const std::size_t v : ring_of(topology, centre).after) fixed[v] = true;
-  const double grow = 1 / loop::subdominant(kind.corner(centre).faces());
-  const LayoutPoint origin = unit_triangle[centre];
-  for (int step = 0; step < 200; ++step) {
-    const std::vector<LayoutPoint> old = layout;
-    for (std::size_t r = 0; r < layout.size(); ++r) {
-      if (fixed[r]) continue;
-      LayoutPoint sum{0, 0};
-      const Stencils::Row row = refined.stencils.row(control[r].index());
-      for (std::size_t i = 0; i < row.sources.size(); ++i)
-        sum = sum + row.weights[i] * (old[row.sources[i]] - origin);
-      layout[r] = origin + grow * sum;
-    }
-    if (layout == old) break;
-  }
-}
-
 // Moves the points that are not corners as little as makes the limits of the corners the corners.
 void pull_limits_to_corners(const Kind& kind, std::vector<LayoutPoint>& layout) {
   const std::size_t count = kind.control_count();
@@ -201,14 +170,11 @@ double outer_spoke(std::size_t n) {
 
 bool laid_by_rings(const KindKey& key) { return key.scheme == Scheme::loop && key.plain(); }
 
-std::vector<LayoutPoint> make_layout(const Kind& kind, TableLayout layout) {
+std::vector<LayoutPoint> make_layout(const Kind& kind) {
   if (!laid_by_rings(kind.key())) return fair_layout(kind);
   const Topology topology = neighbourhood(kind.key()).topology;
   const std::optional<std::size_t> centre = lone_centre(kind);
-  if (!centre) return blended_layout(kind, topology);
-  std::vector<LayoutPoint> result = ngon_layout(kind, topology, *centre);
-  if (layout == TableLayout::characteristic) relax_to_characteristic(kind, *centre, result);
-  return result;
+  return centre ? ngon_layout(kind, topology, *centre) : blended_layout(kind, topology);
 }
 
 }  // namespace snug

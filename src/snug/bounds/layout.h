@@ -1,7 +1,7 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
+#include <cstddef>
 #include <vector>
 
 #include <snug/patch/kind_cache.h>
@@ -11,30 +11,23 @@ namespace snug {
 /// A place in the plane, in affine coordinates: weights of corners 1 and 2 of a patch; corner 0 has the rest.
 using LayoutPoint = std::array<double, 2>;
 
-/// Where the control points of a patch lie in the plane over which its basis functions are bounded.
-enum class TableLayout : std::uint8_t {
-  ngon,            ///< the dissertation's: spokes of equal length and angle
-  characteristic,  ///< the control net of the characteristic map
-};
-
 /// Is a kind laid out by the rings of its corners? Loop where the valences say everything.
 [[nodiscard]] bool laid_by_rings(const KindKey& key);
 
-/// The layout of a kind's control points.
+/// Where the control points of a kind lie in the plane over which its basis functions are bounded.
 ///
 /// By rings: corners, the first three control points, lie at (0, 0), (1, 0) and (0, 1). Other kinds:
-/// fair_layout(), whatever is asked for; the limits of the corners lie there.
+/// fair_layout(); the limits of the corners lie there.
 ///
-/// By rings, at most one extraordinary corner, inside the mesh: the layout asked for. Others have neither;
-/// then both names give the same one: each control point in the mean of the places that the corners it is
-/// next to give it, an affine image of a regular fan around each, moved as little as brings the limit corners
-/// of the layout to its corners (but for a corner with one face, whose ring is the other corners).
+/// By rings, at most one extraordinary corner, inside the mesh: the dissertation's, spokes of equal length and
+/// angle. Others: each control point in the mean of the places that the corners it is next to give it, an
+/// affine image of a regular fan around each, moved as little as brings the limit corners of the layout to its
+/// corners (but for a corner with one face, whose ring is the other corners).
 ///
 /// Guarantee: finite numbers, the same for the same kind. A bound needs no more: any layout is sound.
-/// Cost:      linear in the valences, but for `characteristic`: some 200 products with the stencils of a
-///            child.
-/// Source:    [Wu05, sec. 4.3], [Reif95]; derivations/tables.md.
-[[nodiscard]] std::vector<LayoutPoint> make_layout(const Kind& kind, TableLayout layout);
+/// Cost:      linear in the valences; that of fair_layout() for other kinds.
+/// Source:    [Wu05, sec. 4.3]; derivations/tables.md.
+[[nodiscard]] std::vector<LayoutPoint> make_layout(const Kind& kind);
 
 /// Where the outer points lie on the spokes of a valence-n corner: b = k u1 and d = k u2. 2 for n = 6.
 /// Requires:  n >= 3.

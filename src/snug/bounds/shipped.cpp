@@ -83,9 +83,6 @@ KindKey next_key(Fields& fields) {
   return key;
 }
 
-// The layout of kinds that are not laid by rings, whatever is asked for.
-constexpr std::uint64_t fair_name = 2;
-
 // What comes before the weights.
 struct RowsHead {
   std::uint32_t rows, controls;
@@ -98,7 +95,7 @@ ShippedBounds::ShippedBounds(std::span<const std::byte> file) {
   constexpr char magic[8] = "snugbnd";
   Fields fields(file);
   SNUG_EXPECT(std::memcmp(fields.bytes(8).data(), magic, 8) == 0);
-  SNUG_EXPECT(fields.next<std::uint32_t>() == 2);
+  SNUG_EXPECT(fields.next<std::uint32_t>() == 3);
   const auto kinds = fields.next<std::uint32_t>();
   SNUG_EXPECT(fields.next<std::uint64_t>() == file.size() && file.size() % 8 == 0);
   const auto hash = fields.next<std::uint64_t>();
@@ -138,25 +135,20 @@ std::optional<BoundRows> ShippedBounds::rows(const Kind& kind) const {
   return result;
 }
 
-std::optional<BoundTable> ShippedBounds::table(const KindKey& key, TableLayout layout) const {
+std::optional<BoundTable> ShippedBounds::table(const KindKey& key) const {
   const auto found = bodies_.find(key);
   if (found == bodies_.end()) return {};
   Fields fields(found->second);
   const auto head = fields.next<RowsHead>();
-  const bool by_rings = laid_by_rings(key);
-  const std::uint64_t wanted = by_rings ? static_cast<std::uint64_t>(layout) : fair_name;
-  const std::size_t planes = head.controls - (by_rings ? 3u : 0u);
   static_cast<void>(fields.bytes(std::uint64_t{head.rows} * head.controls * sizeof(double)));
-  for (auto left = fields.next<std::uint64_t>(); left > 0; --left) {
-    const auto name = fields.next<std::uint64_t>();
-    BoundTable table;
-    fields.fill(table.layout, head.controls);
-    table.triangle = fields.next<std::array<BoundTable::Planar, 3>>();
-    fields.fill(table.lower, planes);
-    fields.fill(table.upper, planes);
-    if (name == wanted) return table;
-  }
-  return {};
+  if (fields.next<std::uint64_t>() == 0) return {};
+  const std::size_t planes = head.controls - (laid_by_rings(key) ? 3u : 0u);
+  BoundTable table;
+  fields.fill(table.layout, head.controls);
+  table.triangle = fields.next<std::array<BoundTable::Planar, 3>>();
+  fields.fill(table.lower, planes);
+  fields.fill(table.upper, planes);
+  return table;
 }
 
 }  // namespace snug

@@ -18,7 +18,7 @@ namespace snug {
 /// Source:    tablegen/, which lists the kinds; no arguments but the name of the file; IEEE doubles with the
 ///            error terms of geometry/rounding.h.
 ///
-/// The file, version 2: little-endian, every field at a multiple of its size, every part at a multiple of 8.
+/// The file, version 3: little-endian, every field at a multiple of its size, every part at a multiple of 8.
 ///
 ///     header   char[8] "snugbnd" and a zero     u32 version     u32 kinds
 ///              u64 bytes of the whole file      u64 hash of all that follows this field
@@ -29,9 +29,8 @@ namespace snug {
 ///              u32 rows                         u32 control points
 ///              f64 entry_error                  f64 abs_sum
 ///              f64 weights[control point][row]
-///              u64 tables
-///     a table  u64 layout: 0 ngon, 1 characteristic; of other schemes than Loop 2, whatever is asked for
-///              f64 layout[control point][2]     f64 triangle[3][2]
+///              u64 tables: 1, or 0
+///     a table  f64 layout[control point][2]     f64 triangle[3][2]
 ///              f64 lower[control point - first_bounded][3], the same of upper; first_bounded is 3 for Loop, else 0
 ///
 /// The hash of words w1, w2, ... of 8 bytes: start with 0xcbf29ce484222325; for each word
@@ -49,7 +48,7 @@ class ShippedBounds {
 
   /// Nothing if this kind, or this table of it, is not shipped.
   [[nodiscard]] std::optional<BoundRows> rows(const Kind& kind) const;
-  [[nodiscard]] std::optional<BoundTable> table(const KindKey& key, TableLayout layout) const;
+  [[nodiscard]] std::optional<BoundTable> table(const KindKey& key) const;
   /// In the order of the file.
   [[nodiscard]] const std::vector<KindKey>& keys() const { return keys_; }
 

@@ -234,7 +234,7 @@ Neighbourhood from_details(const KindKey& key) {
   Neighbourhood result;
   const std::uint32_t rules = next();
   result.options = {key.scheme, BoundaryRule::edge_only, static_cast<CreaseMethod>(rules & 1u),
-                    static_cast<SmoothTriangles>(rules >> 1 & 1u), CatmarkVertexRule::standard};
+                    static_cast<SmoothTriangles>(rules >> 1 & 1u)};
   const std::size_t vertices = next(), faces = next();
   std::vector<std::uint32_t> offsets{0};
   std::vector<VertexId> corners;

@@ -23,13 +23,8 @@ struct PatchPieces {
 
 class PatchBounder {
  public:
-  PatchBounder(const LimitSurface& surface, const BoundOptions& options, double target,
-               const WorkMonitor& monitor)
-      : surface_(surface),
-        options_(options),
-        target_(target),
-        monitor_(monitor),
-        back_(surface.scale().inverse()) {}
+  PatchBounder(const LimitSurface& surface, const BoundOptions& options, const WorkMonitor& monitor)
+      : surface_(surface), options_(options), monitor_(monitor), back_(surface.scale().inverse()) {}
 
   PatchPieces run(PatchId root, std::uint64_t budget) {
     result_ = {};
@@ -42,12 +37,7 @@ class PatchBounder {
 
  private:
   void visit(const Patch& patch) {
-    const bool passes = options_.passing == PassingMethod::split && patch.kind->passing();
     const bool room = result_.splits < budget_ && patch.path.level() < PiecePath::max_level;
-    if (passes && room) {
-      visit_children(patch);
-      return;
-    }
     PieceEnclosure piece;
     const bool fine = fit(patch, piece);
     const bool more = options_.tolerance ? !fine : level_ + patch.path.level() < options_.level;
@@ -56,7 +46,7 @@ class PatchBounder {
       visit_children(patch);
       return;
     }
-    if (more || passes) result_.reached = false;
+    if (more) result_.reached = false;
     result_.pieces.push_back(std::move(piece));
   }
 
@@ -74,17 +64,9 @@ class PatchBounder {
     for (std::size_t k = 0; k < 3; ++k) {
       piece.corners[k] = require_representable(back_.apply(patch.origin + corners[k]));
     }
-    if (options_.method == BoundMethod::control_box) {
-      control_points(patch, points_);
-      const Box3 box = outer_box(points_);
-      piece.box = unscaled(box, back_);
-      stuck_ = box.longest_side() <= 4 * patch.error;
-      return enlarged(box.longest_side() / 2) <= target_;
-    }
     OffsetTriangle offset;
     if (options_.method == BoundMethod::table) {
-      const TableTriangle triangle =
-          table_triangle(surface_.library().table(*patch.kind, options_.layout), patch);
+      const TableTriangle triangle = table_triangle(surface_.library().table(*patch.kind), patch);
       offset = offset_triangle(triangle);
       piece.interval = unscaled(triangle.interval, back_);
     } else {
@@ -94,14 +76,11 @@ class PatchBounder {
     }
     piece.offset = unscaled(offset, back_);
     stuck_ = offset.radius <= 2 * offset.rounding;
-    return piece.offset->radius <= mesh_target();
+    return !options_.tolerance || piece.offset.radius <= *options_.tolerance / 2;
   }
-
-  [[nodiscard]] double mesh_target() const { return options_.tolerance ? *options_.tolerance / 2 : INFINITY; }
 
   const LimitSurface& surface_;
   const BoundOptions& options_;
-  double target_;
   const WorkMonitor& monitor_;
   PowerOfTwo back_;
   PatchId root_;
@@ -111,12 +90,6 @@ class PatchBounder {
   HullPoints points_;
   PatchPieces result_;
 };
-
-// The whole side may overflow.
-double half_longest_side(const Box3& box) {
-  if (const double side = box.longest_side(); std::isfinite(side)) return side / 2;
-  return Box3{PowerOfTwo(-1).apply(box.lower), PowerOfTwo(-1).apply(box.upper)}.longest_side();
-}
 
 }  // namespace
 
@@ -129,7 +102,6 @@ void require_sound(const BoundOptions& options) {
 BoundSummary bound(const LimitSurface& surface, const BoundOptions& options,
                    const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor) {
   require_sound(options);
-  const double target = options.tolerance ? surface.scale().apply(*options.tolerance / 2) : INFINITY;
   // Patches worked on at once: as many as their pieces are few, so that memory stays small and threads are busy.
   constexpr std::size_t most_patches = 1024, most_pieces = 1 << 16;
   std::size_t chunk = 1;
@@ -142,7 +114,7 @@ BoundSummary bound(const LimitSurface& surface, const BoundOptions& options,
         options.budget - summary.splits, std::max<std::uint64_t>(64, most_pieces / (3 * count)));
     results.assign(count, {});
     parallel_for_with(
-        count, options.threads, [&] { return PatchBounder(surface, options, target, monitor); },
+        count, options.threads, [&] { return PatchBounder(surface, options, monitor); },
         [&](PatchBounder& bounder, std::size_t from, std::size_t to) {
           for (std::size_t i = from; i < to; ++i) results[i] = bounder.run(PatchId(begin + i), left);
         });
@@ -150,14 +122,13 @@ BoundSummary bound(const LimitSurface& surface, const BoundOptions& options,
       // The budget is spent in the order of patches, whatever the threads did.
       const std::uint64_t rest = options.budget - summary.splits;
       if (results[i].splits > rest || (results[i].splits == left && left < rest)) {
-        results[i] = PatchBounder(surface, options, target, monitor).run(PatchId(begin + i), rest);
+        results[i] = PatchBounder(surface, options, monitor).run(PatchId(begin + i), rest);
       }
       summary.splits += results[i].splits;
       summary.reached = summary.reached && results[i].reached;
       for (const PieceEnclosure& piece : results[i].pieces) {
         ++summary.count;
-        const double radius = piece.offset ? piece.offset->radius : half_longest_side(*piece.box);
-        summary.max_radius = std::max(summary.max_radius, radius);
+        summary.max_radius = std::max(summary.max_radius, piece.offset.radius);
         sink(piece);
       }
     }

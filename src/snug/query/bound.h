@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 
+#include <snug/bounds/bound_method.h>
 #include <snug/bounds/interval_triangle.h>
 #include <snug/bounds/offset_triangle.h>
 #include <snug/patch/piece_path.h>
@@ -11,24 +12,9 @@
 
 namespace snug {
 
-enum class BoundMethod : std::uint8_t {
-  rows,         ///< hull rows
-  table,        ///< the dissertation's tables
-  control_box,  ///< the baseline: least box of the control points
-};
-
-/// What is done where sharpness decays, and where faces lie around that split into quads (Kind::passing()).
-enum class PassingMethod : std::uint8_t {
-  bound,  ///< bounds for the configuration as it is
-  split,  ///< split until it has passed, whatever tolerance and level ask for; then bounds of usual kinds
-};
-
 struct BoundOptions {
   BoundMethod method = BoundMethod::rows;
-  TableLayout layout = TableLayout::ngon;  ///< table only
-  PassingMethod passing = PassingMethod::bound;
-  /// Split until each radius is at most half of this, in mesh units; with control_box, until half the box's
-  /// longest side is.
+  /// Split until each radius is at most half of this, in mesh units.
   std::optional<double> tolerance;
   /// Without a tolerance: split every patch this often; the first split of a polygon that is no patch counts.
   unsigned level = 0;
@@ -44,27 +30,24 @@ void require_sound(const BoundOptions& options);
 struct PieceEnclosure {
   PatchId patch;
   PiecePath path;
-  Triangle corners;                          ///< limit corners, in double precision
-  std::optional<OffsetTriangle> offset;      ///< absent for control_box
-  std::optional<IntervalTriangle> interval;  ///< absent for control_box
-  std::optional<Box3> box;                   ///< control_box only
+  Triangle corners;  ///< limit corners, in double precision
+  OffsetTriangle offset;
+  IntervalTriangle interval;
 };
 
 struct BoundSummary {
   std::uint64_t count = 0;
   double max_radius = 0;
   std::uint64_t splits = 0;
-  /// Every piece meets the tolerance, and has passed where that is asked for; else budget, levels or rounding
-  /// stood in the way.
+  /// Every piece meets the tolerance; else budget, levels or rounding stood in the way.
   bool reached = true;
 };
 
 /// Enclosures of the whole limit surface, passed to `sink` patch by patch, pieces of one in the order of
 /// their paths.
 ///
-/// Guarantee: every limit point of a patch lies in the union of its pieces' offset triangles, of their
-///            interval triangles, and of their boxes, each on its own, rounding included; also where
-///            `reached` is false. Same output for any number of threads.
+/// Guarantee: every limit point of a patch lies in the union of its pieces' offset triangles, and of their
+///            interval triangles, rounding included; also where `reached` is false. Same output for any number of threads.
 /// Errors:    InputError (value) as require_sound(), (unrepresentable) if a result does not fit a double; whatever `sink` or
 ///            the monitor throws.
 /// Cost:      rows: a piece 3 to 5 microseconds on regular patches. Memory holds the pieces of one face,

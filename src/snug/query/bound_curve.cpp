@@ -17,7 +17,7 @@ class CurveBounder {
       : options_(options), sink_(sink), monitor_(monitor), back_(curves.scale().inverse()) {}
 
   void visit(EdgeId edge, const CurvePiece& piece) {
-    CurveEnclosure enclosure{edge, piece.path, {}, {}, {}, {}};
+    CurveEnclosure enclosure{edge, piece.path, {}, {}, {}};
     const Fit fit = fitted(piece, enclosure);
     const bool fine = !options_.tolerance || fit.radius <= *options_.tolerance / 2;
     const bool more = options_.tolerance ? !fine : piece.path.level() < options_.level;
@@ -38,7 +38,7 @@ class CurveBounder {
 
  private:
   struct Fit {
-    double radius;  // in mesh units; of a box half its longest side
+    double radius;  // in mesh units
     bool stuck;     // rounding alone makes it up: splitting does not help
   };
 
@@ -48,18 +48,11 @@ class CurveBounder {
     for (std::size_t k = 0; k < 2; ++k) {
       enclosure.corners[k] = require_representable(back_.apply(piece.origin + ends[k]));
     }
-    if (options_.method == BoundMethod::control_box) {
-      control_points(piece, points_);
-      const Box3 box = outer_box(points_);
-      enclosure.box = unscaled(box, back_);
-      const double radius = require_representable(unscaled_up(enlarged(box.longest_side() / 2), back_));
-      return {radius, box.longest_side() <= 4 * piece.error};
-    }
     hull_points(piece, points_);
     const OffsetSegment offset = offset_segment(points_, ends);
     enclosure.offset = unscaled(offset, back_);
     enclosure.interval = unscaled(interval_segment(points_, ends), back_);
-    return {enclosure.offset->radius, offset.radius <= 2 * offset.rounding};
+    return {enclosure.offset.radius, offset.radius <= 2 * offset.rounding};
   }
 
   const BoundOptions& options_;
@@ -74,8 +67,7 @@ class CurveBounder {
 
 BoundSummary bound(const CurveSet& curves, const BoundOptions& options,
                    const std::function<void(const CurveEnclosure&)>& sink, const WorkMonitor& monitor) {
-  require_value(options.method != BoundMethod::table,
-                "bound: curves have no tables; give rows or control boxes");
+  require_value(options.method != BoundMethod::table, "bound: curves have no tables; give BoundMethod::rows");
   require_sound(options);
   CurveBounder bounder(curves, options, sink, monitor);
   const std::size_t edges = curves.edge_count(), stride = 1 + edges / 1000;

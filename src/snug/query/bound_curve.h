@@ -2,7 +2,6 @@
 
 #include <array>
 #include <functional>
-#include <optional>
 
 #include <snug/query/bound.h>
 #include <snug/surface/curve_set.h>
@@ -13,19 +12,16 @@ namespace snug {
 struct CurveEnclosure {
   EdgeId edge;
   PiecePath path;
-  Segment corners;                          ///< limit points at both ends, in double precision
-  std::optional<OffsetSegment> offset;      ///< absent for control_box
-  std::optional<IntervalSegment> interval;  ///< absent for control_box
-  std::optional<Box3> box;                  ///< control_box only
+  Segment corners;  ///< limit points at both ends, in double precision
+  OffsetSegment offset;
+  IntervalSegment interval;
 };
 
 /// Enclosures of all limit curves, passed to `sink` edge by edge, pieces of an edge from its first end to its
 /// last.
 ///
-/// Guarantee: every limit point of edge e lies in the union of its pieces' offset segments, of their interval
-///            segments, and of their boxes, each on its own, rounding included; also where `reached` is
-///            false.
-///            `threads` and `layout` change nothing.
+/// Guarantee: every limit point of edge e lies in the union of its pieces' offset segments, and of their
+///            interval segments, rounding included; also where `reached` is false. `threads` changes nothing.
 /// Errors:    InputError (value) for tables and as require_sound(), (unrepresentable) if a result does not fit a double;
 ///            whatever `sink` or the monitor throws.
 /// Cost:      about a microsecond a piece, on one thread. Memory does not grow with the output.

@@ -20,10 +20,8 @@ StarMask vertex_mask(std::size_t n) {
   return {ratio(4 * n - 7, 4 * n), ratio(3, 2 * n * n), ratio(1, 4 * n * n)};
 }
 
-CentreMask vertex_centre_mask(std::size_t n, bool older) {
+CentreMask vertex_centre_mask(std::size_t n) {
   SNUG_EXPECT(n >= 2);
-  // Q / 4 + R / 2 + S / 4, where R has half of S.
-  if (older) return {0.5, ratio(1, 4 * n), ratio(1, 4 * n)};
   return {ratio(n - 2, n), ratio(1, n * n), ratio(1, n * n)};
 }
 

@@ -18,11 +18,11 @@ struct StarMask {
 /// (n - 2)/n, 1/n^2 an edge, 1/n^2 a face's centre.
 [[nodiscard]] StarMask vertex_mask(std::size_t n);
 
-/// The same by face centres, for faces of any size. `older`: (Q + 2 R + S) / 4, the rule of [DooSabin78].
+/// The same by face centres, for faces of any size.
 struct CentreMask {
   Interval centre, edge, face;
 };
-[[nodiscard]] CentreMask vertex_centre_mask(std::size_t n, bool older);
+[[nodiscard]] CentreMask vertex_centre_mask(std::size_t n);
 
 /// Limit position of an interior vertex among quads:  n^2, 4, 1, over n (n + 5).
 /// Source:    [HalsteadKassDeRose93].

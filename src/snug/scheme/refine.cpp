@@ -98,9 +98,7 @@ class PrimalRows {
 
   void add_catmark_vertex(VertexId v, const Interval& share) {
     const std::size_t n = star_.faces.size();
-    const bool older = options_.vertex_rule == CatmarkVertexRule::older;
-    if (!older &&
-        std::all_of(star_.faces.begin(), star_.faces.end(), [&](HalfEdge h) { return is_quad(h); })) {
+    if (std::all_of(star_.faces.begin(), star_.faces.end(), [&](HalfEdge h) { return is_quad(h); })) {
       const catmark::StarMask mask = catmark::vertex_mask(n);
       row_.add(v.value(), times(share, mask.centre));
       for (const Spoke& spoke : star_.spokes) row_.add(spoke.end.value(), times(share, mask.edge));
@@ -109,7 +107,7 @@ class PrimalRows {
       }
       return;
     }
-    const catmark::CentreMask mask = catmark::vertex_centre_mask(n, older);
+    const catmark::CentreMask mask = catmark::vertex_centre_mask(n);
     row_.add(v.value(), share * mask.centre);
     for (const Spoke& spoke : star_.spokes) row_.add(spoke.end.value(), share * mask.edge);
     for (const HalfEdge h : star_.faces) add_face(topology_.face_of(h), share * mask.face);

@@ -17,19 +17,12 @@ enum class Scheme : std::uint8_t { loop, catmark, doo_sabin, midedge };
   return scheme == Scheme::loop || scheme == Scheme::catmark;
 }
 
-/// How Catmull-Clark moves an interior vertex.
-enum class CatmarkVertexRule : std::uint8_t {
-  standard,  ///< (Q + 2 R + (n - 3) S) / n
-  older,     ///< (Q + 2 R + S) / 4, of Doo and Sabin's paper: for whole meshes only
-};
-
 /// Rules that turn a mesh into a surface, beside the scheme itself.
 struct SchemeOptions {
   Scheme scheme = Scheme::loop;
   BoundaryRule boundary = BoundaryRule::edge_and_corner;
   CreaseMethod creases = CreaseMethod::uniform;
   SmoothTriangles triangles = SmoothTriangles::catmark;
-  CatmarkVertexRule vertex_rule = CatmarkVertexRule::standard;
   friend bool operator==(const SchemeOptions&, const SchemeOptions&) = default;
 };
 

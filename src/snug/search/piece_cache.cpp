@@ -12,13 +12,12 @@
 
 namespace snug {
 
-Piece make_piece(BoundsCache& library, PatchId root, Patch patch, HullPoints& scratch,
-                 std::optional<TableLayout> table) {
+Piece make_piece(BoundsCache& library, PatchId root, Patch patch, HullPoints& scratch, BoundMethod method) {
   Piece piece;
   piece.root = root;
   piece.corners = limit_corners(patch);
-  if (table) {
-    piece.offset = offset_triangle(table_triangle(library.table(*patch.kind, *table), patch));
+  if (method == BoundMethod::table) {
+    piece.offset = offset_triangle(table_triangle(library.table(*patch.kind), patch));
   } else {
     hull_points(library, patch, scratch);
     piece.offset = offset_triangle(library, scratch, piece.corners);
@@ -27,8 +26,8 @@ Piece make_piece(BoundsCache& library, PatchId root, Patch patch, HullPoints& sc
   return piece;
 }
 
-PieceCache::PieceCache(const LimitSurface& surface, std::optional<TableLayout> table)
-    : surface_(surface), table_(table), roots_(surface.patch_count()) {}
+PieceCache::PieceCache(const LimitSurface& surface, BoundMethod method)
+    : surface_(surface), method_(method), roots_(surface.patch_count()) {}
 
 Vector3 unit_normal(const Triangle& triangle) {
   const Vector3 a = triangle[1] - triangle[0], b = triangle[2] - triangle[0];
@@ -91,16 +90,18 @@ std::array<Vector3, 3> box_axes(const Triangle& base) {
 }  // namespace
 
 void PieceCache::add(PatchId root, Patch patch) {
-  pieces_.push_back(make_piece(surface_.library(), root, std::move(patch), scratch_, table_));
+  pieces_.push_back(make_piece(surface_.library(), root, std::move(patch), scratch_, method_));
   const Piece& piece = pieces_.back();
-  Heights heights = table_ ? heights_of(piece.offset) : heights_of(piece, scratch_);
+  const bool by_table = method_ == BoundMethod::table;
+  Heights heights = by_table ? heights_of(piece.offset) : heights_of(piece, scratch_);
   if (!std::isfinite(heights.lower) || !std::isfinite(heights.upper)) {
     heights = {-INFINITY, INFINITY};
   }
   heights_.push_back(heights);
   const std::array<Vector3, 3> axes = box_axes(piece.offset.base);
-  boxes_.push_back(fit_box(
-      axes, [&](const Vector3& d) { return table_ ? extent_of(piece.offset, d) : extent_of(scratch_, d); }));
+  boxes_.push_back(fit_box(axes, [&](const Vector3& d) {
+    return by_table ? extent_of(piece.offset, d) : extent_of(scratch_, d);
+  }));
   bytes_ += sizeof(Piece) + sizeof(Heights) + sizeof(Obb) + piece.patch.points.capacity() * sizeof(Vector3);
 }
 
@@ -138,7 +139,7 @@ PieceId PieceCache::root(PatchId patch) {
 }
 
 Piece PieceCache::child_of(const Piece& piece, unsigned child) {
-  return make_piece(surface_.library(), piece.root, snug::split(piece.patch, child), scratch_, table_);
+  return make_piece(surface_.library(), piece.root, snug::split(piece.patch, child), scratch_, method_);
 }
 
 bool PieceCache::can_split(PieceId id) const {

@@ -2,9 +2,9 @@
 
 #include <array>
 #include <deque>
-#include <optional>
 #include <vector>
 
+#include <snug/bounds/bound_method.h>
 #include <snug/bounds/interval_triangle.h>
 #include <snug/bounds/offset_triangle.h>
 #include <snug/bvh/obb.h>
@@ -34,9 +34,9 @@ struct Heights {
 };
 
 /// A piece with its offset triangle, made from a patch: fitted to hull rows, for which `scratch` is used, or
-/// from the tables of a layout.
+/// from tables.
 [[nodiscard]] Piece make_piece(BoundsCache& library, PatchId root, Patch patch, HullPoints& scratch,
-                               std::optional<TableLayout> table = {});
+                               BoundMethod method = BoundMethod::rows);
 
 /// Patches of one surface, split lazily and in place, pieces with their heights. Scratch memory of a query: one a thread.
 ///
@@ -46,7 +46,7 @@ struct Heights {
 class PieceCache {
  public:
   /// Requires:  the surface outlives the refinement.
-  explicit PieceCache(const LimitSurface& surface, std::optional<TableLayout> table = {});
+  explicit PieceCache(const LimitSurface& surface, BoundMethod method = BoundMethod::rows);
 
   [[nodiscard]] const LimitSurface& surface() const { return surface_; }
   /// A whole patch.
@@ -77,7 +77,7 @@ class PieceCache {
   void add(PatchId root, Patch patch);
 
   const LimitSurface& surface_;
-  std::optional<TableLayout> table_;
+  BoundMethod method_;
   std::vector<PieceId> roots_;
   std::deque<Piece> pieces_;
   std::vector<Heights> heights_;

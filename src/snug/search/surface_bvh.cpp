@@ -17,21 +17,21 @@
 namespace snug {
 namespace {
 
-Obb tight_box(const LimitSurface& surface, std::span<const PatchId> patches,
-              std::optional<TableLayout> table) {
+Obb tight_box(const LimitSurface& surface, std::span<const PatchId> patches, BoundMethod method) {
   // For their memory.
   thread_local HullPoints scratch;
   thread_local std::array<HullPoints, WideBvh::leaf_size> hulls;
   std::vector<OffsetTriangle> triangles;
   std::vector<Point3> spread;
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    const Piece piece = make_piece(surface.library(), patches[i], surface.patch(patches[i]), scratch, table);
+    const Piece piece = make_piece(surface.library(), patches[i], surface.patch(patches[i]), scratch, method);
     triangles.push_back(piece.offset);
     spread.insert(spread.end(), piece.offset.base.begin(), piece.offset.base.end());
-    if (!table) close_points(surface.library(), piece.patch, hulls[i]);
+    if (method == BoundMethod::rows) close_points(surface.library(), piece.patch, hulls[i]);
   }
   const std::array<Vector3, 3> axes = principal_axes(spread);
-  return table ? box_around(axes, triangles) : box_around(axes, std::span(hulls).first(patches.size()));
+  return method == BoundMethod::table ? box_around(axes, triangles)
+                                      : box_around(axes, std::span(hulls).first(patches.size()));
 }
 
 std::vector<PatchId> existing_patches(const LimitSurface& surface) {
@@ -62,7 +62,7 @@ WideBvh make_tree(const LimitSurface& surface, std::span<const PatchId> patches,
             std::array<PatchId, WideBvh::leaf_size> members;
             for (std::size_t i = 0; i < items.size(); ++i) members[i] = patches[items[i]];
             const std::span<const PatchId> here = std::span(members).first(items.size());
-            if (options.tight) return tight_box(surface, here, options.table);
+            if (options.tight) return tight_box(surface, here, options.method);
             hull.assign(surface, here);
             return hull.box();
           }};
@@ -84,7 +84,7 @@ SurfaceBvh& SurfaceBvh::operator=(SurfaceBvh&&) noexcept = default;
 SurfaceBvh::SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& options,
                        const WorkMonitor& monitor)
     : surface_(&surface),
-      table_(options.table),
+      method_(options.method),
       patches_(existing_patches(surface)),
       tree_(make_tree(surface, patches_, options, monitor)),
       solid_(std::make_unique<LazySolid>()) {

@@ -14,7 +14,7 @@ namespace snug {
 class Solid;
 
 struct SurfaceBvhOptions {
-  std::optional<TableLayout> table{};  ///< pieces bounded by the dissertation's tables instead of hull rows
+  BoundMethod method = BoundMethod::rows;  ///< of pieces
   /// Bound all patches when the model is made, some microseconds each: a tighter tree, for models that are asked thousands
   /// of times. Otherwise the tree is over the control net alone.
   bool tight = false;
@@ -36,7 +36,7 @@ class SurfaceBvh {
   SurfaceBvh& operator=(SurfaceBvh&&) noexcept;
 
   [[nodiscard]] const LimitSurface& surface() const { return *surface_; }
-  [[nodiscard]] std::optional<TableLayout> table() const { return table_; }
+  [[nodiscard]] BoundMethod method() const { return method_; }
   [[nodiscard]] const WideBvh& tree() const { return tree_; }
   /// The patch that the tree calls item i.
   [[nodiscard]] PatchId patch(std::uint32_t item) const { return patches_[item]; }
@@ -50,7 +50,7 @@ class SurfaceBvh {
 
  private:
   const LimitSurface* surface_;
-  std::optional<TableLayout> table_;
+  BoundMethod method_;
   std::vector<PatchId> patches_;
   WideBvh tree_;
   Ball ball_;

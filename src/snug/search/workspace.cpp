@@ -11,7 +11,7 @@ constexpr std::size_t max_bytes = std::size_t{256} << 20;
 }  // namespace
 
 SurfaceWorkspace::SurfaceWorkspace(const SurfaceBvh& model)
-    : model_(&model), pieces_(model.surface(), model.table()), of_leaf_(model.tree().leaf_count(), none) {}
+    : model_(&model), pieces_(model.surface(), model.method()), of_leaf_(model.tree().leaf_count(), none) {}
 
 std::size_t SurfaceWorkspace::bytes() const {
   return pieces_.bytes() + piece_nodes_.bytes() + extents_.bytes() + facts_.capacity() * sizeof(Facts) +

@@ -12,8 +12,6 @@ LimitSurface::LimitSurface(ControlMesh mesh, const SchemeOptions& options,
                            std::shared_ptr<BoundsCache> library, int threads, const WorkMonitor& monitor)
     : mesh_(std::move(mesh)), options_(with_tags(options, mesh_.tags)), library_(std::move(library)) {
   require_value(library_ != nullptr, "surface: the library is null; give std::make_shared<BoundsCache>()");
-  require_value(options_.vertex_rule == CatmarkVertexRule::standard,
-                "surface: limits are of the standard vertex rule only; the older one is for subdivide()");
   topology_ = require_surface(mesh_, options_);
   monitor.checkpoint();
   const Box3 box = used_box(mesh_);

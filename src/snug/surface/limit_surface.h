@@ -29,7 +29,7 @@ using PatchId = Id<struct PatchTag>;
 /// from mesh units. Everything below surface/ works in scaled units, everything that questions answer with is
 /// in mesh units.
 ///
-/// Errors:    InputError (refused) from require_subdividable, and (value) for a library that is null or the older vertex rule.
+/// Errors:    InputError (refused) from require_subdividable, and (value) for a library that is null.
 /// Cost:      linear; 9 bytes a patch beside mesh and topology. Rows of kinds are made when a patch is first
 ///            bounded.
 class LimitSurface {

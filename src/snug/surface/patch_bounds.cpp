@@ -85,11 +85,11 @@ std::size_t PatchBounds::control_count(const Group& group) {
   return (group.polygon ? group.polygon : group.kind)->control_count();
 }
 
-PatchBounds::PatchBounds(const LimitSurface& surface, std::optional<TableLayout> table, int threads)
-    : PatchBounds(surface, all_patches(surface), table, threads) {}
+PatchBounds::PatchBounds(const LimitSurface& surface, BoundMethod method, int threads)
+    : PatchBounds(surface, all_patches(surface), method, threads) {}
 
-PatchBounds::PatchBounds(const LimitSurface& surface, std::vector<PatchId> patches,
-                         std::optional<TableLayout> table, int threads)
+PatchBounds::PatchBounds(const LimitSurface& surface, std::vector<PatchId> patches, BoundMethod method,
+                         int threads)
     : library_(&surface.library()), patches_(std::move(patches)) {
   for (const PatchId p : patches_) {
     require_value(p.index() < surface.patch_count() && surface.has_patch(p),
@@ -100,8 +100,8 @@ PatchBounds::PatchBounds(const LimitSurface& surface, std::vector<PatchId> patch
   parallel_for(groups_.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t g = begin; g < end; ++g) {
       Group& group = groups_[g];
-      if (table) {
-        group.table = &library_->table(*group.kind, *table);
+      if (method == BoundMethod::table) {
+        group.table = &library_->table(*group.kind);
       } else {
         prepare_hull_points(*library_, *group.kind);
       }

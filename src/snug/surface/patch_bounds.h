@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
+#include <snug/bounds/bound_method.h>
 #include <snug/bounds/offset_triangle.h>
 #include <snug/surface/limit_surface.h>
 
@@ -16,13 +16,13 @@ namespace snug {
 /// Cost:      see bench/results/rows.txt. Memory: 4 bytes a control point and patch, 24 a vertex.
 class PatchBounds {
  public:
-  /// Makes what the kinds of the surface need: their rows, or their tables in a layout.
+  /// Makes what the kinds of the surface need: their rows, or their tables.
   /// Requires:  the surface outlives the bounds.
   /// Errors:    InputError (value) for a patch that is not there.
-  explicit PatchBounds(const LimitSurface& surface, std::optional<TableLayout> table = {}, int threads = 0);
+  explicit PatchBounds(const LimitSurface& surface, BoundMethod method = BoundMethod::rows, int threads = 0);
   /// The same for some of the patches, in any order.
   PatchBounds(const LimitSurface& surface, std::vector<PatchId> patches,
-              std::optional<TableLayout> table = {}, int threads = 0);
+              BoundMethod method = BoundMethod::rows, int threads = 0);
 
   /// The patches that update() answers for, in this order; all that are there unless chosen.
   [[nodiscard]] std::span<const PatchId> patches() const { return patches_; }

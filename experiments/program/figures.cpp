@@ -1,6 +1,8 @@
 #include <experiments/convergence.h>
 #include <experiments/curve_rates.h>
+#include <experiments/enclosure_thickness.h>
 #include <experiments/printed_pair_test.h>
+#include <experiments/program/experiments.h>
 #include <experiments/tightness.h>
 
 #include <cstdint>
@@ -9,33 +11,26 @@
 #include <random>
 #include <vector>
 
+#include <apps/snug/progress_bar.h>
 #include <fmt/core.h>
-
-#include "common.h"
-#include "experiment_tables.h"
-#include "progress_bar.h"
 
 namespace snug::command {
 namespace {
 
-struct Options : CommonOptions {
-  std::string name;
-  std::uint64_t pairs = 20'000;
-  std::uint64_t seed = 1;
-  std::optional<std::uint64_t> nets;  // each experiment has its own default
-  unsigned levels = RateOptions{}.levels;
-  int samples = TightnessOptions{}.steps;
-  std::string at = name_of(NetCentre::interior);
-  std::vector<std::string> models;
-  std::uint64_t placements = TableExperiment{}.placements;
+struct PairTestOptions : CommonOptions {
+  std::uint64_t pairs = 20'000, seed = 1;
 };
 
-// The fields that all experiments begin with.
-JsonWriter& begin_rows(Report& report, const Options& options) {
-  JsonWriter& json = report.write();
-  for (const char* none : {"mesh", "scheme"}) json.key(none).begin_array().end_array();
-  return json.field("name", options.name).field("seed", options.seed);
-}
+struct RatesOptions : CommonOptions {
+  std::string of = name_of(Scheme::loop), at = name_of(NetCentre::interior);
+  std::uint64_t nets = RateOptions{}.nets, seed = 1;
+  unsigned levels = RateOptions{}.levels;
+};
+
+struct RadiiOptions : CommonOptions {
+  std::uint64_t nets = TightnessOptions{}.nets, seed = 1;
+  int samples = TightnessOptions{}.steps;
+};
 
 // How often each test called a pair separated that must not be.
 struct PairRow {
@@ -47,7 +42,7 @@ struct PairRow {
 };
 
 // The families' rows, then their sum.
-std::vector<PairRow> measure_pairs(const Options& options, const WorkMonitor& monitor) {
+std::vector<PairRow> measure_pairs(const PairTestOptions& options, const WorkMonitor& monitor) {
   std::mt19937_64 random(options.seed);
   std::vector<PairRow> rows;
   PairRow sum{"all"};
@@ -73,15 +68,15 @@ std::vector<PairRow> measure_pairs(const Options& options, const WorkMonitor& mo
   return rows;
 }
 
-ExitStatus pair_test(const Options& options) {
-  Report report("experiment", options);
+ExitStatus pair_test(const PairTestOptions& options) {
+  Report report("pair-test", options);
   std::vector<PairRow> rows;
   {
     ProgressBar bar("testing pairs", options.quiet);
     rows = measure_pairs(options, bar.monitor());
   }
   if (report.json()) {
-    JsonWriter& json = begin_rows(report, options);
+    JsonWriter& json = report.write().field("seed", options.seed);
     json.key("rows").begin_array();
     for (const PairRow& row : rows) {
       json.begin_object().field("family", row.family).field("pairs", row.pairs);
@@ -105,52 +100,46 @@ ExitStatus pair_test(const Options& options) {
   return ExitStatus::answered;
 }
 
-const char* layout_of(const BoundSource& source) {
-  return source == TableLayout::characteristic ? "characteristic" : "ngon";
+const char* layout_of(BoundSource source) {
+  return source == BoundSource::characteristic ? "characteristic" : "ngon";
 }
 
-const char* bounds_of(const BoundSource& source) { return source ? "table" : "rows"; }
-
-void write_source(JsonWriter& json, const BoundSource& source) {
-  json.field("bounds", bounds_of(source)).key("layout");
-  if (source) {
-    json.value(layout_of(source));
-  } else {
-    json.null();
-  }
+void write_source(JsonWriter& json, BoundSource source) {
+  const bool rows = source == BoundSource::rows;
+  json.field("bounds", rows ? "rows" : "table").key("layout");
+  rows ? json.null() : json.value(layout_of(source));
 }
 
-std::string text_of(const BoundSource& source) {
-  return source ? fmt::format("table, {}", layout_of(source)) : "rows";
+std::string text_of(BoundSource source) {
+  return source == BoundSource::rows ? "rows" : fmt::format("table, {}", layout_of(source));
 }
 
-RateOptions rate_options(const Options& options) {
+RateOptions rate_options(const RatesOptions& options) {
   RateOptions wanted;
-  wanted.nets = options.nets.value_or(wanted.nets);
+  wanted.nets = options.nets;
   wanted.levels = options.levels;
   wanted.seed = options.seed;
   wanted.threads = options.threads;
   for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
-    if (options.scheme == name_of(scheme)) wanted.scheme = scheme;
+    if (options.of == name_of(scheme)) wanted.scheme = scheme;
   }
   for (const NetCentre centre : all_net_centres) {
     if (options.at == name_of(centre)) wanted.centre = centre;
   }
-  if (wanted.centre != NetCentre::interior && options.scheme == "curve") {
-    throw UsageError("experiment rates --at " + options.at +
-                     ": curves are measured inside and at their ends always");
+  if (wanted.centre != NetCentre::interior && options.of == "curve") {
+    throw UsageError("rates --at " + options.at + ": curves are measured inside and at their ends always");
   }
   if (wanted.centre != NetCentre::interior && !is_primal(wanted.scheme)) {
     throw UsageError(
-        "experiment rates --at " + options.at + ": " + options.scheme +
+        "rates --at " + options.at + ": " + options.of +
         " is dual: it has no patches at boundaries and no creases; give --scheme loop or catmark");
   }
   return wanted;
 }
 
 // rates --scheme curve.
-ExitStatus curve_rates(const Options& options) {
-  Report report("experiment", options);
+ExitStatus curve_rates(const RatesOptions& options) {
+  Report report("rates", options);
   const RateOptions wanted = rate_options(options);
   std::vector<CurveRateRow> rows;
   {
@@ -158,7 +147,7 @@ ExitStatus curve_rates(const Options& options) {
     rows = measure_curve_rates(wanted, bar.monitor());
   }
   if (report.json()) {
-    JsonWriter& json = begin_rows(report, options);
+    JsonWriter& json = report.write().field("seed", options.seed);
     json.field("nets", wanted.nets).field("levels", wanted.levels).key("rows").begin_array();
     for (const CurveRateRow& row : rows) {
       json.begin_object().field("degree", static_cast<int>(row.degree)).field("place", name_of(row.place));
@@ -213,8 +202,8 @@ void write_rates(Report& report, const RateOptions& wanted, const std::vector<Ra
   }
 }
 
-ExitStatus rates(const Options& options) {
-  Report report("experiment", options);
+ExitStatus rates(const RatesOptions& options) {
+  Report report("rates", options);
   const RateOptions wanted = rate_options(options);
   std::vector<RateRow> rows;
   {
@@ -222,7 +211,7 @@ ExitStatus rates(const Options& options) {
     rows = measure_rates(wanted, bar.monitor());
   }
   if (report.json()) {
-    JsonWriter& json = begin_rows(report, options);
+    JsonWriter& json = report.write().field("seed", options.seed);
     json.field("nets", wanted.nets).field("levels", wanted.levels).key("rows").begin_array();
     CornerEigenvalues eigenvalues{};
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -246,10 +235,10 @@ ExitStatus rates(const Options& options) {
   return ExitStatus::answered;
 }
 
-ExitStatus tightness(const Options& options) {
-  Report report("experiment", options);
+ExitStatus tightness(const RadiiOptions& options) {
+  Report report("tightness", options);
   TightnessOptions wanted;
-  wanted.nets = options.nets.value_or(wanted.nets);
+  wanted.nets = options.nets;
   wanted.steps = options.samples;
   wanted.seed = options.seed;
   wanted.threads = options.threads;
@@ -259,7 +248,7 @@ ExitStatus tightness(const Options& options) {
     rows = measure_tightness(wanted, bar.monitor());
   }
   if (report.json()) {
-    JsonWriter& json = begin_rows(report, options);
+    JsonWriter& json = report.write().field("seed", options.seed);
     json.field("nets", wanted.nets).field("samples", wanted.steps).key("rows").begin_array();
     for (const TightnessRow& row : rows) {
       json.begin_object().field("shape", name_of(row.shape)).field("valence", row.valence);
@@ -281,59 +270,110 @@ ExitStatus tightness(const Options& options) {
   return ExitStatus::answered;
 }
 
-ExitStatus run(const Options& options) {
-  const bool table = options.name.starts_with("table-");
-  if (!table && !options.models.empty()) {
-    throw UsageError("experiment " + options.name + " takes no files: " + options.models.front());
+ExitStatus prism(const RadiiOptions& options) {
+  Report report("prism", options);
+  TightnessOptions wanted;
+  wanted.nets = options.nets;
+  wanted.steps = options.samples;
+  wanted.seed = options.seed;
+  wanted.threads = options.threads;
+  std::vector<PrismRow> rows;
+  {
+    ProgressBar bar("measuring patches", options.quiet);
+    rows = measure_prisms(wanted, bar.monitor());
   }
-  if (table) return run_table({options.name, options.models, options.placements, options.seed}, options);
-  if (options.name == "rates") return options.scheme == "curve" ? curve_rates(options) : rates(options);
-  return options.name == "tightness" ? tightness(options) : pair_test(options);
+  if (report.json()) {
+    JsonWriter& json = report.write().field("seed", options.seed);
+    json.field("nets", wanted.nets).field("samples", wanted.steps).key("rows").begin_array();
+    for (const PrismRow& row : rows) {
+      json.begin_object().field("shape", name_of(row.shape)).field("valence", row.valence);
+      json.field("patches", row.patches).field("left", row.left).field("outside", row.outside);
+      json.field("prism", row.thickness.prism).field("offset", row.thickness.offset);
+      json.field("interval", row.thickness.interval).field("box", row.thickness.box).end_object();
+    }
+    json.end_array();
+  }
+  report.text("patches that leave the prism, and by how much at most; thickness along its normal, medians");
+  report.text(fmt::format("{:<6} {:>7} {:>7} {:>6} {:>8}  {:>8} {:>8} {:>8} {:>8}", "nets", "valence",
+                          "patches", "leave", "by", "prism", "offset", "interval", "box"));
+  for (const PrismRow& row : rows) {
+    report.text(fmt::format("{:<6} {:>7} {:>7} {:>6} {:>8.4f}  {:>8.4f} {:>8.4f} {:>8.4f} {:>8.4f}",
+                            name_of(row.shape), row.valence, row.patches, row.left, row.outside,
+                            row.thickness.prism, row.thickness.offset, row.thickness.interval,
+                            row.thickness.box));
+  }
+  report.finish();
+  return ExitStatus::answered;
+}
+
+// What tightness and prism take.
+OptionList radii_options(RadiiOptions& options) {
+  OptionList list;
+  list.add(Group::own, "--nets N", &options.nets, "Nets for each valence and shape").between(1, 100'000);
+  list.add(Group::own, "--samples N", &options.samples,
+           "Steps of the lattice of limit points along an edge, 1 to 1000")
+      .between(1, 1000);
+  list.add(Group::own, "--seed N", &options.seed, "Seed of what is drawn");
+  add_output_options(list, options);
+  return list;
 }
 
 }  // namespace
 
-Command experiment_command() {
-  auto options = std::make_shared<Options>();
+Command prism_command() {
+  auto options = std::make_shared<RadiiOptions>();
+  return {"prism",
+          Topic::comparisons,
+          "Kobbelt's bounding prism, which patches leave, beside what encloses them",
+          {"snug-experiments prism --nets 10"},
+          radii_options(*options),
+          [options] { return prism(*options); }};
+}
+
+Command pair_test_command() {
+  auto options = std::make_shared<PairTestOptions>();
   OptionList list;
-  list.add(Group::own, "NAME", &options->name,
-           "pair-test: how often the pair test as printed misses a near pair; rates: how fast enclosures "
-           "shrink "
-           "at an extraordinary corner, or those of curves with --scheme curve; tightness: radii over the "
-           "least "
-           "possible; table-5-1, table-5-2, table-5-3: triangles, creation times and query times of the "
-           "dissertation's tables")
-      .one_of({"pair-test", "rates", "tightness", "table-5-1", "table-5-2", "table-5-3"});
-  list.add(Group::own, "MODEL", &options->models,
-           "table-5-1 to 5-3: control meshes of triangles, for 5-3 two by two; default: six of "
-           "examples/models")
-      .must = false;
-  list.add(Group::own, "--placements N", &options->placements,
-           "table-5-3: random placements of a pair in a room")
-      .between(1, 100'000'000);
-  list.add(Group::own, "--pairs N", &options->pairs, "pair-test: random pairs in all, over three families")
+  list.add(Group::own, "--pairs N", &options->pairs, "Random pairs in all, over three families")
       .between(1, 1'000'000'000);
-  list.add(Group::own, "--nets N", &options->nets,
-           "rates, tightness: nets for each valence (default: 25, and 60 a shape)")
-      .between(1, 100'000);
-  list.add(Group::own, "--levels N", &options->levels, "rates: how often a patch is split, 4 to 40")
-      .between(4, 40);
-  list.add(Group::own, "--samples N", &options->samples,
-           "tightness: steps of the lattice of limit points along an edge, 1 to 1000")
-      .between(1, 1000);
+  list.add(Group::own, "--seed N", &options->seed, "Seed of what is drawn");
+  add_output_options(list, *options);
+  return {"pair-test",
+          Topic::tables,
+          "How often the pair test as printed misses a near pair",
+          {"snug-experiments pair-test --pairs 200000"},
+          std::move(list),
+          [options] { return pair_test(*options); }};
+}
+
+Command rates_command() {
+  auto options = std::make_shared<RatesOptions>();
+  OptionList list;
+  list.add(Group::own, "--scheme NAME", &options->of, "Of which subdivision")
+      .one_of({"loop", "catmark", "doo-sabin", "midedge", "curve"});
   list.add(Group::own, "--at PLACE", &options->at,
-           "rates: what is in the middle of the nets; all but interior with --scheme loop or catmark, for "
-           "dual "
+           "What is in the middle of the nets; all but interior with --scheme loop or catmark, for dual "
            "schemes have neither patches at boundaries nor creases")
       .one_of({"interior", "boundary", "corner", "crease", "dart", "semi-sharp"});
+  list.add(Group::own, "--nets N", &options->nets, "Nets for each valence").between(1, 100'000);
+  list.add(Group::own, "--levels N", &options->levels, "How often a patch is split, 4 to 40").between(4, 40);
   list.add(Group::own, "--seed N", &options->seed, "Seed of what is drawn");
-  add_common_options(list, *options);
-  return {"experiment",
-          Topic::research,
-          "A table or figure of the dissertation, measured here",
-          {"snug experiment rates --scheme catmark"},
+  add_output_options(list, *options);
+  return {"rates",
+          Topic::tables,
+          "How fast enclosures shrink at an extraordinary corner, or those of curves",
+          {"snug-experiments rates --scheme catmark"},
           std::move(list),
-          [options] { return run(*options); }};
+          [options] { return options->of == "curve" ? curve_rates(*options) : rates(*options); }};
+}
+
+Command tightness_command() {
+  auto options = std::make_shared<RadiiOptions>();
+  return {"tightness",
+          Topic::tables,
+          "Radii over the least possible for the same base triangle",
+          {"snug-experiments tightness --json"},
+          radii_options(*options),
+          [options] { return tightness(*options); }};
 }
 
 }  // namespace snug::command

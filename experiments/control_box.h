@@ -1,0 +1,22 @@
+#pragma once
+
+#include <snug/bounds/hull_points.h>
+#include <snug/patch/curve_piece.h>
+
+/// The baseline of all comparisons: the least box around control points.
+namespace snug {
+
+/// Control points, whose hull holds the limit because all masks are non-negative; of a curve's end the end of the polyline in
+/// the place of a ghost (derivations/curves.md).
+void control_points(const Patch& patch, HullPoints& out);
+void control_points(const CurvePiece& piece, HullPoints& out);
+
+/// The box around them.
+/// Guarantee: contains the patch, or the piece, rounding included.
+template <class Piece>
+[[nodiscard]] Box3 control_box(const Piece& piece, HullPoints& scratch) {
+  control_points(piece, scratch);
+  return outer_box(scratch);
+}
+
+}  // namespace snug

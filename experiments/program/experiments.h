@@ -1,0 +1,18 @@
+#pragma once
+
+#include <apps/snug/common.h>
+
+/// The commands of snug-experiments.
+namespace snug::command {
+
+[[nodiscard]] Command leaves_command();      ///< table-5-1
+[[nodiscard]] Command creation_command();    ///< table-5-2
+[[nodiscard]] Command rooms_command();       ///< table-5-3
+[[nodiscard]] Command rates_command();       ///< rates
+[[nodiscard]] Command tightness_command();   ///< tightness
+[[nodiscard]] Command pair_test_command();   ///< pair-test
+[[nodiscard]] Command prism_command();       ///< prism
+[[nodiscard]] Command bounds_command();      ///< bounds
+[[nodiscard]] Command older_rule_command();  ///< subdivide
+
+}  // namespace snug::command

@@ -1,0 +1,19 @@
+#include <apps/snug/program.h>
+#include <experiments/program/experiments.h>
+
+namespace {
+
+using namespace snug::command;
+
+Program experiments() {
+  return {"snug-experiments",
+          "What the dissertation measured, and what lost a comparison, measured here.",
+          "how fast do enclosures shrink at an extraordinary corner?",
+          "snug-experiments rates --scheme catmark",
+          {leaves_command(), creation_command(), rooms_command(), rates_command(), tightness_command(),
+           pair_test_command(), prism_command(), bounds_command(), older_rule_command()}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return run(argc, argv, experiments); }
