@@ -78,14 +78,14 @@ tidy: build  ## clang-tidy over the library
 	@run-clang-tidy -quiet -j $(JOBS) -p build/release 'src/snug/.*\.cpp$$'
 
 docs: install-packages  ## plots and tables of docs/convergence.md, pictures of README.md and docs/schemes.md; links and citations
-	@$(call build,release,snug_command)
+	@$(call build,release,snug_command snug_experiments_program)
 	@mkdir -p build/docs
-	@for name in rates tightness; do build/release/bin/snug experiment $$name -o build/docs/$$name.json > /dev/null; done
+	@for name in rates tightness; do build/release/bin/snug-experiments $$name -o build/docs/$$name.json > /dev/null; done
 	@for scheme in catmark doo-sabin midedge; do \
-	  build/release/bin/snug experiment rates --scheme $$scheme -o build/docs/$$scheme.json > /dev/null; done
+	  build/release/bin/snug-experiments rates --scheme $$scheme -o build/docs/$$scheme.json > /dev/null; done
 	@for scheme in loop catmark; do for place in boundary corner crease dart; do \
-	  build/release/bin/snug experiment rates --scheme $$scheme --at $$place --levels 36 -o build/docs/$$scheme-$$place.json > /dev/null; done; \
-	  build/release/bin/snug experiment rates --scheme $$scheme --at semi-sharp -o build/docs/$$scheme-semi-sharp.json > /dev/null; done
+	  build/release/bin/snug-experiments rates --scheme $$scheme --at $$place --levels 36 -o build/docs/$$scheme-$$place.json > /dev/null; done; \
+	  build/release/bin/snug-experiments rates --scheme $$scheme --at semi-sharp -o build/docs/$$scheme-semi-sharp.json > /dev/null; done
 	@scripts/plot_experiments.py build/docs docs/convergence.md docs/pictures
 	@scripts/draw_schemes build/release/bin/snug docs/pictures
 	@scripts/demo build/release/bin/snug docs/pictures/demo.png > /dev/null

@@ -15,7 +15,8 @@ namespace snug::command {
 namespace {
 
 struct CountsOptions : CommonOptions {
-  std::string mesh, tolerance = "1%";
+  std::string mesh, tolerance;
+  std::optional<std::uint64_t> level;
   Degree degree;
 };
 
@@ -30,15 +31,16 @@ struct Row {
 };
 
 // A row for each way to bound what is in the file.
-std::vector<Row> count_rows(ControlMesh mesh, const CountsOptions& options, const Length& tolerance,
-                            std::string& scheme, const WorkMonitor& monitor) {
+std::vector<Row> count_rows(ControlMesh mesh, const CountsOptions& options,
+                            const std::optional<Length>& tolerance, std::string& scheme,
+                            const WorkMonitor& monitor) {
   std::vector<Row> rows;
-  CountOptions how{.budget = options.budget};
+  CountOptions how{.level = static_cast<unsigned>(options.level.value_or(0)), .budget = options.budget};
   if (asks_for_curves("bounds", mesh, options.mesh, options, options.degree)) {
     scheme = "curve";
     naming(options.mesh, [&] {
       const CurveSet curves(std::move(mesh), curve_degree(options.degree));
-      how.tolerance = tolerance.in_mesh_units(curves.size());
+      if (tolerance) how.tolerance = tolerance->in_mesh_units(curves.size());
       for (const BoundWay way : {BoundWay::rows, BoundWay::control_box}) {
         rows.push_back({way, count_pieces(curves, way, how, monitor)});
       }
@@ -48,7 +50,7 @@ std::vector<Row> count_rows(ControlMesh mesh, const CountsOptions& options, cons
   const LimitSurface surface =
       make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
   scheme = name_of(surface.options().scheme);
-  how.tolerance = tolerance.in_mesh_units(surface.size());
+  if (tolerance) how.tolerance = tolerance->in_mesh_units(surface.size());
   LayoutTables tables(surface.library());
   for (const BoundWay way : all_bound_ways) {
     rows.push_back({way, count_pieces(surface, tables, way, how, {}, monitor)});
@@ -57,7 +59,9 @@ std::vector<Row> count_rows(ControlMesh mesh, const CountsOptions& options, cons
 }
 
 ExitStatus counts(const CountsOptions& options) {
-  const Length tolerance = parse_length(options.tolerance, "--tolerance");
+  std::optional<Length> tolerance;
+  if (!options.level)
+    tolerance = parse_length(options.tolerance.empty() ? "1%" : options.tolerance, "--tolerance");
   ControlMesh mesh = load_mesh(options.mesh, options);
   Report report("bounds", options);
   std::string scheme;
@@ -116,7 +120,10 @@ Command bounds_command() {
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
-           "Split until each radius, or half a box's longest side, is at most half of this");
+           "Split until each radius, or half a box's longest side, is at most half of this (default 1%)");
+  list.add(Group::own, "--level N", &options->level, "Or split every patch this often, 0 to 12")
+      .between(0, 12)
+      .excludes("--tolerance");
   list.add(Group::own, "--budget N", &options->budget, "Most patches split, by each")
       .between(0, std::uint64_t{1} << 40);
   add_degree_option(list, options->degree);
