@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <snug/base/progress.h>
+#include <snug/bounds/bound_method.h>
 #include <snug/bvh/wide_bvh.h>
 #include <snug/surface/limit_surface.h>
 
