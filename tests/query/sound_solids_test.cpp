@@ -97,7 +97,7 @@ class Trials {
     const Point3 target = t[0] + (b * (t[1] - t[0]) + c * (t[2] - t[0]));
     const Point3 middle = model_.tree().ball().centre;
     const std::size_t k = first_ray(target, middle);
-    for (int tries = 0; tries < 20; ++tries) {
+    for (int tries = 0; tries < 100; ++tries) {
       const Point3 q = target - model_.tree().ball().radius * between(random_, 0.02, 1) * rays[k];
       if (first_ray(q, middle) != k) continue;
       aimed_ = true;
