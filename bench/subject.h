@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include <snug/bounds/enclosure.h>
 #include <snug/bounds/hull_points.h>
-#include <snug/bounds/offset_triangle.h>
 #include <snug/patch/limit_evaluator.h>
 #include <snug/surface/limit_surface.h>
 #include <snug/surface/patch_bounds.h>

@@ -7,7 +7,7 @@
 #include <snug/bounds/bounds_cache.h>
 #include <snug/bounds/hull_points.h>
 #include <snug/bounds/kind_slots.h>
-#include <snug/bounds/offset_triangle.h>
+#include <snug/bounds/enclosure.h>
 
 /// What bounds a patch in the experiments: as in the library, or by tables of the layout that lost.
 namespace snug {

@@ -9,7 +9,7 @@
 #include <experiments/quantile.h>
 #include <snug/base/error.h>
 #include <snug/base/parallel.h>
-#include <snug/bounds/interval_triangle.h>
+#include <snug/bounds/enclosure.h>
 #include <snug/bounds/table_triangle.h>
 #include <snug/patch/evaluate.h>
 #include <snug/scheme/catmark_masks.h>
@@ -53,7 +53,7 @@ PieceThickness by_rows(BoundsCache& library, const Patch& patch, const Vector3& 
   const std::array<Vector3, 3> corners = limit_corners(patch);
   const OffsetTriangle offset = offset_triangle(library, points, corners);
   const Slab slab = outer_slab(points, normal);
-  return {{offset.radius, thickness(interval_triangle(points, corners)), slab.upper - slab.lower},
+  return {{offset.radius, thickness(interval_simplex(points, corners)), slab.upper - slab.lower},
           offset.rounding};
 }
 

@@ -10,7 +10,7 @@
 #include <experiments/quantile.h>
 #include <snug/base/error.h>
 #include <snug/base/parallel.h>
-#include <snug/bounds/interval_triangle.h>
+#include <snug/bounds/enclosure.h>
 #include <snug/patch/evaluate.h>
 #include <snug/surface/limit_surface.h>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <snug/bounds/bound_method.h>
-#include <snug/bounds/offset_triangle.h>
+#include <snug/bounds/enclosure.h>
 #include <snug/bvh/obb.h>
 #include <snug/geometry/motion.h>
 #include <snug/surface/limit_surface.h>

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <random>
 
-#include <snug/bounds/offset_triangle.h>
+#include <snug/bounds/enclosure.h>
 
 namespace snug {
 

@@ -26,10 +26,7 @@ LimitLattice::LimitLattice(const Patch& patch, int steps) : patch_(patch), steps
 double LimitLattice::least_radius(const Triangle& base) const {
   const Vector3 corner = base[0] - patch_.origin;
   const TriangleFoot foot(corner, base[1] - patch_.origin, base[2] - patch_.origin);
-  const auto deviation = [&](const Vector3& q) {
-    const Barycentric at = foot(q);
-    return length(q - corner - at.b * foot.edge_b() - at.c * foot.edge_c());
-  };
+  const auto deviation = [&](const Vector3& q) { return length(foot.rest(q)); };
   TriangleParameter best;
   double largest = -1;
   for (const Sample& sample : samples_) {

@@ -15,7 +15,7 @@ void write_points(JsonWriter& json, const char* key, const Segment& points) {
 void write_piece(JsonWriter& json, const CurveEnclosure& piece) {
   json.begin_object().field("edge", piece.edge.index()).field("piece", piece.path.text());
   json.field("level", piece.path.level());
-  const auto& end = piece.interval.end;
+  const auto& end = piece.interval.corner;
   write_points(json, "lower", {end[0].lower, end[1].lower});
   write_points(json, "upper", {end[0].upper, end[1].upper});
   write_points(json, "base", piece.offset.base);

@@ -434,7 +434,7 @@ class Nets {
     const Patch patch = make_patch(kind, 0, points_, std::span(control_).subspan(i * n, n));
     HullPoints hull;
     hull_points(surface_.library().rows(kind), patch, hull);
-    return offset_triangle(hull, limit_corners(patch));
+    return offset_simplex(hull, limit_corners(patch));
   }
 
  private:

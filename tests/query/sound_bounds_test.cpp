@@ -60,7 +60,7 @@ Enclosures enclosures_of(const LimitSurface& surface, const Patch& patch, const 
   hull_points(surface.library(), patch, points);
   const auto corners = limit_corners(patch);
   const OffsetTriangle offset = offset_triangle(surface.library(), points, corners);
-  return {unscaled(offset, back), unscaled(interval_triangle(points, corners), back)};
+  return {unscaled(offset, back), unscaled(interval_simplex(points, corners), back)};
 }
 
 class Checker {

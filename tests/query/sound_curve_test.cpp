@@ -1,6 +1,7 @@
 #include <snug/bounds/curve_points.h>
 #include <snug/query/bound_curve.h>
 #include <snug/surface/evaluate_curve.h>
+#include <snug/surface/unscale.h>
 #include <testing/curves.h>
 
 #include <gtest/gtest.h>
@@ -128,8 +129,8 @@ TEST(curves, lie_in_their_enclosures_after_fifty_splits) {
             hull_points(piece, points);
             const auto limits = limit_ends(piece);
             const std::array<Vector3, 2> ends{limits[0].relative, limits[1].relative};
-            const OffsetSegment offset = unscaled(offset_segment(points, ends), back);
-            const IntervalSegment interval = unscaled(interval_segment(points, ends), back);
+            const OffsetSegment offset = unscaled(offset_simplex<2>(points, ends), back);
+            const IntervalSegment interval = unscaled(interval_simplex<2>(points, ends), back);
             for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
               ++checks;
               ASSERT_TRUE(testing::contains(offset, interval,

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include <snug/bounds/interval_triangle.h>
-#include <snug/bounds/offset_triangle.h>
+#include <snug/bounds/enclosure.h>
 
 /// Containment in extended precision, written anew: shares no arithmetic with bounds/. Long double is fast,
 /// quadruple precision has the last word on slivers.

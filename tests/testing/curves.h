@@ -53,7 +53,7 @@ namespace snug::testing {
   const long double size = std::fabs(p[0]) + std::fabs(p[1]) + std::fabs(p[2]);
   const long double slack = 1.8L * s.error + 1e-17L * offset.radius + 1e-18L * size;
   return within_radius(p, {offset.base[0], offset.base[1], offset.base[1]}, offset.radius + slack) &&
-         in_interval_triangle(p, {{interval.end[0], interval.end[1], interval.end[1]}}, slack);
+         in_interval_triangle(p, {{interval.corner[0], interval.corner[1], interval.corner[1]}}, slack);
 }
 
 [[nodiscard]] inline bool contains(const Box3& box, const oracle::CurveSample& s) {

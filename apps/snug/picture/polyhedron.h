@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <snug/bounds/interval_triangle.h>
+#include <snug/bounds/enclosure.h>
 #include <snug/geometry/point.h>
 
 namespace snug {

@@ -72,7 +72,7 @@ struct BatchFit {
 /// Offset triangles of regular patches inside the surface, straight from their control points: Bezier points,
 /// one split of de Casteljau's, fit; a patch a lane.
 ///
-/// Guarantee: as offset_triangle() on the patch's hull points. A triangle that farthest() does not answer is
+/// Guarantee: as offset_simplex() on the patch's hull points. A triangle that farthest() does not answer is
 ///            marked.
 /// Requires:  control: twelve vertices of `points` a patch, in the kind's order; out.size() patches; points as
 ///            in farthest().

@@ -1,8 +1,7 @@
 #pragma once
 
 #include <snug/bounds/bound_table.h>
-#include <snug/bounds/interval_triangle.h>
-#include <snug/bounds/offset_triangle.h>
+#include <snug/bounds/enclosure.h>
 #include <snug/patch/patch.h>
 
 namespace snug {

@@ -44,8 +44,17 @@ Barycentric TriangleFoot::operator()(const Vector3& p) const {
   return {1 - on_bc, on_bc};
 }
 
-double extent(const Vector3& a, const Vector3& b, const Vector3& c) {
-  return std::max({max_abs(b - a), max_abs(c - a), max_abs(c - b)});
+Vector3 TriangleFoot::rest(const Vector3& p) const {
+  const Barycentric foot = (*this)(p);
+  return p - a_ - foot.b * edge_b_ - foot.c * edge_c_;
+}
+
+SegmentFoot::SegmentFoot(const Vector3& a, const Vector3& b)
+    : a_(a), edge_(b - a), inverse_(inverse_or_zero(length_sq(edge_))) {}
+
+Vector3 SegmentFoot::rest(const Vector3& p) const {
+  const Vector3 d = p - a_;
+  return d - clamped(dot(d, edge_) * inverse_) * edge_;
 }
 
 }  // namespace snug

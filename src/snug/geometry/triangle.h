@@ -6,6 +6,7 @@
 
 namespace snug {
 
+using Segment = std::array<Point3, 2>;
 using Triangle = std::array<Point3, 3>;
 
 /// Parameters on a triangle: its point is (1 - u - v) c0 + u c1 + v c2.
@@ -20,8 +21,7 @@ struct Barycentric {
 
 /// Feet of many points on one triangle, prepared once. The triangle may be a needle or a point.
 ///
-/// Guarantee: b >= 0, c >= 0 and b + c <= 1, in doubles: whatever the rounding, the foot is a point of the
-/// triangle up
+/// Guarantee: b >= 0, c >= 0 and b + c <= 1, in doubles: whatever the rounding, the foot is a point of the triangle up
 ///            to 2 unit roundoffs of its edges, so |p - foot| is never below the distance by more than that.
 ///            That it is the nearest point is true up to rounding only, and no proof rests on it.
 /// Source:    [Ericson05, sec. 5.1.5]; differs: the plane's foot by dual vectors, edges each on their own.
@@ -31,6 +31,8 @@ class TriangleFoot {
   [[nodiscard]] Barycentric operator()(const Vector3& p) const;
   [[nodiscard]] Vector3 edge_b() const { return edge_b_; }
   [[nodiscard]] Vector3 edge_c() const { return edge_c_; }
+  /// p - foot.
+  [[nodiscard]] Vector3 rest(const Vector3& p) const;
 
  private:
   Vector3 a_, edge_b_, edge_c_, edge_bc_;
@@ -39,7 +41,16 @@ class TriangleFoot {
   bool flat_;                                  // no area: the edges are all there is
 };
 
-/// Largest |coordinate difference| of two corners.
-[[nodiscard]] double extent(const Vector3& a, const Vector3& b, const Vector3& c);
+/// The same on one segment, which may be a point.
+class SegmentFoot {
+ public:
+  SegmentFoot(const Vector3& a, const Vector3& b);
+  /// p - foot.
+  [[nodiscard]] Vector3 rest(const Vector3& p) const;
+
+ private:
+  Vector3 a_, edge_;
+  double inverse_;  // of the squared length; 0 for a point
+};
 
 }  // namespace snug

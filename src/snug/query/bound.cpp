@@ -72,7 +72,7 @@ class PatchBounder {
     } else {
       hull_points(surface_.library(), patch, points_);
       offset = offset_triangle(surface_.library(), points_, corners);
-      piece.interval = unscaled(interval_triangle(points_, corners), back_);
+      piece.interval = unscaled(interval_simplex(points_, corners), back_);
     }
     piece.offset = unscaled(offset, back_);
     stuck_ = offset.radius <= 2 * offset.rounding;

@@ -5,8 +5,7 @@
 #include <optional>
 
 #include <snug/bounds/bound_method.h>
-#include <snug/bounds/interval_triangle.h>
-#include <snug/bounds/offset_triangle.h>
+#include <snug/bounds/enclosure.h>
 #include <snug/patch/piece_path.h>
 #include <snug/surface/limit_surface.h>
 

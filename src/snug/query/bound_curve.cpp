@@ -49,9 +49,9 @@ class CurveBounder {
       enclosure.corners[k] = require_representable(back_.apply(piece.origin + ends[k]));
     }
     hull_points(piece, points_);
-    const OffsetSegment offset = offset_segment(points_, ends);
+    const OffsetSegment offset = offset_simplex<2>(points_, ends);
     enclosure.offset = unscaled(offset, back_);
-    enclosure.interval = unscaled(interval_segment(points_, ends), back_);
+    enclosure.interval = unscaled(interval_simplex<2>(points_, ends), back_);
     return {enclosure.offset.radius, offset.radius <= 2 * offset.rounding};
   }
 

@@ -2,8 +2,7 @@
 
 #include <ranges>
 
-#include <snug/bounds/hull_points.h>
-#include <snug/bounds/offset_triangle.h>
+#include <snug/bounds/enclosure.h>
 #include <snug/bvh/obb.h>
 
 namespace snug {

@@ -4,8 +4,6 @@
 #include <utility>
 
 #include <snug/base/error.h>
-#include <snug/geometry/rounding.h>
-#include <snug/surface/unscale.h>
 
 namespace snug {
 
@@ -35,24 +33,6 @@ CurvePiece CurveSet::piece(EdgeId edge) const {
   const auto neighbour = [&](VertexId v) { return v.valid() ? std::optional(point(v)) : std::nullopt; };
   return make_curve_piece(degree_, neighbour(window.before), point(window.from), point(window.to),
                           neighbour(window.after));
-}
-
-OffsetSegment unscaled(const OffsetSegment& segment, PowerOfTwo back) {
-  OffsetSegment result;
-  bool exact = true;
-  for (std::size_t k = 0; k < 2; ++k) {
-    result.base[k] = require_representable(back.apply(segment.base[k]));
-    for (std::size_t a = 0; a < 3; ++a) exact = exact && back.exact(segment.base[k][a]);
-  }
-  result.radius = unscaled_up(segment.radius, back);
-  result.rounding = unscaled_up(segment.rounding, back);
-  if (!exact) result.radius = enlarged(result.radius + underflow_error);
-  require_representable(result.radius);
-  return result;
-}
-
-IntervalSegment unscaled(const IntervalSegment& segment, PowerOfTwo back) {
-  return {{unscaled(segment.end[0], back), unscaled(segment.end[1], back)}};
 }
 
 }  // namespace snug

@@ -3,8 +3,6 @@
 #include <optional>
 #include <vector>
 
-#include <snug/bounds/interval_segment.h>
-#include <snug/bounds/offset_segment.h>
 #include <snug/geometry/scaling.h>
 #include <snug/mesh/control_mesh.h>
 #include <snug/patch/curve_piece.h>
@@ -42,11 +40,5 @@ class CurveSet {
   double size_ = 0;
   std::vector<Window> edges_;
 };
-
-/// Enclosures back in mesh units.
-/// Guarantee: they contain all that they contained; where scaling is not exact they are widened.
-/// Errors:    InputError if a coordinate no longer fits a double.
-[[nodiscard]] OffsetSegment unscaled(const OffsetSegment& segment, PowerOfTwo back);
-[[nodiscard]] IntervalSegment unscaled(const IntervalSegment& segment, PowerOfTwo back);
 
 }  // namespace snug

@@ -26,23 +26,31 @@ Box3 unscaled(const Box3& box, PowerOfTwo back) {
   return result;
 }
 
-IntervalTriangle unscaled(const IntervalTriangle& triangle, PowerOfTwo back) {
-  return {{unscaled(triangle.corner[0], back), unscaled(triangle.corner[1], back),
-           unscaled(triangle.corner[2], back)}};
+template <std::size_t N>
+IntervalSimplex<N> unscaled(const IntervalSimplex<N>& simplex, PowerOfTwo back) {
+  IntervalSimplex<N> result;
+  for (std::size_t k = 0; k < N; ++k) result.corner[k] = unscaled(simplex.corner[k], back);
+  return result;
 }
 
-OffsetTriangle unscaled(const OffsetTriangle& triangle, PowerOfTwo back) {
-  OffsetTriangle result;
+template <std::size_t N>
+OffsetSimplex<N> unscaled(const OffsetSimplex<N>& simplex, PowerOfTwo back) {
+  OffsetSimplex<N> result;
   bool exact = true;
-  for (std::size_t k = 0; k < 3; ++k) {
-    result.base[k] = require_representable(back.apply(triangle.base[k]));
-    for (std::size_t a = 0; a < 3; ++a) exact = exact && back.exact(triangle.base[k][a]);
+  for (std::size_t k = 0; k < N; ++k) {
+    result.base[k] = require_representable(back.apply(simplex.base[k]));
+    for (std::size_t a = 0; a < 3; ++a) exact = exact && back.exact(simplex.base[k][a]);
   }
-  result.radius = unscaled_up(triangle.radius, back);
-  result.rounding = unscaled_up(triangle.rounding, back);
+  result.radius = unscaled_up(simplex.radius, back);
+  result.rounding = unscaled_up(simplex.rounding, back);
   if (!exact) result.radius = enlarged(result.radius + underflow_error);
   require_representable(result.radius);
   return result;
 }
+
+template OffsetSegment unscaled(const OffsetSegment&, PowerOfTwo);
+template OffsetTriangle unscaled(const OffsetTriangle&, PowerOfTwo);
+template IntervalSegment unscaled(const IntervalSegment&, PowerOfTwo);
+template IntervalTriangle unscaled(const IntervalTriangle&, PowerOfTwo);
 
 }  // namespace snug

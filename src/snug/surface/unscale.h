@@ -1,7 +1,6 @@
 #pragma once
 
-#include <snug/bounds/interval_triangle.h>
-#include <snug/bounds/offset_triangle.h>
+#include <snug/bounds/enclosure.h>
 #include <snug/geometry/scaling.h>
 
 namespace snug {
@@ -9,8 +8,10 @@ namespace snug {
 /// Enclosures back in mesh units.
 /// Guarantee: they contain all that they contained; where scaling is not exact they are widened.
 /// Errors:    InputError if a coordinate no longer fits a double.
-[[nodiscard]] OffsetTriangle unscaled(const OffsetTriangle& triangle, PowerOfTwo back);
-[[nodiscard]] IntervalTriangle unscaled(const IntervalTriangle& triangle, PowerOfTwo back);
+template <std::size_t N>
+[[nodiscard]] OffsetSimplex<N> unscaled(const OffsetSimplex<N>& simplex, PowerOfTwo back);
+template <std::size_t N>
+[[nodiscard]] IntervalSimplex<N> unscaled(const IntervalSimplex<N>& simplex, PowerOfTwo back);
 [[nodiscard]] Box3 unscaled(const Box3& box, PowerOfTwo back);
 
 /// A lower bound, an upper bound of a distance, back in mesh units. Upper ones may be infinite.

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <snug/bounds/hull_points.h>
+#include <snug/geometry/triangle.h>
+
+/// Enclosures of a piece of a limit surface (N = 3) or of a limit curve (N = 2), fitted to its hull points.
+///
+/// Both are made from the triangle, or segment, of the piece's limit corners, moved to the middle of the hull points: a
+/// triangle along its normal, if it has one; a segment by the middle of the two rests, point minus foot, that are farthest
+/// apart.
+namespace snug {
+
+/// All points within `radius` of a triangle or a segment. Others call it a triangle-swept sphere and a line-swept sphere.
+template <std::size_t N>
+struct OffsetSimplex {
+  std::array<Point3, N> base;
+  double radius = 0;
+  double rounding =
+      0;  ///< the part of the radius that accounts for rounding; splitting does not make it smaller
+};
+using OffsetTriangle = OffsetSimplex<3>;
+using OffsetSegment = OffsetSimplex<2>;
+
+/// Convex combinations of N boxes ("interval points"): sum l_k b_k with b_k in corner k's box, l_k >= 0, sum l_k = 1.
+template <std::size_t N>
+struct IntervalSimplex {
+  std::array<Box3, N> corner;
+};
+using IntervalTriangle = IntervalSimplex<3>;
+using IntervalSegment = IntervalSimplex<2>;
+
+/// The radius at which the moved simplex covers the piece.
+///
+/// Guarantee: every limit point of the piece is within `radius` of `base`, these very doubles, rounding included. Infinite
+///            radius if anything is not finite.
+/// Requires:  corners: limit positions of the piece's corners, relative to points.origin.
+/// Cost:      about 15 ns a hull point.
+/// Source:    [Wu05, eq. 5.1, 5.2]; differs: fitted to hull rows instead of corner boxes, derivations/hull_rows.md; of
+///            curves, derivations/curves.md.
+template <std::size_t N>
+[[nodiscard]] OffsetSimplex<N> offset_simplex(const HullPoints& points,
+                                              const std::array<Vector3, N>& corners);
+
+/// The same; where the net of a tip makes the radius larger than the patch needs, the tip is refined first, and
+/// `points` with it.
+///
+/// Tightness: the radius is at most 1.08 times the least possible for the same base in the median, 1.02 on gently
+///            bent nets (docs/convergence.md).
+/// Requires:  points of hull_points() with rows of this library.
+/// Cost:      one fit, and one more with about 200 points a refinement, of which there are at most three.
+[[nodiscard]] OffsetTriangle offset_triangle(BoundsCache& library, HullPoints& points,
+                                             const std::array<Vector3, 3>& corners);
+
+/// The corners of the moved simplex, widened alike until every hull point is covered.
+///
+/// Guarantee: contains every limit point of the piece, rounding included.
+/// Requires:  as offset_simplex.
+/// Cost:      about 15 ns a hull point.
+/// Source:    [Wu05, lemma 11]; differs and of curves: as offset_simplex.
+template <std::size_t N>
+[[nodiscard]] IntervalSimplex<N> interval_simplex(const HullPoints& points,
+                                                  const std::array<Vector3, N>& corners);
+
+/// Longest side of the boxes [Wu05, sec. 4.7].
+template <std::size_t N>
+[[nodiscard]] double thickness(const IntervalSimplex<N>& simplex);
+
+}  // namespace snug
