@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 #include <snug/base/parallel.h>
+#include <snug/geometry/direction.h>
 #include <snug/io/atomic_file.h>
 #include <snug/io/number.h>
 
@@ -83,8 +84,7 @@ Vector3 parse_direction(const std::string& text, const std::string& option) {
   if (max_abs(given) == 0) {
     throw UsageError(option + ": '" + text + "' is not a direction; give three numbers, not all zero");
   }
-  const Vector3 scaled = PowerOfTwo::normalising(max_abs(given)).apply(given);
-  return (1 / length(scaled)) * scaled;
+  return normalized(given);
 }
 
 // Two points, one on each surface.

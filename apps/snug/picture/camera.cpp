@@ -3,6 +3,7 @@
 #include <limits>
 
 #include <snug/base/error.h>
+#include <snug/geometry/direction.h>
 
 namespace snug {
 namespace {
@@ -11,11 +12,9 @@ constexpr double half_angle_tangent = 0.24932800284318068;  // of 14 degrees
 constexpr double margin = 0.05;
 
 Vector3 unit(Vector3 v) {
-  const double largest = max_abs(v);
-  require_value(is_finite(v) && largest > 0, "camera: view and up must be finite, not zero and not parallel");
-  // The length of v itself might overflow or underflow.
-  const Vector3 scaled{v.x / largest, v.y / largest, v.z / largest};
-  return (1 / length(scaled)) * scaled;
+  const Vector3 direction = normalized(v);
+  require_value(direction != Vector3{}, "camera: view and up must be finite, not zero and not parallel");
+  return direction;
 }
 
 // The lines of sight along both borders of the picture, moved until they touch the points from outside, cross

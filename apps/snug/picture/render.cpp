@@ -8,6 +8,7 @@
 #include <picture/hierarchy.h>
 #include <picture/shading.h>
 #include <snug/base/error.h>
+#include <snug/geometry/direction.h>
 
 namespace snug {
 namespace {
@@ -56,7 +57,6 @@ struct Layer {
 
 bool in_unit(double x) { return 0 <= x && x <= 1; }
 bool in_unit(const Colour& c) { return in_unit(c.red) && in_unit(c.green) && in_unit(c.blue); }
-Vector3 unit(Vector3 v) { return (1 / length(v)) * v; }
 bool is_unit(Vector3 v) { return std::fabs(length_sq(v) - 1) < 1e-9; }
 
 void expect_sound(const Scene& scene, const Camera& camera, const RenderOptions& options) {
@@ -189,13 +189,13 @@ Renderer::Renderer(const Scene& scene, const Camera& camera, const RenderOptions
       face.smooth = face.smooth && largest > 0;
       if (largest > 0) {
         const Vector3& given = t.normal[i];  // divided: 1 / largest may overflow
-        face.normal[i] = unit(turned({given.x / largest, given.y / largest, given.z / largest}));
+        face.normal[i] = normalized(turned({given.x / largest, given.y / largest, given.z / largest}));
       }
       box.add(origin + face.corner[i]);
     }
     const Vector3 area = cross(face.corner[1] - face.corner[0], face.corner[2] - face.corner[0]);
     if (!(length_sq(area) > 0)) continue;
-    face.flat_normal = unit(area);
+    face.flat_normal = normalized(area);
     face.material = t.material;
     faces_.push_back(face);
     boxes.push_back(box);
@@ -311,7 +311,7 @@ Layer Renderer::layer_of(const Hit& hit, const Ray& ray) const {
   if (!finish.lit) return {hit.depth, finish.albedo, opacity};
 
   const Vector3 sight{ray.x, ray.y, 1};
-  const Vector3 to_eye = -unit(sight);
+  const Vector3 to_eye = -normalized(sight);
   const Vector3 facet = dot(face.flat_normal, to_eye) < 0 ? -face.flat_normal : face.flat_normal;
   Vector3 normal = facet;
   if (face.smooth) {
@@ -319,11 +319,11 @@ Layer Renderer::layer_of(const Hit& hit, const Ray& ray) const {
                          (1 - hit.weight_a - hit.weight_b) * face.normal[2];
     if (length_sq(mean) > 0) normal = dot(mean, facet) < 0 ? -mean : mean;
   }
-  normal = unit(normal);
+  normal = normalized(normal);
   // Close to a silhouette an interpolated normal may face away: it is turned until it is seen edge on.
   if (const double facing = dot(normal, to_eye); facing < 0) {
     const Vector3 edge_on = normal - facing * to_eye;
-    normal = length_sq(edge_on) > 0 ? unit(edge_on) : to_eye;
+    normal = length_sq(edge_on) > 0 ? normalized(edge_on) : to_eye;
   }
   return {hit.depth, shade(finish, normal, to_eye), opacity};
 }

@@ -1,5 +1,7 @@
 #include <picture/shading.h>
 
+#include <snug/geometry/direction.h>
+
 namespace snug {
 namespace {
 
@@ -39,7 +41,7 @@ Radiance shade(const Finish& finish, Vector3 normal, Vector3 to_eye) {
   const double behind = grazing * std::max(0.0, dot(normal, rim));
   Radiance light = finish.albedo * diffuse + behind * rim_light;
   if (finish.gloss > 0) {
-    const Vector3 between = key + to_eye, halfway = (1 / length(between)) * between;
+    const Vector3 halfway = normalized(key + to_eye);
     const double towards = std::max(0.0, dot(normal, halfway));
     const double mirrored =
         0.6 * finish.gloss * std::pow(towards, finish.exponent) + 0.15 * finish.gloss * grazing;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 
 namespace snug {
@@ -21,9 +22,8 @@ struct Shift {
 };
 
 Shift to_middle(const HullPoints& points, const Corners& corners) {
-  Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const double size = length(normal);
-  if (!(size > 0) || !std::isfinite(size) || !is_finite(normal = (1 / size) * normal)) return {};
+  const Vector3 normal = normalized(cross(corners[1] - corners[0], corners[2] - corners[0]));
+  if (normal == Vector3{}) return {};
   const kernels::Coordinates all = points.coordinates();
   auto [lower, upper] = kernels::heights(all.first(points.tips_begin()), corners[0], normal);
   bool stick_out = false;

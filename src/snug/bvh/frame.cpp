@@ -12,6 +12,10 @@ double PlacedFrame::apply_error(const Point3& p) const {
   return enlarged(8 * unit_roundoff * size) + 8 * underflow_error;
 }
 
+BoundedPoint PlacedFrame::apply(const BoundedPoint& p) const {
+  return {apply(p.position), enlarged(growth() * spatial_error(p.error)) + apply_error(p.position)};
+}
+
 RelativeFrame::RelativeFrame(const PlacedFrame& target, const PlacedFrame& source) {
   const auto transposed = [&](const Vector3& v) {
     return v.x * target.rows[0] + v.y * target.rows[1] + v.z * target.rows[2];

@@ -1,21 +1,17 @@
 #pragma once
 
-#include <cmath>
-
-#include <snug/geometry/point.h>
+#include <snug/geometry/scaling.h>
 
 namespace snug {
 
-/// The direction of a vector, of length 1 up to 5 roundings; zero for a vector that has none: zero, not finite, or below
-/// about 1e-308.
-///
-/// Made from coordinates of about 1: squares of vectors shorter than 1e-150 lose digits, and the direction its length.
+/// The direction of a vector, of length 1 up to 5 roundings, whatever the vector's length; zero for a vector that is zero or
+/// not finite.
 inline Vector3 normalized(const Vector3& v) {
-  const double size = max_abs(v);
-  if (!(size > 0) || !std::isfinite(1 / size)) return {};
-  const Vector3 w = (1 / size) * v;
-  const double rest = length(w);
-  return rest > 0 ? (1 / rest) * w : Vector3{};  // zero if it is not a number
+  if (const double size = length(v); size >= 0x1p-400 && size <= 0x1p400) return (1 / size) * v;
+  if (!is_finite(v) || v == Vector3{}) return {};
+  // Squares underflow or overflow.
+  const Vector3 scaled = PowerOfTwo::normalising(max_abs(v)).apply(v);
+  return (1 / length(scaled)) * scaled;
 }
 
 }  // namespace snug

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include <snug/base/error.h>
-#include <snug/geometry/scaling.h>
+#include <snug/geometry/direction.h>
 
 namespace snug {
 namespace {
@@ -124,7 +124,7 @@ Columns nearest_rotation(Columns a) {
   }
   const Vector3 u0 = (1 / largest) * a[0];
   const Vector3 rest = a[1] - dot(u0, a[1]) * u0;
-  const Vector3 u1 = (1 / length(rest)) * rest, u2 = cross(u0, u1);
+  const Vector3 u1 = normalized(rest), u2 = cross(u0, u1);
   if (dot(a[2], u2) < 0) refuse_mirror();
   Columns result;
   for (std::size_t j = 0; j < 3; ++j) result[j] = v[0][j] * u0 + v[1][j] * u1 + v[2][j] * u2;
@@ -134,8 +134,7 @@ Columns nearest_rotation(Columns a) {
 Vector3 unit(const Vector3& axis) {
   if (!is_finite(axis)) refuse("the axis of rotation is not finite");
   if (max_abs(axis) == 0) refuse("the axis of rotation has no length; give its direction, as in 0 0 1");
-  const Vector3 scaled = PowerOfTwo::normalising(max_abs(axis)).apply(axis);
-  return (1 / length(scaled)) * scaled;
+  return normalized(axis);
 }
 
 // Rodrigues' formula for a unit axis and the angle's sine and cosine.

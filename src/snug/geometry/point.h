@@ -26,6 +26,13 @@ struct Point3 {
   friend constexpr bool operator==(const Point3&, const Point3&) = default;
 };
 
+/// A position that was computed, and how far it is from the exact one.
+struct BoundedPoint {
+  Point3 position;
+  double error =
+      0;  ///< upper bound, a coordinate, of |position - exact|, rounding of the coordinates included
+};
+
 constexpr Vector3 operator+(Vector3 a, Vector3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 constexpr Vector3 operator-(Vector3 a, Vector3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 constexpr Vector3 operator-(Vector3 a) { return {-a.x, -a.y, -a.z}; }

@@ -22,4 +22,8 @@ Point3 require_representable(Point3 p) {
   return {require_representable(p.x), require_representable(p.y), require_representable(p.z)};
 }
 
+Vector3 require_representable(Vector3 v) {
+  return {require_representable(v.x), require_representable(v.y), require_representable(v.z)};
+}
+
 }  // namespace snug

@@ -59,5 +59,6 @@ class PowerOfTwo {
 /// Throws InputError (refused) if x is not finite: a result that no longer fits a double is not handed out.
 double require_representable(double x);
 Point3 require_representable(Point3 p);
+Vector3 require_representable(Vector3 v);
 
 }  // namespace snug

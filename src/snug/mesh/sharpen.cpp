@@ -8,7 +8,7 @@
 #include <utility>
 
 #include <snug/base/error.h>
-#include <snug/geometry/scaling.h>
+#include <snug/geometry/direction.h>
 #include <snug/mesh/split_polygon.h>
 #include <snug/mesh/topology.h>
 
@@ -20,13 +20,6 @@ double angle_between(const Vector3& a, const Vector3& b) {
   const double cosine = dot(a, b), sine = length(cross(a, b));
   if (sine == 0 && cosine == 0) return 180;
   return std::atan2(sine, cosine) * (180 / std::numbers::pi);
-}
-
-Vector3 unit(const Vector3& v) {
-  const double largest = max_abs(v);
-  if (largest == 0) return {};
-  const Vector3 scaled = PowerOfTwo::normalising(largest).apply(v);
-  return (1 / length(scaled)) * scaled;
 }
 
 /// Sets of numbers that were joined.
@@ -170,7 +163,7 @@ class Sharpener {
         perimeter += distance(a, b);
       }
       areas_[f] = area;
-      if (length(area) > exactness_ * (perimeter / 2)) normals_[f] = unit(area);
+      if (length(area) > exactness_ * (perimeter / 2)) normals_[f] = normalized(area);
     }
   }
   /// Has the face too little width for a normal of its own?
@@ -292,7 +285,7 @@ class Sharpener {
     }
     if (narrow) return true;
     if (!(length(sum) > area / 2)) return false;
-    const Vector3 normal = unit(sum);
+    const Vector3 normal = normalized(sum);
     const Point3& origin = point(mesh_.face(faces[0])[0]);
     double low = 0, high = 0;
     for (const FaceId f : faces) {

@@ -2,7 +2,7 @@
 
 #include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
-#include <snug/patch/patch.h>
+#include <snug/patch/evaluate.h>
 
 /// How a parameter goes down to the pieces of a patch. For the files of patch/ alone.
 namespace snug {
@@ -53,11 +53,14 @@ inline TriangleParameter checked(TriangleParameter at) {
   return on_triangle(at);
 }
 
-// Size of the piece's control net: bounds the distance of any two of its limit points.
-inline double net_size(const Patch& patch) {
+// What a piece at the depth limit answers for each of its parameters: a corner, off by the size of its control net, which
+// bounds the distance of any two of its limit points.
+inline LimitPoint stopped_point(const Patch& piece) {
   Box3 box;
-  for (const Vector3& p : patch.points) box.add(Point3{} + p);
-  return enlarged(box.longest_side()) + 2 * patch.error;
+  for (const Vector3& p : piece.points) box.add(Point3{} + p);
+  LimitPoint corner = corner_point(piece, 0);
+  corner.error += enlarged(box.longest_side()) + 2 * piece.error;
+  return corner;
 }
 
 }  // namespace snug

@@ -137,12 +137,6 @@ Located locate(const Patch& patch, TriangleParameter at) {
   return here;
 }
 
-LimitPoint stopped_point(const Located& here) {
-  LimitPoint corner = corner_point(*here.piece, 0);
-  corner.error += net_size(*here.piece);
-  return corner;
-}
-
 std::optional<Vector3> unit_normal(const std::array<Vector3, 2>& tangents) {
   const double a = max_abs(tangents[0]), b = max_abs(tangents[1]);
   if (!(a > 0) || !(b > 0)) return std::nullopt;
@@ -199,7 +193,7 @@ LimitPoint limit_point(const Patch& patch, TriangleParameter parameter) {
   const TriangleParameter at = checked(parameter);
   if (const std::size_t corner = corner_at(at); corner < 3) return corner_point(patch, corner);
   const Located here = locate(patch, at);
-  if (here.stopped) return stopped_point(here);
+  if (here.stopped) return stopped_point(*here.piece);
   return polynomial_point(*here.piece, to_kind(*here.piece, here.at, here.drift));
 }
 
@@ -215,7 +209,7 @@ LimitFrame limit_frame(const Patch& patch, TriangleParameter parameter) {
     std::size_t corner = 0;
     while (corner < 2 && piece.kind->regular_corner(piece.to_kind(corner))) ++corner;
     LimitFrame frame = corner_frame(piece, corner);
-    frame.point = stopped_point(here);
+    frame.point = stopped_point(piece);
     return frame;
   }
   const PieceParameter p = to_kind(piece, here.at, here.drift);

@@ -3,14 +3,21 @@
 #include <array>
 #include <optional>
 
+#include <snug/geometry/rounding.h>
 #include <snug/patch/patch.h>
 
 namespace snug {
 
-/// A point of the limit surface.
+/// A point of the limit surface, or of a limit curve.
 struct LimitPoint {
   Vector3 relative;  ///< to the patch's origin
   double error;      ///< upper bound, a coordinate, of |relative - exact|
+
+  /// The point itself; its error covers the rounding of the sum.
+  [[nodiscard]] BoundedPoint from(const Point3& origin) const {
+    const Point3 point = origin + relative;
+    return {point, error + unit_roundoff * max_abs(point - Point3{})};
+  }
 };
 
 /// A limit point with what the surface does there.

@@ -101,11 +101,7 @@ LimitPoint LimitEvaluator::operator()(TriangleParameter parameter) {
   if (patch_.kind->polynomial()) return evaluate(polynomials_[child.place], at);
   std::uint32_t here = 0;
   while (true) {
-    if (inner_[here].patch.path.level() >= PiecePath::max_level) {
-      LimitPoint corner = corner_point(inner_[here].patch, 0);
-      corner.error += net_size(inner_[here].patch);
-      return corner;
-    }
+    if (inner_[here].patch.path.level() >= PiecePath::max_level) return stopped_point(inner_[here].patch);
     const Descent step = descend(at);
     at = step.at;
     child = inner_[here].children[step.child];

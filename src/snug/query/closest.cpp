@@ -94,23 +94,21 @@ class Query {
         rounded_down(near.certain_distance - enlarged(piece.offset.radius + spatial_error(point_error_)));
     if (near.certain_distance < bounds_.upper()) {
       const TriangleParameter at = clamped(near.on_b);
-      const LimitPoint limit = limit_point(piece.patch, at);
-      const Point3 point = piece.patch.origin + limit.relative;
-      const double error = limit.error + unit_roundoff * max_abs(point - Point3{});
-      const Vector3 between = point - to_;
+      const BoundedPoint found = limit_point(piece.patch, at).from(piece.patch.origin);
+      const Vector3 between = found.position - to_;
       // Not enlarged(): of a point far away that would be more than all else.
-      const double upper = (std::sqrt(length_sq(between) + 8 * underflow_error) +
-                            spatial_error(error + point_error_) + 8 * unit_roundoff * max_abs(between)) *
-                           (1 + 16 * unit_roundoff);
+      const double upper =
+          (std::sqrt(length_sq(between) + 8 * underflow_error) + spatial_error(found.error + point_error_) +
+           8 * unit_roundoff * max_abs(between)) *
+          (1 + 16 * unit_roundoff);
       if (upper < bounds_.upper()) {
         bounds_.reduce_upper(upper);
-        point_ = point;
-        error_ = error;
+        closest_ = found;
         at_ = place_of(surface_, piece.root, to_face(piece.patch.path, at));
       }
     }
     // A plane between the point and the piece's hull, across the direction of the closest point so far.
-    if (gap < bounds_.prune_distance()) gap = std::max(gap, plane_gap(id, point_ - to_));
+    if (gap < bounds_.prune_distance()) gap = std::max(gap, plane_gap(id, closest_.position - to_));
     return gap;
   }
 
@@ -128,8 +126,9 @@ class Query {
     answer.lower = unscaled_down(std::max(0.0, bounds_.lower()), back);
     answer.upper = require_representable(unscaled_up(bounds_.upper(), back));
     answer.reached = near_enough(answer.lower, answer.upper, options_);
-    answer.point = require_representable(back.apply(point_));
-    answer.point_error = unscaled_up(enlarged(error_), back) + underflow_error;
+    const BoundedPoint closest = unscaled(closest_, back);
+    answer.point = closest.position;
+    answer.point_error = closest.error;
     answer.at = at_;
     return answer;
   }
@@ -141,8 +140,7 @@ class Query {
   const WorkMonitor& monitor_;
   DistanceBounds bounds_;
   double point_error_ = 0;
-  Point3 point_;
-  double error_ = 0;
+  BoundedPoint closest_;
   SurfaceParameter at_{};
   std::uint64_t splits_ = 0;
 };

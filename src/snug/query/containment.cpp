@@ -21,24 +21,12 @@ constexpr double farthest_point = 0x1p40;
 // Of each surface, patches that are asked where the surfaces may meet.
 constexpr std::size_t max_patches = 32;
 
-// A limit point of a component.
-struct Sample {
-  Point3 local;
-  double error;
-};
-
-Sample sample_of(const Patch& patch, TriangleParameter at) {
-  const LimitPoint limit = limit_point(patch, at);
-  const Point3 local = patch.origin + limit.relative;
-  return {local, limit.error + unit_roundoff * max_abs(local - Point3{})};
-}
-
 // Is a placed point certainly outside of the ball around a placed model?
-bool beyond(const PlacedFrame& frame, const Ball& ball, const Point3& placed, double error) {
+bool beyond(const PlacedFrame& frame, const Ball& ball, const BoundedPoint& placed) {
   const Point3 centre = frame.apply(ball.centre);
-  const double between = distance(placed, centre) * (1 - 8 * unit_roundoff);
-  return between >
-         enlarged(frame.growth() * ball.radius + spatial_error(error + frame.apply_error(ball.centre)));
+  const double between = distance(placed.position, centre) * (1 - 8 * unit_roundoff);
+  return between > enlarged(frame.growth() * ball.radius +
+                            spatial_error(placed.error + frame.apply_error(ball.centre)));
 }
 
 class Asking {
@@ -71,24 +59,23 @@ class Asking {
   // Is a limit point of `side` in the other solid?
   void ask(std::size_t side, PatchId p, TriangleParameter at) {
     const LimitSurface& surface = side_[side]->model.surface();
-    const Sample sample = sample_of(surface.patch(p), at);
+    const Patch patch = surface.patch(p);
+    const BoundedPoint sample = limit_point(patch, at).from(patch.origin);
     const PlacedBvh& other = *side_[1 - side];
-    const PlacedFrame& frame = frames_.frame(side);
-    const Point3 placed = frame.apply(sample.local);
-    const double error =
-        enlarged(frame.growth() * spatial_error(sample.error)) + frame.apply_error(sample.local);
-    if (beyond(frames_.frame(1 - side), other.model.tree().ball(), placed, error)) return;
+    const BoundedPoint placed = frames_.frame(side).apply(sample);
+    if (beyond(frames_.frame(1 - side), other.model.tree().ball(), placed)) return;
     const RelativeFrame& seen = frames_.view(1 - side).frame;
     std::optional<int> number;
     if (seen.comparable) {
-      number = winding_number(other.scratch, seen.apply(sample.local),
+      number = winding_number(other.scratch, seen.apply(sample.position),
                               enlarged(2 * seen.scale * spatial_error(sample.error)) + seen.slack, monitor_);
     }
     found_.certain = found_.certain && number.has_value();
     if (number.value_or(0) == 0) return;
     found_.inner = side;
-    found_.point = require_representable(frames_.to_mesh_units().apply(placed));
-    found_.error = unscaled_up(error, frames_.to_mesh_units()) + underflow_error;
+    const BoundedPoint point = unscaled(placed, frames_.to_mesh_units());
+    found_.point = point.position;
+    found_.error = point.error;
     found_.at = place_of(surface, p, at);
   }
 

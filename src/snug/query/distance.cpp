@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/containment.h>
 #include <snug/search/crossing.h>
@@ -157,10 +158,8 @@ class Query {
 
   // What is known of a direction is kept until a better one shows more than the precision: the square of the angle.
   void look_along_witness() {
-    const Vector3 between = witness_.points[1] - witness_.points[0];
-    const double size = length(between);
-    if (!(size > 0) || !std::isfinite(1 / size)) return;
-    const Vector3 direction = (1 / size) * between;
+    const Vector3 direction = normalized(witness_.points[1] - witness_.points[0]);
+    if (direction == Vector3{}) return;
     if (length_sq(direction - direction_) <= bounds_.precision() / 8) return;
     direction_ = direction;
     pieces_.look_along(direction);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <snug/base/error.h>
+#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/collide.h>
 #include <snug/query/distance.h>
@@ -34,7 +35,7 @@ std::vector<Vector3> some_directions() {
     for (int y = -1; y <= 1; ++y) {
       for (int z = -1; z <= 1; ++z) {
         const Vector3 d{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
-        if (d != Vector3{}) directions.push_back((1 / length(d)) * d);
+        if (d != Vector3{}) directions.push_back(normalized(d));
       }
     }
   }
@@ -144,10 +145,8 @@ class Search {
       precision.absolute = 1e-3 * at.length;
       precision.budget = options_.budget;
       const Distance gap = snug::distance(a_, moved(at.translation), precision, monitor_);
-      const Vector3 normal = gap.witness[1] - gap.witness[0];
-      const double size = length(normal);
-      if (!(size > 0) || !std::isfinite(1 / size)) return;
-      const Vector3 n = (1 / size) * normal;
+      const Vector3 n = normalized(gap.witness[1] - gap.witness[0]);
+      if (n == Vector3{}) return;
       const double along = dot(n, at.translation) - gap.lower;
       const double before = at.length;
       for (const Vector3& next :
@@ -217,9 +216,7 @@ class Search {
       static_cast<void>(depth_at(at));
       outward_.clear();
       for (const Vector3& way : ways_out_) {
-        if (const double size = length(way); size > 0 && std::isfinite(1 / size)) {
-          outward_.push_back((1 / size) * way);
-        }
+        if (const Vector3 n = normalized(way); n != Vector3{}) outward_.push_back(n);
       }
     }
     return best;

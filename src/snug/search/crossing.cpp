@@ -73,9 +73,9 @@ Crossed::Crossed(const Piece& piece, const Heights& heights) {
   double corner_error = 0;
   std::array<Point3, 3> corners;
   for (std::size_t k = 0; k < 3; ++k) {
-    corners[k] = patch.origin + piece.corners[k];
-    const LimitPoint corner = corner_point(patch, k);
-    corner_error = std::max(corner_error, corner.error + unit_roundoff * max_abs(corners[k] - Point3{}));
+    const BoundedPoint corner = corner_point(patch, k).from(patch.origin);
+    corners[k] = corner.position;
+    corner_error = std::max(corner_error, corner.error);
   }
   for (std::size_t k = 0; k < 3; ++k) {
     Strip& strip = strips_[k];
@@ -187,10 +187,9 @@ bool crosses_near(PieceCache& pieces, PieceId id, TriangleParameter at, const Cr
       double error = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         around[k] = seen.apply(piece.offset.base[k]);
-        const Point3 corner = piece.patch.origin + piece.corners[k];
-        corners[k] = seen.apply(corner);
-        error =
-            std::max(error, corner_point(piece.patch, k).error + unit_roundoff * max_abs(corner - Point3{}));
+        const BoundedPoint corner = corner_point(piece.patch, k).from(piece.patch.origin);
+        corners[k] = seen.apply(corner.position);
+        error = std::max(error, corner.error);
         extent = std::max(extent, length(corners[k] - corners[0]));
       }
       inside = inside && crossed.holds(around, growth * piece.offset.radius + seen.slack);

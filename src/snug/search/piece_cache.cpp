@@ -6,6 +6,7 @@
 
 #include <snug/base/contract.h>
 #include <snug/bounds/table_triangle.h>
+#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/search/piece_extents.h>
@@ -82,8 +83,7 @@ std::array<Vector3, 3> box_axes(const Triangle& base) {
     if (max_abs(edge) > max_abs(along)) along = edge;
   }
   along = (1 / max_abs(along)) * along;
-  along = along - dot(along, normal) * normal;
-  along = (1 / length(along)) * along;
+  along = normalized(along - dot(along, normal) * normal);
   return {along, cross(normal, along), normal};
 }
 

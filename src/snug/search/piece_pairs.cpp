@@ -98,16 +98,12 @@ Witness PiecePairs::witness(const PiecePair& pieces) {
   Witness found;
   const std::array<Barycentric, 2> at{pieces.near.on_a, pieces.near.on_b};
   for (std::size_t s = 0; s < 2; ++s) {
-    const PlacedFrame& frame = frames_.frame(s);
     const Patch& patch = frames_.workspace(s).pieces()[pieces.ids[s]].patch;
     found.pieces[s] = pieces.ids[s];
     found.at[s] = clamped(at[s]);
-    const LimitPoint limit = limit_point(patch, found.at[s]);
-    const Point3 local = patch.origin + limit.relative;
-    const double error = limit.error + unit_roundoff * max_abs(local - Point3{});
-    found.points[s] = frame.apply(local);
-    found.error =
-        std::max(found.error, enlarged(frame.growth() * spatial_error(error)) + frame.apply_error(local));
+    const BoundedPoint point = frames_.frame(s).apply(limit_point(patch, found.at[s]).from(patch.origin));
+    found.points[s] = point.position;
+    found.error = std::max(found.error, point.error);
   }
   const Vector3 between = found.points[1] - found.points[0];
   // Not enlarged(): of surfaces far apart that would be more than all else.

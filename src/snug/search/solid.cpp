@@ -77,10 +77,9 @@ void for_each_cut_edge(const LimitSurface& surface, const Visit& visit) {
 Solid::Filler make_filler(const LimitSurface& surface, PatchId first, PatchId second) {
   Solid::Filler filler{};
   const auto set = [&](std::size_t place, const Patch& patch, std::size_t corner) {
-    const LimitPoint limit = corner_point(patch, corner);
-    const Point3 p = patch.origin + limit.relative;
-    filler.corners[place] = p;
-    filler.error = std::max(filler.error, spatial_error(limit.error + unit_roundoff * max_abs(p - Point3{})));
+    const BoundedPoint limit = corner_point(patch, corner).from(patch.origin);
+    filler.corners[place] = limit.position;
+    filler.error = std::max(filler.error, spatial_error(limit.error));
   };
   const Patch patch = surface.patch(first);
   set(0, patch, 0);

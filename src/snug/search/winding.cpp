@@ -170,10 +170,9 @@ class Winding {
     const Piece& piece = workspace_.pieces()[id];
     Corners result{};
     for (std::size_t k = 0; k < 3; ++k) {
-      const LimitPoint corner = corner_point(piece.patch, k);
-      result.points[k] = piece.patch.origin + corner.relative;
-      result.error =
-          std::max(result.error, corner.error + unit_roundoff * max_abs(result.points[k] - Point3{}));
+      const BoundedPoint corner = corner_point(piece.patch, k).from(piece.patch.origin);
+      result.points[k] = corner.position;
+      result.error = std::max(result.error, corner.error);
     }
     result.error = spatial_error(result.error);
     return result;

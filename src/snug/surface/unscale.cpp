@@ -26,6 +26,11 @@ Box3 unscaled(const Box3& box, PowerOfTwo back) {
   return result;
 }
 
+BoundedPoint unscaled(const BoundedPoint& point, PowerOfTwo back) {
+  return {require_representable(back.apply(point.position)),
+          unscaled_up(enlarged(point.error), back) + underflow_error};
+}
+
 template <std::size_t N>
 IntervalSimplex<N> unscaled(const IntervalSimplex<N>& simplex, PowerOfTwo back) {
   IntervalSimplex<N> result;

@@ -14,6 +14,10 @@ template <std::size_t N>
 [[nodiscard]] IntervalSimplex<N> unscaled(const IntervalSimplex<N>& simplex, PowerOfTwo back);
 [[nodiscard]] Box3 unscaled(const Box3& box, PowerOfTwo back);
 
+/// A point, its error enlarged where scaling is not exact.
+/// Errors:    likewise.
+[[nodiscard]] BoundedPoint unscaled(const BoundedPoint& point, PowerOfTwo back);
+
 /// A lower bound, an upper bound of a distance, back in mesh units. Upper ones may be infinite.
 [[nodiscard]] double unscaled_down(double x, PowerOfTwo back);
 [[nodiscard]] double unscaled_up(double x, PowerOfTwo back);
