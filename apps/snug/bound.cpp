@@ -23,16 +23,28 @@ struct Options : CommonOptions {
   unsigned level = 0;
 };
 
-void write_box_corners(JsonWriter& json, const char* key, const PieceEnclosure& piece, Point3 Box3::*end) {
+template <std::size_t N>
+void write_box_corners(JsonWriter& json, const char* key, const Enclosure<N>& piece, Point3 Box3::*end) {
   json.key(key).begin_array();
   for (const Box3& box : piece.interval.corner) json.value(box.*end);
   json.end_array();
 }
 
-void write_triangle(JsonWriter& json, const char* key, const Triangle& triangle) {
+template <std::size_t N>
+void write_points(JsonWriter& json, const char* key, const std::array<Point3, N>& points) {
   json.key(key).begin_array();
-  for (const Point3& p : triangle) json.value(p);
+  for (const Point3& p : points) json.value(p);
   json.end_array();
+}
+
+template <std::size_t N>
+void write_enclosure(JsonWriter& json, const Enclosure<N>& piece, unsigned level) {
+  json.field("piece", piece.path.text()).field("level", level);
+  write_box_corners(json, "lower", piece, &Box3::lower);
+  write_box_corners(json, "upper", piece, &Box3::upper);
+  write_points(json, "base", piece.offset.base);
+  json.field("radius", piece.offset.radius);
+  write_points(json, "corners", piece.corners);
 }
 
 void write_piece(JsonWriter& json, const LimitSurface& surface, const PieceEnclosure& piece) {
@@ -41,13 +53,13 @@ void write_piece(JsonWriter& json, const LimitSurface& surface, const PieceEnclo
   json.begin_object();
   json.field(is_primal(scheme) ? "face" : "vertex", place.owner);
   if (scheme != Scheme::loop) json.field("part", place.part);
-  json.field("piece", piece.path.text());
-  json.field("level", piece.path.level() + (surface.after_first_split(piece.patch) ? 1 : 0));
-  write_box_corners(json, "lower", piece, &Box3::lower);
-  write_box_corners(json, "upper", piece, &Box3::upper);
-  write_triangle(json, "base", piece.offset.base);
-  json.field("radius", piece.offset.radius);
-  write_triangle(json, "corners", piece.corners);
+  write_enclosure(json, piece, piece.path.level() + (surface.after_first_split(piece.patch) ? 1 : 0));
+  json.end_object();
+}
+
+void write_piece(JsonWriter& json, const CurveSet&, const CurveEnclosure& piece) {
+  json.begin_object().field("edge", piece.edge.index());
+  write_enclosure(json, piece, piece.path.level());
   json.end_object();
 }
 
@@ -113,43 +125,55 @@ ExitStatus run(const Options& options) {
   std::optional<Length> tolerance;
   if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--tolerance");
   ControlMesh mesh = load_mesh(options.mesh, options);
+  std::optional<CurveSet> curves;
+  std::optional<LimitSurface> surface;
   if (asks_for_curves("bound", mesh, options.mesh, options, options.degree)) {
-    if (!options.polyhedra.empty()) {
-      throw UsageError("bound: --polyhedra is for surfaces; " + options.mesh + " is answered as curves");
+    for (const auto& [asked, option] : {std::pair(!options.polyhedra.empty(), "--polyhedra"),
+                                        std::pair(how.method == BoundMethod::table, "--bounds table")}) {
+      if (!asked) continue;
+      throw UsageError(
+          fmt::format("bound: {} is for surfaces; {} is answered as curves", option, options.mesh));
     }
-    return bound_curve(std::move(mesh), options.mesh, options, curve_degree(options.degree), how, tolerance);
+    curves = make_curves(std::move(mesh), options.mesh, curve_degree(options.degree));
+  } else {
+    surface =
+        make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
   }
-  const LimitSurface surface =
-      make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
-  BoundSummary summary;
   Polyhedra polyhedra(triangles);
   Report report("bound", options);
+  curves ? curve_heads(report, options.mesh, curve_degree(options.degree))
+         : report.heads({options.mesh}, {name_of(surface->options().scheme)});
+  BoundSummary summary;
   naming(options.mesh, [&] {
-    if (tolerance) how.tolerance = tolerance->in_mesh_units(surface.size());
-    report.heads({options.mesh}, {name_of(surface.options().scheme)});
+    if (tolerance) how.tolerance = tolerance->in_mesh_units(curves ? curves->size() : surface->size());
     if (report.json()) report.write().key("enclosures").begin_array();
     ProgressBar bar("bounding " + options.mesh, options.quiet);
-    summary = bound(
-        surface, how,
-        [&](const PieceEnclosure& piece) {
-          if (report.json()) write_piece(report.write(), surface, piece);
-          if (!options.polyhedra.empty()) polyhedra.add(piece);
-        },
-        bar.monitor());
+    const auto keep_curve = [&](const CurveEnclosure& piece) {
+      if (report.json()) write_piece(report.write(), *curves, piece);
+    };
+    const auto keep = [&](const PieceEnclosure& piece) {
+      if (report.json()) write_piece(report.write(), *surface, piece);
+      if (!options.polyhedra.empty()) polyhedra.add(piece);
+    };
+    summary =
+        curves ? bound(*curves, how, keep_curve, bar.monitor()) : bound(*surface, how, keep, bar.monitor());
   });
   if (report.json()) {
     report.write().end_array().field("count", summary.count).field("max_radius", summary.max_radius);
     report.write().field("reached", summary.reached).field("splits", summary.splits);
   }
-  report.text(fmt::format("{}: {} enclosures of {} {} contain the limit surface, largest radius {}",
-                          options.mesh, summary.count, surface.owner_count(),
-                          is_primal(surface.options().scheme) ? "faces" : "vertices",
+  const std::string whole = curves ? fmt::format("{} edges contain the limit curves of degree {}",
+                                                 curves->edge_count(), static_cast<int>(curves->degree()))
+                                   : fmt::format("{} {} contain the limit surface", surface->owner_count(),
+                                                 is_primal(surface->options().scheme) ? "faces" : "vertices");
+  report.text(fmt::format("{}: {} enclosures of {}, largest radius {}", options.mesh, summary.count, whole,
                           text_at_most(summary.max_radius, true)));
   if (!summary.reached) {
     const bool spent = summary.splits >= options.budget;
     report.text(fmt::format("{} was not reached everywhere: {}; what is printed is still proved",
                             tolerance ? "the tolerance" : "the level",
-                            spent ? "the budget was spent, patch by patch; give a larger --budget"
+                            spent ? fmt::format("the budget was spent, {}; give a larger --budget",
+                                                curves ? "edge by edge" : "patch by patch")
                                   : "rounding stands in the way; give a larger --tolerance"));
   }
   std::optional<AtomicFile> file;

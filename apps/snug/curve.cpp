@@ -40,6 +40,12 @@ void add_degree_option(OptionList& list, Degree& degree) {
 
 CurveDegree curve_degree(Degree degree) { return degree == 2u ? CurveDegree::quadratic : CurveDegree::cubic; }
 
+CurveSet make_curves(ControlMesh mesh, const std::string& path, CurveDegree degree) {
+  std::optional<CurveSet> curves;
+  naming(path, [&] { curves.emplace(std::move(mesh), degree); });
+  return *std::move(curves);
+}
+
 void curve_heads(Report& report, const std::string& path, CurveDegree degree) {
   report.heads({path}, {"curve"});
   if (report.json()) report.write().field("degree", static_cast<int>(degree));

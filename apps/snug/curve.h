@@ -1,11 +1,9 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include <snug/mesh/control_mesh.h>
-#include <snug/query/bound.h>
-#include <snug/scheme/curve_masks.h>
+#include <snug/surface/curve_set.h>
 
 #include "common.h"
 
@@ -29,31 +27,9 @@ void refuse_curves(const ControlMesh& mesh, const std::string& scheme, const std
 void add_degree_option(OptionList& list, Degree& degree);
 /// 3 unless another one is given.
 [[nodiscard]] CurveDegree curve_degree(Degree degree);
+/// The curves of a mesh that has been read from `path`. Refusals name the file.
+[[nodiscard]] CurveSet make_curves(ControlMesh mesh, const std::string& path, CurveDegree degree);
 /// The head of the document, the degree included.
 void curve_heads(Report& report, const std::string& path, CurveDegree degree);
-
-/// bound, for curves.
-/// Errors:    UsageError for --bounds table.
-ExitStatus bound_curve(ControlMesh mesh, const std::string& path, const CommonOptions& options,
-                       CurveDegree degree, BoundOptions how, const std::optional<Length>& tolerance);
-
-struct CurveSamples {
-  CurveDegree degree;
-  unsigned samples;
-  std::string at;
-};
-/// eval, for curves.
-ExitStatus eval_curve(ControlMesh mesh, const std::string& path, const CommonOptions& options,
-                      const CurveSamples& which);
-
-struct CurveLevel {
-  CurveDegree degree;
-  unsigned level;
-  bool limit;
-};
-/// subdivide, for curves.
-/// Errors:    UsageError for an output that is no OBJ.
-ExitStatus subdivide_curve(const ControlMesh& mesh, const std::string& path, const CommonOptions& options,
-                           const CurveLevel& which);
 
 }  // namespace snug::command

@@ -113,46 +113,112 @@ void for_each_place(const LimitSurface& surface, std::uint32_t owner, unsigned s
   }
 }
 
-ExitStatus run(const Options& options) {
-  ControlMesh mesh = load_mesh(options.mesh, options);
-  if (asks_for_curves("eval", mesh, options.mesh, options, options.degree))
-    return eval_curve(std::move(mesh), options.mesh, options,
-                      {curve_degree(options.degree), options.samples, options.at});
-  const LimitSurface surface =
-      make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
-  std::vector<SurfaceParameter> requests;
-  if (!options.at.empty()) requests = read_requests(options.at, surface);
-  Report report("eval", options);
-  report.heads({options.mesh}, {name_of(surface.options().scheme)});
-  if (report.json()) report.write().key("points").begin_array();
-  report.text(fmt::format("# {} u v{}  x y z", owner_word(surface.options().scheme),
-                          surface.options().scheme == Scheme::loop ? "" : " corner"));
+// Writes the points of a lattice on an owner; returns how many.
+std::size_t write_lattice(Report& report, const LimitSurface& surface, std::uint32_t owner, unsigned steps) {
+  std::optional<PatchEvaluator> evaluator;
+  std::optional<PatchId> last;
   std::size_t count = 0;
-  naming(options.mesh, [&] {
-    if (!options.at.empty()) {
-      for (const SurfaceParameter& at : requests) write_point(report, surface, at, evaluate(surface, at));
-      count = requests.size();
-      return;
+  for_each_place(surface, owner, steps, [&](const SurfaceParameter& at) {
+    const std::optional<PatchId> patch = patch_at(surface, at);
+    if (!patch) return;
+    if (patch != last) evaluator.emplace(surface, *patch);
+    last = patch;
+    write_point(report, surface, at, (*evaluator)(at));
+    ++count;
+  });
+  return count;
+}
+
+// A place on a curve.
+struct CurveParameter {
+  std::uint32_t edge;
+  double t;
+};
+
+CurveSetPoint evaluate(const CurveSet& curves, const CurveParameter& at) {
+  return evaluate(curves, EdgeId(at.edge), at.t);
+}
+
+// Lines "edge t".
+std::vector<CurveParameter> read_requests(const std::string& path, const CurveSet& curves) {
+  const std::string text = read_file(path, stopped_by_interrupts());
+  std::vector<CurveParameter> requests;
+  for_each_line(text, [&](std::string_view line, std::size_t line_number) {
+    const auto unreadable = [&](const std::string& why) {
+      return InputError(InputProblem::unreadable, path + ":" + std::to_string(line_number) + ": " + why);
+    };
+    CurveParameter at{};
+    if (!parse(next_word(line), at.edge) || !parse(next_word(line), at.t) || !next_word(line).empty()) {
+      throw unreadable("a line is 'edge t'");
     }
+    if (at.edge >= curves.edge_count()) {
+      throw unreadable("edge " + std::to_string(at.edge) + " of " + std::to_string(curves.edge_count()) +
+                       " (they count from 0)");
+    }
+    if (!(at.t >= 0 && at.t <= 1)) throw unreadable("t must be from 0 to 1");
+    requests.push_back(at);
+  });
+  return requests;
+}
+
+void write_point(Report& report, const CurveSet&, const CurveParameter& at, const CurveSetPoint& point) {
+  const auto& [x, y, z] = point.position;
+  if (!report.json()) return report.text(fmt::format("{} {}  {} {} {}", at.edge, at.t, x, y, z));
+  JsonWriter& json = report.write();
+  json.begin_object().field("edge", at.edge).field("t", at.t).field("position", point.position);
+  json.field("error", point.error).field("tangent", point.tangent).end_object();
+}
+
+std::size_t write_lattice(Report& report, const CurveSet& curves, std::uint32_t edge, unsigned steps) {
+  for (unsigned i = 0; i <= steps; ++i) {
+    const CurveParameter at{edge, i / static_cast<double>(steps)};
+    write_point(report, curves, at, evaluate(curves, at));
+  }
+  return steps + 1;
+}
+
+// The points that are asked for, on a surface or on curves with `owners` faces, vertices or edges.
+template <class Source>
+ExitStatus answer(const Options& options, const Source& source, std::size_t owners,
+                  const std::function<void(Report&)>& heads) {
+  const auto requests =
+      options.at.empty() ? decltype(read_requests("", source)){} : read_requests(options.at, source);
+  Report report("eval", options);
+  heads(report);
+  if (report.json()) report.write().key("points").begin_array();
+  std::size_t count = requests.size();
+  naming(options.mesh, [&] {
+    for (const auto& at : requests) write_point(report, source, at, evaluate(source, at));
+    if (!options.at.empty()) return;
     ProgressBar bar("evaluating " + options.mesh, options.quiet);
     const WorkMonitor monitor = bar.monitor();
-    for (std::uint32_t owner = 0; owner < surface.owner_count(); ++owner) {
-      std::optional<PatchEvaluator> evaluator;
-      std::optional<PatchId> last;
-      for_each_place(surface, owner, options.samples, [&](const SurfaceParameter& at) {
-        const std::optional<PatchId> patch = patch_at(surface, at);
-        if (!patch) return;
-        if (patch != last) evaluator.emplace(surface, *patch);
-        last = patch;
-        write_point(report, surface, at, (*evaluator)(at));
-        ++count;
-      });
-      monitor.report(static_cast<double>(owner + 1) / static_cast<double>(surface.owner_count()));
+    for (std::uint32_t owner = 0; owner < owners; ++owner) {
+      count += write_lattice(report, source, owner, options.samples);
+      monitor.report(static_cast<double>(owner + 1) / static_cast<double>(owners));
     }
   });
   if (report.json()) report.write().end_array().field("count", count);
   report.finish();
   return ExitStatus::answered;
+}
+
+ExitStatus run(const Options& options) {
+  ControlMesh mesh = load_mesh(options.mesh, options);
+  if (asks_for_curves("eval", mesh, options.mesh, options, options.degree)) {
+    const CurveSet curves = make_curves(std::move(mesh), options.mesh, curve_degree(options.degree));
+    return answer(options, curves, curves.edge_count(), [&](Report& report) {
+      curve_heads(report, options.mesh, curves.degree());
+      report.text("# edge t  x y z");
+    });
+  }
+  const LimitSurface surface =
+      make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  return answer(options, surface, surface.owner_count(), [&](Report& report) {
+    const Scheme scheme = surface.options().scheme;
+    report.heads({options.mesh}, {name_of(scheme)});
+    report.text(
+        fmt::format("# {} u v{}  x y z", owner_word(scheme), scheme == Scheme::loop ? "" : " corner"));
+  });
 }
 
 }  // namespace

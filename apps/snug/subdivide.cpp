@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/core.h>
 #include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
@@ -19,38 +21,57 @@ struct Options : CommonOptions {
   bool limit = false;
 };
 
+// Of files, polylines go to OBJ alone.
+void require_obj(const std::string& output) {
+  std::string ending = output == "-" ? ".obj" : output.substr(output.find_last_of('.'));
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  if (ending == ".obj") return;
+  throw UsageError("subdivide: -o " + output + ": polylines are written to .obj files only");
+}
+
 ExitStatus run(const Options& options) {
   if (options.output.empty()) throw UsageError("subdivide: -o FILE is missing: where the refined mesh goes");
   if (options.json && options.output == "-")
     throw UsageError("subdivide: --json and -o - both want standard output");
   ControlMesh mesh = load_mesh(options.mesh, options);
-  if (asks_for_curves("subdivide", mesh, options.mesh, options, options.degree)) {
-    return subdivide_curve(mesh, options.mesh, options,
-                           {curve_degree(options.degree), options.level, options.limit});
+  const bool curves = asks_for_curves("subdivide", mesh, options.mesh, options, options.degree);
+  if (curves) {
+    require_obj(options.output);
+  } else {
+    refuse_curves(mesh, options.scheme, options.mesh);
   }
-  refuse_curves(mesh, options.scheme, options.mesh);
   ControlMesh result;
   Scheme scheme{};
   naming(options.mesh, [&] {
+    ProgressBar bar("subdividing " + options.mesh, options.quiet);
+    if (curves) {
+      result =
+          subdivide_curves(mesh, curve_degree(options.degree), options.level, options.limit, bar.monitor());
+      return;
+    }
     const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
     scheme = rules.scheme;
-    ProgressBar bar("subdividing " + options.mesh, options.quiet);
     result = subdivide(std::move(mesh), rules, options.level, options.limit, bar.monitor());
   });
-  note_smooth_facets(options.mesh, options, ask_info);
+  if (!curves) note_smooth_facets(options.mesh, options, ask_info);
   AtomicFile file(options.output);
   write_mesh(result, file, options.output, notes_for(options), stopped_by_interrupts());
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("subdivide", to_standard_output);
-  report.heads({options.mesh}, {name_of(scheme)});
+  curves ? curve_heads(report, options.mesh, curve_degree(options.degree))
+         : report.heads({options.mesh}, {name_of(scheme)});
   if (report.json()) {
     report.write().field("vertices", result.vertex_count()).field("faces", result.face_count());
+    if (curves) report.write().field("polylines", result.polyline_count());
     report.write().field("level", options.level).field("limit", options.limit);
   }
   if (options.output != "-") {
-    report.text(fmt::format("{}: {} vertices, {} faces{}", options.output, result.vertex_count(),
-                            result.face_count(), options.limit ? ", at their limit positions" : ""));
+    report.text(fmt::format("{}: {} vertices, {} {}{}", options.output, result.vertex_count(),
+                            curves ? result.polyline_count() : result.face_count(),
+                            curves ? "polylines" : "faces",
+                            options.limit ? ", at their limit positions" : ""));
   }
   report.finish(&file);
   return ExitStatus::answered;

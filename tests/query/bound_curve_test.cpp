@@ -2,9 +2,9 @@
 #include <experiments/quantile.h>
 #include <snug/base/error.h>
 #include <snug/bounds/curve_points.h>
-#include <snug/query/bound_curve.h>
-#include <snug/query/subdivide_curve.h>
-#include <snug/surface/evaluate_curve.h>
+#include <snug/query/bound.h>
+#include <snug/query/subdivide.h>
+#include <snug/surface/evaluate.h>
 #include <testing/curves.h>
 
 #include <gtest/gtest.h>

@@ -14,12 +14,10 @@
 #include <snug/patch/evaluate.h>
 #include <snug/patch/quad_parameter.h>
 #include <snug/query/bound.h>
-#include <snug/query/bound_curve.h>
 #include <snug/query/closest.h>
 #include <snug/query/collide.h>
 #include <snug/query/distance.h>
 #include <snug/surface/evaluate.h>
-#include <snug/surface/evaluate_curve.h>
 #include <snug/surface/patch_bounds.h>
 
 namespace snug {

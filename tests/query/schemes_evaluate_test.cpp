@@ -38,7 +38,7 @@ TEST(patch_evaluator, positions_agree_with_the_twin) {
                                                    : TriangleParameter{s.v - s.u, 1 - s.v};
           const std::size_t patch = surface.patches_of(s.face).begin + (loop ? 0 : 2 * s.part + half);
           PatchEvaluator& evaluator = evaluators.try_emplace(patch, surface, PatchId(patch)).first->second;
-          const SurfacePosition point = evaluator.position(at);
+          const BoundedPoint point = evaluator.position(at);
           ++count;
           for (std::size_t k = 0; k < 3; ++k) {
             ASSERT_LE(std::fabs(point.position[k] - s.position[k]), point.error + s.error)
@@ -64,7 +64,7 @@ TEST(patch_evaluator, positions_agree_with_the_general_evaluation) {
         if (trial >= 6) at = {std::ldexp(at.u, -static_cast<int>(random() % 50)), at.v * (1 - at.u)};
         if (trial % 4 == 3) at.v = 0;
         if (!(at.u + at.v <= 1)) continue;
-        const SurfacePosition alone = evaluator.position(at);
+        const BoundedPoint alone = evaluator.position(at);
         const SurfacePoint general = evaluator(at);
         for (std::size_t k = 0; k < 3; ++k) {
           ASSERT_LE(std::fabs(alone.position[k] - general.position[k]), alone.error + general.error)

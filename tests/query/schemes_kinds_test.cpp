@@ -16,7 +16,7 @@ namespace {
 using testing::NamedSurface;
 
 struct Corner {
-  SurfacePosition at;
+  BoundedPoint at;
   std::uint32_t name;
 };
 
@@ -41,9 +41,9 @@ double largest_difference(const Point3& a, const Point3& b) { return max_abs(a -
 
 TEST(corner_names, that_are_equal_stand_for_equal_limit_points) {
   testing::for_each_surface(101, [&](const NamedSurface& s) {
-    std::map<std::uint32_t, SurfacePosition> by_name;
+    std::map<std::uint32_t, BoundedPoint> by_name;
     for (const Corner& corner : corners_of(s.surface)) {
-      const SurfacePosition& first = by_name.try_emplace(corner.name, corner.at).first->second;
+      const BoundedPoint& first = by_name.try_emplace(corner.name, corner.at).first->second;
       EXPECT_LE(largest_difference(first.position, corner.at.position), first.error + corner.at.error)
           << s.name << ", name " << corner.name;
     }

@@ -1,6 +1,6 @@
 #include <snug/bounds/curve_points.h>
-#include <snug/query/bound_curve.h>
-#include <snug/surface/evaluate_curve.h>
+#include <snug/query/bound.h>
+#include <snug/surface/evaluate.h>
 #include <snug/surface/unscale.h>
 #include <testing/curves.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <oracle/curve_twin.h>
-#include <snug/query/bound_curve.h>
+#include <snug/query/bound.h>
 #include <testing/containment.h>
 
 #include <random>

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <snug/base/parallel.h>
+#include <snug/bounds/curve_points.h>
 #include <snug/bounds/table_triangle.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
@@ -14,82 +15,180 @@
 namespace snug {
 namespace {
 
-// The pieces of one patch, and how many splits they took.
-struct PatchPieces {
-  std::vector<PieceEnclosure> pieces;
-  std::uint64_t splits = 0;
-  bool reached = true;
+// How well a piece is enclosed.
+struct Fit {
+  double radius;  // in mesh units
+  bool stuck;     // rounding alone makes it up: splitting does not help
 };
 
-class PatchBounder {
+template <std::size_t N>
+Fit enclosed(const OffsetSimplex<N>& offset, const IntervalSimplex<N>& interval, PowerOfTwo back,
+             Enclosure<N>& out) {
+  out.offset = unscaled(offset, back);
+  out.interval = unscaled(interval, back);
+  return {out.offset.radius, offset.radius <= 2 * offset.rounding};
+}
+
+class SurfacePieces {
  public:
-  PatchBounder(const LimitSurface& surface, const BoundOptions& options, const WorkMonitor& monitor)
-      : surface_(surface), options_(options), monitor_(monitor), back_(surface.scale().inverse()) {}
+  using Enclosure = PieceEnclosure;
+  static constexpr unsigned children = 4;
 
-  PatchPieces run(PatchId root, std::uint64_t budget) {
-    result_ = {};
-    root_ = root;
-    level_ = surface_.after_first_split(root) ? 1 : 0;
-    budget_ = budget;
-    if (surface_.has_patch(root)) visit(surface_.patch(root));
-    return std::move(result_);
+  SurfacePieces(const LimitSurface& surface, const BoundOptions& options)
+      : surface_(surface), options_(options), back_(surface.scale().inverse()) {}
+
+  [[nodiscard]] std::optional<Patch> whole(std::size_t i) const {
+    return surface_.has_patch(PatchId(i)) ? std::optional(surface_.patch(PatchId(i))) : std::nullopt;
   }
+  [[nodiscard]] unsigned level(std::size_t i) const { return surface_.after_first_split(PatchId(i)) ? 1 : 0; }
 
- private:
-  void visit(const Patch& patch) {
-    const bool room = result_.splits < budget_ && patch.path.level() < PiecePath::max_level;
-    PieceEnclosure piece;
-    const bool fine = fit(patch, piece);
-    const bool more = options_.tolerance ? !fine : level_ + patch.path.level() < options_.level;
-    const bool useful = !options_.tolerance || !stuck_;
-    if (more && useful && room) {
-      visit_children(patch);
-      return;
-    }
-    if (more) result_.reached = false;
-    result_.pieces.push_back(std::move(piece));
-  }
-
-  void visit_children(const Patch& patch) {
-    ++result_.splits;
-    monitor_.checkpoint();
-    for (unsigned child = 0; child < 4; ++child) visit(split(patch, child));
-  }
-
-  // Fits the enclosures of a piece; true if they meet the target.
-  bool fit(const Patch& patch, PieceEnclosure& piece) {
-    piece.patch = root_;
-    piece.path = patch.path;
+  Fit fit(std::size_t i, const Patch& patch, PieceEnclosure& piece) {
+    piece.patch = PatchId(i);
     const std::array<Vector3, 3> corners = limit_corners(patch);
     for (std::size_t k = 0; k < 3; ++k) {
       piece.corners[k] = require_representable(back_.apply(patch.origin + corners[k]));
     }
-    OffsetTriangle offset;
     if (options_.method == BoundMethod::table) {
       const TableTriangle triangle = table_triangle(surface_.library().table(*patch.kind), patch);
-      offset = offset_triangle(triangle);
-      piece.interval = unscaled(triangle.interval, back_);
-    } else {
-      hull_points(surface_.library(), patch, points_);
-      offset = offset_triangle(surface_.library(), points_, corners);
-      piece.interval = unscaled(interval_simplex(points_, corners), back_);
+      return enclosed(offset_triangle(triangle), triangle.interval, back_, piece);
     }
-    piece.offset = unscaled(offset, back_);
-    stuck_ = offset.radius <= 2 * offset.rounding;
-    return !options_.tolerance || piece.offset.radius <= *options_.tolerance / 2;
+    hull_points(surface_.library(), patch, points_);
+    const OffsetTriangle offset = offset_triangle(surface_.library(), points_, corners);
+    return enclosed(offset, interval_simplex(points_, corners), back_, piece);
   }
 
+ private:
   const LimitSurface& surface_;
   const BoundOptions& options_;
-  const WorkMonitor& monitor_;
   PowerOfTwo back_;
-  PatchId root_;
-  unsigned level_ = 0;  // of the whole patch
-  std::uint64_t budget_ = 0;
-  bool stuck_ = false;  // rounding alone makes up the last fit: splitting does not help
   HullPoints points_;
-  PatchPieces result_;
 };
+
+class CurvePieces {
+ public:
+  using Enclosure = CurveEnclosure;
+  static constexpr unsigned children = 2;
+
+  CurvePieces(const CurveSet& curves, const BoundOptions&)
+      : curves_(curves), back_(curves.scale().inverse()) {}
+
+  [[nodiscard]] std::optional<CurvePiece> whole(std::size_t i) const { return curves_.piece(EdgeId(i)); }
+  [[nodiscard]] unsigned level(std::size_t) const { return 0; }
+
+  Fit fit(std::size_t i, const CurvePiece& piece, CurveEnclosure& out) {
+    out.edge = EdgeId(i);
+    const std::array<LimitPoint, 2> limits = limit_ends(piece);
+    const std::array<Vector3, 2> ends{limits[0].relative, limits[1].relative};
+    for (std::size_t k = 0; k < 2; ++k) {
+      out.corners[k] = require_representable(back_.apply(piece.origin + ends[k]));
+    }
+    hull_points(piece, points_);
+    return enclosed(offset_simplex(points_, ends), interval_simplex(points_, ends), back_, out);
+  }
+
+ private:
+  const CurveSet& curves_;
+  PowerOfTwo back_;
+  HullPoints points_;
+};
+
+// What became of one patch, or one edge.
+template <class Pieces>
+struct Bounded {
+  std::vector<typename Pieces::Enclosure> enclosures;
+  double max_radius = 0;
+  std::uint64_t splits = 0;
+  bool reached = true;
+};
+
+template <class Pieces>
+class Bounder {
+ public:
+  template <class Source>
+  Bounder(const Source& source, const BoundOptions& options, const WorkMonitor& monitor)
+      : pieces_(source, options), options_(options), monitor_(monitor) {}
+
+  Bounded<Pieces> run(std::size_t i, std::uint64_t budget) {
+    result_ = {};
+    whole_ = i;
+    level_ = pieces_.level(i);
+    budget_ = budget;
+    if (const auto piece = pieces_.whole(i)) visit(*piece);
+    return std::move(result_);
+  }
+
+ private:
+  template <class Piece>
+  void visit(const Piece& piece) {
+    const bool room = result_.splits < budget_ && piece.path.level() < PiecePath::max_level;
+    typename Pieces::Enclosure enclosure;
+    enclosure.path = piece.path;
+    const Fit fit = pieces_.fit(whole_, piece, enclosure);
+    const bool more = options_.tolerance ? fit.radius > *options_.tolerance / 2
+                                         : level_ + piece.path.level() < options_.level;
+    if (more && room && !(options_.tolerance && fit.stuck)) return visit_children(piece);
+    if (more) result_.reached = false;
+    result_.max_radius = std::max(result_.max_radius, fit.radius);
+    result_.enclosures.push_back(std::move(enclosure));
+  }
+
+  template <class Piece>
+  void visit_children(const Piece& piece) {
+    ++result_.splits;
+    monitor_.checkpoint();
+    for (unsigned child = 0; child < Pieces::children; ++child) visit(split(piece, child));
+  }
+
+  Pieces pieces_;
+  const BoundOptions& options_;
+  const WorkMonitor& monitor_;
+  std::size_t whole_ = 0;
+  unsigned level_ = 0;  // of the whole piece
+  std::uint64_t budget_ = 0;
+  Bounded<Pieces> result_;
+};
+
+template <class Pieces, class Source>
+BoundSummary bound_all(const Source& source, std::size_t all, const BoundOptions& options,
+                       const std::function<void(const typename Pieces::Enclosure&)>& sink,
+                       const WorkMonitor& monitor) {
+  require_sound(options);
+  // Patches or edges worked on at once: as many as their pieces are few, so that memory stays small and threads are busy.
+  constexpr std::size_t most_wholes = 1024, most_pieces = 1 << 16;
+  std::size_t chunk = 1;
+  BoundSummary summary;
+  std::vector<Bounded<Pieces>> results;
+  for (std::size_t begin = 0, count = 0; begin < all; begin += count) {
+    count = std::min(chunk, all - begin);
+    // One that needs more than its share of the memory is done again, alone.
+    const std::uint64_t left = std::min<std::uint64_t>(
+        options.budget - summary.splits, std::max<std::uint64_t>(64, most_pieces / (3 * count)));
+    results.assign(count, {});
+    parallel_for_with(
+        count, options.threads, [&] { return Bounder<Pieces>(source, options, monitor); },
+        [&](Bounder<Pieces>& bounder, std::size_t from, std::size_t to) {
+          for (std::size_t i = from; i < to; ++i) results[i] = bounder.run(begin + i, left);
+        });
+    std::size_t pieces = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      // The budget is spent in order, whatever the threads did.
+      Bounded<Pieces>& result = results[i];
+      const std::uint64_t rest = options.budget - summary.splits;
+      if (result.splits > rest || (result.splits == left && left < rest)) {
+        result = Bounder<Pieces>(source, options, monitor).run(begin + i, rest);
+      }
+      summary.splits += result.splits;
+      summary.reached = summary.reached && result.reached;
+      summary.max_radius = std::max(summary.max_radius, result.max_radius);
+      summary.count += result.enclosures.size();
+      for (const auto& enclosure : result.enclosures) sink(enclosure);
+      pieces += result.enclosures.size();
+    }
+    chunk = std::clamp<std::size_t>(most_pieces * count / (pieces + 1), 1, std::min(4 * count, most_wholes));
+    monitor.report(static_cast<double>(begin + count) / static_cast<double>(all));
+  }
+  return summary;
+}
 
 }  // namespace
 
@@ -101,43 +200,13 @@ void require_sound(const BoundOptions& options) {
 
 BoundSummary bound(const LimitSurface& surface, const BoundOptions& options,
                    const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor) {
-  require_sound(options);
-  // Patches worked on at once: as many as their pieces are few, so that memory stays small and threads are busy.
-  constexpr std::size_t most_patches = 1024, most_pieces = 1 << 16;
-  std::size_t chunk = 1;
-  BoundSummary summary;
-  std::vector<PatchPieces> results;
-  for (std::size_t begin = 0, count = 0; begin < surface.patch_count(); begin += count) {
-    count = std::min(chunk, surface.patch_count() - begin);
-    // A patch that needs more than its share of the memory is done again, alone.
-    const std::uint64_t left = std::min<std::uint64_t>(
-        options.budget - summary.splits, std::max<std::uint64_t>(64, most_pieces / (3 * count)));
-    results.assign(count, {});
-    parallel_for_with(
-        count, options.threads, [&] { return PatchBounder(surface, options, monitor); },
-        [&](PatchBounder& bounder, std::size_t from, std::size_t to) {
-          for (std::size_t i = from; i < to; ++i) results[i] = bounder.run(PatchId(begin + i), left);
-        });
-    for (std::size_t i = 0; i < count; ++i) {
-      // The budget is spent in the order of patches, whatever the threads did.
-      const std::uint64_t rest = options.budget - summary.splits;
-      if (results[i].splits > rest || (results[i].splits == left && left < rest)) {
-        results[i] = PatchBounder(surface, options, monitor).run(PatchId(begin + i), rest);
-      }
-      summary.splits += results[i].splits;
-      summary.reached = summary.reached && results[i].reached;
-      for (const PieceEnclosure& piece : results[i].pieces) {
-        ++summary.count;
-        summary.max_radius = std::max(summary.max_radius, piece.offset.radius);
-        sink(piece);
-      }
-    }
-    std::size_t pieces = 0;
-    for (const PatchPieces& patch : results) pieces += patch.pieces.size();
-    chunk = std::clamp<std::size_t>(most_pieces * count / (pieces + 1), 1, std::min(4 * count, most_patches));
-    monitor.report(static_cast<double>(begin + count) / static_cast<double>(surface.patch_count()));
-  }
-  return summary;
+  return bound_all<SurfacePieces>(surface, surface.patch_count(), options, sink, monitor);
+}
+
+BoundSummary bound(const CurveSet& curves, const BoundOptions& options,
+                   const std::function<void(const CurveEnclosure&)>& sink, const WorkMonitor& monitor) {
+  require_value(options.method != BoundMethod::table, "bound: curves have no tables; give BoundMethod::rows");
+  return bound_all<CurvePieces>(curves, curves.edge_count(), options, sink, monitor);
 }
 
 }  // namespace snug

@@ -8,6 +8,7 @@
 #include <snug/geometry/scaling.h>
 #include <snug/scheme/limits.h>
 #include <snug/scheme/refine.h>
+#include <snug/surface/curve_set.h>
 
 namespace snug {
 namespace {
@@ -128,6 +129,33 @@ ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned l
     for (const auto& [v, point] : isolated) mesh.points[v] = point;
   }
   return mesh;
+}
+
+ControlMesh subdivide_curves(const ControlMesh& mesh, CurveDegree degree, unsigned level, bool limit,
+                             const WorkMonitor& monitor) {
+  const CurveSet curves(mesh, degree);  // refuses what has no curves
+  if (level > 30 || (2 * mesh.polyline_vertices.size() << level) > (std::size_t{1} << 31)) {
+    throw InputError(InputProblem::refused, "level " + std::to_string(level) + " of polylines with " +
+                                                std::to_string(mesh.polyline_vertices.size()) +
+                                                " vertices is more than 2^31 vertices: take a lower level");
+  }
+  const PowerOfTwo scale = curves.scale();
+  ControlMesh result;
+  for (std::size_t p = 0; p < mesh.polyline_count(); ++p) {
+    monitor.report(static_cast<double>(p) / static_cast<double>(mesh.polyline_count()));
+    ControlPolygon polygon = control_polygon(mesh, PolylineId(p));
+    for (Point3& point : polygon.points) point = scale.apply(point);
+    for (unsigned step = 0; step < level; ++step) polygon = refine(polygon, degree);
+    if (limit) polygon = limit_positions(polygon, degree);
+    std::vector<VertexId> line;
+    for (const Point3& point : polygon.points) {
+      line.emplace_back(result.points.size());
+      result.points.push_back(require_representable(scale.inverse().apply(point)));
+    }
+    if (polygon.closed) line.push_back(line.front());
+    result.add_polyline(line);
+  }
+  return result;
 }
 
 }  // namespace snug

@@ -2,6 +2,7 @@
 
 #include <snug/base/progress.h>
 #include <snug/mesh/control_mesh.h>
+#include <snug/scheme/curve_masks.h>
 #include <snug/scheme/scheme.h>
 
 namespace snug {
@@ -19,5 +20,15 @@ namespace snug {
 /// Cost:      linear in the result.
 [[nodiscard]] ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned level,
                                     bool limit, const WorkMonitor& monitor = {});
+
+/// The polylines of a mesh after `level` steps of subdivision, or the limit positions of their vertices. Every polyline gets
+/// vertices of its own, in its order; faces and vertices that no polyline uses are left out.
+///
+/// Guarantee: order and ends as in scheme/curve_masks.h; positions as above.
+/// Errors:    InputError (refused) from require_curves, and if the result has more than 2^31 vertices or a coordinate that
+///            does not fit a double. Interrupted.
+/// Cost:      linear in the result.
+[[nodiscard]] ControlMesh subdivide_curves(const ControlMesh& mesh, CurveDegree degree, unsigned level,
+                                           bool limit, const WorkMonitor& monitor = {});
 
 }  // namespace snug

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <snug/base/error.h>
+#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/patch/quad_parameter.h>
@@ -10,24 +11,13 @@
 
 namespace snug {
 
-namespace {
-
-SurfacePosition placed(const LimitPoint& point, const Point3& origin, PowerOfTwo back) {
-  const Point3 scaled = origin + point.relative;
-  const double error = point.error + unit_roundoff * max_abs(scaled - Point3{});
-  return {require_representable(back.apply(scaled)), unscaled_up(enlarged(error), back) + underflow_error};
-}
-
-}  // namespace
-
 PatchEvaluator::PatchEvaluator(const LimitSurface& surface, PatchId p)
     : evaluator_(surface.patch(p)),
       back_(surface.scale().inverse()),
       loop_(surface.options().scheme == Scheme::loop) {}
 
-SurfacePosition PatchEvaluator::position(TriangleParameter at) {
-  const LimitPoint point = evaluator_(at);
-  return placed(point, evaluator_.patch().origin, back_);
+BoundedPoint PatchEvaluator::position(TriangleParameter at) {
+  return unscaled(evaluator_(at).from(evaluator_.patch().origin), back_);
 }
 
 SurfacePoint PatchEvaluator::operator()(TriangleParameter at) const {
@@ -40,14 +30,14 @@ SurfacePoint PatchEvaluator::operator()(const SurfaceParameter& at) const {
 }
 
 SurfacePoint PatchEvaluator::placed_frame(const LimitFrame& frame) const {
-  SurfacePoint result;
-  static_cast<SurfacePosition&>(result) = placed(frame.point, evaluator_.patch().origin, back_);
+  SurfacePoint result{unscaled(frame.point.from(evaluator_.patch().origin), back_),
+                      {},
+                      frame.differentiable,
+                      frame.normal,
+                      {}};
   for (std::size_t t = 0; t < 2; ++t) {
-    result.tangents[t] = back_.apply(frame.tangents[t]);
-    if (!is_finite(result.tangents[t])) require_representable(INFINITY);
+    result.tangents[t] = require_representable(back_.apply(frame.tangents[t]));
   }
-  result.differentiable = frame.differentiable;
-  result.normal = frame.normal;
   if (frame.normal && frame.tangent_error) {
     result.normal_error = normal_error(frame.tangents, *frame.tangent_error);
   }
@@ -83,8 +73,7 @@ std::optional<SurfaceNormal> normal_at(const LimitSurface& surface, const Surfac
                                        const Motion& pose) {
   const SurfacePoint point = evaluate(surface, at);
   if (!point.normal) return std::nullopt;
-  const Vector3 turned = pose.rotate(*point.normal);
-  SurfaceNormal result{(1 / length(turned)) * turned, {}};
+  SurfaceNormal result{normalized(pose.rotate(*point.normal)), {}};
   // derivations/rounding.md, "Normals".
   const double defect = pose.defect();
   if (point.normal_error) {
@@ -98,6 +87,13 @@ SurfacePoint evaluate(const LimitSurface& surface, const SurfaceParameter& at) {
   require_value(patch.has_value(),
                 "evaluate: there is no limit surface at this place; patch_at() tells where there is one");
   return PatchEvaluator(surface, *patch)(at);
+}
+
+CurveSetPoint evaluate(const CurveSet& curves, EdgeId edge, double t) {
+  const PowerOfTwo back = curves.scale().inverse();
+  const CurvePiece piece = curves.piece(edge);
+  const CurvePoint point = curve_point(piece, t);
+  return {unscaled(point.point.from(piece.origin), back), require_representable(back.apply(point.tangent))};
 }
 
 }  // namespace snug

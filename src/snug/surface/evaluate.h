@@ -5,18 +5,13 @@
 
 #include <snug/geometry/motion.h>
 #include <snug/patch/limit_evaluator.h>
+#include <snug/surface/curve_set.h>
 #include <snug/surface/limit_surface.h>
 
 namespace snug {
 
-/// A limit point in mesh units.
-struct SurfacePosition {
-  Point3 position;
-  double error;  ///< upper bound, a coordinate, of |position - exact|, rounding of the coordinates included
-};
-
-/// A limit point with what the surface does there.
-struct SurfacePoint : SurfacePosition {
+/// A limit point in mesh units, with what the surface does there.
+struct SurfacePoint : BoundedPoint {
   /// Derivatives along u and v where they exist, else two limit tangents of no particular length.
   std::array<Vector3, 2> tangents;
   bool differentiable;
@@ -79,9 +74,9 @@ class PatchEvaluator {
   /// The point at a parameter of the patch, with derivatives along its own u and v.
   /// u, v >= 0 and u + v <= 1.
   [[nodiscard]] SurfacePoint operator()(TriangleParameter at) const;
-  /// The position alone; keeps the polynomial pieces that it meets.
+  /// The position alone, in mesh units; keeps the polynomial pieces that it meets.
   /// Cost:      see LimitEvaluator.
-  [[nodiscard]] SurfacePosition position(TriangleParameter at);
+  [[nodiscard]] BoundedPoint position(TriangleParameter at);
 
  private:
   [[nodiscard]] SurfacePoint placed_frame(const LimitFrame& frame) const;
@@ -90,5 +85,17 @@ class PatchEvaluator {
   PowerOfTwo back_;
   bool loop_;
 };
+
+/// A limit point of a curve in mesh units, and the derivative there along t.
+struct CurveSetPoint : BoundedPoint {
+  Vector3 tangent;  ///< in double precision without a bound; 0 where the curve has none
+};
+
+/// The limit point of an edge at t: 0 at the limit of its first vertex, 1 at that of the second.
+///
+/// Guarantee: as CurveSetPoint says, for exactly this t.
+/// Errors:    InputError (value) unless edge < curves.edge_count() and 0 <= t <= 1; (unrepresentable) if a coordinate does
+///            not fit a double.
+[[nodiscard]] CurveSetPoint evaluate(const CurveSet& curves, EdgeId edge, double t);
 
 }  // namespace snug
