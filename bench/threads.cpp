@@ -100,7 +100,7 @@ void compare_surfaces(const Options& options, const ControlMesh& mesh, const Lim
       BoundOptions how;
       how.level = level;
       how.threads = threads;
-      bound(surface, how, [&](const PieceEnclosure& piece) { sum += piece.offset->radius; });
+      bound(surface, how, [&](const PieceEnclosure& piece) { sum += piece.offset.radius; });
       return sum;
     });
   }

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include <snug/bounds/bounds_cache.h>
+#include <snug/bounds/enclosure.h>
 #include <snug/bounds/hull_points.h>
 #include <snug/bounds/kind_slots.h>
-#include <snug/bounds/enclosure.h>
 
 /// What bounds a patch in the experiments: as in the library, or by tables of the layout that lost.
 namespace snug {

@@ -6,7 +6,6 @@
 #include <oracle/loop_twin.h>
 #include <snug/base/error.h>
 #include <snug/query/bound.h>
-#include <snug/query/bound_curve.h>
 #include <snug/surface/unscale.h>
 #include <testing/curves.h>
 #include <testing/patches.h>
