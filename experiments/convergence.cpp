@@ -8,6 +8,7 @@
 #include <experiments/eigenvalues.h>
 #include <experiments/quantile.h>
 #include <snug/base/error.h>
+#include <snug/base/names.h>
 #include <snug/base/parallel.h>
 #include <snug/bounds/enclosure.h>
 #include <snug/bounds/table_triangle.h>
@@ -156,16 +157,12 @@ CornerEigenvalues corner_eigenvalues(Scheme scheme, const NetPlace& place) {
   return {sizes[1], sizes[2], sizes[3]};
 }
 
-const char* name_of(ThicknessMeasure measure) {
-  switch (measure) {
-    case ThicknessMeasure::radius:
-      return "radius";
-    case ThicknessMeasure::interval:
-      return "interval";
-    default:
-      return "normal";
-  }
-}
+constexpr auto thickness_measure_names =
+    std::to_array<Named<ThicknessMeasure>>({{"radius", ThicknessMeasure::radius},
+                                            {"interval", ThicknessMeasure::interval},
+                                            {"normal", ThicknessMeasure::normal}});
+
+const char* name_of(ThicknessMeasure measure) { return name_in(thickness_measure_names, measure); }
 
 std::array<Thicknesses, 3> corner_thicknesses(const LimitSurface& surface, PatchId p, LayoutTables& tables,
                                               BoundSource source, unsigned levels) {

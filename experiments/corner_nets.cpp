@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <snug/base/error.h>
+#include <snug/base/names.h>
 
 namespace snug {
 namespace {
@@ -179,16 +180,10 @@ void disturb(ControlMesh& mesh, double along, double across, std::uint64_t seed)
   }
 }
 
-const char* name_of(NetShape shape) {
-  switch (shape) {
-    case NetShape::bent:
-      return "bent";
-    case NetShape::bumpy:
-      return "bumpy";
-    default:
-      return "flat";
-  }
-}
+constexpr auto net_shape_names = std::to_array<Named<NetShape>>(
+    {{"bent", NetShape::bent}, {"bumpy", NetShape::bumpy}, {"flat", NetShape::flat}});
+
+const char* name_of(NetShape shape) { return name_in(net_shape_names, shape); }
 
 ControlMesh corner_net(NetShape shape, std::size_t n, std::uint64_t seed) {
   ControlMesh mesh = fan_mesh(n, 2);
@@ -203,10 +198,14 @@ ControlMesh corner_net(NetShape shape, std::size_t n, std::uint64_t seed) {
   return mesh;
 }
 
-const char* name_of(NetCentre centre) {
-  constexpr std::array names{"interior", "boundary", "corner", "crease", "dart", "semi-sharp"};
-  return names[static_cast<std::size_t>(centre)];
-}
+constexpr auto net_centre_names = std::to_array<Named<NetCentre>>({{"interior", NetCentre::interior},
+                                                                   {"boundary", NetCentre::boundary},
+                                                                   {"corner", NetCentre::corner},
+                                                                   {"crease", NetCentre::crease},
+                                                                   {"dart", NetCentre::dart},
+                                                                   {"semi-sharp", NetCentre::semi_sharp}});
+
+const char* name_of(NetCentre centre) { return name_in(net_centre_names, centre); }
 
 ControlMesh bent_net(Scheme scheme, const NetPlace& place, std::uint64_t seed) {
   const std::size_t n = place.faces;

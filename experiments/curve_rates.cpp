@@ -6,6 +6,7 @@
 
 #include <experiments/quantile.h>
 #include <snug/base/error.h>
+#include <snug/base/names.h>
 #include <snug/bounds/curve_points.h>
 #include <snug/bounds/enclosure.h>
 #include <snug/surface/curve_set.h>
@@ -62,16 +63,10 @@ double expected_factor(CurveDegree degree, CurvePlace place) {
 
 }  // namespace
 
-const char* name_of(CurvePlace place) {
-  switch (place) {
-    case CurvePlace::closed:
-      return "closed";
-    case CurvePlace::inner:
-      return "inner";
-    default:
-      return "end";
-  }
-}
+constexpr auto curve_place_names = std::to_array<Named<CurvePlace>>(
+    {{"closed", CurvePlace::closed}, {"inner", CurvePlace::inner}, {"end", CurvePlace::end}});
+
+const char* name_of(CurvePlace place) { return name_in(curve_place_names, place); }
 
 std::vector<CurveRateRow> measure_curve_rates(const RateOptions& options, const WorkMonitor& monitor) {
   require_value(options.nets >= 1 && options.levels >= 4 && options.levels <= PiecePath::max_level,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <snug/base/names.h>
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
 
@@ -184,17 +185,12 @@ bool certainly_separated(const OffsetTriangle& a, const OffsetTriangle& b, doubl
   return rounded_down(nearest(a.base, b.base).certain_distance - enlarged(a.radius + b.radius)) > margin;
 }
 
-const char* name_of(PairFamily family) {
-  switch (family) {
-    case PairFamily::general:
-      return "general";
-    case PairFamily::side_by_side:
-      return "side-by-side";
-    case PairFamily::one_above_other:
-      return "one-above-other";
-  }
-  return "";
-}
+constexpr auto pair_family_names =
+    std::to_array<Named<PairFamily>>({{"general", PairFamily::general},
+                                      {"side-by-side", PairFamily::side_by_side},
+                                      {"one-above-other", PairFamily::one_above_other}});
+
+const char* name_of(PairFamily family) { return name_in(pair_family_names, family); }
 
 NearPair near_pair(PairFamily family, std::mt19937_64& random) {
   constexpr Vector3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};

@@ -113,6 +113,23 @@ void write_polyhedra(const Polyhedra& polyhedra, const Options& options, AtomicF
                           polyhedra.count(), polyhedra.mesh().face_count()));
 }
 
+// The end of the command, after its last enclosure: the fields of the summary, the sentence `found` with the largest radius, and
+// why not all was reached.
+void write_bound_summary(Report& report, const BoundSummary& summary, const BoundOptions& how,
+                         const std::string& found) {
+  if (report.json()) {
+    report.write().end_array().field("count", summary.count).field("max_radius", summary.max_radius);
+    report.write().field("reached", summary.reached).field("splits", summary.splits);
+  }
+  report.text(found + ", largest radius " + text_at_most(summary.max_radius, true));
+  if (summary.reached) return;
+  report.text(fmt::format("{} was not reached everywhere: {}; what is printed is still proved",
+                          how.tolerance ? "the tolerance" : "the level",
+                          summary.splits >= how.budget
+                              ? "the budget was spent, in the order of the mesh; give a larger --budget"
+                              : "rounding stands in the way; give a larger --tolerance"));
+}
+
 ExitStatus run(const Options& options) {
   if (options.polyhedra == "-") throw UsageError("bound: --polyhedra - : give a file");
   const bool triangles = !options.polyhedra.empty() && !writes_polygons(options.polyhedra);
@@ -158,31 +175,18 @@ ExitStatus run(const Options& options) {
     summary =
         curves ? bound(*curves, how, keep_curve, bar.monitor()) : bound(*surface, how, keep, bar.monitor());
   });
-  if (report.json()) {
-    report.write().end_array().field("count", summary.count).field("max_radius", summary.max_radius);
-    report.write().field("reached", summary.reached).field("splits", summary.splits);
-  }
   const std::string whole = curves ? fmt::format("{} edges contain the limit curves of degree {}",
                                                  curves->edge_count(), static_cast<int>(curves->degree()))
                                    : fmt::format("{} {} contain the limit surface", surface->owner_count(),
                                                  is_primal(surface->options().scheme) ? "faces" : "vertices");
-  report.text(fmt::format("{}: {} enclosures of {}, largest radius {}", options.mesh, summary.count, whole,
-                          text_at_most(summary.max_radius, true)));
-  if (!summary.reached) {
-    const bool spent = summary.splits >= options.budget;
-    report.text(fmt::format("{} was not reached everywhere: {}; what is printed is still proved",
-                            tolerance ? "the tolerance" : "the level",
-                            spent ? fmt::format("the budget was spent, {}; give a larger --budget",
-                                                curves ? "edge by edge" : "patch by patch")
-                                  : "rounding stands in the way; give a larger --tolerance"));
-  }
+  write_bound_summary(report, summary, how,
+                      fmt::format("{}: {} enclosures of {}", options.mesh, summary.count, whole));
   std::optional<AtomicFile> file;
   if (!options.polyhedra.empty()) {
     file.emplace(options.polyhedra);
     write_polyhedra(polyhedra, options, *file, report);
   }
-  report.finish(file ? &*file : nullptr);
-  return summary.reached ? ExitStatus::answered : ExitStatus::not_reached;
+  return report.finish(summary.reached, file ? &*file : nullptr);
 }
 
 }  // namespace

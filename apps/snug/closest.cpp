@@ -133,8 +133,7 @@ ExitStatus run(const Options& options) {
     reached = reached && result.reached();
   }
   if (report.json()) report.write().end_array();
-  report.finish();
-  return reached ? ExitStatus::answered : ExitStatus::not_reached;
+  return report.finish(reached);
 }
 
 }  // namespace

@@ -32,9 +32,7 @@ void write_answer(JsonWriter& json, const Sides& sides, const Collision& answer)
   }
   write_places(json, sides, answer.witness ? &answer.at : nullptr);
   write_inner(json, answer.inner);
-  json.key("stats").begin_object();
-  json.field("box_tests", answer.stats.box_tests).field("triangle_tests", answer.stats.triangle_tests);
-  json.field("evaluations", answer.stats.evaluations).field("splits", answer.stats.splits).end_object();
+  write_stats(json, answer.stats);
 }
 
 // The verdict as a sentence for people.
@@ -57,18 +55,19 @@ std::string sentence(const Collision& answer, double tolerance, double margin) {
                      text_at_most(answer.lower), answer.upper ? text_at_most(*answer.upper, true) : "?");
 }
 
-ExitStatus status(Verdict verdict, bool exit_code) {
+// With --exit-code.
+ExitStatus status_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::separated:
       return ExitStatus::answered;
     case Verdict::within:
-      return exit_code ? ExitStatus::within : ExitStatus::answered;
+      return ExitStatus::within;
     case Verdict::intersecting:
-      return exit_code ? ExitStatus::intersecting : ExitStatus::answered;
+      return ExitStatus::intersecting;
     case Verdict::undecided:
       break;
   }
-  return exit_code ? ExitStatus::undecided : ExitStatus::not_reached;
+  return ExitStatus::undecided;
 }
 
 // Verdict, bounds of the distance and witnesses of one pose among many.
@@ -96,9 +95,7 @@ ExitStatus run_poses(PairArguments& pair, Report& report, const CollideOptions& 
         .row = row(answer),
         .reached = answer.verdict != Verdict::undecided};
   };
-  const ExitStatus status = answer_poses(pair, report, "verdict lower upper ax ay az bx by bz", ask, monitor);
-  report.finish();
-  return status;
+  return answer_poses(pair, report, "verdict lower upper ax ay az bx by bz", ask, monitor);
 }
 
 ExitStatus run(const Options& options) {
@@ -137,8 +134,8 @@ ExitStatus run(const Options& options) {
   if (depth) report.text(penetration_sentence(*depth));
   if (answer.verdict == Verdict::separated && !options.solid)
     note_nesting(options, pair.a(), pair.b(), monitor);
-  report.finish();
-  return status(answer.verdict, options.exit_code);
+  const ExitStatus status = report.finish(answer.verdict != Verdict::undecided);
+  return options.exit_code ? status_of(answer.verdict) : status;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <snug/base/parallel.h>
 #include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
+#include <snug/mesh/tag_names.h>
 
 #include "curve.h"
 #include "mesh_reading.h"
@@ -49,7 +50,7 @@ void add_common_options(OptionList& list, CommonOptions& options) {
   scheme.choices.emplace_back("curve");
   list.add(Group::mesh, "--boundary RULE", &options.boundary,
            "What the boundary does; default: the file's tag, else edge-and-corner")
-      .one_of({"edge-and-corner", "edge-only", "none"})
+      .one_of(all_names(boundary_rule_names))
       .alias("vtx-boundary-edge-and-corner", "edge-and-corner")
       .alias("vtx-boundary-edge-only", "edge-only")
       .alias("vtx-boundary-none", "none");
@@ -100,13 +101,8 @@ SchemeOptions choose_rules(const CommonOptions& options, const std::string& sche
     throw UsageError(std::string("--boundary: ") + name_of(rules.scheme) +
                      " has no patches at boundaries under any rule; leave it out");
   }
-  if (options.boundary == "none") {
-    rules.boundary = BoundaryRule::none;
-  } else if (options.boundary == "edge-only") {
-    rules.boundary = BoundaryRule::edge_only;
-  } else if (options.boundary.empty() && mesh.tags.boundary) {
-    rules.boundary = *mesh.tags.boundary;
-  }
+  rules.boundary = options.boundary.empty() ? mesh.tags.boundary.value_or(rules.boundary)
+                                            : *value_in(boundary_rule_names, options.boundary);
   return with_tags(rules, mesh.tags);
 }
 
@@ -197,7 +193,7 @@ void Report::flush_text() {
   if (text_) text_->file.complete();
 }
 
-void Report::finish(AtomicFile* other) {
+ExitStatus Report::finish(bool reached, AtomicFile* other) {
   stopped_by_interrupts().checkpoint();
   if (writer_) {
     writer_->field("seconds",
@@ -215,6 +211,7 @@ void Report::finish(AtomicFile* other) {
   for (AtomicFile* file : files) {
     if (file) file->commit();
   }
+  return reached ? ExitStatus::answered : ExitStatus::not_reached;
 }
 
 std::string text_at_most(double x, bool at_least) {

@@ -100,11 +100,11 @@ class Report {
   void text(const std::string& line);
   /// Lets lines of text out at once.
   void flush_text();
-  /// Ends the document and puts the file in place, and another one that the command has written. Where anything cannot be
-  /// written, neither is left.
+  /// The end of a command: ends the document and puts the file in place, and another one that the command has written. Where
+  /// anything cannot be written, neither is left. What the command ends with: was all `reached` that was asked for?
   /// Notes:     one line if threads could not be started.
   /// Errors:    InputError (unreadable) if standard output or a file cannot be written; Interrupted.
-  void finish(AtomicFile* other = nullptr);
+  ExitStatus finish(bool reached = true, AtomicFile* other = nullptr);
 
  private:
   struct Target;

@@ -25,9 +25,7 @@ void write_answer(JsonWriter& json, const Sides& sides, const Distance& answer) 
   json.field("witness_error", answer.witness_error);
   write_places(json, sides, &answer.at);
   write_inner(json, answer.inner);
-  json.key("stats").begin_object();
-  json.field("box_tests", answer.stats.box_tests).field("triangle_tests", answer.stats.triangle_tests);
-  json.field("evaluations", answer.stats.evaluations).field("splits", answer.stats.splits).end_object();
+  write_stats(json, answer.stats);
 }
 
 // Bounds of the distance and witnesses of one pose among many.
@@ -47,9 +45,7 @@ ExitStatus run_poses(PairArguments& pair, Report& report, const DistanceOptions&
         .row = row(answer),
         .reached = answer.reached};
   };
-  const ExitStatus status = answer_poses(pair, report, "lower upper ax ay az bx by bz", ask, monitor);
-  report.finish();
-  return status;
+  return answer_poses(pair, report, "lower upper ax ay az bx by bz", ask, monitor);
 }
 
 ExitStatus run(const Options& options) {
@@ -88,8 +84,7 @@ ExitStatus run(const Options& options) {
     report.text(line);
   }
   if (answer.lower > 0 && !options.solid) note_nesting(options, pair.a(), pair.b(), monitor);
-  report.finish();
-  return answer.reached ? ExitStatus::answered : ExitStatus::not_reached;
+  return report.finish(answer.reached);
 }
 
 }  // namespace

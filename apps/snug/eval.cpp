@@ -198,8 +198,7 @@ ExitStatus answer(const Options& options, const Source& source, std::size_t owne
     }
   });
   if (report.json()) report.write().end_array().field("count", count);
-  report.finish();
-  return ExitStatus::answered;
+  return report.finish();
 }
 
 ExitStatus run(const Options& options) {

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <fmt/core.h>
+#include <snug/base/names.h>
 
 #include "command_line.h"
 
@@ -47,7 +48,7 @@ std::string name_in_help(const Option& option) {
 
 std::string text_in_help(const Option& option) {
   std::string text = option.help;
-  if (!option.choices.empty()) text += ". One of " + listed(option.choices);
+  if (!option.choices.empty()) text += ". One of " + listed(option.choices, "or");
   const std::string value = option.text();
   return value.empty() ? text : text + " (default " + value + ")";
 }

@@ -91,8 +91,7 @@ ExitStatus run(const Options& options) {
         fmt::format("{}: {}", is_answered(found[i].kind, rules.scheme) ? "note" : "defect", found[i].text));
   }
   if (found.size() > 10) report.text(fmt::format("and {} more", found.size() - 10));
-  report.finish();
-  return ExitStatus::answered;
+  return report.finish();
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include <fmt/core.h>
+#include <snug/base/names.h>
 
 #include "length.h"
 #include "nearest.h"
@@ -21,10 +22,10 @@ std::string choose(const Option& option, const std::string& word) {
   }
   if (const auto alias = option.aliases.find(spelling); alias != option.aliases.end()) return alias->second;
   if (const auto refusal = option.refusals.find(spelling); refusal != option.refusals.end()) {
-    throw UsageError(
-        fmt::format("{}: '{}' {}; give {}", option.name, word, refusal->second, listed(option.choices)));
+    throw UsageError(fmt::format("{}: '{}' {}; give {}", option.name, word, refusal->second,
+                                 listed(option.choices, "or")));
   }
-  throw UsageError(fmt::format("{}: '{}' is not {}{}", option.name, word, listed(option.choices),
+  throw UsageError(fmt::format("{}: '{}' is not {}{}", option.name, word, listed(option.choices, "or"),
                                did_you_mean(word, option.choices)));
 }
 
@@ -88,14 +89,6 @@ struct TextOf {
 };
 
 }  // namespace
-
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    text += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
-  }
-  return text;
-}
 
 std::string spelling_of(const std::string& word) {
   std::string spelling;

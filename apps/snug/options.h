@@ -78,8 +78,6 @@ class OptionList {
   std::deque<Option> options_;  // references to what add() returned stay good
 };
 
-/// "a, b or c".
-[[nodiscard]] std::string listed(const std::vector<std::string>& words);
 /// Lower case, without '-' and '_'.
 [[nodiscard]] std::string spelling_of(const std::string& word);
 

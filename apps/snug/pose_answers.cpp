@@ -127,7 +127,7 @@ ExitStatus answer_poses(PairArguments& pair, Report& report, const std::string& 
   }
   answers.finish(file);
   if (report.json()) report.write().end_array().field("count", answers.count());
-  return answers.reached() ? ExitStatus::answered : ExitStatus::not_reached;
+  return report.finish(answers.reached());
 }
 
 }  // namespace snug::command

@@ -16,7 +16,8 @@ struct PoseAnswer {
 /// Asks about one pose; called by several threads.
 using AskPose = std::function<PoseAnswer(const PlacedBvh& a, const PlacedBvh& b)>;
 
-/// Answers every pose of --poses in the file's order: `results` and `count` of the report, or a row each below `header`.
+/// Answers every pose of --poses in the file's order, to the end of the report: `results` and `count`, or a row each below
+/// `header`.
 ///
 /// Guarantee: memory does not grow with the number of poses. What is written depends on the file and the options alone.
 /// Returns:   not_reached if one was not.

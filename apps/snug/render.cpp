@@ -327,8 +327,7 @@ ExitStatus run(const Options& options) {
           most_enclosures));
     }
   }
-  report.finish(&file);
-  return enclosures.reached ? ExitStatus::answered : ExitStatus::not_reached;
+  return report.finish(enclosures.reached, &file);
 }
 
 }  // namespace

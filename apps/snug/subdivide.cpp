@@ -73,8 +73,7 @@ ExitStatus run(const Options& options) {
                             curves ? "polylines" : "faces",
                             options.limit ? ", at their limit positions" : ""));
   }
-  report.finish(&file);
-  return ExitStatus::answered;
+  return report.finish(true, &file);
 }
 
 }  // namespace

@@ -17,6 +17,12 @@ void write_place(JsonWriter& json, const LimitSurface& surface, const SurfacePar
   normal && normal->error ? json.value(*normal->error) : json.null();
 }
 
+void write_stats(JsonWriter& json, const SearchStats& stats) {
+  json.key("stats").begin_object();
+  json.field("box_tests", stats.box_tests).field("triangle_tests", stats.triangle_tests);
+  json.field("evaluations", stats.evaluations).field("splits", stats.splits).end_object();
+}
+
 void write_places(JsonWriter& json, const Sides& sides, const WitnessPlaces* places) {
   json.key("witness_at");
   if (places == nullptr) {

@@ -29,6 +29,9 @@ struct Sides {
 /// without witnesses.
 void write_places(JsonWriter& json, const Sides& sides, const WitnessPlaces* places);
 
+/// The field stats: what the query did.
+void write_stats(JsonWriter& json, const SearchStats& stats);
+
 /// Columns of witnesses, for people: a header line, and one for each surface.
 [[nodiscard]] std::vector<std::string> witness_lines(const Sides& sides, const std::array<Point3, 2>& witness,
                                                      const WitnessPlaces& places);

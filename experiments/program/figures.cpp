@@ -96,8 +96,7 @@ ExitStatus pair_test(const PairTestOptions& options) {
                   "snug's rule (a) {}",
                   100 * rows.back().share(),
                   rows.back().rule_a_false == 0 ? "none" : fmt::format("{}", rows.back().rule_a_false)));
-  report.finish();
-  return ExitStatus::answered;
+  return report.finish();
 }
 
 const char* layout_of(BoundSource source) {
@@ -166,8 +165,7 @@ ExitStatus curve_rates(const RatesOptions& options) {
                             name_of(row.place), name_of(row.measure),
                             row.factor ? fmt::format("{:.4f}", *row.factor) : "straight", row.expected));
   }
-  report.finish();
-  return ExitStatus::answered;
+  return report.finish();
 }
 
 // A line for each place and source.
@@ -231,8 +229,7 @@ ExitStatus rates(const RatesOptions& options) {
     json.end_array();
   }
   write_rates(report, wanted, rows);
-  report.finish();
-  return ExitStatus::answered;
+  return report.finish();
 }
 
 ExitStatus tightness(const RadiiOptions& options) {
@@ -266,8 +263,7 @@ ExitStatus tightness(const RadiiOptions& options) {
                             name_of(row.shape), row.valence, text_of(row.source), row.patches, row.median,
                             row.high, row.most, row.over_rows));
   }
-  report.finish();
-  return ExitStatus::answered;
+  return report.finish();
 }
 
 ExitStatus prism(const RadiiOptions& options) {

@@ -9,9 +9,17 @@
 
 #include <snug/base/contract.h>
 #include <snug/base/error.h>
+#include <snug/base/names.h>
 
 namespace snug {
 namespace {
+
+constexpr auto number_fault_names = std::to_array<Named<NumberFault>>(
+    {{"is not a number", NumberFault::not_a_number},
+     {"is not a finite number", NumberFault::not_finite},
+     {"is too large for a double", NumberFault::too_large},
+     {"is not a number: write a decimal point instead of the comma", NumberFault::decimal_comma},
+     {"is a hexadecimal number: write it in decimal", NumberFault::hexadecimal}});
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -90,18 +98,7 @@ std::optional<std::int64_t> parse_integer(std::string_view word) {
 
 std::string_view describe(NumberFault fault) {
   SNUG_EXPECT(fault != NumberFault::none);
-  switch (fault) {
-    case NumberFault::not_finite:
-      return "is not a finite number";
-    case NumberFault::too_large:
-      return "is too large for a double";
-    case NumberFault::decimal_comma:
-      return "is not a number: write a decimal point instead of the comma";
-    case NumberFault::hexadecimal:
-      return "is a hexadecimal number: write it in decimal";
-    default:
-      return "is not a number";
-  }
+  return name_in(number_fault_names, fault);
 }
 
 void append_real(std::string& text, double value) {

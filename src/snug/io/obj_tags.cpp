@@ -7,9 +7,14 @@
 
 #include <snug/io/element_text.h>
 #include <snug/io/number.h>
+#include <snug/mesh/tag_names.h>
 
 namespace snug {
 namespace {
+
+// As the tag interpolateboundary counts them.
+constexpr std::array numbered_rules{BoundaryRule::none, BoundaryRule::edge_and_corner,
+                                    BoundaryRule::edge_only};
 
 /// How many integers, numbers and strings a tag announces.
 using Counts = std::array<std::size_t, 3>;
@@ -77,17 +82,16 @@ void ObjTagReader::read(TextCursor& at) {
   } else if (name == "hole") {
     for (const std::uint64_t id : values.ids) tags_.holes.push_back(face(at, id));
   } else if (name == "interpolateboundary") {
-    constexpr std::array rules{BoundaryRule::none, BoundaryRule::edge_and_corner, BoundaryRule::edge_only};
-    if (values.ids.empty() || values.ids[0] >= rules.size()) refuse_choice("0, 1 and 2");
-    tags_.boundary = rules[values.ids[0]];
-  } else if (name == "creasemethod") {
-    const bool uniform = values.text == "normal" || values.text == "uniform";
-    if (!uniform && values.text != "chaikin") refuse_choice("normal, uniform and chaikin");
-    tags_.crease_method = uniform ? CreaseMethod::uniform : CreaseMethod::chaikin;
+    if (values.ids.empty() || values.ids[0] >= numbered_rules.size()) refuse_choice("0, 1 and 2");
+    tags_.boundary = numbered_rules[values.ids[0]];
   } else {
-    const bool smooth = values.text == "smooth";
-    if (!smooth && values.text != "catmark") refuse_choice("catmark and smooth");
-    tags_.smooth_triangles = smooth ? SmoothTriangles::smooth : SmoothTriangles::catmark;
+    const auto choose = [&](const auto& names, auto& choice) {
+      const auto chosen = value_in(names, values.text);
+      if (!chosen) refuse_choice(listed(all_names(names), "and"));
+      choice = *chosen;
+    };
+    name == "creasemethod" ? choose(crease_method_names, tags_.crease_method)
+                           : choose(smooth_triangles_names, tags_.smooth_triangles);
   }
 }
 
@@ -172,15 +176,21 @@ MeshTags ObjTagReader::finish(const TextCursor& at, std::size_t vertex_count, st
 
 void append_obj_tags(std::string& text, const MeshTags& tags) {
   if (tags.boundary) {
-    // The inverse of the list in read().
-    const std::uint32_t number = *tags.boundary == BoundaryRule::none              ? 0
-                                 : *tags.boundary == BoundaryRule::edge_and_corner ? 1
-                                                                                   : 2;
-    append_tag(text, "interpolateboundary 1/0/0", {number});
+    const auto number = std::find(numbered_rules.begin(), numbered_rules.end(), *tags.boundary);
+    append_tag(text, "interpolateboundary 1/0/0",
+               {static_cast<std::uint32_t>(number - numbered_rules.begin())});
     text += '\n';
   }
-  if (tags.crease_method == CreaseMethod::chaikin) text += "t creasemethod 0/0/1 chaikin\n";
-  if (tags.smooth_triangles == SmoothTriangles::smooth) text += "t smoothtriangles 0/0/1 smooth\n";
+  const auto append_choice = [&](const char* head, const char* name) {
+    append_tag(text, head, {});
+    text += std::string(" ") + name + '\n';
+  };
+  if (tags.crease_method != MeshTags{}.crease_method) {
+    append_choice("creasemethod 0/0/1", name_in(crease_method_names, tags.crease_method));
+  }
+  if (tags.smooth_triangles != MeshTags{}.smooth_triangles) {
+    append_choice("smoothtriangles 0/0/1", name_in(smooth_triangles_names, tags.smooth_triangles));
+  }
   for (const CreaseTag& crease : tags.creases) {
     append_tag(text, "crease 2/1/0", {crease.a.value(), crease.b.value()});
     text += ' ';

@@ -12,6 +12,7 @@
 
 #include <snug/base/contract.h>
 #include <snug/base/error.h>
+#include <snug/base/names.h>
 #include <snug/io/binary.h>
 #include <snug/io/element_text.h>
 #include <snug/io/number.h>
@@ -21,19 +22,29 @@
 namespace snug {
 namespace {
 
+constexpr auto ply_format_names =
+    std::to_array<Named<PlyFormat>>({{"ascii", PlyFormat::ascii},
+                                     {"binary_little_endian", PlyFormat::binary_little_endian},
+                                     {"binary_big_endian", PlyFormat::binary_big_endian}});
+
 enum class Scalar : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-constexpr std::array<std::string_view, 8> old_names{"char", "uchar", "short", "ushort",
-                                                    "int",  "uint",  "float", "double"};
-constexpr std::array<std::string_view, 8> new_names{"int8",  "uint8",  "int16",   "uint16",
-                                                    "int32", "uint32", "float32", "float64"};
-
-std::optional<Scalar> scalar_named(std::string_view word) {
-  for (std::size_t i = 0; i < old_names.size(); ++i) {
-    if (word == old_names[i] || word == new_names[i]) return static_cast<Scalar>(i);
-  }
-  return std::nullopt;
-}
+constexpr auto scalar_names = std::to_array<Named<Scalar>>({{"char", Scalar::int8},
+                                                            {"int8", Scalar::int8},
+                                                            {"uchar", Scalar::uint8},
+                                                            {"uint8", Scalar::uint8},
+                                                            {"short", Scalar::int16},
+                                                            {"int16", Scalar::int16},
+                                                            {"ushort", Scalar::uint16},
+                                                            {"uint16", Scalar::uint16},
+                                                            {"int", Scalar::int32},
+                                                            {"int32", Scalar::int32},
+                                                            {"uint", Scalar::uint32},
+                                                            {"uint32", Scalar::uint32},
+                                                            {"float", Scalar::float32},
+                                                            {"float32", Scalar::float32},
+                                                            {"double", Scalar::float64},
+                                                            {"float64", Scalar::float64}});
 
 std::size_t size_of(Scalar type) {
   constexpr std::array<std::size_t, 8> sizes{1, 1, 2, 2, 4, 4, 4, 8};
@@ -147,13 +158,9 @@ class HeaderParser {
   void read_format(TextCursor& at) {
     if (has_format_) at.fail("the header names its format twice");
     const std::string_view format = at.word();
-    if (format == "binary_little_endian") {
-      header_.format = PlyFormat::binary_little_endian;
-    } else if (format == "binary_big_endian") {
-      header_.format = PlyFormat::binary_big_endian;
-    } else if (format != "ascii") {
-      at.fail(in_quotes(format) + " is no format: ascii, binary_little_endian or binary_big_endian");
-    }
+    const auto known = value_in(ply_format_names, format);
+    if (!known) at.fail(in_quotes(format) + " is no format: " + listed(all_names(ply_format_names), "or"));
+    header_.format = *known;
     const std::string_view version = at.word();
     if (version != "1.0") at.fail("the version is " + in_quotes(version) + ": 1.0 is read");
     has_format_ = true;
@@ -207,7 +214,7 @@ class HeaderParser {
   }
 
   static Scalar read_type(const TextCursor& at, std::string_view word) {
-    const auto type = scalar_named(word);
+    const auto type = value_in(scalar_names, word);
     if (!type) at.fail(in_quotes(word) + " is no type of PLY: char to double, or int8 to float64");
     return *type;
   }
@@ -301,8 +308,8 @@ class AsciiBody final : public Body {
     if (!value) fail(in_quotes(word) + " is not a whole number");
     const IntegerRange range = range_of(type);
     if (*value < range.least || *value > range.most) {
-      fail(in_quotes(word) + " does not fit the type " +
-           std::string(old_names[static_cast<std::size_t>(type)]) + " that the header announces");
+      fail(in_quotes(word) + " does not fit the type " + name_in(scalar_names, type) +
+           " that the header announces");
     }
     return *value;
   }
@@ -552,10 +559,9 @@ class PlyWriter {
   }
 
   void write_header() {
-    constexpr std::array<std::string_view, 3> formats{"ascii", "binary_little_endian", "binary_big_endian"};
     const bool int_holds = mesh_.vertex_count() <= std::size_t{1} << 31;
     bytes_ += "ply\nformat ";
-    bytes_ += formats[static_cast<std::size_t>(format_)];
+    bytes_ += name_in(ply_format_names, format_);
     bytes_ += " 1.0\nelement vertex ";
     append_integer(bytes_, mesh_.vertex_count());
     bytes_ += "\nproperty double x\nproperty double y\nproperty double z\nelement face ";

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <snug/base/names.h>
 #include <snug/geometry/scaling.h>
 #include <snug/mesh/half_edges.h>
 
@@ -256,33 +257,20 @@ class Inspector {
 
 }  // namespace
 
-const char* name_of(DefectKind kind) {
-  switch (kind) {
-    case DefectKind::index_out_of_range:
-      return "index-out-of-range";
-    case DefectKind::coordinate_not_finite:
-      return "coordinate-not-finite";
-    case DefectKind::too_few_vertices:
-      return "too-few-vertices";
-    case DefectKind::repeated_vertex:
-      return "repeated-vertex";
-    case DefectKind::duplicate_face:
-      return "duplicate-face";
-    case DefectKind::edge_of_many_faces:
-      return "edge-of-many-faces";
-    case DefectKind::inconsistent_orientation:
-      return "inconsistent-orientation";
-    case DefectKind::pinched_vertex:
-      return "pinched-vertex";
-    case DefectKind::bad_tag:
-      return "bad-tag";
-    case DefectKind::isolated_vertex:
-      return "isolated-vertex";
-    case DefectKind::zero_area_face:
-      return "zero-area-face";
-  }
-  return "";
-}
+constexpr auto defect_kind_names =
+    std::to_array<Named<DefectKind>>({{"index-out-of-range", DefectKind::index_out_of_range},
+                                      {"coordinate-not-finite", DefectKind::coordinate_not_finite},
+                                      {"too-few-vertices", DefectKind::too_few_vertices},
+                                      {"repeated-vertex", DefectKind::repeated_vertex},
+                                      {"duplicate-face", DefectKind::duplicate_face},
+                                      {"edge-of-many-faces", DefectKind::edge_of_many_faces},
+                                      {"inconsistent-orientation", DefectKind::inconsistent_orientation},
+                                      {"pinched-vertex", DefectKind::pinched_vertex},
+                                      {"bad-tag", DefectKind::bad_tag},
+                                      {"isolated-vertex", DefectKind::isolated_vertex},
+                                      {"zero-area-face", DefectKind::zero_area_face}});
+
+const char* name_of(DefectKind kind) { return name_in(defect_kind_names, kind); }
 
 std::vector<Defect> defects(const ControlMesh& mesh) { return Inspector(mesh).run(true); }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <snug/base/error.h>
+#include <snug/base/names.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/containment.h>
 #include <snug/query/distance.h>
@@ -153,19 +154,12 @@ class Query {
 
 }  // namespace
 
-const char* name_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::separated:
-      return "separated";
-    case Verdict::within:
-      return "within";
-    case Verdict::intersecting:
-      return "intersecting";
-    case Verdict::undecided:
-      return "undecided";
-  }
-  return "";
-}
+constexpr auto verdict_names = std::to_array<Named<Verdict>>({{"separated", Verdict::separated},
+                                                              {"within", Verdict::within},
+                                                              {"intersecting", Verdict::intersecting},
+                                                              {"undecided", Verdict::undecided}});
+
+const char* name_of(Verdict verdict) { return name_in(verdict_names, verdict); }
 
 namespace {
 
