@@ -32,8 +32,9 @@ demo:  ## two surfaces: do they touch? and a picture of them, build/demo.png
 test: install-packages build  ## every test, on the release build
 	@$(ctest) --preset release
 
-test-long: install-packages build  ## every test with many more random cases (docs/derivations/README.md), then with address sanitizer
-	@RC_PARAMS="max_success=1000" SNUG_PLACEMENTS=20000 $(ctest) --timeout 7200 --preset release
+test-long: install-packages build  ## the random tests with many more cases (docs/derivations/README.md), then every test with address sanitizer
+	@SNUG_PLACEMENTS=20000 $(ctest) --preset release
+	@SNUG_PARTS=1000 build/release/bin/tests/sharp_parts_test
 	@SNUG_PLACEMENTS=150000 build/release/bin/tests/sound_solids_test --gtest_filter='solids.*'
 	@SNUG_PLACEMENTS=1000000 build/release/bin/tests/sound_solids_test --gtest_filter='signed_distance.*'
 	@$(call build,asan)
@@ -62,6 +63,8 @@ check: test  ## every gate that a commit must pass
 	@scripts/check_format
 	@scripts/check_layers.py --self-test
 	@scripts/check_layers.py
+	@scripts/check_tests.py --self-test
+	@scripts/check_tests.py
 	@scripts/check_words --self-test
 	@scripts/check_words
 	@scripts/check_docs.py
