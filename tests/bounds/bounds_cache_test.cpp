@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 #include <snug/base/parallel.h>
+#include <snug/bounds/hull_points.h>
+#include <testing/patches.h>
 
+#include <string>
 #include <vector>
 
 namespace snug {
@@ -26,6 +29,56 @@ TEST(bound_library, hands_every_thread_the_same_rows_and_tables) {
   for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_EQ(seen[i], seen[i % 10]);
   EXPECT_EQ(library.size(), 10u);
   EXPECT_GT(library.bytes(), 0u);
+}
+
+// Everything that bounding all patches of some surfaces makes of rows: with no tips, one and several, passing and crowded.
+std::vector<std::vector<double>> numbers_with(const std::shared_ptr<BoundsCache>& library) {
+  std::vector<std::vector<double>> all;
+  for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
+    for (const oracle::TwinMesh& twin :
+         {oracle::meshes::icosahedron(), oracle::meshes::bipyramid(7), oracle::meshes::bipyramid(40)}) {
+      const LimitSurface surface(testing::control_mesh(twin), {scheme}, library, 1);
+      HullPoints points;
+      for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+        prepare_hull_points(*library, surface.kind(PatchId(p)));
+        hull_points(*library, surface.patch(PatchId(p)), points);
+        std::vector<double>& numbers = all.emplace_back(std::vector{points.error, points.largest});
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          const Vector3 at = points.at(i);
+          numbers.insert(numbers.end(), {at.x, at.y, at.z});
+        }
+      }
+    }
+  }
+  return all;
+}
+
+TEST(bound_library, keeps_no_more_rows_than_its_limit_and_bounds_are_the_same) {
+  const auto whole = std::make_shared<BoundsCache>();
+  const std::vector<std::vector<double>> expected = numbers_with(whole);
+  std::size_t largest = 0;
+  for (std::size_t most : {std::size_t{0}, std::size_t{1}, whole->bytes() / 3, whole->bytes()}) {
+    const auto bounded = std::make_shared<BoundsCache>(most);
+    EXPECT_EQ(numbers_with(bounded), expected) << most;
+    EXPECT_LE(bounded->size(), whole->size());
+    if (most == 0) {
+      EXPECT_EQ(bounded->bytes(), 0u);
+    }
+    if (most == 1) largest = bounded->bytes();
+    EXPECT_LT(bounded->bytes(), most + whole->bytes() / 2) << most;
+    EXPECT_EQ(bounded->bytes() == whole->bytes(), most == whole->bytes());
+  }
+  EXPECT_GT(largest, 0u);
+}
+
+TEST(bound_library, beyond_its_limit_serves_all_threads) {
+  const auto whole = std::make_shared<BoundsCache>(), bounded = std::make_shared<BoundsCache>(0);
+  const auto expected = numbers_with(whole);
+  std::vector<char> same(8);
+  parallel_for(same.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) same[i] = numbers_with(bounded) == expected;
+  });
+  EXPECT_EQ(same, std::vector<char>(8, true));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <testing/tagged.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -46,6 +47,32 @@ TEST(limit_stencils, of_darts_stay_under_a_step_within_their_errors) {
       for (const double r : rest) sum += std::fabs(r);
       EXPECT_LE(sum, error + next_error) << name_of(scheme) << ", valence " << n;
       EXPECT_LE(sum, 1e-14) << name_of(scheme) << ", valence " << n;
+    }
+  }
+}
+
+// Of more valences than are kept.
+TEST(limit_stencils, of_darts_are_the_same_however_many_came_between) {
+  const auto weights = [](std::uint32_t n, Scheme scheme) {
+    oracle::TaggedMesh twin = oracle::meshes::pole(n, false);
+    twin.creases = {{0, 1, 10}};
+    if (scheme == Scheme::loop) twin = oracle::meshes::triangulated(twin);
+    const ControlMesh mesh = testing::control_mesh(twin);
+    const Topology topology(mesh);
+    Stencils limit;
+    add_limit_row(topology, VertexId(0), {scheme}, sharpness_of(mesh, topology), limit);
+    std::vector<double> all = dense(limit.row(0), topology.vertex_count());
+    all.push_back(limit.row(0).error);
+    return all;
+  };
+  std::vector<std::vector<double>> first;
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    const std::uint32_t n = 3 + i % 30;
+    const auto both = {weights(n, Scheme::loop), weights(n, Scheme::catmark)};
+    if (i < 30) {
+      first.insert(first.end(), both);
+    } else {
+      EXPECT_TRUE(std::equal(both.begin(), both.end(), first.begin() + 2 * (i - 30))) << n;
     }
   }
 }

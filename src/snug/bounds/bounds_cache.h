@@ -8,23 +8,30 @@
 
 namespace snug {
 
-/// Rows and tables of all kinds met so far: on first use shipped ones (shipped.h) are taken and others made;
-/// then immutable. Thread-safe; looking up costs two loads.
+/// Rows and tables of kinds: on first use shipped ones (shipped.h) are taken and others made; then immutable. Thread-safe;
+/// looking up costs two loads.
+///
+/// Memory: kinds and their tables take a few times what the connectivity of the surfaces takes that they are for. Rows grow with
+/// the square of a valence; those that would go beyond a limit are made when they are needed, and a thread keeps its last
+/// eight. No result depends on it.
 class BoundsCache {
  public:
+  explicit BoundsCache(std::size_t most_bytes_of_rows = std::size_t{256} << 20) : rows_(most_bytes_of_rows) {}
+
   /// The library of kinds that this one keeps rows for.
   [[nodiscard]] KindCache& kinds() { return kinds_; }
   [[nodiscard]] const KindCache& kinds() const { return kinds_; }
 
   /// The rows of a kind. With several extraordinary corners they go down one level only: the tips there are of
   /// kinds that have rows of their own, and there are far fewer of these.
+  /// They stay until this thread has asked for the rows of several other kinds.
   /// Requires:  a kind of kinds().
   /// Errors:    InputError (refused) beyond 16 million kinds.
   [[nodiscard]] const BoundRows& rows(const Kind& kind);
   /// The table of a kind, made from rows that go down to tip_depth().
   [[nodiscard]] const BoundTable& table(const Kind& kind);
 
-  /// Kinds that have rows, and the memory of all rows and tables.
+  /// Kinds whose rows are kept, and the memory of all rows and tables that are.
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
   [[nodiscard]] std::size_t bytes() const { return rows_.bytes() + tables_.bytes(); }
 

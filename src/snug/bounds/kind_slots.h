@@ -3,15 +3,19 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include <snug/base/error.h>
 #include <snug/base/ids.h>
+#include <snug/base/recent_values.h>
 
 namespace snug {
 
-/// One value of type T a kind, made on first use, then immutable. Thread-safe; looking up costs two loads.
+/// One value of type T a kind, made on first use, then immutable. Thread-safe; looking up costs two loads. Beyond a limit of
+/// memory values are made when they are needed, and a thread keeps its last eight.
 ///
 /// Requires:  `make` gives equal values for equal kinds: two threads may both make one, and the first to
 ///            finish keeps it.
@@ -19,7 +23,8 @@ namespace snug {
 template <class T>
 class KindSlots {
  public:
-  KindSlots() = default;
+  /// Keeps so many bytes of values, and the value that goes beyond them.
+  explicit KindSlots(std::size_t most_bytes = SIZE_MAX) : most_bytes_(most_bytes) {}
   KindSlots(const KindSlots&) = delete;
   KindSlots& operator=(const KindSlots&) = delete;
   ~KindSlots() {
@@ -30,11 +35,16 @@ class KindSlots {
     }
   }
 
-  /// The value of kind `id`; `make()` makes it where there is none.
+  /// The value of kind `id`; `make()` makes it where there is none. It stays as long as this, or beyond the limit until this
+  /// thread has made eight others.
   template <class Make>
   [[nodiscard]] const T& get(KindId id, Make&& make) {
     std::atomic<const T*>& place = slot(id.index());
     if (const T* ready = place.load(std::memory_order_acquire)) return *ready;
+    if (bytes() >= most_bytes_) {
+      thread_local RecentValues<std::pair<std::uint64_t, KindId>, T, 8> recent;
+      return recent.get({serial_, id}, make);
+    }
     auto fresh = std::make_unique<const T>(make());
     const T* expected = nullptr;
     if (!place.compare_exchange_strong(expected, fresh.get(), std::memory_order_acq_rel)) return *expected;
@@ -67,6 +77,14 @@ class KindSlots {
   }
 
   std::array<std::atomic<Block*>, 4096> blocks_{};
+  // No two share it, as they may an address one after the other.
+  static std::uint64_t next_serial() {
+    static std::atomic<std::uint64_t> last{0};
+    return ++last;
+  }
+
+  std::size_t most_bytes_;
+  std::uint64_t serial_ = next_serial();
   std::mutex growth_;
   std::atomic<std::size_t> count_{0}, bytes_{0};
 };

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <mutex>
 #include <numbers>
 #include <utility>
 
 #include <snug/base/compact_numbering.h>
 #include <snug/base/contract.h>
+#include <snug/base/recent_values.h>
 #include <snug/geometry/rounding.h>
 #include <snug/scheme/catmark_masks.h>
 #include <snug/scheme/loop_masks.h>
@@ -205,15 +205,13 @@ DartRow make_dart_row(const DartStep& step) {
   return {std::move(row), error};
 }
 
-// Rows of darts whose places are all different depend on scheme and valence alone, and cost the square of it: made once.
-const DartRow& shared_dart_row(Scheme scheme, const DartStep& step) {
+// Rows of darts whose places are all different depend on scheme and valence alone, and cost the square of it: the last few are
+// kept, at most 256 KiB.
+DartRow shared_dart_row(Scheme scheme, const DartStep& step) {
   static std::mutex mutex;
-  static std::map<std::pair<Scheme, std::size_t>, DartRow> rows;
+  static RecentValues<std::pair<Scheme, std::size_t>, DartRow, 16> rows;
   const std::lock_guard lock(mutex);
-  const std::pair key(scheme, step.spokes().size());
-  auto place = rows.find(key);
-  if (place == rows.end()) place = rows.emplace(key, make_dart_row(step)).first;
-  return place->second;
+  return rows.get({scheme, step.spokes().size()}, [&] { return make_dart_row(step); });
 }
 
 void add_dart_row(Scheme scheme, const DartStep& step, Stencils& out) {
