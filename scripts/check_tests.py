@@ -14,8 +14,8 @@ import sys
 import tempfile
 
 TABLE = "tests/README.md"
-ROW = re.compile(r"^\| `([a-z0-9_/]+)` \|([^|]*)\|", re.MULTILINE)
-TEST = re.compile(r"`([a-z0-9_/]+_test\.cpp)`")
+ROW = re.compile(r"^\| `([a-z0-9_/-]+)` \|([^|]*)\|", re.MULTILINE)
+TEST = re.compile(r"`([a-z0-9_/-]+_test\.cpp)`")
 
 
 def check(root):
