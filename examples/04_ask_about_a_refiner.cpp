@@ -48,7 +48,7 @@ int main() {
     wanted.tolerance = 0.001 * surface.size();
     snug::Box3 box;  // of all enclosures: proved to contain the limit surface
     const snug::BoundSummary summary = snug::bound(surface, wanted, [&](const snug::PieceEnclosure& piece) {
-      for (const snug::Box3& corner : piece.interval->corner) box.add(corner);
+      for (const snug::Box3& corner : piece.interval.corner) box.add(corner);
     });
     std::printf("%zu faces: %llu enclosures contain the surface; its x lies between %g and %g\n",
                 surface.face_count(), static_cast<unsigned long long>(summary.count), box.lower.x,

@@ -56,7 +56,7 @@ Measured measure(BoundsCache& library, const Patch& patch, int steps, HullPoints
   }
   const OffsetTriangle offset = offset_triangle(library, scratch, corners);
   for (const Point3& p : offset.base) of_offset.add(p, offset.radius);
-  for (const Box3& box : interval_triangle(scratch, corners).corner) of_interval.add(box);
+  for (const Box3& box : interval_simplex<3>(scratch, corners).corner) of_interval.add(box);
   of_box.add(control_box(patch, scratch));
   Measured result{0, {of_prism.size(), of_offset.size(), of_interval.size(), of_box.size()}};
   for (int j = 0; j <= steps; ++j) {
