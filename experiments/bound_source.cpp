@@ -33,7 +33,7 @@ void relax(const Kind& kind, std::size_t centre, std::vector<LayoutPoint>& layou
   // The quarter at the corner has the kind again, and here in the same order.
   const RefinedTopology refined = refine(topology, around.options, around.sharpness);
   std::vector<VertexId> control;
-  control_vertices(refined.topology, FaceId(centre), 0, kind.key(), control);
+  kind.control_vertices(refined.topology, refined.topology.first_of(FaceId(centre)), control);
   SNUG_EXPECT(control.size() == layout.size());
   std::vector<bool> fixed(layout.size(), false);
   fixed[centre] = true;

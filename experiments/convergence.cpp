@@ -96,7 +96,7 @@ std::span<const BoundSource> sources_of(Scheme scheme, NetCentre centre) {
 std::vector<NetPlace> places_of(Scheme scheme, NetCentre centre) {
   std::vector<NetPlace> places;
   if (centre == NetCentre::semi_sharp) {
-    const std::size_t regular = scheme == Scheme::loop ? 6 : 4;
+    const std::size_t regular = rules_of(scheme).regular_valence;
     for (const double sharpness : experiment_sharpnesses) places.push_back({centre, regular, sharpness});
   } else if (centre == NetCentre::interior) {
     for (const std::size_t n : experiment_valences) {
@@ -111,7 +111,7 @@ std::vector<NetPlace> places_of(Scheme scheme, NetCentre centre) {
 
 // Are basis functions near the middle those of a lattice, or of one with a crease that ends?
 bool is_regular(Scheme scheme, const NetPlace& place) {
-  const std::size_t n = place.faces, whole = scheme == Scheme::loop ? 6 : 4;
+  const std::size_t n = place.faces, whole = rules_of(scheme).regular_valence;
   switch (place.centre) {
     case NetCentre::boundary:
       return n == whole / 2;
@@ -242,7 +242,7 @@ double expected_factor(Scheme scheme, const NetPlace& place, BoundSource source,
 std::vector<RateRow> measure_rates(const RateOptions& options, const WorkMonitor& monitor) {
   require_value(options.nets >= 1 && options.levels >= 4 && options.levels <= PiecePath::max_level,
                 "rates: give at least one net, and 4 to 60 levels");
-  require_value(is_primal(options.scheme) || options.centre == NetCentre::interior,
+  require_value(rules_of(options.scheme).primal || options.centre == NetCentre::interior,
                 "rates: nets of dual schemes have an inner centre; give NetCentre::interior");
   const auto library = std::make_shared<BoundsCache>();
   LayoutTables tables(*library);

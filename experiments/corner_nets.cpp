@@ -209,13 +209,13 @@ const char* name_of(NetCentre centre) { return name_in(net_centre_names, centre)
 
 ControlMesh bent_net(Scheme scheme, const NetPlace& place, std::uint64_t seed) {
   const std::size_t n = place.faces;
-  if (place.centre == NetCentre::interior && scheme == Scheme::loop) {
+  if (place.centre == NetCentre::interior && rules_of(scheme).triangular()) {
     return corner_net(NetShape::bent, n, seed);
   }
   ControlMesh mesh;
-  if (is_primal(scheme)) {
+  if (rules_of(scheme).primal) {
     const bool open = place.centre == NetCentre::boundary || place.centre == NetCentre::corner;
-    const Fan fan(n, 2, scheme == Scheme::catmark, open);
+    const Fan fan(n, 2, !rules_of(scheme).triangular(), open);
     mesh = fan.mesh();
     const auto sharpen = [&](std::size_t spoke, double sharpness) {
       for (std::size_t i = 0; i < 2; ++i) {

@@ -48,11 +48,11 @@ void write_enclosure(JsonWriter& json, const Enclosure<N>& piece, unsigned level
 }
 
 void write_piece(JsonWriter& json, const LimitSurface& surface, const PieceEnclosure& piece) {
-  const Scheme scheme = surface.options().scheme;
+  const SchemeRules& rules = surface.rules();
   const LimitSurface::PatchPlace place = surface.place(piece.patch);
   json.begin_object();
-  json.field(is_primal(scheme) ? "face" : "vertex", place.owner);
-  if (scheme != Scheme::loop) json.field("part", place.part);
+  json.field(rules.owner(), place.owner);
+  if (!rules.triangular()) json.field("part", place.part);
   write_enclosure(json, piece, piece.path.level() + (surface.after_first_split(piece.patch) ? 1 : 0));
   json.end_object();
 }
@@ -178,7 +178,7 @@ ExitStatus run(const Options& options) {
   const std::string whole = curves ? fmt::format("{} edges contain the limit curves of degree {}",
                                                  curves->edge_count(), static_cast<int>(curves->degree()))
                                    : fmt::format("{} {} contain the limit surface", surface->owner_count(),
-                                                 is_primal(surface->options().scheme) ? "faces" : "vertices");
+                                                 surface->rules().primal ? "faces" : "vertices");
   write_bound_summary(report, summary, how,
                       fmt::format("{}: {} enclosures of {}", options.mesh, summary.count, whole));
   std::optional<AtomicFile> file;

@@ -79,7 +79,6 @@ void write_sign(JsonWriter& json, const SignedDistance& found) {
 }
 
 void write_result(Report& report, const LimitSurface& surface, const Result& result) {
-  const bool loop = surface.options().scheme == Scheme::loop;
   const ClosestPoint& near = result.nearest;
   if (!report.json()) {
     report.text(fmt::format("{}  {} {} {}  {} {} {}{}",
@@ -87,7 +86,7 @@ void write_result(Report& report, const LimitSurface& surface, const Result& res
                                 ? text_of_bounds(result.with_sign->lower, result.with_sign->upper)
                                 : text_of_bounds(near.lower, near.upper),
                             near.point.x, near.point.y, near.point.z, near.at.owner, near.at.u, near.at.v,
-                            loop ? "" : fmt::format(" {}", near.at.corner)));
+                            surface.rules().triangular() ? "" : fmt::format(" {}", near.at.corner)));
     return;
   }
   JsonWriter& json = report.write();
@@ -125,8 +124,7 @@ ExitStatus run(const Options& options) {
   }
   report.text(fmt::format("# {}  x y z  {} u v{}",
                           options.with_sign ? "signed distance: lower upper" : "distance: lower upper",
-                          is_primal(surface.options().scheme) ? "face" : "vertex",
-                          surface.options().scheme == Scheme::loop ? "" : " corner"));
+                          surface.rules().owner(), surface.rules().triangular() ? "" : " corner"));
   bool reached = true;
   for (const Result& result : results) {
     write_result(report, surface, result);

@@ -8,6 +8,7 @@
 #include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
 #include <snug/mesh/tag_names.h>
+#include <snug/scheme/rules.h>
 
 #include "curve.h"
 #include "mesh_reading.h"
@@ -29,18 +30,12 @@ void require_output(const std::string& command, const std::string& output) {
 
 Option& add_scheme_option(OptionList& list, const std::string& name, std::string& scheme,
                           const std::string& help) {
-  // Besides ours: the names of USD (catmullClark) and OpenSubdiv (SCHEME_CATMARK).
-  const char* unsupported = "is no scheme that snug answers for: its limit surface is its own control mesh";
-  return list.add(Group::mesh, name + " NAME", &scheme, help)
-      .one_of({"auto", "loop", "catmark", "doo-sabin", "midedge"})
-      .alias("catmull-clark", "catmark")
-      .alias("cc", "catmark")
-      .alias("scheme-catmark", "catmark")
-      .alias("scheme-loop", "loop")
-      .alias("mid-edge", "midedge")
-      .refuse("bilinear", unsupported)
-      .refuse("scheme-bilinear", unsupported)
-      .refuse("none", "means a mesh that is not subdivided, and snug answers for limit surfaces");
+  Option& option = list.add(Group::mesh, name + " NAME", &scheme, help).one_of({"auto"});
+  for (const SchemeRules* rules : all_schemes()) {
+    option.choices.emplace_back(rules->name);
+    for (const char* other : rules->other_names) option.alias(other, rules->name);
+  }
+  return option;
 }
 
 void add_common_options(OptionList& list, CommonOptions& options) {
@@ -83,21 +78,18 @@ std::array<Option*, 2> add_bound_options(OptionList& list, CommonOptions& option
 }
 
 Scheme choose_scheme(const std::string& name, const ControlMesh& mesh) {
-  if (name == "loop") return Scheme::loop;
-  if (name == "catmark") return Scheme::catmark;
-  if (name == "doo-sabin") return Scheme::doo_sabin;
-  if (name == "midedge") return Scheme::midedge;
-  return natural_scheme(mesh);
+  const SchemeRules* const rules = scheme_named(name);
+  return rules ? rules->scheme : natural_scheme(mesh);
 }
 
 SchemeOptions choose_rules(const CommonOptions& options, const std::string& scheme, const ControlMesh& mesh) {
   SchemeOptions rules;
   rules.scheme = choose_scheme(scheme, mesh);
-  if (!options.sharp.empty() && !is_primal(rules.scheme)) {
+  if (!options.sharp.empty() && !rules_of(rules.scheme).creases) {
     throw UsageError(std::string("--sharp: ") + name_of(rules.scheme) +
                      " has no creases; give --scheme loop or catmark");
   }
-  if (!options.boundary.empty() && !is_primal(rules.scheme)) {
+  if (!options.boundary.empty() && !rules_of(rules.scheme).primal) {
     throw UsageError(std::string("--boundary: ") + name_of(rules.scheme) +
                      " has no patches at boundaries under any rule; leave it out");
   }

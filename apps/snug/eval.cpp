@@ -20,19 +20,15 @@ struct Options : CommonOptions {
 };
 
 // The words that name a place on this surface.
-const char* place_words(Scheme scheme) {
-  return scheme == Scheme::loop ? "face u v"
-         : is_primal(scheme)    ? "face u v [corner]"
-                                : "vertex u v [corner]";
+std::string place_words(const SchemeRules& rules) {
+  return std::string(rules.owner()) + (rules.triangular() ? " u v" : " u v [corner]");
 }
-
-const char* owner_word(Scheme scheme) { return is_primal(scheme) ? "face" : "vertex"; }
 
 // Lines "face u v"; blank lines and those that begin with # are passed over.
 std::vector<SurfaceParameter> read_requests(const std::string& path, const LimitSurface& surface) {
   const std::string text = read_file(path, stopped_by_interrupts());
-  const Scheme scheme = surface.options().scheme;
-  const std::string owner = owner_word(scheme);
+  const SchemeRules& rules = surface.rules();
+  const std::string owner = rules.owner();
   std::vector<SurfaceParameter> requests;
   for_each_line(text, [&](std::string_view line, std::size_t line_number) {
     const std::string where = path + ":" + std::to_string(line_number) + ": ";
@@ -43,17 +39,17 @@ std::vector<SurfaceParameter> read_requests(const std::string& path, const Limit
     bool good =
         parse(next_word(line), at.owner) && parse(next_word(line), at.u) && parse(next_word(line), at.v);
     if (const std::string_view corner = next_word(line); good && !corner.empty()) {
-      good = scheme != Scheme::loop && parse(corner, at.corner) && next_word(line).empty();
+      good = !rules.triangular() && parse(corner, at.corner) && next_word(line).empty();
     }
-    if (!good) throw unreadable(std::string("a line is '") + place_words(scheme) + "'");
+    if (!good) throw unreadable("a line is '" + place_words(rules) + "'");
     if (at.owner >= surface.owner_count()) {
       throw unreadable(owner + " " + std::to_string(at.owner) + " of " +
                        std::to_string(surface.owner_count()) + " (they count from 0)");
     }
-    if (scheme == Scheme::loop ? !(at.u >= 0 && at.v >= 0 && at.u + at.v <= 1)
-                               : !(at.u >= 0 && at.v >= 0 && at.u <= 1 && at.v <= 1)) {
-      throw unreadable(scheme == Scheme::loop ? "u and v must be >= 0, and u + v <= 1"
-                                              : "u and v must be from 0 to 1");
+    if (rules.triangular() ? !(at.u >= 0 && at.v >= 0 && at.u + at.v <= 1)
+                           : !(at.u >= 0 && at.v >= 0 && at.u <= 1 && at.v <= 1)) {
+      throw unreadable(rules.triangular() ? "u and v must be >= 0, and u + v <= 1"
+                                          : "u and v must be from 0 to 1");
     }
     const LimitSurface::PatchRange range = surface.patches_of(at.owner);
     const std::size_t corners = std::max<std::size_t>(1, (range.end - range.begin) / 2);
@@ -73,16 +69,16 @@ std::vector<SurfaceParameter> read_requests(const std::string& path, const Limit
 
 void write_point(Report& report, const LimitSurface& surface, const SurfaceParameter& at,
                  const SurfacePoint& point) {
-  const Scheme scheme = surface.options().scheme;
+  const SchemeRules& rules = surface.rules();
   if (!report.json()) {
     report.text(fmt::format("{} {} {}{}  {} {} {}", at.owner, at.u, at.v,
-                            scheme == Scheme::loop ? "" : fmt::format(" {}", at.corner), point.position.x,
+                            rules.triangular() ? "" : fmt::format(" {}", at.corner), point.position.x,
                             point.position.y, point.position.z));
     return;
   }
   JsonWriter& json = report.write();
-  json.begin_object().field(owner_word(scheme), at.owner).field("u", at.u).field("v", at.v);
-  if (scheme != Scheme::loop) json.field("corner", at.corner);
+  json.begin_object().field(rules.owner(), at.owner).field("u", at.u).field("v", at.v);
+  if (!rules.triangular()) json.field("corner", at.corner);
   json.field("position", point.position).field("error", point.error).key("normal");
   point.normal ? json.value(*point.normal) : json.null();
   json.key("tangents").begin_array().value(point.tangents[0]).value(point.tangents[1]).end_array();
@@ -92,7 +88,7 @@ void write_point(Report& report, const LimitSurface& surface, const SurfaceParam
 // Calls visit(place) for a lattice of `steps` on a face, or on each quad of its first split.
 template <class Visit>
 void for_each_place(const LimitSurface& surface, std::uint32_t owner, unsigned steps, Visit&& visit) {
-  if (surface.options().scheme == Scheme::loop) {
+  if (surface.rules().triangular()) {
     for (unsigned j = 0; j <= steps; ++j) {
       for (unsigned i = 0; i + j <= steps; ++i) {
         // The far edge is met exactly: u + v rounds to at most 1.
@@ -216,7 +212,7 @@ ExitStatus run(const Options& options) {
     const Scheme scheme = surface.options().scheme;
     report.heads({options.mesh}, {name_of(scheme)});
     report.text(
-        fmt::format("# {} u v{}  x y z", owner_word(scheme), scheme == Scheme::loop ? "" : " corner"));
+        fmt::format("# {} u v{}  x y z", surface.rules().owner(), surface.rules().triangular() ? "" : " corner"));
   });
 }
 

@@ -2,6 +2,7 @@
 #include <snug/mesh/statistics.h>
 #include <snug/mesh/validate.h>
 #include <snug/query/face_distance.h>
+#include <snug/scheme/rules.h>
 
 #include "common.h"
 #include "curve.h"
@@ -14,13 +15,12 @@ struct Options : CommonOptions {
   std::string mesh;
 };
 
-std::size_t regular_valence(Scheme scheme) { return scheme == Scheme::loop ? 6 : 4; }
-
 // Vertices unlike those of a regular lattice; with a dual scheme faces.
-std::size_t extraordinary(const ControlMesh& mesh, const MeshStatistics& counts, Scheme scheme) {
-  if (is_primal(scheme)) return counts.extraordinary;
+std::size_t extraordinary(const ControlMesh& mesh, const MeshStatistics& counts, const SchemeRules& scheme) {
+  if (scheme.primal) return counts.extraordinary;
   std::size_t found = 0;
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) found += mesh.face(FaceId(f)).size() != 4;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f)
+    found += mesh.face(FaceId(f)).size() != scheme.regular_valence;
   return found;
 }
 
@@ -28,8 +28,9 @@ ExitStatus run(const Options& options) {
   const ControlMesh mesh = load_mesh(options.mesh, options);
   refuse_curves(mesh, options.scheme, options.mesh);
   const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
-  const MeshStatistics counts = statistics(mesh, regular_valence(rules.scheme));
-  const std::size_t odd_ones = extraordinary(mesh, counts, rules.scheme);
+  const SchemeRules& scheme = rules_of(rules.scheme);
+  const MeshStatistics counts = statistics(mesh, scheme.regular_valence);
+  const std::size_t odd_ones = extraordinary(mesh, counts, scheme);
   const std::vector<Defect> found = defects(mesh);
   std::optional<std::size_t> kinds;
   std::optional<double> apart;
@@ -46,7 +47,7 @@ ExitStatus run(const Options& options) {
   }
 
   Report report("info", options);
-  report.heads({options.mesh}, {name_of(rules.scheme)});
+  report.heads({options.mesh}, {scheme.name});
   if (report.json()) {
     JsonWriter& json = report.write();
     json.field("vertices", mesh.vertex_count())
@@ -66,7 +67,7 @@ ExitStatus run(const Options& options) {
     json.key("defects").begin_array();
     for (const Defect& defect : found) {
       json.begin_object().field("kind", name_of(defect.kind)).field("text", defect.text);
-      json.field("legal", is_answered(defect.kind, rules.scheme)).end_object();
+      json.field("legal", scheme.answers(defect.kind)).end_object();
     }
     json.end_array();
   }
@@ -76,19 +77,18 @@ ExitStatus run(const Options& options) {
                           counts.components == 1 ? "" : "s"));
   report.text(fmt::format("valence {} to {}, {} extraordinary {}, {} boundary edges, {} creases",
                           counts.min_valence, counts.max_valence, odd_ones,
-                          is_primal(rules.scheme) ? "vertices" : "faces", counts.boundary_edges,
+                          scheme.primal ? "vertices" : "faces", counts.boundary_edges,
                           mesh.tags.creases.size()));
   if (kinds) {
-    report.text(fmt::format("scheme {}: {} kinds of patches", name_of(rules.scheme), *kinds));
+    report.text(fmt::format("scheme {}: {} kinds of patches", scheme.name, *kinds));
     if (apart) {
       report.text("the limit surface is at most " + text_of_length(*apart, size) + " away from the faces");
     }
   } else {
-    report.text(fmt::format("scheme {}: refused: {}", name_of(rules.scheme), refusal));
+    report.text(fmt::format("scheme {}: refused: {}", scheme.name, refusal));
   }
   for (std::size_t i = 0; i < found.size() && i < 10; ++i) {
-    report.text(
-        fmt::format("{}: {}", is_answered(found[i].kind, rules.scheme) ? "note" : "defect", found[i].text));
+    report.text(fmt::format("{}: {}", scheme.answers(found[i].kind) ? "note" : "defect", found[i].text));
   }
   if (found.size() > 10) report.text(fmt::format("and {} more", found.size() - 10));
   return report.finish();

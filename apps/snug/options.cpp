@@ -21,10 +21,6 @@ std::string choose(const Option& option, const std::string& word) {
     if (spelling_of(choice) == spelling) return choice;
   }
   if (const auto alias = option.aliases.find(spelling); alias != option.aliases.end()) return alias->second;
-  if (const auto refusal = option.refusals.find(spelling); refusal != option.refusals.end()) {
-    throw UsageError(fmt::format("{}: '{}' {}; give {}", option.name, word, refusal->second,
-                                 listed(option.choices, "or")));
-  }
   throw UsageError(fmt::format("{}: '{}' is not {}{}", option.name, word, listed(option.choices, "or"),
                                did_you_mean(word, option.choices)));
 }
@@ -106,11 +102,6 @@ Option& Option::one_of(std::vector<std::string> words) {
 
 Option& Option::alias(const std::string& word, const std::string& choice) {
   aliases[spelling_of(word)] = choice;
-  return *this;
-}
-
-Option& Option::refuse(const std::string& word, const std::string& why) {
-  refusals[spelling_of(word)] = why;
   return *this;
 }
 

@@ -32,8 +32,7 @@ struct Option {
   std::string help;   ///< one sentence or more, without the choices and the default
   Target target;
   std::vector<std::string> choices{};
-  std::map<std::string, std::string> aliases{};   ///< other names of choices, as spelling_of() has them
-  std::map<std::string, std::string> refusals{};  ///< why a word, as spelling_of() has it, is no choice
+  std::map<std::string, std::string> aliases{};  ///< other names of choices, as spelling_of() has them
   std::optional<std::pair<double, double>> range{};
   std::vector<std::string> excluded{}, needed{};
   bool must{};  ///< without it the command cannot run
@@ -42,8 +41,6 @@ struct Option {
   Option& one_of(std::vector<std::string> words);
   /// Another name of a choice.
   Option& alias(const std::string& word, const std::string& choice);
-  /// A word that users of other programs may try, and why it is no choice.
-  Option& refuse(const std::string& word, const std::string& why);
   /// The number is from `low` to `high`.
   Option& between(double low, double high);
   /// Not together with that one.

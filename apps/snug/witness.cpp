@@ -6,9 +6,9 @@ namespace snug::command {
 
 void write_place(JsonWriter& json, const LimitSurface& surface, const SurfaceParameter& at,
                  const Motion& pose) {
-  const Scheme scheme = surface.options().scheme;
-  json.field(is_primal(scheme) ? "face" : "vertex", at.owner);
-  if (scheme != Scheme::loop) json.field("corner", at.corner);
+  const SchemeRules& rules = surface.rules();
+  json.field(rules.owner(), at.owner);
+  if (!rules.triangular()) json.field("corner", at.corner);
   json.field("u", at.u).field("v", at.v);
   const std::optional<SurfaceNormal> normal = normal_at(surface, at, pose);
   json.key("normal");
@@ -53,10 +53,10 @@ std::vector<std::string> witness_lines(const Sides& sides, const std::array<Poin
   for (std::size_t s = 0; s < 2; ++s) {
     if (!places[s]) continue;
     const SurfaceParameter& at = *places[s];
-    const Scheme scheme = sides.surfaces[s]->options().scheme;
+    const SchemeRules& rules = sides.surfaces[s]->rules();
     const std::string place =
-        fmt::format("{} {}{} u {:.6g} v {:.6g}", is_primal(scheme) ? "face" : "vertex", at.owner,
-                    scheme == Scheme::loop ? "" : fmt::format(" corner {}", at.corner), at.u, at.v);
+        fmt::format("{} {}{} u {:.6g} v {:.6g}", rules.owner(), at.owner,
+                    rules.triangular() ? "" : fmt::format(" corner {}", at.corner), at.u, at.v);
     lines.push_back(
         line(s == 0 ? "A" : "B", number(witness[s].x), number(witness[s].y), number(witness[s].z), place));
   }

@@ -119,16 +119,14 @@ RateOptions rate_options(const RatesOptions& options) {
   wanted.levels = options.levels;
   wanted.seed = options.seed;
   wanted.threads = options.threads;
-  for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
-    if (options.of == name_of(scheme)) wanted.scheme = scheme;
-  }
+  if (const SchemeRules* rules = scheme_named(options.of)) wanted.scheme = rules->scheme;
   for (const NetCentre centre : all_net_centres) {
     if (options.at == name_of(centre)) wanted.centre = centre;
   }
   if (wanted.centre != NetCentre::interior && options.of == "curve") {
     throw UsageError("rates --at " + options.at + ": curves are measured inside and at their ends always");
   }
-  if (wanted.centre != NetCentre::interior && !is_primal(wanted.scheme)) {
+  if (wanted.centre != NetCentre::interior && !rules_of(wanted.scheme).primal) {
     throw UsageError(
         "rates --at " + options.at + ": " + options.of +
         " is dual: it has no patches at boundaries and no creases; give --scheme loop or catmark");

@@ -212,7 +212,7 @@ TEST(layout, of_other_kinds_has_its_limit_corners_at_the_corners) {
   for (const KindKey& key : testing::assorted_kinds()) {
     const bool one = std::all_of(key.corners.begin(), key.corners.end(), [](auto& f) { return f.closed; }) &&
                      std::count_if(key.corners.begin(), key.corners.end(),
-                                   [](auto& f) { return !f.regular(Scheme::loop); }) <= 1;
+                                   [](auto& f) { return !rules_of(Scheme::loop).regular(f); }) <= 1;
     if (one) continue;
     const Kind& kind = library.find(key);
     const auto layout = make_layout(kind);

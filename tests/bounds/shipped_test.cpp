@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstring>
 #include <stdexcept>
+#include <unordered_set>
 
 namespace snug {
 namespace {
@@ -74,8 +75,8 @@ TEST(shipped_bounds, have_keys_that_meshes_give_and_each_once) {
       EXPECT_EQ(kind_key_from(around.topology, 0, around.options, around.sharpness), key);
     }
   }
-  std::sort(keys.begin(), keys.end());
-  EXPECT_EQ(std::adjacent_find(keys.begin(), keys.end()), keys.end());
+  const std::unordered_set<KindKey, KindKeyHash> distinct(keys.begin(), keys.end());
+  EXPECT_EQ(distinct.size(), keys.size());
 }
 
 TEST(shipped_bounds, know_nothing_of_other_kinds) {

@@ -16,8 +16,9 @@ class Patches {
   [[nodiscard]] Patch operator[](std::size_t face) {
     const TurnedKey key = kind_key(topology_, FaceId(face), options_);
     std::vector<VertexId> control;
-    control_vertices(topology_, FaceId(face), key.first, key.key, control);
-    return make_patch(library_.find(key.key), key.first, mesh_.points, control);
+    const Kind& kind = library_.find(key.key);
+    kind.control_vertices(topology_, topology_.first_of(FaceId(face)) + key.first, control);
+    return make_patch(kind, key.first, mesh_.points, control);
   }
 
  private:

@@ -32,7 +32,7 @@ TEST(split, keeps_the_limit_surface) {
     for (std::size_t f = 0; f < topology.face_count(); f += 3) {
       const TurnedKey key = kind_key(topology, FaceId(f), options);
       std::vector<VertexId> control;
-      control_vertices(topology, FaceId(f), key.first, key.key, control);
+      library.find(key.key).control_vertices(topology, topology.first_of(FaceId(f)) + key.first, control);
       const Patch whole = make_patch(library.find(key.key), key.first, mesh.points, control);
       Patch piece = whole;
       for (int level = 0; level < 6; ++level) {
@@ -60,7 +60,7 @@ TEST(patch_error, covers_points_that_are_off_through_splits_and_evaluation) {
     for (std::size_t f = 0; f < topology.face_count(); f += 5) {
       const TurnedKey key = kind_key(topology, FaceId(f), testing::rules(twin));
       std::vector<VertexId> control;
-      control_vertices(topology, FaceId(f), key.first, key.key, control);
+      library.find(key.key).control_vertices(topology, topology.first_of(FaceId(f)) + key.first, control);
       Patch exact = make_patch(library.find(key.key), key.first, mesh.points, control);
       Patch off = exact;
       const double error = 1e-3;

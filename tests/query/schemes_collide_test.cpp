@@ -260,7 +260,7 @@ TEST(collide, separates_nested_shells_of_every_scheme) {
   for (const Scheme scheme : {Scheme::catmark, Scheme::loop, Scheme::doo_sabin, Scheme::midedge}) {
     oracle::TaggedMesh outer = oracle::meshes::cube();
     if (scheme == Scheme::loop) outer = oracle::meshes::triangulated(outer);
-    if (is_primal(scheme)) outer.creases = {{0, 1, 10}, {1, 3, 2.5}, {0, 4, 0.3}};
+    if (rules_of(scheme).primal) outer.creases = {{0, 1, 10}, {1, 3, 2.5}, {0, 4, 0.3}};
     oracle::TaggedMesh inner = outer;
     for (oracle::Point& p : inner.points) {
       for (double& x : p) x = 0.5 + 0.3 * (x - 0.5);

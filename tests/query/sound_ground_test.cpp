@@ -294,7 +294,7 @@ class Checks {
     counts_["twin left open"] += found.spent;
     const Point same = side(s).twin->limit_point(answer.at.owner, answer.at.corner, answer.at.u, answer.at.v);
     // The twin goes down 46 levels, which at large faces of a dual scheme are still wide.
-    const bool by_twin = is_primal(side(s).made.scheme) && !side(s).has_many();
+    const bool by_twin = snug::rules_of(side(s).made.scheme).primal && !side(s).has_many();
     expect(between(same, point) <= 2 * answer.point_error + (by_twin ? 1e-9 : 1e-3) * size_,
            "owner, u and v are those of the point", between(same, point), answer.point_error);
     if (trial_->number % 3 == 0) {

@@ -1,5 +1,6 @@
 #include <snug/scheme/limits.h>
 #include <snug/scheme/refine.h>
+#include <snug/scheme/rules.h>
 
 #include <gtest/gtest.h>
 #include <testing/tagged.h>
@@ -32,8 +33,8 @@ TEST(limit_stencils, of_darts_stay_under_a_step_within_their_errors) {
       const RefinedTopology step = refine(topology, options, sharpness);
       const std::size_t count = topology.vertex_count();
       Stencils limit, next;
-      add_limit_row(topology, VertexId(0), options, sharpness, limit);
-      add_limit_row(step.topology, VertexId(0), options, step.sharpness, next);
+      rules_of(scheme).add_limit_row(topology, VertexId(0), options, sharpness, limit);
+      rules_of(scheme).add_limit_row(step.topology, VertexId(0), options, step.sharpness, next);
       const double error = limit.row(0).error, next_error = next.row(0).error;
       EXPECT_GT(error, 0x1p-53) << n;
       EXPECT_LT(error, 1e-10) << n;

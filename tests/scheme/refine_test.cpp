@@ -1,3 +1,4 @@
+#include <snug/scheme/creased.h>
 #include <snug/scheme/limits.h>
 #include <snug/scheme/refine.h>
 
@@ -86,12 +87,13 @@ TEST(tangent_rows, keep_their_direction_under_refinement) {
     const ControlMesh coarse = testing::control_mesh(twin);
     const ControlMesh fine = refine(coarse, options);
     const Topology coarse_topology(coarse), fine_topology(fine);
+    const auto& rules = static_cast<const CreasedRules&>(rules_of(options.scheme));
     for (std::size_t v = 0; v < coarse.vertex_count(); ++v) {
-      const TangentRows before = tangent_rows(coarse_topology, VertexId(v), options);
-      const TangentRows after = tangent_rows(fine_topology, VertexId(v), options);
+      const Stencils before = rules.tangent_rows(coarse_topology, VertexId(v), options);
+      const Stencils after = rules.tangent_rows(fine_topology, VertexId(v), options);
       Vector3 normal[2];
       for (int side = 0; side < 2; ++side) {
-        const Stencils& rows = (side == 0 ? before : after).rows;
+        const Stencils& rows = side == 0 ? before : after;
         const ControlMesh& mesh = side == 0 ? coarse : fine;
         const Point3 a = rows.apply<Point3>(0, mesh.points), b = rows.apply<Point3>(1, mesh.points);
         const Vector3 n = cross(a - Point3{}, b - Point3{});

@@ -367,7 +367,7 @@ double size_of(const TaggedMesh& mesh) {
 }
 
 bool has_surface(const GroundMesh& made) {
-  if (is_primal(made.scheme))
+  if (snug::rules_of(made.scheme).primal)
     return oracle::refine(made.mesh, made.rules, 0).holes.size() < made.mesh.polygons.size();
   return !oracle::sample_dual(made.mesh, oracle::DualScheme::midedge, 0).empty();
 }
@@ -416,7 +416,8 @@ std::string name_of_value(std::size_t factor, std::size_t value) {
 
 bool is_possible(const Choices& choices) {
   const Scheme scheme = scheme_of(choices);
-  if (!is_primal(scheme) && choice<Connection>(choices, Factor::connection) != Connection::manifold)
+  if (!snug::rules_of(scheme).primal &&
+      choice<Connection>(choices, Factor::connection) != Connection::manifold)
     return false;
   return scheme == Scheme::catmark || choice<std::uint8_t>(choices, Factor::triangles) == 0;
 }
@@ -492,7 +493,7 @@ GroundMesh make_mesh(const Choices& choices, std::mt19937_64& random) {
   made.rules.smooth_triangles = choice<std::uint8_t>(choices, Factor::triangles) == 1;
   made.rules.clamp_dart_edges = true;
   do {
-    const bool wedge = border != Border::none && is_primal(made.scheme) && dice.one_in(3);
+    const bool wedge = border != Border::none && snug::rules_of(made.scheme).primal && dice.one_in(3);
     made.mesh =
         centred(border == Border::closed ? closed_shape(valence, dice) : open_shape(valence, wedge, dice));
     if (made.rules.smooth_triangles && made.mesh.polygons[0].size() != 3)
@@ -559,7 +560,7 @@ bool GroundSide::has_many() const { return choices[static_cast<std::size_t>(Fact
 bool GroundSide::is_solid() const {
   return choice<Border>(choices, Factor::border) == Border::closed &&
          choice<Connection>(choices, Factor::connection) != Connection::edge &&
-         (choices[static_cast<std::size_t>(Factor::holes)] == 0 || !is_primal(made.scheme));
+         (choices[static_cast<std::size_t>(Factor::holes)] == 0 || !snug::rules_of(made.scheme).primal);
 }
 
 PlacedBvh GroundTrial::placed(std::size_t side, SurfaceWorkspace& scratch) const {
@@ -577,7 +578,7 @@ struct GroundTrials::Shared {
     const oracle::Rules& r = made.rules;
     auto& found = rules[{made.scheme, static_cast<int>(r.boundary), r.chaikin, r.smooth_triangles}];
     if (!found)
-      found = is_primal(made.scheme)
+      found = snug::rules_of(made.scheme).primal
                   ? std::make_shared<oracle::LimitRules>(r)
                   : std::make_shared<oracle::LimitRules>(made.scheme == Scheme::midedge
                                                              ? oracle::DualScheme::midedge

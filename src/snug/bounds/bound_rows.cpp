@@ -8,9 +8,6 @@
 
 #include <snug/base/contract.h>
 #include <snug/geometry/rounding.h>
-#include <snug/scheme/catmark_masks.h>
-#include <snug/scheme/dual_masks.h>
-#include <snug/scheme/loop_masks.h>
 
 namespace snug {
 namespace {
@@ -222,22 +219,7 @@ unsigned tip_depth(const CornerFan& fan, Scheme scheme) {
   if (fan.sharp && !fan.closed && fan.faces() == 1)
     return 4;  // the net of a lone corner is the corner of a polygon: no overhang
   const std::size_t n = fan.closed ? fan.faces() : 2 * fan.faces();
-  double shrink = 0.5;
-  switch (scheme) {
-    case Scheme::loop:
-      shrink =
-          fan.closed ? loop::subdominant(n) : std::max(0.5, loop::subdominant_across_boundary(fan.faces()));
-      break;
-    case Scheme::catmark:
-      shrink = catmark::subdominant(n);
-      break;
-    case Scheme::doo_sabin:
-      shrink = dual::doo_sabin_subdominant(n);
-      break;
-    case Scheme::midedge:
-      shrink = dual::midedge_subdominant(n);
-      break;
-  }
+  double shrink = rules_of(scheme).shrink_factor(fan);
   // Corners that are sharp or darts shrink by 1/2 and more along their edges, and by up to 2/3 within.
   if (fan.sharp || fan.odd) shrink = std::max(shrink, 2.0 / 3);
   const double width =

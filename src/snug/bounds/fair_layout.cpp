@@ -162,7 +162,7 @@ void add_fairness(const Kind& kind, Places& places) {
   const Topology topology = neighbourhood(kind.key()).topology;
   std::vector<bool> own(topology.vertex_count(), false);
   own[0] = true;
-  if (is_primal(kind.scheme())) {
+  if (kind.rules().primal) {
     for (const VertexId v : topology.face(FaceId(0))) own[v.index()] = true;
   }
   for (std::size_t f = 0; f < topology.face_count(); ++f) add_face(topology, FaceId(f), places);

@@ -168,7 +168,7 @@ double outer_spoke(std::size_t n) {
   return n >= 6 ? (6 - 2 * c) / (2 + c) : (36 - 6 * c) / (16 + c);
 }
 
-bool laid_by_rings(const KindKey& key) { return key.scheme == Scheme::loop && key.plain(); }
+bool laid_by_rings(const KindKey& key) { return rules_of(key.scheme).laid_by_rings && key.plain(); }
 
 std::vector<LayoutPoint> make_layout(const Kind& kind) {
   if (!laid_by_rings(kind.key())) return fair_layout(kind);

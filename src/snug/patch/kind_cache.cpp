@@ -5,72 +5,30 @@
 #include <utility>
 
 #include <snug/base/contract.h>
-#include <snug/scheme/limits.h>
 #include <snug/scheme/refine.h>
 #include <snug/scheme/row_builder.h>
 
 namespace snug {
 namespace {
 
-// Where a child begins in a refined neighbourhood.
-using Start = HalfEdge;
-
-std::vector<Start> loop_starts() { return {0, 3, 6, 9}; }
-
-// Half a quad c0 c1 c2 splits into halves of the quarters at its corners, and the other half of the one at c1. In each
-// quarter of a quad all corners are in their places.
-std::vector<Start> catmark_starts(const KindKey& key, std::size_t size) {
-  if (!key.polygon) return {0, 4, 8, 4 + 2};
-  std::vector<Start> starts;
-  for (HalfEdge corner = 0; corner < size; ++corner) {
-    starts.push_back(4 * corner);
-    starts.push_back(4 * corner + 2);
-  }
-  return starts;
-}
-
-// New vertex k lies in face k, near the patch's own vertex. Its faces counter-clockwise: k, the one of the edge between k
-// and k + 1, the patch's own, the one of the edge before.
-std::vector<Start> dual_starts(const KindKey& key, const Topology& topology, const Topology& refined) {
-  const auto around = [&](std::size_t k, std::size_t step) {
-    HalfEdge h = refined.first_of(FaceId(k));
-    SNUG_EXPECT(refined.from(h).index() == topology.first_of(FaceId(k)));
-    for (; step > 0; --step) h = refined.ccw(h);
-    return h;
-  };
-  if (!key.polygon) return {around(0, 0), around(1, 3), around(2, 2), around(1, 1)};
-  std::vector<Start> starts;
-  for (std::size_t k = 0; k < key.details.size(); ++k) {
-    starts.push_back(around(k, 0));
-    starts.push_back(around(k, 2));
-  }
-  return starts;
-}
-
 std::vector<KindChild> make_children(KindCache& library, const KindKey& key) {
   const Neighbourhood around = neighbourhood(key);
   const RefinedTopology refined = refine(around.topology, around.options, around.sharpness);
-  std::vector<Start> starts;
-  if (key.scheme == Scheme::loop) {
-    starts = loop_starts();
-  } else if (key.scheme == Scheme::catmark) {
-    starts = catmark_starts(key, around.topology.face(FaceId(0)).size());
-  } else {
-    starts = dual_starts(key, around.topology, refined.topology);
-  }
+  const SchemeRules& rules = rules_of(key.scheme);
+  const std::vector<HalfEdge> starts = rules.child_starts(around.topology, refined.topology);
   std::vector<KindChild> children(starts.size());
   std::vector<VertexId> control;
   std::vector<std::uint32_t> same_names(around.topology.vertex_count());
   std::iota(same_names.begin(), same_names.end(), 0u);
   for (std::size_t k = 0; k < starts.size(); ++k) {
     TurnedKey child;
-    if (key.scheme == Scheme::loop) {
+    if (rules.triangular()) {
       child = kind_key(refined.topology, FaceId(k), around.options, refined.sharpness);
     } else {
       child.key = kind_key_from(refined.topology, starts[k], around.options, refined.sharpness);
     }
-    control_vertices(refined.topology, starts[k] + child.first, child.key, control);
     children[k].kind = &library.find(child.key);
+    children[k].kind->control_vertices(refined.topology, starts[k] + child.first, control);
     children[k].first = child.first;
     std::size_t entries = 0;
     for (const VertexId v : control) entries += refined.stencils.row(v.index()).sources.size();
@@ -86,43 +44,31 @@ bool is_passing(const Neighbourhood& around, const KindKey& key) {
     return std::any_of(all.begin(), all.end(), is_semi_sharp);
   };
   if (semi(around.sharpness.edges) || semi(around.sharpness.vertices)) return true;
-  if (key.scheme == Scheme::loop) return false;
+  const std::size_t corners = rules_of(key.scheme).corners;
   for (std::size_t f = 0; f < around.topology.face_count(); ++f) {
-    if (around.topology.face(FaceId(f)).size() != 4) return true;
+    if (around.topology.face(FaceId(f)).size() != corners) return true;
   }
   return false;
 }
 
-void add_mean(const Topology& topology, FaceId f, Stencils& out) {
-  const auto face = topology.face(f);
-  const Interval each =
-      face.size() == 4 ? Interval(0.25) : Interval(1) / Interval(static_cast<double>(face.size()));
-  for (const VertexId v : face) out.add(v.value(), each);
-  out.end_row();
-}
-
-// First Fourier modes of a face, counter-clockwise.
-void add_face_tangents(const Topology& topology, FaceId f, Stencils& out) {
-  const auto face = topology.face(f);
-  const auto n = static_cast<unsigned>(face.size());
-  for (const unsigned turn : {0u, 3 * n}) {  // sin x = cos(x - pi/2), in quarters of a step
-    for (unsigned i = 0; i < n; ++i) out.add(face[i].value(), cos_of_turn((4 * i + turn) % (4 * n), 4 * n));
-    out.end_row();
-  }
-}
-
 }  // namespace
 
-Kind::Kind(KindCache& library, KindId id, const KindKey& key)
-    : library_(library), id_(id), key_(key), form_(polynomial_form(key)) {
-  const Neighbourhood around = neighbourhood(key);
+Kind::Kind(KindCache& library, KindId id, const KindKey& key) : Kind(library, id, key, neighbourhood(key)) {}
+
+Kind::Kind(KindCache& library, KindId id, const KindKey& key, const Neighbourhood& around)
+    : library_(library),
+      rules_(rules_of(key.scheme)),
+      id_(id),
+      key_(key),
+      order_(key, around.topology),
+      form_(polynomial_form(key)) {
   control_count_ = around.topology.vertex_count();
   passing_ = is_passing(around, key);
 }
 
 std::size_t Kind::inner_count() const {
   if (!key_.plain()) return 0;
-  return !is_primal(key_.scheme) ? 1 : key_.scheme == Scheme::loop ? 3 : 4;
+  return rules().primal ? rules().corners : 1;
 }
 
 namespace {
@@ -171,19 +117,16 @@ const Stencils& Kind::corner_limits() const {
   std::call_once(limits_made_, [&] {
     const Neighbourhood around = neighbourhood(key_);
     for (std::size_t i = 0; i < 3; ++i) {
-      if (!is_primal(key_.scheme)) {
-        add_mean(around.topology, FaceId(i), corner_limits_);
+      if (rules().add_corner_limit(around.topology, i, around.options, around.sharpness, corner_limits_)) {
         continue;
       }
-      const VertexId v = around.topology.face(FaceId(0))[i];
-      if (add_settled_limit_row(around.topology, v, around.options, around.sharpness, corner_limits_))
-        continue;
       if (passing_) {  // the child at the corner shares the work with other patches
         const KindChild& child = children()[i];
         add_product(child.kind->corner_limits().row((3 + i - child.first) % 3), child.stencils, {},
                     corner_limits_);
       } else {
-        add_limit_row(around.topology, v, around.options, around.sharpness, corner_limits_);
+        rules().add_limit_row(around.topology, around.topology.face(FaceId(0))[i], around.options,
+                              around.sharpness, corner_limits_);
       }
     }
   });
@@ -200,16 +143,8 @@ const Stencils& Kind::corner_tangents() const {
   SNUG_EXPECT(!key_.polygon);
   std::call_once(tangents_made_, [&] {
     const Neighbourhood around = neighbourhood(key_);
-    std::vector<std::uint32_t> same_names(control_count_);
-    std::iota(same_names.begin(), same_names.end(), 0u);
     for (std::size_t i = 0; i < 3; ++i) {
-      if (!is_primal(key_.scheme)) {
-        add_face_tangents(around.topology, FaceId(i), corner_tangents_);
-        continue;
-      }
-      const TangentRows tangents = tangent_rows(around.topology, around.topology.face(FaceId(0))[i],
-                                                around.options, around.sharpness, static_cast<HalfEdge>(i));
-      for (std::size_t t = 0; t < 2; ++t) corner_tangents_.append(tangents.rows.row(t), same_names);
+      rules().add_corner_tangents(around.topology, i, around.options, around.sharpness, corner_tangents_);
     }
   });
   return corner_tangents_;

@@ -8,7 +8,7 @@
 
 #include <snug/patch/neighbourhood.h>
 #include <snug/patch/polynomial.h>
-#include <snug/scheme/stencils.h>
+#include <snug/scheme/rules.h>
 
 namespace snug {
 
@@ -34,10 +34,15 @@ class Kind {
   [[nodiscard]] KindId id() const { return id_; }
   [[nodiscard]] const KindKey& key() const { return key_; }
   [[nodiscard]] Scheme scheme() const { return key_.scheme; }
+  [[nodiscard]] const SchemeRules& rules() const { return rules_; }
   [[nodiscard]] std::size_t control_count() const { return control_count_; }
+  /// The control vertices of the patch of this kind that begins at a half-edge.
+  void control_vertices(const Topology& topology, HalfEdge start, std::vector<VertexId>& out) const {
+    order_(topology, start, out);
+  }
   [[nodiscard]] const CornerFan& corner(std::size_t i) const { return key_.corners[i]; }
   /// Is the surface near corner 0, 1 or 2 as on a regular lattice, at least a few levels down?
-  [[nodiscard]] bool regular_corner(std::size_t i) const { return key_.corners[i].regular(key_.scheme); }
+  [[nodiscard]] bool regular_corner(std::size_t i) const { return rules_.regular(key_.corners[i]); }
   /// Not for ever: sharpness decays, or polygons that are no quads lie around it.
   [[nodiscard]] bool passing() const { return passing_; }
   /// Is a corner one of very many faces between creases or boundaries? All its patches are of kinds of their own, and the
@@ -74,9 +79,13 @@ class Kind {
   [[nodiscard]] const std::vector<KindChild>& children() const;
 
  private:
+  Kind(KindCache& library, KindId id, const KindKey& key, const Neighbourhood& around);
+
   KindCache& library_;
+  const SchemeRules& rules_;
   KindId id_;
   KindKey key_;
+  ControlOrder order_;
   bool passing_ = false;
   std::size_t control_count_ = 0;
   std::optional<PolynomialForm> form_;

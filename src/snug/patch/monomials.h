@@ -19,28 +19,4 @@ void monomials(double w, double u, double v, double* out) {
   }
 }
 
-// degree! / (i! j! k!).
-template <std::size_t degree>
-constexpr std::array<double, bezier_count(degree)> make_multinomials() {
-  constexpr auto factorial = [](std::size_t n) {
-    double product = 1;
-    for (std::size_t i = 2; i <= n; ++i) product *= static_cast<double>(i);
-    return product;
-  };
-  std::array<double, bezier_count(degree)> result{};
-  for (std::size_t j = 0; j <= degree; ++j) {
-    for (std::size_t i = 0; i + j <= degree; ++i) {
-      result[bezier_index(degree, i, j)] =
-          factorial(degree) / (factorial(i) * factorial(j) * factorial(degree - i - j));
-    }
-  }
-  return result;
-}
-template <std::size_t degree>
-constexpr std::array<double, bezier_count(degree)> multinomials = make_multinomials<degree>();
-
-inline double multinomial(std::size_t degree, std::size_t place) {
-  return degree == 2 ? multinomials<2>[place] : degree == 4 ? multinomials<4>[place] : multinomials<6>[place];
-}
-
 }  // namespace snug

@@ -67,7 +67,8 @@ double distance_at_most(const Point3& p, const LimitSurface& surface, std::span<
 }  // namespace
 
 std::optional<double> limit_to_faces(const LimitSurface& surface, int threads) {
-  if (!is_primal(surface.options().scheme)) return {};
+  if (!surface.rules().primal) return {};
+  if (surface.rules().local) return 0.0;
   const std::vector<bool> sharp = sharp_faces(surface);
   std::vector<PatchId> patches;
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {

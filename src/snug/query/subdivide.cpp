@@ -8,6 +8,7 @@
 #include <snug/geometry/scaling.h>
 #include <snug/scheme/limits.h>
 #include <snug/scheme/refine.h>
+#include <snug/scheme/rules.h>
 #include <snug/surface/curve_set.h>
 
 namespace snug {
@@ -48,9 +49,10 @@ void drop_boundary(ControlMesh& mesh, const Topology& topology) {
 }
 
 // Faces of a refined mesh that have limit positions at all corners. Empty: all.
-std::vector<bool> faces_with_limit(const ControlMesh& mesh, const Topology& topology, Scheme scheme) {
+std::vector<bool> faces_with_limit(const ControlMesh& mesh, const Topology& topology,
+                                   const SchemeRules& rules) {
   std::vector<bool> kept;
-  if (!is_primal(scheme)) {
+  if (!rules.primal) {
     for (std::size_t f = 0; f < mesh.face_count(); ++f) {
       if (!touches_boundary(topology, FaceId(f))) continue;
       if (kept.empty()) kept.assign(mesh.face_count(), true);
@@ -66,11 +68,11 @@ std::vector<bool> faces_with_limit(const ControlMesh& mesh, const Topology& topo
 }
 
 // Faces after `level` steps, about.
-double face_count_after(const ControlMesh& mesh, Scheme scheme, unsigned level) {
+double face_count_after(const ControlMesh& mesh, const SchemeRules& rules, unsigned level) {
   if (level == 0) return static_cast<double>(mesh.face_count());
-  const double first = scheme == Scheme::loop ? 4.0 * static_cast<double>(mesh.face_count())
-                       : is_primal(scheme)    ? static_cast<double>(mesh.face_vertices.size())
-                                              : 2.0 * static_cast<double>(mesh.face_vertices.size());
+  const double first = rules.triangular() ? 4.0 * static_cast<double>(mesh.face_count())
+                       : rules.primal     ? static_cast<double>(mesh.face_vertices.size())
+                                          : 2.0 * static_cast<double>(mesh.face_vertices.size());
   return first * std::ldexp(1.0, 2 * static_cast<int>(level - 1));
 }
 
@@ -80,12 +82,12 @@ ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned l
                       const WorkMonitor& monitor) {
   const SchemeOptions rules = with_tags(options, mesh.tags);
   require_subdividable(mesh, rules);
-  if (level > 60 || face_count_after(mesh, rules.scheme, level) > 0x1p31) {
+  if (level > 60 || face_count_after(mesh, rules_of(rules.scheme), level) > 0x1p31) {
     throw InputError(InputProblem::refused, "level " + std::to_string(level) + " of " +
                                                 std::to_string(mesh.face_count()) +
                                                 " faces is more than 2^31 faces: take a lower level");
   }
-  const bool primal = is_primal(rules.scheme);
+  const bool primal = rules_of(rules.scheme).primal;
   if (limit && primal && rules.boundary == BoundaryRule::none) drop_boundary(mesh, Topology(mesh));
   const Box3 box = used_box(mesh);
   const PowerOfTwo scale =
@@ -118,7 +120,7 @@ ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned l
       positions.push_back(rows.apply<Point3>(v, mesh.points));
     }
     mesh.points = std::move(positions);
-    const std::vector<bool> kept = faces_with_limit(mesh, topology, rules.scheme);
+    const std::vector<bool> kept = faces_with_limit(mesh, topology, rules_of(rules.scheme));
     if (!kept.empty()) {
       mesh = only(mesh, kept);
       dropped = true;

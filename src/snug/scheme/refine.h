@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include <snug/base/progress.h>
 #include <snug/mesh/topology.h>
 #include <snug/scheme/creases.h>
@@ -38,6 +40,11 @@ struct RefinedTopology {
   Sharpness sharpness;
   Stencils stencils;  ///< row r makes new vertex r
 };
+
+/// The faces of a primal step alone: of triangles with `corners` 3, else of quads.
+[[nodiscard]] Topology split_faces(const Topology& topology, std::size_t corners);
+/// Half-edges of it on the halves of h: from h's first vertex to the middle, from there to the second.
+[[nodiscard]] std::array<HalfEdge, 2> halves_of(const Topology& topology, std::size_t corners, HalfEdge h);
 
 /// Requires:  a topology that require_subdividable accepts, or a part of one: rules at its rim are those of a
 ///            boundary.

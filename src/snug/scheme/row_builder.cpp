@@ -6,6 +6,17 @@
 
 namespace snug {
 
+Interval times(const Interval& factor, const Interval& weight) {
+  return factor == Interval(1) ? weight : factor * weight;
+}
+
+void add_mean(std::span<const VertexId> face, const Interval& share, RowBuilder& row) {
+  const std::size_t n = face.size();
+  const Interval each =
+      share == Interval(1) && n == 4 ? Interval(0.25) : share / Interval(static_cast<double>(n));
+  for (const VertexId v : face) row.add(v.value(), each);
+}
+
 void add_product(const Stencils::Row& outer, const Stencils& inner, std::span<const VertexId> names,
                  Stencils& out) {
   RowBuilder builder;

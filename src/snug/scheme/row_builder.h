@@ -46,6 +46,11 @@ class RowBuilder {
   std::vector<Entry> entries_;
 };
 
+/// factor * weight; of a factor 1 the weight itself: rows of regular parts are free of rounding.
+[[nodiscard]] Interval times(const Interval& factor, const Interval& weight);
+/// Adds the mean of the vertices of a face, times `share`.
+void add_mean(std::span<const VertexId> face, const Interval& share, RowBuilder& row);
+
 /// Adds the product of a row and a matrix to `out`, sources renamed; without names they keep their own.
 void add_product(const Stencils::Row& outer, const Stencils& inner, std::span<const VertexId> names,
                  Stencils& out);

@@ -5,6 +5,7 @@
 
 #include <snug/base/error.h>
 #include <snug/mesh/topology.h>
+#include <snug/scheme/rules.h>
 
 namespace snug {
 namespace {
@@ -24,20 +25,21 @@ bool has_topology(const ControlMesh& mesh) {
                      [&](VertexId v) { return v.index() < mesh.vertex_count(); });
 }
 
-void require_sound(std::vector<Defect> refusing, Scheme scheme, Purpose purpose) {
+void require_sound(std::vector<Defect> refusing, const SchemeRules& rules, Purpose purpose) {
   std::erase_if(refusing, [&](const Defect& defect) {
-    return is_answered(defect.kind, scheme) || (purpose == Purpose::refinement && is_primal(scheme) &&
-                                                defect.kind == DefectKind::repeated_vertex);
+    return rules.answers(defect.kind) ||
+           (purpose == Purpose::refinement && rules.primal && defect.kind == DefectKind::repeated_vertex);
   });
   if (refusing.empty()) return;
   const bool sound = std::all_of(refusing.begin(), refusing.end(),
                                  [](const Defect& defect) { return is_non_manifold(defect.kind); });
-  refuse(summary(refusing) + (sound && !is_primal(scheme)
+  refuse(summary(refusing) + (sound && !rules.primal
                                   ? "; an oriented manifold mesh is needed: mend these elements"
                                   : "; mend these elements"));
 }
 
-void require_triangles(const ControlMesh& mesh) {
+void require_fitting_faces(const ControlMesh& mesh, const SchemeRules& rules) {
+  if (!rules.wants_triangles) return;
   std::size_t others = 0, first = 0;
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     if (mesh.face(FaceId(f)).size() == 3) continue;
@@ -45,19 +47,18 @@ void require_triangles(const ControlMesh& mesh) {
   }
   if (others == 0) return;
   refuse("face " + number(first) + " has " + number(mesh.face(FaceId(first)).size()) + " vertices (" +
-         number(others) +
-         " faces are not triangles); Loop subdivision needs triangles: triangulate the mesh");
+         number(others) + " faces are not triangles); " + rules.wants_triangles);
 }
 
-void require_valences(const Topology& topology, Scheme scheme) {
-  const std::size_t least = min_interior_valence(scheme);
+void require_valences(const Topology& topology, const SchemeRules& rules) {
+  const std::size_t least = rules.min_valence, most = rules.max_valence;
   std::string text;
   std::size_t bad = 0;
   for (std::size_t i = 0; i < topology.vertex_count(); ++i) {
     const VertexId v(i);
     const std::size_t faces = topology.face_valence(v);
     const bool inside = !topology.isolated(v) && topology.is_manifold(v) && !topology.on_boundary(v);
-    if (inside ? faces >= least && faces <= max_interior_valence : faces <= max_boundary_faces) continue;
+    if (faces <= most && (!inside || faces >= least)) continue;
     if (++bad <= 10) {
       text += (bad > 1 ? "; " : "") + std::string(inside ? "interior" : "boundary") + " vertex " + number(i) +
               " has " + number(faces) + " faces";
@@ -81,26 +82,7 @@ void require_small_faces(const ControlMesh& mesh) {
 
 }  // namespace
 
-const char* name_of(Scheme scheme) {
-  switch (scheme) {
-    case Scheme::loop:
-      return "loop";
-    case Scheme::catmark:
-      return "catmark";
-    case Scheme::doo_sabin:
-      return "doo-sabin";
-    case Scheme::midedge:
-      return "midedge";
-  }
-  return "";
-}
-
-bool is_answered(DefectKind kind, Scheme scheme) {
-  if (is_legal(kind)) return true;
-  // Dual schemes have no faces to make there.
-  if (!is_primal(scheme) || !is_non_manifold(kind) || kind == DefectKind::repeated_vertex) return false;
-  return scheme != Scheme::loop || kind != DefectKind::duplicate_face;
-}
+const char* name_of(Scheme scheme) { return rules_of(scheme).name; }
 
 Scheme natural_scheme(const ControlMesh& mesh) {
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
@@ -119,13 +101,14 @@ namespace {
 
 Topology require_fit_for(Purpose purpose, const ControlMesh& mesh, const SchemeOptions& options) {
   if (mesh.face_count() == 0) refuse("the mesh has no faces");
+  const SchemeRules& rules = rules_of(options.scheme);
   Topology topology;
   if (has_topology(mesh)) topology = Topology(mesh);
   const bool manifold = topology.face_count() > 0 && topology.is_manifold();
-  require_sound(manifold ? defects_of_elements(mesh) : defects(mesh), options.scheme, purpose);
-  if (options.scheme == Scheme::loop) require_triangles(mesh);
+  require_sound(manifold ? defects_of_elements(mesh) : defects(mesh), rules, purpose);
+  require_fitting_faces(mesh, rules);
   require_small_faces(mesh);
-  require_valences(topology, options.scheme);
+  require_valences(topology, rules);
   return topology;
 }
 

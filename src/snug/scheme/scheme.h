@@ -12,11 +12,6 @@ enum class Scheme : std::uint8_t { loop, catmark, doo_sabin, midedge };
 
 [[nodiscard]] const char* name_of(Scheme scheme);
 
-/// Does a patch belong to a face, and do vertices stay vertices? Dual schemes: a patch belongs to a vertex.
-[[nodiscard]] constexpr bool is_primal(Scheme scheme) {
-  return scheme == Scheme::loop || scheme == Scheme::catmark;
-}
-
 /// Rules that turn a mesh into a surface, beside the scheme itself.
 struct SchemeOptions {
   Scheme scheme = Scheme::loop;
@@ -29,21 +24,8 @@ struct SchemeOptions {
 /// The rules for this mesh: its tags name the crease method and the treatment of triangles.
 [[nodiscard]] SchemeOptions with_tags(SchemeOptions options, const MeshTags& tags);
 
-/// Least and largest valence of an interior vertex that is answered. Loop takes no 2: one step makes two edges between the
-/// same two vertices there.
-[[nodiscard]] constexpr std::size_t min_interior_valence(Scheme scheme) {
-  return scheme == Scheme::catmark ? 2 : 3;
-}
-inline constexpr std::size_t max_interior_valence = 1000;
-/// Most faces around a boundary or non-manifold vertex.
-inline constexpr std::size_t max_boundary_faces = 1000;
 /// Most vertices of a face.
 inline constexpr std::size_t max_face_size = 1000;
-
-/// Does the scheme answer questions about the surface of a mesh with such a defect all the same? Loop takes no duplicate faces:
-/// one step makes two edges between the same two vertices there, which are not one. Nor does a face that names a vertex
-/// twice have patches with corners that can be told apart.
-[[nodiscard]] bool is_answered(DefectKind kind, Scheme scheme);
 
 /// The scheme of a mesh that names none: Loop for triangles alone, else Catmull-Clark.
 [[nodiscard]] Scheme natural_scheme(const ControlMesh& mesh);

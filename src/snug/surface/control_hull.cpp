@@ -17,7 +17,7 @@ void ControlHull::assign(const LimitSurface& surface, std::span<const PatchId> p
   patch_ends_.clear();
   weights_.clear();
   largest_ = 0;
-  const bool primal = is_primal(surface.options().scheme);
+  const bool primal = surface.rules().primal;
   const auto add = [&](VertexId v) {
     const std::uint32_t number = numbers_.number(v.index());
     if (number == points_.size()) points_.push_back(surface.scaled_point(v));

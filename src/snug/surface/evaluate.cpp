@@ -14,7 +14,7 @@ namespace snug {
 PatchEvaluator::PatchEvaluator(const LimitSurface& surface, PatchId p)
     : evaluator_(surface.patch(p)),
       back_(surface.scale().inverse()),
-      loop_(surface.options().scheme == Scheme::loop) {}
+      triangular_(surface.rules().triangular()) {}
 
 BoundedPoint PatchEvaluator::position(TriangleParameter at) {
   return unscaled(evaluator_(at).from(evaluator_.patch().origin), back_);
@@ -25,8 +25,8 @@ SurfacePoint PatchEvaluator::operator()(TriangleParameter at) const {
 }
 
 SurfacePoint PatchEvaluator::operator()(const SurfaceParameter& at) const {
-  return placed_frame(loop_ ? limit_frame(evaluator_.patch(), TriangleParameter{at.u, at.v})
-                            : limit_frame(evaluator_.patch(), QuadParameter{at.u, at.v}));
+  return placed_frame(triangular_ ? limit_frame(evaluator_.patch(), TriangleParameter{at.u, at.v})
+                                  : limit_frame(evaluator_.patch(), QuadParameter{at.u, at.v}));
 }
 
 SurfacePoint PatchEvaluator::placed_frame(const LimitFrame& frame) const {
@@ -46,7 +46,7 @@ SurfacePoint PatchEvaluator::placed_frame(const LimitFrame& frame) const {
 
 SurfaceParameter place_of(const LimitSurface& surface, PatchId patch, TriangleParameter at) {
   const auto [owner, part] = surface.place(patch);
-  if (surface.options().scheme == Scheme::loop) {
+  if (surface.rules().triangular()) {
     const double u = std::clamp(at.u, 0.0, 1.0);
     return {owner, 0, u, std::clamp(at.v, 0.0, 1 - u)};
   }
@@ -60,7 +60,7 @@ std::optional<PatchId> patch_at(const LimitSurface& surface, const SurfaceParame
   if (at.owner >= surface.owner_count() || !(u >= 0 && v >= 0 && u <= 1 && v <= 1)) return {};
   const LimitSurface::PatchRange range = surface.patches_of(at.owner);
   std::size_t patch = range.begin;
-  if (surface.options().scheme == Scheme::loop) {
+  if (surface.rules().triangular()) {
     if (!(u + v <= 1) || at.corner != 0) return {};
   } else {
     patch += 2 * std::size_t{at.corner} + part_of(QuadParameter{u, v});

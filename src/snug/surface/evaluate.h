@@ -83,7 +83,7 @@ class PatchEvaluator {
 
   LimitEvaluator evaluator_;
   PowerOfTwo back_;
-  bool loop_;
+  bool triangular_;
 };
 
 /// A limit point of a curve in mesh units, and the derivative there along t.

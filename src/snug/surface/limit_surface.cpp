@@ -10,7 +10,10 @@
 namespace snug {
 LimitSurface::LimitSurface(ControlMesh mesh, const SchemeOptions& options,
                            std::shared_ptr<BoundsCache> library, int threads, const WorkMonitor& monitor)
-    : mesh_(std::move(mesh)), options_(with_tags(options, mesh_.tags)), library_(std::move(library)) {
+    : mesh_(std::move(mesh)),
+      options_(with_tags(options, mesh_.tags)),
+      rules_(&rules_of(options.scheme)),
+      library_(std::move(library)) {
   require_value(library_ != nullptr, "surface: the library is null; give std::make_shared<BoundsCache>()");
   topology_ = require_surface(mesh_, options_);
   monitor.checkpoint();
@@ -20,7 +23,7 @@ LimitSurface::LimitSurface(ControlMesh mesh, const SchemeOptions& options,
   scaled_.reserve(mesh_.points.size());
   for (const Point3& p : mesh_.points) scaled_.push_back(scale_.apply(p));
 
-  const bool primal = is_primal(options_.scheme);
+  const bool primal = rules_->primal;
   const Sharpness sharpness = primal ? sharpness_of(mesh_, topology_) : Sharpness{};
   std::vector<bool> holes;
   if (primal && !mesh_.tags.holes.empty()) {
@@ -37,12 +40,12 @@ LimitSurface::LimitSurface(ControlMesh mesh, const SchemeOptions& options,
 }
 
 void LimitSurface::lay_out_patches() {
-  if (options_.scheme == Scheme::loop) {
+  if (rules_->triangular()) {
     kinds_.assign(topology_.face_count(), nullptr);
     firsts_.assign(topology_.face_count(), 0);
     return;
   }
-  const bool primal = is_primal(options_.scheme);
+  const bool primal = rules_->primal;
   begins_.push_back(0);
   for (std::size_t owner = 0; owner < owner_count(); ++owner) {
     const std::size_t n =
@@ -57,7 +60,7 @@ void LimitSurface::lay_out_patches() {
 
 bool LimitSurface::has_surface(std::size_t owner, const Sharpness& sharpness,
                                const std::vector<bool>& holes) const {
-  if (!is_primal(options_.scheme)) {
+  if (!rules_->primal) {
     const VertexId v(owner);
     return !topology_.isolated(v) && !topology_.on_boundary(v);
   }
@@ -65,12 +68,14 @@ bool LimitSurface::has_surface(std::size_t owner, const Sharpness& sharpness,
   return options_.boundary != BoundaryRule::none || !loses_surface(topology_, sharpness, FaceId(owner));
 }
 
-HalfEdge LimitSurface::start_of(std::size_t owner) const {
-  return is_primal(options_.scheme) ? topology_.first_of(FaceId(owner)) : topology_.leaving(VertexId(owner));
+HalfEdge LimitSurface::start_of(std::size_t owner, std::uint32_t part) const {
+  HalfEdge h = rules_->primal ? topology_.first_of(FaceId(owner)) : topology_.leaving(VertexId(owner));
+  for (std::uint32_t k = 0; k < 2 * part; ++k) h = rules_->primal ? topology_.next(h) : topology_.ccw(h);
+  return h;
 }
 
 void LimitSurface::find_kinds(std::size_t owner, const Sharpness& sharpness) {
-  if (options_.scheme == Scheme::loop) {
+  if (rules_->triangular()) {
     const TurnedKey key = kind_key(topology_, FaceId(owner), options_, sharpness);
     kinds_[owner] = &library_->kinds().find(key.key);
     firsts_[owner] = key.first;
@@ -87,8 +92,8 @@ void LimitSurface::find_kinds(std::size_t owner, const Sharpness& sharpness) {
     return;
   }
   kinds_[begin] = &whole;
-  const HalfEdge other = is_primal(options_.scheme) ? start + 2 : topology_.ccw(topology_.ccw(start));
-  kinds_[begin + 1] = &library_->kinds().find(kind_key_from(topology_, other, options_, sharpness));
+  kinds_[begin + 1] =
+      &library_->kinds().find(kind_key_from(topology_, start_of(owner, 1), options_, sharpness));
 }
 
 LimitSurface::PatchRange LimitSurface::patches_of(std::size_t owner) const {
@@ -110,18 +115,16 @@ void LimitSurface::control_vertices(PatchId p, std::vector<VertexId>& out) const
   require_value(p.index() < patch_count() && has_patch(p),
                 "surface: there is no such patch; has_patch() tells which are there");
   const PatchPlace at = place(p);
-  HalfEdge start = start_of(at.owner);
   if (const Kind* polygon = polygon_of(p)) {
-    snug::control_vertices(topology_, start, polygon->key(), out);
-    return;
+    polygon->control_vertices(topology_, start_of(at.owner), out);
+  } else {
+    kind(p).control_vertices(topology_, start_of(at.owner, at.part) + first(p), out);
   }
-  if (at.part == 1) start = is_primal(options_.scheme) ? start + 2 : topology_.ccw(topology_.ccw(start));
-  snug::control_vertices(topology_, start + first(p), kind(p).key(), out);
 }
 
 Point3 LimitSurface::middle(PatchId p) const {
   const std::uint32_t owner = place(p).owner;
-  if (!is_primal(options_.scheme)) return scaled_[owner];
+  if (!rules_->primal) return scaled_[owner];
   const std::span<const VertexId> corners = topology_.face(FaceId(owner));
   Vector3 sum;
   for (const VertexId v : corners) sum = sum + (scaled_[v.index()] - Point3{});
@@ -138,14 +141,14 @@ Patch LimitSurface::patch(PatchId p) const {
 }
 
 std::size_t LimitSurface::corner_name_count() const {
-  if (options_.scheme == Scheme::loop) return topology_.vertex_count();
+  if (rules_->triangular()) return topology_.vertex_count();
   return topology_.vertex_count() + topology_.edge_count() + topology_.face_count();
 }
 
 // Vertices, then edges, then faces.
 std::array<std::uint32_t, 3> LimitSurface::corner_names(PatchId p) const {
   const auto [owner, part] = place(p);
-  const bool primal = is_primal(options_.scheme);
+  const bool primal = rules_->primal;
   const std::size_t vertices = topology_.vertex_count(), edges = topology_.edge_count();
   const auto name = [](std::size_t n) { return static_cast<std::uint32_t>(n); };
   // The half-edge of corner k: of the face from there, or from the vertex in face k.
@@ -159,7 +162,7 @@ std::array<std::uint32_t, 3> LimitSurface::corner_names(PatchId p) const {
     const HalfEdge h = corner_at(k);
     return primal ? topology_.from(h).value() : name(vertices + edges + topology_.face_of(h).index());
   };
-  if (options_.scheme == Scheme::loop) return {corner(0), corner(1), corner(2)};
+  if (rules_->triangular()) return {corner(0), corner(1), corner(2)};
   if (!after_first_split(p)) {
     return part == 0 ? std::array{corner(0), corner(1), corner(2)}
                      : std::array{corner(2), corner(3), corner(0)};

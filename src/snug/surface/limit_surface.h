@@ -11,7 +11,7 @@
 #include <snug/mesh/topology.h>
 #include <snug/patch/patch.h>
 #include <snug/scheme/creases.h>
-#include <snug/scheme/scheme.h>
+#include <snug/scheme/rules.h>
 
 namespace snug {
 
@@ -42,6 +42,7 @@ class LimitSurface {
   [[nodiscard]] const ControlMesh& mesh() const { return mesh_; }
   [[nodiscard]] const Topology& topology() const { return topology_; }
   [[nodiscard]] const SchemeOptions& options() const { return options_; }
+  [[nodiscard]] const SchemeRules& rules() const { return *rules_; }
   [[nodiscard]] BoundsCache& library() const { return *library_; }
 
   /// From mesh units to scaled ones.
@@ -52,7 +53,7 @@ class LimitSurface {
   [[nodiscard]] std::size_t face_count() const { return topology_.face_count(); }
   /// Faces, or vertices of a dual scheme.
   [[nodiscard]] std::size_t owner_count() const {
-    return is_primal(options_.scheme) ? topology_.face_count() : topology_.vertex_count();
+    return rules().primal ? topology_.face_count() : topology_.vertex_count();
   }
   /// Number of patches, those that are not there included.
   [[nodiscard]] std::size_t patch_count() const { return kinds_.size(); }
@@ -102,10 +103,12 @@ class LimitSurface {
   [[nodiscard]] bool has_surface(std::size_t owner, const Sharpness& sharpness,
                                  const std::vector<bool>& holes) const;
   void find_kinds(std::size_t owner, const Sharpness& sharpness);
-  [[nodiscard]] HalfEdge start_of(std::size_t owner) const;
+  // Where the patches of an owner that is no polygon begin: part 0, and part 1 opposite of it.
+  [[nodiscard]] HalfEdge start_of(std::size_t owner, std::uint32_t part = 0) const;
 
   ControlMesh mesh_;
   SchemeOptions options_;
+  const SchemeRules* rules_;
   std::shared_ptr<BoundsCache> library_;
   Topology topology_;
   PowerOfTwo scale_;

@@ -187,11 +187,12 @@ void PatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
   const std::span<const VertexId> control(
       control_.data() + group.first_control + (chunk.begin - group.first_place) * controls, count * controls);
   const std::span<kernels::BatchFit> answers(scratch.answers.data(), count);
+  const bool by_rows = !group.table && !group.polygon && regular_inside(kind);
   if (group.table && !group.polygon && group.table->first_bounded() == 3) {
     kernels::fit_table(*group.table, scaled_, control, answers);
-  } else if (!group.table && !group.polygon && kind.scheme() == Scheme::loop && regular_inside(kind)) {
+  } else if (by_rows && kind.rules().kernel == RegularKernel::box_spline) {
     kernels::fit_regular(scaled_, control, answers);
-  } else if (!group.table && !group.polygon && kind.scheme() == Scheme::catmark && regular_inside(kind)) {
+  } else if (by_rows && kind.rules().kernel == RegularKernel::bicubic) {
     kernels::fit_bicubic(scaled_, control, answers);
   } else {
     for (kernels::BatchFit& answer : answers) answer.radius = -1;

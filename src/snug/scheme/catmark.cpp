@@ -1,0 +1,222 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <snug/base/contract.h>
+#include <snug/scheme/catmark_masks.h>
+#include <snug/scheme/creased.h>
+
+// Catmull-Clark: faces of any size, quads after a step, bicubic B-splines. [CatmullClark78]
+namespace snug::catmark {
+namespace {
+
+// p / q, exactly where q is a power of two.
+Interval ratio(std::size_t p, std::size_t q) {
+  const auto a = static_cast<double>(p), b = static_cast<double>(q);
+  return (q & (q - 1)) == 0 ? Interval(a / b) : Interval(a) / Interval(b);
+}
+
+}  // namespace
+
+StarMask vertex_mask(std::size_t n) {
+  SNUG_EXPECT(n >= 2);
+  return {ratio(4 * n - 7, 4 * n), ratio(3, 2 * n * n), ratio(1, 4 * n * n)};
+}
+
+CentreMask vertex_centre_mask(std::size_t n) {
+  SNUG_EXPECT(n >= 2);
+  return {ratio(n - 2, n), ratio(1, n * n), ratio(1, n * n)};
+}
+
+StarMask limit_mask(std::size_t n) {
+  SNUG_EXPECT(n >= 2);
+  return {ratio(n, n + 5), ratio(4, n * (n + 5)), ratio(1, n * (n + 5))};
+}
+
+Interval smooth_triangle_face() { return Interval(47) / Interval(100); }
+
+double subdominant(std::size_t n) {
+  const double c = cos_of_turn(1, static_cast<unsigned>(n)).middle();
+  const double h = cos_of_turn(1, static_cast<unsigned>(2 * n)).middle();
+  return (5 + c + h * std::sqrt(2 * (9 + c))) / 16;
+}
+
+}  // namespace snug::catmark
+
+namespace snug {
+namespace {
+
+bool is_quad(const Topology& topology, HalfEdge h) { return topology.face(topology.face_of(h)).size() == 4; }
+
+bool among_quads(const Topology& topology, const Star& star) {
+  return std::all_of(star.faces.begin(), star.faces.end(), [&](HalfEdge h) { return is_quad(topology, h); });
+}
+
+// Is each vertex around in one place only? In a small mesh two faces may have a second vertex in common.
+bool has_distinct_places(const Topology& topology, const Star& star) {
+  std::vector<VertexId> places;
+  for (const HalfEdge first : star.faces) {
+    for (HalfEdge h = topology.next(first); topology.to(h) != topology.from(first); h = topology.next(h)) {
+      places.push_back(topology.from(h));
+    }
+  }
+  std::sort(places.begin(), places.end());
+  return std::adjacent_find(places.begin(), places.end()) == places.end();
+}
+
+// Of a spoke's weight, against diagonals' c_i + c_{i+1}. derivations/catmark_limits.md
+double spoke_weight(double eigenvalue) { return 16 * eigenvalue - 4; }
+
+// The corners of a quad, counter-clockwise, lie at (1, 1) to (1, 2) of sixteen places. What is missing beyond a
+// boundary mirrors what is inside: 2 p - q.
+Lattice bicubic_lattice(const Topology& topology, std::span<const CornerFan> fans) {
+  const std::size_t count = topology.vertex_count();
+  Lattice lattice(16);
+  const auto at = [&](int x, int y) -> Combination& { return lattice[static_cast<std::size_t>(x + 4 * y)]; };
+  constexpr std::array<std::array<int, 2>, 4> corner{{{1, 1}, {2, 1}, {2, 2}, {1, 2}}};
+  constexpr std::array<std::array<int, 2>, 4> ahead{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto [x, y] = corner[i];
+    const auto [dx, dy] = ahead[i];            // to the next corner
+    const auto [ex, ey] = ahead[(i + 1) % 4];  // to the one before
+    const auto set = [&](int px, int py, VertexId v) { at(px, py) = unit_combination(v.index(), count); };
+    at(x, y) = unit_combination(i, count);
+    const auto h = static_cast<HalfEdge>(i);
+    const HalfEdge across = topology.twin(h);
+    if (across != no_half_edge) {
+      set(x - ex, y - ey, topology.to(topology.next(across)));
+      const auto [nx, ny] = corner[(i + 1) % 4];
+      set(nx - ex, ny - ey, topology.from(topology.prev(across)));
+    }
+    if (fans[i].closed) {
+      const HalfEdge beyond = topology.ccw(topology.ccw(h));
+      set(x - dx - ex, y - dy - ey, topology.to(topology.next(beyond)));
+    }
+  }
+  const auto mirror = [&](Combination& ghost, const Combination& p, const Combination& q) {
+    if (!ghost.empty() || p.empty() || q.empty()) return;
+    ghost.resize(count);
+    for (std::size_t c = 0; c < count; ++c) ghost[c] = 2 * p[c] - q[c];
+  };
+  for (int y = 0; y < 4; ++y) {
+    mirror(at(0, y), at(1, y), at(2, y));
+    mirror(at(3, y), at(2, y), at(1, y));
+  }
+  for (int x = 0; x < 4; ++x) {
+    mirror(at(x, 0), at(x, 1), at(x, 2));
+    mirror(at(x, 3), at(x, 2), at(x, 1));
+  }
+  return lattice;
+}
+
+constexpr std::array catmark_names{"catmull-clark", "cc", "scheme-catmark"};
+
+class CatmarkRules : public CreasedRules {
+ public:
+  CatmarkRules()
+      : CreasedRules({.scheme = Scheme::catmark,
+                      .name = "catmark",
+                      .other_names = catmark_names,
+                      .min_valence = 2,
+                      .kernel = RegularKernel::bicubic}) {}
+
+  void add_smooth_vertex(const Topology& topology, const SchemeOptions&, VertexId v, const Star& star,
+                         const Interval& share, RowBuilder& row) const override {
+    const std::size_t n = star.faces.size();
+    if (among_quads(topology, star)) {
+      const catmark::StarMask mask = catmark::vertex_mask(n);
+      row.add(v.value(), times(share, mask.centre));
+      for (const Spoke& spoke : star.spokes) row.add(spoke.end.value(), times(share, mask.edge));
+      for (const HalfEdge h : star.faces) {
+        row.add(topology.to(topology.next(h)).value(), times(share, mask.diagonal));
+      }
+      return;
+    }
+    const catmark::CentreMask mask = catmark::vertex_centre_mask(n);
+    row.add(v.value(), share * mask.centre);
+    for (const Spoke& spoke : star.spokes) row.add(spoke.end.value(), share * mask.edge);
+    for (const HalfEdge h : star.faces) {
+      add_mean(topology.face(topology.face_of(h)), share * mask.face, row);
+    }
+  }
+
+  void add_smooth_edge(const Topology& topology, const SchemeOptions& options, HalfEdge h,
+                       const Interval& share, RowBuilder& row) const override {
+    const HalfEdge twin = topology.twin(h);
+    const VertexId a = topology.from(h), b = topology.to(h);
+    if (is_quad(topology, h) && is_quad(topology, twin)) {
+      for (const VertexId end : {a, b}) row.add(end.value(), times(share, catmark::edge_end));
+      for (const HalfEdge g : {h, twin}) {
+        row.add(topology.from(topology.prev(g)).value(), times(share, catmark::edge_wing));
+        row.add(topology.to(topology.next(g)).value(), times(share, catmark::edge_wing));
+      }
+      return;
+    }
+    Interval face = catmark::edge_face;  // both faces' weight
+    if (options.triangles == SmoothTriangles::smooth) {
+      const auto weight = [&](HalfEdge g) {
+        return topology.face(topology.face_of(g)).size() == 3 ? catmark::smooth_triangle_face()
+                                                              : Interval(catmark::edge_face);
+      };
+      face = Interval(0.5) * (weight(h) + weight(twin));
+    }
+    const Interval end = Interval(0.5) * (Interval(1) - Interval(2) * face);
+    row.add(a.value(), share * end);
+    row.add(b.value(), share * end);
+    for (const HalfEdge g : {h, twin}) add_mean(topology.face(topology.face_of(g)), share * face, row);
+  }
+
+  [[nodiscard]] bool is_settled(const Topology& topology, const Star& star, bool dart) const override {
+    return among_quads(topology, star) && (!dart || has_distinct_places(topology, star));
+  }
+  void add_smooth_limit(const Topology& topology, VertexId v, const Star& star,
+                        Stencils& out) const override {
+    const catmark::StarMask mask = catmark::limit_mask(star.faces.size());
+    out.add(v.value(), mask.centre);
+    for (const Spoke& spoke : star.spokes) out.add(spoke.end.value(), mask.edge);
+    for (const HalfEdge h : star.faces) out.add(topology.to(topology.next(h)).value(), mask.diagonal);
+  }
+  // The diagonal after spoke i lies between spokes i and i + 1.
+  void add_smooth_tangents(const Topology& topology, const Star& star, Stencils& out) const override {
+    const auto n = static_cast<unsigned>(star.spokes.size());
+    const auto cosine = [&](unsigned quarters) { return cos_of_turn(quarters % (4 * n), 4 * n); };
+    for (const unsigned turn : {0u, 3 * n}) {      // sin x = cos(x - pi/2), in quarters of a step
+      for (unsigned i = 0; i < n && n > 2; ++i) {  // of 2 the row of the cosine vanishes: no plane
+        const Interval c = cosine(4 * i + turn);
+        out.add(star.spokes[i].end.value(), Interval(spoke_weight(catmark::subdominant(n))) * c);
+        out.add(topology.to(topology.next(star.faces[i])).value(), c + cosine(4 * (i + 1) + turn));
+      }
+      out.end_row();
+    }
+  }
+  [[nodiscard]] AcrossCrease across_crease(std::size_t faces) const override {
+    const auto sine = [step = std::numbers::pi / static_cast<double>(faces)](std::size_t i) {
+      return std::sin(static_cast<double>(i) * step);
+    };
+    const double eigenvalue = catmark::subdominant(2 * faces), spoke = spoke_weight(eigenvalue);
+    AcrossCrease across;
+    double sum = 0;
+    for (std::size_t i = 0; i < faces; ++i) sum += across.diagonals.emplace_back(sine(i) + sine(i + 1));
+    for (std::size_t i = 1; i < faces; ++i) sum += across.inner.emplace_back(spoke * sine(i));
+    across.end = (spoke * sine(1) / 16 + sine(1) / 4 - sum / 8) / (eigenvalue - 0.25);
+    return across;
+  }
+
+  [[nodiscard]] bool regular(const CornerFan& fan) const override { return regular_among_quads(fan); }
+  [[nodiscard]] BezierRows bezier(const Topology& ring, std::span<const CornerFan> fans) const override {
+    return tensor_bezier(3, bicubic_lattice(ring, fans));
+  }
+  [[nodiscard]] double shrink_factor(const CornerFan& fan) const override {
+    return catmark::subdominant(fan.closed ? fan.faces() : 2 * fan.faces());
+  }
+};
+
+}  // namespace
+
+const SchemeRules& catmark_rules() {
+  static const CatmarkRules rules;
+  return rules;
+}
+
+}  // namespace snug

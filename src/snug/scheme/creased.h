@@ -1,0 +1,59 @@
+#pragma once
+
+#include <snug/scheme/creases.h>
+#include <snug/scheme/row_builder.h>
+#include <snug/scheme/rules.h>
+
+namespace snug {
+
+/// What Loop and Catmull-Clark have in common: smooth inside, with curves along creases and boundaries, and corners.
+/// [DeRose98]; OpenSubdiv.
+class CreasedRules : public SchemeRules {
+ public:
+  [[nodiscard]] RefinedTopology refine(const Topology& topology, const SchemeOptions& options,
+                                       const Sharpness& sharpness, const WorkMonitor& monitor) const override;
+  void add_limit_row(const Topology& topology, VertexId v, const SchemeOptions& options,
+                     const Sharpness& sharpness, Stencils& out) const override;
+
+  [[nodiscard]] Topology ring(std::span<const CornerFan> fans) const override;
+  [[nodiscard]] bool add_corner_limit(const Topology& ring, std::size_t corner, const SchemeOptions& options,
+                                      const Sharpness& sharpness, Stencils& out) const override;
+  void add_corner_tangents(const Topology& ring, std::size_t corner, const SchemeOptions& options,
+                           const Sharpness& sharpness, Stencils& out) const override;
+
+  /// Two rows whose images span the tangent plane at the limit of v, wherever there is one: the limits of the
+  /// directions, of no particular length; their weights sum to 0. Counter-clockwise: their cross product points to the side
+  /// from which faces look counter-clockwise. At a boundary the first runs along it.
+  /// Requires:  v is not isolated; at a crease inside a mesh `side`, a half-edge that leaves v, says in which sector.
+  /// Source:    left eigenvectors of the local subdivision matrix, derivations/loop_limits.md, catmark_limits.md.
+  [[nodiscard]] Stencils tangent_rows(const Topology& topology, VertexId v, const SchemeOptions& options,
+                                      const Sharpness& sharpness = {}, HalfEdge side = no_half_edge) const;
+
+  /// The new position of a smooth vertex, times `share`.
+  virtual void add_smooth_vertex(const Topology& topology, const SchemeOptions& options, VertexId v,
+                                 const Star& star, const Interval& share, RowBuilder& row) const = 0;
+  /// The new point of a smooth edge, times `share`; h has a twin.
+  virtual void add_smooth_edge(const Topology& topology, const SchemeOptions& options, HalfEdge h,
+                               const Interval& share, RowBuilder& row) const = 0;
+
+  /// Does a smooth vertex at rest, or a dart, have its limit in its star?
+  [[nodiscard]] virtual bool is_settled(const Topology& topology, const Star& star, bool dart) const = 0;
+  /// The limit of such a vertex.
+  virtual void add_smooth_limit(const Topology& topology, VertexId v, const Star& star,
+                                Stencils& out) const = 0;
+  /// Left eigenvectors of the subdominant eigenvalue: first Fourier modes.
+  virtual void add_smooth_tangents(const Topology& topology, const Star& star, Stencils& out) const = 0;
+
+  /// Left eigenvector across a crease with two faces or more in a sector.
+  struct AcrossCrease {
+    std::vector<double> inner;      ///< weights of the spokes inside
+    std::vector<double> diagonals;  ///< of the vertices diagonally across the faces; may be empty
+    double end;                     ///< of both spokes at the ends
+  };
+  [[nodiscard]] virtual AcrossCrease across_crease(std::size_t faces) const = 0;
+
+ protected:
+  using SchemeRules::SchemeRules;
+};
+
+}  // namespace snug

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <snug/scheme/bezier.h>
+#include <snug/scheme/corner_fan.h>
+#include <snug/scheme/limits.h>
+#include <snug/scheme/refine.h>
+
+namespace snug {
+
+/// Regular patches that fit_kernels.h knows by heart.
+enum class RegularKernel : std::uint8_t { none, box_spline, bicubic };
+
+/// What sets a scheme apart and is a plain value.
+struct SchemeFacts {
+  Scheme scheme;
+  const char* name;
+  std::span<const char* const> other_names{};  ///< those of USD and OpenSubdiv
+  /// Does a patch belong to a face, and do vertices stay vertices? Dual schemes: a patch belongs to a vertex.
+  bool primal = true;
+  /// Corners of an owner that is no polygon: 3, it is one patch; 4, two halves of a quad.
+  std::size_t corners = 4;
+  std::size_t regular_valence = 4;  ///< of vertices, of a dual scheme the size of faces
+  /// Least and largest valence of an interior vertex, and most faces around any other one.
+  std::size_t min_valence = 3, max_valence = 1000;
+  const char* wants_triangles = nullptr;  ///< What to tell who gives other faces; none: it takes them.
+  bool creases = true;                    ///< Does sharpness change the surface?
+  /// Does the surface of a face depend on that face alone?
+  bool local = false;
+  /// Are tables laid out by the rings of the corners (basis/layout.h)?
+  bool laid_by_rings = false;
+  RegularKernel kernel = RegularKernel::none;
+};
+
+/// All that snug knows of one scheme. Each has a file of its own, and no other file asks which scheme it is.
+/// Immutable; thread-safe.
+class SchemeRules : public SchemeFacts {
+ public:
+  SchemeRules(const SchemeRules&) = delete;
+  SchemeRules& operator=(const SchemeRules&) = delete;
+  virtual ~SchemeRules() = default;
+
+  [[nodiscard]] bool triangular() const { return corners == 3; }
+  /// What a patch belongs to, in a word.
+  [[nodiscard]] const char* owner() const { return primal ? "face" : "vertex"; }
+
+  /// Does it answer questions about the surface of a mesh with such a defect all the same? Not where a face names a vertex
+  /// twice: its patches have no corners that can be told apart.
+  [[nodiscard]] virtual bool answers(DefectKind kind) const;
+
+  /// One step of subdivision, see refine.h.
+  [[nodiscard]] virtual RefinedTopology refine(const Topology& topology, const SchemeOptions& options,
+                                               const Sharpness& sharpness,
+                                               const WorkMonitor& monitor) const = 0;
+  /// See limits.h.
+  virtual void add_limit_row(const Topology& topology, VertexId v, const SchemeOptions& options,
+                             const Sharpness& sharpness, Stencils& out) const = 0;
+
+  /// The faces around a patch whose corners have these fans, as a mesh: the order of its vertices is that of the control
+  /// points of the patch, and stands here alone. Its face 0 is the patch's own; of a dual scheme the first half-edge of each
+  /// face leaves the patch's vertex, 0.
+  [[nodiscard]] virtual Topology ring(std::span<const CornerFan> fans) const = 0;
+  /// Half-edges of the refined ring that the children of a patch begin at, or those of a polygon; see Kind::children().
+  [[nodiscard]] virtual std::vector<HalfEdge> child_starts(const Topology& ring,
+                                                           const Topology& refined) const;
+  /// Adds the limit of a patch's corner 0, 1 or 2, if it can be read off its ring at once, and returns whether it could.
+  [[nodiscard]] virtual bool add_corner_limit(const Topology& ring, std::size_t corner,
+                                              const SchemeOptions& options, const Sharpness& sharpness,
+                                              Stencils& out) const = 0;
+  /// Adds two rows that span the tangent plane there (limits.h).
+  virtual void add_corner_tangents(const Topology& ring, std::size_t corner, const SchemeOptions& options,
+                                   const Sharpness& sharpness, Stencils& out) const = 0;
+
+  /// Is the surface near a corner as on a regular lattice?
+  [[nodiscard]] virtual bool regular(const CornerFan& fan) const = 0;
+  /// A patch all of whose corners are regular, as polynomials.
+  [[nodiscard]] virtual BezierRows bezier(const Topology& ring, std::span<const CornerFan> fans) const = 0;
+  /// About the factor by which what surrounds an irregular corner, not sharp and no dart, shrinks a level.
+  [[nodiscard]] virtual double shrink_factor(const CornerFan& fan) const = 0;
+
+ protected:
+  explicit SchemeRules(const SchemeFacts& facts) : SchemeFacts(facts) {}
+};
+
+[[nodiscard]] const SchemeRules& rules_of(Scheme scheme);
+/// The rules of all schemes, in the order of Scheme.
+[[nodiscard]] std::span<const SchemeRules* const> all_schemes();
+/// The rules of the scheme with this name, its own or another one; none: there is no such scheme.
+[[nodiscard]] const SchemeRules* scheme_named(std::string_view name);
+
+/// SchemeRules::regular() where patches are halves of quads.
+[[nodiscard]] bool regular_among_quads(const CornerFan& fan);
+
+}  // namespace snug
