@@ -102,7 +102,8 @@ class Collector {
 
   // Rows of one piece; `covered` counts corners as the kind does.
   void collect(const Kind& kind, const DenseRows& net, unsigned depth, const CoveredEdges& covered) {
-    if (kind.polynomial() && depth > 0) {
+    // A split brings Bezier points nearer, but for a plane.
+    if (kind.polynomial() && (depth > 0 || kind.form().degree == 1)) {
       const PolynomialForm& form = kind.form();
       const std::size_t count = bezier_count(form.degree);
       for (std::size_t part = 0; part < form.parts; ++part) {

@@ -48,9 +48,8 @@ LimitPoint polynomial_point(const Patch& piece, const PieceParameter& parameter)
   const std::size_t count = bezier_count(form.degree), controls = piece.points.size();
   std::array<double, bezier_count(max_degree)> powers;
   const auto [w, u, v] = p.at;
-  form.degree == 4   ? monomials<4>(w, u, v, powers.data())
-  : form.degree == 6 ? monomials<6>(w, u, v, powers.data())
-                     : monomials<2>(w, u, v, powers.data());
+  with_degree(form.degree,
+              [&, w = w, u = u, v = v](auto degree) { monomials<degree>(w, u, v, powers.data()); });
   const double* row = form.weights.data() + part * (form.weights.size() / form.parts);
   Vector3 point;
   for (std::size_t c = 0; c < controls; c += 4) {

@@ -105,6 +105,10 @@ double Kind::outer_weight() const {
   std::call_once(outer_weight_made_, [&] {
     const std::size_t inner = inner_count();
     if (inner == 0 || crowded()) return;
+    if (inner == control_count_) {
+      outer_weight_ = 0;
+      return;
+    }
     std::vector<Vector3> values(control_count_, Vector3{1, 0, 0});
     std::fill_n(values.begin(), inner, Vector3{});
     outer_weight_ = std::min(1.0, largest_value(*this, values, 4) + 1e-9);

@@ -87,9 +87,8 @@ LimitPoint LimitEvaluator::evaluate(const Polynomial& polynomial, TriangleParame
       weights += bezier_count(polynomial.degree);
     }
   }
-  const std::array<double, 4> sum = polynomial.degree == 4   ? sum_of<4>(weights, u, v)
-                                    : polynomial.degree == 6 ? sum_of<6>(weights, u, v)
-                                                             : sum_of<2>(weights, u, v);
+  const std::array<double, 4> sum =
+      with_degree(polynomial.degree, [&](auto degree) { return sum_of<degree>(weights, u, v); });
   return {{sum[0], sum[1], sum[2]}, polynomial.error};
 }
 

@@ -179,13 +179,16 @@ void keep_only(std::vector<double>& sharpness, const Keeps& keeps) {
 // edges which do not touch them, at the far ends of their edges too.
 std::shared_ptr<const Neighbourhood> surroundings(const Topology& topology, HalfEdge start,
                                                   const SchemeOptions& options, const Sharpness& sharpness) {
-  const bool wide = is_wide(topology, start, options, sharpness);
+  const bool local = rules_of(options.scheme).local;
+  const bool wide = !local && is_wide(topology, start, options, sharpness);
   PartOfMesh part =
       part_of(topology, sharpness, options.boundary, faces_around(topology, start, options.scheme, wide));
   Sharpness& kept = part.sharpness;
   // The corners are the first vertices; fewer than the face has if it names one twice.
   std::size_t corners = 0;
-  for (const VertexId v : part.topology.face(FaceId(0))) corners = std::max(corners, v.index() + 1);
+  for (const VertexId v : part.topology.face(FaceId(0))) {
+    if (!local) corners = std::max(corners, v.index() + 1);
+  }
   keep_only(kept.vertices, [&](std::size_t v) { return v < corners; });
   std::vector<bool> near(part.names.size(), false);
   std::fill_n(near.begin(), corners, true);

@@ -31,7 +31,7 @@ inline constexpr std::size_t max_face_size = 1000;
 [[nodiscard]] Scheme natural_scheme(const ControlMesh& mesh);
 
 /// Throws InputError (refused) unless the limit surface of this mesh under these rules is one that snug
-/// answers questions about: no refusing defect (mesh/validate.h), Loop on triangles, valences in range. Non-manifold
+/// answers questions about: no refusing defect (mesh/validate.h), faces and valences that the scheme takes. Non-manifold
 /// edges and vertices and faces of inconsistent orientation are kept by Loop and Catmull-Clark, infinitely sharp, as
 /// OpenSubdiv has them; dual schemes refuse them. The message names elements and the next step.
 /// Returns:   the topology of the mesh.

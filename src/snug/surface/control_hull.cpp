@@ -39,7 +39,7 @@ void ControlHull::assign(const LimitSurface& surface, std::span<const PatchId> p
   }
   inner_count_ = points_.size();
   for (const VertexId corner : corners_) {
-    topology.for_each_fan(corner, [&](HalfEdge start) {
+    const auto add_ring = [&](HalfEdge start) {
       HalfEdge h = start;
       do {
         // The vertices of this face that the next one does not have: all but the last, where the fan goes on.
@@ -50,7 +50,8 @@ void ControlHull::assign(const LimitSurface& surface, std::span<const PatchId> p
         h = topology.twin(last);
         if (h == no_half_edge) ring_.push_back(add(topology.from(last)));
       } while (h != no_half_edge && h != start);
-    });
+    };
+    if (!surface.rules().local) topology.for_each_fan(corner, add_ring);
     ring_ends_.push_back(static_cast<std::uint32_t>(ring_.size()));
   }
   for (const Point3& p : points_) largest_ = std::max(largest_, max_abs(p - Point3{}));

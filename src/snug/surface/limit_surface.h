@@ -15,14 +15,15 @@
 
 namespace snug {
 
-/// A root patch of a surface. Loop: of face f it is number f.
+/// A root patch of a surface. Triangular schemes: of face f it is number f.
 using PatchId = Id<struct PatchTag>;
 
 /// The limit surface of a control mesh, in triangular patches. Immutable; may be read by many threads.
 ///
-/// A patch belongs to an owner: a face, or with a dual scheme a vertex. Loop: one a face. Catmull-Clark: two a quad with
-/// corners c0 to c3, part 0 from c0 by c1 to c2 and part 1 from c2 by c3 to c0; of another face with n corners 2 n after
-/// its first split: parts 2 k and 2 k + 1 those of the quad at corner k, from that corner and from the face's centre.
+/// A patch belongs to an owner: a face, or with a dual scheme a vertex. Triangular schemes, as Loop: one a face. Other primal
+/// ones, as Catmull-Clark: two a quad with corners c0 to c3, part 0 from c0 by c1 to c2 and part 1 from c2 by c3 to c0; of
+/// another face with n corners 2 n after its first split: parts 2 k and 2 k + 1 those of the quad at corner k, from that
+/// corner and from the face's centre.
 /// Dual schemes likewise, with the faces around the vertex, from topology().leaving() on, as corners.
 ///
 /// Inside, coordinates are scaled by a power of two so that the largest lies in [1, 2); `scale()` leads there
@@ -75,7 +76,7 @@ class LimitSurface {
   [[nodiscard]] bool has_patch(PatchId p) const { return kinds_[p.index()] != nullptr; }
   /// Requires:  has_patch(p).
   [[nodiscard]] const Kind& kind(PatchId p) const { return *kinds_[p.index()]; }
-  /// Which corner of the face its kind calls corner 0; Loop alone.
+  /// Which corner of the face its kind calls corner 0; 0 unless the scheme is triangular.
   /// Requires:  has_patch(p).
   [[nodiscard]] std::uint8_t first(PatchId p) const {
     return firsts_.empty() ? std::uint8_t{0} : firsts_[p.index()];
@@ -116,8 +117,8 @@ class LimitSurface {
   std::vector<Point3> scaled_;
   std::vector<const Kind*> kinds_;
   std::vector<std::uint8_t> firsts_;
-  std::vector<std::uint32_t> begins_;  // first patch of each owner and the end; empty for Loop
-  std::vector<std::uint32_t> owners_;  // of each patch; empty for Loop
+  std::vector<std::uint32_t> begins_;  // first patch of each owner and the end; empty for triangles
+  std::vector<std::uint32_t> owners_;  // of each patch; empty for triangles
   std::vector<const Kind*> polygons_;  // of each owner; empty where there are none
 };
 
