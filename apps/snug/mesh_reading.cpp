@@ -103,17 +103,19 @@ std::string how_far(std::optional<double> apart, const LimitSurface& surface) {
 
 void note_smooth_facets(const std::string& path, const CommonOptions& options, const std::string& far) {
   const Notes note = notes_for(options);
-  if (!note || !options.sharp.empty() || !is_stl(path)) return;
+  const SchemeRules* const rules = scheme_named(options.scheme);
+  if (!note || !options.sharp.empty() || !is_stl(path) || (rules && rules->local)) return;
   note(path +
        ": the facets are taken for a control mesh, whose limit surface is smooth and away from them, " + far +
-       "; --sharp auto keeps edges and flat faces of a part from CAD");
+       "; --sharp auto keeps edges and flat faces of a part from CAD, --scheme flat takes the triangles as "
+       "they are");
 }
 
 void note_distance_to_faces(const LimitSurface& surface, const std::string& path,
                             const CommonOptions& options, std::optional<double> known) {
   const Notes note = notes_for(options);
   const bool sharp = !options.sharp.empty();
-  if (!note || (!sharp && !is_stl(path))) return;
+  if (!note || surface.rules().local || (!sharp && !is_stl(path))) return;
   constexpr std::size_t most_faces = 200'000;  // half a second
   if (!known && surface.face_count() > most_faces) {
     note_smooth_facets(path, options, ask_info);

@@ -39,7 +39,8 @@ Sdc::Options options_of(const Rules& rules) {
   return options;
 }
 
-std::unique_ptr<Far::TopologyRefiner> refiner_of(const TaggedMesh& mesh, const Rules& rules) {
+std::unique_ptr<Far::TopologyRefiner> refiner_of(const TaggedMesh& mesh, const Rules& rules,
+                                                 bool bilinear = false) {
   std::vector<int> sizes, indices, pairs, corners, holes;
   std::vector<float> edge_weights, corner_weights;
   for (const auto& polygon : mesh.polygons) {
@@ -71,7 +72,9 @@ std::unique_ptr<Far::TopologyRefiner> refiner_of(const TaggedMesh& mesh, const R
   description.holeIndices = holes.data();
   Far::SetWarningCallback([](const char*) {});  // tags for no edge are passed over
   using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-  const auto scheme = rules.scheme == PrimalScheme::loop ? Sdc::SCHEME_LOOP : Sdc::SCHEME_CATMARK;
+  const auto scheme = bilinear                             ? Sdc::SCHEME_BILINEAR
+                      : rules.scheme == PrimalScheme::loop ? Sdc::SCHEME_LOOP
+                                                           : Sdc::SCHEME_CATMARK;
   return std::unique_ptr<Far::TopologyRefiner>(
       Factory::Create(description, Factory::Options(scheme, options_of(rules))));
 }
@@ -216,9 +219,9 @@ Compared compare_with_opensubdiv(TaggedMesh mesh, const Rules& rules, int levels
   return compared;
 }
 
-OpenSubdivMesh refine_with_opensubdiv(const TaggedMesh& mesh, const Rules& rules, int levels) {
+OpenSubdivMesh refine_with_opensubdiv(const TaggedMesh& mesh, const Rules& rules, int levels, bool bilinear) {
   OpenSubdivMesh result;
-  const auto refiner = refiner_of(mesh, rules);
+  const auto refiner = refiner_of(mesh, rules, bilinear);
   if (!refiner) return result;
   result.accepted = true;
   Far::TopologyRefiner::UniformOptions uniform(levels);

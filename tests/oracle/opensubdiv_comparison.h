@@ -36,6 +36,8 @@ struct OpenSubdivMesh {
   std::vector<std::vector<Corner>> faces;
   std::vector<bool> holes;
 };
-[[nodiscard]] OpenSubdivMesh refine_with_opensubdiv(const TaggedMesh& mesh, const Rules& rules, int levels);
+/// With `bilinear` under OpenSubdiv's third scheme, whatever rules.scheme says.
+[[nodiscard]] OpenSubdivMesh refine_with_opensubdiv(const TaggedMesh& mesh, const Rules& rules, int levels,
+                                                    bool bilinear = false);
 
 }  // namespace oracle

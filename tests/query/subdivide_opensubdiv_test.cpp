@@ -38,15 +38,18 @@ double distance(const Point3& a, const oracle::Point& b) {
   return std::max({std::fabs(a.x - b[0]), std::fabs(a.y - b[1]), std::fabs(a.z - b[2])});
 }
 
-Differences compare(const oracle::TaggedMesh& mesh, const oracle::Rules& rules, unsigned level) {
+Differences compare(const oracle::TaggedMesh& mesh, const oracle::Rules& rules, unsigned level,
+                    bool bilinear = false) {
   Differences result;
-  const OpenSubdivMesh theirs = oracle::refine_with_opensubdiv(mesh, rules, static_cast<int>(level));
+  const OpenSubdivMesh theirs =
+      oracle::refine_with_opensubdiv(mesh, rules, static_cast<int>(level), bilinear);
   if (!theirs.accepted) {
     result.same_faces = false;
     return result;
   }
   const ControlMesh control = testing::control_mesh(mesh, rules);
-  const SchemeOptions options = testing::options_of(rules);
+  SchemeOptions options = testing::options_of(rules);
+  if (bilinear) options.scheme = Scheme::bilinear;
   const ControlMesh refined = subdivide(control, options, level, false);
   const ControlMesh limit = subdivide(control, options, level, true);
   const double size = largest_coordinate(mesh);
@@ -104,6 +107,22 @@ bool sharpness_fits_float(const oracle::TaggedMesh& mesh) {
 
 constexpr oracle::Boundary all_boundaries[] = {oracle::Boundary::edge_and_corner, oracle::Boundary::edge_only,
                                                oracle::Boundary::none};
+
+TEST(subdivide, agrees_with_opensubdiv_s_bilinear_scheme) {
+  for (const auto& [name, shape] : testing::plain_shapes()) {
+    for (const oracle::Boundary boundary : {oracle::Boundary::edge_and_corner, oracle::Boundary::edge_only}) {
+      oracle::TaggedMesh mesh = shape;
+      const auto& first = mesh.polygons[0];
+      mesh.creases = {{first[0], first[1], 2.5}, {first[1], first[2], 10}};  // of no effect
+      oracle::Rules rules;
+      rules.boundary = boundary;
+      const Differences found = compare(mesh, rules, 2, true);
+      EXPECT_TRUE(found.same_faces) << name;
+      EXPECT_LE(std::max({found.refined, found.limit, found.dart, found.valence_two, found.alive}), 1e-12)
+          << name;
+    }
+  }
+}
 
 TEST(subdivide, agrees_with_opensubdiv_on_tagged_shapes) {
   for (const oracle::PrimalScheme scheme :

@@ -8,9 +8,12 @@ const SchemeRules& loop_rules();
 const SchemeRules& catmark_rules();
 const SchemeRules& doo_sabin_rules();
 const SchemeRules& midedge_rules();
+const SchemeRules& bilinear_rules();
+const SchemeRules& flat_rules();
 
 std::span<const SchemeRules* const> all_schemes() {
-  static const std::array all{&loop_rules(), &catmark_rules(), &doo_sabin_rules(), &midedge_rules()};
+  static const std::array all{&loop_rules(),    &catmark_rules(),  &doo_sabin_rules(),
+                              &midedge_rules(), &bilinear_rules(), &flat_rules()};
   return all;
 }
 

@@ -8,7 +8,7 @@
 
 namespace snug {
 
-enum class Scheme : std::uint8_t { loop, catmark, doo_sabin, midedge };
+enum class Scheme : std::uint8_t { loop, catmark, doo_sabin, midedge, bilinear, flat };
 
 [[nodiscard]] const char* name_of(Scheme scheme);
 

@@ -1,0 +1,304 @@
+// Meshes that are taken as they are: triangles of the flat scheme against exact arithmetic on whole numbers, bilinear quads
+// against sampling and against Catmull-Clark with everything infinitely sharp.
+
+#include <gtest/gtest.h>
+#include <oracle/polyhedron_twin.h>
+#include <snug/base/error.h>
+#include <snug/query/closest.h>
+#include <snug/query/collide.h>
+#include <snug/query/distance.h>
+#include <snug/query/face_distance.h>
+#include <snug/search/piece_cache.h>
+#include <snug/surface/evaluate.h>
+#include <testing/exact_triangles.h>
+#include <testing/tagged.h>
+
+#include <iostream>
+#include <random>
+
+namespace snug {
+namespace {
+
+using testing::ExactPoint;
+using testing::ExactTriangle;
+
+ExactPoint random_point(std::mt19937_64& random, std::int64_t extent = 60) {
+  std::uniform_int_distribution<std::int64_t> coordinate(-extent, extent);
+  return {coordinate(random), coordinate(random), coordinate(random)};
+}
+
+// Triangles with area: each with corners of its own, or over a few points that many of them share.
+struct Soup {
+  std::vector<ExactPoint> points;
+  std::vector<std::array<std::uint32_t, 3>> faces;
+
+  Soup(std::mt19937_64& random, std::size_t count, bool shared, std::int64_t extent = 60) {
+    const std::size_t all = shared ? 4 + count / 3 : 3 * count;
+    while (points.size() < all) points.push_back(random_point(random, extent));
+    for (std::uint32_t f = 0; f < count; ++f) {
+      const auto corner = [&](std::uint32_t k) {
+        return shared ? static_cast<std::uint32_t>(random() % all) : 3 * f + k;
+      };
+      const std::array face{corner(0), corner(1), corner(2)};
+      if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) continue;
+      faces.push_back(face);
+      if (!testing::has_area(triangle(faces.size() - 1))) faces.pop_back();
+    }
+  }
+  [[nodiscard]] ExactTriangle triangle(std::size_t f, const ExactPoint& moved = {}) const {
+    ExactTriangle t;
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t x = 0; x < 3; ++x) t[k][x] = points[faces[f][k]][x] + moved[x];
+    }
+    return t;
+  }
+  [[nodiscard]] ControlMesh mesh() const {
+    ControlMesh mesh;
+    for (const auto& [x, y, z] : points) {
+      mesh.points.push_back({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+    }
+    for (const auto& [a, b, c] : faces) mesh.add_face(std::array{VertexId(a), VertexId(b), VertexId(c)});
+    return mesh;
+  }
+};
+
+// What all pairs of triangles have in common.
+struct Truth {
+  bool meet = false, pierce = false;
+  long double distance = INFINITY;
+};
+Truth truth_of(const Soup& a, const Soup& b, const ExactPoint& moved) {
+  Truth truth;
+  for (std::size_t i = 0; i < a.faces.size(); ++i) {
+    for (std::size_t j = 0; j < b.faces.size(); ++j) {
+      const ExactTriangle s = a.triangle(i), t = b.triangle(j, moved);
+      truth.pierce = truth.pierce || testing::pierce(s, t);
+      truth.meet = truth.meet || testing::have_common_point(s, t);
+      if (!truth.meet) truth.distance = std::min(truth.distance, testing::distance(s, t));
+    }
+  }
+  return truth;
+}
+
+struct Body {
+  LimitSurface surface;
+  SurfaceBvh model;
+  SurfaceWorkspace scratch;
+  Body(ControlMesh mesh, const SchemeOptions& options)
+      : surface(std::move(mesh), options, std::make_shared<BoundsCache>(), 1),
+        model(surface),
+        scratch(model) {}
+  [[nodiscard]] PlacedBvh at(const Motion& pose = {}) { return {model, scratch, pose}; }
+};
+
+Motion moved_by(const ExactPoint& by) {
+  return Motion::from_translation(
+      {static_cast<double>(by[0]), static_cast<double>(by[1]), static_cast<double>(by[2])});
+}
+
+TEST(flat, distances_and_verdicts_are_those_of_the_triangles) {
+  std::mt19937_64 random(12);
+  std::size_t met = 0, pierced = 0, proved = 0, apart = 0;
+  for (int trial = 0; trial < 4000 && !HasFailure(); ++trial) {
+    const auto some = [&] { return std::size_t{1} + random() % (trial % 3 == 0 ? 1 : 9); };
+    const std::int64_t extent = trial % 2 == 0 ? 60 : 3;  // on a small lattice many touch
+    const Soup a(random, some(), trial % 8 >= 4, extent), b(random, some(), trial % 16 >= 12, extent);
+    if (a.faces.empty() || b.faces.empty()) continue;
+    const ExactPoint by = trial % 5 == 0 ? ExactPoint{} : random_point(random, extent);
+    const Truth truth = truth_of(a, b, by);
+    Body one(a.mesh(), {Scheme::flat}), other(b.mesh(), {Scheme::flat});
+    CollideOptions strict, tolerant;
+    tolerant.tolerance = 1e-9;
+    const Verdict verdict = collide(one.at(), other.at(moved_by(by)), strict).verdict;
+    const Verdict near = collide(one.at(), other.at(moved_by(by)), tolerant).verdict;
+    DistanceOptions precision;
+    precision.relative = 1e-9;
+    precision.absolute = 1e-9;
+    const Distance found = distance(one.at(), other.at(moved_by(by)), precision);
+    EXPECT_TRUE(found.reached) << trial;
+    if (truth.meet) {
+      ++met;
+      pierced += truth.pierce;
+      proved += truth.pierce && verdict == Verdict::intersecting;
+      EXPECT_NE(verdict, Verdict::separated) << trial;
+      EXPECT_TRUE(near == Verdict::within || near == Verdict::intersecting) << trial << name_of(near);
+      EXPECT_EQ(found.lower, 0) << trial;
+      EXPECT_LE(found.upper, 1e-9) << trial;
+    } else {
+      ++apart;
+      EXPECT_EQ(verdict, Verdict::separated) << trial << ' ' << truth.distance;
+      EXPECT_EQ(near, Verdict::separated) << trial;
+      const long double slack = 1e-17L * truth.distance;
+      EXPECT_LE(found.lower, truth.distance + slack) << trial;
+      EXPECT_GE(found.upper, truth.distance - slack) << trial;
+    }
+  }
+  std::cout << "  " << apart << " apart, " << met << " meet, " << pierced
+            << " with an edge through a triangle, " << proved << " of these proved\n";
+  EXPECT_GT(apart, 500u);
+  EXPECT_GT(met - pierced, 50u);
+  EXPECT_GT(20 * proved, 19 * pierced);
+}
+
+TEST(flat, closest_points_are_those_of_the_triangles) {
+  std::mt19937_64 random(13);
+  for (int trial = 0; trial < 300 && !HasFailure(); ++trial) {
+    const Soup soup(random, 1 + random() % 12, trial % 2 == 1);
+    if (soup.faces.empty()) continue;
+    std::vector<oracle::Point> points;
+    for (const ExactPoint& p : soup.points) {
+      points.push_back({static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])});
+    }
+    std::vector<oracle::Triangle> triangles;
+    for (const auto& [a, b, c] : soup.faces) triangles.push_back({a, b, c});
+    const oracle::PolyhedronTwin twin(points, triangles);
+    Body body(soup.mesh(), {Scheme::flat});
+    for (int k = 0; k < 20; ++k) {
+      const ExactPoint at = random_point(random);
+      const Point3 q{static_cast<double>(at[0]), static_cast<double>(at[1]), static_cast<double>(at[2])};
+      ClosestOptions options;
+      options.relative = options.absolute = 1e-9;
+      const ClosestPoint found = closest_point(body.scratch, q, options);
+      const mpq_class square = twin.squared_distance({q.x, q.y, q.z});
+      EXPECT_TRUE(found.reached);
+      EXPECT_LE(mpq_class(found.lower) * mpq_class(found.lower), square) << trial;
+      EXPECT_GE(mpq_class(found.upper) * mpq_class(found.upper), square) << trial;
+    }
+  }
+}
+
+// Rings, boundaries and sharpness are nothing to it.
+TEST(flat, has_one_kind_whose_bounds_are_rounding_alone) {
+  for (auto [name, shape] : testing::plain_shapes()) {
+    oracle::TaggedMesh mesh = oracle::meshes::triangulated(shape);
+    const auto& first = mesh.polygons[0];
+    mesh.creases = {{first[0], first[1], 2.5}, {first[1], first[2], 10}};
+    mesh.corners = {{first[2], 1.5}};
+    const LimitSurface surface(testing::control_mesh(mesh), {Scheme::flat}, std::make_shared<BoundsCache>());
+    EXPECT_EQ(surface.kind_count(), 1u) << name;
+    EXPECT_EQ(limit_to_faces(surface), 0.0) << name;
+    PieceCache pieces(surface);
+    for (std::size_t f = 0; f < surface.patch_count(); ++f) {
+      const PieceId id = pieces.root(PatchId(f));
+      EXPECT_LE(pieces[id].offset.radius, 0x1p-40) << name;
+      EXPECT_LE(pieces.heights(id).upper - pieces.heights(id).lower, 0x1p-40) << name;
+      EXPECT_FALSE(pieces.can_split(id)) << name;
+      const auto face = surface.topology().face(FaceId(f));
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_LE(distance(surface.scale().inverse().apply(pieces[id].offset.base[k]),
+                           surface.mesh().points[face[k].index()]),
+                  1e-14);
+      }
+    }
+  }
+}
+
+TEST(flat, refuses_other_faces_and_says_which_scheme_takes_them) {
+  try {
+    const LimitSurface surface(testing::control_mesh(oracle::meshes::cube()), {Scheme::flat},
+                               std::make_shared<BoundsCache>());
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "face 0 has 4 vertices (6 faces are not triangles); the flat scheme has triangles as they are: "
+        "triangulate the mesh, or take the bilinear scheme");
+  }
+}
+
+// In exact arithmetic: corners are whole numbers, parameters halves of halves.
+TEST(bilinear, points_are_those_of_the_quads) {
+  std::mt19937_64 random(14);
+  for (const std::size_t size : {4, 3, 5, 6, 7}) {
+    std::vector<ExactPoint> corners;
+    ControlMesh mesh;
+    std::vector<VertexId> face;
+    for (std::size_t k = 0; k < size; ++k) {
+      const auto [x, y, z] = corners.emplace_back(random_point(random));
+      face.emplace_back(k);
+      mesh.points.push_back({static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)});
+    }
+    mesh.add_face(face);
+    const LimitSurface surface(mesh, {Scheme::bilinear}, std::make_shared<BoundsCache>());
+    EXPECT_EQ(surface.kind_count(), 1u);
+    for (std::uint32_t corner = 0; corner < (size == 4 ? 1 : size); ++corner) {
+      // The quad at this corner, by its vertices' coordinates times 2 size.
+      std::array<std::array<mpq_class, 3>, 4> quad;
+      for (std::size_t x = 0; x < 3; ++x) {
+        const auto at = [&](std::size_t k) { return mpq_class(corners[(corner + k) % size][x]); };
+        if (size == 4) {
+          for (std::size_t k = 0; k < 4; ++k) quad[k][x] = at(k);
+          continue;
+        }
+        mpq_class sum = 0;
+        for (std::size_t k = 0; k < size; ++k) sum += at(k);
+        quad[0][x] = at(0);
+        quad[1][x] = (at(0) + at(1)) / 2;
+        quad[2][x] = sum / mpq_class(size);
+        quad[3][x] = (at(0) + at(size - 1)) / 2;
+      }
+      for (int i = 0; i < 40; ++i) {
+        const double u = static_cast<double>(random() % 65) / 64, v = static_cast<double>(random() % 65) / 64;
+        const SurfacePoint point = evaluate(surface, {0, corner, u, v});
+        const mpq_class exact_u(u), exact_v(v);
+        for (std::size_t x = 0; x < 3; ++x) {
+          const mpq_class below = quad[0][x] + exact_u * (quad[1][x] - quad[0][x]),
+                          above = quad[3][x] + exact_u * (quad[2][x] - quad[3][x]),
+                          exact = below + exact_v * (above - below);
+          const double off = std::fabs(mpq_class(exact - mpq_class(point.position[x])).get_d());
+          EXPECT_LE(off, point.error) << size << ' ' << corner << ' ' << u << ' ' << v;
+          EXPECT_LE(point.error, 1e-11);
+          const mpq_class along =
+              (quad[1][x] - quad[0][x]) * (1 - exact_v) + (quad[2][x] - quad[3][x]) * exact_v;
+          EXPECT_NEAR(along.get_d(), point.tangents[0][x], 1e-10);
+        }
+      }
+    }
+  }
+}
+
+// A quad with nothing but sharp corners and edges has the bilinear patch as its limit under Catmull-Clark, too.
+TEST(bilinear, distances_are_those_of_catmark_with_sharp_edges) {
+  std::mt19937_64 random(15);
+  std::size_t meet = 0;
+  for (int trial = 0; trial < 150 && !HasFailure(); ++trial) {
+    ControlMesh bilinear[2], sharp[2];
+    for (std::size_t s = 0; s < 2; ++s) {
+      for (std::uint32_t k = 0; k < 8; ++k) {
+        const auto [x, y, z] = random_point(random);
+        bilinear[s].points.push_back({static_cast<double>(x) + (s == 0 ? 0 : trial % 90),
+                                      static_cast<double>(y), static_cast<double>(z)});
+      }
+      for (const std::uint32_t f : {0u, 4u}) {
+        bilinear[s].add_face(std::array{VertexId(f), VertexId(f + 1), VertexId(f + 2), VertexId(f + 3)});
+      }
+      sharp[s] = bilinear[s];
+      for (std::uint32_t k = 0; k < 8; ++k) {
+        sharp[s].tags.creases.push_back({VertexId(k), VertexId(k / 4 * 4 + (k + 1) % 4), 10});
+        sharp[s].tags.corners.push_back({VertexId(k), 10});
+      }
+    }
+    DistanceOptions precision;
+    precision.absolute = 1e-6;
+    Distance found[2];
+    Verdict verdicts[2];
+    for (const bool use_sharp : {false, true}) {
+      const SchemeOptions options{use_sharp ? Scheme::catmark : Scheme::bilinear};
+      Body a(use_sharp ? sharp[0] : bilinear[0], options), b(use_sharp ? sharp[1] : bilinear[1], options);
+      found[use_sharp] = distance(a.at(), b.at(), precision);
+      CollideOptions wanted;
+      wanted.tolerance = 1e-6;
+      verdicts[use_sharp] = collide(a.at(), b.at(), wanted).verdict;
+    }
+    const bool apart = verdicts[0] == Verdict::separated;
+    meet += !apart;
+    EXPECT_EQ(apart, verdicts[1] == Verdict::separated) << trial;
+    EXPECT_LE(found[0].lower, found[1].upper * (1 + 1e-12)) << trial;
+    EXPECT_LE(found[1].lower, found[0].upper * (1 + 1e-12)) << trial;
+  }
+  EXPECT_GT(meet, 20u);
+  EXPECT_LT(meet, 130u);
+}
+
+}  // namespace
+}  // namespace snug
