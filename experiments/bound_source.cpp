@@ -6,7 +6,6 @@
 #include <snug/base/contract.h>
 #include <snug/bounds/table_triangle.h>
 #include <snug/patch/evaluate.h>
-#include <snug/scheme/loop_masks.h>
 #include <snug/scheme/refine.h>
 
 namespace snug {
@@ -40,7 +39,7 @@ void relax(const Kind& kind, std::size_t centre, std::vector<LayoutPoint>& layou
   for (HalfEdge h = 0; h < topology.half_edge_count(); ++h) {
     if (topology.from(h) == VertexId(centre)) fixed[topology.to(h).index()] = true;
   }
-  const double grow = 1 / loop::subdominant(kind.corner(centre).faces());
+  const double grow = 1 / kind.rules().shrink_factor(kind.corner(centre));
   const LayoutPoint origin = layout[centre];
   for (int step = 0; step < 200; ++step) {
     const std::vector<LayoutPoint> old = layout;

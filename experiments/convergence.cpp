@@ -13,9 +13,6 @@
 #include <snug/bounds/enclosure.h>
 #include <snug/bounds/table_triangle.h>
 #include <snug/patch/evaluate.h>
-#include <snug/scheme/catmark_masks.h>
-#include <snug/scheme/dual_masks.h>
-#include <snug/scheme/loop_masks.h>
 
 namespace snug {
 namespace {
@@ -69,13 +66,18 @@ PieceThickness by_table(const BoundTable& table, const Patch& patch, const Vecto
   return {{offset.radius, thickness(triangle.interval), upper - lower}, offset.rounding};
 }
 
+// Of the tangent plane inside the mesh.
+double subdominant_of(Scheme scheme, std::size_t n) {
+  return rules_of(scheme).shrink_factor({0, static_cast<std::uint16_t>(n - 1)});
+}
+
 CornerEigenvalues catmark_eigenvalues(std::size_t n) {
   // The Fourier block of index 0 has two eigenvalues beside 1, of sum 3/4 - 7/(4n) and product (1 - 3/n)/16;
   // the larger of index 2 is found as that of index 1.
   const auto valence = static_cast<double>(n);
   const double sum = 0.75 - 1.75 / valence, product = (1 - 3 / valence) / 16;
   const double symmetric = (sum + std::sqrt(sum * sum - 4 * product)) / 2;
-  const double subdominant = catmark::subdominant(n);
+  const double subdominant = subdominant_of(Scheme::catmark, n);
   if (n == 3) return {subdominant, subdominant, symmetric};
   const double c = std::cos(4 * std::numbers::pi / valence);
   return {subdominant, subdominant, std::max(symmetric, (5 + c + std::sqrt((1 + c) * (9 + c))) / 16)};
@@ -84,7 +86,7 @@ CornerEigenvalues catmark_eigenvalues(std::size_t n) {
 CornerEigenvalues midedge_eigenvalues(std::size_t n) {
   // 1/4 comes with the next ring of quads.
   const double c = n == 3 ? -1 : std::cos(4 * std::numbers::pi / static_cast<double>(n));
-  const double subdominant = dual::midedge_subdominant(n);
+  const double subdominant = subdominant_of(Scheme::midedge, n);
   return {subdominant, subdominant, std::max(0.25, 0.5 + 0.5 * c)};
 }
 
@@ -140,10 +142,9 @@ PatchId first_patch(const LimitSurface& surface) { return PatchId(surface.patche
 CornerEigenvalues corner_eigenvalues(std::size_t n, Scheme scheme) {
   require_value(n >= 3, "eigenvalues: a valence is at least 3");
   if (scheme == Scheme::catmark) return catmark_eigenvalues(n);
-  if (scheme == Scheme::doo_sabin)
-    return {dual::doo_sabin_subdominant(n), dual::doo_sabin_subdominant(n), 0.25};
+  if (scheme == Scheme::doo_sabin) return {subdominant_of(scheme, n), subdominant_of(scheme, n), 0.25};
   if (scheme == Scheme::midedge) return midedge_eigenvalues(n);
-  const double subdominant = loop::subdominant(n);
+  const double subdominant = subdominant_of(scheme, n);
   if (n == 3) return {subdominant, subdominant, 0.125};  // the Fourier block of index 2 is that of index 1
   // cos 2x = 2 cos(x)^2 - 1
   const double c = 4 * subdominant - 1.5;

@@ -121,8 +121,9 @@ RateOptions rate_options(const RatesOptions& options) {
   wanted.threads = options.threads;
   if (const SchemeRules* rules = scheme_named(options.of)) wanted.scheme = rules->scheme;
   if (rules_of(wanted.scheme).local) {
-    throw UsageError("rates: " + options.of +
-                     " has no extraordinary corners: each face has a surface of its own; give another scheme");
+    throw UsageError(
+        "rates: " + options.of +
+        " has no extraordinary corners: each face has a surface of its own; give another scheme");
   }
   for (const NetCentre centre : all_net_centres) {
     if (options.at == name_of(centre)) wanted.centre = centre;

@@ -94,11 +94,18 @@ TEST(sharp, makes_boxes_of_facets_what_they_are) {
   EXPECT_EQ(verdict({}, "35"), "separated");
   EXPECT_EQ(verdict({"--sharp", "auto"}, "35"), "intersecting");
   EXPECT_EQ(verdict({"--sharp", "45.5"}, "41"), "separated");
-  const Outcome apart = run_snug({"distance", box, box, "--sharp", "auto", "--precision", "1e-9", "--json",
-                                  "--quiet", "--place-b", "1 0 0 41 0 1 0 0 0 0 1 0"});
-  const nlohmann::json distance = nlohmann::json::parse(apart.out)["distance"];
-  EXPECT_NEAR(distance[0].get<double>(), 1, 1e-9);
-  EXPECT_NEAR(distance[1].get<double>(), 1, 1e-9);
+  for (const char* scheme : {"flat", "bilinear"}) {
+    EXPECT_EQ(verdict({"--scheme", scheme}, "35"), "intersecting");
+    EXPECT_EQ(verdict({"--scheme", scheme}, "41"), "separated");
+  }
+  for (const std::vector<std::string>& options :
+       std::vector<std::vector<std::string>>{{"--sharp", "auto"}, {"--scheme", "flat"}}) {
+    const Outcome apart = run_snug({"distance", box, box, options[0], options[1], "--precision", "1e-9",
+                                    "--json", "--quiet", "--place-b", "1 0 0 41 0 1 0 0 0 0 1 0"});
+    const nlohmann::json distance = nlohmann::json::parse(apart.out)["distance"];
+    EXPECT_NEAR(distance[0].get<double>(), 1, 1e-9);
+    EXPECT_NEAR(distance[1].get<double>(), 1, 1e-9);
+  }
 }
 
 TEST(sharp, is_named_by_a_note_where_an_stl_file_is_read_without_it) {
@@ -113,8 +120,12 @@ TEST(sharp, is_named_by_a_note_where_an_stl_file_is_read_without_it) {
     EXPECT_NE(plain.err.find("--sharp auto"), std::string::npos) << command << plain.err;
     arguments.emplace_back("--quiet");
     EXPECT_EQ(run_snug(arguments).err, "") << command;
-    arguments.back() = "--sharp";
-    arguments.emplace_back("auto");
+    arguments.back() = "--scheme";
+    arguments.emplace_back("flat");
+    EXPECT_NE(plain.err.find("--scheme flat"), std::string::npos) << command << plain.err;
+    EXPECT_EQ(run_snug(arguments).err, "") << command;
+    arguments[arguments.size() - 2] = "--sharp";
+    arguments.back() = "auto";
     const Outcome sharp = run_snug(arguments);
     EXPECT_EQ(sharp.status, 0) << sharp.err;
     EXPECT_NE(sharp.err.find("18 creases"), std::string::npos) << command << sharp.err;
@@ -135,6 +146,7 @@ TEST(sharp, shows_in_info_how_far_the_limit_surface_is_from_the_faces) {
   };
   EXPECT_NEAR(apart({}).get<double>(), 13.9236, 1e-3);
   EXPECT_EQ(apart({"--sharp", "auto"}).get<double>(), 0);
+  EXPECT_EQ(apart({"--scheme", "flat"}).get<double>(), 0);
   EXPECT_TRUE(apart({"--scheme", "doo-sabin"}).is_null());
 }
 

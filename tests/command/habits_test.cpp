@@ -70,7 +70,9 @@ TEST(schemes, have_the_names_of_usd_and_opensubdiv_too) {
                                                         {"SCHEME_LOOP", "loop"},
                                                         {"doosabin", "doo-sabin"},
                                                         {"DooSabin", "doo-sabin"},
-                                                        {"mid-edge", "midedge"}}) {
+                                                        {"mid-edge", "midedge"},
+                                                        {"SCHEME_BILINEAR", "bilinear"},
+                                                        {"none", "flat"}}) {
     EXPECT_EQ(answer({"info", star, "--scheme", name})["scheme"], scheme) << name;
     const auto pair = answer({"collide", star, star, "--place-b", beside, "--scheme-b", name});
     EXPECT_EQ(pair["scheme"], nlohmann::json({"loop", scheme})) << name;

@@ -27,9 +27,9 @@ struct Neighbourhood {
 /// Names a kind: equal keys, equal rows, matrices and bounds. All that a limit patch depends on, but for its control
 /// points.
 ///
-/// Every patch is a triangle. Triangular schemes: the face, its corners turned so that the key is the least of the three it could be;
-/// reflections are different kinds. Other schemes: half a quad, from its corner 0 by 1 to 2; `corners` are those of the
-/// quad. Dual schemes: the quad that has the faces around a vertex of valence 4 as corners.
+/// Every patch is a triangle. Triangular schemes: the face, its corners turned so that the key is the least of the
+/// three it could be; reflections are different kinds. Other schemes: half a quad, from its corner 0 by 1 to 2;
+/// `corners` are those of the quad. Dual schemes: the quad that has the faces around a vertex of valence 4 as corners.
 ///
 /// Where fans do not say everything, `around` does, and `corners` say what the corners will be when all that decays has
 /// decayed. A `polygon` is a whole face of Catmull-Clark that is no quad, or a vertex of a dual scheme of another valence

@@ -3,12 +3,10 @@
 #include <cmath>
 #include <numbers>
 
-#include <snug/base/contract.h>
-#include <snug/scheme/catmark_masks.h>
 #include <snug/scheme/creased.h>
 
 // Catmull-Clark: faces of any size, quads after a step, bicubic B-splines. [CatmullClark78]
-namespace snug::catmark {
+namespace snug {
 namespace {
 
 // p / q, exactly where q is a power of two.
@@ -17,35 +15,35 @@ Interval ratio(std::size_t p, std::size_t q) {
   return (q & (q - 1)) == 0 ? Interval(a / b) : Interval(a) / Interval(b);
 }
 
-}  // namespace
+// Weights of a vertex, of each vertex at the far end of one of its edges, and of each diagonally across one of its quads, or of
+// each face's centre. They sum to 1.
+struct StarMask {
+  Interval centre, edge, face;
+};
 
+// New position of an interior vertex of valence n among quads.
 StarMask vertex_mask(std::size_t n) {
-  SNUG_EXPECT(n >= 2);
   return {ratio(4 * n - 7, 4 * n), ratio(3, 2 * n * n), ratio(1, 4 * n * n)};
 }
 
-CentreMask vertex_centre_mask(std::size_t n) {
-  SNUG_EXPECT(n >= 2);
-  return {ratio(n - 2, n), ratio(1, n * n), ratio(1, n * n)};
-}
+// The same by face centres, for faces of any size.
+StarMask vertex_centre_mask(std::size_t n) { return {ratio(n - 2, n), ratio(1, n * n), ratio(1, n * n)}; }
 
-StarMask limit_mask(std::size_t n) {
-  SNUG_EXPECT(n >= 2);
-  return {ratio(n, n + 5), ratio(4, n * (n + 5)), ratio(1, n * (n + 5))};
-}
+// Limit position of an interior vertex among quads. [HalsteadKassDeRose93]
+StarMask limit_mask(std::size_t n) { return {ratio(n, n + 5), ratio(4, n * (n + 5)), ratio(1, n * (n + 5))}; }
 
+// New point of an interior edge between quads: its ends, and the four vertices beyond.
+constexpr double edge_end = 0.375, edge_wing = 0.0625;
+// By face centres: a quarter each; 0.470 for the centre of a triangle where these are to be smooth.
+constexpr double edge_face = 0.25;
 Interval smooth_triangle_face() { return Interval(47) / Interval(100); }
 
+// Subdominant eigenvalue at an interior vertex.
 double subdominant(std::size_t n) {
   const double c = cos_of_turn(1, static_cast<unsigned>(n)).middle();
   const double h = cos_of_turn(1, static_cast<unsigned>(2 * n)).middle();
   return (5 + c + h * std::sqrt(2 * (9 + c))) / 16;
 }
-
-}  // namespace snug::catmark
-
-namespace snug {
-namespace {
 
 bool is_quad(const Topology& topology, HalfEdge h) { return topology.face(topology.face_of(h)).size() == 4; }
 
@@ -125,15 +123,15 @@ class CatmarkRules : public CreasedRules {
                          const Interval& share, RowBuilder& row) const override {
     const std::size_t n = star.faces.size();
     if (among_quads(topology, star)) {
-      const catmark::StarMask mask = catmark::vertex_mask(n);
+      const StarMask mask = vertex_mask(n);
       row.add(v.value(), times(share, mask.centre));
       for (const Spoke& spoke : star.spokes) row.add(spoke.end.value(), times(share, mask.edge));
       for (const HalfEdge h : star.faces) {
-        row.add(topology.to(topology.next(h)).value(), times(share, mask.diagonal));
+        row.add(topology.to(topology.next(h)).value(), times(share, mask.face));
       }
       return;
     }
-    const catmark::CentreMask mask = catmark::vertex_centre_mask(n);
+    const StarMask mask = vertex_centre_mask(n);
     row.add(v.value(), share * mask.centre);
     for (const Spoke& spoke : star.spokes) row.add(spoke.end.value(), share * mask.edge);
     for (const HalfEdge h : star.faces) {
@@ -146,18 +144,17 @@ class CatmarkRules : public CreasedRules {
     const HalfEdge twin = topology.twin(h);
     const VertexId a = topology.from(h), b = topology.to(h);
     if (is_quad(topology, h) && is_quad(topology, twin)) {
-      for (const VertexId end : {a, b}) row.add(end.value(), times(share, catmark::edge_end));
+      for (const VertexId end : {a, b}) row.add(end.value(), times(share, edge_end));
       for (const HalfEdge g : {h, twin}) {
-        row.add(topology.from(topology.prev(g)).value(), times(share, catmark::edge_wing));
-        row.add(topology.to(topology.next(g)).value(), times(share, catmark::edge_wing));
+        row.add(topology.from(topology.prev(g)).value(), times(share, edge_wing));
+        row.add(topology.to(topology.next(g)).value(), times(share, edge_wing));
       }
       return;
     }
-    Interval face = catmark::edge_face;  // both faces' weight
+    Interval face = edge_face;  // both faces' weight
     if (options.triangles == SmoothTriangles::smooth) {
       const auto weight = [&](HalfEdge g) {
-        return topology.face(topology.face_of(g)).size() == 3 ? catmark::smooth_triangle_face()
-                                                              : Interval(catmark::edge_face);
+        return topology.face(topology.face_of(g)).size() == 3 ? smooth_triangle_face() : Interval(edge_face);
       };
       face = Interval(0.5) * (weight(h) + weight(twin));
     }
@@ -172,10 +169,10 @@ class CatmarkRules : public CreasedRules {
   }
   void add_smooth_limit(const Topology& topology, VertexId v, const Star& star,
                         Stencils& out) const override {
-    const catmark::StarMask mask = catmark::limit_mask(star.faces.size());
+    const StarMask mask = limit_mask(star.faces.size());
     out.add(v.value(), mask.centre);
     for (const Spoke& spoke : star.spokes) out.add(spoke.end.value(), mask.edge);
-    for (const HalfEdge h : star.faces) out.add(topology.to(topology.next(h)).value(), mask.diagonal);
+    for (const HalfEdge h : star.faces) out.add(topology.to(topology.next(h)).value(), mask.face);
   }
   // The diagonal after spoke i lies between spokes i and i + 1.
   void add_smooth_tangents(const Topology& topology, const Star& star, Stencils& out) const override {
@@ -184,7 +181,7 @@ class CatmarkRules : public CreasedRules {
     for (const unsigned turn : {0u, 3 * n}) {      // sin x = cos(x - pi/2), in quarters of a step
       for (unsigned i = 0; i < n && n > 2; ++i) {  // of 2 the row of the cosine vanishes: no plane
         const Interval c = cosine(4 * i + turn);
-        out.add(star.spokes[i].end.value(), Interval(spoke_weight(catmark::subdominant(n))) * c);
+        out.add(star.spokes[i].end.value(), Interval(spoke_weight(subdominant(n))) * c);
         out.add(topology.to(topology.next(star.faces[i])).value(), c + cosine(4 * (i + 1) + turn));
       }
       out.end_row();
@@ -194,7 +191,7 @@ class CatmarkRules : public CreasedRules {
     const auto sine = [step = std::numbers::pi / static_cast<double>(faces)](std::size_t i) {
       return std::sin(static_cast<double>(i) * step);
     };
-    const double eigenvalue = catmark::subdominant(2 * faces), spoke = spoke_weight(eigenvalue);
+    const double eigenvalue = subdominant(2 * faces), spoke = spoke_weight(eigenvalue);
     AcrossCrease across;
     double sum = 0;
     for (std::size_t i = 0; i < faces; ++i) sum += across.diagonals.emplace_back(sine(i) + sine(i + 1));
@@ -208,7 +205,7 @@ class CatmarkRules : public CreasedRules {
     return tensor_bezier(3, bicubic_lattice(ring, fans));
   }
   [[nodiscard]] double shrink_factor(const CornerFan& fan) const override {
-    return catmark::subdominant(fan.closed ? fan.faces() : 2 * fan.faces());
+    return subdominant(fan.closed ? fan.faces() : 2 * fan.faces());
   }
 };
 

@@ -3,16 +3,19 @@
 #include <utility>
 
 #include <snug/base/contract.h>
-#include <snug/scheme/dual_masks.h>
 #include <snug/scheme/rings.h>
 #include <snug/scheme/row_builder.h>
 #include <snug/scheme/rules.h>
 
 // Doo-Sabin and Midedge: each corner of a face makes a vertex, quads are regular, a patch lies around a vertex.
-namespace snug::dual {
+namespace snug {
+namespace {
 
+// A mask weights the corners of a face of n vertices for the one that moves: its own first, then around.
+using Mask = std::vector<Interval> (*)(std::size_t n);
+
+// a_0 = 1/4 + 5/(4n), a_i = (3 + 2 cos(2 pi i/n)) / (4n).  [DooSabin78]
 std::vector<Interval> doo_sabin_mask(std::size_t n) {
-  SNUG_EXPECT(n >= 3);
   if (n == 4) return {0.5625, 0.1875, 0.0625, 0.1875};
   std::vector<Interval> mask;
   const Interval quarter_n = 4 * static_cast<double>(n);
@@ -24,36 +27,17 @@ std::vector<Interval> doo_sabin_mask(std::size_t n) {
   return mask;
 }
 
+// v/2 + prev/4 + next/4: two steps of edge midpoints.  [PetersReif97]
 std::vector<Interval> midedge_mask(std::size_t n) {
-  SNUG_EXPECT(n >= 3);
   std::vector<Interval> mask(n, 0.0);
   mask[0] = 0.5;
   mask[1] = mask[n - 1] = 0.25;
   return mask;
 }
 
-double doo_sabin_subdominant(std::size_t n) {
-  // The first Fourier mode has 1/4 + 2 / (4n) n/2 = 1/2 for every n.
-  SNUG_EXPECT(n >= 3);
-  return 0.5;
-}
-
-double midedge_subdominant(std::size_t n) {
-  // Modes 1 and n - 1; for n = 3 there are no others, and 1/4 is what remains.
-  return 0.5 + 0.5 * cos_of_turn(1, static_cast<unsigned>(n)).middle();
-}
-
-}  // namespace snug::dual
-
-namespace snug {
-namespace {
-
 class DualRules : public SchemeRules {
  public:
-  using Mask = std::vector<Interval> (*)(std::size_t n);
-  using Shrink = double (*)(std::size_t n);
-  DualRules(const SchemeFacts& facts, Mask mask, Shrink shrink)
-      : SchemeRules(facts), mask_(mask), shrink_(shrink) {}
+  DualRules(const SchemeFacts& facts, Mask mask) : SchemeRules(facts), mask_(mask) {}
 
   // There are no faces to make at what is no manifold.
   [[nodiscard]] bool answers(DefectKind kind) const override { return is_legal(kind); }
@@ -162,11 +146,9 @@ class DualRules : public SchemeRules {
   }
 
   [[nodiscard]] bool regular(const CornerFan& fan) const override { return regular_among_quads(fan); }
-  [[nodiscard]] double shrink_factor(const CornerFan& fan) const override { return shrink_(fan.faces()); }
 
  private:
   Mask mask_;
-  Shrink shrink_;
 };
 
 // Nine places; the corners are faces, face 0 at the lower left. Vertices as dual neighbourhoods number them: the middle
@@ -183,10 +165,12 @@ class DooSabinRules : public DualRules {
  public:
   DooSabinRules()
       : DualRules({.scheme = Scheme::doo_sabin, .name = "doo-sabin", .primal = false, .creases = false},
-                  dual::doo_sabin_mask, dual::doo_sabin_subdominant) {}
+                  doo_sabin_mask) {}
   [[nodiscard]] BezierRows bezier(const Topology&, std::span<const CornerFan>) const override {
     return tensor_bezier(2, biquadratic_lattice());
   }
+  // The first Fourier mode has 1/4 + 2 / (4n) n/2 for every n.
+  [[nodiscard]] double shrink_factor(const CornerFan&) const override { return 0.5; }
 };
 
 // Two quadratics, from the values at their corners and the middles of their edges; all weights are multiples of 1/32.
@@ -244,9 +228,13 @@ class MidedgeRules : public DualRules {
                    .other_names = midedge_names,
                    .primal = false,
                    .creases = false},
-                  dual::midedge_mask, dual::midedge_subdominant) {}
+                  midedge_mask) {}
   [[nodiscard]] BezierRows bezier(const Topology&, std::span<const CornerFan>) const override {
     return {2, 2, midedge_rows()};
+  }
+  // Modes 1 and n - 1; for n = 3 there are no others, and 1/4 is what remains.
+  [[nodiscard]] double shrink_factor(const CornerFan& fan) const override {
+    return 0.5 + 0.5 * cos_of_turn(1, static_cast<unsigned>(fan.faces())).middle();
   }
 };
 

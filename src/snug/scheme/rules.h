@@ -31,12 +31,12 @@ struct SchemeFacts {
   bool creases = true;                    ///< Does sharpness change the surface?
   /// Does the surface of a face depend on that face alone?
   bool local = false;
-  /// Are tables laid out by the rings of the corners (basis/layout.h)?
+  /// Are tables laid out by the rings of the corners (bounds/layout.h)?
   bool laid_by_rings = false;
   RegularKernel kernel = RegularKernel::none;
 };
 
-/// All that snug knows of one scheme. Each has a file of its own, and no other file asks which scheme it is.
+/// All that snug knows of one scheme. Each has a file of its own; other files ask for its properties, not for its name.
 /// Immutable; thread-safe.
 class SchemeRules : public SchemeFacts {
  public:

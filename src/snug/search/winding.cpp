@@ -6,8 +6,10 @@
 #include <vector>
 
 #include <snug/geometry/rounding.h>
+#include <snug/geometry/triangle_distance.h>
 #include <snug/patch/evaluate.h>
 #include <snug/search/nearest_first.h>
+#include <snug/search/precision.h>
 #include <snug/search/solid.h>
 
 namespace snug {
@@ -104,9 +106,14 @@ class Winding {
       stack_.pop_back();
       if (node.piece) {
         monitor_.checkpoint();
-        if (++splits > max_splits || !workspace_.can_open(node)) {
+        const bool last = !workspace_.can_open(node);
+        if (last ? !(gap_of(workspace_.piece(node)) > 0) : ++splits > max_splits) {
           on_surface_ = true;
           return std::nullopt;
+        }
+        if (last) {
+          if (!add_triangle(workspace_.piece(node), ray)) return std::nullopt;
+          continue;
         }
         if (!add_fillers(node, ray)) return std::nullopt;
       }
@@ -140,7 +147,13 @@ class Winding {
     while (!open.empty()) {
       const auto [node, gap] = open.take();
       if (node.piece && gap > 0) return static_cast<double>(gap);
-      if (node.piece && (++splits > max_splits || !workspace_.can_open(node))) return 0;
+      if (node.piece && !workspace_.can_open(node)) {
+        const float nearer = single_down(gap_of(workspace_.piece(node)));
+        if (!(nearer > 0)) return 0;
+        open.add({node, nearer});
+        continue;
+      }
+      if (node.piece && ++splits > max_splits) return 0;
       const SurfaceWorkspace::Opened opened = workspace_.open(node);
       const WideNodes& nodes = workspace_.nodes(opened.pieces);
       WideNodes::Distances gaps;
@@ -153,6 +166,14 @@ class Winding {
   }
 
  private:
+  // Lower bound of the distance of a piece, by its offset triangle: of one that cannot be split this is much nearer to it
+  // than the set around it.
+  [[nodiscard]] double gap_of(PieceId id) const {
+    const OffsetTriangle& offset = workspace_.pieces()[id].offset;
+    const double apart = nearest({point_, point_, point_}, offset.base).certain_distance;
+    return rounded_down(apart - enlarged(offset.radius + spatial_error(error_)));
+  }
+
   // The part of the ray that matters, as a set.
   void segment(const Vector3& direction, double length) {
     segment_.centre = point_ + (length / 2) * direction;

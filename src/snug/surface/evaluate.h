@@ -20,10 +20,10 @@ struct SurfacePoint : BoundedPoint {
   std::optional<double> normal_error;
 };
 
-/// A place on the surface as people name it. Triangular schemes: (u, v) is (1 - u - v) c0 + u c1 + v c2 of a face. Else it is a place on
-/// a quad, from corner 0 with u towards corner 1: of the owner if that is one (of a dual scheme: the faces around the
-/// vertex, from topology().leaving() on), else of the quad that its first split makes at `corner`, from there with u along
-/// the edge that follows.
+/// A place on the surface as people name it. Triangular schemes: (u, v) is (1 - u - v) c0 + u c1 + v c2 of a face. Else it
+/// is a place on a quad, from corner 0 with u towards corner 1: of the owner if that is one (of a dual scheme: the faces
+/// around the vertex, from topology().leaving() on), else of the quad that its first split makes at `corner`, from there
+/// with u along the edge that follows.
 struct SurfaceParameter {
   std::uint32_t owner;  ///< face, or vertex of a dual scheme
   std::uint32_t corner = 0;
