@@ -211,8 +211,8 @@ ExitStatus run(const Options& options) {
   return answer(options, surface, surface.owner_count(), [&](Report& report) {
     const Scheme scheme = surface.options().scheme;
     report.heads({options.mesh}, {name_of(scheme)});
-    report.text(
-        fmt::format("# {} u v{}  x y z", surface.rules().owner(), surface.rules().triangular() ? "" : " corner"));
+    report.text(fmt::format("# {} u v{}  x y z", surface.rules().owner(),
+                            surface.rules().triangular() ? "" : " corner"));
   });
 }
 

@@ -94,7 +94,8 @@ class Checks {
   [[nodiscard]] std::uint64_t budget(std::uint64_t usual) const {
     std::uint64_t most = usual;
     for (std::size_t s = 0; s < 2; ++s)
-      if (side(s).has_many()) most = std::min<std::uint64_t>(most, side(s).model->method() == BoundMethod::table ? 60 : 300);
+      if (side(s).has_many())
+        most = std::min<std::uint64_t>(most, side(s).model->method() == BoundMethod::table ? 60 : 300);
     return most;
   }
 
