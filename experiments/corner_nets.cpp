@@ -9,6 +9,7 @@
 
 #include <snug/base/error.h>
 #include <snug/base/names.h>
+#include <snug/scheme/rules.h>
 
 namespace snug {
 namespace {

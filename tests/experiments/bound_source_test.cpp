@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
 #include <snug/scheme/loop_masks.h>
+#include <snug/scheme/rules.h>
 #include <testing/containment.h>
 #include <testing/kinds.h>
 #include <testing/patches.h>
@@ -41,7 +42,7 @@ TEST(characteristic_layout, is_that_of_the_library_where_not_one_corner_alone_is
   for (const KindKey& key : testing::assorted_kinds()) {
     const bool one = std::all_of(key.corners.begin(), key.corners.end(), [](auto& f) { return f.closed; }) &&
                      std::count_if(key.corners.begin(), key.corners.end(),
-                                   [](auto& f) { return !f.regular(Scheme::loop); }) == 1;
+                                   [](auto& f) { return !rules_of(Scheme::loop).regular(f); }) == 1;
     const Kind& kind = library.find(key);
     EXPECT_EQ(one, characteristic_layout(kind) != make_layout(kind));
   }

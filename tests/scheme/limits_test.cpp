@@ -61,7 +61,7 @@ TEST(limit_stencils, of_darts_are_the_same_however_many_came_between) {
     const ControlMesh mesh = testing::control_mesh(twin);
     const Topology topology(mesh);
     Stencils limit;
-    add_limit_row(topology, VertexId(0), {scheme}, sharpness_of(mesh, topology), limit);
+    rules_of(scheme).add_limit_row(topology, VertexId(0), {scheme}, sharpness_of(mesh, topology), limit);
     std::vector<double> all = dense(limit.row(0), topology.vertex_count());
     all.push_back(limit.row(0).error);
     return all;
