@@ -9,18 +9,16 @@
 
 #include <opensubdiv/far/topologyRefiner.h>
 
-#include <snug/base/error.h>
-#include <snug/mesh/control_mesh.h>
-#include <snug/scheme/scheme.h>
+#include <snug/surface.h>
 
-/// For those who have OpenSubdiv 3: its base meshes as control meshes of snug. Header only: snug itself neither
-/// needs nor links OpenSubdiv, and this header asks for nothing but OpenSubdiv's headers.
+/// Base meshes of OpenSubdiv 3 as control meshes of snug. Header only: snug itself neither needs nor links
+/// OpenSubdiv.
 namespace snug::opensubdiv {
 
-/// What a LimitSurface is made of.
+/// The arguments of Surface.
 struct MeshAndOptions {
   ControlMesh mesh;
-  SchemeOptions options;
+  SurfaceOptions options;
 };
 
 namespace detail {
@@ -139,10 +137,15 @@ inline MeshAndOptions read_topology(const Far::TopologyRefiner& refiner) {
   const Far::TopologyLevel& level = refiner.GetLevel(0);
   read_faces(level, mesh);
   read_creases(level, mesh.tags.creases);
-  read_corners(level, options.boundary, mesh.tags.corners);
-  read_holes(level, options.boundary, mesh.tags.holes);
+  read_corners(level, *options.boundary, mesh.tags.corners);
+  read_holes(level, *options.boundary, mesh.tags.holes);
   mesh.tags.boundary = options.boundary;
   return result;
+}
+
+[[noreturn]] inline void refuse_too_few_points() {
+  throw InputError(InputProblem::value,
+                   "from_refiner: there are fewer points than vertices of the base level");
 }
 
 template <class Real>
@@ -150,9 +153,10 @@ MeshAndOptions read_strided(const Far::TopologyRefiner& refiner, std::span<const
                             std::size_t stride) {
   MeshAndOptions result = read_topology(refiner);
   const auto count = static_cast<std::size_t>(refiner.GetLevel(0).GetNumVertices());
-  require_value(stride >= 3, "from_refiner: the stride is less than three numbers");
-  require_value(count == 0 || (values.size() >= 3 && (values.size() - 3) / stride >= count - 1),
-                "from_refiner: there are fewer points than vertices of the base level");
+  if (stride < 3) {
+    throw InputError(InputProblem::value, "from_refiner: the stride is less than three numbers");
+  }
+  if (count > 0 && (values.size() < 3 || (values.size() - 3) / stride < count - 1)) refuse_too_few_points();
   result.mesh.points.reserve(count);
   for (std::size_t v = 0; v < count; ++v) {
     const auto p = values.subspan(v * stride, 3);
@@ -164,37 +168,35 @@ MeshAndOptions read_strided(const Far::TopologyRefiner& refiner, std::span<const
 
 }  // namespace detail
 
-/// The base level of a refiner with these control points as a control mesh with its tags, and the rules of its
+/// The base level of a refiner with these control points as a control mesh with tags, and the rules of its
 /// surface:
 ///
 ///     auto [mesh, options] = snug::opensubdiv::from_refiner(refiner, points);
-///     const snug::LimitSurface surface(std::move(mesh), options, library);
+///     const snug::Surface surface(std::move(mesh), options);
 ///
 /// Guarantee: the limit surface is the refiner's. Vertices and faces keep their numbers, faces their first
-///            vertex, points and sharpnesses their values. Creases are sorted, a < b; corners and holes
-///            ascend. What the refiner made sharp by itself (boundaries, corners by the boundary rule,
-///            non-manifold edges and vertices) is no tag. Nor are the holes it made at a boundary without a
-///            rule, VTX_BOUNDARY_NONE, as BoundaryRule::none makes them too; only if sharp boundary edges kept
-///            a face there, the boundary is edge_only, and all holes are tags. `mesh.tags.boundary` is
-///            `options.boundary`. Whether and how the refiner was refined changes nothing; face-varying data is
-///            not read.
-/// Requires:  a point for each vertex of the base level; points after these, as of refined levels, are not
-///            read.
-/// Errors:    InputError (refused) for the scheme bilinear; (value) on too few points. What snug does not
-///            answer for, non-manifold meshes for instance, LimitSurface refuses.
-/// Cost:      linear, but for the sorting of creases; copies the points.
+///            vertex, points and sharpnesses their values. Creases are sorted with a < b; corners and holes
+///            are ascending. Edges and vertices that the refiner made sharp by rule (boundaries, corners by
+///            the boundary rule, non-manifold ones) get no tag. Nor do the holes that VTX_BOUNDARY_NONE
+///            makes, since BoundaryRule::none makes them too; but if sharp boundary edges kept a face there,
+///            the boundary is edge_only and all holes are tags. `mesh.tags.boundary` is `options.boundary`.
+///            It does not matter whether and how the refiner was refined; face-varying data is not read.
+/// Requires:  a point for each vertex of the base level; further points, such as those of refined levels, are
+///            ignored.
+/// Errors:    InputError (refused) for the scheme bilinear; (value) on too few points. Surface refuses meshes
+///            that snug does not support.
+/// Cost:      linear, except for sorting the creases; copies the points.
 [[nodiscard]] inline MeshAndOptions from_refiner(const OpenSubdiv::Far::TopologyRefiner& refiner,
                                                  std::span<const Point3> points) {
   MeshAndOptions result = detail::read_topology(refiner);
   const auto count = static_cast<std::size_t>(refiner.GetLevel(0).GetNumVertices());
-  require_value(points.size() >= count,
-                "from_refiner: there are fewer points than vertices of the base level");
+  if (points.size() < count) detail::refuse_too_few_points();
   result.mesh.points.assign(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count));
   return result;
 }
 
-/// The same for x, y, z in an array of numbers, `stride` numbers from one point to the next. To begin elsewhere
-/// than at the first number, give a subspan.
+/// The same for x, y, z in an array of numbers, `stride` numbers from one point to the next. To skip leading
+/// numbers, pass a subspan.
 ///
 /// Requires:  stride >= 3; values up to the z of the last base vertex.
 [[nodiscard]] inline MeshAndOptions from_refiner(const OpenSubdiv::Far::TopologyRefiner& refiner,

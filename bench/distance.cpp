@@ -57,7 +57,8 @@ int main(int argc, char** argv) {
     const auto ask = [&at](const std::vector<std::unique_ptr<SnugPair>>& pairs) {
       double sum = 0;
       for (std::size_t p = 0; p < at.size(); ++p) {
-        for (const PosePair& placed : at[p]) sum += pairs[p]->queries.distance(placed, precision).upper;
+        for (const PosePair& placed : at[p])
+          sum += pairs[p]->queries.distance(placed, precision).distance.upper;
       }
       return sum;
     };
@@ -96,7 +97,7 @@ int main(int argc, char** argv) {
       if (placed.nearness == Nearness::colliding) continue;
       const Distance surface = snug[p]->queries.distance(placed.at, precision);
       const double mesh = peers[p].distance(placed.at);
-      const double off = std::max(surface.lower - mesh, mesh - surface.upper);
+      const double off = std::max(surface.distance.lower - mesh, mesh - surface.distance.upper);
       ++count;
       outside += off > 0;
       most = std::max(most, off);

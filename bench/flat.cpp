@@ -89,7 +89,7 @@ int main(int argc, char** argv) {
         if (found.verdict == Verdict::separated) {
           const Distance distance = pair.queries.distance(at, 1e-9);
           const double theirs = pair.distances.distance(at);
-          most = std::max({most, distance.lower - theirs, theirs - distance.upper});
+          most = std::max({most, distance.distance.lower - theirs, theirs - distance.distance.upper});
         }
       }
     }
@@ -103,7 +103,7 @@ int main(int argc, char** argv) {
       return pair.queries.collide(at, 1e-9).verdict == Verdict::separated ? 0.0 : 1.0;
     };
     const auto distance = [](Pair& pair, const PosePair& at) {
-      return pair.queries.distance(at, 1e-6).upper;
+      return pair.queries.distance(at, 1e-6).distance.upper;
     };
     const auto peer_collides = [](Pair& pair, const PosePair& at) {
       return pair.boxes.collide(at) ? 1.0 : 0.0;

@@ -39,8 +39,8 @@ std::vector<double> ratios(Pairs& pairs, const PlacementsOfPairs& at, double tol
       Queries& queries = pairs.of_models[p]->queries;
       const Collision answer = queries.collide(at[p][i], tolerance);
       if (answer.verdict != Verdict::separated) continue;
-      const double distance = queries.distance(at[p][i], 1e-3).lower;
-      result.push_back(std::max(1.0, distance / std::max(answer.lower, 1e-300)));
+      const double distance = queries.distance(at[p][i], 1e-3).distance.lower;
+      result.push_back(std::max(1.0, distance / std::max(answer.distance.lower, 1e-300)));
     }
   }
   return result;

@@ -131,12 +131,10 @@ std::vector<PosePair> contact_placements(const Model& a, const Model& b, double 
   std::vector<PosePair> result;
   while (result.size() < count) {
     PosePair pair = place_in_room(side, random);
-    const Vector3 between = pair.b.translation() - pair.a.translation();
+    const Vector3 between = pair.b.offset() - pair.a.offset();
     if (!(length(between) > 0)) continue;
     const Vector3 direction = (1 / length(between)) * between;
-    const auto move_to = [&](double t) {
-      pair.b = pair.b.with_translation(pair.a.translation() + t * direction);
-    };
+    const auto move_to = [&](double t) { pair.b = pair.b.with_offset(pair.a.offset() + t * direction); };
     // First contact seen from outside: steps by margins that are proved to be kept do not pass it.
     double t = 2;
     for (double margin = 0.5; margin > 0.01 * reach && t > -2;) {

@@ -26,7 +26,7 @@ double sum_of(const std::vector<Collision>& answers) {
 
 double sum_of(const std::vector<Distance>& answers) {
   double sum = 0;
-  for (const Distance& answer : answers) sum += answer.upper;
+  for (const Distance& answer : answers) sum += answer.distance.upper;
   return sum;
 }
 
@@ -65,7 +65,7 @@ int main(int argc, char** argv) {
     std::vector<PosePair> poses(options.size<std::size_t>(20'000, 400));
     for (PosePair& pair : poses) pair = place_in_room(3, random);
     const std::string names = std::string(name_a) + ", " + name_b;
-    const CollideOptions touch{.tolerance = tolerance};
+    const CollideOptions touch{.tolerance = tolerance, .prove_contact = false, .measure = false};
     bench_pair(
         "collide, room 3, 1 %: " + names, a, b, poses, options,
         [&](const PlacedBvh& x, const PlacedBvh& y) {
@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
     const DistanceOptions far{.absolute = precision};
     bench_pair(
         "distance, room 3, 0.1 %: " + names, a, b, poses, options,
-        [&](const PlacedBvh& x, const PlacedBvh& y) { return distance(x, y, far).upper; },
+        [&](const PlacedBvh& x, const PlacedBvh& y) { return distance(x, y, far).distance.upper; },
         [&](PairWorkspaces& scratches) { return distance_poses(scratches, poses, far); });
   }
   return 0;

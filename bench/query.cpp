@@ -16,14 +16,14 @@ Queries::Queries(const LimitSurface& a, const LimitSurface& b, const SurfaceBvhO
     : a_(a, one_thread(options)), b_(b, one_thread(options)), scratch_a_(a_), scratch_b_(b_) {}
 
 Collision Queries::collide(const PosePair& at, double tolerance, double margin) {
-  CollideOptions options;
+  CollideOptions options{.tolerance = 0, .prove_contact = false, .measure = false};
   options.tolerance = tolerance;
   options.margin = margin;
   return snug::collide({a_, scratch_a_, at.a}, {b_, scratch_b_, at.b}, options);
 }
 
 std::optional<bool> Queries::meet(const PosePair& at) {
-  CollideOptions options;
+  CollideOptions options{.tolerance = 0, .prove_contact = false, .measure = false};
   options.tolerance = 1e-7;
   options.prove_contact = true;
   switch (snug::collide({a_, scratch_a_, at.a}, {b_, scratch_b_, at.b}, options).verdict) {

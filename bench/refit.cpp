@@ -61,7 +61,7 @@ void bench_as_many_points(const Options& options) {
     }
   }
   OsdStencils stencils = OsdStencils::limit(mesh, at, 2);
-  PatchBounds bounds = subject.bounds(all_faces(mesh.face_count()));
+  BatchBounds bounds = subject.bounds(all_faces(mesh.face_count()));
   std::vector<OffsetTriangle> triangles;
   Group group("new positions, " + std::to_string(mesh.face_count()) + " faces, " + std::to_string(wanted) +
                   " hull points a patch in the mean",
@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
   std::vector<OffsetTriangle> triangles;
   std::vector<Box3> boxes;
   Group group("new positions", "patch", options);
-  PatchBounds rows = subject.bounds(faces), by_tables = subject.bounds(faces, BoundMethod::table);
+  BatchBounds rows = subject.bounds(faces), by_tables = subject.bounds(faces, BoundMethod::table);
   group.add("snug: offset triangles", count, [&] { return update(rows, moved.points, triangles); });
   group.add("snug: offset triangles from tables", count,
             [&] { return update(by_tables, moved.points, triangles); });

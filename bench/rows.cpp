@@ -22,7 +22,7 @@ void bench_faces(const std::string& title, Subject& subject, const std::vector<P
   Group group(title + ", " + std::to_string(faces.size()) + " patches", "patch", options);
   group.add("box of the control points", count, [&] { return subject.box(faces, boxes); });
   const auto& points = subject.surface().mesh().points;
-  PatchBounds rows = subject.bounds(faces), tables = subject.bounds(faces, BoundMethod::table);
+  BatchBounds rows = subject.bounds(faces), tables = subject.bounds(faces, BoundMethod::table);
   group.add("offset triangle from hull rows, a patch at a time", count,
             [&] { return subject.enclose(faces, triangles); });
   group.add("offset triangle from hull rows", count, [&] { return update(rows, points, triangles); });

@@ -9,7 +9,7 @@
 
 #include <sys/resource.h>
 
-#include <snug/surface/patch_bounds.h>
+#include <snug/surface/batch_bounds.h>
 
 #include "meshes.h"
 #include "runner.h"
@@ -32,7 +32,7 @@ SchemeOptions catmark() { return {Scheme::catmark, BoundaryRule::edge_and_corner
 double cold(const ControlMesh& mesh, std::size_t* kinds = nullptr, std::size_t* bytes = nullptr) {
   const auto library = std::make_shared<BoundsCache>();
   const LimitSurface surface(mesh, catmark(), library, 1);
-  PatchBounds bounds(surface, {}, 1);
+  BatchBounds bounds(surface, {}, 1);
   std::vector<OffsetTriangle> out(bounds.patches().size());
   if (kinds) *kinds = surface.kind_count();
   const double sum = update(bounds, mesh.points, out);
@@ -58,7 +58,7 @@ int main(int argc, char** argv) {
   {
     const ControlMesh mesh = quad_torus(options.size(500'000, 2'000));
     const LimitSurface surface(mesh, catmark(), std::make_shared<BoundsCache>(), 1);
-    PatchBounds bounds(surface, {}, 1);
+    BatchBounds bounds(surface, {}, 1);
     std::vector<OffsetTriangle> out(bounds.patches().size());
     Group group("regular quads", "quad", options);
     group.add("two offset triangles a quad", static_cast<double>(mesh.face_count()),

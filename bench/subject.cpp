@@ -30,12 +30,12 @@ std::size_t Subject::hull_point_count() {
   return sum;
 }
 
-PatchBounds Subject::bounds(std::span<const PatchId> faces, BoundMethod method) const {
-  return PatchBounds(*surface_, {faces.begin(), faces.end()}, method, 1);
+BatchBounds Subject::bounds(std::span<const PatchId> faces, BoundMethod method) const {
+  return BatchBounds(*surface_, {faces.begin(), faces.end()}, method, 1);
 }
 
 double Subject::enclose_all(std::vector<OffsetTriangle>& out) {
-  PatchBounds bounds(*surface_, BoundMethod::rows, 1);
+  BatchBounds bounds(*surface_, BoundMethod::rows, 1);
   return update(bounds, surface_->mesh().points, out);
 }
 
@@ -44,7 +44,7 @@ double Subject::box(std::span<const PatchId> faces, std::vector<Box3>& out) {
   double sum = 0;
   for (std::size_t i = 0; i < faces.size(); ++i) {
     out[i] = control_box(surface_->patch(faces[i]), scratch_);
-    sum += out[i].longest_side();
+    sum += longest_side(out[i]);
   }
   return sum;
 }
@@ -67,7 +67,7 @@ double Subject::evaluate(LimitEvaluator& face, std::span<const TriangleParameter
   return errors;
 }
 
-double update(PatchBounds& bounds, std::span<const Point3> points, std::vector<OffsetTriangle>& out) {
+double update(BatchBounds& bounds, std::span<const Point3> points, std::vector<OffsetTriangle>& out) {
   out.resize(bounds.patches().size());
   bounds.update(points, out, 1);
   double sum = 0;

@@ -7,8 +7,8 @@
 #include <snug/bounds/enclosure.h>
 #include <snug/bounds/hull_points.h>
 #include <snug/patch/limit_evaluator.h>
+#include <snug/surface/batch_bounds.h>
 #include <snug/surface/limit_surface.h>
-#include <snug/surface/patch_bounds.h>
 
 namespace snug::bench {
 
@@ -27,7 +27,7 @@ class Subject {
   /// Of all faces together.
   [[nodiscard]] std::size_t hull_point_count();
   /// Bounds of some faces at once, their kinds' rows or tables made.
-  [[nodiscard]] PatchBounds bounds(std::span<const PatchId> faces,
+  [[nodiscard]] BatchBounds bounds(std::span<const PatchId> faces,
                                    BoundMethod method = BoundMethod::rows) const;
   /// Offset triangles of all faces, with all that it takes to make them.
   /// Returns:   the sum of the radii.
@@ -50,7 +50,7 @@ class Subject {
 
 /// Offset triangles for these control points, in mesh units, on one thread.
 /// Returns:   the sum of the radii.
-double update(PatchBounds& bounds, std::span<const Point3> points, std::vector<OffsetTriangle>& out);
+double update(BatchBounds& bounds, std::span<const Point3> points, std::vector<OffsetTriangle>& out);
 
 /// Ids 0 to count - 1.
 [[nodiscard]] std::vector<PatchId> all_faces(std::size_t count);

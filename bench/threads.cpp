@@ -18,7 +18,7 @@
 #include <snug/query/bound.h>
 #include <snug/query/closest.h>
 #include <snug/search/surface_bvh.h>
-#include <snug/surface/patch_bounds.h>
+#include <snug/surface/batch_bounds.h>
 #ifdef SNUG_BENCH_PICTURE
 #include <picture/render.h>
 #endif
@@ -79,14 +79,14 @@ void compare_surfaces(const Options& options, const ControlMesh& mesh, const Lim
           [&](int threads) { return static_cast<double>(surface_of(mesh, library, threads).kind_count()); });
   compare(options, "surface, kinds and rows not known", [&](int threads) {
     const LimitSurface fresh = surface_of(mesh, std::make_shared<BoundsCache>(), threads);
-    return static_cast<double>(PatchBounds(fresh, {}, threads).patches().size());
+    return static_cast<double>(BatchBounds(fresh, {}, threads).patches().size());
   });
   for (const bool tight : {false, true}) {
     compare(options, tight ? "model, tight" : "model", [&, tight](int threads) {
       return SurfaceBvh(surface, {.tight = tight, .threads = threads}).ball().radius;
     });
   }
-  PatchBounds bounds(surface, {}, 1);
+  BatchBounds bounds(surface, {}, 1);
   std::vector<OffsetTriangle> out(bounds.patches().size());
   compare(options, "bounds of all patches, refit", [&](int threads) {
     bounds.update(mesh.points, out, threads);
@@ -120,7 +120,7 @@ void compare_closest(const Options& options, const LimitSurface& surface) {
       compare(options, name, [&, precision](int threads) {
         double sum = 0;
         for (const ClosestPoint& at : closest_points(model, points, {.absolute = precision}, threads)) {
-          sum += at.upper;
+          sum += at.distance.upper;
         }
         return sum;
       });

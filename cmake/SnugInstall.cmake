@@ -9,8 +9,8 @@ endif()
 include(CMakePackageConfigHelpers)
 set(snug_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/snug)
 
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/snug ${PROJECT_SOURCE_DIR}/src/snug
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/snug DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING
+        PATTERN "*.h")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/adapters DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/snug
         FILES_MATCHING PATTERN "*.h")
 install(TARGETS snug EXPORT snug-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
@@ -22,4 +22,10 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/snug-config.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/snug-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/snug-config.cmake ${PROJECT_BINARY_DIR}/snug-config-version.cmake
         DESTINATION ${snug_package_dir})
+# The prefix is found from where snug.pc lies: what is installed may be moved.
+file(RELATIVE_PATH SNUG_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+cmake_path(APPEND SNUG_PC_INCLUDEDIR "\${prefix}" ${CMAKE_INSTALL_INCLUDEDIR})
+cmake_path(APPEND SNUG_PC_LIBDIR "\${prefix}" ${CMAKE_INSTALL_LIBDIR})
+configure_file(cmake/snug.pc.in ${PROJECT_BINARY_DIR}/snug.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/snug.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

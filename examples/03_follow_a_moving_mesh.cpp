@@ -6,11 +6,9 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
-#include <memory>
 #include <vector>
 
-#include <snug/io/mesh_file.h>
-#include <snug/surface/patch_bounds.h>
+#include <snug/bound.h>
 
 int main(int argc, char** argv) {
   if (argc != 2) {
@@ -18,8 +16,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    const snug::LimitSurface surface(snug::read_mesh(argv[1]), snug::SchemeOptions{},
-                                     std::make_shared<snug::BoundsCache>());
+    const snug::Surface surface = snug::load(argv[1]);
     // What connectivity decides is done here, once.
     snug::PatchBounds bounds(surface);
     std::vector<snug::OffsetTriangle> triangles(bounds.patches().size());

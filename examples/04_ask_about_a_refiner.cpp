@@ -10,7 +10,7 @@
 
 #include <opensubdiv/far/topologyDescriptor.h>
 #include <snug/adapters/opensubdiv.h>
-#include <snug/query/bound.h>
+#include <snug/bound.h>
 
 namespace Far = OpenSubdiv::Far;
 namespace Sdc = OpenSubdiv::Sdc;
@@ -42,16 +42,16 @@ int main() {
 
     // Faces, creases, corners, holes and rules come from the refiner, points from the array.
     auto [mesh, options] = snug::opensubdiv::from_refiner(*refiner, points);
-    const snug::LimitSurface surface(std::move(mesh), options, std::make_shared<snug::BoundsCache>());
+    const snug::Surface surface(std::move(mesh), options);
 
     snug::BoundOptions wanted;
     wanted.tolerance = 0.001 * surface.size();
     snug::Box3 box;  // of all enclosures: proved to contain the limit surface
-    const snug::BoundSummary summary = snug::bound(surface, wanted, [&](const snug::PieceEnclosure& piece) {
+    const snug::BoundSummary summary = snug::bound(surface, wanted, [&](const snug::PatchEnclosure& piece) {
       for (const snug::Box3& corner : piece.interval.corner) box.add(corner);
     });
     std::printf("%zu faces: %llu enclosures contain the surface; its x lies between %g and %g\n",
-                surface.face_count(), static_cast<unsigned long long>(summary.count), box.lower.x,
+                surface.mesh().face_count(), static_cast<unsigned long long>(summary.count), box.lower.x,
                 box.upper.x);
     return summary.reached ? 0 : 5;
   } catch (const std::exception& error) {

@@ -67,7 +67,7 @@ class Counter {
 };
 
 Size size_of_box(const Box3& box, double error, PowerOfTwo back) {
-  const double side = box.longest_side();
+  const double side = longest_side(box);
   return {unscaled_up(enlarged(side / 2), back), side <= 4 * error};
 }
 

@@ -343,7 +343,7 @@ class KdopWalk {
   static PlacedFrame frame_of(const KdopTree& tree, const Motion& pose) {
     return {{pose.row(0), pose.row(1), pose.row(2)},
             tree.surface_.scale().inverse().apply(1.0),
-            pose.translation(),
+            pose.offset(),
             pose.defect()};
   }
 

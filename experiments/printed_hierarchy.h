@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
-#include <snug/bounds/bound_method.h>
 #include <snug/bounds/enclosure.h>
 #include <snug/bvh/obb.h>
 #include <snug/geometry/motion.h>
+#include <snug/surface.h>
 #include <snug/surface/limit_surface.h>
 
 namespace snug {

@@ -52,7 +52,7 @@ class QueryPair {
         scratch_b_(b_) {}
 
   Verdict ask(const PosePair& at, double tolerance, double margin = 0) {
-    CollideOptions options;
+    CollideOptions options{.tolerance = 0, .prove_contact = false, .measure = false};
     options.tolerance = tolerance;
     options.margin = margin;
     return collide({a_, scratch_a_, at.a}, {b_, scratch_b_, at.b}, options).verdict;

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <snug/base/progress.h>
+#include <snug/monitor.h>
 #include <snug/surface/limit_surface.h>
 
 /// The measurements behind the dissertation's tables 5.1 to 5.3: triangles, creation, queries in rooms.

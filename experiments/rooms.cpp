@@ -34,14 +34,14 @@ Motion any_pose(double reach, std::mt19937_64& random) {
       2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y), 0};
   Vector3 translation;
   for (std::size_t k = 0; k < 3; ++k) translation[k] = reach * symmetric(random);
-  return Motion::from_3x4(rotation).with_translation(translation);
+  return Motion::from_3x4(rotation).with_offset(translation);
 }
 
 }  // namespace
 
 ControlMesh unit_model(ControlMesh mesh) {
   const Box3 box = used_box(mesh);
-  const double size = box.longest_side();
+  const double size = longest_side(box);
   require_value(size > 0 && std::isfinite(size),
                 "unit model: the longest side of the box is 0 or does not fit a double; give another mesh");
   for (Point3& p : mesh.points) {

@@ -6,8 +6,8 @@
 
 #include <experiments/bound_source.h>
 #include <experiments/corner_nets.h>
-#include <snug/base/progress.h>
 #include <snug/geometry/triangle.h>
+#include <snug/monitor.h>
 #include <snug/patch/patch.h>
 
 /// How much larger radii are than they had to be. An experiment: nothing here is a bound of a surface.

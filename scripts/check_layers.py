@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 # A folder includes itself and folders before it, but for the exceptions.
-ORDER = ["base", "geometry", "mesh", "scheme", "patch", "bounds", "bvh", "surface", "search", "query", "io"]
+ORDER = ["base", "geometry", "mesh", "scheme", "patch", "bounds", "bvh", "surface", "search", "query", "io", "front"]
 EXCEPTIONS = {
     "bvh": {"base", "geometry"},  # knows sets and ids, no surfaces
     "io": {"base", "geometry", "mesh"},

@@ -71,7 +71,7 @@ class Polyhedra {
   void add(const PieceEnclosure& piece) {
     Box3 all;
     for (const Box3& box : piece.interval.corner) all.add(box);
-    require_representable(all.longest_side());
+    require_representable(longest_side(all));
     const Polyhedron solid = hull_of_boxes(piece.interval);
     if (solid.facets.empty()) return;  // a segment or a point
     ++count_;
@@ -196,19 +196,19 @@ Command bound_command() {
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
-           "Split until each radius is at most half of this: mesh units, or 1%");
+           "Split until each radius is at most half of this; mesh units or percent (1%)");
   list.add(Group::own, "--level N", &options->level,
-           "Split every patch this often, 0 to 12; the first split of a polygon counts")
+           "Split every patch N times, 0 to 12; the first split of a polygon counts")
       .between(0, 12)
       .excludes("--tolerance");
   list.add(Group::own, "--polyhedra FILE", &options->polyhedra,
-           "The hulls of the enclosures' boxes as one mesh, for pictures: .obj, .off, .ply, .stl or .glb");
+           "Also write the enclosures as one mesh, for pictures: .obj, .off, .ply, .stl or .glb");
   add_degree_option(list, options->degree);
   add_common_options(list, *options);
   add_bound_options(list, *options);
   return {"bound",
           Topic::one_surface,
-          "Enclosures that contain the limit surface, or limit curves",
+          "Enclose a limit surface, or limit curves, in small sets",
           {"snug bound pawn.obj --tolerance 0.5% --json"},
           std::move(list),
           [options] { return run(*options); }};

@@ -68,10 +68,15 @@ std::string text_of_bounds(double lower, double upper) {
 }
 
 void write_sign(JsonWriter& json, const SignedDistance& found) {
-  json.key("signed_distance").begin_array().value(found.lower).value(found.upper).end_array().key("inside");
-  if (found.upper < 0) {
+  json.key("signed_distance")
+      .begin_array()
+      .value(found.distance.lower)
+      .value(found.distance.upper)
+      .end_array()
+      .key("inside");
+  if (found.distance.upper < 0) {
     json.value(true);
-  } else if (found.lower > 0) {
+  } else if (found.distance.lower > 0) {
     json.value(false);
   } else {
     json.null();
@@ -81,16 +86,21 @@ void write_sign(JsonWriter& json, const SignedDistance& found) {
 void write_result(Report& report, const LimitSurface& surface, const Result& result) {
   const ClosestPoint& near = result.nearest;
   if (!report.json()) {
-    report.text(fmt::format("{}  {} {} {}  {} {} {}{}",
-                            result.with_sign
-                                ? text_of_bounds(result.with_sign->lower, result.with_sign->upper)
-                                : text_of_bounds(near.lower, near.upper),
-                            near.point.x, near.point.y, near.point.z, near.at.owner, near.at.u, near.at.v,
-                            surface.rules().triangular() ? "" : fmt::format(" {}", near.at.corner)));
+    report.text(fmt::format(
+        "{}  {} {} {}  {} {} {}{}",
+        result.with_sign ? text_of_bounds(result.with_sign->distance.lower, result.with_sign->distance.upper)
+                         : text_of_bounds(near.distance.lower, near.distance.upper),
+        near.point.x, near.point.y, near.point.z, near.at.owner, near.at.u, near.at.v,
+        surface.rules().triangular() ? "" : fmt::format(" {}", near.at.corner)));
     return;
   }
   JsonWriter& json = report.write();
-  json.begin_object().key("distance").begin_array().value(near.lower).value(near.upper).end_array();
+  json.begin_object()
+      .key("distance")
+      .begin_array()
+      .value(near.distance.lower)
+      .value(near.distance.upper)
+      .end_array();
   if (result.with_sign) write_sign(json, *result.with_sign);
   json.field("reached", result.reached()).field("point", near.point).field("error", near.point_error);
   write_place(json, surface, near.at);
@@ -119,7 +129,7 @@ ExitStatus run(const Options& options) {
   Report report("closest", options);
   report.heads({options.mesh}, {name_of(surface.options().scheme)});
   if (report.json()) {
-    report.write().field("precision", wanted.absolute).field("relative", wanted.relative);
+    report.write().field("precision", *wanted.absolute).field("relative", *wanted.relative);
     report.write().key("results").begin_array();
   }
   report.text(fmt::format("# {}  x y z  {} u v{}",
@@ -141,19 +151,19 @@ Command closest_command() {
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL)");
   list.add(Group::own, "--points FILE", &options->points,
-           "File with a line 'x y z' for each point; - for standard input")
+           "File with one point per line, 'x y z'; - for standard input")
       .required();
   list.add(Group::own, "--precision LENGTH", &options->precision,
-           "How near the bounds of a distance must be: mesh units, or percent of the mesh");
-  list.add(Group::own, "--relative SHARE", &options->relative, "Or as near as this share of the distance")
+           "Largest width of a distance interval; mesh units, or percent of the mesh");
+  list.add(Group::own, "--relative SHARE", &options->relative, "Or this fraction of the distance")
       .between(0, 1);
   list.add(Group::own, "--signed", &options->with_sign,
-           "Signed distances of a closed surface: negative inside, a sign that is proved");
+           "Signed distances to a closed surface, negative inside; the sign is proved");
   add_common_options(list, *options);
   add_bound_options(list, *options);
   return {"closest",
           Topic::one_surface,
-          "The limit points closest to given points",
+          "Find the points of a limit surface closest to given points",
           {"snug closest bust.obj --points points.txt", "echo \"0 2 5\" | snug closest bust.obj --points -"},
           std::move(list),
           [options] { return run(*options); }};

@@ -21,8 +21,8 @@ struct Options : PairOptions {
 
 void write_answer(JsonWriter& json, const Sides& sides, const Collision& answer) {
   json.field("verdict", name_of(answer.verdict));
-  json.key("distance").begin_array().value(answer.lower);
-  answer.upper ? json.value(*answer.upper) : json.null();
+  json.key("distance").begin_array().value(answer.distance.lower);
+  answer.distance.upper < INFINITY ? json.value(answer.distance.upper) : json.null();
   json.end_array().key("witness");
   if (answer.witness) {
     json.begin_array().value((*answer.witness)[0]).value((*answer.witness)[1]).end_array();
@@ -37,14 +37,15 @@ void write_answer(JsonWriter& json, const Sides& sides, const Collision& answer)
 
 // The verdict as a sentence for people.
 std::string sentence(const Collision& answer, double tolerance, double margin) {
+  const bool measured = answer.distance.upper < INFINITY;
+  const std::string upper = measured ? text_at_most(answer.distance.upper, true) : "";
   switch (answer.verdict) {
     case Verdict::separated:
       return fmt::format("separated: proved, the limit surfaces are at least {} apart{}",
-                         text_at_most(answer.lower),
-                         answer.upper ? ", at most " + text_at_most(*answer.upper, true) : "");
+                         text_at_most(answer.distance.lower), measured ? ", at most " + upper : "");
     case Verdict::within:
       return fmt::format("within: two points of the limit surfaces are at most {} apart (asked: {:.6g})",
-                         text_at_most(*answer.upper, true), margin + tolerance);
+                         upper, margin + tolerance);
     case Verdict::intersecting:
       return answer.inner ? "intersecting: proved, " + inner_sentence(*answer.inner)
                           : "intersecting: proved, the limit surfaces have a point in common";
@@ -52,7 +53,7 @@ std::string sentence(const Collision& answer, double tolerance, double margin) {
       break;
   }
   return fmt::format("undecided: the distance lies in [{}, {}]; give a larger --tolerance or --budget",
-                     text_at_most(answer.lower), answer.upper ? text_at_most(*answer.upper, true) : "?");
+                     text_at_most(answer.distance.lower), measured ? upper : "?");
 }
 
 // With --exit-code.
@@ -72,8 +73,9 @@ ExitStatus status_of(Verdict verdict) {
 
 // Verdict, bounds of the distance and witnesses of one pose among many.
 std::string row(const Collision& answer) {
-  std::string text = fmt::format("{} {} {}", name_of(answer.verdict), text_at_most(answer.lower),
-                                 answer.upper ? text_at_most(*answer.upper, true) : "-");
+  std::string text =
+      fmt::format("{} {} {}", name_of(answer.verdict), text_at_most(answer.distance.lower),
+                  answer.distance.upper < INFINITY ? text_at_most(answer.distance.upper, true) : "-");
   for (std::size_t side = 0; side < 2; ++side) {
     if (!answer.witness) {
       text += " - - -";
@@ -106,16 +108,14 @@ ExitStatus run(const Options& options) {
   wanted.tolerance = tolerance.in_mesh_units(pair.size());
   wanted.margin = margin.in_mesh_units(pair.size());
   wanted.budget = options.budget;
-  wanted.prove_contact = true;
   wanted.solid = options.solid;
-  wanted.measure = true;
   ProgressBar bar("colliding", options.quiet);
   const WorkMonitor monitor = bar.monitor();
   pair.prepare(monitor);
   if (options.solid) pair.require_closed();
   Report report("collide", options);
   pair.write_heads(report);
-  if (report.json()) report.write().field("tolerance", wanted.tolerance).field("margin", wanted.margin);
+  if (report.json()) report.write().field("tolerance", *wanted.tolerance).field("margin", wanted.margin);
   if (!options.poses.empty()) return run_poses(pair, report, wanted, monitor);
   const Collision answer = collide(pair.a(), pair.b(), wanted, monitor);
   std::optional<Penetration> depth;
@@ -125,7 +125,7 @@ ExitStatus run(const Options& options) {
     write_answer(report.write(), sides_of(pair.a(), pair.b()), answer);
     if (depth) write_penetration(report.write(), *depth);
   }
-  report.text(sentence(answer, wanted.tolerance, wanted.margin));
+  report.text(sentence(answer, *wanted.tolerance, wanted.margin));
   if (answer.witness) {
     for (const std::string& line : witness_lines(sides_of(pair.a(), pair.b()), *answer.witness, answer.at)) {
       report.text(line);
@@ -144,21 +144,22 @@ Command collide_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
-           "Surfaces this near may be called within: mesh units, or percent of the longer mesh");
-  list.add(Group::own, "--margin LENGTH", &options->margin, "Distance that must be kept");
+           "Surfaces this close may be reported as within; mesh units, or percent of the larger mesh");
+  list.add(Group::own, "--margin LENGTH", &options->margin,
+           "Required clearance; mesh units, or percent of the larger mesh");
   list.add(Group::own, "--solid", &options->solid,
-           "Closed surfaces bound solids: one inside of the other intersects it");
+           "Compare solids bounded by closed surfaces: one inside the other intersects it");
   list.add(Group::own, "--penetration", &options->penetration,
-           "Bounds of the shortest translation that separates the solids, and one that does")
+           "Bound the shortest translation that separates the solids, and print one that does")
       .needs("--solid")
       .excludes("--poses");
   list.add(Group::own, "--exit-code", &options->exit_code,
-           "Status 0 separated, 10 within, 11 intersecting, 12 undecided")
+           "Exit with 0 separated, 10 within, 11 intersecting, 12 undecided")
       .excludes("--poses");
   add_pair_options(list, *options);
   return {"collide",
           Topic::two_surfaces,
-          "Do two limit surfaces touch? A verdict that is a proof",
+          "Do two limit surfaces touch? The verdict is a proof",
           {"snug collide pawn.obj bust.obj --move-b \"3 0 0\""},
           std::move(list),
           [options] { return run(*options); }};

@@ -44,23 +44,22 @@ void add_common_options(OptionList& list, CommonOptions& options) {
                                      "polylines alone, else catmark");
   scheme.choices.emplace_back("curve");
   list.add(Group::mesh, "--boundary RULE", &options.boundary,
-           "What the boundary does; default: the file's tag, else edge-and-corner")
+           "Boundary rule; default: the file's tag, else edge-and-corner")
       .one_of(all_names(boundary_rule_names))
       .alias("vtx-boundary-edge-and-corner", "edge-and-corner")
       .alias("vtx-boundary-edge-only", "edge-only")
       .alias("vtx-boundary-none", "none");
   list.add(Group::mesh, "--weld LENGTH", &options.weld,
-           "Vertices this near become one: mesh units, or percent of the mesh (0.001%); 0: equal ones");
-  list.add(
-      Group::mesh, "--sharp ANGLE", &options.sharp,
-      "Parts from CAD: edges whose faces differ by more degrees are infinitely sharp, and flat faces stay as "
-      "they are; auto is 30");
+           "Merge vertices this close; mesh units, or percent of the mesh (0.001%); 0: equal ones");
+  list.add(Group::mesh, "--sharp ANGLE", &options.sharp,
+           "For parts from CAD: edges whose face normals differ by more than ANGLE degrees stay sharp, and "
+           "flat faces stay flat; auto is 30");
   add_output_options(list, options);
 }
 
 void add_output_options(OptionList& list, CommonOptions& options) {
-  list.add(Group::output, "--json", &options.json, "One JSON document on standard output");
-  list.add(Group::output, "-o FILE", &options.output, "Output file; the format follows the ending");
+  list.add(Group::output, "--json", &options.json, "Print one JSON document");
+  list.add(Group::output, "-o FILE", &options.output, "Output file; its extension selects the format");
   list.add(Group::output, "--quiet", &options.quiet, "No progress and no notes on standard error");
   list.add(Group::effort, "--threads N", &options.threads,
            "Threads, up to 1024; 0: all cores. Results do not depend on it")
@@ -69,10 +68,10 @@ void add_output_options(OptionList& list, CommonOptions& options) {
 
 std::array<Option*, 2> add_bound_options(OptionList& list, CommonOptions& options) {
   Option& budget = list.add(Group::effort, "--budget N", &options.budget,
-                            "Most patches split before the answer is what was reached")
+                            "Split at most N patches, then report what was reached")
                        .between(0, std::uint64_t{1} << 40);
   Option& bounds = list.add(Group::research, "--bounds WHAT", &options.bounds,
-                            "What encloses: hull rows, or the dissertation's tables")
+                            "How patches are bounded: by bounding rows, or by the dissertation's tables")
                        .one_of({"rows", "table"});
   return {&budget, &bounds};
 }
@@ -104,10 +103,10 @@ Notes notes_for(const CommonOptions& options) {
 }
 
 ControlMesh load_mesh(const std::string& path, const CommonOptions& options) {
-  const WeldDistance weld = weld_distance(options);
+  const std::function<double(double)> weld = weld_distance(options);
   const std::optional<double> sharp = sharp_angle(options);
   ProgressBar bar("reading " + path, options.quiet);
-  ControlMesh mesh = read_mesh(path, notes_for(options), bar.monitor(), weld);
+  ControlMesh mesh = read_mesh(path, {weld, notes_for(options), bar.monitor()});
   note_coincidences(mesh, path, options);
   if (sharp) sharpen_mesh(mesh, path, *sharp, options);
   return mesh;
@@ -193,7 +192,7 @@ ExitStatus Report::finish(bool reached, AtomicFile* other) {
     writer_->end_object().finish();
   }
   if (notes_ && threads_were_refused()) {
-    notes_("the system refused to start threads: fewer have done the work, and it took longer");
+    notes_("the system refused to start threads: fewer did the work, and it took longer");
   }
   // What may fail comes before any file is put in its place.
   AtomicFile* const files[] = {text_ ? &text_->file : nullptr, target_ ? &target_->file : nullptr, other};

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <snug/io/mesh_file.h>
-#include <snug/io/notes.h>
+#include <snug/mesh.h>
 #include <snug/query/bound.h>
 #include <snug/surface/limit_surface.h>
 

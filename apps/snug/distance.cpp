@@ -20,7 +20,7 @@ struct Options : PairOptions {
 
 void write_answer(JsonWriter& json, const Sides& sides, const Distance& answer) {
   json.field("reached", answer.reached);
-  json.key("distance").begin_array().value(answer.lower).value(answer.upper).end_array();
+  json.key("distance").begin_array().value(answer.distance.lower).value(answer.distance.upper).end_array();
   json.key("witness").begin_array().value(answer.witness[0]).value(answer.witness[1]).end_array();
   json.field("witness_error", answer.witness_error);
   write_places(json, sides, &answer.at);
@@ -31,8 +31,8 @@ void write_answer(JsonWriter& json, const Sides& sides, const Distance& answer) 
 // Bounds of the distance and witnesses of one pose among many.
 std::string row(const Distance& answer) {
   const auto& [a, b] = answer.witness;
-  return fmt::format("{} {} {} {} {} {} {} {}", text_at_most(answer.lower), text_at_most(answer.upper, true),
-                     a.x, a.y, a.z, b.x, b.y, b.z);
+  return fmt::format("{} {} {} {} {} {} {} {}", text_at_most(answer.distance.lower),
+                     text_at_most(answer.distance.upper, true), a.x, a.y, a.z, b.x, b.y, b.z);
 }
 
 ExitStatus run_poses(PairArguments& pair, Report& report, const DistanceOptions& wanted,
@@ -62,19 +62,19 @@ ExitStatus run(const Options& options) {
   if (options.solid) pair.require_closed();
   Report report("distance", options);
   pair.write_heads(report);
-  if (report.json()) report.write().field("precision", wanted.absolute).field("relative", wanted.relative);
+  if (report.json()) report.write().field("precision", *wanted.absolute).field("relative", *wanted.relative);
   if (!options.poses.empty()) return run_poses(pair, report, wanted, monitor);
   const Distance answer = distance(pair.a(), pair.b(), wanted, monitor);
   if (report.json()) {
     write_poses(report.write(), {pair.pose_a(), pair.pose_b()});
     write_answer(report.write(), sides_of(pair.a(), pair.b()), answer);
   }
-  if (answer.upper == 0) {
+  if (answer.distance.upper == 0) {
     report.text(answer.inner ? inner_sentence(*answer.inner) + ": proved, the solids meet"
                              : "the limit surfaces have a point in common: proved");
   } else {
     report.text(fmt::format("the limit surfaces are at least {} and at most {} apart{}",
-                            text_at_most(answer.lower), text_at_most(answer.upper, true),
+                            text_at_most(answer.distance.lower), text_at_most(answer.distance.upper, true),
                             answer.reached ? ""
                             : answer.stats.splits >= options.budget
                                 ? "; that is not as precise as asked, give a larger --budget"
@@ -83,7 +83,7 @@ ExitStatus run(const Options& options) {
   for (const std::string& line : witness_lines(sides_of(pair.a(), pair.b()), answer.witness, answer.at)) {
     report.text(line);
   }
-  if (answer.lower > 0 && !options.solid) note_nesting(options, pair.a(), pair.b(), monitor);
+  if (answer.distance.lower > 0 && !options.solid) note_nesting(options, pair.a(), pair.b(), monitor);
   return report.finish(answer.reached);
 }
 
@@ -93,15 +93,15 @@ Command distance_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "--precision LENGTH", &options->precision,
-           "How near the bounds must be: mesh units, or percent of the longer mesh");
-  list.add(Group::own, "--relative SHARE", &options->relative, "Or as near as this share of the distance")
+           "Largest width of the interval; mesh units, or percent of the larger mesh");
+  list.add(Group::own, "--relative SHARE", &options->relative, "Or this fraction of the distance")
       .between(0, 1);
   list.add(Group::own, "--solid", &options->solid,
-           "Closed surfaces bound solids: 0 where one lies inside of the other");
+           "Compare solids bounded by closed surfaces: 0 if one is inside the other");
   add_pair_options(list, *options);
   return {"distance",
           Topic::two_surfaces,
-          "How far are two limit surfaces apart? Bounds, and two points",
+          "How far apart are two limit surfaces? Bounds and two points",
           {"snug distance pawn.obj bust.obj --rotate-b \"z 30\" --move-b \"9 0 0\""},
           std::move(list),
           [options] { return run(*options); }};

@@ -223,17 +223,17 @@ Command eval_command() {
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
   list.add(Group::own, "--samples N", &options->samples,
-           "A lattice of N steps, 1 to 1000, along each edge of every face, or of every polyline")
+           "Evaluate a grid with N steps, 1 to 1000, along each edge of every face or polyline")
       .between(1, 1000);
   list.add(Group::own, "--at FILE", &options->at,
-           "File of lines 'face u v' (Loop: p = (1-u-v) c0 + u c1 + v c2; quads: u from c0 towards c1), a "
+           "File with lines 'face u v' (Loop: p = (1-u-v) c0 + u c1 + v c2; quads: u from c0 towards c1), a "
            "corner after it for the quads of other faces; of curves: 'edge t'")
       .excludes("--samples");
   add_degree_option(list, options->degree);
   add_common_options(list, *options);
   return {"eval",
           Topic::one_surface,
-          "Limit points, tangents and normals",
+          "Evaluate limit points, tangents and normals",
           {"snug eval pawn.obj --samples 2", "echo \"0 0.25 0.5\" | snug eval pawn.obj --at - --json"},
           std::move(list),
           [options] { return run(*options); }};

@@ -103,7 +103,7 @@ Command info_command() {
   add_common_options(list, *options);
   return {"info",
           Topic::files,
-          "Counts, valences and defects of a mesh, of a broken one too",
+          "Print counts, valences and defects of a mesh, even of a broken one",
           {"snug info pawn.obj"},
           std::move(list),
           [options] { return run(*options); }};

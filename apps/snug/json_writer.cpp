@@ -67,7 +67,7 @@ JsonWriter& JsonWriter::key(std::string_view name) {
 
 JsonWriter& JsonWriter::value(double number) {
   if (!std::isfinite(number)) {
-    throw InputError(InputProblem::unrepresentable, "a number of the answer does not fit a double");
+    throw InputError(InputProblem::unrepresentable, "a number in the answer does not fit a double");
   }
   char text[32];
   const auto end = std::to_chars(text, text + sizeof text, number).ptr;

@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 #include <snug/geometry/rounding.h>
-#include <snug/mesh/sharpen.h>
+#include <snug/mesh.h>
 #include <snug/mesh/weld.h>
 #include <snug/query/face_distance.h>
 
@@ -14,7 +14,7 @@
 
 namespace snug::command {
 
-WeldDistance weld_distance(const CommonOptions& options) {
+std::function<double(double)> weld_distance(const CommonOptions& options) {
   if (options.weld.empty()) return {};
   return [length = parse_length(options.weld, "--weld", true)](double size) {
     return length.in_mesh_units(size);
@@ -51,7 +51,7 @@ std::optional<double> sharp_angle(const CommonOptions& options) {
   double angle = -1;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), angle);
   if (error != std::errc() || end != text.data() + text.size() || !(angle >= 0 && angle < 180)) {
-    throw UsageError("--sharp: '" + text + "' is no angle; give degrees from 0 to below 180, or auto");
+    throw UsageError("--sharp: '" + text + "' is not an angle; give degrees from 0 to below 180, or auto");
   }
   return angle;
 }
@@ -105,8 +105,8 @@ void note_smooth_facets(const std::string& path, const CommonOptions& options, c
   const Notes note = notes_for(options);
   const SchemeRules* const rules = scheme_named(options.scheme);
   if (!note || !options.sharp.empty() || !is_stl(path) || (rules && rules->local)) return;
-  note(path +
-       ": the facets are taken for a control mesh, whose limit surface is smooth and away from them, " + far +
+  note(path + ": the facets are used as a control mesh, whose smooth limit surface is away from them, " +
+       far +
        "; --sharp auto keeps edges and flat faces of a part from CAD, --scheme flat takes the triangles as "
        "they are");
 }

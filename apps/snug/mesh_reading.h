@@ -11,7 +11,7 @@ namespace snug::command {
 
 /// The distance of --weld; empty without it.
 /// Errors:    UsageError for what is no length.
-[[nodiscard]] WeldDistance weld_distance(const CommonOptions& options);
+[[nodiscard]] std::function<double(double)> weld_distance(const CommonOptions& options);
 
 /// A note about vertices and boundary edges that stand where others do, or nearly so.
 void note_coincidences(const ControlMesh& mesh, const std::string& path, const CommonOptions& options);

@@ -18,11 +18,11 @@ void add_pair_options(OptionList& list, PairOptions& options) {
   add_pose_options(list, "-b", "B", options.pose_b);
   add_nearest_rigid_option(list, options.nearest_rigid);
   list.add(Group::placement, "--poses FILE", &options.poses,
-           "Answers each line, a pose of B or JSON with a, b or both; - for standard input");
+           "Answer many poses, one per line: a pose of B, or JSON with a, b or both; - for standard input");
   add_common_options(list, options);
   add_bound_options(list, options);
-  add_scheme_option(list, "--scheme-a", options.scheme_a, "Scheme of A, before --scheme");
-  add_scheme_option(list, "--scheme-b", options.scheme_b, "Scheme of B, before --scheme");
+  add_scheme_option(list, "--scheme-a", options.scheme_a, "Scheme of A; overrides --scheme");
+  add_scheme_option(list, "--scheme-b", options.scheme_b, "Scheme of B; overrides --scheme");
 }
 
 void write_poses(JsonWriter& json, const PosePair& poses) {
@@ -40,7 +40,7 @@ PairArguments::PairArguments(const PairOptions& options)
     throw UsageError("--nearest-rigid needs --place-a, --place-b or --poses");
   }
   if (options.scheme != "auto" && !options.scheme_a.empty() && !options.scheme_b.empty()) {
-    throw UsageError("--scheme has nothing to say beside --scheme-a and --scheme-b");
+    throw UsageError("--scheme has no effect beside --scheme-a and --scheme-b");
   }
   const Mending mending{options.nearest_rigid, notes_for(options)};
   pose_a_ = pose_of(options.pose_a, "-a", mending);

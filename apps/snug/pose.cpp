@@ -67,7 +67,7 @@ Motion parse_rotation(const std::string& text, const std::string& option) {
       if (words[0] != names[axis]) continue;
       Vector3 direction;
       direction[axis] = 1;
-      return Motion::from_axis_degrees(direction, number_of(words[1], option));
+      return Motion::rotation_degrees(direction, number_of(words[1], option));
     }
   }
   if (words.size() != 4) {
@@ -77,7 +77,7 @@ Motion parse_rotation(const std::string& text, const std::string& option) {
   }
   const std::vector<double> numbers = numbers_of(words, option);
   return naming_option(option, [&] {
-    return Motion::from_axis_degrees({numbers[0], numbers[1], numbers[2]}, numbers[3]);
+    return Motion::rotation_degrees({numbers[0], numbers[1], numbers[2]}, numbers[3]);
   });
 }
 
@@ -87,19 +87,19 @@ void add_pose_options(OptionList& list, const std::string& suffix, const std::st
                       PoseOptions& options) {
   const std::string place = "--place" + suffix;
   list.add(Group::placement, place + " \"NUMBERS\"", &options.place,
-           "Pose of " + mesh + ": a row-major 3x4 matrix of a rigid motion, or 4x4");
+           "Pose of " + mesh + ": a rigid transform as a row-major 3x4 or 4x4 matrix");
   list.add(Group::placement, "--rotate" + suffix + " \"AXIS DEGREES\"", &options.rotate,
-           "Turns " + mesh + " about an axis through the origin: x, y, z or three numbers")
+           "Rotate " + mesh + " about an axis through the origin: x, y, z or three numbers")
       .excludes(place);
   list.add(Group::placement, "--move" + suffix + " \"X Y Z\"", &options.move,
-           "Moves " + mesh + ", after the rotation")
+           "Translate " + mesh + ", after the rotation")
       .excludes(place);
 }
 
 Option& add_nearest_rigid_option(OptionList& list, bool& nearest_rigid) {
   return list.add(
       Group::placement, "--nearest-rigid", &nearest_rigid,
-      "Takes the nearest rigid motion of a pose that is not rigid within 1e-9, and says how far off it was");
+      "Replace a pose that is not rigid within 1e-9 by the nearest one that is, and say how far off it was");
 }
 
 TakenPose take_matrix(std::span<const double> numbers, bool nearest_rigid) {
@@ -137,7 +137,7 @@ Motion pose_of(const PoseOptions& options, const std::string& suffix, const Mend
   if (!options.place.empty()) return parse_pose(options.place, "--place" + suffix, mending);
   Motion pose;
   if (!options.rotate.empty()) pose = parse_rotation(options.rotate, "--rotate" + suffix);
-  if (!options.move.empty()) pose = pose.with_translation(parse_move(options.move, "--move" + suffix));
+  if (!options.move.empty()) pose = pose.with_offset(parse_move(options.move, "--move" + suffix));
   return pose;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include <snug/geometry/motion.h>
-#include <snug/io/notes.h>
+#include <snug/mesh.h>
 
 #include "options.h"
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include <snug/base/progress.h>
 #include <snug/geometry/motion.h>
+#include <snug/monitor.h>
 
 namespace snug::command {
 

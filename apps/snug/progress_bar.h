@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include <snug/base/progress.h>
+#include <snug/monitor.h>
 
 namespace snug::command {
 

@@ -339,29 +339,31 @@ Command render_command() {
            "Control meshes (OBJ, OFF, PLY or STL; - for standard input)");
   list.add(Group::own, "--size WxH", &options->size, "Pixels: WxH, or one number");
   list.add(Group::own, "--samples N", &options->samples, "N * N rays a pixel, N from 1 to 16").between(1, 16);
-  list.add(Group::own, "--cage", &options->cage, "The edges of the control meshes, too");
-  list.add(Group::own, "--witness \"X Y Z  X Y Z\"", &options->witnesses,
-           "Two points and the segment between them, such as the witnesses of collide and distance; may be "
-           "repeated");
-  list.add(Group::own, "--enclosures", &options->enclosures, "What encloses the surfaces, half transparent");
+  list.add(Group::own, "--cage", &options->cage, "Draw the edges of the control meshes too");
+  list.add(
+      Group::own, "--witness \"X Y Z  X Y Z\"", &options->witnesses,
+      "Draw two points and the segment between them, such as the witnesses of collide and distance; may be "
+      "repeated");
+  list.add(Group::own, "--enclosures", &options->enclosures,
+           "Draw the enclosures of the surfaces, half transparent");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
-           "Enclosures whose radius is at most half of this: mesh units, or 1%")
+           "Split enclosures until each radius is at most half of this; mesh units or percent (1%)")
       .needs("--enclosures");
-  list.add(Group::own, "--level N", &options->level, "Enclosures of patches split this often, 0 to 12")
+  list.add(Group::own, "--level N", &options->level, "Split every patch N times, 0 to 12")
       .between(0, 12)
       .excludes("--tolerance")
       .needs("--enclosures");
   list.add(Group::own, "--view \"X Y Z\"", &options->view,
-           "Direction of view; default: a three-quarter view from above");
-  list.add(Group::own, "--up \"X Y Z\"", &options->up, "What is up on the picture; default: y");
+           "Viewing direction; default: a three-quarter view from above");
+  list.add(Group::own, "--up \"X Y Z\"", &options->up, "Up direction; default: y");
   list.add(Group::placement, "--place \"NUMBERS\"", &options->poses,
-           "Pose of a mesh: a row-major 3x4 matrix of a rigid motion, or 4x4; once a mesh, in their order");
+           "Pose of a mesh: a rigid transform as a row-major 3x4 or 4x4 matrix; one for each mesh, in order");
   add_nearest_rigid_option(list, options->nearest_rigid).needs("--place");
   add_common_options(list, *options);
   for (Option* option : add_bound_options(list, *options)) option->needs("--enclosures");
   return {"render",
           Topic::files,
-          "A shaded picture of limit surfaces",
+          "Draw a shaded picture of limit surfaces",
           {"snug render pawn.obj -o pawn.png",
            "snug render pawn.obj --enclosures --cage --size 1200x900 -o pawn.png"},
           std::move(list),

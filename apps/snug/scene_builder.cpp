@@ -30,8 +30,8 @@ PictureUnits::PictureUnits(std::span<const PlacedSurface> parts) {
   for (const PlacedSurface& part : parts) {
     const Box3 box = used_box(part.surface->mesh());
     if (box.empty()) continue;
-    largest = std::max({largest, max_abs(box.lower - Point3{}), max_abs(box.upper - Point3{}),
-                        max_abs(part.pose.translation())});
+    largest = std::max(
+        {largest, max_abs(box.lower - Point3{}), max_abs(box.upper - Point3{}), max_abs(part.pose.offset())});
   }
   // Two halvings: sums of a rotated point and a translation stay small.
   scale_ = PowerOfTwo::normalising(largest) * PowerOfTwo(-2);
@@ -44,7 +44,7 @@ PictureUnits::PictureUnits(std::span<const PlacedSurface> parts) {
   }
   if (box.empty()) return;
   centre_ = box.lower + 0.5 * (box.upper - box.lower);
-  if (const double zoom = 1 / box.longest_side(); std::isfinite(zoom)) zoom_ = zoom;
+  if (const double zoom = 1 / longest_side(box); std::isfinite(zoom)) zoom_ = zoom;
 }
 
 Tessellation::Tessellation(const PlacedSurface& part, const PictureUnits& units, std::uint32_t steps,

@@ -8,8 +8,8 @@
 #include <picture/camera.h>
 #include <picture/polyhedron.h>
 #include <picture/scene.h>
-#include <snug/base/progress.h>
 #include <snug/geometry/motion.h>
+#include <snug/monitor.h>
 #include <snug/query/bound.h>
 #include <snug/surface/limit_surface.h>
 
@@ -44,7 +44,7 @@ class PictureUnits {
 
  private:
   [[nodiscard]] Point3 placed(const Motion& pose, Point3 p) const {
-    return Point3{} + pose.rotate(p - Point3{}) + scale_.apply(pose.translation());
+    return Point3{} + pose.rotate(p - Point3{}) + scale_.apply(pose.offset());
   }
 
   PowerOfTwo scale_;

@@ -41,17 +41,17 @@ void note_nesting(const CommonOptions& options, const PlacedBvh& a, const Placed
 
 void write_penetration(JsonWriter& json, const Penetration& found) {
   json.key("penetration").begin_object().key("depth").begin_array();
-  json.value(found.lower).value(found.upper).end_array();
+  json.value(found.depth.lower).value(found.depth.upper).end_array();
   json.field("translation", found.translation).field("reached", found.reached).end_object();
 }
 
 std::string penetration_sentence(const Penetration& found) {
-  if (found.upper == 0) return "the solids are separated as they stand";
+  if (found.depth.upper == 0) return "the solids are separated as they stand";
   return fmt::format(
       "the solids are at least {} deep in each other; moving B by ({:.6g} {:.6g} {:.6g}), {} long, separates "
       "them: proved",
-      text_at_most(found.lower), found.translation.x, found.translation.y, found.translation.z,
-      text_at_most(found.upper, true));
+      text_at_most(found.depth.lower), found.translation.x, found.translation.y, found.translation.z,
+      text_at_most(found.depth.upper, true));
 }
 
 }  // namespace snug::command

@@ -88,7 +88,7 @@ Command subdivide_command() {
   add_common_options(list, *options);
   return {"subdivide",
           Topic::files,
-          "The refined control mesh, or its limit positions",
+          "Write the refined control mesh, or its limit positions",
           {"snug subdivide pawn.obj --level 3 --limit -o smooth.ply"},
           std::move(list),
           [options] { return run(*options); }};

@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
-#include <snug/search/answers.h>
+#include <snug/collide.h>
 #include <snug/search/workspace.h>
+#include <snug/surface/evaluate.h>
 
 #include "json_writer.h"
 

@@ -116,7 +116,7 @@ double OsdSurfaces::box_all() const {
       const double* p = impl_->scratch.data() + 3 * i;
       box.add(Point3{p[0], p[1], p[2]});
     }
-    sum += box.longest_side();
+    sum += longest_side(box);
   }
   return sum;
 }

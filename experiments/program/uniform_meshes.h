@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include <snug/base/progress.h>
 #include <snug/mesh/control_mesh.h>
+#include <snug/monitor.h>
 
 /// The columns of uniform Loop meshes in the dissertation's tables: OpenSubdiv refines to the first level whose vertices are all
 /// within half the tolerance of their limit, FCL builds trees and answers. In the order of the tables' rows; nothing where

@@ -14,7 +14,7 @@
 #include <snug/adapters/opensubdiv.h>
 #include <snug/io/mesh_file.h>
 #include <snug/io/obj.h>
-#include <snug/surface/limit_surface.h>
+#include <snug/search/surface_data.h>
 
 namespace snug {
 namespace {
@@ -398,7 +398,8 @@ TEST(opensubdiv_adapter, hands_on_non_manifold_meshes) {
     expect_round_trip(mesh);
   }
   MeshAndOptions answer = from_refiner(*refiner_of(mesh, Sdc::SCHEME_CATMARK), mesh.points);
-  const LimitSurface surface(std::move(answer.mesh), answer.options, std::make_shared<BoundsCache>());
+  const Surface handle(std::move(answer.mesh), answer.options);
+  const LimitSurface& surface = handle.data()->limit();
   EXPECT_EQ(surface.patch_count(), 6u);
 }
 
@@ -427,9 +428,8 @@ TEST(opensubdiv_adapter, hands_loop_meshes_to_surface) {
   for (const ControlMesh& mesh : {icosahedron(), bust}) {
     expect_round_trip(mesh, Scheme::loop);
     MeshAndOptions answer = from_refiner(*refiner_of(mesh, Sdc::SCHEME_LOOP), mesh.points);
-    const auto library = std::make_shared<BoundsCache>();
-    const LimitSurface surface(std::move(answer.mesh), answer.options, library),
-        direct(mesh, SchemeOptions{}, library);
+    const Surface handle(std::move(answer.mesh), answer.options), other(mesh);
+    const LimitSurface &surface = handle.data()->limit(), &direct = other.data()->limit();
     ASSERT_EQ(surface.face_count(), direct.face_count());
     EXPECT_EQ(surface.kind_count(), direct.kind_count());
     for (std::size_t f = 0; f < surface.face_count(); ++f) {

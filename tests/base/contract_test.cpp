@@ -1,7 +1,7 @@
 #include <snug/base/contract.h>
 
 #include <gtest/gtest.h>
-#include <snug/base/ids.h>
+#include <snug/mesh.h>
 
 #include <stdexcept>
 #include <type_traits>

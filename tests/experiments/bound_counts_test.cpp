@@ -76,7 +76,7 @@ TEST(bound_counts, of_control_boxes_are_far_more) {
   HullPoints rows, control;
   const Patch patch = surface.patch(PatchId(0));
   hull_points(surface.library().rows(*patch.kind), patch, rows);
-  EXPECT_LT(2 * outer_box(rows).longest_side(), control_box(patch, control).longest_side());
+  EXPECT_LT(2 * longest_side(outer_box(rows)), longest_side(control_box(patch, control)));
 }
 
 TEST(bound_counts, refuse_what_cannot_be_counted) {

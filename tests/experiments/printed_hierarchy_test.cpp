@@ -47,7 +47,7 @@ TEST(printed_hierarchy, tells_surfaces_that_are_apart_from_those_that_cross) {
   const PrintedHierarchy tree_a(a, {0.05, BoundMethod::table}), tree_b(b, {0.05, BoundMethod::table});
   EXPECT_EQ(tree_a.leaf_count(), leaves(a, {0.05, BoundMethod::table}).size());
   const auto says = [&](double x, double epsilon) {
-    const Motion moved = Motion::from_translation({x, 0, 0});
+    const Motion moved = Motion::translation({x, 0, 0});
     return PrintedHierarchy::says_separated(tree_a, {}, tree_b, moved, epsilon);
   };
   EXPECT_TRUE(says(2.5, 0));

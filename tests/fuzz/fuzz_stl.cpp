@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       [](std::string_view bytes) {
         const ControlMesh mesh = parse_stl(bytes, "input");
         ControlMesh welded = mesh;
-        weld(welded, used_box(mesh).longest_side() / 8);
+        weld(welded, longest_side(used_box(mesh)) / 8);
         return welded.face_count() > 0 ? welded : mesh;  // small faces may all be gone
       },
       [](const ControlMesh&) {});

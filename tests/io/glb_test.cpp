@@ -152,7 +152,7 @@ TEST(glb, refuses_what_it_cannot_hold) {
   mesh = house();
   mesh.add_face(std::vector{VertexId(0), VertexId(1)});
   EXPECT_EQ(refusal(mesh), "out.glb: face 2 has 2 corners");
-  EXPECT_EQ(refusal(ControlMesh{}), "out.glb: the mesh has no faces, and glTF no empty meshes");
+  EXPECT_EQ(refusal(ControlMesh{}), "out.glb: the mesh has no faces, and glTF has no empty meshes");
 }
 
 }  // namespace

@@ -102,12 +102,14 @@ TEST(mesh_file, welds_every_format_and_says_what) {
     EXPECT_EQ(read_mesh(folder / name).vertex_count(), 6u) << name;
     double seen = 0;
     std::vector<std::string> notes;
-    const ControlMesh welded = read_mesh(
-        folder / name, [&](const std::string& line) { notes.push_back(line); }, {},
-        [&](double size) {
-          seen = size;
-          return 1e-6 * size;
-        });
+    const ControlMesh welded =
+        read_mesh(folder / name, {.weld =
+                                      [&](double size) {
+                                        seen = size;
+                                        return 1e-6 * size;
+                                      },
+                                  .notes = [&](const std::string& line) { notes.push_back(line); },
+                                  .monitor = {}});
     EXPECT_EQ(seen, 1) << name;
     EXPECT_EQ(welded.vertex_count(), 4u) << name;
     EXPECT_EQ(testing::corners(welded, 1), (std::vector<std::uint32_t>{2, 1, 3})) << name;
@@ -120,7 +122,8 @@ TEST(mesh_file, says_which_file_cannot_be_welded) {
   const TemporaryFolder folder;
   write_mesh(creased_triangle(), folder / "a.obj");
   try {
-    static_cast<void>(read_mesh(folder / "a.obj", {}, {}, [](double) { return 1e-300; }));
+    static_cast<void>(
+        read_mesh(folder / "a.obj", {.weld = [](double) { return 1e-300; }, .notes = {}, .monitor = {}}));
     ADD_FAILURE();
   } catch (const InputError& error) {
     EXPECT_EQ(error.problem(), InputProblem::refused);

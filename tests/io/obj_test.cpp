@@ -71,11 +71,11 @@ TEST(obj, reads_polylines_beside_faces_and_alone) {
 
 TEST(obj, bad_polylines_are_named) {
   EXPECT_EQ(message(triangle + "l 1 2\nl 1 2 0\n"),
-            "mesh.obj:5: polyline 1: index 0 names no vertex: OBJ counts from 1");
+            "mesh.obj:5: polyline 1: index 0 is not a vertex: OBJ counts from 1");
   EXPECT_EQ(message(triangle + "l 1 9\n"),
             "mesh.obj:4: polyline 0: index 9 is beyond the 3 vertices of the file");
   EXPECT_EQ(message(triangle + "l -4 1\n"),
-            "mesh.obj:4: polyline 0: index -4 reaches before the first of the 3 vertices above this line");
+            "mesh.obj:4: polyline 0: index -4 goes back beyond the first of the 3 vertices above this line");
   EXPECT_EQ(message(triangle + "l\n"), "mesh.obj:4: polyline 0 has no vertices");
   EXPECT_NE(message(triangle + "l 1 2.5\n").find("polyline 0: '2.5' is not a corner"), std::string::npos);
 }
@@ -140,11 +140,11 @@ TEST(obj, bad_coordinates_are_named) {
 
 TEST(obj, bad_indices_are_named) {
   EXPECT_EQ(message(triangle + "f 1 2 3\nf 1 2 0\n"),
-            "mesh.obj:5: face 1: index 0 names no vertex: OBJ counts from 1");
+            "mesh.obj:5: face 1: index 0 is not a vertex: OBJ counts from 1");
   EXPECT_EQ(message(triangle + "f 1 4 3\n\nf 1 9 3\nf 1 2 3\n"),
             "mesh.obj:6: face 1: index 9 is beyond the 3 vertices of the file");
   EXPECT_EQ(message(triangle + "f -4 1 2\n"),
-            "mesh.obj:4: face 0: index -4 reaches before the first of the 3 vertices above this line");
+            "mesh.obj:4: face 0: index -4 goes back beyond the first of the 3 vertices above this line");
 }
 
 TEST(obj, a_corner_that_only_begins_well_is_refused) {

@@ -90,7 +90,7 @@ TEST(off, faults_name_line_and_element) {
   EXPECT_EQ(message("OFF\n4 2 0\n" + vertices + "3 0 2\n3 0 2 1\n"),
             "mesh.off:7: face 0: only 2 of its 3 vertices are given");
   EXPECT_EQ(message("OFF\n4 1 0\n" + vertices + faces),
-            "mesh.off:8: '4' follows the 1 faces that the header promises: correct the counts");
+            "mesh.off:8: '4' follows the 1 faces that the header declares: correct the counts");
 }
 
 TEST(off, false_promises_cost_nothing) {

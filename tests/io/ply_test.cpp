@@ -144,7 +144,7 @@ TEST(ply, faults_name_line_or_element) {
   EXPECT_EQ(message(head + vertices + faces + "3 0 2 1\n"),
             "mesh.ply:16: '3' follows the last element: correct the counts of the header");
   EXPECT_EQ(message("ply\nformat ascii 1.0\nelement vertex 4\nproperty quad x\n"),
-            "mesh.ply:4: 'quad' is no type of PLY: char to double, or int8 to float64");
+            "mesh.ply:4: 'quad' is not a PLY type: char to double, or int8 to float64");
 }
 
 TEST(ply, false_promises_cost_nothing) {
@@ -186,7 +186,7 @@ TEST(ply, a_header_of_mixed_line_ends_is_refused_unless_a_cr_stands_before_lf) {
   EXPECT_EQ(parse(bent + vertices + faces).vertex_count(), 4u);
   bent.erase(at + 1, 1);
   EXPECT_EQ(message(bent + vertices + faces),
-            "mesh.ply:3: the lines of the header end sometimes with CR and sometimes with LF");
+            "mesh.ply:3: some lines of the header end with CR and some with LF");
 }
 
 TEST(ply, two_lists_of_corners_are_refused) {
@@ -201,7 +201,7 @@ TEST(ply, triangle_strips_are_refused_unless_there_are_none) {
   std::string bent = head;
   bent.replace(bent.find("end_header\n"), 11, "element tristrips 1\n" + strips);
   EXPECT_EQ(message(bent + vertices + faces + "3 0 1 2\n"),
-            "mesh.ply:9: the file holds triangle strips: convert them to faces");
+            "mesh.ply:9: the file contains triangle strips: convert them to faces");
   bent.replace(bent.find("tristrips 1"), 11, "tristrips 0");
   EXPECT_EQ(parse(bent + vertices + faces).face_count(), 2u);
 }
@@ -212,7 +212,7 @@ TEST(ply, headers_that_announce_without_end_are_refused) {
     names += "element e" + std::to_string(i) + " 0\n";
     properties += "property int p" + std::to_string(i) + '\n';
   }
-  EXPECT_NE(message(names + "end_header\n").find("more than 1000 sorts"), std::string::npos);
+  EXPECT_NE(message(names + "end_header\n").find("more than 1000 kinds"), std::string::npos);
   EXPECT_NE(message(properties + "end_header\n").find("more than 1000 properties"), std::string::npos);
 }
 

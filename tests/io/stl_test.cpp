@@ -149,11 +149,11 @@ TEST(stl, faults_name_line_or_facet) {
   EXPECT_EQ(message("solid\n" + facet("0 0 0", "1 nan 0", "0 1 0") + "endsolid\n"),
             "mesh.stl:5: vertex 1: 'nan' is not a finite number");
   EXPECT_EQ(message("solid\n" + two_facets + "facet normal 0 0 1\nvertex 0 0 0\n"),
-            "mesh.stl:17: facet 2: 'vertex' stands where outer should");
+            "mesh.stl:17: facet 2: 'vertex' found where outer is expected");
   const ControlMesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 0}});
   std::string file = format_stl(mesh, "out.stl");
   EXPECT_EQ(message(file.substr(0, file.size() - 1)),
-            "mesh.stl: the file promises 2 facets, which take 184 bytes, but has 183");
+            "mesh.stl: the file declares 2 facets, which take 184 bytes, but has 183");
   file.replace(84 + 50 + 12, 4, std::string("\0\0\x80\x7f", 4));
   EXPECT_EQ(message(file), "mesh.stl: facet 1: a coordinate is not a finite number");
 }

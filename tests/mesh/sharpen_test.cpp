@@ -1,4 +1,4 @@
-#include <snug/mesh/sharpen.h>
+#include <snug/mesh.h>
 
 #include <algorithm>
 #include <random>

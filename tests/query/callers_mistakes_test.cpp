@@ -17,8 +17,8 @@
 #include <snug/query/closest.h>
 #include <snug/query/collide.h>
 #include <snug/query/distance.h>
+#include <snug/surface/batch_bounds.h>
 #include <snug/surface/evaluate.h>
-#include <snug/surface/patch_bounds.h>
 
 namespace snug {
 namespace {
@@ -125,15 +125,15 @@ TEST(callers_mistakes, curves_have_edges_parameters_and_no_tables) {
 
 TEST(callers_mistakes, patch_bounds_take_a_point_a_vertex_and_patches_that_there_are) {
   const LimitSurface surface = surface_of(square(), Scheme::catmark);
-  PatchBounds bounds(surface, {}, 1);
+  BatchBounds bounds(surface, {}, 1);
   std::vector<Point3> points = surface.mesh().points;
   std::vector<OffsetTriangle> out(bounds.patches().size());
   EXPECT_NO_THROW(bounds.update(points, out));
   expect_refused("room", [&] { bounds.update(points, std::span(out).first(1)); });
   points.pop_back();
   expect_refused("points", [&] { bounds.update(points, out); });
-  expect_refused("patch", [&] { PatchBounds(surface, std::vector{PatchId(2)}, {}, 1); });
-  expect_refused("no patch", [&] { PatchBounds(surface, std::vector{PatchId()}, {}, 1); });
+  expect_refused("patch", [&] { BatchBounds(surface, std::vector{PatchId(2)}, {}, 1); });
+  expect_refused("no patch", [&] { BatchBounds(surface, std::vector{PatchId()}, {}, 1); });
 }
 
 TEST(callers_mistakes, queries_take_finite_numbers_and_a_scratch_for_each_model) {

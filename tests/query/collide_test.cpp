@@ -16,6 +16,8 @@
 
 #include <cfloat>
 
+#include "testing/verdict_only.h"
+
 namespace snug {
 namespace {
 
@@ -35,23 +37,23 @@ struct Pair {
   }
 };
 
-Motion moved(double x, double y, double z) { return Motion::from_translation({x, y, z}); }
+Motion moved(double x, double y, double z) { return Motion::translation({x, y, z}); }
 
 bool same(const Collision& x, const Collision& y) {
-  return x.verdict == y.verdict && x.lower == y.lower && x.upper == y.upper && x.witness == y.witness &&
-         x.stats.splits == y.stats.splits;
+  return x.verdict == y.verdict && x.distance.lower == y.distance.lower &&
+         x.distance.upper == y.distance.upper && x.witness == y.witness && x.stats.splits == y.stats.splits;
 }
 
 TEST(collide, separates_what_is_apart_and_meets_what_overlaps) {
   Pair pair(oracle::meshes::icosahedron(), oracle::meshes::octahedron());
-  const Collision apart = pair.ask(moved(5, 0, 0), {0.01, 0});
+  const Collision apart = pair.ask(moved(5, 0, 0), testing::verdict_only(0.01, 0));
   EXPECT_EQ(apart.verdict, Verdict::separated);
-  EXPECT_GT(apart.lower, 0);
-  EXPECT_LT(apart.lower, 5);
-  const Collision touching = pair.ask(moved(0.9, 0, 0), {0.01, 0});
+  EXPECT_GT(apart.distance.lower, 0);
+  EXPECT_LT(apart.distance.lower, 5);
+  const Collision touching = pair.ask(moved(0.9, 0, 0), testing::verdict_only(0.01, 0));
   EXPECT_EQ(touching.verdict, Verdict::within);
-  ASSERT_TRUE(touching.witness && touching.upper);
-  EXPECT_LE(*touching.upper, 0.01);
+  ASSERT_TRUE(touching.witness && std::isfinite(touching.distance.upper));
+  EXPECT_LE(touching.distance.upper, 0.01);
   EXPECT_LE(distance((*touching.witness)[0], (*touching.witness)[1]), 0.01);
 }
 
@@ -60,19 +62,19 @@ TEST(collide, separates_nested_shells) {
   oracle::TwinMesh inner = oracle::meshes::icosahedron();
   for (oracle::Point& p : inner.points) p = {0.5 * p[0], 0.5 * p[1], 0.5 * p[2]};
   Pair pair(oracle::meshes::icosahedron(), inner);
-  EXPECT_EQ(pair.ask({}, {0.001, 0}).verdict, Verdict::separated);
+  EXPECT_EQ(pair.ask({}, testing::verdict_only(0.001, 0)).verdict, Verdict::separated);
 }
 
 TEST(collide, honours_the_margin) {
   Pair pair(oracle::meshes::icosahedron(), oracle::meshes::icosahedron());
-  const Collision near = pair.ask(moved(2, 0, 0), {1e-6, 0});
+  const Collision near = pair.ask(moved(2, 0, 0), testing::verdict_only(1e-6, 0));
   ASSERT_EQ(near.verdict, Verdict::separated);
-  EXPECT_EQ(pair.ask(moved(2, 0, 0), {1e-6, 1.5}).verdict, Verdict::within);
+  EXPECT_EQ(pair.ask(moved(2, 0, 0), testing::verdict_only(1e-6, 1.5)).verdict, Verdict::within);
 }
 
 TEST(collide, finds_coincident_surfaces_at_once) {
   Pair pair(oracle::meshes::icosahedron(), oracle::meshes::icosahedron());
-  EXPECT_EQ(pair.ask({}, {1e-9, 0}).verdict, Verdict::within);
+  EXPECT_EQ(pair.ask({}, testing::verdict_only(1e-9, 0)).verdict, Verdict::within);
 }
 
 TEST(collide, does_not_depend_on_threads_or_earlier_queries) {
@@ -94,9 +96,9 @@ TEST(collide, does_not_depend_on_threads_or_earlier_queries) {
 
 TEST(collide, is_undecided_when_the_budget_ends) {
   Pair pair(oracle::meshes::icosahedron(), oracle::meshes::icosahedron());
-  const Collision answer = pair.ask(moved(1.2, 0.3, 0.1), {1e-12, 0, 3});
+  const Collision answer = pair.ask(moved(1.2, 0.3, 0.1), testing::verdict_only(1e-12, 0, 3));
   EXPECT_EQ(answer.verdict, Verdict::undecided);
-  EXPECT_EQ(answer.lower, 0);
+  EXPECT_EQ(answer.distance.lower, 0);
   EXPECT_LE(answer.stats.splits, 3u);
 }
 
@@ -109,7 +111,7 @@ TEST(closest, ends_at_rounding_where_the_point_lies_on_the_surface) {
   // No distance is small beside none: precision relative to it alone is never reached, and pieces around a vertex
   // could be split for long.
   const ClosestPoint found = closest_point(scratch, on, {0, 1e-3});
-  EXPECT_LE(found.upper, 1e-13);
+  EXPECT_LE(found.distance.upper, 1e-13);
   EXPECT_LT(scratch.pieces().size(), 250u);
 }
 
@@ -118,8 +120,11 @@ TEST(collide, works_at_the_ends_of_the_doubles) {
     oracle::TwinMesh twin = oracle::meshes::icosahedron();
     for (oracle::Point& p : twin.points) p = {size * p[0], size * p[1], size * p[2]};
     Pair pair(twin, twin);
-    EXPECT_EQ(pair.ask(moved(4 * size, 0, 0), {0.01 * size, 0}).verdict, Verdict::separated) << size;
-    EXPECT_EQ(pair.ask(moved(size, 0, 0), {0.01 * size, 0}).verdict, Verdict::within) << size;
+    EXPECT_EQ(pair.ask(moved(4 * size, 0, 0), testing::verdict_only(0.01 * size, 0)).verdict,
+              Verdict::separated)
+        << size;
+    EXPECT_EQ(pair.ask(moved(size, 0, 0), testing::verdict_only(0.01 * size, 0)).verdict, Verdict::within)
+        << size;
   }
 }
 
@@ -139,24 +144,24 @@ TEST(collide, surfaces_far_apart_are_separated_at_once_wherever_they_are) {
         for (const double sign : {1.0, -1.0}) {
           char where[100];
           std::snprintf(where, sizeof where, "sizes %g and %g, %g apart", size_a, size_b, sign * far);
-          const Collision answer = pair.ask(moved(sign * far, 0, 0), {0.01 * size_a, 0});
+          const Collision answer = pair.ask(moved(sign * far, 0, 0), testing::verdict_only(0.01 * size_a, 0));
           EXPECT_EQ(answer.verdict, Verdict::separated) << where;
           EXPECT_EQ(answer.stats.splits, 0u) << where;
           // Not above the truth, and not far below it.
-          EXPECT_LE(answer.lower, far - tip * (size_a + size_b) * (1 - 1e-15)) << where;
-          EXPECT_GE(answer.lower, far * (1 - 2e-14) - 2 * (size_a + size_b)) << where;
+          EXPECT_LE(answer.distance.lower, far - tip * (size_a + size_b) * (1 - 1e-15)) << where;
+          EXPECT_GE(answer.distance.lower, far * (1 - 2e-14) - 2 * (size_a + size_b)) << where;
           const bool very_far = far > 1e18 * std::max(size_a, size_b);
           const Distance apart =
               distance({pair.model_a, pair.scratch_a, {}},
                        {pair.model_b, pair.scratch_b, moved(sign * far, 0, 0)}, {0, very_far ? 1e-13 : 1e-6});
           EXPECT_LE(apart.stats.splits, 4000u) << where;
-          EXPECT_LE(apart.lower, far - tip * (size_a + size_b) * (1 - 1e-15)) << where;
-          EXPECT_GE(apart.upper, far - tip * (size_a + size_b) * (1 + 1e-15)) << where;
+          EXPECT_LE(apart.distance.lower, far - tip * (size_a + size_b) * (1 - 1e-15)) << where;
+          EXPECT_GE(apart.distance.upper, far - tip * (size_a + size_b) * (1 + 1e-15)) << where;
           // Where the sizes are nothing beside it, the distance is known to some roundings.
           if (very_far) {
-            EXPECT_GE(answer.lower, far * (1 - 2e-14)) << where;
-            EXPECT_GE(apart.lower, far * (1 - 2e-14)) << where;
-            EXPECT_LE(apart.upper, far * (1 + 2e-14)) << where;
+            EXPECT_GE(answer.distance.lower, far * (1 - 2e-14)) << where;
+            EXPECT_GE(apart.distance.lower, far * (1 - 2e-14)) << where;
+            EXPECT_LE(apart.distance.upper, far * (1 + 2e-14)) << where;
           }
         }
       }
@@ -167,23 +172,23 @@ TEST(collide, surfaces_far_apart_are_separated_at_once_wherever_they_are) {
 // The far corner of the range: an upper bound of the distance does not fit a double, the verdict does.
 TEST(collide, separates_what_is_farther_apart_than_a_double_can_say) {
   Pair pair(oracle::meshes::octahedron(), oracle::meshes::octahedron());
-  CollideOptions options;
+  CollideOptions options = testing::verdict_only();
   options.measure = true;
   const Collision answer = pair.ask(moved(1.7e308, 1.7e308, 1.7e308), options);
   EXPECT_EQ(answer.verdict, Verdict::separated);
-  EXPECT_GE(answer.lower, 1.7e308);
-  EXPECT_TRUE(std::isfinite(answer.lower));
+  EXPECT_GE(answer.distance.lower, 1.7e308);
+  EXPECT_TRUE(std::isfinite(answer.distance.lower));
 }
 
 TEST(collide, measures_the_gap_if_asked) {
   Pair pair(oracle::meshes::icosahedron(), oracle::meshes::octahedron());
-  CollideOptions options;
+  CollideOptions options = testing::verdict_only();
   options.measure = true;
   for (const double x : {1.6, 1.7, 2.0, 3.0, 10.0}) {
     const Collision answer = pair.ask(moved(x, 0.3, 0.2), options);
     ASSERT_EQ(answer.verdict, Verdict::separated) << x;
-    ASSERT_TRUE(answer.upper && answer.witness);
-    EXPECT_GE(answer.lower, *answer.upper / 2) << x;
+    ASSERT_TRUE(std::isfinite(answer.distance.upper) && answer.witness);
+    EXPECT_GE(answer.distance.lower, answer.distance.upper / 2) << x;
     EXPECT_TRUE(answer.at[0] && answer.at[1]);
   }
 }
@@ -192,8 +197,9 @@ TEST(collide, compares_meshes_of_very_different_size) {
   oracle::TwinMesh grain = oracle::meshes::icosahedron();
   for (oracle::Point& p : grain.points) p = {1e-9 * p[0], 1e-9 * p[1], 1e-9 * p[2]};
   Pair pair(oracle::meshes::icosahedron(), grain);
-  EXPECT_EQ(pair.ask(moved(0, 0, 0), {0.01, 0}).verdict, Verdict::separated);  // at the centre
-  EXPECT_EQ(pair.ask(moved(3, 0, 0), {0.01, 0}).verdict, Verdict::separated);
+  EXPECT_EQ(pair.ask(moved(0, 0, 0), testing::verdict_only(0.01, 0)).verdict,
+            Verdict::separated);  // at the centre
+  EXPECT_EQ(pair.ask(moved(3, 0, 0), testing::verdict_only(0.01, 0)).verdict, Verdict::separated);
 }
 
 // Both moved so far away that their own size underflows single precision in units of the translation.
@@ -208,12 +214,12 @@ TEST(collide, lower_bounds_hold_for_placements_of_any_length) {
     Pair pair(below, above);
     for (int exponent = 100; exponent < 150; ++exponent) {
       const Motion place = moved(std::ldexp(1.0, exponent), 0, 0);
-      CollideOptions options{.margin = 0.9 * apart};
+      CollideOptions options = testing::verdict_only(0, 0.9 * apart);
       options.budget = 200;
       const Collision answer =
           collide({pair.model_a, pair.scratch_a, place}, {pair.model_b, pair.scratch_b, place}, options);
       separated += answer.verdict == Verdict::separated;
-      EXPECT_LE(answer.lower, apart) << exponent;
+      EXPECT_LE(answer.distance.lower, apart) << exponent;
     }
   }
   EXPECT_GT(separated, 1000);
@@ -246,19 +252,19 @@ TEST(collide, planes_between_hulls_hold_for_directions_of_any_length) {
 
 TEST(collide, proves_contact_at_tolerance_zero) {
   Pair closed(oracle::meshes::icosahedron(), oracle::meshes::octahedron());
-  const Collision answer = closed.ask(moved(0.9, 0.1, 0.05), {});
+  const Collision answer = closed.ask(moved(0.9, 0.1, 0.05), testing::verdict_only());
   EXPECT_EQ(answer.verdict, Verdict::intersecting);
-  EXPECT_EQ(answer.upper, 0);
-  EXPECT_EQ(closed.ask(moved(3, 0, 0), {}).verdict, Verdict::separated);
+  EXPECT_EQ(answer.distance.upper, 0);
+  EXPECT_EQ(closed.ask(moved(3, 0, 0), testing::verdict_only()).verdict, Verdict::separated);
   // Open surfaces cross as well: one stands on edge in the other.
   Pair open(oracle::meshes::grid(4, 4), oracle::meshes::grid(4, 4));
   const Motion upright = Motion::from_3x4({1, 0, 0, 0.3, 0, 0, -1, 1.9, 0, 1, 0, -1.7});
-  EXPECT_EQ(open.ask(upright, {}).verdict, Verdict::intersecting);
+  EXPECT_EQ(open.ask(upright, testing::verdict_only()).verdict, Verdict::intersecting);
 }
 
 TEST(collide, touching_surfaces_stay_undecided_at_tolerance_zero) {
   Pair pair(oracle::meshes::grid(3, 3), oracle::meshes::grid(3, 3));
-  EXPECT_EQ(pair.ask({}, {0, 0, 2000}).verdict, Verdict::undecided);
+  EXPECT_EQ(pair.ask({}, testing::verdict_only(0, 0, 2000)).verdict, Verdict::undecided);
 }
 
 // In one plane but for rounding every pair of triangles looks as if it crossed.
@@ -267,9 +273,9 @@ TEST(collide, surfaces_in_one_plane_end_within_bounded_memory) {
   std::mt19937_64 random(32);
   const Motion tilted = testing::random_placement(random, {});
   // Once more, about the plane's own normal.
-  const Motion turned = tilted * Motion::from_axis_angle({0, 0, 1}, 0.3);
-  const Collision answer =
-      collide({pair.model_a, pair.scratch_a, tilted}, {pair.model_b, pair.scratch_b, turned}, {});
+  const Motion turned = tilted * Motion::rotation({0, 0, 1}, 0.3);
+  const Collision answer = collide({pair.model_a, pair.scratch_a, tilted},
+                                   {pair.model_b, pair.scratch_b, turned}, testing::verdict_only());
   EXPECT_EQ(answer.verdict, Verdict::undecided);
   EXPECT_LT(pair.scratch_a.bytes() + pair.scratch_b.bytes(),
             std::size_t{256} << 20);  // what most_touched allows
@@ -279,14 +285,14 @@ TEST(collide, takes_closed_surfaces_for_solids_if_asked) {
   oracle::TwinMesh inner = oracle::meshes::icosahedron();
   for (oracle::Point& p : inner.points) p = {0.5 * p[0], 0.5 * p[1], 0.5 * p[2]};
   Pair nested(oracle::meshes::icosahedron(), inner);
-  CollideOptions options;
+  CollideOptions options = testing::verdict_only();
   EXPECT_EQ(nested.ask({}, options).verdict, Verdict::separated);
   options.solid = true;
   const Collision held = nested.ask({}, options);
   EXPECT_EQ(held.verdict, Verdict::intersecting);
   EXPECT_EQ(held.inner, std::optional<std::size_t>(1));
-  EXPECT_EQ(held.lower, 0);
-  EXPECT_EQ(held.upper, 0);
+  EXPECT_EQ(held.distance.lower, 0);
+  EXPECT_EQ(held.distance.upper, 0);
   ASSERT_TRUE(held.witness);
   EXPECT_EQ((*held.witness)[0], (*held.witness)[1]);
   EXPECT_EQ(nested.ask(moved(0, 3, 0), options).verdict, Verdict::separated);
@@ -309,12 +315,12 @@ TEST(collide, solids_that_share_planes_intersect) {
     const LimitSurface box(testing::control_mesh(shape), {scheme}, std::make_shared<BoundsCache>());
     const SurfaceBvh model_a(box), model_b(box);
     SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
-    CollideOptions options;
+    CollideOptions options = testing::verdict_only();
     options.tolerance = 1e-3;
     options.prove_contact = true;
     options.solid = true;
     const auto ask = [&](const Vector3& d) {
-      return collide({model_a, scratch_a, {}}, {model_b, scratch_b, Motion::from_translation(d)}, options);
+      return collide({model_a, scratch_a, {}}, {model_b, scratch_b, Motion::translation(d)}, options);
     };
     for (const Vector3& d : {Vector3{0.875, 0, 0}, Vector3{0.5, 0.5, 0}, Vector3{0, 0.125, 0}}) {
       EXPECT_EQ(ask(d).verdict, Verdict::intersecting) << name_of(scheme) << ' ' << d.x << ' ' << d.y;
@@ -361,13 +367,15 @@ TEST(collide, answers_the_same_with_tight_trees) {
     const SurfaceBvh model_a(a, {.tight = tight}), model_b(b, {.tight = tight});
     SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const Collision answer = collide({model_a, scratch_a, {}}, {model_b, scratch_b, places[i]}, {});
+      const Collision answer =
+          collide({model_a, scratch_a, {}}, {model_b, scratch_b, places[i]}, testing::verdict_only());
       const Distance far =
           snug::distance({model_a, scratch_a, {}}, {model_b, scratch_b, places[i]}, {1e-4, 0});
       ASSERT_NE(answer.verdict, Verdict::undecided) << i;
       EXPECT_TRUE(far.reached);
-      EXPECT_EQ(answer.verdict == Verdict::separated, far.lower > 0 || far.upper > 1e-4) << i;
-      EXPECT_LE(answer.lower, far.upper);
+      EXPECT_EQ(answer.verdict == Verdict::separated, far.distance.lower > 0 || far.distance.upper > 1e-4)
+          << i;
+      EXPECT_LE(answer.distance.lower, far.distance.upper);
     }
   }
 }

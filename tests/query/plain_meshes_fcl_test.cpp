@@ -9,6 +9,8 @@
 
 #include <iostream>
 
+#include "testing/verdict_only.h"
+
 namespace snug {
 namespace {
 
@@ -42,14 +44,15 @@ TEST(flat, has_fcl_s_verdicts_and_distances) {
   for (int trial = 0; trial < 1000; ++trial) {
     const Motion at_a = testing::random_placement(random, {}),
                  at_b = testing::random_placement(random, testing::random_vector(random, 0.7 * size));
-    CollideOptions strict;
+    CollideOptions strict = testing::verdict_only();
     const Verdict verdict = collide(a.at(at_a), b.at(at_b), strict).verdict;
     DistanceOptions precision;
     precision.absolute = 1e-9 * size;
     const Distance found = distance(a.at(at_a), b.at(at_b), precision);
     ASSERT_TRUE(found.reached);
     const bool they_meet = bench::fcl_collide(theirs[0], at_a, theirs[1], at_b);
-    if (found.upper > 1e-7 * size || found.upper == 0) {  // else FCL's own rounding may decide
+    if (found.distance.upper > 1e-7 * size ||
+        found.distance.upper == 0) {  // else FCL's own rounding may decide
       EXPECT_EQ(verdict, they_meet ? Verdict::intersecting : Verdict::separated) << trial;
     }
     if (they_meet) {
@@ -58,7 +61,7 @@ TEST(flat, has_fcl_s_verdicts_and_distances) {
     }
     ++apart;
     const double distance = bench::fcl_distance(theirs[0], at_a, theirs[1], at_b);
-    EXPECT_NEAR(distance, found.upper, 1e-7 * size) << trial;
+    EXPECT_NEAR(distance, found.distance.upper, 1e-7 * size) << trial;
   }
   std::cout << "  " << meet << " meet, " << apart << " apart\n";
   EXPECT_GT(meet, 100u);

@@ -16,6 +16,8 @@
 #include <iostream>
 #include <random>
 
+#include "testing/verdict_only.h"
+
 namespace snug {
 namespace {
 
@@ -92,7 +94,7 @@ struct Body {
 };
 
 Motion moved_by(const ExactPoint& by) {
-  return Motion::from_translation(
+  return Motion::translation(
       {static_cast<double>(by[0]), static_cast<double>(by[1]), static_cast<double>(by[2])});
 }
 
@@ -107,7 +109,7 @@ TEST(flat, distances_and_verdicts_are_those_of_the_triangles) {
     const ExactPoint by = trial % 5 == 0 ? ExactPoint{} : random_point(random, extent);
     const Truth truth = truth_of(a, b, by);
     Body one(a.mesh(), {Scheme::flat}), other(b.mesh(), {Scheme::flat});
-    CollideOptions strict, tolerant;
+    CollideOptions strict = testing::verdict_only(), tolerant = strict;
     tolerant.tolerance = 1e-9;
     const Verdict verdict = collide(one.at(), other.at(moved_by(by)), strict).verdict;
     const Verdict near = collide(one.at(), other.at(moved_by(by)), tolerant).verdict;
@@ -122,15 +124,15 @@ TEST(flat, distances_and_verdicts_are_those_of_the_triangles) {
       proved += truth.pierce && verdict == Verdict::intersecting;
       EXPECT_NE(verdict, Verdict::separated) << trial;
       EXPECT_TRUE(near == Verdict::within || near == Verdict::intersecting) << trial << name_of(near);
-      EXPECT_EQ(found.lower, 0) << trial;
-      EXPECT_LE(found.upper, 1e-9) << trial;
+      EXPECT_EQ(found.distance.lower, 0) << trial;
+      EXPECT_LE(found.distance.upper, 1e-9) << trial;
     } else {
       ++apart;
       EXPECT_EQ(verdict, Verdict::separated) << trial << ' ' << truth.distance;
       EXPECT_EQ(near, Verdict::separated) << trial;
       const long double slack = 1e-17L * truth.distance;
-      EXPECT_LE(found.lower, truth.distance + slack) << trial;
-      EXPECT_GE(found.upper, truth.distance - slack) << trial;
+      EXPECT_LE(found.distance.lower, truth.distance + slack) << trial;
+      EXPECT_GE(found.distance.upper, truth.distance - slack) << trial;
     }
   }
   std::cout << "  " << apart << " apart, " << met << " meet, " << pierced
@@ -161,8 +163,8 @@ TEST(flat, closest_points_are_those_of_the_triangles) {
       const ClosestPoint found = closest_point(body.scratch, q, options);
       const mpq_class square = twin.squared_distance({q.x, q.y, q.z});
       EXPECT_TRUE(found.reached);
-      EXPECT_LE(mpq_class(found.lower) * mpq_class(found.lower), square) << trial;
-      EXPECT_GE(mpq_class(found.upper) * mpq_class(found.upper), square) << trial;
+      EXPECT_LE(mpq_class(found.distance.lower) * mpq_class(found.distance.lower), square) << trial;
+      EXPECT_GE(mpq_class(found.distance.upper) * mpq_class(found.distance.upper), square) << trial;
     }
   }
 }
@@ -286,15 +288,15 @@ TEST(bilinear, distances_are_those_of_catmark_with_sharp_edges) {
       const SchemeOptions options{use_sharp ? Scheme::catmark : Scheme::bilinear};
       Body a(use_sharp ? sharp[0] : bilinear[0], options), b(use_sharp ? sharp[1] : bilinear[1], options);
       found[use_sharp] = distance(a.at(), b.at(), precision);
-      CollideOptions wanted;
+      CollideOptions wanted = testing::verdict_only();
       wanted.tolerance = 1e-6;
       verdicts[use_sharp] = collide(a.at(), b.at(), wanted).verdict;
     }
     const bool apart = verdicts[0] == Verdict::separated;
     meet += !apart;
     EXPECT_EQ(apart, verdicts[1] == Verdict::separated) << trial;
-    EXPECT_LE(found[0].lower, found[1].upper * (1 + 1e-12)) << trial;
-    EXPECT_LE(found[1].lower, found[0].upper * (1 + 1e-12)) << trial;
+    EXPECT_LE(found[0].distance.lower, found[1].distance.upper * (1 + 1e-12)) << trial;
+    EXPECT_LE(found[1].distance.lower, found[0].distance.upper * (1 + 1e-12)) << trial;
   }
   EXPECT_GT(meet, 20u);
   EXPECT_LT(meet, 130u);

@@ -33,7 +33,7 @@ class poses : public ::testing::Test {
 };
 
 TEST_F(poses, are_answered_as_one_by_one_whatever_the_threads) {
-  CollideOptions touch{.tolerance = 1e-3};
+  CollideOptions touch{.tolerance = 1e-3, .prove_contact = false, .measure = false};
   touch.prove_contact = true;
   const DistanceOptions far{.absolute = 1e-3};
   for (const int threads : {1, 2, 3, 8}) {
@@ -48,13 +48,13 @@ TEST_F(poses, are_answered_as_one_by_one_whatever_the_threads) {
       const Collision collision = collide(at_a, at_b, touch);
       verdicts.insert(collision.verdict);
       ASSERT_EQ(collisions[i].verdict, collision.verdict) << i;
-      ASSERT_EQ(collisions[i].lower, collision.lower) << i;
-      ASSERT_EQ(collisions[i].upper, collision.upper) << i;
+      ASSERT_EQ(collisions[i].distance.lower, collision.distance.lower) << i;
+      ASSERT_EQ(collisions[i].distance.upper, collision.distance.upper) << i;
       ASSERT_EQ(collisions[i].witness, collision.witness) << i;
       ASSERT_EQ(collisions[i].stats.splits, collision.stats.splits) << i;
       const Distance apart = distance(at_a, at_b, far);
-      ASSERT_EQ(distances[i].lower, apart.lower) << i;
-      ASSERT_EQ(distances[i].upper, apart.upper) << i;
+      ASSERT_EQ(distances[i].distance.lower, apart.distance.lower) << i;
+      ASSERT_EQ(distances[i].distance.upper, apart.distance.upper) << i;
       ASSERT_EQ(distances[i].witness, apart.witness) << i;
     }
     EXPECT_GE(verdicts.size(), 2u);

@@ -15,6 +15,8 @@
 #include <map>
 #include <memory>
 
+#include "testing/verdict_only.h"
+
 namespace snug {
 namespace {
 
@@ -138,22 +140,22 @@ void check(const Body& a, const Body& b, const Motion& place_a, const Motion& pl
   const double lower = upper - 2 * slack - a.spacing - b.spacing;
   SurfaceWorkspace scratch_a(a.model), scratch_b(b.model);
   const double tolerance = 1e-3 * size;
-  const Collision answer =
-      collide({a.model, scratch_a, place_a}, {b.model, scratch_b, place_b}, {tolerance, 0});
+  const Collision answer = collide({a.model, scratch_a, place_a}, {b.model, scratch_b, place_b},
+                                   testing::verdict_only(tolerance, 0));
   ++counts[name_of(answer.verdict)];
   ASSERT_NE(answer.verdict, Verdict::undecided) << where;
-  EXPECT_LE(answer.lower, upper) << where;
+  EXPECT_LE(answer.distance.lower, upper) << where;
   if (answer.verdict == Verdict::separated) {
-    EXPECT_GT(answer.lower, 0) << where;
+    EXPECT_GT(answer.distance.lower, 0) << where;
   } else {
     EXPECT_GE(tolerance, lower) << where;
-    EXPECT_GE(*answer.upper, lower) << where;
+    EXPECT_GE(answer.distance.upper, lower) << where;
     EXPECT_LE(nearest_sample((*answer.witness)[0], on_a), a.spacing + slack) << where;
     EXPECT_LE(nearest_sample((*answer.witness)[1], on_b), b.spacing + slack) << where;
   }
   // Two samples are not farther apart than this margin: no enclosure may leave either out.
-  const Collision beyond =
-      collide({a.model, scratch_a, place_a}, {b.model, scratch_b, place_b}, {tolerance, upper});
+  const Collision beyond = collide({a.model, scratch_a, place_a}, {b.model, scratch_b, place_b},
+                                   testing::verdict_only(tolerance, upper));
   EXPECT_EQ(beyond.verdict, Verdict::within) << where;
 }
 
@@ -170,7 +172,7 @@ void check_pair(const Body& a, const Body& b, int trials, std::mt19937_64& rando
         const NearestPair near = nearest_pair(placed(place_a, a.samples), placed(place_b, b.samples));
         if (near.distance == 0) break;
         const double pull = (near.distance - target) / near.distance;
-        place_b = place_b.with_translation(place_b.translation() + pull * near.from_b_to_a);
+        place_b = place_b.with_offset(place_b.offset() + pull * near.from_b_to_a);
       }
     }
     check(a, b, place_a, place_b, counts);
@@ -182,12 +184,13 @@ void check_pair(const Body& a, const Body& b, int trials, std::mt19937_64& rando
 void check_with_itself(const Body& a, const Body& smaller, std::map<std::string, int>& counts) {
   const double size = a.surface.size();
   for (const double hair : {0.0, 1e-15, 1e-9, 1e-4}) {
-    const Motion place = Motion::from_translation({hair * size, 0, 0});
+    const Motion place = Motion::translation({hair * size, 0, 0});
     SurfaceWorkspace scratch(a.model), other(a.model);
-    const Collision answer = collide({a.model, scratch, {}}, {a.model, other, place}, {1e-3 * size, 0});
+    const Collision answer =
+        collide({a.model, scratch, {}}, {a.model, other, place}, testing::verdict_only(1e-3 * size, 0));
     ++counts[name_of(answer.verdict)];
     EXPECT_EQ(answer.verdict, Verdict::within) << a.name << ", " << hair;
-    EXPECT_EQ(answer.lower, 0) << a.name << ", " << hair;
+    EXPECT_EQ(answer.distance.lower, 0) << a.name << ", " << hair;
     check(a, a, {}, place, counts);
   }
   check(a, smaller, {}, {}, counts);
@@ -270,9 +273,10 @@ TEST(collide, separates_nested_shells_of_every_scheme) {
         b(testing::control_mesh(inner), {scheme}, library, 1);
     const SurfaceBvh model_a(a, {.threads = 1}), model_b(b, {.threads = 1});
     SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
-    const Collision answer = collide({model_a, scratch_a, {}}, {model_b, scratch_b, {}}, {1e-4, 0});
+    const Collision answer =
+        collide({model_a, scratch_a, {}}, {model_b, scratch_b, {}}, testing::verdict_only(1e-4, 0));
     EXPECT_EQ(answer.verdict, Verdict::separated) << name_of(scheme);
-    EXPECT_GT(answer.lower, 0) << name_of(scheme);
+    EXPECT_GT(answer.distance.lower, 0) << name_of(scheme);
   }
 }
 

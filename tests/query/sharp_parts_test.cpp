@@ -2,7 +2,7 @@
 //
 //   SNUG_PARTS=10000 build/release/bin/tests/sharp_parts_test
 
-#include <snug/mesh/sharpen.h>
+#include <snug/mesh.h>
 
 #include <gtest/gtest.h>
 #include <snug/mesh/split_polygon.h>
@@ -19,6 +19,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+
+#include "testing/verdict_only.h"
 
 namespace snug {
 namespace {
@@ -131,20 +133,18 @@ Real polyhedron_distance(const std::vector<Corners>& a, const std::vector<Corner
 Distance distance_of(const LimitSurface& a, const LimitSurface& b, const Vector3& move = {}) {
   const SurfaceBvh model_a(a), model_b(b);
   SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
-  DistanceOptions options;
+  DistanceOptions options{.absolute = 0, .relative = 0};
   options.absolute = 1e-10;
-  return distance({model_a, scratch_a, Motion()}, {model_b, scratch_b, Motion::from_translation(move)},
-                  options);
+  return distance({model_a, scratch_a, Motion()}, {model_b, scratch_b, Motion::translation(move)}, options);
 }
 
 Collision collision_of(const LimitSurface& a, const LimitSurface& b, const Vector3& move, double tolerance) {
   const SurfaceBvh model_a(a), model_b(b);
   SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
-  CollideOptions options;
+  CollideOptions options = testing::verdict_only();
   options.tolerance = tolerance;
   options.prove_contact = true;
-  return collide({model_a, scratch_a, Motion()}, {model_b, scratch_b, Motion::from_translation(move)},
-                 options);
+  return collide({model_a, scratch_a, Motion()}, {model_b, scratch_b, Motion::translation(move)}, options);
 }
 
 LimitSurface sharp(ControlMesh mesh, double angle = default_sharp_angle) {
@@ -273,10 +273,10 @@ TEST(sharp_parts, distances_are_those_of_the_polyhedra) {
     for (Point3& p : part[1].points) p = p + move;
     const Real truth = polyhedron_distance(triangles(part[0]), triangles(part[1]));
     const Distance found = distance_of(surface_of(part[0]), surface_of(part[1]));
-    EXPECT_LE(found.lower, truth + 1e-15) << trial;
-    EXPECT_GE(found.upper, truth - 1e-15) << trial;
-    EXPECT_NEAR(static_cast<double>(found.lower - truth), 0, 1e-9) << trial;
-    EXPECT_TRUE(!found.reached || found.upper - found.lower <= 1e-9) << trial;
+    EXPECT_LE(found.distance.lower, truth + 1e-15) << trial;
+    EXPECT_GE(found.distance.upper, truth - 1e-15) << trial;
+    EXPECT_NEAR(static_cast<double>(found.distance.lower - truth), 0, 1e-9) << trial;
+    EXPECT_TRUE(!found.reached || found.distance.upper - found.distance.lower <= 1e-9) << trial;
     short_of_it += !found.reached;
     apart += truth > 0;
   }
@@ -305,10 +305,10 @@ TEST(sharp_parts, boxes_a_unit_in_the_last_place_apart_have_their_exact_distance
       const Distance found = distance_of(sharp(testing::box(low_a, high_a, triangles)),
                                          sharp(testing::box(low_b, high_b, triangles)));
       const Real truth = std::sqrt(sum);
-      EXPECT_LE(found.lower, truth) << trial;
-      EXPECT_GE(found.upper, truth) << trial;
+      EXPECT_LE(found.distance.lower, truth) << trial;
+      EXPECT_GE(found.distance.upper, truth) << trial;
       // Beside a gap of a millionth the rounding of its direction shows over the width of the boxes.
-      EXPECT_LE(found.upper - found.lower, trial % 2 == 0 ? 1e-9 : 5e-7) << trial;
+      EXPECT_LE(found.distance.upper - found.distance.lower, trial % 2 == 0 ? 1e-9 : 5e-7) << trial;
     }
   }
 }
@@ -318,8 +318,8 @@ TEST(sharp_parts, boxes_five_into_each_other_meet_and_one_apart_do_not) {
   EXPECT_EQ(collision_of(box, box, {35, 3, 2}, 0.01).verdict, Verdict::intersecting);
   EXPECT_NE(collision_of(box, box, {35, 0, 0}, 0.01).verdict, Verdict::separated);
   const Distance apart = distance_of(box, box, {41, 0, 0});
-  EXPECT_NEAR(apart.lower, 1, 1e-9);
-  EXPECT_NEAR(apart.upper, 1, 1e-9);
+  EXPECT_NEAR(apart.distance.lower, 1, 1e-9);
+  EXPECT_NEAR(apart.distance.upper, 1, 1e-9);
   // What the facets are without: two blobs, far apart.
   const LimitSurface blob = surface_of(testing::box({0, 0, 0}, {40, 20, 10}, true));
   EXPECT_EQ(collision_of(blob, blob, {35, 3, 2}, 0.01).verdict, Verdict::separated);
@@ -331,9 +331,9 @@ TEST(sharp_parts, a_pin_in_a_hole_has_the_clearance_of_the_polygons) {
   const double clearance = 0.2 * std::cos(std::numbers::pi / 96);
   for (const double z : {-20.0, 0.0, -60.0}) {
     const Distance found = distance_of(plate, pin, {15, 15, z});
-    EXPECT_LE(found.lower, clearance + 1e-9);
-    EXPECT_GE(found.upper, clearance - 1e-9);
-    EXPECT_LE(found.upper - found.lower, 1e-5);
+    EXPECT_LE(found.distance.lower, clearance + 1e-9);
+    EXPECT_GE(found.distance.upper, clearance - 1e-9);
+    EXPECT_LE(found.distance.upper - found.distance.lower, 1e-5);
   }
   EXPECT_EQ(collision_of(plate, pin, {15.3, 15, -20}, 1e-6).verdict, Verdict::intersecting);
 }

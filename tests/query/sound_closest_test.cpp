@@ -72,7 +72,7 @@ TEST(closest, points_are_the_nearest) {
     const double size = pair.size();
     const Point to = random_point(trial, pair);
     const Point3 scaled{pair.scaled(to[0]), pair.scaled(to[1]), pair.scaled(to[2])};
-    ClosestOptions options;
+    ClosestOptions options{.absolute = 0, .relative = 0};
     const std::uint64_t choice = trial.random() % 6;
     if (choice < 3) options.relative = choice == 0 ? 1e-9 : choice == 1 ? 1e-6 : 1e-2;
     if (choice >= 2 && choice < 5)
@@ -86,7 +86,7 @@ TEST(closest, points_are_the_nearest) {
     ++asked;
     reached += answer.reached;
 
-    const double lower = pair.back(answer.lower), upper = pair.back(answer.upper),
+    const double lower = pair.back(answer.distance.lower), upper = pair.back(answer.distance.upper),
                  error = pair.back(answer.point_error);
     const Point point = pair.back(answer.point);
     const auto expect = [&](bool holds, const char* claim, double found, double bound) {
@@ -102,7 +102,8 @@ TEST(closest, points_are_the_nearest) {
     const double rounding = 0x1p-50 * coordinates;
     expect(lower >= 0 && lower <= upper && std::isfinite(upper), "an interval", lower, upper);
     if (answer.reached) {
-      const double width = std::max(pair.back(options.absolute), options.relative * upper);
+      const double width =
+          std::max(pair.back(options.absolute.value_or(0)), options.relative.value_or(0) * upper);
       expect(upper - lower <= width * (1 + 1e-12) + 1e-300, "reached is reached", upper - lower, width);
     }
     expect(between(point, to) <= upper * (1 + 1e-12) + rounding, "the point is at most upper away",
@@ -148,7 +149,7 @@ TEST(closest, many_at_once_are_the_same_as_one_by_one) {
       const Point p = random_point(trial, pair);
       to.push_back({pair.scaled(p[0]), pair.scaled(p[1]), pair.scaled(p[2])});
     }
-    ClosestOptions options;
+    ClosestOptions options{.absolute = 0, .relative = 0};
     options.relative = 1e-6;
     options.absolute = pair.scaled(1e-9 * pair.size());
     for (const int threads : {1, 3}) {
@@ -157,8 +158,8 @@ TEST(closest, many_at_once_are_the_same_as_one_by_one) {
       for (std::size_t k = 0; k < to.size(); ++k) {
         SurfaceWorkspace scratch(pair.model(0));
         const ClosestPoint one = closest_point(scratch, to[k], options);
-        EXPECT_EQ(all[k].lower, one.lower);
-        EXPECT_EQ(all[k].upper, one.upper);
+        EXPECT_EQ(all[k].distance.lower, one.distance.lower);
+        EXPECT_EQ(all[k].distance.upper, one.distance.upper);
         EXPECT_EQ(all[k].point, one.point);
         EXPECT_EQ(all[k].at.owner, one.at.owner);
         EXPECT_EQ(all[k].at.u, one.at.u);

@@ -12,6 +12,8 @@
 #include <iostream>
 #include <map>
 
+#include "testing/verdict_only.h"
+
 namespace snug {
 namespace {
 
@@ -78,37 +80,37 @@ TEST(collide, agrees_with_brute_force) {
         Vector3 d;
         for (std::size_t k = 0; k < 3; ++k) d[k] = truth.on_a[k] - truth.on_b[k];
         const double pull = (length(d) - target) / length(d);
-        place_b = place_b.with_translation(place_b.translation() + pull * d);
+        place_b = place_b.with_offset(place_b.offset() + pull * d);
         truth = pair.distance_twin.query(place_a.numbers(), place_b.numbers(), {0.02 * tolerance, 1e-3});
       }
     }
     tuned += truth.upper >= 0.5 * tolerance && truth.lower <= 2 * tolerance;
-    const CollideOptions options{tolerance, 0};
+    const CollideOptions options = testing::verdict_only(tolerance);
     const Collision answer =
         collide({pair.model_a, pair.scratch_a, place_a}, {pair.model_b, pair.scratch_b, place_b}, options);
     ++counts[name_of(answer.verdict)];
     ASSERT_NE(answer.verdict, Verdict::undecided) << trial;
-    ASSERT_LE(answer.lower, truth.upper) << trial;
+    ASSERT_LE(answer.distance.lower, truth.upper) << trial;
     if (answer.verdict == Verdict::separated) {
-      ASSERT_GT(answer.lower, 0);
+      ASSERT_GT(answer.distance.lower, 0);
       ASSERT_GT(truth.upper, 0) << "false separated " << trial;
       // Once more with a margin: asked for 1e-3 more than the truth, it must not be called separated.
-      const CollideOptions beyond{tolerance, truth.upper * 1.001};
+      const CollideOptions beyond = testing::verdict_only(tolerance, truth.upper * 1.001);
       const Collision again =
           collide({pair.model_a, pair.scratch_a, place_a}, {pair.model_b, pair.scratch_b, place_b}, beyond);
       ASSERT_EQ(again.verdict, Verdict::within) << trial;
-      ASSERT_GE(*again.upper, truth.lower) << trial;
+      ASSERT_GE(again.distance.upper, truth.lower) << trial;
     }
     if (truth.lower > tolerance) {
       ASSERT_EQ(answer.verdict, Verdict::separated) << trial;
     }
-    if (answer.upper) {
-      ASSERT_GE(*answer.upper, truth.lower) << trial;
+    if (std::isfinite(answer.distance.upper)) {
+      ASSERT_GE(answer.distance.upper, truth.lower) << trial;
     }
     if (answer.verdict == Verdict::within) {
       const auto& w = *answer.witness;
       ASSERT_LE(distance(w[0], w[1]), tolerance) << trial;
-      ASSERT_LE(*answer.upper, tolerance) << trial;
+      ASSERT_LE(answer.distance.upper, tolerance) << trial;
       const oracle::Point on_a{w[0].x, w[0].y, w[0].z}, on_b{w[1].x, w[1].y, w[1].z};
       ASSERT_TRUE(pair.surface_a.on_surface(place_a.numbers(), on_a, 1e-11 * size)) << trial;
       ASSERT_TRUE(pair.surface_b.on_surface(place_b.numbers(), on_b, 1e-11 * size)) << trial;

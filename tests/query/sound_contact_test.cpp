@@ -21,6 +21,8 @@
 #include <iostream>
 #include <map>
 
+#include "testing/verdict_only.h"
+
 namespace snug {
 namespace {
 
@@ -48,7 +50,7 @@ class Checks {
   bool run(Trial& trial) {
     trial_ = &trial;
     pair_ = trial.pair;
-    CollideOptions options;
+    CollideOptions options = testing::verdict_only();
     options.tolerance = pair_->scaled(trial.tolerance);
     options.margin = pair_->scaled(trial.margin);
     options.budget = trial.budget;
@@ -59,9 +61,9 @@ class Checks {
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     asked_ += seconds;
     if (seconds > slowest_) slowest_ = seconds, slowest_trial_ = trial.number;
-    reply_ = {answer.verdict, pair_->back(answer.lower), {}, {}, pair_->back(answer.witness_error),
+    reply_ = {answer.verdict, pair_->back(answer.distance.lower), {}, {}, pair_->back(answer.witness_error),
               answer.inner};
-    if (answer.upper) reply_.upper = pair_->back(*answer.upper);
+    if (std::isfinite(answer.distance.upper)) reply_.upper = pair_->back(answer.distance.upper);
     if (answer.witness)
       reply_.witness = {pair_->back((*answer.witness)[0]), pair_->back((*answer.witness)[1])};
     ++counts_[trial.family][static_cast<std::size_t>(reply_.verdict)];
@@ -170,11 +172,11 @@ class Checks {
     }
     const Collision fresh = collide({pair_->model(0), a, pair_->scaled(trial_->a)},
                                     {pair_->model(1), b, pair_->scaled(trial_->b)}, options);
-    expect(fresh.verdict == answer.verdict && fresh.lower == answer.lower && fresh.upper == answer.upper &&
-               fresh.witness == answer.witness && fresh.witness_error == answer.witness_error &&
-               fresh.stats.splits == answer.stats.splits,
-           "the same answer from fresh scratch memory", pair_->back(fresh.lower),
-           fresh.upper ? pair_->back(*fresh.upper) : -1);
+    expect(fresh.verdict == answer.verdict && fresh.distance.lower == answer.distance.lower &&
+               fresh.distance.upper == answer.distance.upper && fresh.witness == answer.witness &&
+               fresh.witness_error == answer.witness_error && fresh.stats.splits == answer.stats.splits,
+           "the same answer from fresh scratch memory", pair_->back(fresh.distance.lower),
+           std::isfinite(fresh.distance.upper) ? pair_->back(fresh.distance.upper) : -1);
   }
 
   void check_what_is_known() {
@@ -230,7 +232,7 @@ class Checks {
       goal.threshold.reset();
       goal.precision = {1e-12 * size(), 1e-6};
       const ContactBounds truth = contact(goal);
-      CollideOptions options;
+      CollideOptions options = testing::verdict_only();
       options.margin = pair_->scaled(truth.upper * (1 + 1e-6));
       options.tolerance = pair_->scaled(0.01 * size());
       options.budget = 2000;
@@ -326,17 +328,17 @@ TEST(contact, bounds_hold_for_sizes_from_one_end_of_the_doubles_to_the_other) {
           const LimitSurface low = surface(a, 0), high = surface(b, by_placement ? 0 : h);
           const SurfaceBvh model_a(low), model_b(high);
           SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
-          const Motion place = Motion::from_translation({0, 0, by_placement ? h : 0});
-          CollideOptions options;
+          const Motion place = Motion::translation({0, 0, by_placement ? h : 0});
+          CollideOptions options = testing::verdict_only();
           options.budget = 300;
           for (const double tolerance : {0.0, h / 4, 2 * h, std::ldexp(1e-3, std::max(a, b))}) {
             options.tolerance = tolerance;
             const Collision answer = collide({model_a, scratch_a, {}}, {model_b, scratch_b, place}, options);
             const std::string what = "sizes 2^" + std::to_string(a) + ", 2^" + std::to_string(b) + ", h " +
                                      std::to_string(c) + ": " + name_of(answer.verdict);
-            EXPECT_LE(answer.lower, h) << what;
-            if (answer.upper) {
-              EXPECT_GE(*answer.upper, h) << what;
+            EXPECT_LE(answer.distance.lower, h) << what;
+            if (std::isfinite(answer.distance.upper)) {
+              EXPECT_GE(answer.distance.upper, h) << what;
             }
             if (h == 0) {
               EXPECT_NE(answer.verdict, Verdict::separated) << what;

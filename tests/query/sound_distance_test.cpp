@@ -44,7 +44,7 @@ TEST(distance, intervals_hold_the_truth) {
     Contestants& pair = *trial.pair;
     const double size = pair.size();
     // Relative, absolute, both, or as near as it gets.
-    DistanceOptions options;
+    DistanceOptions options{.absolute = 0, .relative = 0};
     const std::uint64_t choice = trial.random() % 8;
     if (choice < 4) options.relative = choice == 0 ? 1e-9 : choice == 1 ? 1e-6 : 1e-2;
     if (choice >= 3 && choice < 7)
@@ -56,7 +56,7 @@ TEST(distance, intervals_hold_the_truth) {
     if (seconds > slowest) slowest = seconds, slowest_trial = trial.number;
     char precision[100];
     std::snprintf(precision, sizeof precision, "not a hair apart, to %g of the distance or %g of the size",
-                  options.relative, pair.back(options.absolute) / size);
+                  options.relative.value_or(0), pair.back(options.absolute.value_or(0)) / size);
     for (const std::string& name : {trial.family, std::string(trial.hair ? "a hair apart" : precision)}) {
       Counts& group = counts[name];
       ++group.asked;
@@ -64,7 +64,7 @@ TEST(distance, intervals_hold_the_truth) {
       group.seconds += seconds;
     }
 
-    const double lower = pair.back(answer.lower), upper = pair.back(answer.upper),
+    const double lower = pair.back(answer.distance.lower), upper = pair.back(answer.distance.upper),
                  error = pair.back(answer.witness_error);
     const std::array<Point, 2> witness{pair.back(answer.witness[0]), pair.back(answer.witness[1])};
     const auto expect = [&](bool holds, const char* claim, double found, double bound) {
@@ -72,15 +72,18 @@ TEST(distance, intervals_hold_the_truth) {
       ++failures;
       char numbers[200];
       std::snprintf(numbers, sizeof numbers, " (%.17g, %.17g): [%.17g, %.17g] absolute %g relative %g ",
-                    found, bound, lower, upper, pair.back(options.absolute), options.relative);
+                    found, bound, lower, upper, pair.back(options.absolute.value_or(0)),
+                    options.relative.value_or(0));
       ADD_FAILURE() << claim << numbers << testing::describe(trial);
     };
     if (trial.number % 16 == 5) {  // no answer depends on what was asked before
       SurfaceWorkspace a(pair.model(0)), b(pair.model(1));
       const Distance fresh = distance({pair.model(0), a, pair.scaled(trial.a)},
                                       {pair.model(1), b, pair.scaled(trial.b)}, options);
-      expect(fresh.lower == answer.lower && fresh.upper == answer.upper && fresh.witness == answer.witness,
-             "the same answer from fresh scratch memory", pair.back(fresh.lower), pair.back(fresh.upper));
+      expect(fresh.distance.lower == answer.distance.lower && fresh.distance.upper == answer.distance.upper &&
+                 fresh.witness == answer.witness,
+             "the same answer from fresh scratch memory", pair.back(fresh.distance.lower),
+             pair.back(fresh.distance.upper));
     }
     double coordinates = size;
     for (const oracle::Placement* m : {&trial.a, &trial.b})
@@ -89,7 +92,8 @@ TEST(distance, intervals_hold_the_truth) {
 
     expect(lower >= 0 && lower <= upper && std::isfinite(upper), "an interval", lower, upper);
     if (answer.reached) {
-      const double width = std::max(pair.back(options.absolute), options.relative * upper);
+      const double width =
+          std::max(pair.back(options.absolute.value_or(0)), options.relative.value_or(0) * upper);
       expect(upper - lower <= width * (1 + 1e-12) + 1e-300, "reached is reached", upper - lower, width);
     }
     expect(upper >= trial.truth.lower, "upper is at least the distance", upper, trial.truth.lower);

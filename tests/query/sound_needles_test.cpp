@@ -21,6 +21,8 @@
 #include <string>
 #include <vector>
 
+#include "testing/verdict_only.h"
+
 namespace snug {
 namespace {
 
@@ -127,8 +129,8 @@ struct Setting {
     };
     if (random() % 2) {
       const std::array<Vector3, 3> axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-      motion = Motion::from_axis_degrees(axes[random() % 3], 90.0 * static_cast<double>(random() % 4));
-      motion = motion.with_translation({whole(), whole(), whole()});
+      motion = Motion::rotation_degrees(axes[random() % 3], 90.0 * static_cast<double>(random() % 4));
+      motion = motion.with_offset({whole(), whole(), whole()});
     }
     text = "trial " + std::to_string(trial) + ", " + name_of(scheme) +
            (options.method == BoundMethod::table ? ", tables" : ", rows") + (options.tight ? ", tight" : "") +
@@ -161,15 +163,15 @@ TEST(needles, in_layers_apart_are_never_called_intersecting) {
            here.scheme, library, here.options);
     const PlacedBvh at_a{a.model, a.scratch, here.motion}, at_b{b.model, b.scratch, here.motion};
     const double layer = here.lattice.layer() * (1 - 1e-12);
-    CollideOptions options;
+    CollideOptions options = testing::verdict_only();
     options.budget = 2000;
     options.prove_contact = true;
     if (random() % 2)
       options.tolerance = here.lattice.layer() * std::exp2(static_cast<double>(random() % 12) - 4);
     const Collision collision = collide(at_a, at_b, options);
     ASSERT_NE(collision.verdict, Verdict::intersecting) << here.text;
-    if (collision.upper) {
-      ASSERT_GE(*collision.upper, layer) << here.text;
+    if (std::isfinite(collision.distance.upper)) {
+      ASSERT_GE(collision.distance.upper, layer) << here.text;
     }
     if (collision.verdict == Verdict::within) {
       ASSERT_GE(options.tolerance, layer) << here.text;
@@ -179,12 +181,13 @@ TEST(needles, in_layers_apart_are_never_called_intersecting) {
     how.relative = 1e-3;
     how.budget = 2000;
     const Distance found = distance(at_a, at_b, how);
-    ASSERT_LE(found.lower, found.upper) << here.text;
-    ASSERT_GE(found.upper, layer) << here.text;
+    ASSERT_LE(found.distance.lower, found.distance.upper) << here.text;
+    ASSERT_GE(found.distance.upper, layer) << here.text;
     // From a vertex of A, which is no nearer than a layer to B.
-    const ClosestPoint closest = closest_point(b.scratch, a.surface.mesh().points[random() % 25], how);
-    ASSERT_GE(closest.upper, layer) << here.text;
-    ASSERT_LE(closest.lower, closest.upper) << here.text;
+    const ClosestPoint closest = closest_point(b.scratch, a.surface.mesh().points[random() % 25],
+                                               {.absolute = {}, .relative = 1e-3, .budget = 2000});
+    ASSERT_GE(closest.distance.upper, layer) << here.text;
+    ASSERT_LE(closest.distance.lower, closest.distance.upper) << here.text;
   }
   EXPECT_GT(separated, count / 3);
 }
@@ -209,19 +212,21 @@ TEST(needles, through_each_other_are_never_called_apart) {
                 }),
            here.scheme, library, here.options);
     const PlacedBvh at_a{a.model, a.scratch, here.motion}, at_b{b.model, b.scratch, here.motion};
-    CollideOptions options;
+    CollideOptions options = testing::verdict_only();
     options.budget = 2000;
     const Collision collision = collide(at_a, at_b, options);
     ASSERT_NE(collision.verdict, Verdict::separated) << here.text;
-    ASSERT_EQ(collision.lower, 0) << here.text;
+    ASSERT_EQ(collision.distance.lower, 0) << here.text;
     intersecting += collision.verdict == Verdict::intersecting;
     DistanceOptions how;
     how.relative = 1e-3;
     how.budget = 2000;
-    ASSERT_EQ(distance(at_a, at_b, how).lower, 0) << here.text;
+    ASSERT_EQ(distance(at_a, at_b, how).distance.lower, 0) << here.text;
     // Corners of B, which are limit points of it: their distance is 0.
     const std::size_t corner = random() % 2 ? 4 : 20;
-    ASSERT_EQ(closest_point(b.scratch, b.surface.mesh().points[corner], how).lower, 0) << here.text;
+    const ClosestPoint at_corner = closest_point(b.scratch, b.surface.mesh().points[corner],
+                                                 {.absolute = {}, .relative = 1e-3, .budget = 2000});
+    ASSERT_EQ(at_corner.distance.lower, 0) << here.text;
   }
   EXPECT_GT(intersecting, count / 25);
 }

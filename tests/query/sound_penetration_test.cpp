@@ -78,18 +78,18 @@ TEST(penetration, of_convex_solids_is_the_least_overlap_of_their_supports) {
       look((1 / length(v)) * v);
     }
     if (least <= 0) {
-      EXPECT_EQ(found.lower, 0) << trial;
+      EXPECT_EQ(found.depth.lower, 0) << trial;
       continue;
     }
     ++deep;
     // Samples miss at most a hundredth of the bulge between them.
-    EXPECT_GE(found.upper, least * (1 - 1e-2) - 1e-3) << trial;
-    EXPECT_LE(found.lower, least + 2e-3) << trial;
-    EXPECT_GT(found.lower, 0) << trial;
-    worst_upper = std::max(worst_upper, found.upper / least);
-    worst_lower = std::min(worst_lower, found.lower / least);
-    const Motion apart = place_b.with_translation(place_b.translation() + found.translation);
-    EXPECT_LE(length(found.translation), found.upper * (1 + 1e-12));
+    EXPECT_GE(found.depth.upper, least * (1 - 1e-2) - 1e-3) << trial;
+    EXPECT_LE(found.depth.lower, least + 2e-3) << trial;
+    EXPECT_GT(found.depth.lower, 0) << trial;
+    worst_upper = std::max(worst_upper, found.depth.upper / least);
+    worst_lower = std::min(worst_lower, found.depth.lower / least);
+    const Motion apart = place_b.with_offset(place_b.offset() + found.translation);
+    EXPECT_LE(length(found.translation), found.depth.upper * (1 + 1e-12));
     oracle::ContactSurface twin_a(testing::twin_mesh(a.mesh(), BoundaryRule::edge_and_corner)),
         twin_b(testing::twin_mesh(b.mesh(), BoundaryRule::edge_and_corner));
     const oracle::ContactGoal goal{{1e-9, 0}, 0, 200'000};
@@ -116,23 +116,23 @@ TEST(penetration, bounds_hold_for_solids_with_dents) {
     SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
     const Motion place_b = testing::random_placement(random, testing::random_vector(random, 0.7));
     const Penetration found = penetration({model_a, scratch_a, {}}, {model_b, scratch_b, place_b});
-    EXPECT_LE(found.lower, found.upper);
-    if (found.upper == 0) continue;
+    EXPECT_LE(found.depth.lower, found.depth.upper);
+    if (found.depth.upper == 0) continue;
     ++deep;
     oracle::ContactSurface twin_a(testing::twin_mesh(a.mesh(), BoundaryRule::edge_and_corner)),
         twin_b(testing::twin_mesh(b.mesh(), BoundaryRule::edge_and_corner));
     const oracle::ContactGoal goal{{1e-7, 0}, 0, 20'000};
     const auto apart = [&](const Vector3& d) {
-      const Motion moved = place_b.with_translation(place_b.translation() + d);
+      const Motion moved = place_b.with_offset(place_b.offset() + d);
       return oracle::contact_bounds(twin_a, Motion().numbers(), twin_b, moved.numbers(), goal).lower > 0;
     };
     EXPECT_TRUE(apart(found.translation)) << trial;
     // Surfaces that shorter translations part: one solid must lie in the other.
     for (int i = 0; i < 40; ++i) {
       const Vector3 v = testing::random_vector(random, 1);
-      const Vector3 d = (found.lower * unit(random) / length(v)) * v;
+      const Vector3 d = (found.depth.lower * unit(random) / length(v)) * v;
       if (!apart(d)) continue;
-      const Motion moved = place_b.with_translation(place_b.translation() + d);
+      const Motion moved = place_b.with_offset(place_b.offset() + d);
       EXPECT_TRUE(nesting({model_a, scratch_a, {}}, {model_b, scratch_b, moved}).inner) << trial;
     }
   }
@@ -144,15 +144,14 @@ TEST(penetration, of_separated_solids_is_zero_and_open_surfaces_are_refused) {
                      sheet = testing::surface_of(oracle::meshes::grid(2, 2));
   const SurfaceBvh model(ball), same(ball), open(sheet);
   SurfaceWorkspace scratch(model), other(same), flat(open);
-  const Penetration none =
-      penetration({model, scratch, {}}, {same, other, Motion::from_translation({5, 0, 0})});
-  EXPECT_EQ(none.upper, 0);
+  const Penetration none = penetration({model, scratch, {}}, {same, other, Motion::translation({5, 0, 0})});
+  EXPECT_EQ(none.depth.upper, 0);
   EXPECT_TRUE(none.reached);
   EXPECT_THROW(static_cast<void>(penetration({model, scratch, {}}, {open, flat, {}})), InputError);
   // One in the middle of itself: as deep as it is thick.
   const Penetration whole = penetration({model, scratch, {}}, {same, other, {}});
-  EXPECT_GT(whole.lower, 1.2);
-  EXPECT_LT(whole.upper, 2);
+  EXPECT_GT(whole.depth.lower, 1.2);
+  EXPECT_LT(whole.depth.upper, 2);
 }
 
 }  // namespace

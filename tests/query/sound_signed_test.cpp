@@ -74,7 +74,7 @@ TEST(signed_distance, agrees_with_refined_meshes) {
         for (std::size_t x = 0; x < 3; ++x) q[x] += between(random, -1, 1) * reach;
         points.push_back(q);
       }
-      ClosestOptions options;
+      ClosestOptions options{.absolute = 0, .relative = 0};
       options.absolute = std::exp2(-between(random, 3, 20)) * surface.size();
       const std::vector<SignedDistance> answers = signed_distances(model, points, options, 1);
       for (std::size_t k = 0; k < points.size(); ++k) {
@@ -85,18 +85,21 @@ TEST(signed_distance, agrees_with_refined_meshes) {
         told += number.has_value();
         inside += number.value_or(0) != 0;
         const double slack = 1e-12 * ball.radius;
-        ASSERT_LE(answer.lower, answer.upper) << c.name;
+        ASSERT_LE(answer.distance.lower, answer.distance.upper) << c.name;
         if (number) {
           const double lower = *number == 0 ? truth.lower : -truth.upper,
                        upper = *number == 0 ? truth.upper : -truth.lower;
-          ASSERT_LE(answer.lower, upper + slack) << c.name << ", point " << k;
-          ASSERT_GE(answer.upper, lower - slack) << c.name << ", point " << k;
+          ASSERT_LE(answer.distance.lower, upper + slack) << c.name << ", point " << k;
+          ASSERT_GE(answer.distance.upper, lower - slack) << c.name << ", point " << k;
           // Some points run into the budget of pieces.
           unreached += !answer.reached;
-          if (answer.reached) widest = std::max(widest, (answer.upper - answer.lower) / options.absolute);
+          if (answer.reached)
+            widest = std::max(widest, (answer.distance.upper - answer.distance.lower) / *options.absolute);
         } else {
-          ASSERT_LE(std::max(answer.lower, -answer.upper), truth.upper + slack) << c.name << ", point " << k;
-          ASSERT_GE(std::max(-answer.lower, answer.upper), truth.lower - slack) << c.name << ", point " << k;
+          ASSERT_LE(std::max(answer.distance.lower, -answer.distance.upper), truth.upper + slack)
+              << c.name << ", point " << k;
+          ASSERT_GE(std::max(-answer.distance.lower, answer.distance.upper), truth.lower - slack)
+              << c.name << ", point " << k;
         }
       }
     } catch (const InputError&) {
@@ -154,7 +157,7 @@ TEST(signed_distance, of_sharp_polyhedra_is_exact) {
         q[x] = std::round(between(random, -16, 16)) / (k % 4 == 0 ? 1 : 2);
         if (k % 3 == 0) q[x] += std::ldexp(between(random, -1, 1), -static_cast<int>(random() % 50));
       }
-      ClosestOptions options;
+      ClosestOptions options{.absolute = 0, .relative = 0};
       options.relative = 1e-9;
       const SignedDistance answer = signed_distance(scratch, q, options);
       const oracle::Point exact{q.x, q.y, q.z};
@@ -162,12 +165,12 @@ TEST(signed_distance, of_sharp_polyhedra_is_exact) {
       const std::optional<int> number = twin.winding(exact);
       ++asked;
       inside += number.value_or(0) != 0;
-      const double low = number == 0 ? answer.lower : -answer.upper,
-                   high = number == 0 ? answer.upper : -answer.lower;
+      const double low = number == 0 ? answer.distance.lower : -answer.distance.upper,
+                   high = number == 0 ? answer.distance.upper : -answer.distance.lower;
       if (!number) {
         ++on_surface;
-        EXPECT_LE(answer.lower, 0);
-        EXPECT_GE(answer.upper, 0);
+        EXPECT_LE(answer.distance.lower, 0);
+        EXPECT_GE(answer.distance.upper, 0);
         continue;
       }
       EXPECT_GE(high, 0) << i << ' ' << k;
@@ -175,7 +178,8 @@ TEST(signed_distance, of_sharp_polyhedra_is_exact) {
       if (low > 0) {
         EXPECT_GE(square, mpq_class(low) * mpq_class(low)) << i << ' ' << k;
       }
-      const bool sign_told = answer.lower > 0 || answer.upper < 0 || answer.lower == 0 || answer.upper == 0;
+      const bool sign_told = answer.distance.lower > 0 || answer.distance.upper < 0 ||
+                             answer.distance.lower == 0 || answer.distance.upper == 0;
       untold += !sign_told && square > 1e-20;
     }
   }

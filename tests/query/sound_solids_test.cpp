@@ -19,6 +19,8 @@
 #include <iostream>
 #include <map>
 
+#include "testing/verdict_only.h"
+
 namespace snug {
 namespace {
 
@@ -143,7 +145,7 @@ class Trials {
     const LimitSurface surface(std::move(mesh), {Scheme::loop}, std::make_shared<BoundsCache>(), 1);
     const SurfaceBvh model(surface);
     SurfaceWorkspace scratch(model);
-    CollideOptions wanted;
+    CollideOptions wanted = testing::verdict_only();
     wanted.solid = true;
     const Collision answer = collide({model_, scratch_, {}}, {model, scratch, {}}, wanted);
     if (answer.verdict == Verdict::separated) {
@@ -160,12 +162,12 @@ class Trials {
     precision.solid = true;
     const Distance gap = distance({model_, scratch_, {}}, {model, scratch, {}}, precision);
     if (truth != 0) {
-      EXPECT_EQ(gap.lower, 0) << where;
+      EXPECT_EQ(gap.distance.lower, 0) << where;
       if (gap.inner) {
-        EXPECT_EQ(gap.upper, 0) << where;
+        EXPECT_EQ(gap.distance.upper, 0) << where;
       }
     } else {
-      EXPECT_GT(gap.upper, 0) << where;
+      EXPECT_GT(gap.distance.upper, 0) << where;
       EXPECT_FALSE(gap.inner) << where;
     }
   }

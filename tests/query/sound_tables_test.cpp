@@ -5,7 +5,7 @@
 #include <oracle/polygon_twin.h>
 #include <oracle/tagged_shapes.h>
 #include <snug/query/bound.h>
-#include <snug/surface/patch_bounds.h>
+#include <snug/surface/batch_bounds.h>
 #include <testing/containment.h>
 #include <testing/disguises.h>
 
@@ -228,7 +228,7 @@ TEST(tables, give_patch_bounds_that_contain_limit_points) {
     const LimitSurface surface(
         mesh, with_tags({loop ? Scheme::loop : Scheme::catmark, boundary_of(c.rules)}, mesh.tags),
         std::make_shared<BoundsCache>(), 1);
-    PatchBounds bounds(surface, BoundMethod::table, 1);
+    BatchBounds bounds(surface, BoundMethod::table, 1);
     std::vector<OffsetTriangle> found(bounds.patches().size());
     bounds.update(mesh.points, found);
     std::map<std::size_t, OffsetTriangle> of_patch;

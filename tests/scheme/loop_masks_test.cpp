@@ -25,7 +25,7 @@ TEST(loop_masks, contain_the_formula) {
     const long double c = std::cos(2 * std::numbers::pi_v<long double> / static_cast<long double>(n));
     const long double a = 0.625L - (3 + 2 * c) * (3 + 2 * c) / 64;
     const loop::RingMask mask = loop::vertex_mask(n);
-    EXPECT_NEAR(mask.centre.middle(), static_cast<double>(1 - a), 4e-16) << n;
+    EXPECT_NEAR(middle(mask.centre), static_cast<double>(1 - a), 4e-16) << n;
     EXPECT_LE(mask.centre.lower, 1 - a + 1e-18L) << n;
     EXPECT_GE(mask.centre.upper, 1 - a - 1e-18L) << n;
     EXPECT_LT(mask.each.upper - mask.each.lower, 1e-14) << n;
@@ -38,10 +38,10 @@ TEST(loop_masks, limits_are_kept_by_a_step) {
     const auto step = loop::vertex_mask(n), limit = loop::limit_mask(n);
     const double count = static_cast<double>(n);
     // Ring to ring: each new ring vertex takes 3/8 of the centre and 5/8 of the ring in sum.
-    const double centre = limit.centre.middle() * step.centre.middle() + count * limit.each.middle() * 0.375;
-    const double each = limit.centre.middle() * step.each.middle() + limit.each.middle() * 0.625;
-    EXPECT_NEAR(centre, limit.centre.middle(), 4e-16) << n;
-    EXPECT_NEAR(each, limit.each.middle(), 4e-16) << n;
+    const double centre = middle(limit.centre) * middle(step.centre) + count * middle(limit.each) * 0.375;
+    const double each = middle(limit.centre) * middle(step.each) + middle(limit.each) * 0.625;
+    EXPECT_NEAR(centre, middle(limit.centre), 4e-16) << n;
+    EXPECT_NEAR(each, middle(limit.each), 4e-16) << n;
   }
 }
 

@@ -1,6 +1,6 @@
 // A program of its own, since it counts every allocation; not under sanitizers, which have allocators of their own.
 #include <gtest/gtest.h>
-#include <snug/surface/patch_bounds.h>
+#include <snug/surface/batch_bounds.h>
 #include <testing/patches.h>
 #include <testing/tagged.h>
 
@@ -50,7 +50,7 @@ std::vector<LimitSurface> surfaces() {
 
 void expect_none_after_the_first_update(const LimitSurface& surface) {
   for (const BoundMethod method : {BoundMethod::rows, BoundMethod::table}) {
-    PatchBounds bounds(surface, method);
+    BatchBounds bounds(surface, method);
     std::vector<OffsetTriangle> out(bounds.patches().size());
     bounds.update(surface.mesh().points, out);
     std::vector<Point3> points = surface.mesh().points;

@@ -58,7 +58,7 @@ Camera frame(std::span<const Point3> points, Vector3 view_direction, Vector3 up,
     upright.add(dot(v, camera.up), depth);
     nearest = std::min(nearest, depth);
   }
-  const double size = box.longest_side();
+  const double size = longest_side(box);
   const double clear_of_the_eye = size > 0 ? 0.25 * size - nearest : 1;
   const double back = std::max(clear_of_the_eye, std::max(sideways.distance(), upright.distance()));
   camera.eye = points.front() + sideways.middle() * camera.right + upright.middle() * camera.up -

@@ -50,7 +50,7 @@ std::vector<LatticePoint> lattice_corners(const IntervalTriangle& triangle) {
                   "hull of boxes: a box is empty");
     all.add(box);
   }
-  const double size = all.longest_side();
+  const double size = longest_side(all);
   require_value(std::isfinite(size), "hull of boxes: its longest side does not fit a double");
   int exponent = 0;
   std::frexp(size, &exponent);

@@ -199,7 +199,7 @@ IntervalSimplex<N> interval_simplex(const HullPoints& points, const std::array<V
 template <std::size_t N>
 double thickness(const IntervalSimplex<N>& simplex) {
   double widest = 0;
-  for (const Box3& box : simplex.corner) widest = std::max(widest, box.longest_side());
+  for (const Box3& box : simplex.corner) widest = std::max(widest, longest_side(box));
   return widest;
 }
 

@@ -10,25 +10,6 @@
 /// apart.
 namespace snug {
 
-/// All points within `radius` of a triangle or a segment. Others call it a triangle-swept sphere and a line-swept sphere.
-template <std::size_t N>
-struct OffsetSimplex {
-  std::array<Point3, N> base;
-  double radius = 0;
-  double rounding =
-      0;  ///< the part of the radius that accounts for rounding; splitting does not make it smaller
-};
-using OffsetTriangle = OffsetSimplex<3>;
-using OffsetSegment = OffsetSimplex<2>;
-
-/// Convex combinations of N boxes ("interval points"): sum l_k b_k with b_k in corner k's box, l_k >= 0, sum l_k = 1.
-template <std::size_t N>
-struct IntervalSimplex {
-  std::array<Box3, N> corner;
-};
-using IntervalTriangle = IntervalSimplex<3>;
-using IntervalSegment = IntervalSimplex<2>;
-
 /// The radius at which the moved simplex covers the piece.
 ///
 /// Guarantee: every limit point of the piece is within `radius` of `base`, these very doubles, rounding included. Infinite

@@ -5,8 +5,8 @@
 #include <optional>
 #include <span>
 
-#include <snug/base/ids.h>
 #include <snug/geometry/point.h>
+#include <snug/mesh.h>
 
 /// The loops that bounds spend their time in, on the widest vectors that the processor has; chosen at run time.
 ///

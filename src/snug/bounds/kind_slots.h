@@ -9,8 +9,8 @@
 #include <utility>
 
 #include <snug/base/error.h>
-#include <snug/base/ids.h>
 #include <snug/base/recent_values.h>
+#include <snug/mesh.h>
 
 namespace snug {
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <span>
 
-#include <snug/base/ids.h>
 #include <snug/geometry/point.h>
+#include <snug/mesh.h>
 
 namespace snug::kernels {
 

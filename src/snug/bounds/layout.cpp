@@ -45,7 +45,7 @@ Ring ring_of(const Topology& topology, std::size_t corner) {
 // Twice the cosine of the angle between spokes: equal angles, half a turn in all at a boundary.
 double twice_cosine(const CornerFan& fan) {
   const auto faces = static_cast<unsigned>(fan.faces());
-  return 2 * cos_of_turn(1, fan.closed ? faces : 2 * faces).middle();
+  return 2 * middle(cos_of_turn(1, fan.closed ? faces : 2 * faces));
 }
 
 // Calls place(vertex, where) for the ring of a corner as the affine image of a regular fan:
@@ -164,7 +164,7 @@ std::vector<LayoutPoint> blended_layout(const Kind& kind, const Topology& topolo
 
 double outer_spoke(std::size_t n) {
   SNUG_EXPECT(n >= 3);
-  const double c = cos_of_turn(1, static_cast<unsigned>(n)).middle();  // of the angle between spokes
+  const double c = middle(cos_of_turn(1, static_cast<unsigned>(n)));  // of the angle between spokes
   return n >= 6 ? (6 - 2 * c) / (2 + c) : (36 - 6 * c) / (16 + c);
 }
 

@@ -50,7 +50,7 @@ Numbers with_columns(const Numbers& numbers, const Columns& columns) {
   return result;
 }
 
-Numbers with_translation(Numbers numbers, const Vector3& t) {
+Numbers with_offset(Numbers numbers, const Vector3& t) {
   for (std::size_t i = 0; i < 3; ++i) numbers[4 * i + 3] = t[i];
   return numbers;
 }
@@ -65,7 +65,7 @@ std::string mended(const Numbers& numbers, double defect) {
       rigidity_defect(shrunk) <= scaled_only) {
     return "it scales lengths by " + short_text(scale) + "; scale the mesh instead";
   }
-  const std::string off = std::isfinite(defect) ? short_text(defect) : "more than doubles hold";
+  const std::string off = std::isfinite(defect) ? short_text(defect) : "more than a double can hold";
   return "its 3x3 part R is not a rotation: an entry of R'R is off from the identity by " + off +
          ", more than 1e-9; take the nearest rotation (--nearest-rigid, or nearest_rigid() of the library)";
 }
@@ -180,14 +180,14 @@ Motion Motion::from_3x4(const Numbers& matrix) {
 
 Motion Motion::from_4x4(const std::array<double, 16>& matrix) { return from_3x4(upper_rows(matrix)); }
 
-Motion Motion::from_translation(const Vector3& translation) { return Motion().with_translation(translation); }
+Motion Motion::translation(const Vector3& by) { return Motion().with_offset(by); }
 
-Motion Motion::from_axis_angle(const Vector3& axis, double radians) {
+Motion Motion::rotation(const Vector3& axis, double radians) {
   if (!std::isfinite(radians)) refuse("the angle of rotation is not finite");
   return from_3x4(turned(unit(axis), std::sin(radians), std::cos(radians)));
 }
 
-Motion Motion::from_axis_degrees(const Vector3& axis, double degrees) {
+Motion Motion::rotation_degrees(const Vector3& axis, double degrees) {
   if (!std::isfinite(degrees)) refuse("the angle of rotation is not finite");
   int quarters = 0;
   const double rest = std::remquo(degrees, 90.0, &quarters) * (std::numbers::pi / 180);
@@ -211,11 +211,15 @@ Motion Motion::from_quaternion(const std::array<double, 4>& wxyz, const Vector3&
   const Numbers rotation{1 - s * (y * y + z * z), s * (x * y - w * z),     s * (x * z + w * y),     0,
                          s * (x * y + w * z),     1 - s * (x * x + z * z), s * (y * z - w * x),     0,
                          s * (x * z - w * y),     s * (y * z + w * x),     1 - s * (x * x + y * y), 0};
-  return from_3x4(snug::with_translation(rotation, translation));
+  return from_3x4(snug::with_offset(rotation, translation));
 }
 
-Motion Motion::with_translation(const Vector3& translation) const {
-  const Numbers numbers = snug::with_translation(numbers_, translation);
+Vector3 Motion::rotate(const Vector3& v) const { return {dot(row(0), v), dot(row(1), v), dot(row(2), v)}; }
+
+Point3 Motion::apply(const Point3& p) const { return Point3{} + (rotate({p.x, p.y, p.z}) + offset()); }
+
+Motion Motion::with_offset(const Vector3& offset) const {
+  const Numbers numbers = snug::with_offset(numbers_, offset);
   require_finite(numbers);
   return {numbers, defect_};
 }
@@ -232,7 +236,7 @@ Motion operator*(const Motion& a, const Motion& b) {
   const Columns columns = columns_of(b.numbers_);
   const Numbers rotation =
       with_columns({}, {a.rotate(columns[0]), a.rotate(columns[1]), a.rotate(columns[2])});
-  return Motion::settled(with_translation(rotation, a.rotate(b.translation()) + a.translation()));
+  return Motion::settled(with_offset(rotation, a.rotate(b.offset()) + a.offset()));
 }
 
 // The inverse of R within defect squared, by one step of Newton from its transpose: R' + (I - R'R) R'.
@@ -244,7 +248,7 @@ Motion Motion::inverse() const {
     for (std::size_t k = 0; k < 3; ++k)
       rows[i] = rows[i] + ((i == k) - dot(columns[i], columns[k])) * columns[k];
   }
-  const Vector3 t = translation();
+  const Vector3 t = offset();
   const Vector3 back{-dot(rows[0], t), -dot(rows[1], t), -dot(rows[2], t)};
   return settled({rows[0].x, rows[0].y, rows[0].z, back.x,  //
                   rows[1].x, rows[1].y, rows[1].z, back.y,  //

@@ -1,13 +1,8 @@
 #pragma once
 
-#include <array>
-
 #include <snug/geometry/point.h>
 
 namespace snug {
-
-using Segment = std::array<Point3, 2>;
-using Triangle = std::array<Point3, 3>;
 
 /// Parameters on a triangle: its point is (1 - u - v) c0 + u c1 + v c2.
 struct TriangleParameter {

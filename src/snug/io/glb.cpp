@@ -32,7 +32,7 @@ std::size_t count_triangles(const ControlMesh& mesh, const std::string& name, co
       refuse(name, "face " + std::to_string(face) + " has " + std::to_string(corners) + " corners");
     polygons = polygons || corners > 3;
   }
-  if (mesh.face_count() == 0) refuse(name, "the mesh has no faces, and glTF no empty meshes");
+  if (mesh.face_count() == 0) refuse(name, "the mesh has no faces, and glTF has no empty meshes");
   if (polygons && notes)
     notes(name + ": glTF holds triangles only: faces with more corners are split into fans");
   return mesh.face_vertices.size() - 2 * mesh.face_count();

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <snug/io/notes.h>
+#include <snug/mesh.h>
 #include <snug/mesh/control_mesh.h>
 
 namespace snug {

@@ -78,7 +78,7 @@ ControlMesh parsed(const std::string& path, const std::string& name, const Notes
 double size_of(const ControlMesh& mesh) {
   Box3 box = used_box(mesh);
   for (const VertexId v : mesh.polyline_vertices) box.add(mesh.points[v.index()]);
-  return box.longest_side();
+  return longest_side(box);
 }
 
 std::string counted(std::size_t count, const std::string& singular, const std::string& plural) {
@@ -86,7 +86,7 @@ std::string counted(std::size_t count, const std::string& singular, const std::s
 }
 
 std::string told(const Welded& welded) {
-  std::string text = "no two vertices are near enough to be welded";
+  std::string text = "no two vertices are close enough to be welded";
   if (welded.vertices > 0) {
     text = counted(welded.vertices, "vertex was", "vertices were") + " welded to others, at most ";
     append_real(text, welded.farthest);
@@ -95,21 +95,20 @@ std::string told(const Welded& welded) {
   if (welded.shortened > 0) text += "; " + counted(welded.shortened, "face", "faces") + " lost corners";
   if (welded.dropped > 0) {
     text += "; " + counted(welded.dropped, "face was", "faces were") +
-            " left with fewer than three corners and dropped: faces are counted without them";
+            " left with fewer than three corners and dropped: faces are numbered without them";
   }
   return text;
 }
 
 }  // namespace
 
-ControlMesh read_mesh(const std::string& path, const Notes& notes, const WorkMonitor& monitor,
-                      const WeldDistance& distance) {
+ControlMesh read_mesh(const std::string& path, const ReadOptions& options) {
   const std::string name = input_name(path);
-  ControlMesh mesh = parsed(path, name, notes, monitor);
-  if (!distance) return mesh;
+  ControlMesh mesh = parsed(path, name, options.notes, options.monitor);
+  if (!options.weld) return mesh;
   try {
-    const Welded welded = weld(mesh, distance(size_of(mesh)));
-    if (notes) notes(name + ": " + told(welded));
+    const Welded welded = weld(mesh, options.weld(size_of(mesh)));
+    if (options.notes) options.notes(name + ": " + told(welded));
   } catch (const InputError& error) {
     throw InputError(error.problem(), name + ": " + error.what());
   }
@@ -127,10 +126,10 @@ void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& pa
                 const WorkMonitor& monitor) {
   const std::string ending = format_to_write(path);
   if (ending != ".obj" && notes && changes_surface(mesh.tags)) {
-    notes(path + ": this format has no tags: creases and rules are left out");
+    notes(path + ": this format has no tags: creases and rules are dropped");
   }
   if (ending != ".obj" && notes && mesh.polyline_count() > 0) {
-    notes(path + ": this format has no polylines: they are left out");
+    notes(path + ": this format has no polylines: they are dropped");
   }
   monitor.checkpoint();
   const std::string bytes = formatted(mesh, ending, path, notes);

@@ -111,11 +111,11 @@ class ObjParser {
     if (!index || !is_corner_suffix(corner.substr(slash))) {
       fail_in_element(in_quotes(corner) + " is not a corner: write a, a/b, a//c or a/b/c with whole numbers");
     }
-    if (*index == 0) fail_in_element("index 0 names no vertex: OBJ counts from 1");
+    if (*index == 0) fail_in_element("index 0 is not a vertex: OBJ counts from 1");
     if (*index < 0) {
       const auto above = static_cast<std::int64_t>(mesh_.vertex_count());
       if (*index < -above) {
-        fail_in_element("index " + std::to_string(*index) + " reaches before the first of the " +
+        fail_in_element("index " + std::to_string(*index) + " goes back beyond the first of the " +
                         std::to_string(above) + " vertices above this line");
       }
       return VertexId(static_cast<std::size_t>(above + *index));

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include <snug/io/notes.h>
+#include <snug/mesh.h>
 #include <snug/mesh/control_mesh.h>
 
 namespace snug {

@@ -106,7 +106,7 @@ ObjTagReader::Values ObjTagReader::read_values(TextCursor& at, std::string_view 
   const auto counts = parse_counts(counts_word);
   if (!counts) {
     at.fail("tag " + std::string(name) + ": " + in_quotes(counts_word) +
-            " does not announce integers/floats/strings, for instance 2/1/0");
+            " does not count integers/floats/strings, as in 2/1/0");
   }
   const auto next = [&] {
     const std::string_view word = at.word();

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include <snug/io/notes.h>
 #include <snug/io/text_cursor.h>
+#include <snug/mesh.h>
 #include <snug/mesh/control_mesh.h>
 
 namespace snug {

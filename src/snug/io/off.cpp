@@ -45,7 +45,7 @@ class OffParser {
     while (mesh_.face_count() < faces_) read_face();
     if (const std::string_view extra = cursor_.word_across_lines(); !extra.empty()) {
       cursor_.fail(in_quotes(extra) + " follows the " + std::to_string(faces_) +
-                   " faces that the header promises: correct the counts");
+                   " faces that the header declares: correct the counts");
     }
     return std::move(mesh_);
   }
@@ -58,7 +58,7 @@ class OffParser {
     if (const auto found = header_prefix(word)) {
       prefix = *found;
       if (prefix.find_first_of("4n") != std::string_view::npos) {
-        cursor_.fail(in_quotes(word) + " announces points of other than three dimensions");
+        cursor_.fail(in_quotes(word) + " declares points that do not have three dimensions");
       }
       word = cursor_.word_across_lines();
     } else if (!parse_integer(word)) {
@@ -91,7 +91,7 @@ class OffParser {
     if (!count || *count < 0)
       cursor_.fail("the header says " + in_quotes(word) + " instead of a number of " + what);
     if (static_cast<std::uint64_t>(*count) > most_elements) {
-      cursor_.fail("the header promises " + std::string(word) + ' ' + what + ": at most " +
+      cursor_.fail("the header declares " + std::string(word) + ' ' + what + ": at most " +
                    std::to_string(most_elements) + " are read");
     }
     return static_cast<std::size_t>(*count);
@@ -148,7 +148,7 @@ class OffParser {
   void expect_more(std::size_t read, std::size_t promised, const std::string& what) const {
     if (cursor_.bytes_left() > 0) return;
     cursor_.fail("the file ends after " + std::to_string(read) + " of " + std::to_string(promised) + ' ' +
-                 what + ": it is truncated, or its header promises too much");
+                 what + ": it is truncated, or its header declares too much");
   }
 
   [[noreturn]] void fail_in_face(const std::string& message) const {

@@ -107,7 +107,7 @@ class HeaderLines {
     rest_.remove_prefix(size + 1);
     TextCursor at(line, name_, ++count_);
     if (line.find('\r') != std::string_view::npos) {
-      at.fail("the lines of the header end sometimes with CR and sometimes with LF");
+      at.fail("some lines of the header end with CR and some with LF");
     }
     return at;
   }
@@ -146,7 +146,7 @@ class HeaderParser {
         for (Element& element : header_.elements) assign_roles(at, element);
         return std::move(header_);
       } else {
-        at.fail(in_quotes(keyword) + " is no statement of a PLY header");
+        at.fail(in_quotes(keyword) + " is not a statement of a PLY header");
       }
       if (const std::string_view extra = at.word(); !extra.empty()) {
         at.fail(in_quotes(extra) + " follows a header line that is complete");
@@ -159,10 +159,10 @@ class HeaderParser {
     if (has_format_) at.fail("the header names its format twice");
     const std::string_view format = at.word();
     const auto known = value_in(ply_format_names, format);
-    if (!known) at.fail(in_quotes(format) + " is no format: " + listed(all_names(ply_format_names), "or"));
+    if (!known) at.fail(in_quotes(format) + " is not a format: " + listed(all_names(ply_format_names), "or"));
     header_.format = *known;
     const std::string_view version = at.word();
-    if (version != "1.0") at.fail("the version is " + in_quotes(version) + ": 1.0 is read");
+    if (version != "1.0") at.fail("the version is " + in_quotes(version) + ": only 1.0 is supported");
     has_format_ = true;
   }
 
@@ -172,10 +172,10 @@ class HeaderParser {
     element.line = at.line();
     if (element.name.empty()) at.fail("an element has no name");
     if (header_.elements.size() == most_names) {
-      at.fail("the header announces more than " + std::to_string(most_names) + " sorts of elements");
+      at.fail("the header declares more than " + std::to_string(most_names) + " kinds of elements");
     }
     for (const Element& other : header_.elements) {
-      if (other.name == element.name) at.fail("element " + in_quotes(element.name) + " is announced twice");
+      if (other.name == element.name) at.fail("element " + in_quotes(element.name) + " is declared twice");
     }
     const std::string_view word = at.word();
     const auto count = parse_integer(word);
@@ -185,18 +185,18 @@ class HeaderParser {
     }
     element.count = static_cast<std::uint64_t>(*count);
     if (element.name == "tristrips" && element.count > 0) {
-      at.fail("the file holds triangle strips: convert them to faces");
+      at.fail("the file contains triangle strips: convert them to faces");
     }
     header_.elements.push_back(std::move(element));
   }
 
   void read_property(TextCursor& at) {
-    if (header_.elements.empty()) at.fail("a property stands before every element");
+    if (header_.elements.empty()) at.fail("a property comes before the first element");
     Property property{};
     std::string_view type = at.word();
     if (type == "list") {
       property.count_type = read_type(at, at.word());
-      if (!is_integer(*property.count_type)) at.fail("a list is counted by an integer type");
+      if (!is_integer(*property.count_type)) at.fail("the count of a list must have an integer type");
       type = at.word();
     }
     property.type = read_type(at, type);
@@ -207,15 +207,14 @@ class HeaderParser {
       at.fail("an element has more than " + std::to_string(most_names) + " properties");
     }
     for (const Property& other : properties) {
-      if (other.name == property.name)
-        at.fail("property " + in_quotes(property.name) + " is announced twice");
+      if (other.name == property.name) at.fail("property " + in_quotes(property.name) + " is declared twice");
     }
     properties.push_back(std::move(property));
   }
 
   static Scalar read_type(const TextCursor& at, std::string_view word) {
     const auto type = value_in(scalar_names, word);
-    if (!type) at.fail(in_quotes(word) + " is no type of PLY: char to double, or int8 to float64");
+    if (!type) at.fail(in_quotes(word) + " is not a PLY type: char to double, or int8 to float64");
     return *type;
   }
 
@@ -238,7 +237,7 @@ class HeaderParser {
       for (Property& property : element.properties) {
         if (property.name != "vertex_index" && property.name != "vertex_indices") continue;
         if (!property.count_type || !is_integer(property.type)) {
-          at.fail_at(element.line, "the corners of the faces are no list of integers");
+          at.fail_at(element.line, "the corners of the faces are not a list of integers");
         }
         property.role = Role::corners;
         ++found;
@@ -309,7 +308,7 @@ class AsciiBody final : public Body {
     const IntegerRange range = range_of(type);
     if (*value < range.least || *value > range.most) {
       fail(in_quotes(word) + " does not fit the type " + name_in(scalar_names, type) +
-           " that the header announces");
+           " that the header declares");
     }
     return *value;
   }
@@ -318,7 +317,7 @@ class AsciiBody final : public Body {
   }
   void end() override {
     if (const std::string_view extra = cursor_.word(); !extra.empty()) {
-      fail(in_quotes(extra) + " follows the values that the header announces");
+      fail(in_quotes(extra) + " follows the values that the header declares");
     }
     cursor_.next_line();
   }
@@ -333,7 +332,7 @@ class AsciiBody final : public Body {
   void step_to_element() override {
     while (!cursor_.more_in_line()) {
       if (!cursor_.next_line()) {
-        fail("the file ends before it: it is truncated, or its header promises too much");
+        fail("the file ends before it: it is truncated, or its header declares too much");
       }
     }
   }
@@ -404,7 +403,7 @@ class BinaryBody final : public Body {
   void step_to_element() override {}
   const char* take(Scalar type, std::uint64_t count) {
     if (count > rest_.size() / size_of(type)) {
-      fail("the file ends within it: it is truncated, or its header promises too much");
+      fail("the file ends within it: it is truncated, or its header declares too much");
     }
     const char* const taken = rest_.data();
     rest_.remove_prefix(count * size_of(type));
@@ -464,12 +463,12 @@ class PlyParser {
     const TextCursor at({}, name_);
     if (element.count == 0) return;
     if (element.count > body_->room_for(element)) {
-      at.fail_at(element.line, "the header promises " + std::to_string(element.count) + " elements " +
+      at.fail_at(element.line, "the header declares " + std::to_string(element.count) + " elements " +
                                    in_quotes(element.name) +
                                    ", more than the file can hold: it is truncated, or the count is wrong");
     }
     if (element.count > most_elements) {
-      at.fail_at(element.line, "at most " + std::to_string(most_elements) + " elements of a sort are read");
+      at.fail_at(element.line, "at most " + std::to_string(most_elements) + " elements of one kind are read");
     }
   }
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <snug/base/progress.h>
+#include <snug/monitor.h>
 
 namespace snug {
 

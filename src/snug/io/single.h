@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <snug/geometry/point.h>
-#include <snug/io/notes.h>
+#include <snug/mesh.h>
 
 namespace snug {
 

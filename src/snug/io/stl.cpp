@@ -71,7 +71,8 @@ class AsciiParser {
       read_solid();
       word = cursor_.word_across_lines();
     }
-    if (!word.empty()) cursor_.fail(in_quotes(word) + " stands where 'solid' or the end of the file should");
+    if (!word.empty())
+      cursor_.fail(in_quotes(word) + " found where 'solid' or the end of the file is expected");
     if (corners_.empty()) cursor_.fail_everywhere("the file has no facets");
     return std::move(corners_);
   }
@@ -115,7 +116,7 @@ class AsciiParser {
   [[noreturn]] void fail_at_word(std::string_view word, const std::string& expected) const {
     const std::string where = "facet " + std::to_string(facet_) + ": ";
     if (word.empty()) cursor_.fail(where + "the file ends before its " + expected + ": it is truncated");
-    cursor_.fail(where + in_quotes(word) + " stands where " + expected + " should");
+    cursor_.fail(where + in_quotes(word) + " found where " + expected + " is expected");
   }
 
   TextCursor cursor_;
@@ -133,10 +134,10 @@ Corners read_corners(std::string_view bytes, const std::string& name) {
   if (begins_like_ascii(bytes)) return AsciiParser(plain_text(bytes, name), name).parse();
   refuse_other_formats(bytes, name);
   if (bytes.find('\0') == std::string_view::npos) {
-    fail(name, "this is no STL file: neither text that begins with 'solid' nor binary");
+    fail(name, "this is not an STL file: neither text that begins with 'solid' nor binary");
   }
   if (!has_count) fail(name, "the file is too short for binary STL: it is truncated");
-  fail(name, "the file promises " + std::to_string(facets) + " facets, which take " +
+  fail(name, "the file declares " + std::to_string(facets) + " facets, which take " +
                  std::to_string(preamble_size + facet_size * facets) + " bytes, but has " +
                  std::to_string(bytes.size()));
 }

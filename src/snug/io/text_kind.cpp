@@ -28,8 +28,8 @@ constexpr std::array signatures{
     Signature{
         "glTF"sv,
         "this is a binary glTF file, which is written but not read: convert it to OBJ, OFF, PLY or STL"},
-    Signature{"ply\n"sv, "this is a PLY file: let its name end in .ply"},
-    Signature{"ply\r"sv, "this is a PLY file: let its name end in .ply"},
+    Signature{"ply\n"sv, "this is a PLY file: give it a name that ends in .ply"},
+    Signature{"ply\r"sv, "this is a PLY file: give it a name that ends in .ply"},
 };
 
 bool begins_with_binary_off(std::string_view bytes) {
@@ -72,11 +72,11 @@ std::string_view plain_text(std::string_view bytes, const std::string& name) {
   refuse_other_formats(bytes, name);
   if (bytes.find('\0') != std::string_view::npos) {
     fail(name, looks_like_utf16(bytes) ? "this is UTF-16 text: save it as UTF-8"
-                                       : "this is not a text file: it holds NUL bytes");
+                                       : "this is not a text file: it contains NUL bytes");
   }
   const std::string_view front = bytes.substr(0, 4096);
   if (!std::all_of(front.begin(), front.end(), is_text_character)) {
-    fail(name, "this is not a text file: it holds control characters");
+    fail(name, "this is not a text file: it contains control characters");
   }
   return bytes;
 }

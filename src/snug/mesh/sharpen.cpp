@@ -1,4 +1,4 @@
-#include <snug/mesh/sharpen.h>
+#include <snug/mesh.h>
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +64,7 @@ double exactness(const ControlMesh& mesh, PowerOfTwo scale, double largest) {
            p.y == static_cast<float>(p.y) && p.z == static_cast<float>(p.z);
   });
   const Box3 box = used_box(mesh);
-  const double size = Box3{scale.apply(box.lower), scale.apply(box.upper)}.longest_side();
+  const double size = longest_side(Box3{scale.apply(box.lower), scale.apply(box.upper)});
   return std::max(0x1p-17 * size, (floats ? 0x1p-22 : 0x1p-48) * scale.apply(largest));
 }
 
@@ -397,7 +397,8 @@ void split_faces(ControlMesh& mesh, const Sharpener& sharp, Sharpened& result) {
 
 Sharpened sharpen(ControlMesh& mesh, double angle) {
   if (!(angle >= 0 && angle < 180)) {
-    throw InputError(InputProblem::value, "an angle of sharp edges is at least 0 and below 180 degrees");
+    throw InputError(InputProblem::value,
+                     "the angle of sharp edges must be at least 0 and below 180 degrees");
   }
   Sharpened result;
   if (!can_be_sharpened(mesh)) return result;

@@ -130,8 +130,7 @@ class Inspector {
         add(DefectKind::edge_of_many_faces,
             edge + " has " + number(members.size()) + " faces: " + listed(faces));
       } else {
-        add(DefectKind::inconsistent_orientation,
-            edge + " is run along in the same direction by faces " + listed(faces));
+        add(DefectKind::inconsistent_orientation, edge + " has the same direction in faces " + listed(faces));
       }
     }
   }

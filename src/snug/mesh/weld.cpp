@@ -358,9 +358,9 @@ void find_near_vertices(const ControlMesh& mesh, const std::vector<std::pair<Ver
 }  // namespace
 
 std::vector<std::uint32_t> first_of_welded(std::span<const Point3> points, double distance) {
-  require_length(distance, "the distance of welding");
+  require_length(distance, "the welding distance");
   if (points.size() >= UINT32_MAX) {
-    throw InputError(InputProblem::refused, "2^32 points and more cannot be welded: split the mesh");
+    throw InputError(InputProblem::refused, "at most 2^32 - 1 points can be welded: split the mesh");
   }
   double largest = 0;
   for (const Point3& point : points) {
@@ -373,7 +373,7 @@ std::vector<std::uint32_t> first_of_welded(std::span<const Point3> points, doubl
   // So that cells have whole numbers that are exact, and neighbours of them.
   if (!(distance >= std::ldexp(largest, -40)) || 0.51 * distance < std::ldexp(1.0, -1000)) {
     throw InputError(InputProblem::refused,
-                     "the distance of welding is too small beside the coordinates: give a larger one");
+                     "the welding distance is too small for these coordinates: give a larger one");
   }
   return Grid(points, std::move(first), distance).weld();
 }
@@ -402,7 +402,7 @@ Coincidences coincidences(const ControlMesh& mesh) {
     found.places += !shared[first];
     shared[first] = true;
   }
-  found.reach = 0x1p-17 * used_box(mesh).longest_side();
+  found.reach = 0x1p-17 * longest_side(used_box(mesh));
   const bool reaches =
       found.reach >= std::ldexp(largest, -40) && found.reach > DBL_MIN && std::isfinite(found.reach);
   if (looks_closed(mesh)) return found;

@@ -23,28 +23,6 @@ namespace snug {
 ///            half that distance until one welds the two cells: about a second for a million points.
 [[nodiscard]] std::vector<std::uint32_t> first_of_welded(std::span<const Point3> points, double distance = 0);
 
-/// What weld() did to a mesh.
-struct Welded {
-  std::size_t vertices = 0;   ///< that are gone: joined to one before them
-  double farthest = 0;        ///< the largest distance of such a vertex from that one, in double precision
-  std::size_t shortened = 0;  ///< faces that lost corners and have three or more different ones still
-  std::size_t dropped = 0;    ///< faces that had fewer left: they are gone
-};
-
-/// Makes one vertex of vertices that stand in one place or, with a distance, near each other, as first_of_welded() says.
-///
-/// Guarantee: of vertices that are joined the first stays where it is; those that stay keep their order, and so do
-///            faces and polylines. Where corners of a face that follow each other are or become one, it keeps one of them; a
-///            face with fewer than three different corners left is dropped. Corners of a face that do not follow each
-///            other may become one, too: the face then names a vertex twice (mesh/validate.h). Polylines keep all
-///            their points, and one whose ends become one is closed.
-///            Tags are kept: creases and corners at the vertices that stay, the sharpest where several become one;
-///            creases whose ends become one are gone, and holes that were dropped.
-/// Requires:  as first_of_welded().
-/// Errors:    those of first_of_welded(); then the mesh is as it was.
-/// Cost:      that of first_of_welded() and linear beside it.
-Welded weld(ControlMesh& mesh, double distance = 0);
-
 /// Vertices and boundary edges that stand where others do and are not joined: faces meet there to the eye alone.
 struct Coincidences {
   std::size_t vertices = 0;  ///< vertices of faces that stand exactly where another one stands

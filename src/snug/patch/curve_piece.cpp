@@ -62,7 +62,7 @@ std::array<LimitPoint, 2> limit_ends(const CurvePiece& piece) {
 }
 
 CurvePoint curve_point(const CurvePiece& piece, double t) {
-  require_value(t >= 0 && t <= 1, "a parameter is outside of its edge: t must be from 0 to 1");
+  require_value(t >= 0 && t <= 1, "a parameter is outside its edge: t must be from 0 to 1");
   if (piece.window == CurveWindow::quadratic_edge) {
     const unsigned child = t > 0.5 ? 1 : 0;
     CurvePoint result = curve_point(split(piece, child), 2 * t - child);  // exact

@@ -49,7 +49,7 @@ inline std::size_t corner_at(TriangleParameter p) {
 // The parameter of a question, on the triangle.
 inline TriangleParameter checked(TriangleParameter at) {
   require_value(at.u >= 0 && at.v >= 0 && at.u + at.v <= 1,
-                "a parameter is outside of its triangle: u and v must be >= 0, and u + v <= 1");
+                "a parameter is outside its triangle: u and v must be >= 0, and u + v <= 1");
   return on_triangle(at);
 }
 
@@ -59,7 +59,7 @@ inline LimitPoint stopped_point(const Patch& piece) {
   Box3 box;
   for (const Vector3& p : piece.points) box.add(Point3{} + p);
   LimitPoint corner = corner_point(piece, 0);
-  corner.error += enlarged(box.longest_side()) + 2 * piece.error;
+  corner.error += enlarged(longest_side(box)) + 2 * piece.error;
   return corner;
 }
 

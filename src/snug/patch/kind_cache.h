@@ -15,6 +15,9 @@ namespace snug {
 class Kind;
 class KindCache;
 
+/// A patch kind in a KindCache.
+using KindId = Id<struct KindTag>;
+
 /// A quarter of a patch after one step of subdivision; of a polygon half a quad.
 struct KindChild {
   const Kind* kind;

@@ -54,7 +54,7 @@ LimitPoint limit_point(const Patch& patch, QuadParameter at) { return limit_fram
 
 LimitFrame limit_frame(const Patch& patch, QuadParameter at) {
   require_value(at.u >= 0 && at.u <= 1 && at.v >= 0 && at.v <= 1,
-                "a parameter is outside of its quad: u and v must be from 0 to 1");
+                "a parameter is outside its quad: u and v must be from 0 to 1");
   const Half here = descend(patch, at);
   LimitFrame frame = limit_frame(here.piece, on_triangle(here));
   frame.point.error += slack(here);

@@ -11,6 +11,8 @@
 #include <snug/search/nearest_first.h>
 #include <snug/search/piece_extents.h>
 #include <snug/search/point_batch.h>
+#include <snug/search/precision.h>
+#include <snug/surface/evaluate.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {
@@ -30,11 +32,11 @@ class Query {
         to_(surface_.scale().apply(to)),
         options_(options),
         monitor_(monitor),
-        bounds_(surface_.scale().apply(options.absolute) * (1 - 2 * unit_roundoff) - underflow_error,
-                options.relative, noise * (2 + max_abs(to_ - Point3{}))) {
+        bounds_(surface_.scale().apply(*options.absolute) * (1 - 2 * unit_roundoff) - underflow_error,
+                *options.relative, noise * (2 + max_abs(to_ - Point3{}))) {
     if (!(max_abs(to_ - Point3{}) <= farthest_point)) {
       throw InputError(InputProblem::value,
-                       "closest: a point is more than 10^12 sizes of the surface away; give nearer points");
+                       "closest: a point is more than 10^12 sizes of the surface away; give closer points");
     }
     // Scaling a point to units of the surface loses something only where these are far from its own.
     point_error_ =
@@ -123,9 +125,9 @@ class Query {
   ClosestPoint result() const {
     const PowerOfTwo back = surface_.scale().inverse();
     ClosestPoint answer;
-    answer.lower = unscaled_down(std::max(0.0, bounds_.lower()), back);
-    answer.upper = require_representable(unscaled_up(bounds_.upper(), back));
-    answer.reached = near_enough(answer.lower, answer.upper, options_);
+    answer.distance = {unscaled_down(std::max(0.0, bounds_.lower()), back),
+                       require_representable(unscaled_up(bounds_.upper(), back))};
+    answer.reached = near_enough(answer.distance, options_);
     const BoundedPoint closest = unscaled(closest_, back);
     answer.point = closest.position;
     answer.point_error = closest.error;
@@ -153,8 +155,8 @@ ClosestPoint closest_point(SurfaceWorkspace& workspace, const Point3& to, const 
     throw InputError(InputProblem::value,
                      "closest: a coordinate of the point is not finite; give three numbers");
   }
-  require_precision(options);
-  return Query(workspace, to, options, monitor).run();
+  const ClosestOptions wanted = with_precision(options, workspace.model().surface().size());
+  return Query(workspace, to, wanted, monitor).run();
 }
 
 std::vector<ClosestPoint> closest_points(const SurfaceBvh& model, std::span<const Point3> to,

@@ -11,6 +11,7 @@
 #include <snug/query/distance.h>
 #include <snug/search/crossing.h>
 #include <snug/search/outer_gap.h>
+#include <snug/search/precision.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {
@@ -24,7 +25,7 @@ class Query {
   Query(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options, const WorkMonitor& monitor)
       : frames_(a, b), options_(options), monitor_(monitor) {
     margin_ = frames_.length_up(options.margin);
-    reach_ = frames_.length_down((options.margin + options.tolerance) * (1 - unit_roundoff));
+    reach_ = frames_.length_down((options.margin + *options.tolerance) * (1 - unit_roundoff));
   }
 
   Collision run() {
@@ -126,15 +127,15 @@ class Query {
     const PowerOfTwo back = frames_.to_mesh_units();
     // Pairs that were not looked at, or not resolved, may be as near as 0.
     const bool whole = answer.verdict == Verdict::separated;
-    answer.lower = whole ? unscaled_down(std::min(lower_, best_.distance), back) : 0.0;
+    answer.distance.lower = whole ? unscaled_down(std::min(lower_, best_.distance), back) : 0.0;
     if (best_.distance < INFINITY) {
       answer.witness = {require_representable(back.apply(best_.points[0])),
                         require_representable(back.apply(best_.points[1]))};
-      answer.upper = require_representable(unscaled_up(best_.distance, back));
+      answer.distance.upper = require_representable(unscaled_up(best_.distance, back));
       answer.witness_error = unscaled_up(best_.error, back) + underflow_error;
       answer.at = pieces_.places(best_);
     }
-    if (crossing_) answer.upper = 0;
+    if (crossing_) answer.distance.upper = 0;
     return answer;
   }
 
@@ -171,15 +172,14 @@ Collision as_solids(const PlacedBvh& a, const PlacedBvh& b, Collision answer, co
   if (found.inner) {
     answer.verdict = Verdict::intersecting;
     answer.inner = found.inner;
-    answer.lower = 0;
-    answer.upper = 0;
+    answer.distance = 0;
     answer.witness = {found.point, found.point};
     answer.witness_error = found.error;
     answer.at = {};
     answer.at[*found.inner] = found.at;
   } else if (answer.verdict == Verdict::separated && !found.certain) {
     answer.verdict = Verdict::undecided;
-    answer.lower = 0;
+    answer.distance.lower = 0;
   }
   return answer;
 }
@@ -193,7 +193,7 @@ Collision ask(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& opti
   if (const double gap = outer_gap(a, b); gap > options.margin) {
     Collision answer;
     answer.verdict = Verdict::separated;
-    answer.lower = gap;
+    answer.distance.lower = gap;
     return answer;
   }
   Collision answer = Query(a, b, options, monitor).run();
@@ -216,9 +216,9 @@ void measure(const PlacedBvh& a, const PlacedBvh& b, std::uint64_t budget, const
     if (error.problem() == InputProblem::unrepresentable) return;
     throw;
   }
-  answer.lower = std::max(answer.lower, found.lower);
-  if (answer.upper && *answer.upper <= found.upper) return;
-  answer.upper = found.upper;
+  answer.distance.lower = std::max(answer.distance.lower, found.distance.lower);
+  if (answer.distance.upper <= found.distance.upper) return;
+  answer.distance.upper = found.distance.upper;
   answer.witness = found.witness;
   answer.witness_error = found.witness_error;
   answer.at = found.at;
@@ -228,14 +228,18 @@ void measure(const PlacedBvh& a, const PlacedBvh& b, std::uint64_t budget, const
 
 Collision collide(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
                   const WorkMonitor& monitor) {
-  require_length(options.tolerance, "collide: the tolerance");
+  CollideOptions wanted = options;
+  if (!wanted.tolerance)
+    wanted.tolerance = share_of_size(1e-3, a.model.surface().size(), b.model.surface().size());
+  require_length(*wanted.tolerance, "collide: the tolerance");
   require_length(options.margin, "collide: the margin");
   if (options.solid) {
     static_cast<void>(a.model.solid());
     static_cast<void>(b.model.solid());
   }
-  Collision answer = ask(a, b, options, monitor);
-  const bool measured = answer.upper && answer.lower >= *answer.upper / 2;
+  Collision answer = ask(a, b, wanted, monitor);
+  const bool measured =
+      answer.distance.upper < INFINITY && answer.distance.lower >= answer.distance.upper / 2;
   if (options.measure && answer.verdict == Verdict::separated && !measured) {
     measure(a, b, options.budget, monitor, answer);
   }

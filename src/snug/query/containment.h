@@ -37,11 +37,7 @@ struct Nesting {
 /// Guarantee: as nesting(); nothing follows where none is found.
 [[nodiscard]] Nesting common_point(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor = {});
 
-/// Is a point, in mesh units, in the solid that a closed limit surface bounds?
-///
-/// Guarantee: the answer is right; nothing where it cannot be told, as on the surface and within rounding of it.
-/// Errors:    InputError: (refused) from SurfaceBvh::solid(), (value) for a point that is not finite.
-/// Cost:      that of winding_number().
+/// contains() of a surface whose tree and workspace are at hand.
 [[nodiscard]] std::optional<bool> contains(SurfaceWorkspace& scratch, const Point3& point,
                                            const WorkMonitor& monitor = {});
 

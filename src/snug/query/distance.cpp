@@ -12,6 +12,8 @@
 #include <snug/search/outer_gap.h>
 #include <snug/surface/unscale.h>
 
+#include <snug/search/precision.h>
+
 namespace snug {
 namespace {
 
@@ -29,7 +31,7 @@ class Query {
       : frames_(a, b),
         options_(options),
         monitor_(monitor),
-        bounds_(frames_.length_down(options.absolute), options.relative, noise) {
+        bounds_(frames_.length_down(*options.absolute), *options.relative, noise) {
     bounds_.raise_lower(frames_.length_down(outer_gap(a, b)));
   }
 
@@ -169,9 +171,9 @@ class Query {
     Distance answer;
     answer.stats = stats_;
     const PowerOfTwo back = frames_.to_mesh_units();
-    answer.lower = unscaled_down(bounds_.lower(), back);
-    answer.upper = require_representable(unscaled_up(bounds_.upper(), back));
-    answer.reached = near_enough(answer.lower, answer.upper, options_);
+    answer.distance = {unscaled_down(bounds_.lower(), back),
+                       require_representable(unscaled_up(bounds_.upper(), back))};
+    answer.reached = near_enough(answer.distance, options_);
     for (std::size_t s = 0; s < 2; ++s) {
       answer.witness[s] = require_representable(back.apply(witness_.points[s]));
     }
@@ -198,16 +200,16 @@ class Query {
 
 Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options,
                   const WorkMonitor& monitor) {
-  require_precision(options);
+  const DistanceOptions wanted = with_precision(options, a.model.surface().size(), b.model.surface().size());
   if (options.solid) {
     static_cast<void>(a.model.solid());
     static_cast<void>(b.model.solid());
   }
-  Distance answer = Query(a, b, options, monitor).run();
-  if (!options.solid || answer.upper == 0) return answer;
-  const Nesting found = answer.lower > 0 ? nesting(a, b, monitor) : common_point(a, b, monitor);
+  Distance answer = Query(a, b, wanted, monitor).run();
+  if (!options.solid || answer.distance.upper == 0) return answer;
+  const Nesting found = answer.distance.lower > 0 ? nesting(a, b, monitor) : common_point(a, b, monitor);
   if (found.inner) {
-    answer.lower = answer.upper = 0;
+    answer.distance = 0;
     answer.reached = true;
     answer.witness = {found.point, found.point};
     answer.witness_error = found.error;
@@ -215,8 +217,8 @@ Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions&
     answer.at[*found.inner] = found.at;
     answer.inner = found.inner;
   } else if (!found.certain) {
-    answer.lower = 0;
-    answer.reached = near_enough(answer.lower, answer.upper, options);
+    answer.distance.lower = 0;
+    answer.reached = near_enough(answer.distance, wanted);
   }
   return answer;
 }

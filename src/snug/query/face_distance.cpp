@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <snug/geometry/rounding.h>
-#include <snug/surface/patch_bounds.h>
+#include <snug/surface/batch_bounds.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {
@@ -75,7 +75,7 @@ std::optional<double> limit_to_faces(const LimitSurface& surface, int threads) {
     if (surface.has_patch(PatchId(p)) && !sharp[surface.place(PatchId(p)).owner]) patches.emplace_back(p);
   }
   if (patches.empty()) return 0.0;
-  PatchBounds bounds(surface, patches, {}, threads);
+  BatchBounds bounds(surface, patches, {}, threads);
   std::vector<OffsetTriangle> offsets(patches.size());
   bounds.update(surface.mesh().points, offsets, threads);
   double most = 0;

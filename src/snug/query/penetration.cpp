@@ -55,32 +55,34 @@ class Search {
       return answer;
     }
     shorten();
-    answer.lower = deepest_common_balls();
+    const double below = deepest_common_balls();
     for (const Vector3& w : outward_) {
       if (const std::optional<double> t = shortest_along(w, 2 * best_.length)) descend({*t * w, *t});
     }
     answer.translation = best_.translation;
-    answer.upper = length_up(best_.translation);
-    answer.lower = std::min(answer.lower, answer.upper);
-    answer.reached = answer.upper - answer.lower <= options_.relative * answer.upper;
+    const double above = length_up(best_.translation);
+    answer.depth = {std::min(below, above), above};
+    answer.reached = above - answer.depth.lower <= options_.relative * above;
     return answer;
   }
 
  private:
   // Of the exact difference of the poses' translations: its coordinates are each within a rounding of these.
   [[nodiscard]] double length_up(const Vector3& d) const {
-    return enlarged(length((b_.pose.translation() + d) - b_.pose.translation()));
+    return enlarged(length((b_.pose.offset() + d) - b_.pose.offset()));
   }
 
   [[nodiscard]] PlacedBvh moved(const Vector3& d) const {
-    return {b_.model, b_.scratch, b_.pose.with_translation(b_.pose.translation() + d)};
+    return {b_.model, b_.scratch, b_.pose.with_offset(b_.pose.offset() + d)};
   }
   [[nodiscard]] bool separated(const Vector3& d) {
     monitor_.checkpoint();
-    if (!is_finite(b_.pose.translation() + d)) return false;
+    if (!is_finite(b_.pose.offset() + d)) return false;
     CollideOptions options;
     options.solid = true;
     options.budget = options_.budget;
+    options.tolerance = 0;
+    options.prove_contact = options.measure = false;
     return collide(a_, moved(d), options, monitor_).verdict == Verdict::separated;
   }
   // Keeps a shorter translation that separates.
@@ -147,11 +149,11 @@ class Search {
       const Distance gap = snug::distance(a_, moved(at.translation), precision, monitor_);
       const Vector3 n = normalized(gap.witness[1] - gap.witness[0]);
       if (n == Vector3{}) return;
-      const double along = dot(n, at.translation) - gap.lower;
+      const double along = dot(n, at.translation) - gap.distance.lower;
       const double before = at.length;
       for (const Vector3& next :
-           {(1 + 1e-4) * std::max(along, 0.0) * n, at.translation - gap.lower * n,
-            (1 - 0.9 * gap.lower / at.length) * at.translation, 0.98 * at.translation}) {
+           {(1 + 1e-4) * std::max(along, 0.0) * n, at.translation - gap.distance.lower * n,
+            (1 - 0.9 * gap.distance.lower / at.length) * at.translation, 0.98 * at.translation}) {
         const double shorter = length(next);
         if (!(shorter < at.length) || !separated(next)) continue;
         at = {next, shorter};
@@ -173,15 +175,15 @@ class Search {
     // How far `other` may be from the exact preimage of the exact image of `local`, measured forwards.
     const Point3 again = b_.pose.apply(other);
     const double magnitude = max_abs(local - Point3{}) + max_abs(other - Point3{}) +
-                             max_abs(a_.pose.translation()) + max_abs(b_.pose.translation());
+                             max_abs(a_.pose.offset()) + max_abs(b_.pose.offset());
     const double off =
         spatial_error(max_abs(again - world) + 64 * unit_roundoff * magnitude + 8 * underflow_error);
     const SignedDistance in_a = signed_distance(a_.scratch, local, precision, monitor_);
     const SignedDistance in_b = signed_distance(b_.scratch, other, precision, monitor_);
     // A motion shrinks lengths by at most its defect.
-    const double radius_a = -in_a.upper * (1 - 2 * a_.pose.defect()),
-                 radius_b = -in_b.upper * (1 - 2 * b_.pose.defect()) - off;
-    guide_ = std::min(-in_a.lower, -in_b.lower);
+    const double radius_a = -in_a.distance.upper * (1 - 2 * a_.pose.defect()),
+                 radius_b = -in_b.distance.upper * (1 - 2 * b_.pose.defect()) - off;
+    guide_ = std::min(-in_a.distance.lower, -in_b.distance.lower);
     const Vector3 from_a = a_.pose.rotate(in_a.nearest.point - local),
                   to_b = b_.pose.rotate(other - in_b.nearest.point);
     ways_out_ = {from_a, to_b};

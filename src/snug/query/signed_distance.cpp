@@ -2,6 +2,7 @@
 
 #include <snug/query/containment.h>
 #include <snug/search/point_batch.h>
+#include <snug/search/precision.h>
 #include <snug/search/solid.h>
 
 namespace snug {
@@ -13,9 +14,11 @@ SignedDistance signed_distance(SurfaceWorkspace& scratch, const Point3& point, c
   answer.nearest = closest_point(scratch, point, options, monitor);
   const ClosestPoint& nearest = answer.nearest;
   const std::optional<bool> inside = contains(scratch, point, monitor);
-  answer.lower = inside == false ? nearest.lower : -nearest.upper;
-  answer.upper = inside == true ? -nearest.lower : nearest.upper;
-  answer.reached = nearest.reached && near_enough(answer.lower, answer.upper, options);
+  answer.distance = {inside == false ? nearest.distance.lower : -nearest.distance.upper,
+                     inside == true ? -nearest.distance.lower : nearest.distance.upper};
+  answer.reached = nearest.reached &&
+                   (inside.has_value() ||
+                    near_enough(answer.distance, with_precision(options, scratch.model().surface().size())));
   return answer;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <snug/base/progress.h>
 #include <snug/mesh/control_mesh.h>
 #include <snug/scheme/curve_masks.h>
 #include <snug/scheme/scheme.h>

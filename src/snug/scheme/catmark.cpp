@@ -40,8 +40,8 @@ Interval smooth_triangle_face() { return Interval(47) / Interval(100); }
 
 // Subdominant eigenvalue at an interior vertex.
 double subdominant(std::size_t n) {
-  const double c = cos_of_turn(1, static_cast<unsigned>(n)).middle();
-  const double h = cos_of_turn(1, static_cast<unsigned>(2 * n)).middle();
+  const double c = middle(cos_of_turn(1, static_cast<unsigned>(n)));
+  const double h = middle(cos_of_turn(1, static_cast<unsigned>(2 * n)));
   return (5 + c + h * std::sqrt(2 * (9 + c))) / 16;
 }
 

@@ -234,7 +234,7 @@ class MidedgeRules : public DualRules {
   }
   // Modes 1 and n - 1; for n = 3 there are no others, and 1/4 is what remains.
   [[nodiscard]] double shrink_factor(const CornerFan& fan) const override {
-    return 0.5 + 0.5 * cos_of_turn(1, static_cast<unsigned>(fan.faces())).middle();
+    return 0.5 + 0.5 * middle(cos_of_turn(1, static_cast<unsigned>(fan.faces())));
   }
 };
 

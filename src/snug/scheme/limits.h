@@ -1,6 +1,6 @@
 #pragma once
 
-#include <snug/base/progress.h>
+#include <snug/monitor.h>
 #include <snug/scheme/creases.h>
 #include <snug/scheme/scheme.h>
 #include <snug/scheme/stencils.h>

@@ -41,10 +41,10 @@ RingMask limit_mask(std::size_t n) {
 
 RingMask curve_limit_mask() { return {Interval(2) / Interval(3), Interval(1) / Interval(6)}; }
 
-double subdominant(std::size_t n) { return 0.375 + 0.25 * cos_of_turn(1, static_cast<unsigned>(n)).middle(); }
+double subdominant(std::size_t n) { return 0.375 + 0.25 * middle(cos_of_turn(1, static_cast<unsigned>(n))); }
 
 double subdominant_across_boundary(std::size_t faces) {
-  return 0.375 + 0.25 * cos_of_turn(1, static_cast<unsigned>(2 * faces)).middle();
+  return 0.375 + 0.25 * middle(cos_of_turn(1, static_cast<unsigned>(2 * faces)));
 }
 
 }  // namespace snug::loop

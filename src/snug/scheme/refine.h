@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include <snug/base/progress.h>
 #include <snug/mesh/topology.h>
+#include <snug/monitor.h>
 #include <snug/scheme/creases.h>
 #include <snug/scheme/scheme.h>
 #include <snug/scheme/stencils.h>

@@ -8,10 +8,6 @@
 
 namespace snug {
 
-enum class Scheme : std::uint8_t { loop, catmark, doo_sabin, midedge, bilinear, flat };
-
-[[nodiscard]] const char* name_of(Scheme scheme);
-
 /// Rules that turn a mesh into a surface, beside the scheme itself.
 struct SchemeOptions {
   Scheme scheme = Scheme::loop;

@@ -27,7 +27,7 @@ class Stencils {
   void reserve(std::size_t rows, std::size_t entries);
   /// Adds an entry to the row in the making. The same source may come twice in a row.
   void add(std::uint32_t source, double weight) { add(source, weight, 0); }
-  void add(std::uint32_t source, const Interval& weight) { add(source, weight.middle(), weight.radius()); }
+  void add(std::uint32_t source, const Interval& weight) { add(source, middle(weight), radius(weight)); }
   void add(std::uint32_t source, double weight, double error);
   /// Ends the row.
   void end_row();

@@ -23,7 +23,7 @@ struct Outline {
         rows{model.pose.row(0), model.pose.row(1), model.pose.row(2)},
         to_units((model.model.surface().scale().inverse() * units).apply(1.0)) {
     const Vector3 local = to_units * (model.model.tree().box().centre - Point3{});
-    const Vector3 translation = units.apply(model.pose.translation());
+    const Vector3 translation = units.apply(model.pose.offset());
     centre =
         Point3{} + (Vector3{dot(rows[0], local), dot(rows[1], local), dot(rows[2], local)} + translation);
     size = 2 * max_abs(local) + max_abs(translation) + to_units * dop.radius();

@@ -11,7 +11,7 @@ namespace snug {
 PowerOfTwo joint_scale(const PlacedBvh& a, const PlacedBvh& b) {
   // Surfaces are at most 2 in their own scales.
   const int exponent = std::max(-a.model.surface().scale().exponent(), -b.model.surface().scale().exponent());
-  const double t = std::max(max_abs(a.pose.translation()), max_abs(b.pose.translation()));
+  const double t = std::max(max_abs(a.pose.offset()), max_abs(b.pose.offset()));
   const PowerOfTwo scale(-exponent);
   return scale.apply(t) < 2 ? scale : PowerOfTwo(-std::max(exponent, std::ilogb(t)));
 }
@@ -20,7 +20,7 @@ PlacedFrame frame_of(const PlacedBvh& placed, PowerOfTwo world) {
   const Motion& pose = placed.pose;
   return {.rows = {pose.row(0), pose.row(1), pose.row(2)},
           .scale = (placed.model.surface().scale().inverse() * world).apply(1.0),
-          .translation = world.apply(pose.translation()),
+          .translation = world.apply(pose.offset()),
           .defect = pose.defect()};
 }
 

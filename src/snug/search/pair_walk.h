@@ -4,8 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <snug/search/answers.h>
+#include <snug/collide.h>
 #include <snug/search/pair_frames.h>
+#include <snug/surface/evaluate.h>
 
 namespace snug {
 

@@ -4,9 +4,9 @@
 #include <deque>
 #include <vector>
 
-#include <snug/bounds/bound_method.h>
 #include <snug/bounds/enclosure.h>
 #include <snug/bvh/obb.h>
+#include <snug/surface.h>
 #include <snug/surface/limit_surface.h>
 
 namespace snug {

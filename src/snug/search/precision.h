@@ -2,24 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <limits>
 
 #include <snug/base/error.h>
+#include <snug/geometry.h>
 
 namespace snug {
 
-/// When the bounds of a distance are near enough: upper - lower <= max(absolute, relative * upper).
-struct DistanceOptions {
-  double absolute = 0;               ///< >= 0, mesh units
-  double relative = 0;               ///< >= 0
-  std::uint64_t budget = 1'000'000;  ///< most pieces opened
-  bool solid = false;  ///< distance(): closed surfaces bound solids, which are 0 apart where they meet
-};
+/// A share of the larger of two sizes: what is asked for where nothing is.
+[[nodiscard]] inline double share_of_size(double share, double size_a, double size_b = 0) {
+  return std::min(share * std::max(size_a, size_b), std::numeric_limits<double>::max());
+}
 
-/// Throws InputError (value) unless both precisions are finite and >= 0.
-inline void require_precision(const DistanceOptions& options) {
-  require_length(options.absolute, "the absolute precision");
-  require_length(options.relative, "the relative precision");
+/// Options of a distance with both precisions given, as DistanceOptions says.
+/// Errors:    InputError (value) unless both are finite and >= 0.
+template <class Options>
+[[nodiscard]] Options with_precision(Options options, double size_a, double size_b = 0) {
+  const bool given = options.absolute || options.relative;
+  options.absolute = options.absolute.value_or(given ? 0 : share_of_size(1e-4, size_a, size_b));
+  options.relative = options.relative.value_or(0);
+  require_length(*options.absolute, "the absolute precision");
+  require_length(*options.relative, "the relative precision");
+  return options;
 }
 
 /// A number of single precision that is not above a lower bound; below zero where single precision underflows.
@@ -53,8 +57,9 @@ class DistanceBounds {
 };
 
 /// Are bounds, in mesh units, as near as was asked for?
-[[nodiscard]] inline bool near_enough(double lower, double upper, const DistanceOptions& options) {
-  return upper - lower <= std::max(options.absolute, options.relative * upper);
+template <class Options>
+[[nodiscard]] bool near_enough(const Interval& bounds, const Options& options) {
+  return bounds.upper - bounds.lower <= std::max(*options.absolute, *options.relative * bounds.upper);
 }
 
 }  // namespace snug

@@ -18,13 +18,13 @@ void require_closed(const LimitSurface& surface) {
   for (std::size_t e = 0; e < topology.edge_count(); ++e) {
     if (!topology.ends_fans(EdgeId(e))) continue;
     const HalfEdge h = topology.half_of(EdgeId(e));
-    throw InputError(InputProblem::refused,
-                     "solids are bounded by closed surfaces, and edge (" +
-                         std::to_string(topology.from(h).value()) + ", " +
-                         std::to_string(topology.to(h).value()) + ") of face " +
-                         std::to_string(topology.face_of(h).value()) +
-                         " has not two faces that run along it in opposite directions; close the mesh or ask "
-                         "about its surface");
+    throw InputError(
+        InputProblem::refused,
+        "solids are bounded by closed surfaces, and edge (" + std::to_string(topology.from(h).value()) +
+            ", " + std::to_string(topology.to(h).value()) + ") of face " +
+            std::to_string(topology.face_of(h).value()) +
+            " does not have two faces that run along it in opposite directions; close the mesh or ask "
+            "about its surface");
   }
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
     if (surface.has_patch(PatchId(p))) continue;

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <mutex>
 #include <utility>
 
 #include <snug/base/error.h>
@@ -45,7 +43,7 @@ std::vector<PatchId> existing_patches(const LimitSurface& surface) {
   }
   if (patches.empty()) {
     throw InputError(InputProblem::refused,
-                     "nothing here has a limit surface: all touches the boundary or is a hole; take another "
+                     "no face has a limit surface: all are holes or touch the boundary; take another "
                      "boundary rule");
   }
   return patches;
@@ -70,13 +68,6 @@ WideBvh make_tree(const LimitSurface& surface, std::span<const PatchId> patches,
 
 }  // namespace
 
-// Not std::call_once: an exception that leaves it, as of a surface that is not closed, may end the process or lock it up.
-struct SurfaceBvh::LazySolid {
-  std::mutex mutex;
-  std::optional<Solid> solid;
-  std::atomic<const Solid*> ready{nullptr};
-};
-
 SurfaceBvh::~SurfaceBvh() = default;
 SurfaceBvh::SurfaceBvh(SurfaceBvh&&) noexcept = default;
 SurfaceBvh& SurfaceBvh::operator=(SurfaceBvh&&) noexcept = default;
@@ -87,7 +78,7 @@ SurfaceBvh::SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& opt
       method_(options.method),
       patches_(existing_patches(surface)),
       tree_(make_tree(surface, patches_, options, monitor)),
-      solid_(std::make_unique<LazySolid>()) {
+      solid_(std::make_unique<Lazy<Solid>>()) {
   const PowerOfTwo back = surface.scale().inverse();
   ball_ = {back.apply(tree_.ball().centre), enlarged(back.apply(tree_.ball().radius))};
   // Beyond these sizes products lose digits to the ends of the range.
@@ -97,11 +88,7 @@ SurfaceBvh::SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& opt
 }
 
 const Solid& SurfaceBvh::solid() const {
-  if (const Solid* const ready = solid_->ready.load(std::memory_order_acquire)) return *ready;
-  const std::lock_guard lock(solid_->mutex);
-  if (!solid_->solid) solid_->solid.emplace(*surface_);
-  solid_->ready.store(&*solid_->solid, std::memory_order_release);
-  return *solid_->solid;
+  return solid_->get([&] { return Solid(*surface_); });
 }
 
 std::size_t SurfaceBvh::bytes() const { return patches_.capacity() * sizeof(PatchId) + tree_.bytes(); }

@@ -4,9 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include <snug/base/progress.h>
-#include <snug/bounds/bound_method.h>
+#include <snug/base/lazy.h>
 #include <snug/bvh/wide_bvh.h>
+#include <snug/monitor.h>
+#include <snug/surface.h>
 #include <snug/surface/limit_surface.h>
 
 namespace snug {
@@ -54,8 +55,7 @@ class SurfaceBvh {
   std::vector<PatchId> patches_;
   WideBvh tree_;
   Ball ball_;
-  struct LazySolid;
-  std::unique_ptr<LazySolid> solid_;
+  std::unique_ptr<Lazy<Solid>> solid_;
 };
 
 }  // namespace snug

@@ -11,7 +11,7 @@ CurveSet::CurveSet(ControlMesh mesh, CurveDegree degree) : mesh_(std::move(mesh)
   require_curves(mesh_);
   Box3 box;
   for (const VertexId v : mesh_.polyline_vertices) box.add(mesh_.points[v.index()]);
-  size_ = box.longest_side();
+  size_ = longest_side(box);
   scale_ = PowerOfTwo::normalising(std::max(max_abs(box.lower - Point3{}), max_abs(box.upper - Point3{})));
   for (std::size_t p = 0; p < mesh_.polyline_count(); ++p) {
     const auto line = mesh_.polyline(PolylineId(p));

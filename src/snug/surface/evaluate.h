@@ -3,32 +3,13 @@
 #include <array>
 #include <optional>
 
+#include <snug/evaluate.h>
 #include <snug/geometry/motion.h>
 #include <snug/patch/limit_evaluator.h>
 #include <snug/surface/curve_set.h>
 #include <snug/surface/limit_surface.h>
 
 namespace snug {
-
-/// A limit point in mesh units, with what the surface does there.
-struct SurfacePoint : BoundedPoint {
-  /// Derivatives along u and v where they exist, else two limit tangents of no particular length.
-  std::array<Vector3, 2> tangents;
-  bool differentiable;
-  std::optional<Vector3> normal;  ///< of length 1; absent where there is none
-  /// Upper bound of the length of normal - exact normal, where one is proved.
-  std::optional<double> normal_error;
-};
-
-/// A place on the surface as people name it. Triangular schemes: (u, v) is (1 - u - v) c0 + u c1 + v c2 of a face. Else it
-/// is a place on a quad, from corner 0 with u towards corner 1: of the owner if that is one (of a dual scheme: the faces
-/// around the vertex, from topology().leaving() on), else of the quad that its first split makes at `corner`, from there
-/// with u along the edge that follows.
-struct SurfaceParameter {
-  std::uint32_t owner;  ///< face, or vertex of a dual scheme
-  std::uint32_t corner = 0;
-  double u = 0, v = 0;
-};
 
 /// The place of a parameter of a patch.
 ///
@@ -41,24 +22,11 @@ struct SurfaceParameter {
 /// Errors:    nothing where there is no such owner, corner or parameter, or no surface.
 [[nodiscard]] std::optional<PatchId> patch_at(const LimitSurface& surface, const SurfaceParameter& at);
 
-/// The limit point at a place, with derivatives along its u and v.
-///
-/// Guarantee: as SurfacePoint says; tangents and normal are in double precision without a bound.
-/// Errors:    InputError (value) where patch_at() has nothing, NaN included; (unrepresentable) if a coordinate does not fit a
-///            double.
+/// The limit point at a place: evaluate() of evaluate.h.
 [[nodiscard]] SurfacePoint evaluate(const LimitSurface& surface, const SurfaceParameter& at);
 
-/// A unit normal, and how far it is from the exact one.
-struct SurfaceNormal {
-  Vector3 direction;
-  std::optional<double>
-      error;  ///< upper bound of the length of direction - exact normal, where one is proved
-};
-/// The normal of a surface where a motion places it, at exactly this place; nothing where there is none.
-///
+/// normal_at() of evaluate.h.
 /// Requires:  patch_at(surface, at).
-/// Errors:    InputError if the limit point does not fit a double.
-/// Cost:      that of evaluate(), about a microsecond.
 [[nodiscard]] std::optional<SurfaceNormal> normal_at(const LimitSurface& surface, const SurfaceParameter& at,
                                                      const Motion& pose = {});
 

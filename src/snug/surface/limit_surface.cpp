@@ -18,7 +18,7 @@ LimitSurface::LimitSurface(ControlMesh mesh, const SchemeOptions& options,
   topology_ = require_surface(mesh_, options_);
   monitor.checkpoint();
   const Box3 box = used_box(mesh_);
-  size_ = box.longest_side();
+  size_ = longest_side(box);
   scale_ = PowerOfTwo::normalising(std::max(max_abs(box.lower - Point3{}), max_abs(box.upper - Point3{})));
   scaled_.reserve(mesh_.points.size());
   for (const Point3& p : mesh_.points) scaled_.push_back(scale_.apply(p));

@@ -5,10 +5,10 @@
 #include <unordered_map>
 #include <vector>
 
-#include <snug/base/progress.h>
 #include <snug/bounds/bounds_cache.h>
 #include <snug/geometry/scaling.h>
 #include <snug/mesh/topology.h>
+#include <snug/monitor.h>
 #include <snug/patch/patch.h>
 #include <snug/scheme/creases.h>
 #include <snug/scheme/rules.h>

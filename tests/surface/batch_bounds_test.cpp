@@ -1,4 +1,4 @@
-#include <snug/surface/patch_bounds.h>
+#include <snug/surface/batch_bounds.h>
 
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
@@ -34,11 +34,11 @@ void expect_near(const OffsetTriangle& actual, const OffsetTriangle& expected, d
   EXPECT_NEAR(actual.radius, expected.radius, 1e-12 * expected.radius + 1e-13 * size);
 }
 
-TEST(patch_bounds, are_those_of_single_patches) {
+TEST(batch_bounds, are_those_of_single_patches) {
   for (const oracle::TwinMesh& twin : twins()) {
     const LimitSurface surface = testing::surface_of(twin);
     for (const BoundMethod method : {BoundMethod::rows, BoundMethod::table}) {
-      PatchBounds bounds(surface, method);
+      BatchBounds bounds(surface, method);
       std::vector<OffsetTriangle> out(bounds.patches().size());
       bounds.update(surface.mesh().points, out);
       HullPoints scratch;
@@ -51,14 +51,14 @@ TEST(patch_bounds, are_those_of_single_patches) {
   }
 }
 
-TEST(patch_bounds, cover_the_limit_points_at_every_scale_and_place) {
+TEST(batch_bounds, cover_the_limit_points_at_every_scale_and_place) {
   for (const double size : {1e-300, 1e-290, 1e-5, 1.0, 1e290}) {
     std::size_t count = 0;
     for (oracle::TwinMesh twin : twins()) {
       for (oracle::Point& p : twin.points) p = {size * (p[0] + 7), size * p[1], size * (p[2] - 3)};
       const LimitSurface surface = testing::surface_of(twin);
       for (const BoundMethod method : {BoundMethod::rows, BoundMethod::table}) {
-        PatchBounds bounds(surface, method);
+        BatchBounds bounds(surface, method);
         std::vector<OffsetTriangle> out(bounds.patches().size());
         bounds.update(surface.mesh().points, out);
         std::vector<const OffsetTriangle*> of(surface.face_count(), nullptr);
@@ -75,9 +75,9 @@ TEST(patch_bounds, cover_the_limit_points_at_every_scale_and_place) {
   }
 }
 
-TEST(patch_bounds, of_chosen_faces_come_in_their_order) {
+TEST(batch_bounds, of_chosen_faces_come_in_their_order) {
   const LimitSurface surface = testing::surface_of(oracle::meshes::grid(9, 7));
-  PatchBounds all(surface), some(surface, {PatchId(50), PatchId(3), PatchId(51)});
+  BatchBounds all(surface), some(surface, {PatchId(50), PatchId(3), PatchId(51)});
   std::vector<OffsetTriangle> of_all(all.patches().size()), of_some(3);
   all.update(surface.mesh().points, of_all);
   some.update(surface.mesh().points, of_some);
@@ -86,18 +86,18 @@ TEST(patch_bounds, of_chosen_faces_come_in_their_order) {
   EXPECT_EQ(of_some[2].radius, of_all[51].radius);
 }
 
-TEST(patch_bounds, follow_the_control_points_and_do_not_depend_on_threads) {
+TEST(batch_bounds, follow_the_control_points_and_do_not_depend_on_threads) {
   std::mt19937_64 random(6);
   oracle::TwinMesh twin = oracle::meshes::disturbed(oracle::meshes::grid(30, 30), 60, 0.2, random);
   const LimitSurface surface = testing::surface_of(twin);
-  PatchBounds bounds(surface);
+  BatchBounds bounds(surface);
   std::vector<OffsetTriangle> one(bounds.patches().size()), two = one, fresh = one;
   bounds.update(surface.mesh().points, one);
   for (oracle::Point& p : twin.points) p = {p[1] * 5, p[2] + 0.1 * p[0], p[0]};
   const LimitSurface moved = testing::surface_of(twin);
   bounds.update(moved.mesh().points, one, 1);
   bounds.update(moved.mesh().points, two, 2);
-  PatchBounds(moved).update(moved.mesh().points, fresh);
+  BatchBounds(moved).update(moved.mesh().points, fresh);
   for (std::size_t i = 0; i < one.size(); ++i) {
     EXPECT_EQ(one[i].base, fresh[i].base);
     EXPECT_EQ(one[i].radius, fresh[i].radius);
@@ -106,9 +106,9 @@ TEST(patch_bounds, follow_the_control_points_and_do_not_depend_on_threads) {
   }
 }
 
-TEST(patch_bounds, refuse_points_that_are_not_finite) {
+TEST(batch_bounds, refuse_points_that_are_not_finite) {
   const LimitSurface surface = testing::surface_of(oracle::meshes::grid(3, 3));
-  PatchBounds bounds(surface);
+  BatchBounds bounds(surface);
   std::vector<OffsetTriangle> out(bounds.patches().size());
   std::vector<Point3> points = surface.mesh().points;
   points[5].y = std::numeric_limits<double>::quiet_NaN();
@@ -119,20 +119,20 @@ TEST(patch_bounds, refuse_points_that_are_not_finite) {
   EXPECT_LT(out[0].radius, 1);
 }
 
-TEST(patch_bounds, pass_over_vertices_without_faces) {
+TEST(batch_bounds, pass_over_vertices_without_faces) {
   ControlMesh mesh = testing::control_mesh(oracle::meshes::icosahedron());
   mesh.points.insert(mesh.points.begin(), Point3{1e200, 0, 0});
   for (VertexId& v : mesh.face_vertices) v = VertexId(v.index() + 1);
   mesh.points.push_back({-1e200, 0, 0});
   const LimitSurface surface(mesh, {}, std::make_shared<BoundsCache>(), 1);
-  PatchBounds bounds(surface);
+  BatchBounds bounds(surface);
   std::vector<OffsetTriangle> out(20);
   bounds.update(mesh.points, out);
   EXPECT_LT(out[7].radius, 0.2);
 }
 
 // Regular quads come in batches, without the split that single patches have.
-TEST(patch_bounds, of_quads_contain_the_limit_and_are_a_little_wider_than_of_single_patches) {
+TEST(batch_bounds, of_quads_contain_the_limit_and_are_a_little_wider_than_of_single_patches) {
   std::mt19937_64 random(3);
   std::size_t points = 0, wider = 0, patches = 0;
   for (const double amount : {0.0, 0.05, 0.3}) {
@@ -144,7 +144,7 @@ TEST(patch_bounds, of_quads_contain_the_limit_and_are_a_little_wider_than_of_sin
       const oracle::Rules rules;
       const LimitSurface surface(testing::control_mesh(twin), testing::options_of(rules),
                                  std::make_shared<BoundsCache>(), 1);
-      PatchBounds bounds(surface);
+      BatchBounds bounds(surface);
       std::vector<OffsetTriangle> out(bounds.patches().size());
       bounds.update(surface.mesh().points, out);
       HullPoints scratch;

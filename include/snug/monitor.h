@@ -3,19 +3,19 @@
 #include <atomic>
 #include <functional>
 
-#include <snug/base/error.h>
+#include <snug/error.h>
 
 namespace snug {
 
-/// How long work reports itself and is stopped. All members are optional; a default one is silent and never
-/// stops. Thread-safe as far as the callback is.
+/// How long-running work reports progress and is stopped. Both members are optional. As thread-safe as the
+/// callback.
 struct WorkMonitor {
-  /// Called with the share that is done, in [0, 1], a few thousand times at most.
+  /// Called with the fraction done, in [0, 1], at most a few thousand times.
   std::function<void(double)> on_progress;
-  /// Set by somebody else, for instance a signal handler, to end the work.
+  /// Set from elsewhere, such as a signal handler, to stop the work.
   const std::atomic<bool>* stop = nullptr;
 
-  /// Throws Interrupted if a stop was asked for.
+  /// Throws Interrupted if a stop was requested.
   /// Cost:      one load.
   void checkpoint() const {
     if (stop && stop->load(std::memory_order_relaxed)) throw Interrupted();

@@ -1,4 +1,4 @@
-#include <snug/surface/patch_bounds.h>
+#include <snug/surface/batch_bounds.h>
 
 #include <algorithm>
 #include <array>
@@ -81,14 +81,14 @@ PowerOfTwo normalising(std::span<const Point3> points, std::span<const VertexId>
 
 }  // namespace
 
-std::size_t PatchBounds::control_count(const Group& group) {
+std::size_t BatchBounds::control_count(const Group& group) {
   return (group.polygon ? group.polygon : group.kind)->control_count();
 }
 
-PatchBounds::PatchBounds(const LimitSurface& surface, BoundMethod method, int threads)
-    : PatchBounds(surface, all_patches(surface), method, threads) {}
+BatchBounds::BatchBounds(const LimitSurface& surface, BoundMethod method, int threads)
+    : BatchBounds(surface, all_patches(surface), method, threads) {}
 
-PatchBounds::PatchBounds(const LimitSurface& surface, std::vector<PatchId> patches, BoundMethod method,
+BatchBounds::BatchBounds(const LimitSurface& surface, std::vector<PatchId> patches, BoundMethod method,
                          int threads)
     : library_(&surface.library()), patches_(std::move(patches)) {
   for (const PatchId p : patches_) {
@@ -111,7 +111,7 @@ PatchBounds::PatchBounds(const LimitSurface& surface, std::vector<PatchId> patch
 }
 
 // Groups, chunks and places: a counting sort.
-void PatchBounds::sort_by_kind(const LimitSurface& surface) {
+void BatchBounds::sort_by_kind(const LimitSurface& surface) {
   constexpr std::uint32_t none = UINT32_MAX;
   std::vector<std::uint32_t> group_of_kind(library_->kinds().size(), none), group_of(patches_.size()), sizes;
   std::map<std::pair<KindId, std::uint32_t>, std::uint32_t> group_of_part;
@@ -149,7 +149,7 @@ void PatchBounds::sort_by_kind(const LimitSurface& surface) {
   }
 }
 
-void PatchBounds::collect_control(const LimitSurface& surface) {
+void BatchBounds::collect_control(const LimitSurface& surface) {
   std::vector<bool> used(surface.mesh().vertex_count());
   std::vector<VertexId> vertices;
   auto to = control_.begin();
@@ -164,7 +164,7 @@ void PatchBounds::collect_control(const LimitSurface& surface) {
   scaled_.resize(surface.mesh().vertex_count());
 }
 
-void PatchBounds::update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads) {
+void BatchBounds::update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads) {
   require_value(points.size() == scaled_.size(), "patch bounds: give a point for each vertex of the mesh");
   require_value(out.size() == patches_.size(), "patch bounds: give room for an answer for each of patches()");
   const PowerOfTwo scale = normalising(points, unused_), back = scale.inverse();
@@ -179,7 +179,7 @@ void PatchBounds::update(std::span<const Point3> points, std::span<OffsetTriangl
   }
 }
 
-void PatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTriangle> out) const {
+void BatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTriangle> out) const {
   thread_local Scratch scratch;
   const Group& group = groups_[chunk.group];
   const Kind& kind = *group.kind;
@@ -224,7 +224,7 @@ void PatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
   }
 }
 
-std::size_t PatchBounds::bytes() const {
+std::size_t BatchBounds::bytes() const {
   return sizeof(*this) + patches_.size() * sizeof(PatchId) + unused_.size() * sizeof(VertexId) +
          groups_.size() * sizeof(Group) + chunks_.size() * sizeof(Chunk) + places_.size() * sizeof(Place) +
          control_.size() * sizeof(VertexId) + scaled_.size() * sizeof(Point3);

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include <snug/bounds/bound_method.h>
 #include <snug/bounds/enclosure.h>
+#include <snug/surface.h>
 #include <snug/surface/limit_surface.h>
 
 namespace snug {
@@ -14,14 +14,14 @@ namespace snug {
 /// connectivity stays: for animation, and the fastest way to bound a large mesh once.
 ///
 /// Cost:      see bench/results/rows.txt. Memory: 4 bytes a control point and patch, 24 a vertex.
-class PatchBounds {
+class BatchBounds {
  public:
   /// Makes what the kinds of the surface need: their rows, or their tables.
   /// Requires:  the surface outlives the bounds.
   /// Errors:    InputError (value) for a patch that is not there.
-  explicit PatchBounds(const LimitSurface& surface, BoundMethod method = BoundMethod::rows, int threads = 0);
+  explicit BatchBounds(const LimitSurface& surface, BoundMethod method = BoundMethod::rows, int threads = 0);
   /// The same for some of the patches, in any order.
-  PatchBounds(const LimitSurface& surface, std::vector<PatchId> patches,
+  BatchBounds(const LimitSurface& surface, std::vector<PatchId> patches,
               BoundMethod method = BoundMethod::rows, int threads = 0);
 
   /// The patches that update() answers for, in this order; all that are there unless chosen.

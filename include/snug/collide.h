@@ -1,0 +1,119 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <snug/surface.h>
+
+namespace snug {
+
+enum class Verdict : std::uint8_t {
+  separated,     ///< proved: the limit surfaces are farther apart than the margin
+  within,        ///< two witness points on the limit surfaces are at most margin + tolerance apart
+  intersecting,  ///< proved: the limit surfaces, or the solids they bound, have a point in common
+  undecided,     ///< none of these could be shown within the budget or the precision of doubles
+};
+[[nodiscard]] SNUG_API const char* name_of(Verdict verdict);
+
+struct CollideOptions {
+  /// >= 0, mesh units. With 0 only proofs of contact or separation count. Default: 0.1 % of the larger
+  /// surface's size.
+  std::optional<double> tolerance{};
+  double margin = 0;                 ///< >= 0, mesh units
+  std::uint64_t budget = 1'000'000;  ///< largest number of splits
+  bool prove_contact = true;         ///< where surfaces are within, try to prove that they intersect
+  bool solid = false;  ///< compare the solids that closed surfaces bound: one inside the other intersects it
+  /// For separated surfaces, refine `distance` until its lower end is at least half of its upper end, and
+  /// give witnesses: about ten microseconds more. Otherwise the lower end is a by-product of the search, too
+  /// small by a median factor of 2 for surfaces far apart and of 100 for close ones.
+  bool measure = true;
+};
+
+/// The work that a query did.
+struct SearchStats {
+  std::uint64_t box_tests = 0;       ///< pairs of BVH nodes compared
+  std::uint64_t triangle_tests = 0;  ///< pairs of base triangles compared
+  std::uint64_t evaluations = 0;     ///< pairs of limit points evaluated
+  std::uint64_t splits = 0;          ///< pieces split, counted every time
+};
+
+/// Parameters of the witnesses on A and on B; empty for a witness that is known as a point of the other
+/// surface only.
+using WitnessPlaces = std::array<std::optional<SurfaceParameter>, 2>;
+
+/// The answer to "do these surfaces touch?", in mesh units and world coordinates.
+struct Collision {
+  Verdict verdict = Verdict::undecided;
+  /// Contains the distance. The upper end is infinite if no pair of points was evaluated.
+  Interval distance{0, std::numeric_limits<double>::infinity()};
+  std::optional<std::array<Point3, 2>> witness;  ///< the two closest points found, on A and on B
+  /// Upper bound, per coordinate, of the distance between a witness and the limit point it stands for.
+  double witness_error = 0;
+  WitnessPlaces at;  ///< where the witnesses lie, up to a few roundings; see normal_at()
+  /// Set with `solid` if no crossing was proved: 0 if a point of A's surface lies inside the solid B, 1 the
+  /// other way round. Both witnesses are then that point.
+  std::optional<std::size_t> inner;
+  SearchStats stats;
+};
+
+/// Do two placed limit surfaces touch?
+///
+/// Guarantee: `separated` means distance > margin, `within` distance <= margin + tolerance, `intersecting`
+///            distance = 0 (or solids with a common point), all in exact arithmetic for the given doubles.
+///            `distance` contains the distance of the surfaces, with `solid` that of the solids. If several
+///            verdicts are true, which one is returned depends on the input alone, not on threads or earlier
+///            queries.
+/// Errors:    InputError: (value) for a tolerance or margin that is negative or not finite; (unrepresentable)
+///            if a result does not fit a double; (refused) if no face of a mesh has a limit surface, and with
+///            `solid` if a surface is not closed. Interrupted.
+/// Cost:      about 100 ns for surfaces far apart, microseconds in contact (bench/results/collide.txt).
+/// Source:    [Wu05, sec. 5.1]; differs: the printed pair test is not sound, see derivations/leaf_rule.md.
+[[nodiscard]] SNUG_API Collision collide(const PlacedSurface& a, const PlacedSurface& b,
+                                         const CollideOptions& options = {}, const WorkMonitor& monitor = {},
+                                         Workspace& workspace = Workspace::of_this_thread());
+
+/// The same for many poses; answers are in the same order.
+/// Guarantee: the same bits as from single queries, for any number of threads (0: all cores).
+[[nodiscard]] SNUG_API std::vector<Collision> collide(const Surface& a, const Surface& b,
+                                                      std::span<const PosePair> poses,
+                                                      const CollideOptions& options = {}, int threads = 0,
+                                                      const WorkMonitor& monitor = {});
+
+struct PenetrationOptions {
+  /// >= 0; the search ends once the width of `depth` is at most this fraction of its upper end.
+  double relative = 0.05;
+  std::uint64_t budget = 20'000;  ///< largest number of splits for each collision query of the search
+};
+
+/// How deeply two solids penetrate: the least length of a translation of B that separates them.
+struct Penetration {
+  /// Proved: no translation shorter than the lower end separates them. `translation`, added to B's pose in
+  /// double precision, does, and is at most as long as the upper end.
+  Interval depth;
+  Vector3 translation;   ///< to be added to B's pose; zero if the solids are separated as they are
+  bool reached = false;  ///< is `depth` as narrow as requested?
+};
+
+/// Bounds of the penetration depth of two closed, placed surfaces.
+///
+/// Upper end: translations are tried in many directions and shortened along the normals of the remaining
+/// contact; collide() proves each. Lower end: two balls around one point, each inside one solid, still meet
+/// after every translation shorter than the sum of their radii.
+///
+/// Guarantee: `depth` contains the depth, and with `translation` added to B's pose the solids are separated.
+///            The upper end belongs to the best translation found, a local minimum; where parts interlock it
+///            may be far from the depth.
+/// Errors:    InputError: (refused) for a surface that is not closed, (value) for a precision that is
+///            negative or not finite, (unrepresentable) if no separating translation fits a double.
+///            Interrupted.
+/// Cost:      about a hundred collision and closest-point queries.
+/// Source:    derivations/contact.md, "How deep".
+[[nodiscard]] SNUG_API Penetration penetration(const PlacedSurface& a, const PlacedSurface& b,
+                                               const PenetrationOptions& options = {},
+                                               const WorkMonitor& monitor = {},
+                                               Workspace& workspace = Workspace::of_this_thread());
+
+}  // namespace snug

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <snug/surface.h>
+
+namespace snug {
+
+/// A limit point in mesh units with its tangents and normal.
+struct SurfacePoint : BoundedPoint {
+  /// Derivatives in u and v where they exist, else two limit tangents of no particular length.
+  std::array<Vector3, 2> tangents;
+  bool differentiable;
+  std::optional<Vector3> normal;  ///< of length 1; empty where there is none
+  /// Upper bound of |normal - exact normal|, where one is proved.
+  std::optional<double> normal_error;
+};
+
+/// The limit point at these parameters, with derivatives in u and v.
+///
+/// Guarantee: `error` and `normal_error` are upper bounds. Tangents are in double precision, without a bound.
+/// Errors:    InputError: (value) if the surface has no such owner, corner or parameter, NaN included;
+///            (unrepresentable) if a coordinate does not fit a double.
+/// Cost:      about a microsecond for one point, far less for each of many.
+[[nodiscard]] SNUG_API SurfacePoint evaluate(const Surface& surface, const SurfaceParameter& at);
+/// The same for many points, in the same order; results do not depend on threads.
+[[nodiscard]] SNUG_API std::vector<SurfacePoint> evaluate(const Surface& surface,
+                                                          std::span<const SurfaceParameter> at,
+                                                          int threads = 0);
+
+/// A unit normal and its error.
+struct SurfaceNormal {
+  Vector3 direction;
+  std::optional<double> error;  ///< upper bound of |direction - exact normal|, where one is proved
+};
+/// The normal of a placed surface at exactly these parameters; empty where there is none.
+/// Errors, Cost: those of evaluate().
+[[nodiscard]] SNUG_API std::optional<SurfaceNormal> normal_at(const PlacedSurface& surface,
+                                                              const SurfaceParameter& at);
+
+/// How far the limit surface may be from the faces of its control mesh, in mesh units: the loss when facets
+/// are used as a control mesh.
+///
+/// Guarantee: every limit point of a face is at most this far from the convex hull of the face's corners,
+///            rounding included. A triangle is its own hull, and so is a planar convex polygon. 0 if every
+///            face with a surface has only infinitely sharp edges and corners, see sharpen(). Empty with a
+///            dual scheme, whose patches do not belong to faces.
+/// Tightness: 1.02 to 1.43 times the largest distance sampled on seven models.
+/// Errors:    InputError (unrepresentable) if a result does not fit a double.
+/// Cost:      1 microsecond a patch.
+/// Source:    derivations/sharp_parts.md.
+[[nodiscard]] SNUG_API std::optional<double> limit_to_faces(const Surface& surface, int threads = 0);
+
+/// The control mesh after `level` steps of subdivision; with `limit` the limit positions of its vertices, in
+/// double precision.
+///
+/// With `limit`, faces without a limit surface are left out, and so are vertices that only they use: holes,
+/// faces at boundary vertices with BoundaryRule::none, and in a dual scheme faces that touch a boundary
+/// vertex of the refined mesh. In a dual scheme the limit position of a vertex is the middle of its patch.
+///
+/// Guarantee: positions are within a few units in the last place of the largest coordinate, per level. The
+///            sharpness of tags is reduced by the number of steps.
+/// Errors:    InputError: (refused) if the result has more than 2^31 faces; (unrepresentable) if a coordinate
+///            does not fit a double. Interrupted.
+/// Cost:      linear in the result.
+[[nodiscard]] SNUG_API ControlMesh subdivided(const Surface& surface, unsigned level, bool limit = false,
+                                              const WorkMonitor& monitor = {});
+
+}  // namespace snug

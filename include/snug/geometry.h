@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+
+/// Points and sets as plain values. Arithmetic on them is private to the library, because its error bounds
+/// rely on how the library is compiled.
+namespace snug {
+
+/// A displacement. Points and vectors are different types: two points cannot be added by accident.
+struct Vector3 {
+  double x = 0, y = 0, z = 0;
+  [[nodiscard]] constexpr double operator[](std::size_t axis) const {
+    return axis == 0 ? x : axis == 1 ? y : z;
+  }
+  constexpr double& operator[](std::size_t axis) { return axis == 0 ? x : axis == 1 ? y : z; }
+  friend constexpr bool operator==(const Vector3&, const Vector3&) = default;
+};
+
+/// A position.
+struct Point3 {
+  double x = 0, y = 0, z = 0;
+  [[nodiscard]] constexpr double operator[](std::size_t axis) const {
+    return axis == 0 ? x : axis == 1 ? y : z;
+  }
+  constexpr double& operator[](std::size_t axis) { return axis == 0 ? x : axis == 1 ? y : z; }
+  friend constexpr bool operator==(const Point3&, const Point3&) = default;
+};
+
+/// A position that was computed, and how far it is from the exact one.
+struct BoundedPoint {
+  Point3 position;
+  double error =
+      0;  ///< upper bound, a coordinate, of |position - exact|, rounding of the coordinates included
+};
+
+using Segment = std::array<Point3, 2>;
+using Triangle = std::array<Point3, 3>;
+
+/// Closed axis-aligned box; empty while lower > upper.
+struct Box3 {
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+  Point3 lower{infinity, infinity, infinity};
+  Point3 upper{-infinity, -infinity, -infinity};
+  friend constexpr bool operator==(const Box3&, const Box3&) = default;
+
+  constexpr void add(Point3 p) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (p[axis] < lower[axis]) lower[axis] = p[axis];
+      if (p[axis] > upper[axis]) upper[axis] = p[axis];
+    }
+  }
+  constexpr void add(const Box3& box) {
+    add(box.lower);
+    add(box.upper);
+  }
+  [[nodiscard]] constexpr bool empty() const { return lower.x > upper.x; }
+};
+
+/// All points within `radius` of a triangle or a segment. Others call it a triangle-swept sphere and a line-swept sphere.
+template <std::size_t N>
+struct OffsetSimplex {
+  std::array<Point3, N> base;
+  double radius = 0;
+  double rounding =
+      0;  ///< the part of the radius that accounts for rounding; splitting does not make it smaller
+};
+using OffsetTriangle = OffsetSimplex<3>;
+using OffsetSegment = OffsetSimplex<2>;
+
+/// Convex combinations of N boxes ("interval points"): sum l_k b_k with b_k in corner k's box, l_k >= 0, sum l_k = 1.
+template <std::size_t N>
+struct IntervalSimplex {
+  std::array<Box3, N> corner;
+};
+using IntervalTriangle = IntervalSimplex<3>;
+using IntervalSegment = IntervalSimplex<2>;
+
+/// A closed interval of real numbers that contains the exact value.
+struct Interval {
+  double lower = 0, upper = 0;
+
+  constexpr Interval() = default;
+  constexpr Interval(double exact) : lower(exact), upper(exact) {}  // NOLINT: a number is an interval
+  constexpr Interval(double low, double high) : lower(low), upper(high) {}
+  [[nodiscard]] constexpr bool contains(double x) const { return lower <= x && x <= upper; }
+  friend constexpr bool operator==(const Interval&, const Interval&) = default;
+};
+
+}  // namespace snug

@@ -1,0 +1,12 @@
+#pragma once
+
+/// Proved answers about limit surfaces of subdivision meshes; docs/start.md shows the way.
+
+#include <snug/bound.h>
+#include <snug/closest.h>
+#include <snug/collide.h>
+#include <snug/distance.h>
+#include <snug/evaluate.h>
+#include <snug/mesh.h>
+#include <snug/motion.h>
+#include <snug/surface.h>

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <snug/mesh.h>
+#include <snug/monitor.h>
+#include <snug/motion.h>
+
+namespace snug {
+
+class PlacedSurface;
+class SurfaceData;
+
+/// How pieces of a surface are bounded.
+enum class BoundMethod : std::uint8_t {
+  rows,   ///< bounding rows: the convex hull of the weighted control points contains the piece
+  table,  ///< the dissertation's tables: planes below and above every basis function (slefe-like bounds)
+};
+
+struct SurfaceOptions {
+  std::optional<Scheme> scheme{};          ///< default: Loop if all faces are triangles, else Catmull-Clark
+  std::optional<BoundaryRule> boundary{};  ///< default: the mesh's tag, else edge_and_corner
+  BoundMethod bounds = BoundMethod::rows;  ///< how queries bound pieces
+  /// Bound every patch at the first query, some microseconds each. The BVH becomes tighter, which pays off
+  /// for surfaces that are queried thousands of times. Otherwise it is built from control points alone.
+  bool tight = false;
+  int threads = 0;  ///< for preparation; 0: all cores
+  WorkMonitor monitor{};
+};
+
+/// The limit surface of a control mesh: a handle that is cheap to copy. The surface never changes and lives
+/// as long as any handle or running query needs it. Any number of threads may use it at once.
+///
+/// Cost:      linear in the mesh. The first query also builds a BVH, 0.3 microseconds a patch.
+class SNUG_API Surface {
+ public:
+  /// The mesh's tags give creases, corners, holes, the crease method and how Catmull-Clark treats triangles.
+  ///
+  /// Errors:    InputError (refused), naming the element and the next step, for a mesh that has no limit
+  ///            surface under these rules or is not supported: see docs/guarantees.md. Interrupted.
+  explicit Surface(ControlMesh mesh, const SurfaceOptions& options = {});
+  Surface(const Surface&) noexcept;
+  Surface& operator=(const Surface&) noexcept;
+  ~Surface();
+
+  /// The surface placed at a pose.
+  [[nodiscard]] PlacedSurface at(const Motion& pose) const;
+
+  [[nodiscard]] const ControlMesh& mesh() const;
+  [[nodiscard]] Scheme scheme() const;
+  [[nodiscard]] BoundaryRule boundary() const;
+  /// Longest side of the bounding box of the vertices that faces use; may overflow to infinity.
+  [[nodiscard]] double size() const;
+  /// Memory of the surface and its BVH, without the mesh.
+  [[nodiscard]] std::size_t bytes() const;
+
+  /// For internal use.
+  [[nodiscard]] const std::shared_ptr<const SurfaceData>& data() const { return data_; }
+
+ private:
+  std::shared_ptr<const SurfaceData> data_;
+};
+
+/// The limit surface of a mesh file, with the file's rules and tags unless `options` overrides them.
+/// Errors:    those of read_mesh() and Surface, with the name of the file.
+[[nodiscard]] SNUG_API Surface load(const std::string& path, const SurfaceOptions& options = {});
+
+/// A surface and its pose. A Surface alone has the identity as its pose.
+class PlacedSurface {
+ public:
+  PlacedSurface(Surface surface) : surface_(surface) {}  // NOLINT: at the identity
+  PlacedSurface(Surface surface, const Motion& pose) : surface_(surface), pose_(pose) {}
+  [[nodiscard]] const Surface& surface() const { return surface_; }
+  [[nodiscard]] const Motion& pose() const { return pose_; }
+
+ private:
+  Surface surface_;
+  Motion pose_;
+};
+
+/// Parameters of a point on a surface. For Loop, (1 - u - v) c0 + u c1 + v c2 on a face. For the other
+/// schemes, (u, v) on a quad, from corner 0 with u towards corner 1: of the face itself if it is a quad (in a
+/// dual scheme, of the faces around the vertex), else of the quad that its first split makes at `corner`,
+/// from there with u along the edge that follows.
+struct SurfaceParameter {
+  std::uint32_t owner = 0;  ///< face; in a dual scheme, vertex
+  std::uint32_t corner = 0;
+  double u = 0, v = 0;
+};
+
+/// A cache of what queries worked out about surfaces: split pieces and their bounds. It makes later queries
+/// on the same surfaces several times faster and never changes an answer. For one thread at a time.
+///
+/// Guarantee: memory is bounded: beyond max_bytes() the least recently used entries are dropped. It does not
+///            keep surfaces alive; entries of surfaces that are gone are dropped eventually.
+class SNUG_API Workspace {
+ public:
+  Workspace();
+  ~Workspace();
+  Workspace(Workspace&&) noexcept;
+  Workspace& operator=(Workspace&&) noexcept;
+
+  /// The default of all queries: one for each thread, destroyed with it.
+  [[nodiscard]] static Workspace& of_this_thread();
+
+  [[nodiscard]] std::size_t bytes() const;
+  /// 512 MiB. A single query may exceed it.
+  [[nodiscard]] static std::size_t max_bytes();
+  void clear();
+
+  /// For internal use.
+  class Pieces;
+  [[nodiscard]] Pieces& pieces() const { return *pieces_; }
+
+ private:
+  std::unique_ptr<Pieces> pieces_;
+};
+
+}  // namespace snug

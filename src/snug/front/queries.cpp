@@ -1,0 +1,120 @@
+#include <utility>
+
+#include <snug/base/error.h>
+#include <snug/base/parallel.h>
+#include <snug/evaluate.h>
+#include <snug/front/workspace.h>
+#include <snug/query/closest.h>
+#include <snug/query/containment.h>
+#include <snug/query/face_distance.h>
+#include <snug/query/penetration.h>
+#include <snug/query/poses.h>
+#include <snug/query/signed_distance.h>
+#include <snug/query/subdivide.h>
+
+/// The public queries: from handles to trees and workspaces, and nothing else.
+namespace snug {
+namespace {
+
+const LimitSurface& limit(const Surface& surface) { return surface.data()->limit(); }
+const SurfaceBvh& bvh(const Surface& surface) { return surface.data()->bvh(); }
+
+template <class Ask>
+auto ask_both(const PlacedSurface& a, const PlacedSurface& b, Workspace& workspace, const Ask& ask) {
+  const Workspace::Pieces::Pair pieces = workspace.pieces().of(a.surface(), b.surface());
+  return ask(PlacedBvh{bvh(a.surface()), pieces.a, a.pose()},
+             PlacedBvh{bvh(b.surface()), pieces.b, b.pose()});
+}
+
+}  // namespace
+
+Collision collide(const PlacedSurface& a, const PlacedSurface& b, const CollideOptions& options,
+                  const WorkMonitor& monitor, Workspace& workspace) {
+  return ask_both(a, b, workspace, [&](const PlacedBvh& in_a, const PlacedBvh& in_b) {
+    return collide(in_a, in_b, options, monitor);
+  });
+}
+
+std::vector<Collision> collide(const Surface& a, const Surface& b, std::span<const PosePair> poses,
+                               const CollideOptions& options, int threads, const WorkMonitor& monitor) {
+  PairWorkspaces workspaces(bvh(a), bvh(b), threads);
+  return collide_poses(workspaces, poses, options, monitor);
+}
+
+Penetration penetration(const PlacedSurface& a, const PlacedSurface& b, const PenetrationOptions& options,
+                        const WorkMonitor& monitor, Workspace& workspace) {
+  return ask_both(a, b, workspace, [&](const PlacedBvh& in_a, const PlacedBvh& in_b) {
+    return penetration(in_a, in_b, options, monitor);
+  });
+}
+
+Distance distance(const PlacedSurface& a, const PlacedSurface& b, const DistanceOptions& options,
+                  const WorkMonitor& monitor, Workspace& workspace) {
+  return ask_both(a, b, workspace, [&](const PlacedBvh& in_a, const PlacedBvh& in_b) {
+    return distance(in_a, in_b, options, monitor);
+  });
+}
+
+std::vector<Distance> distance(const Surface& a, const Surface& b, std::span<const PosePair> poses,
+                               const DistanceOptions& options, int threads, const WorkMonitor& monitor) {
+  PairWorkspaces workspaces(bvh(a), bvh(b), threads);
+  return distance_poses(workspaces, poses, options, monitor);
+}
+
+ClosestPoint closest_point(const Surface& surface, const Point3& to, const ClosestOptions& options,
+                           const WorkMonitor& monitor, Workspace& workspace) {
+  return closest_point(workspace.pieces().of(surface), to, options, monitor);
+}
+
+std::vector<ClosestPoint> closest_points(const Surface& surface, std::span<const Point3> to,
+                                         const ClosestOptions& options, int threads,
+                                         const WorkMonitor& monitor) {
+  return closest_points(bvh(surface), to, options, threads, monitor);
+}
+
+std::optional<bool> contains(const Surface& surface, const Point3& point, const WorkMonitor& monitor,
+                             Workspace& workspace) {
+  return contains(workspace.pieces().of(surface), point, monitor);
+}
+
+SignedDistance signed_distance(const Surface& surface, const Point3& point, const ClosestOptions& options,
+                               const WorkMonitor& monitor, Workspace& workspace) {
+  return signed_distance(workspace.pieces().of(surface), point, options, monitor);
+}
+
+std::vector<SignedDistance> signed_distances(const Surface& surface, std::span<const Point3> points,
+                                             const ClosestOptions& options, int threads,
+                                             const WorkMonitor& monitor) {
+  return signed_distances(bvh(surface), points, options, threads, monitor);
+}
+
+SurfacePoint evaluate(const Surface& surface, const SurfaceParameter& at) {
+  return evaluate(limit(surface), at);
+}
+
+std::vector<SurfacePoint> evaluate(const Surface& surface, std::span<const SurfaceParameter> at,
+                                   int threads) {
+  std::vector<SurfacePoint> points(at.size());
+  parallel_for(at.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) points[i] = evaluate(limit(surface), at[i]);
+  });
+  return points;
+}
+
+std::optional<SurfaceNormal> normal_at(const PlacedSurface& surface, const SurfaceParameter& at) {
+  const LimitSurface& inside = limit(surface.surface());
+  require_value(patch_at(inside, at).has_value(),
+                "normal_at: the surface has no such face, corner or parameter; give one that it has");
+  return normal_at(inside, at, surface.pose());
+}
+
+std::optional<double> limit_to_faces(const Surface& surface, int threads) {
+  return limit_to_faces(limit(surface), threads);
+}
+
+ControlMesh subdivided(const Surface& surface, unsigned level, bool limit_positions,
+                       const WorkMonitor& monitor) {
+  return subdivide(surface.mesh(), limit(surface).options(), level, limit_positions, monitor);
+}
+
+}  // namespace snug

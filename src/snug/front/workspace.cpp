@@ -1,0 +1,91 @@
+#include <snug/front/workspace.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace snug {
+namespace {
+
+constexpr std::size_t byte_limit = std::size_t{512} << 20;
+// What workspaces hold is added up once in so many queries, and when a surface is met for the first time.
+constexpr std::uint64_t queries_between_looks = 1024;
+
+}  // namespace
+
+SurfaceWorkspace& Workspace::Pieces::of(const Surface& surface) {
+  begin_query();
+  return find(surface, false);
+}
+
+Workspace::Pieces::Pair Workspace::Pieces::of(const Surface& a, const Surface& b) {
+  begin_query();
+  SurfaceWorkspace& first = find(a, false);
+  return {first, find(b, a.data() == b.data())};
+}
+
+void Workspace::Pieces::begin_query() {
+  if (++query_ % queries_between_looks == 0) drop_old();
+}
+
+SurfaceWorkspace& Workspace::Pieces::find(const Surface& surface, bool second) {
+  const std::uint64_t name = 2 * surface.data()->number() + (second ? 1 : 0);
+  Recent& recent = recent_[name % recent_.size()];
+  if (recent.name != name) {
+    Entry& entry = entries_[name];
+    if (!entry.pieces) {
+      entry.query = query_;
+      entry.surface = surface.data();
+      drop_old();
+      entry.pieces = std::make_unique<SurfaceWorkspace>(surface.data()->bvh());
+    }
+    recent = {name, &entry};
+  }
+  recent.entry->query = query_;
+  return *recent.entry->pieces;
+}
+
+void Workspace::Pieces::drop_old() {
+  recent_ = {};
+  std::erase_if(entries_, [&](const auto& item) {
+    return item.second.query != query_ && (item.second.surface.expired() || !item.second.pieces);
+  });
+  std::size_t sum = bytes();
+  if (sum <= byte_limit) return;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> by_age;  // last query, name
+  for (const auto& [name, entry] : entries_) {
+    if (entry.query != query_) by_age.emplace_back(entry.query, name);
+  }
+  std::sort(by_age.begin(), by_age.end());
+  for (const auto& [query, name] : by_age) {
+    if (sum <= byte_limit) return;
+    sum -= entries_[name].pieces->bytes();
+    entries_.erase(name);
+  }
+}
+
+std::size_t Workspace::Pieces::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& [name, entry] : entries_) sum += entry.pieces ? entry.pieces->bytes() : 0;
+  return sum;
+}
+
+void Workspace::Pieces::clear() {
+  recent_ = {};
+  entries_.clear();
+}
+
+Workspace::Workspace() : pieces_(std::make_unique<Pieces>()) {}
+Workspace::~Workspace() = default;
+Workspace::Workspace(Workspace&& other) noexcept = default;
+Workspace& Workspace::operator=(Workspace&& other) noexcept = default;
+
+Workspace& Workspace::of_this_thread() {
+  thread_local Workspace workspace;
+  return workspace;
+}
+
+std::size_t Workspace::bytes() const { return pieces_->bytes(); }
+std::size_t Workspace::max_bytes() { return byte_limit; }
+void Workspace::clear() { pieces_->clear(); }
+
+}  // namespace snug

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+
+#include <snug/search/surface_data.h>
+#include <snug/search/workspace.h>
+
+namespace snug {
+
+/// What a Workspace holds: pieces of each surface that a query met, twice where a surface is asked about against itself.
+class Workspace::Pieces {
+ public:
+  /// For a query about one surface.
+  [[nodiscard]] SurfaceWorkspace& of(const Surface& surface);
+  /// For a query about two, which may be the same one.
+  struct Pair {
+    SurfaceWorkspace &a, &b;
+  };
+  [[nodiscard]] Pair of(const Surface& a, const Surface& b);
+
+  [[nodiscard]] std::size_t bytes() const;
+  void clear();
+
+ private:
+  struct Entry {
+    std::weak_ptr<const SurfaceData> surface;
+    std::unique_ptr<SurfaceWorkspace> pieces;
+    std::uint64_t query = 0;  // that used it last
+  };
+  // Places of the last few entries, looked up first.
+  struct Recent {
+    std::uint64_t name = 0;
+    Entry* entry = nullptr;
+  };
+
+  void begin_query();
+  SurfaceWorkspace& find(const Surface& surface, bool second);
+  void drop_old();
+
+  std::unordered_map<std::uint64_t, Entry> entries_;
+  std::array<Recent, 8> recent_{};
+  std::uint64_t query_ = 0;
+};
+
+}  // namespace snug

@@ -1,0 +1,56 @@
+#include <snug/search/surface_data.h>
+
+#include <atomic>
+#include <mutex>
+#include <utility>
+
+namespace snug {
+namespace {
+
+// What surfaces with equal connectivity share: there as long as one of them is.
+std::shared_ptr<BoundsCache> shared_bounds() {
+  static std::mutex mutex;
+  static std::weak_ptr<BoundsCache> kept;
+  const std::lock_guard lock(mutex);
+  std::shared_ptr<BoundsCache> cache = kept.lock();
+  if (!cache) kept = cache = std::make_shared<BoundsCache>();
+  return cache;
+}
+
+SchemeOptions rules_for(const ControlMesh& mesh, const SurfaceOptions& options) {
+  SchemeOptions rules;
+  rules.scheme = options.scheme ? *options.scheme : natural_scheme(mesh);
+  rules.boundary =
+      options.boundary ? *options.boundary : mesh.tags.boundary.value_or(BoundaryRule::edge_and_corner);
+  return rules;
+}
+
+LimitSurface make_surface(ControlMesh mesh, const SurfaceOptions& options) {
+  const SchemeOptions rules = rules_for(mesh, options);
+  return {std::move(mesh), rules, shared_bounds(), options.threads, options.monitor};
+}
+
+std::uint64_t next_number() {
+  static std::atomic<std::uint64_t> count{0};
+  return ++count;
+}
+
+}  // namespace
+
+SurfaceData::SurfaceData(ControlMesh mesh, const SurfaceOptions& options)
+    : limit_(make_surface(std::move(mesh), options)), number_(next_number()) {
+  bvh_options_.method = options.bounds;
+  bvh_options_.tight = options.tight;
+  bvh_options_.threads = options.threads;
+}
+
+const SurfaceBvh& SurfaceData::bvh() const {
+  return bvh_.get([&] { return SurfaceBvh(limit_, bvh_options_); });
+}
+
+std::size_t SurfaceData::bytes() const {
+  const SurfaceBvh* const tree = bvh_.made();
+  return 9 * limit_.patch_count() + (tree ? tree->bytes() : 0);
+}
+
+}  // namespace snug

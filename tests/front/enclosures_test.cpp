@@ -1,0 +1,63 @@
+#include <snug/bound.h>
+
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <snug/evaluate.h>
+
+namespace snug {
+namespace {
+
+Surface model(const char* name) { return load(std::string(SNUG_MODELS_DIR) + "/" + name); }
+
+TEST(enclosures, name_their_patches_and_hold_their_corners) {
+  for (const char* name : {"star.obj", "bracket.obj"}) {
+    const Surface surface = model(name);
+    BoundOptions options;
+    options.level = 1;
+    std::size_t count = 0;
+    const BoundSummary summary = bound(surface, options, [&](const PatchEnclosure& piece) {
+      ++count;
+      EXPECT_LT(piece.patch.owner, surface.mesh().face_count());
+      EXPECT_EQ(piece.piece.size() <= piece.level, true);
+      Box3 box;
+      for (const Box3& corner : piece.interval.corner) box.add(corner);
+      for (const Point3& p : piece.corners) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          EXPECT_GE(p[axis], box.lower[axis] - 1e-12 * surface.size());
+          EXPECT_LE(p[axis], box.upper[axis] + 1e-12 * surface.size());
+        }
+      }
+    });
+    EXPECT_EQ(summary.count, count);
+    EXPECT_TRUE(summary.reached);
+  }
+}
+
+TEST(enclosures, follow_a_mesh_that_moves) {
+  const Surface surface = model("star.obj");
+  PatchBounds bounds(surface);
+  std::vector<OffsetTriangle> triangles(bounds.patches().size());
+  std::vector<Point3> points = surface.mesh().points;
+  for (Point3& p : points) p.z += 0.1 * p.x * p.x;
+  bounds.update(points, triangles);
+  ControlMesh moved = surface.mesh();
+  moved.points = points;
+  const Surface there(std::move(moved));
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const SurfacePoint middle = evaluate(there, {bounds.patches()[i].owner, 0, 0.25, 0.25});
+    ASSERT_GT(triangles[i].radius, 0);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double low = triangles[i].base[0][axis], high = low;
+      for (const Point3& p : triangles[i].base) low = std::min(low, p[axis]), high = std::max(high, p[axis]);
+      EXPECT_GE(middle.position[axis], low - triangles[i].radius - middle.error);
+      EXPECT_LE(middle.position[axis], high + triangles[i].radius + middle.error);
+    }
+  }
+  PatchBounds taken = std::move(bounds);
+  EXPECT_EQ(taken.patches().size(), triangles.size());
+  EXPECT_THROW(taken.update(std::vector<Point3>(3), triangles), InputError);
+}
+
+}  // namespace
+}  // namespace snug

@@ -1,0 +1,149 @@
+#include <snug/snug.h>
+
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+#include <gtest/gtest.h>
+#include <snug/query/closest.h>
+#include <snug/query/collide.h>
+#include <snug/query/distance.h>
+#include <snug/search/surface_data.h>
+#include <snug/search/workspace.h>
+
+#include "../io/io_testing.h"
+
+namespace snug {
+namespace {
+
+std::string model(const char* name) { return std::string(SNUG_MODELS_DIR) + "/" + name; }
+
+// The same question to the rooms inside, with workspaces of their own.
+struct Inside {
+  explicit Inside(const Surface& surface) : bvh(surface.data()->limit()), pieces(bvh) {}
+  [[nodiscard]] PlacedBvh at(const Motion& pose = {}) { return {bvh, pieces, pose}; }
+  SurfaceBvh bvh;
+  SurfaceWorkspace pieces;
+};
+
+std::vector<PosePair> some_poses(double size) {
+  std::vector<PosePair> poses;
+  for (int i = 0; i < 40; ++i) {
+    const Motion turned = Motion::rotation({1, 0.5 * i, 2}, 0.3 * i);
+    poses.push_back({turned, turned.with_offset({0.05 * i * size, 0.02 * i * size, 0})});
+  }
+  return poses;
+}
+
+TEST(handles, answer_with_the_bits_of_the_rooms_inside) {
+  const Surface a = load(model("pawn.obj")), b = load(model("star.obj"));
+  Inside in_a(a), in_b(b);
+  const std::vector<PosePair> poses = some_poses(a.size());
+  const std::vector<Collision> collisions = collide(a, b, poses);
+  const std::vector<Distance> distances = distance(a, b, poses, {.absolute = {}, .relative = 1e-3});
+  bool apart = false, meet = false;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Collision expected = collide(in_a.at(poses[i].a), in_b.at(poses[i].b), {});
+    const Collision one = collide(a.at(poses[i].a), b.at(poses[i].b));
+    for (const Collision& found : {one, collisions[i]}) {
+      EXPECT_EQ(found.verdict, expected.verdict) << i;
+      EXPECT_EQ(found.distance, expected.distance) << i;
+      EXPECT_EQ(found.witness, expected.witness) << i;
+    }
+    const Distance gap = distance(a.at(poses[i].a), b.at(poses[i].b), {.absolute = {}, .relative = 1e-3});
+    EXPECT_EQ(
+        gap.distance,
+        distance(in_a.at(poses[i].a), in_b.at(poses[i].b), {.absolute = {}, .relative = 1e-3}).distance);
+    EXPECT_EQ(gap.distance, distances[i].distance) << i;
+    apart = apart || expected.verdict == Verdict::separated;
+    meet = meet || expected.verdict == Verdict::intersecting;
+  }
+  EXPECT_TRUE(apart && meet);
+  const Point3 q{1, 2, 3};
+  EXPECT_EQ(closest_point(a, q).distance, closest_point(in_a.pieces, q, {}).distance);
+  EXPECT_EQ(closest_points(a, std::vector{q})[0].point, closest_point(a, q).point);
+}
+
+TEST(handles, reach_their_default_precision) {
+  const Surface a = load(model("pawn.obj")), b = load(model("star.obj"));
+  const double size = std::max(a.size(), b.size());
+  const Motion beside = Motion::translation({2 * size, 0, 0});
+  const Distance gap = distance(a, b.at(beside));
+  EXPECT_TRUE(gap.reached);
+  EXPECT_LE(gap.distance.upper - gap.distance.lower, 1e-4 * size);
+  const Collision hit = collide(a, b.at(beside));
+  EXPECT_EQ(hit.verdict, Verdict::separated);
+  EXPECT_GE(hit.distance.lower, hit.distance.upper / 2);
+  EXPECT_EQ(collide(a, b.at(Motion::translation({0.01 * size, 0, 0}))).verdict, Verdict::intersecting);
+  EXPECT_EQ(collide(a, a).verdict, Verdict::within);  // nothing crosses itself
+}
+
+TEST(handles, take_scheme_and_boundary_from_the_file_unless_told) {
+  EXPECT_EQ(load(model("star.obj")).scheme(), Scheme::loop);
+  EXPECT_EQ(load(model("bracket.obj")).scheme(), Scheme::catmark);
+  EXPECT_EQ(load(model("star.obj"), {.scheme = Scheme::flat}).scheme(), Scheme::flat);
+  const testing::TemporaryFolder folder;
+  const std::string path = folder / "edge_only.obj";
+  std::ofstream(path) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nt interpolateboundary 1/0/0 1\n";
+  EXPECT_EQ(load(path).boundary(), read_mesh(path).tags.boundary.value_or(BoundaryRule::edge_and_corner));
+  EXPECT_EQ(load(path, {.scheme = {}, .boundary = BoundaryRule::edge_and_corner}).boundary(),
+            BoundaryRule::edge_and_corner);
+}
+
+TEST(handles, refuse_in_a_line_that_names_the_file) {
+  const testing::TemporaryFolder folder;
+  const std::string path = folder / "empty.obj";
+  std::ofstream(path) << "v 0 0 0\n";
+  try {
+    static_cast<void>(load(path));
+    FAIL() << "taken";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+  }
+  const Surface a = load(model("star.obj"));
+  EXPECT_THROW(static_cast<void>(collide(a, a, {.tolerance = -1})), InputError);
+  EXPECT_THROW(static_cast<void>(distance(a, a, {.absolute = -1})), InputError);
+  EXPECT_THROW(static_cast<void>(closest_point(a, {std::numeric_limits<double>::quiet_NaN(), 0, 0})),
+               InputError);
+  EXPECT_THROW(static_cast<void>(normal_at(a, {1'000'000, 0, 0, 0})), InputError);
+  EXPECT_THROW(static_cast<void>(evaluate(a, {1'000'000, 0, 0, 0})), InputError);
+}
+
+TEST(handles, know_inside_from_outside) {
+  const Surface ball = load(model("star.obj"));
+  const Point3 middle = {0, 0, 0};
+  const std::optional<bool> inside = contains(ball, middle);
+  const SignedDistance signed_one = signed_distance(ball, middle);
+  ASSERT_TRUE(inside.has_value());
+  EXPECT_EQ(*inside, signed_one.distance.upper < 0);
+  EXPECT_EQ(signed_distances(ball, std::vector{middle})[0].distance, signed_one.distance);
+  EXPECT_EQ(contains(ball, {1e3, 0, 0}), false);
+  const Penetration deep = penetration(ball, ball.at(Motion::translation({0.01 * ball.size(), 0, 0})));
+  EXPECT_GT(deep.depth.upper, 0);
+  EXPECT_EQ(collide(ball,
+                    ball.at(Motion::translation(
+                        {0.01 * ball.size() + deep.translation.x, deep.translation.y, deep.translation.z})),
+                    {.tolerance = 0.0})
+                .verdict,
+            Verdict::separated);
+}
+
+TEST(handles, evaluate_refine_and_measure) {
+  const Surface a = load(model("star.obj"));
+  const SurfaceParameter at{3, 0, 0.25, 0.5};
+  const SurfacePoint point = evaluate(a, at);
+  EXPECT_EQ(evaluate(a, std::vector{at, at})[1].position, point.position);
+  EXPECT_LE(closest_point(a, point.position, {.absolute = 1e-9}).distance.lower, point.error * 2);
+  const std::optional<SurfaceNormal> normal =
+      normal_at(a.at(Motion::rotation({0, 0, 1}, std::numbers::pi / 2)), at);
+  ASSERT_TRUE(normal && point.normal);
+  EXPECT_NEAR(normal->direction.x, -point.normal->y, 1e-12);
+  EXPECT_EQ(subdivided(a, 2).face_count(), 16 * a.mesh().face_count());
+  EXPECT_GT(limit_to_faces(a).value(), 0);
+  EXPECT_EQ(limit_to_faces(load(model("star.obj"), {.scheme = Scheme::flat})).value_or(1) < 1e-10, true);
+}
+
+}  // namespace
+}  // namespace snug

@@ -1,0 +1,58 @@
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <snug/front/workspace.h>
+#include <snug/snug.h>
+
+namespace snug {
+namespace {
+
+Surface star() { return load(std::string(SNUG_MODELS_DIR) + "/star.obj"); }
+
+TEST(workspace, holds_nothing_of_surfaces_that_are_gone) {
+  Workspace workspace;
+  std::size_t one = 0;
+  for (int i = 0; i < 50; ++i) {
+    const Surface surface = star();  // another one each time, perhaps in the same memory
+    static_cast<void>(closest_point(surface, {1, 2, 3}, {.absolute = 1e-6}, {}, workspace));
+    one = std::max(one, i == 0 ? workspace.bytes() : 0);
+    EXPECT_LE(workspace.bytes(), 2 * one);
+  }
+  workspace.clear();
+  EXPECT_EQ(workspace.bytes(), 0u);
+}
+
+TEST(workspace, keeps_a_surface_asked_about_against_itself_twice) {
+  Workspace workspace;
+  const Surface surface = star();
+  const Motion beside = Motion::translation({0.1 * surface.size(), 0, 0});
+  const Collision with_both = collide(surface, surface.at(beside), {}, {}, workspace);
+  const Surface other = star();
+  EXPECT_EQ(with_both.distance, collide(surface, other.at(beside), {}, {}, workspace).distance);
+  const Workspace::Pieces::Pair pair = workspace.pieces().of(surface, surface);
+  EXPECT_NE(&pair.a, &pair.b);
+  EXPECT_EQ(&pair.a, &workspace.pieces().of(surface));
+}
+
+TEST(workspace, outlives_handles_and_moves) {
+  Workspace workspace;
+  PlacedSurface placed = star().at(Motion::translation({1, 0, 0}));  // the only handle
+  const Collision before = collide(placed, star(), {}, {}, workspace);
+  Workspace moved = std::move(workspace);
+  EXPECT_EQ(collide(placed, star(), {}, {}, moved).distance, before.distance);
+}
+
+TEST(workspace, of_each_thread_gives_the_same_answers) {
+  const Surface a = star(), b = star();
+  const Motion beside = Motion::translation({0.6 * a.size(), 0, 0});
+  const Interval expected = distance(a, b.at(beside)).distance;
+  std::vector<Interval> found(4);
+  std::vector<std::thread> threads;
+  for (Interval& one : found) threads.emplace_back([&] { one = distance(a, b.at(beside)).distance; });
+  for (std::thread& thread : threads) thread.join();
+  for (const Interval& one : found) EXPECT_EQ(one, expected);
+}
+
+}  // namespace
+}  // namespace snug
