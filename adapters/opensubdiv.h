@@ -35,9 +35,7 @@ inline Scheme scheme_of(const Far::TopologyRefiner& refiner) {
     case Sdc::SCHEME_BILINEAR:
       break;
   }
-  throw InputError(
-      InputProblem::refused,
-      "the refiner's scheme is bilinear, whose surface is not smooth: make it with Loop or Catmull-Clark");
+  return Scheme::bilinear;
 }
 
 inline BoundaryRule boundary_of(const Sdc::Options& options) {
@@ -183,8 +181,7 @@ MeshAndOptions read_strided(const Far::TopologyRefiner& refiner, std::span<const
 ///            It does not matter whether and how the refiner was refined; face-varying data is not read.
 /// Requires:  a point for each vertex of the base level; further points, such as those of refined levels, are
 ///            ignored.
-/// Errors:    InputError (refused) for the scheme bilinear; (value) on too few points. Surface refuses meshes
-///            that snug does not support.
+/// Errors:    InputError (value) on too few points. Surface refuses meshes that snug does not support.
 /// Cost:      linear, except for sorting the creases; copies the points.
 [[nodiscard]] inline MeshAndOptions from_refiner(const OpenSubdiv::Far::TopologyRefiner& refiner,
                                                  std::span<const Point3> points) {

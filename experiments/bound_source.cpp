@@ -11,19 +11,6 @@
 namespace snug {
 namespace {
 
-// The corner that the layout is built around: the extraordinary one, or any of a regular kind.
-std::optional<std::size_t> lone_centre(const Kind& kind) {
-  if (!laid_by_rings(kind.key())) return {};
-  std::size_t centre = 0, extraordinary = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!kind.corner(i).closed) return {};
-    if (kind.regular_corner(i)) continue;
-    centre = i;
-    ++extraordinary;
-  }
-  return extraordinary <= 1 ? std::optional(centre) : std::nullopt;
-}
-
 // Subdivision around the extraordinary corner shrinks the ring by its eigenvalue; the outer points follow by
 // iteration, for their own eigenvalues are at most 1/8.
 void relax(const Kind& kind, std::size_t centre, std::vector<LayoutPoint>& layout) {

@@ -12,6 +12,7 @@
 #include <opensubdiv/far/primvarRefiner.h>
 #include <opensubdiv/far/topologyDescriptor.h>
 #include <snug/adapters/opensubdiv.h>
+#include <snug/evaluate.h>
 #include <snug/io/mesh_file.h>
 #include <snug/io/obj.h>
 #include <snug/search/surface_data.h>
@@ -506,15 +507,19 @@ TEST(opensubdiv_adapter, needs_a_point_for_each_vertex) {
   EXPECT_THROW(static_cast<void>(from_refiner(*refiner, std::span(mesh.points).first(7))), InputError);
 }
 
-TEST(opensubdiv_adapter, refuses_bilinear) {
+TEST(opensubdiv_adapter, hands_over_bilinear_surfaces) {
   const ControlMesh mesh = cube();
-  const Refiner refiner = refiner_of(mesh, Sdc::SCHEME_BILINEAR);
-  try {
-    static_cast<void>(from_refiner(*refiner, mesh.points));
-    FAIL() << "nothing was thrown";
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.problem(), InputProblem::refused);
-    EXPECT_NE(std::string(error.what()).find("bilinear"), std::string::npos);
+  auto [taken, options] = from_refiner(*refiner_of(mesh, Sdc::SCHEME_BILINEAR), mesh.points);
+  const Surface surface(std::move(taken), options);
+  EXPECT_EQ(surface.scheme(), Scheme::bilinear);
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const std::span<const VertexId> face = mesh.face(FaceId(f));
+    const SurfacePoint middle = evaluate(surface, {static_cast<std::uint32_t>(f), 0, 0.5, 0.5});
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double mean = 0;
+      for (const VertexId v : face) mean += mesh.points[v.index()][axis] / 4;
+      EXPECT_NEAR(middle.position[axis], mean, middle.error + 1e-15);
+    }
   }
 }
 

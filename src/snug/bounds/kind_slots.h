@@ -64,7 +64,7 @@ class KindSlots {
   std::atomic<const T*>& slot(std::size_t index) {
     if (index / block_size >= blocks_.size()) {
       throw InputError(InputProblem::refused,
-                       "more than 16 million kinds of patches: use a library for each mesh");
+                       "more than 16 million kinds of patches: ask about parts of the mesh");
     }
     std::atomic<Block*>& place = blocks_[index / block_size];
     Block* block = place.load(std::memory_order_acquire);

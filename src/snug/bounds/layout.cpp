@@ -71,18 +71,6 @@ void lay_ring(const Topology& topology, const CornerFan& fan, std::size_t corner
   }
 }
 
-// The corner that the dissertation's layout is built around: the extraordinary one, or any of a regular kind.
-std::optional<std::size_t> lone_centre(const Kind& kind) {
-  std::size_t centre = 0, extraordinary = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!kind.corner(i).closed) return {};
-    if (kind.regular_corner(i)) continue;
-    centre = i;
-    ++extraordinary;
-  }
-  return extraordinary <= 1 ? std::optional(centre) : std::nullopt;
-}
-
 std::vector<LayoutPoint> ngon_layout(const Kind& kind, const Topology& topology, std::size_t centre) {
   std::vector<LayoutPoint> layout(kind.control_count());
   std::copy(unit_triangle.begin(), unit_triangle.end(), layout.begin());
@@ -169,6 +157,18 @@ double outer_spoke(std::size_t n) {
 }
 
 bool laid_by_rings(const KindKey& key) { return rules_of(key.scheme).laid_by_rings && key.plain(); }
+
+std::optional<std::size_t> lone_centre(const Kind& kind) {
+  if (!laid_by_rings(kind.key())) return {};
+  std::size_t centre = 0, extraordinary = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!kind.corner(i).closed) return {};
+    if (kind.regular_corner(i)) continue;
+    centre = i;
+    ++extraordinary;
+  }
+  return extraordinary <= 1 ? std::optional(centre) : std::nullopt;
+}
 
 std::vector<LayoutPoint> make_layout(const Kind& kind) {
   if (!laid_by_rings(kind.key())) return fair_layout(kind);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include <snug/patch/kind_cache.h>
@@ -28,6 +29,10 @@ using LayoutPoint = std::array<double, 2>;
 /// Cost:      linear in the valences; that of fair_layout() for other kinds.
 /// Source:    [Wu05, sec. 4.3]; derivations/tables.md.
 [[nodiscard]] std::vector<LayoutPoint> make_layout(const Kind& kind);
+
+/// The corner of a kind that the dissertation's layout is built around: the extraordinary one, or any of a
+/// regular kind. None for kinds that are laid out otherwise.
+[[nodiscard]] std::optional<std::size_t> lone_centre(const Kind& kind);
 
 /// Where the outer points lie on the spokes of a valence-n corner: b = k u1 and d = k u2. 2 for n = 6.
 /// Requires:  n >= 3.

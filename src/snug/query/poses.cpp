@@ -30,8 +30,7 @@ std::vector<Answer> answers(PairWorkspaces& scratches, std::span<const PosePair>
 
 PairWorkspaces::PairWorkspaces(const SurfaceBvh& a, const SurfaceBvh& b, int threads) {
   const int count = threads > 0 ? threads : hardware_threads();
-  for (int i = 0; i < count; ++i)
-    pairs_.push_back(std::make_unique<Pair>(SurfaceWorkspace(a), SurfaceWorkspace(b)));
+  for (int i = 0; i < count; ++i) pairs_.push_back(std::make_unique<Pair>(a, b));
 }
 
 std::size_t PairWorkspaces::bytes() const {

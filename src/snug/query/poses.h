@@ -22,13 +22,14 @@ class PairWorkspaces {
 
   /// Asks about one pose of the two models.
   using Ask = std::function<void(SurfaceWorkspace& a, SurfaceWorkspace& b, std::size_t pose)>;
-  /// Calls `ask` for each number in [0, count), on the threads, no two at once with the same scratch.
+  /// Calls `ask` for each number in [0, count), on the threads, no two at once with the same pair of workspaces.
   ///
   /// Errors:    what `ask` throws ends the loop and is thrown again, of several one.
   void for_each(std::size_t count, const Ask& ask, const WorkMonitor& monitor = {});
 
  private:
   struct Pair {
+    Pair(const SurfaceBvh& in_a, const SurfaceBvh& in_b) : a(in_a), b(in_b) {}
     SurfaceWorkspace a, b;
   };
   std::vector<std::unique_ptr<Pair>> pairs_;
