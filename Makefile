@@ -17,7 +17,7 @@ ctest = ctest --parallel $(JOBS) --no-tests=error
 # Thread sanitizer wants an address space that is not shuffled too far; not every container may ask for that.
 unshuffled = $$(setarch -R true 2> /dev/null && echo setarch -R || true)
 
-.PHONY: help demo test test-long build bench format tidy docs check tables asan tsan fuzz install-packages clean
+.PHONY: help demo test test-long build bench format tidy docs check asan tsan fuzz install-packages clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-17s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -93,11 +93,6 @@ docs: install-packages  ## plots and tables of docs/convergence.md, pictures of 
 	@scripts/draw_schemes build/release/bin/snug docs/pictures
 	@scripts/demo build/release/bin/snug docs/pictures/demo.png > /dev/null
 	@scripts/check_docs.py
-
-tables:  ## make the rows and tables again that are compiled in, then prove them
-	@$(call build,release,tablegen)
-	@build/release/bin/tablegen src/snug/bounds/shipped.bin
-	@scripts/check_tables
 
 install-packages:  ## what building, testing and checking need, where it is missing (scripts/packages.txt has it in sections)
 	@scripts/install_packages

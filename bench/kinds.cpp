@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
                              std::to_string(c) + ", " + std::to_string(rows.count()) + " rows of " +
                              std::to_string(rows.control_count()) + ", " +
                              std::to_string(rows.bytes() / 1024) + " KiB";
-    // Rows to the full depth, whether or not they are shipped, or composed of those of other kinds.
+    // Rows to the full depth, though a library composes some of those of other kinds.
     group.add(name, 1, [key] {
       KindCache cold;
       return static_cast<double>(make_bound_rows(cold.find(key)).count());

@@ -59,7 +59,7 @@ struct BoundsFile {
   std::vector<StoredKind> kinds;
 };
 
-/// Reads a file of the format in snug/bounds/shipped.h, version 3. Any bytes may come.
+/// Reads a file of the format in tablegen/file_writer.h, version 3. Any bytes may come.
 /// Errors:    Rejected if it is not one: magic, version, sizes, hash, flags that are neither 0 nor 1, padding
 ///            that is not zero, numbers that are not finite.
 [[nodiscard]] BoundsFile parse(std::span<const std::byte> bytes);

@@ -3,6 +3,11 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <string_view>
+#include <utility>
+
+#include <snug/bounds/bound_rows.h>
+#include <snug/bounds/bound_table.h>
 
 namespace tablegen {
 namespace {
@@ -41,45 +46,51 @@ class Bytes {
   std::vector<std::byte> bytes_;
 };
 
-void add_kind(const KindBounds& kind, Bytes& out) {
+void add_kind(const snug::Kind& kind, Bytes& out) {
+  const snug::BoundRows rows = snug::make_bound_rows(kind);
+  const snug::BoundTable table = snug::make_bound_table(kind, rows);
   const std::size_t begin = out.size();
   out.add(std::uint64_t{0});
-  out.add(static_cast<std::uint64_t>(kind.key.scheme));
-  for (const snug::CornerFan& fan : kind.key.corners) {
+  out.add(static_cast<std::uint64_t>(kind.key().scheme));
+  for (const snug::CornerFan& fan : kind.key().corners) {
     out.add(fan.before);
     out.add(fan.after);
     out.add(static_cast<std::uint8_t>(fan.closed));
     out.add(static_cast<std::uint8_t>(fan.sharp));
     out.add(std::uint16_t{0});
   }
-  out.add(static_cast<std::uint32_t>(kind.rows.count()));
-  out.add(static_cast<std::uint32_t>(kind.rows.control_count()));
-  out.add(kind.rows.entry_error());
-  out.add(kind.rows.abs_sum());
-  for (std::size_t c = 0; c < kind.rows.control_count(); ++c) out.add(kind.rows.column(c), kind.rows.count());
+  out.add(static_cast<std::uint32_t>(rows.count()));
+  out.add(static_cast<std::uint32_t>(rows.control_count()));
+  out.add(rows.entry_error());
+  out.add(rows.abs_sum());
+  for (std::size_t c = 0; c < rows.control_count(); ++c) out.add(rows.column(c), rows.count());
   out.add(std::uint64_t{1});
-  out.add(kind.table.layout.data(), kind.table.layout.size());
-  out.add(kind.table.triangle);
-  out.add(kind.table.lower.data(), kind.table.lower.size());
-  out.add(kind.table.upper.data(), kind.table.upper.size());
+  out.add(table.layout.data(), table.layout.size());
+  out.add(table.triangle);
+  out.add(table.lower.data(), table.lower.size());
+  out.add(table.upper.data(), table.upper.size());
   out.put(begin, out.size() - begin);
 }
 
 }  // namespace
 
-std::vector<std::byte> file_of(const std::vector<KindBounds>& kinds, std::string_view text) {
+std::vector<std::byte> file_of(std::span<const snug::KindKey> keys) {
   constexpr char magic[8] = "snugbnd";
+  constexpr std::string_view text =
+      "made by tablegen of snug, no arguments; kinds: tablegen/kinds.h; arithmetic: IEEE doubles rounded to "
+      "nearest, error terms by snug/geometry/rounding.h; proved by checker";
   constexpr std::size_t size_place = 16, hash_place = 24, hashed = 32;
   Bytes out;
   out.add(magic, 8);
   out.add(std::uint32_t{3});
-  out.add(static_cast<std::uint32_t>(kinds.size()));
+  out.add(static_cast<std::uint32_t>(keys.size()));
   out.add(std::uint64_t{0});
   out.add(std::uint64_t{0});
   out.add(std::uint64_t{text.size()});
   out.add(text.data(), text.size());
   out.align();
-  for (const KindBounds& kind : kinds) add_kind(kind, out);
+  snug::KindCache library;
+  for (const snug::KindKey& key : keys) add_kind(library.find(key), out);
   out.put(size_place, out.size());
   out.put(hash_place, out.hash_from(hashed));
   return out.take();

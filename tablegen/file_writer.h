@@ -1,22 +1,32 @@
 #pragma once
 
 #include <cstddef>
-#include <string_view>
+#include <span>
 #include <vector>
 
-#include <snug/bounds/bound_rows.h>
-#include <snug/bounds/bound_table.h>
+#include <snug/patch/neighbourhood.h>
 
 namespace tablegen {
 
-/// What the file holds of one kind.
-struct KindBounds {
-  snug::KindKey key;
-  snug::BoundRows rows;
-  snug::BoundTable table;
-};
-
-/// The bytes of a file as snug/bounds/shipped.h describes it.
-[[nodiscard]] std::vector<std::byte> file_of(const std::vector<KindBounds>& kinds, std::string_view text);
+/// The rows and the table of each kind, as make_bound_rows and make_bound_table give them.
+///
+/// The file, version 3: little-endian, every field at a multiple of its size, every part at a multiple of 8.
+///
+///     header   char[8] "snugbnd" and a zero     u32 version     u32 kinds
+///              u64 bytes of the whole file      u64 hash of all that follows this field
+///              u64 length of a text             the text: generator, kinds, arithmetic; zeros to 8
+///     a kind   u64 bytes of this record, this field included
+///              u8 scheme, seven zeros
+///              four times: u16 before, u16 after, u8 closed, u8 sharp, u16 zero      (CornerFan)
+///              u32 rows                         u32 control points
+///              f64 entry_error                  f64 abs_sum
+///              f64 weights[control point][row]
+///              u64 tables: 1, or 0
+///     a table  f64 layout[control point][2]     f64 triangle[3][2]
+///              f64 lower[control point - first_bounded][3], the same of upper; first_bounded is 3 for Loop, else 0
+///
+/// The hash of words w1, w2, ... of 8 bytes: start with 0xcbf29ce484222325; for each word
+/// h = (h xor w) * 0x100000001b3, then h = h xor (h >> 29).
+[[nodiscard]] std::vector<std::byte> file_of(std::span<const snug::KindKey> keys);
 
 }  // namespace tablegen

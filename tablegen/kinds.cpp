@@ -80,7 +80,7 @@ void add_at_boundary(std::vector<snug::KindKey>& keys) {
 
 }  // namespace
 
-std::vector<snug::KindKey> shipped_kinds() {
+std::vector<snug::KindKey> common_kinds() {
   std::vector<snug::KindKey> keys = loop_kinds();
   add_inside(snug::Scheme::catmark, {3, 5, 6}, keys);
   add_at_boundary(keys);

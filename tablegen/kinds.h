@@ -6,7 +6,7 @@
 
 namespace tablegen {
 
-/// The kinds that are shipped, each key once and turned as keys are, in the order of the file. Loop:
+/// Kinds that meshes have most of, each key once and turned as keys are, in the order of the file. Loop:
 ///
 ///   - all corners regular, inside (1) and at a boundary in every position (5);
 ///   - one extraordinary corner inside, of valence 3 to 12 (9);
@@ -16,7 +16,7 @@ namespace tablegen {
 ///
 /// Catmull-Clark: regular inside (1), one extraordinary corner of valence 3, 5 or 6 in each place (12), a boundary along
 /// one edge (4) or along two that meet in a lone sharp corner (4). Doo-Sabin and Midedge: regular (1), one face of 3, 5 or
-/// 6 corners in each place (12). derivations/checker.md says why no more.
-[[nodiscard]] std::vector<snug::KindKey> shipped_kinds();
+/// 6 corners in each place (12).
+[[nodiscard]] std::vector<snug::KindKey> common_kinds();
 
 }  // namespace tablegen

@@ -1,29 +1,17 @@
-// Makes the file that is compiled into the library, src/snug/bounds/shipped.bin:  tablegen FILE
+// Makes the rows and tables of common kinds, for checker to prove:  tablegen FILE
 
 #include <cstdio>
 #include <exception>
 #include <fstream>
-#include <utility>
 
 #include "file_writer.h"
 #include "kinds.h"
 
 namespace {
 
-constexpr const char* provenance =
-    "made by tablegen of snug, no arguments; kinds: tablegen/kinds.h; arithmetic: IEEE doubles rounded to "
-    "nearest, error terms by snug/geometry/rounding.h; proved by checker";
-
 int run(const char* name) {
-  snug::KindCache library;
-  std::vector<tablegen::KindBounds> kinds;
-  for (const snug::KindKey& key : tablegen::shipped_kinds()) {
-    const snug::Kind& kind = library.find(key);
-    snug::BoundRows rows = snug::make_bound_rows(kind);
-    snug::BoundTable table = snug::make_bound_table(kind, rows);
-    kinds.push_back({key, std::move(rows), std::move(table)});
-  }
-  const std::vector<std::byte> bytes = tablegen::file_of(kinds, provenance);
+  const std::vector<snug::KindKey> kinds = tablegen::common_kinds();
+  const std::vector<std::byte> bytes = tablegen::file_of(kinds);
   std::ofstream file(name, std::ios::binary);
   file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   file.close();

@@ -46,7 +46,6 @@ class BoundRows {
 
  private:
   friend BoundRows make_bound_rows(const Kind& kind, unsigned most_levels);
-  friend class ShippedBounds;
   void find_tips(const Kind& kind, unsigned levels);
   std::size_t count_ = 0, control_count_ = 0;
   std::vector<double> weights_;

@@ -1,10 +1,5 @@
 #include <snug/bounds/bounds_cache.h>
 
-#include <optional>
-#include <utility>
-
-#include <snug/bounds/shipped.h>
-
 namespace snug {
 namespace {
 
@@ -18,17 +13,12 @@ bool has_several_tips(const Kind& kind) {
 }  // namespace
 
 const BoundRows& BoundsCache::rows(const Kind& kind) {
-  return rows_.get(kind.id(), [&] {
-    if (has_several_tips(kind)) return make_bound_rows(kind, 1);
-    std::optional<BoundRows> shipped = ShippedBounds::compiled_in().rows(kind);
-    return shipped ? *std::move(shipped) : make_bound_rows(kind);
-  });
+  return rows_.get(kind.id(),
+                   [&] { return has_several_tips(kind) ? make_bound_rows(kind, 1) : make_bound_rows(kind); });
 }
 
 const BoundTable& BoundsCache::table(const Kind& kind) {
   return tables_.get(kind.id(), [&] {
-    std::optional<BoundTable> shipped = ShippedBounds::compiled_in().table(kind.key());
-    if (shipped) return *std::move(shipped);
     const bool kept = kind.shared() && !has_several_tips(kind);  // the rows that patches need
     return make_bound_table(kind, kept ? rows(kind) : make_bound_rows(kind));
   });

@@ -8,8 +8,7 @@
 
 namespace snug {
 
-/// Rows and tables of kinds: on first use shipped ones (shipped.h) are taken and others made; then immutable. Thread-safe;
-/// looking up costs two loads.
+/// Rows and tables of kinds, made on first use; then immutable. Thread-safe; looking up costs two loads.
 ///
 /// Memory: kinds and their tables take a few times what the connectivity of the surfaces takes that they are for. Rows grow with
 /// the square of a valence; those that would go beyond a limit are made when they are needed, and a thread keeps its last
