@@ -1,22 +1,36 @@
 #include <fmt/core.h>
-#include <snug/mesh/statistics.h>
+#include <snug/base/names.h>
 #include <snug/mesh/validate.h>
 #include <snug/query/face_distance.h>
 #include <snug/scheme/rules.h>
 
 #include "common.h"
 #include "curve.h"
+#include "mesh_counts.h"
 #include "mesh_reading.h"
 
 namespace snug::command {
 namespace {
+
+constexpr auto defect_kind_names =
+    std::to_array<Named<DefectKind>>({{"index-out-of-range", DefectKind::index_out_of_range},
+                                      {"coordinate-not-finite", DefectKind::coordinate_not_finite},
+                                      {"too-few-vertices", DefectKind::too_few_vertices},
+                                      {"repeated-vertex", DefectKind::repeated_vertex},
+                                      {"duplicate-face", DefectKind::duplicate_face},
+                                      {"edge-of-many-faces", DefectKind::edge_of_many_faces},
+                                      {"inconsistent-orientation", DefectKind::inconsistent_orientation},
+                                      {"pinched-vertex", DefectKind::pinched_vertex},
+                                      {"bad-tag", DefectKind::bad_tag},
+                                      {"isolated-vertex", DefectKind::isolated_vertex},
+                                      {"zero-area-face", DefectKind::zero_area_face}});
 
 struct Options : CommonOptions {
   std::string mesh;
 };
 
 // Vertices unlike those of a regular lattice; with a dual scheme faces.
-std::size_t extraordinary(const ControlMesh& mesh, const MeshStatistics& counts, const SchemeRules& scheme) {
+std::size_t extraordinary(const ControlMesh& mesh, const MeshCounts& counts, const SchemeRules& scheme) {
   if (scheme.primal) return counts.extraordinary;
   std::size_t found = 0;
   for (std::size_t f = 0; f < mesh.face_count(); ++f)
@@ -29,7 +43,7 @@ ExitStatus run(const Options& options) {
   refuse_curves(mesh, options.scheme, options.mesh);
   const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
   const SchemeRules& scheme = rules_of(rules.scheme);
-  const MeshStatistics counts = statistics(mesh, scheme.regular_valence);
+  const MeshCounts counts = count_elements(mesh, scheme.regular_valence);
   const std::size_t odd_ones = extraordinary(mesh, counts, scheme);
   const std::vector<Defect> found = defects(mesh);
   std::optional<std::size_t> kinds;
@@ -66,7 +80,7 @@ ExitStatus run(const Options& options) {
     kinds ? json.null() : json.value(refusal);
     json.key("defects").begin_array();
     for (const Defect& defect : found) {
-      json.begin_object().field("kind", name_of(defect.kind)).field("text", defect.text);
+      json.begin_object().field("kind", name_in(defect_kind_names, defect.kind)).field("text", defect.text);
       json.field("legal", scheme.answers(defect.kind)).end_object();
     }
     json.end_array();

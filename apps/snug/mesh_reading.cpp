@@ -7,10 +7,10 @@
 #include <fmt/core.h>
 #include <snug/geometry/rounding.h>
 #include <snug/mesh.h>
-#include <snug/mesh/weld.h>
 #include <snug/query/face_distance.h>
 
 #include "curve.h"
+#include "mesh_counts.h"
 
 namespace snug::command {
 

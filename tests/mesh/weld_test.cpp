@@ -7,12 +7,14 @@
 
 #include <gtest/gtest.h>
 #include <snug/base/error.h>
-#include <snug/mesh/statistics.h>
+#include <snug/mesh/topology.h>
 #include <snug/mesh/validate.h>
+#include <testing/six_sheets.h>
 
 namespace snug {
 namespace {
 
+using testing::six_sheets;
 using Numbers = std::vector<std::uint32_t>;
 
 /// The rule as it is written, in quadratic time.
@@ -115,27 +117,6 @@ Numbers corners(const ControlMesh& mesh, std::size_t face) {
   return ids;
 }
 
-/// A cube of six open sheets, each with vertices of its own, moved away from the middle by `gap`.
-ControlMesh six_sheets(double gap) {
-  ControlMesh mesh;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (const bool upper : {false, true}) {
-      std::vector<VertexId> face;
-      for (int k = 0; k < 4; ++k) {
-        const int turn = upper ? k : 3 - k;
-        Point3 p;
-        p[axis] = upper ? 1 + gap : -gap;
-        p[(axis + 1) % 3] = turn == 1 || turn == 2;
-        p[(axis + 2) % 3] = turn >= 2;
-        face.emplace_back(mesh.points.size());
-        mesh.points.push_back(p);
-      }
-      mesh.add_face(face);
-    }
-  }
-  return mesh;
-}
-
 TEST(welded_mesh, six_sheets_become_a_cube) {
   for (const double gap : {0.0, 1e-7}) {
     ControlMesh mesh = six_sheets(gap);
@@ -145,7 +126,9 @@ TEST(welded_mesh, six_sheets_become_a_cube) {
     EXPECT_EQ(welded.dropped + welded.shortened, 0u);
     EXPECT_EQ(mesh.vertex_count(), 8u);
     EXPECT_EQ(mesh.face_count(), 6u);
-    EXPECT_TRUE(statistics(mesh, 4).closed);
+    const Topology topology(mesh);
+    EXPECT_EQ(topology.edge_count(), 12u);
+    for (std::size_t e = 0; e < 12; ++e) EXPECT_FALSE(topology.on_boundary(EdgeId(e))) << e;
     EXPECT_TRUE(defects(mesh).empty());
   }
 }
@@ -226,33 +209,6 @@ TEST(welded_mesh, a_bad_distance_is_an_error_and_changes_nothing) {
   EXPECT_EQ(mesh.vertex_count(), 24u);
   mesh.points[3].x = NAN;
   EXPECT_THROW(weld(mesh), InputError);
-}
-
-TEST(coincidences, of_six_sheets) {
-  const Coincidences exact = coincidences(six_sheets(0));
-  EXPECT_EQ(exact.vertices, 24u);
-  EXPECT_EQ(exact.places, 8u);
-  EXPECT_EQ(exact.edges, 24u);
-  EXPECT_EQ(exact.near, 0u);
-  const Coincidences near = coincidences(six_sheets(1e-7));
-  EXPECT_EQ(near.vertices, 0u);
-  EXPECT_EQ(near.near, 16u);
-  EXPECT_NEAR(near.nearest, 1e-7 * std::sqrt(2.0), 1e-14);
-  EXPECT_NEAR(near.farthest, 1e-7 * std::sqrt(2.0), 1e-14);
-  const Coincidences apart = coincidences(six_sheets(1e-3));
-  EXPECT_EQ(apart.vertices + apart.near, 0u);
-}
-
-TEST(coincidences, a_closed_mesh_with_distinct_vertices_and_one_that_is_broken_have_none) {
-  ControlMesh mesh = six_sheets(0);
-  weld(mesh);
-  mesh.points.push_back(mesh.points[0]);  // no face uses it
-  EXPECT_EQ(coincidences(mesh).vertices, 0u);
-  EXPECT_EQ(coincidences(mesh).near, 0u);
-  mesh = six_sheets(0);
-  mesh.face_vertices[5] = VertexId(99);
-  EXPECT_EQ(coincidences(mesh).vertices, 0u);
-  EXPECT_EQ(coincidences(ControlMesh{}).vertices, 0u);
 }
 
 }  // namespace

@@ -1,61 +1,39 @@
 #include <snug/mesh/half_edges.h>
 
 #include <algorithm>
+#include <numeric>
+#include <tuple>
 
 namespace snug {
-namespace {
-
-// Few elements are inserted one by one: std::stable_sort takes memory for as few as two.
-template <class Iterator, class Less>
-void stable_sort_few(Iterator begin, Iterator end, Less less) {
-  if (end - begin > 16) {
-    std::stable_sort(begin, end, less);
-    return;
-  }
-  for (Iterator it = begin; it != end; ++it) {
-    std::rotate(std::upper_bound(begin, it, *it, less), it, it + 1);
-  }
-}
-
-}  // namespace
 
 HalfEdgeGroups::HalfEdgeGroups(std::span<const std::uint32_t> face_offsets,
                                std::span<const VertexId> face_vertices, std::size_t vertex_count) {
-  const std::size_t count = face_vertices.size();
+  const auto count = static_cast<HalfEdge>(face_vertices.size());
   faces_.resize(count);
-  std::vector<VertexId> far(
-      count);  // the end of a half-edge with the larger id; the smaller one is its bucket
-  std::vector<std::uint32_t> bucket_start(vertex_count + 1, 0);
+  std::vector<VertexId> low(count), high(count);  // ends of the edge of each half-edge
+  std::vector<std::uint32_t> begins(vertex_count + 1, 0);
   for (std::size_t f = 0; f + 1 < face_offsets.size(); ++f) {
     for (HalfEdge h = face_offsets[f]; h < face_offsets[f + 1]; ++h) {
-      const VertexId a = face_vertices[h];
-      const VertexId b = face_vertices[next_in_face(face_offsets, FaceId(f), h)];
       faces_[h] = FaceId(f);
-      far[h] = std::max(a, b);
-      ++bucket_start[std::min(a, b).index() + 1];
+      const HalfEdge next = next_in_face(face_offsets, FaceId(f), h);
+      std::tie(low[h], high[h]) = std::minmax({face_vertices[h], face_vertices[next]});
+      ++begins[low[h].index()];
     }
   }
-  for (std::size_t v = 0; v < vertex_count; ++v) bucket_start[v + 1] += bucket_start[v];
-  std::vector<HalfEdge> buckets(count);
-  std::vector<std::uint32_t> fill(bucket_start.begin(), bucket_start.end() - 1);
-  for (HalfEdge h = 0; h < count; ++h) {
-    const VertexId a = face_vertices[h];
-    const VertexId b = face_vertices[next_in_face(face_offsets, faces_[h], h)];
-    buckets[fill[std::min(a, b).index()]++] = h;
-  }
-
-  members_.reserve(count);
+  // By lower end first: the ends of these groups, which become their beginnings as they are filled.
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  members_.resize(count);
+  for (HalfEdge h = count; h-- > 0;) members_[--begins[low[h].index()]] = h;
   for (std::size_t v = 0; v < vertex_count; ++v) {
-    const auto begin = buckets.begin() + bucket_start[v], end = buckets.begin() + bucket_start[v + 1];
-    // Half-edges come in rising order; a stable sort by the far end keeps that order inside an edge.
-    stable_sort_few(begin, end, [&](HalfEdge g, HalfEdge h) { return far[g] < far[h]; });
+    const auto begin = members_.begin() + begins[v], end = members_.begin() + begins[v + 1];
+    std::sort(begin, end,
+              [&](HalfEdge g, HalfEdge h) { return std::tie(high[g], g) < std::tie(high[h], h); });
     for (auto it = begin; it != end; ++it) {
-      if (it != begin && far[*it] != far[*(it - 1)])
-        offsets_.push_back(static_cast<std::uint32_t>(members_.size()));
-      members_.push_back(*it);
+      if (it != begin && high[*it] == high[*(it - 1)]) continue;
+      offsets_.push_back(static_cast<std::uint32_t>(it - members_.begin()));
     }
-    if (begin != end) offsets_.push_back(static_cast<std::uint32_t>(members_.size()));
   }
+  offsets_.push_back(count);
 }
 
 }  // namespace snug

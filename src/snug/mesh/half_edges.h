@@ -12,8 +12,7 @@ namespace snug {
 using HalfEdge = std::uint32_t;
 inline constexpr HalfEdge no_half_edge = UINT32_MAX;
 
-/// The half-edges of any mesh, grouped by the undirected edge they lie on; non-manifold edges hold more than
-/// two.
+/// The half-edges of any mesh, grouped by the undirected edge they lie on; non-manifold edges hold more than two.
 ///
 /// Requires:  vertex ids below vertex_count.
 /// Cost:      linear in half-edges, times the logarithm of the largest valence.
@@ -32,8 +31,8 @@ class HalfEdgeGroups {
   [[nodiscard]] std::vector<FaceId> take_faces() { return std::move(faces_); }
 
  private:
-  std::vector<std::uint32_t> offsets_{0};
-  std::vector<HalfEdge> members_;
+  std::vector<std::uint32_t> offsets_;
+  std::vector<HalfEdge> members_;  // in rising order within an edge
   std::vector<FaceId> faces_;
 };
 

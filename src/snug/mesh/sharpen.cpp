@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <utility>
 
 #include <snug/base/error.h>
 #include <snug/geometry/direction.h>
+#include <snug/mesh/disjoint_sets.h>
 #include <snug/mesh/split_polygon.h>
 #include <snug/mesh/topology.h>
 
@@ -21,23 +22,6 @@ double angle_between(const Vector3& a, const Vector3& b) {
   if (sine == 0 && cosine == 0) return 180;
   return std::atan2(sine, cosine) * (180 / std::numbers::pi);
 }
-
-/// Sets of numbers that were joined.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t root(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t i, std::uint32_t k) {
-    const auto [first, second] = std::minmax({root(i), root(k)});
-    parent_[second] = first;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 bool can_be_sharpened(const ControlMesh& mesh) {
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
@@ -56,11 +40,11 @@ double largest_coordinate(const ControlMesh& mesh) {
   return largest;
 }
 
-/// How exact the coordinates of a mesh are taken to be, scaled: see sharpen.h.
+/// How exact the coordinates of a mesh are taken to be, scaled: see sharpen().
 double exactness(const ControlMesh& mesh, PowerOfTwo scale, double largest) {
   const bool floats = std::all_of(mesh.face_vertices.begin(), mesh.face_vertices.end(), [&](VertexId v) {
     const Point3& p = mesh.points[v.index()];
-    return std::fabs(max_abs(p - Point3{})) <= 0x1p127 && p.x == static_cast<float>(p.x) &&
+    return max_abs(p - Point3{}) <= 0x1p127 && p.x == static_cast<float>(p.x) &&
            p.y == static_cast<float>(p.y) && p.z == static_cast<float>(p.z);
   });
   const Box3 box = used_box(mesh);
@@ -70,40 +54,27 @@ double exactness(const ControlMesh& mesh, PowerOfTwo scale, double largest) {
 
 using EdgeEnds = std::pair<VertexId, VertexId>;
 
-/// Edges and vertices tagged infinitely sharp, in rising order.
-struct SharpTags {
-  std::vector<EdgeEnds> edges;
-  std::vector<VertexId> vertices;
+/// Elements with the sharpness that tags give them, in rising order; the last one of an element counts.
+template <class Key>
+using Tagged = std::vector<std::pair<Key, double>>;
 
-  explicit SharpTags(const MeshTags& tags) {
-    // The last tag of an element counts: later ones first, and only the first of each stays.
-    std::vector<std::pair<EdgeEnds, double>> all_edges;
-    for (const CreaseTag& tag : tags.creases)
-      all_edges.emplace_back(std::minmax({tag.a, tag.b}), tag.sharpness);
-    std::vector<std::pair<VertexId, double>> all_vertices;
-    for (const CornerTag& tag : tags.corners) all_vertices.emplace_back(tag.vertex, tag.sharpness);
-    keep_infinite(all_edges, edges);
-    keep_infinite(all_vertices, vertices);
-  }
-
- private:
-  template <class Key>
-  static void keep_infinite(std::vector<std::pair<Key, double>>& tags, std::vector<Key>& kept) {
-    std::reverse(tags.begin(), tags.end());
-    std::stable_sort(tags.begin(), tags.end(),
-                     [](const auto& s, const auto& t) { return s.first < t.first; });
-    for (std::size_t i = 0; i < tags.size(); ++i) {
-      const bool counts = i == 0 || tags[i].first != tags[i - 1].first;
-      if (counts && tags[i].second >= infinite_sharpness) kept.push_back(tags[i].first);
-    }
-  }
-};
+template <class Key>
+bool is_infinite(const Tagged<Key>& tags, const Key& key) {
+  const auto after = std::ranges::upper_bound(tags, key, {}, &std::pair<Key, double>::first);
+  return after != tags.begin() && std::prev(after)->first == key &&
+         std::prev(after)->second >= infinite_sharpness;
+}
 
 /// What is sharp in a mesh: edges by angle, then planar regions, then vertices. Works in scaled coordinates.
 class Sharpener {
  public:
-  Sharpener(const ControlMesh& mesh, double angle)
-      : mesh_(mesh), angle_(angle), topology_(mesh), tagged_(mesh.tags) {
+  Sharpener(const ControlMesh& mesh, double angle) : mesh_(mesh), angle_(angle), topology_(mesh) {
+    for (const CreaseTag& tag : mesh.tags.creases) {
+      tagged_edges_.emplace_back(std::minmax({tag.a, tag.b}), tag.sharpness);
+    }
+    for (const CornerTag& tag : mesh.tags.corners) tagged_vertices_.emplace_back(tag.vertex, tag.sharpness);
+    std::ranges::stable_sort(tagged_edges_, {}, &std::pair<EdgeEnds, double>::first);
+    std::ranges::stable_sort(tagged_vertices_, {}, &std::pair<VertexId, double>::first);
     const double largest = largest_coordinate(mesh);
     const PowerOfTwo scale = PowerOfTwo::normalising(largest);
     exactness_ = exactness(mesh, scale, largest);
@@ -116,14 +87,14 @@ class Sharpener {
     find_regions();
   }
 
-  [[nodiscard]] std::size_t flat_regions() const { return flat_regions_; }
-  [[nodiscard]] std::size_t fixed_regions() const { return fixed_regions_; }
   /// Is the face to be its own limit surface?
   [[nodiscard]] bool is_faceted(FaceId f) const { return faceted_[f.index()]; }
   [[nodiscard]] const Vector3& area(FaceId f) const { return areas_[f.index()]; }
 
-  /// Appends the tags that are missing.
+  /// Appends the tags that are missing, and counts them and the regions.
   void tag(MeshTags& tags, Sharpened& result) const {
+    result.flat_regions = flat_regions_;
+    result.fixed_regions = fixed_regions_;
     for (std::size_t e = 0; e < sharp_.size(); ++e) {
       const EdgeId edge(e);
       if (!sharp_[e] || topology_.ends_fans(edge) || is_tagged(edge)) continue;
@@ -132,7 +103,7 @@ class Sharpener {
       ++result.creases;
     }
     for (const VertexId v : corners()) {
-      if (std::binary_search(tagged_.vertices.begin(), tagged_.vertices.end(), v)) continue;
+      if (is_infinite(tagged_vertices_, v)) continue;
       tags.corners.push_back({v, infinite_sharpness});
       ++result.corners;
     }
@@ -144,7 +115,7 @@ class Sharpener {
     return std::minmax({topology_.from(h), topology_.to(h)});
   }
   [[nodiscard]] bool is_tagged(EdgeId e) const {
-    return !tagged_.edges.empty() && std::binary_search(tagged_.edges.begin(), tagged_.edges.end(), ends(e));
+    return !tagged_edges_.empty() && is_infinite(tagged_edges_, ends(e));
   }
   [[nodiscard]] const Point3& point(VertexId v) const { return points_[v.index()]; }
 
@@ -183,32 +154,27 @@ class Sharpener {
 
   /// An edge between a set of narrow faces and another face.
   struct Shore {
-    std::uint32_t set;
     EdgeId edge;
     FaceId face;
   };
 
   // Narrow faces that hang together are looked through: the faces around them are compared with each other.
   void sharpen_across_narrow_faces() {
-    Sets sets(mesh_.face_count());
-    std::vector<Shore> shores;
+    DisjointSets sets(mesh_.face_count());
     for (std::size_t e = 0; e < sharp_.size(); ++e) {
       if (sharp_[e]) continue;
       const auto [f, g] = faces_of(EdgeId(e));
       if (is_narrow(f) && is_narrow(g)) sets.join(f.value(), g.value());
     }
+    std::map<std::uint32_t, std::vector<Shore>> shores;
     for (std::size_t e = 0; e < sharp_.size(); ++e) {
       if (sharp_[e]) continue;
       const auto [f, g] = faces_of(EdgeId(e));
       if (is_narrow(f) == is_narrow(g)) continue;
-      shores.push_back({sets.root((is_narrow(f) ? f : g).value()), EdgeId(e), is_narrow(f) ? g : f});
+      const auto [narrow, wide] = is_narrow(f) ? std::pair(f, g) : std::pair(g, f);
+      shores[sets.least(narrow.value())].push_back({EdgeId(e), wide});
     }
-    std::stable_sort(shores.begin(), shores.end(),
-                     [](const Shore& a, const Shore& b) { return a.set < b.set; });
-    for (std::size_t begin = 0, end = 0; begin < shores.size(); begin = end) {
-      while (end < shores.size() && shores[end].set == shores[begin].set) ++end;
-      sharpen_shores({shores.data() + begin, shores.data() + end});
-    }
+    for (const auto& [set, around] : shores) sharpen_shores(around);
   }
 
   void sharpen_shores(std::span<const Shore> shores) {
@@ -227,31 +193,26 @@ class Sharpener {
   }
 
   void find_regions() {
-    Sets sets(mesh_.face_count());
+    DisjointSets sets(mesh_.face_count());
     for (std::size_t e = 0; e < sharp_.size(); ++e) {
       if (sharp_[e]) continue;
       const auto [f, g] = faces_of(EdgeId(e));
       sets.join(f.value(), g.value());
     }
-    std::vector<std::pair<std::uint32_t, FaceId>> by_region;
+    std::vector<std::vector<FaceId>> regions(mesh_.face_count()), curved;  // empty but at their first faces
     for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
-      by_region.emplace_back(sets.root(static_cast<std::uint32_t>(f)), FaceId(f));
+      regions[sets.least(static_cast<std::uint32_t>(f))].emplace_back(f);
     }
-    std::sort(by_region.begin(), by_region.end());
     faceted_.assign(mesh_.face_count(), false);
     pinned_.assign(mesh_.vertex_count(), false);
-    std::vector<std::vector<FaceId>> curved;
-    for (std::size_t begin = 0, end = 0; begin < by_region.size(); begin = end) {
-      std::vector<FaceId> faces;
-      while (end < by_region.size() && by_region[end].first == by_region[begin].first) {
-        faces.push_back(by_region[end++].second);
-      }
-      if (is_planar(faces)) {
-        ++flat_regions_;
-        for (const FaceId f : faces) pin(f);
-      } else {
+    for (std::vector<FaceId>& faces : regions) {
+      if (faces.empty()) continue;
+      if (!is_planar(faces)) {
         curved.push_back(std::move(faces));
+        continue;
       }
+      ++flat_regions_;
+      for (const FaceId f : faces) pin(f);
     }
     find_fixed_regions(curved);
   }
@@ -344,7 +305,8 @@ class Sharpener {
   const ControlMesh& mesh_;
   double angle_;
   Topology topology_;
-  SharpTags tagged_;
+  Tagged<EdgeEnds> tagged_edges_;
+  Tagged<VertexId> tagged_vertices_;
   double exactness_ = 0;
   std::vector<Point3> points_;
   std::vector<Vector3> areas_, normals_;  // of faces; no normal where they are narrow
@@ -405,8 +367,6 @@ Sharpened sharpen(ControlMesh& mesh, double angle) {
   std::optional<Sharpener> sharp(std::in_place, mesh, angle);
   split_faces(mesh, *sharp, result);
   if (result.split_faces > 0) sharp.emplace(mesh, angle);
-  result.flat_regions = sharp->flat_regions();
-  result.fixed_regions = sharp->fixed_regions();
   sharp->tag(mesh.tags, result);
   return result;
 }

@@ -5,18 +5,9 @@
 
 namespace snug {
 
-Topology::Topology(const ControlMesh& mesh)
-    : face_offsets_(mesh.face_offsets), face_vertices_(mesh.face_vertices) {
-  connect(mesh.vertex_count());
-}
-
 Topology::Topology(std::vector<std::uint32_t> face_offsets, std::vector<VertexId> face_vertices,
                    std::size_t vertex_count)
     : face_offsets_(std::move(face_offsets)), face_vertices_(std::move(face_vertices)) {
-  connect(vertex_count);
-}
-
-void Topology::connect(std::size_t vertex_count) {
   HalfEdgeGroups groups(face_offsets_, face_vertices_, vertex_count);
   twins_.assign(face_vertices_.size(), no_half_edge);
   edges_.resize(face_vertices_.size());
@@ -86,8 +77,7 @@ void Topology::find_fans() {
       walk_fan(h, [&](HalfEdge g) { met[g] = true; });
     }
   }
-  std::stable_sort(more_fans_.begin(), more_fans_.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::ranges::stable_sort(more_fans_, {}, &std::pair<VertexId, HalfEdge>::first);
 }
 
 namespace {
@@ -95,8 +85,7 @@ namespace {
 template <class Id>
 std::vector<HalfEdge> of_key(const std::vector<std::pair<Id, HalfEdge>>& pairs, Id key) {
   std::vector<HalfEdge> found;
-  auto it = std::lower_bound(pairs.begin(), pairs.end(), std::pair(key, HalfEdge{0}),
-                             [](const auto& a, const auto& b) { return a.first < b.first; });
+  auto it = std::ranges::lower_bound(pairs, key, {}, &std::pair<Id, HalfEdge>::first);
   for (; it != pairs.end() && it->first == key; ++it) found.push_back(it->second);
   return found;
 }

@@ -30,7 +30,8 @@ namespace snug {
 class Topology {
  public:
   Topology() = default;
-  explicit Topology(const ControlMesh& mesh);
+  explicit Topology(const ControlMesh& mesh)
+      : Topology(mesh.face_offsets, mesh.face_vertices, mesh.vertex_count()) {}
   Topology(std::vector<std::uint32_t> face_offsets, std::vector<VertexId> face_vertices,
            std::size_t vertex_count);
 
@@ -111,7 +112,6 @@ class Topology {
   }
 
  private:
-  void connect(std::size_t vertex_count);
   void find_fans();
 
   std::vector<std::uint32_t> face_offsets_{0};

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include <snug/base/names.h>
 #include <snug/geometry/scaling.h>
+#include <snug/mesh/disjoint_sets.h>
 #include <snug/mesh/half_edges.h>
 
 namespace snug {
@@ -13,10 +13,13 @@ namespace {
 
 std::string number(std::size_t n) { return std::to_string(n); }
 
-std::string listed(const std::vector<std::uint32_t>& ids) {
+/// The texts of the first ten, and how many more there are.
+template <class T, class TextOf>
+std::string first_ten(std::span<const T> list, const std::string& comma, const char* conjunction,
+                      const TextOf& text_of) {
   std::string text;
-  for (std::size_t i = 0; i < ids.size() && i < 10; ++i) text += (i ? ", " : "") + number(ids[i]);
-  if (ids.size() > 10) text += " and " + number(ids.size() - 10) + " more";
+  for (std::size_t i = 0; i < list.size() && i < 10; ++i) text += (i ? comma : "") + text_of(list[i]);
+  if (list.size() > 10) text += conjunction + number(list.size() - 10) + " more";
   return text;
 }
 
@@ -30,8 +33,7 @@ class Inspector {
     check_tags();
     if (indices_good) check_duplicates();
     if (indices_good && with_neighbours) {
-      check_edges();
-      check_fans();
+      check_edges_and_fans();
       check_areas();
     }
     std::stable_sort(found_.begin(), found_.end(),
@@ -86,52 +88,24 @@ class Inspector {
   }
 
   void check_tags() {
+    const auto expect = [&](bool good, const char* sort, std::size_t i, const std::string& text) {
+      if (!good) add(DefectKind::bad_tag, sort + (" tag " + number(i)) + text);
+    };
     const auto good_sharpness = [](double s) { return std::isfinite(s) && s >= 0; };
     const auto there = [&](VertexId v) { return v.index() < mesh_.vertex_count(); };
-    for (std::size_t i = 0; i < mesh_.tags.creases.size(); ++i) {
-      const CreaseTag& tag = mesh_.tags.creases[i];
-      if (!there(tag.a) || !there(tag.b) || !good_sharpness(tag.sharpness)) {
-        add(DefectKind::bad_tag,
-            "crease tag " + number(i) + " needs two vertices of the mesh and a sharpness >= 0");
-      }
+    const auto& [creases, corners, holes, boundary, crease_method, smooth_triangles] = mesh_.tags;
+    for (std::size_t i = 0; i < creases.size(); ++i) {
+      const auto [a, b, sharpness] = creases[i];
+      expect(there(a) && there(b) && good_sharpness(sharpness), "crease", i,
+             " needs two vertices of the mesh and a sharpness >= 0");
     }
-    for (std::size_t i = 0; i < mesh_.tags.corners.size(); ++i) {
-      const CornerTag& tag = mesh_.tags.corners[i];
-      if (!there(tag.vertex) || !good_sharpness(tag.sharpness)) {
-        add(DefectKind::bad_tag,
-            "corner tag " + number(i) + " needs a vertex of the mesh and a sharpness >= 0");
-      }
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      expect(there(corners[i].vertex) && good_sharpness(corners[i].sharpness), "corner", i,
+             " needs a vertex of the mesh and a sharpness >= 0");
     }
-    for (std::size_t i = 0; i < mesh_.tags.holes.size(); ++i) {
-      if (mesh_.tags.holes[i].index() >= mesh_.face_count()) {
-        add(DefectKind::bad_tag, "hole tag " + number(i) + " names face " +
-                                     number(mesh_.tags.holes[i].index()) + " of " +
-                                     number(mesh_.face_count()));
-      }
-    }
-  }
-
-  void check_edges() {
-    const HalfEdgeGroups groups(mesh_.face_offsets, mesh_.face_vertices, mesh_.vertex_count());
-    for (std::size_t e = 0; e < groups.edge_count(); ++e) {
-      const auto members = groups.of_edge(EdgeId(e));
-      const bool many = members.size() > 2;
-      const bool same_direction = members.size() == 2 && groups.face(members[0]) != groups.face(members[1]) &&
-                                  mesh_.face_vertices[members[0]] == mesh_.face_vertices[members[1]];
-      if (!many && !same_direction) continue;
-      const HalfEdge h = members[0];
-      const VertexId a = mesh_.face_vertices[h];
-      const VertexId b = mesh_.face_vertices[next_in_face(mesh_.face_offsets, groups.face(h), h)];
-      std::vector<std::uint32_t> faces;
-      for (const HalfEdge g : members) faces.push_back(groups.face(g).value());
-      const std::string edge =
-          "edge (" + number(std::min(a, b).index()) + ", " + number(std::max(a, b).index()) + ")";
-      if (many) {
-        add(DefectKind::edge_of_many_faces,
-            edge + " has " + number(members.size()) + " faces: " + listed(faces));
-      } else {
-        add(DefectKind::inconsistent_orientation, edge + " has the same direction in faces " + listed(faces));
-      }
+    for (std::size_t i = 0; i < holes.size(); ++i) {
+      expect(holes[i].index() < mesh_.face_count(), "hole", i,
+             " names face " + number(holes[i].index()) + " of " + number(mesh_.face_count()));
     }
   }
 
@@ -174,54 +148,50 @@ class Inspector {
     }
   }
 
-  // The corners of faces around a vertex, linked where two faces share an edge at it, must form one chain or
-  // cycle.
-  void check_fans() {
-    std::vector<std::uint32_t> start(mesh_.vertex_count() + 1, 0);
-    for (const VertexId v : mesh_.face_vertices) ++start[v.index() + 1];
-    for (std::size_t v = 0; v < mesh_.vertex_count(); ++v) start[v + 1] += start[v];
-    struct Corner {
-      std::uint32_t before, after;  // neighbours of the vertex in one face
-    };
-    std::vector<Corner> corners(mesh_.face_vertices.size());
-    std::vector<std::uint32_t> fill(start.begin(), start.end() - 1);
-    for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
-      const auto face = mesh_.face(FaceId(f));
-      for (std::size_t k = 0; k < face.size(); ++k) {
-        corners[fill[face[k].index()]++] = {face[(k + face.size() - 1) % face.size()].value(),
-                                            face[(k + 1) % face.size()].value()};
-      }
-    }
-    std::vector<std::uint32_t> parent;
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;  // neighbour, corner
-    for (std::size_t v = 0; v < mesh_.vertex_count(); ++v) {
-      const std::uint32_t count = start[v + 1] - start[v];
-      if (count < 2) continue;
-      parent.resize(count);
-      ends.clear();
-      for (std::uint32_t i = 0; i < count; ++i) {
-        parent[i] = i;
-        ends.emplace_back(corners[start[v] + i].before, i);
-        ends.emplace_back(corners[start[v] + i].after, i);
-      }
-      const auto root = [&](std::uint32_t i) {
-        while (parent[i] != i) i = parent[i] = parent[parent[i]];
-        return i;
-      };
-      std::sort(ends.begin(), ends.end());
-      std::uint32_t fans = count;
-      for (std::size_t i = 1; i < ends.size(); ++i) {
-        if (ends[i].first != ends[i - 1].first) continue;
-        const std::uint32_t a = root(ends[i].second), b = root(ends[i - 1].second);
-        if (a != b) {
-          parent[a] = b;
-          --fans;
+  // The corners of faces around a vertex, linked where two faces share an edge at it, must form one chain or cycle.
+  void check_edges_and_fans() {
+    const HalfEdgeGroups groups(mesh_.face_offsets, mesh_.face_vertices, mesh_.vertex_count());
+    std::vector<std::size_t> fans(mesh_.vertex_count(), 0);
+    for (const VertexId v : mesh_.face_vertices) ++fans[v.index()];
+    DisjointSets linked(mesh_.face_vertices.size());
+    for (std::size_t e = 0; e < groups.edge_count(); ++e) {
+      const auto members = groups.of_edge(EdgeId(e));
+      check_edge(groups, members);
+      HalfEdge at_start = no_half_edge, at_end = no_half_edge;
+      for (const HalfEdge h : members) {
+        for (const HalfEdge corner : {h, next(groups, h)}) {
+          const VertexId v = mesh_.face_vertices[corner];
+          HalfEdge& first = v == mesh_.face_vertices[members[0]] ? at_start : at_end;
+          if (first == no_half_edge) first = corner;
+          fans[v.index()] -= linked.join(first, corner);
         }
       }
-      if (fans > 1) {
-        add(DefectKind::pinched_vertex,
-            "the faces around vertex " + number(v) + " form " + number(fans) + " fans");
-      }
+    }
+    for (std::size_t v = 0; v < mesh_.vertex_count(); ++v) {
+      if (fans[v] < 2) continue;
+      add(DefectKind::pinched_vertex,
+          "the faces around vertex " + number(v) + " form " + number(fans[v]) + " fans");
+    }
+  }
+
+  [[nodiscard]] HalfEdge next(const HalfEdgeGroups& groups, HalfEdge h) const {
+    return next_in_face(mesh_.face_offsets, groups.face(h), h);
+  }
+
+  void check_edge(const HalfEdgeGroups& groups, std::span<const HalfEdge> members) {
+    const VertexId a = mesh_.face_vertices[members[0]], b = mesh_.face_vertices[next(groups, members[0])];
+    const bool many = members.size() > 2;
+    const bool same_direction = members.size() == 2 && groups.face(members[0]) != groups.face(members[1]) &&
+                                a == mesh_.face_vertices[members[1]];
+    if (!many && !same_direction) return;
+    const std::string edge =
+        "edge (" + number(std::min(a, b).index()) + ", " + number(std::max(a, b).index()) + ")";
+    const std::string faces =
+        first_ten(members, ", ", " and ", [&](HalfEdge h) { return number(groups.face(h).index()); });
+    if (many) {
+      add(DefectKind::edge_of_many_faces, edge + " has " + number(members.size()) + " faces: " + faces);
+    } else {
+      add(DefectKind::inconsistent_orientation, edge + " has the same direction in faces " + faces);
     }
   }
 
@@ -256,30 +226,12 @@ class Inspector {
 
 }  // namespace
 
-constexpr auto defect_kind_names =
-    std::to_array<Named<DefectKind>>({{"index-out-of-range", DefectKind::index_out_of_range},
-                                      {"coordinate-not-finite", DefectKind::coordinate_not_finite},
-                                      {"too-few-vertices", DefectKind::too_few_vertices},
-                                      {"repeated-vertex", DefectKind::repeated_vertex},
-                                      {"duplicate-face", DefectKind::duplicate_face},
-                                      {"edge-of-many-faces", DefectKind::edge_of_many_faces},
-                                      {"inconsistent-orientation", DefectKind::inconsistent_orientation},
-                                      {"pinched-vertex", DefectKind::pinched_vertex},
-                                      {"bad-tag", DefectKind::bad_tag},
-                                      {"isolated-vertex", DefectKind::isolated_vertex},
-                                      {"zero-area-face", DefectKind::zero_area_face}});
-
-const char* name_of(DefectKind kind) { return name_in(defect_kind_names, kind); }
-
 std::vector<Defect> defects(const ControlMesh& mesh) { return Inspector(mesh).run(true); }
 
 std::vector<Defect> defects_of_elements(const ControlMesh& mesh) { return Inspector(mesh).run(false); }
 
 std::string summary(const std::vector<Defect>& list) {
-  std::string text;
-  for (std::size_t i = 0; i < list.size() && i < 10; ++i) text += (i ? "; " : "") + list[i].text;
-  if (list.size() > 10) text += "; and " + number(list.size() - 10) + " more";
-  return text;
+  return first_ten(std::span(list), "; ", "; and ", [](const Defect& defect) { return defect.text; });
 }
 
 }  // namespace snug

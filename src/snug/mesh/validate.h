@@ -39,7 +39,6 @@ struct Defect {
          kind == DefectKind::edge_of_many_faces || kind == DefectKind::inconsistent_orientation ||
          kind == DefectKind::pinched_vertex;
 }
-[[nodiscard]] const char* name_of(DefectKind kind);
 
 /// All defects of a mesh, by kind, then by element.
 ///

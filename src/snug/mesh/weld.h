@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,23 +20,5 @@ namespace snug {
 /// Cost:      linear without a distance; with one also sorting the points and their pairs in neighbouring cells of
 ///            half that distance until one welds the two cells: about a second for a million points.
 [[nodiscard]] std::vector<std::uint32_t> first_of_welded(std::span<const Point3> points, double distance = 0);
-
-/// Vertices and boundary edges that stand where others do and are not joined: faces meet there to the eye alone.
-struct Coincidences {
-  std::size_t vertices = 0;  ///< vertices of faces that stand exactly where another one stands
-  std::size_t places = 0;    ///< where these stand
-  std::size_t edges = 0;     ///< edges with one face whose ends stand where those of another such edge stand
-  /// Further vertices on edges with one face that weld() would join if given `reach`, and the least and largest
-  /// distance of one of them from the vertex that it would become.
-  std::size_t near = 0;
-  double nearest = 0, farthest = 0;
-  double reach = 0;  ///< 2^-17 of the longest side of used_box()
-};
-
-/// Finds them; nothing is changed. Vertices without a face, and meshes with faces that name vertices which are not there or
-/// coordinates that are not finite, have none.
-///
-/// Cost:      linear; on meshes with a boundary that of weld() on its vertices.
-[[nodiscard]] Coincidences coincidences(const ControlMesh& mesh);
 
 }  // namespace snug

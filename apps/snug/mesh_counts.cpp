@@ -1,0 +1,192 @@
+#include "mesh_counts.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <snug/mesh/control_mesh.h>
+#include <snug/mesh/disjoint_sets.h>
+#include <snug/mesh/half_edges.h>
+#include <snug/mesh/weld.h>
+
+namespace snug::command {
+namespace {
+
+using Edge = std::pair<VertexId, VertexId>;
+
+bool has_vertices_of(const ControlMesh& mesh, std::span<const VertexId> face) {
+  return std::all_of(face.begin(), face.end(), [&](VertexId v) { return v.index() < mesh.vertex_count(); });
+}
+
+/// The mesh without faces that name vertices it does not have, and without anything else but faces.
+ControlMesh sound_faces(const ControlMesh& mesh) {
+  ControlMesh sound;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(FaceId(f));
+    if (has_vertices_of(mesh, face)) sound.add_face(face);
+  }
+  return sound;
+}
+
+std::size_t count_components(const ControlMesh& mesh, std::size_t vertex_count) {
+  DisjointSets joined(vertex_count);
+  std::vector<bool> used(vertex_count, false);
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(FaceId(f));
+    for (const VertexId v : face) {
+      used[v.index()] = true;
+      joined.join(v.value(), face[0].value());
+    }
+  }
+  std::size_t components = 0;
+  for (std::uint32_t v = 0; v < vertex_count; ++v) components += used[v] && joined.least(v) == v;
+  return components;
+}
+
+/// Ends of an edge.
+Edge ends_of(const ControlMesh& mesh, const HalfEdgeGroups& groups, EdgeId e) {
+  const HalfEdge h = groups.of_edge(e)[0];
+  return {mesh.face_vertices[h], mesh.face_vertices[next_in_face(mesh.face_offsets, groups.face(h), h)]};
+}
+
+/// Certainly true if no edge has one face and edges of two have them turned alike, but for one chance in 2^64: a
+/// sum over directed edges that opposite ones take out of it.
+bool looks_closed(const ControlMesh& mesh) {
+  std::uint64_t sum = 0;
+  const auto mixed = [](VertexId a, VertexId b) {
+    std::uint64_t x = (std::uint64_t{a.value()} << 32 | b.value()) * 0x9e3779b97f4a7c15u;
+    x = (x ^ x >> 32) * 0xbf58476d1ce4e5b9u;
+    return x ^ x >> 29;
+  };
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(FaceId(f));
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const VertexId a = face[k], b = face[k + 1 == face.size() ? 0 : k + 1];
+      sum += mixed(a, b) - mixed(b, a);
+    }
+  }
+  return sum == 0;
+}
+
+std::vector<Edge> boundary_edges(const ControlMesh& mesh) {
+  const HalfEdgeGroups groups(mesh.face_offsets, mesh.face_vertices, mesh.vertex_count());
+  std::vector<Edge> edges;
+  for (std::size_t e = 0; e < groups.edge_count(); ++e) {
+    if (groups.of_edge(EdgeId(e)).size() == 1) edges.push_back(ends_of(mesh, groups, EdgeId(e)));
+  }
+  return edges;
+}
+
+/// For each used vertex the first that stands where it does.
+std::vector<VertexId> first_in_place(const ControlMesh& mesh, const std::vector<bool>& used) {
+  std::vector<VertexId> vertices;
+  std::vector<Point3> points;
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (!used[v]) continue;
+    vertices.emplace_back(v);
+    points.push_back(mesh.points[v]);
+  }
+  const std::vector<std::uint32_t> first = first_of_welded(points);
+  std::vector<VertexId> places(used.size());
+  for (std::size_t k = 0; k < first.size(); ++k) places[vertices[k].index()] = vertices[first[k]];
+  return places;
+}
+
+std::size_t count_coincident(const std::vector<Edge>& boundary, const std::vector<VertexId>& places) {
+  std::vector<Edge> edges;
+  for (const auto& [a, b] : boundary) {
+    edges.emplace_back(std::minmax({places[a.index()], places[b.index()]}));
+  }
+  std::sort(edges.begin(), edges.end());
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    count += (i > 0 && edges[i] == edges[i - 1]) || (i + 1 < edges.size() && edges[i] == edges[i + 1]);
+  }
+  return count;
+}
+
+void find_near_vertices(const ControlMesh& mesh, const std::vector<Edge>& boundary,
+                        const std::vector<VertexId>& places, Coincidences& found) {
+  std::vector<Point3> points;  // one a place
+  std::vector<bool> added(mesh.vertex_count(), false);
+  for (const auto& [a, b] : boundary) {
+    for (const VertexId v : {a, b}) {
+      const std::size_t place = places[v.index()].index();
+      if (!added[place]) points.push_back(mesh.points[v.index()]);
+      added[place] = true;
+    }
+  }
+  const std::vector<std::uint32_t> first = first_of_welded(points, found.reach);
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    if (first[p] == p) continue;
+    const Vector3 between = points[p] - points[first[p]];
+    const double apart = std::hypot(between.x, between.y, between.z);
+    found.nearest = found.near == 0 ? apart : std::min(found.nearest, apart);
+    found.farthest = std::max(found.farthest, apart);
+    ++found.near;
+  }
+}
+
+}  // namespace
+
+MeshCounts count_elements(const ControlMesh& mesh, std::size_t regular_valence) {
+  const ControlMesh faces = sound_faces(mesh);
+  const HalfEdgeGroups groups(faces.face_offsets, faces.face_vertices, mesh.vertex_count());
+  MeshCounts result;
+  result.edges = groups.edge_count();
+  result.components = count_components(faces, mesh.vertex_count());
+  std::vector<std::uint32_t> valence(mesh.vertex_count(), 0);
+  std::vector<bool> boundary(mesh.vertex_count(), false);
+  result.closed = groups.edge_count() > 0;
+  for (std::size_t e = 0; e < groups.edge_count(); ++e) {
+    const std::size_t members = groups.of_edge(EdgeId(e)).size();
+    const auto [a, b] = ends_of(faces, groups, EdgeId(e));
+    ++valence[a.index()];
+    ++valence[b.index()];
+    result.closed = result.closed && members == 2;
+    if (members == 1) {
+      ++result.boundary_edges;
+      boundary[a.index()] = boundary[b.index()] = true;
+    }
+  }
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    if (valence[v] == 0) continue;
+    const std::size_t n = valence[v];
+    result.min_valence = result.used_vertices++ == 0 ? n : std::min(result.min_valence, n);
+    result.max_valence = std::max(result.max_valence, n);
+    result.extraordinary += n != (boundary[v] ? regular_valence / 2 + 1 : regular_valence);
+  }
+  return result;
+}
+
+Coincidences coincidences(const ControlMesh& mesh) {
+  Coincidences found;
+  std::vector<bool> used(mesh.vertex_count(), false);
+  double largest = 0;
+  for (const VertexId v : mesh.face_vertices) {
+    if (v.index() >= mesh.vertex_count() || !is_finite(mesh.points[v.index()])) return found;
+    used[v.index()] = true;
+    largest = std::max(largest, max_abs(mesh.points[v.index()] - Point3{}));
+  }
+  const std::vector<VertexId> places = first_in_place(mesh, used);
+  std::vector<bool> shared(mesh.vertex_count(), false);
+  for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
+    if (!used[v] || places[v] == VertexId(v)) continue;
+    const std::size_t place = places[v].index();
+    found.vertices += shared[place] ? 1 : 2;
+    found.places += !shared[place];
+    shared[place] = true;
+  }
+  found.reach = 0x1p-17 * longest_side(used_box(mesh));
+  const bool reaches =
+      found.reach >= std::ldexp(largest, -40) && found.reach > DBL_MIN && std::isfinite(found.reach);
+  if (looks_closed(mesh)) return found;
+  const std::vector<Edge> boundary = boundary_edges(mesh);
+  if (found.vertices > 0) found.edges = count_coincident(boundary, places);
+  if (reaches) find_near_vertices(mesh, boundary, places, found);
+  return found;
+}
+
+}  // namespace snug::command
