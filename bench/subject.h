@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include <experiments/limit_evaluator.h>
 #include <snug/bounds/enclosure.h>
 #include <snug/bounds/hull_points.h>
-#include <snug/patch/limit_evaluator.h>
 #include <snug/surface/batch_bounds.h>
 #include <snug/surface/limit_surface.h>
 

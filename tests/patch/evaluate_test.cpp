@@ -1,5 +1,6 @@
-#include <snug/patch/limit_evaluator.h>
+#include <snug/patch/evaluate.h>
 
+#include <experiments/limit_evaluator.h>
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
 #include <testing/twins.h>

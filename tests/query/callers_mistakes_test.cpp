@@ -9,6 +9,7 @@
 
 #include <experiments/convergence.h>
 #include <experiments/corner_nets.h>
+#include <experiments/limit_evaluator.h>
 #include <experiments/rooms.h>
 #include <experiments/tightness.h>
 #include <snug/patch/evaluate.h>
@@ -80,7 +81,8 @@ TEST(callers_mistakes, bound_needs_a_positive_tolerance_and_a_level_that_there_i
 TEST(callers_mistakes, points_of_a_surface_have_parameters_on_it) {
   const LimitSurface quad = surface_of(square(), Scheme::catmark),
                      loop = surface_of(triangle(), Scheme::loop);
-  PatchEvaluator of_quad(quad, PatchId(0)), of_loop(loop, PatchId(0));
+  const PatchEvaluator of_quad(quad, PatchId(0)), of_loop(loop, PatchId(0));
+  LimitEvaluator kept(loop.patch(PatchId(0)));
   const std::vector<double> outside{NAN, INFINITY, -INFINITY, -1e-300, 1 + 0x1p-52};
   for (const double x : outside) {
     expect_refused("quad u", [&] { static_cast<void>(evaluate(quad, {0, 0, x, 0})); });
@@ -88,7 +90,7 @@ TEST(callers_mistakes, points_of_a_surface_have_parameters_on_it) {
     expect_refused("loop u", [&] { static_cast<void>(evaluate(loop, {0, 0, x, 0})); });
     expect_refused("evaluator of a quad", [&] { static_cast<void>(of_quad(SurfaceParameter{0, 0, x, 0})); });
     expect_refused("evaluator of a triangle", [&] { static_cast<void>(of_loop(TriangleParameter{0, x})); });
-    expect_refused("position", [&] { static_cast<void>(of_loop.position({x, 0})); });
+    expect_refused("kept pieces", [&] { static_cast<void>(kept({x, 0})); });
     expect_refused("patch", [&] {
       static_cast<void>(limit_point(loop.patch(PatchId(0)), TriangleParameter{x, 0}));
     });
@@ -104,8 +106,7 @@ TEST(callers_mistakes, points_of_a_surface_have_parameters_on_it) {
   expect_refused("no patch", [&] { static_cast<void>(empty({0, 0})); });
   std::vector<LimitPoint> one(1);
   const std::vector<TriangleParameter> two(2);
-  LimitEvaluator whole(loop.patch(PatchId(0)));
-  expect_refused("room", [&] { whole(two, one); });
+  expect_refused("room", [&] { kept(two, one); });
 }
 
 TEST(callers_mistakes, curves_have_edges_parameters_and_no_tables) {

@@ -3,8 +3,10 @@
 
 #include <snug/surface/evaluate.h>
 
+#include <experiments/limit_evaluator.h>
 #include <gtest/gtest.h>
 #include <oracle/polygon_twin.h>
+#include <snug/surface/unscale.h>
 #include <testing/scheme_surfaces.h>
 
 #include <cmath>
@@ -37,8 +39,9 @@ TEST(patch_evaluator, positions_agree_with_the_twin) {
                                        : half == 0 ? TriangleParameter{s.u - s.v, s.v}
                                                    : TriangleParameter{s.v - s.u, 1 - s.v};
           const std::size_t patch = surface.patches_of(s.face).begin + (loop ? 0 : 2 * s.part + half);
-          PatchEvaluator& evaluator = evaluators.try_emplace(patch, surface, PatchId(patch)).first->second;
-          const BoundedPoint point = evaluator.position(at);
+          const PatchEvaluator& evaluator =
+              evaluators.try_emplace(patch, surface, PatchId(patch)).first->second;
+          const BoundedPoint point = evaluator(at);
           ++count;
           for (std::size_t k = 0; k < 3; ++k) {
             ASSERT_LE(std::fabs(point.position[k] - s.position[k]), point.error + s.error)
@@ -53,18 +56,19 @@ TEST(patch_evaluator, positions_agree_with_the_twin) {
   EXPECT_GT(count, 100'000u);
 }
 
-TEST(patch_evaluator, positions_agree_with_the_general_evaluation) {
+TEST(limit_evaluator, agrees_with_the_general_evaluation) {
   std::mt19937_64 random(92);
   for_each_surface(92, [&](const NamedSurface& s) {
     for_each_patch(s.surface, [&](PatchId p) {
-      PatchEvaluator evaluator(s.surface, p);
+      const PatchEvaluator evaluator(s.surface, p);
+      LimitEvaluator kept(s.surface.patch(p));
       for (int trial = 0; trial < 12; ++trial) {
         TriangleParameter at = random_parameter(random);
         // Some near a corner, some on an edge.
         if (trial >= 6) at = {std::ldexp(at.u, -static_cast<int>(random() % 50)), at.v * (1 - at.u)};
         if (trial % 4 == 3) at.v = 0;
         if (!(at.u + at.v <= 1)) continue;
-        const BoundedPoint alone = evaluator.position(at);
+        const BoundedPoint alone = unscaled(kept(at).from(kept.patch().origin), s.surface.scale().inverse());
         const SurfacePoint general = evaluator(at);
         for (std::size_t k = 0; k < 3; ++k) {
           ASSERT_LE(std::fabs(alone.position[k] - general.position[k]), alone.error + general.error)

@@ -1,9 +1,9 @@
 // What patches of every scheme must agree on: names of corners with limit points, children with their parent and with
 // each other.
 
-#include <snug/patch/limit_evaluator.h>
 #include <snug/surface/evaluate.h>
 
+#include <experiments/limit_evaluator.h>
 #include <gtest/gtest.h>
 #include <testing/scheme_surfaces.h>
 
@@ -24,13 +24,13 @@ struct Corner {
 std::vector<Corner> corners_of(const LimitSurface& surface) {
   std::vector<Corner> list;
   testing::for_each_patch(surface, [&](PatchId p) {
-    PatchEvaluator evaluator(surface, p);
+    const PatchEvaluator evaluator(surface, p);
     const std::array<std::uint32_t, 3> names = surface.corner_names(p);
     for (std::size_t k = 0; k < 3; ++k) {
       EXPECT_LT(names[k], surface.corner_name_count());
-      list.push_back({evaluator.position(k == 0   ? TriangleParameter{0, 0}
-                                         : k == 1 ? TriangleParameter{1, 0}
-                                                  : TriangleParameter{0, 1}),
+      list.push_back({evaluator(k == 0   ? TriangleParameter{0, 0}
+                                : k == 1 ? TriangleParameter{1, 0}
+                                         : TriangleParameter{0, 1}),
                       names[k]});
     }
   });

@@ -172,12 +172,11 @@ template <class Visit>
 void for_each_sample(const LimitSurface& surface, int steps, Visit&& visit) {
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
     if (!surface.has_patch(PatchId(p))) continue;
-    PatchEvaluator at(surface, PatchId(p));
+    const PatchEvaluator at(surface, PatchId(p));
     for (int i = 0; i <= steps; ++i) {
       for (int k = 0; i + k <= steps; ++k) {
         visit(FaceId(surface.place(PatchId(p)).owner),
-              at.position(TriangleParameter{static_cast<double>(i) / steps, static_cast<double>(k) / steps})
-                  .position);
+              at(TriangleParameter{static_cast<double>(i) / steps, static_cast<double>(k) / steps}).position);
       }
     }
   }

@@ -14,7 +14,7 @@ TEST(evaluate, holds_its_error_at_every_scale) {
     const LimitSurface surface = testing::surface_of(twin);
     for (const oracle::LimitSample& s : oracle::sample_uniform(twin, 2)) {
       const SurfacePoint point = evaluate(surface, {s.face, 0, s.u, s.v});
-      const BoundedPoint alone = PatchEvaluator(surface, PatchId(s.face)).position({s.u, s.v});
+      const BoundedPoint alone = PatchEvaluator(surface, PatchId(s.face))(TriangleParameter{s.u, s.v});
       for (std::size_t k = 0; k < 3; ++k) {
         EXPECT_LE(std::fabs(point.position[k] - s.position[k]), point.error + s.error);
         EXPECT_LE(std::fabs(alone.position[k] - s.position[k]), alone.error + s.error);

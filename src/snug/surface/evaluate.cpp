@@ -12,29 +12,20 @@
 namespace snug {
 
 PatchEvaluator::PatchEvaluator(const LimitSurface& surface, PatchId p)
-    : evaluator_(surface.patch(p)),
-      back_(surface.scale().inverse()),
-      triangular_(surface.rules().triangular()) {}
-
-BoundedPoint PatchEvaluator::position(TriangleParameter at) {
-  return unscaled(evaluator_(at).from(evaluator_.patch().origin), back_);
-}
+    : patch_(surface.patch(p)), back_(surface.scale().inverse()), triangular_(surface.rules().triangular()) {}
 
 SurfacePoint PatchEvaluator::operator()(TriangleParameter at) const {
-  return placed_frame(limit_frame(evaluator_.patch(), at));
+  return placed_frame(limit_frame(patch_, at));
 }
 
 SurfacePoint PatchEvaluator::operator()(const SurfaceParameter& at) const {
-  return placed_frame(triangular_ ? limit_frame(evaluator_.patch(), TriangleParameter{at.u, at.v})
-                                  : limit_frame(evaluator_.patch(), QuadParameter{at.u, at.v}));
+  return placed_frame(triangular_ ? limit_frame(patch_, TriangleParameter{at.u, at.v})
+                                  : limit_frame(patch_, QuadParameter{at.u, at.v}));
 }
 
 SurfacePoint PatchEvaluator::placed_frame(const LimitFrame& frame) const {
-  SurfacePoint result{unscaled(frame.point.from(evaluator_.patch().origin), back_),
-                      {},
-                      frame.differentiable,
-                      frame.normal,
-                      {}};
+  SurfacePoint result{
+      unscaled(frame.point.from(patch_.origin), back_), {}, frame.differentiable, frame.normal, {}};
   for (std::size_t t = 0; t < 2; ++t) {
     result.tangents[t] = require_representable(back_.apply(frame.tangents[t]));
   }

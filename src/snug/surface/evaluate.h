@@ -5,7 +5,7 @@
 
 #include <snug/evaluate.h>
 #include <snug/geometry/motion.h>
-#include <snug/patch/limit_evaluator.h>
+#include <snug/patch/patch.h>
 #include <snug/surface/curve_set.h>
 #include <snug/surface/limit_surface.h>
 
@@ -42,14 +42,11 @@ class PatchEvaluator {
   /// The point at a parameter of the patch, with derivatives along its own u and v.
   /// u, v >= 0 and u + v <= 1.
   [[nodiscard]] SurfacePoint operator()(TriangleParameter at) const;
-  /// The position alone, in mesh units; keeps the polynomial pieces that it meets.
-  /// Cost:      see LimitEvaluator.
-  [[nodiscard]] BoundedPoint position(TriangleParameter at);
 
  private:
   [[nodiscard]] SurfacePoint placed_frame(const LimitFrame& frame) const;
 
-  LimitEvaluator evaluator_;
+  Patch patch_;
   PowerOfTwo back_;
   bool triangular_;
 };

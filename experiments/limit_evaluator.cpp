@@ -1,4 +1,4 @@
-#include <snug/patch/limit_evaluator.h>
+#include <experiments/limit_evaluator.h>
 
 #include <algorithm>
 #include <cmath>
