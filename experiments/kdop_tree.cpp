@@ -82,7 +82,7 @@ double rounding(double size) { return 256 * unit_roundoff * size; }
 double box_gap(const Obb& box, const Obb& other, const RelativeFrame& frame) {
   const Vector3 between = frame.apply(other.centre) - box.centre;
   std::array<Vector3, 3> edges;  // of the other one, half of them
-  for (std::size_t k = 0; k < 3; ++k) edges[k] = other.half[k] * frame.turn(other.axes[k]);
+  for (std::size_t k = 0; k < 3; ++k) edges[k] = other.half[k] * times(frame.rows, other.axes[k]);
   const double size = max_abs(between) + max_abs(other.centre - Point3{}) + max_abs(box.centre - Point3{}) +
                       box.half.x + box.half.y + box.half.z + max_abs(edges[0]) + max_abs(edges[1]) +
                       max_abs(edges[2]);
@@ -97,7 +97,7 @@ double box_gap(const Obb& box, const Obb& other, const RelativeFrame& frame) {
   };
   std::array<Vector3, 3> axes;
   for (std::size_t k = 0; k < 3; ++k) {
-    axes[k] = (1 / frame.scale) * frame.turn(other.axes[k]);
+    axes[k] = (1 / frame.scale) * times(frame.rows, other.axes[k]);
     look_along(box.axes[k]);
     look_along(axes[k]);
   }

@@ -5,7 +5,7 @@
 
 namespace snug {
 
-/// Numbers some of many things in the order in which they are first met. Kept and used again, it costs no memory and no
+/// Numbers some of many things in the order in which they are first met. Used again, it costs no memory and no
 /// clearing.
 class CompactNumbering {
  public:

@@ -9,15 +9,12 @@ struct ContractViolation {
   int line;
 };
 
-/// Called when a condition of SNUG_EXPECT does not hold. It must not return normally: throw, or end the
-/// process.
+/// Called when a condition of SNUG_EXPECT does not hold. It must not return: throw, or end the process.
 using ContractHandler = void (*)(const ContractViolation&);
 
-/// Replaces the handler and returns the one before. The default prints one line and aborts; tests install one
-/// that throws.
+/// Replaces the handler and returns the one before. The default prints one line and aborts.
 ContractHandler set_contract_handler(ContractHandler handler) noexcept;
 
-/// Calls the handler; aborts if the handler returns.
 [[noreturn]] void contract_violated(const char* condition, const char* file, int line);
 
 }  // namespace snug

@@ -4,10 +4,9 @@
 
 namespace snug {
 
-/// Throws InputError (value) with this message.
+/// Throws InputError (value) with this message, one line that names the thing and the next step.
 [[noreturn]] void refuse_value(const char* message);
-/// The same unless `holds`: for what a public function requires of its caller. The message is one line that names the thing
-/// and the next step.
+/// The same unless `holds`: for what a public function requires of its caller.
 inline void require_value(bool holds, const char* message) {
   if (!holds) refuse_value(message);
 }

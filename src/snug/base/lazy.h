@@ -6,13 +6,12 @@
 
 namespace snug {
 
-/// A value that is made on first use, then immutable. Thread-safe. Not std::call_once: an exception that leaves it may end the
-/// process or lock it up.
+/// A value that is made on first use, then immutable. Thread-safe. Not std::call_once: an exception that leaves
+/// it may end the process or lock it up.
 template <class T>
 class Lazy {
  public:
-  /// The value; make() makes it where there is none. Whatever it throws is thrown, and nothing is kept then.
-  /// Cost:      one load once it is there.
+  /// The value; make() makes it where there is none. If that throws, nothing is kept.
   template <class Make>
   [[nodiscard]] const T& get(Make&& make) const {
     if (const T* const ready = ready_.load(std::memory_order_acquire)) return *ready;

@@ -8,7 +8,7 @@
 
 namespace snug {
 
-/// An enumerator and the name that it has in files, on the command line and in answers. The names of an enumeration stand in
+/// An enumerator and its name in files, on the command line and in answers. The names of an enumeration stand in
 /// one table, std::to_array<Named<E>>({...}); a second name of a value is read, and never written.
 template <class E>
 struct Named {
@@ -44,6 +44,13 @@ template <class E, std::size_t n>
 }
 
 /// "a, b and c", with this conjunction.
-[[nodiscard]] std::string listed(const std::vector<std::string>& words, const char* conjunction);
+[[nodiscard]] inline std::string listed(const std::vector<std::string>& words, const char* conjunction) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 < words.size() ? ", " : " " + std::string(conjunction) + " ";
+    text += words[i];
+  }
+  return text;
+}
 
 }  // namespace snug

@@ -22,35 +22,12 @@ std::size_t useful_threads(std::size_t count, int threads) {
   return std::min(count, static_cast<std::size_t>(wanted));
 }
 
-// Runs the calls of one loop, and keeps the first exception.
-class Loop {
- public:
-  Loop(std::size_t count, std::size_t parts, const std::function<void(SharedRanges&)>& work)
-      : ranges_(count, static_cast<int>(parts)), work_(work) {
-    helpers_.reserve(parts - 1);
-    while (helpers_.size() + 1 < parts && start()) {
-    }
-  }
-  void run() noexcept {
-    try {
-      work_(ranges_);
-    } catch (...) {
-      ranges_.end();
-      const std::lock_guard lock(mutex_);
-      if (!failure_) failure_ = std::current_exception();
-    }
-  }
-
-  // Once run() has returned here.
-  std::exception_ptr end() {
-    for (std::thread& helper : helpers_) helper.join();
-    return std::move(failure_);
-  }
-
- private:
-  // The C library ends the process where it has no memory for the destructors of a thread's own objects, which are made in
-  // its first steps: without some room to begin with there is an exception instead.
-  void run_with_headroom() noexcept {
+// Starts a thread that calls run(); false where the system has none to give. The C library ends the process where it has no
+// memory for the destructors of a thread's own objects, which are made in its first steps: without some room to begin with
+// there is an exception instead.
+template <class Run>
+bool start(std::vector<std::thread>& helpers, const Run& run) {
+  const auto run_with_headroom = [&run]() noexcept {
     try {
       constexpr std::size_t headroom = std::size_t{64} << 10;
       ::operator delete(::operator new(headroom));
@@ -58,26 +35,16 @@ class Loop {
       return;  // the others do its share
     }
     run();
+  };
+  try {
+    helpers.emplace_back(run_with_headroom);
+    return true;
+  } catch (const std::system_error&) {
+  } catch (const std::bad_alloc&) {
   }
-
-  // False where the system has no thread to give.
-  bool start() {
-    try {
-      helpers_.emplace_back([this] { run_with_headroom(); });
-      return true;
-    } catch (const std::system_error&) {
-    } catch (const std::bad_alloc&) {
-    }
-    refused.store(true);
-    return false;
-  }
-
-  SharedRanges ranges_;
-  const std::function<void(SharedRanges&)>& work_;
-  std::mutex mutex_;
-  std::exception_ptr failure_;
-  std::vector<std::thread> helpers_;
-};
+  refused.store(true);
+  return false;
+}
 
 }  // namespace
 
@@ -100,14 +67,26 @@ bool threads_were_refused() noexcept { return refused.load(); }
 void share_ranges(std::size_t count, int threads, const std::function<void(SharedRanges&)>& work) {
   if (count == 0) return;
   const std::size_t parts = useful_threads(count, threads);
-  if (parts == 1) {
-    SharedRanges ranges(count, 1);
-    work(ranges);
-    return;
+  SharedRanges ranges(count, parts);
+  if (parts == 1) return work(ranges);
+  std::mutex mutex;
+  std::exception_ptr failure;  // the first one
+  const auto run = [&]() noexcept {
+    try {
+      work(ranges);
+    } catch (...) {
+      ranges.end();
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  std::vector<std::thread> helpers;
+  helpers.reserve(parts - 1);
+  while (helpers.size() + 1 < parts && start(helpers, run)) {
   }
-  Loop loop(count, parts, work);
-  loop.run();
-  if (std::exception_ptr failure = loop.end()) std::rethrow_exception(std::move(failure));
+  run();
+  for (std::thread& helper : helpers) helper.join();
+  if (failure) std::rethrow_exception(std::move(failure));
 }
 
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t, std::size_t)>& body) {

@@ -15,7 +15,7 @@ class SharedRanges {
     std::size_t begin, end;
   };
   /// `parts`: how many threads ask.
-  SharedRanges(std::size_t count, int parts) : count_(count), divisor_(8 * static_cast<std::size_t>(parts)) {}
+  SharedRanges(std::size_t count, std::size_t parts) : count_(count), divisor_(8 * parts) {}
 
   /// The next range; nothing when all are handed out, or after end().
   [[nodiscard]] std::optional<Range> next() noexcept;
@@ -28,26 +28,22 @@ class SharedRanges {
   std::atomic<bool> ended_{false};
 };
 
-/// Calls work(ranges) on at most `threads` threads (0: all cores), the calling one among them; each is to take ranges until
-/// there are none.
+/// Calls work(ranges) on at most `threads` threads (0: all cores), the calling one among them; each is to take
+/// ranges until there are none.
 ///
-/// Guarantee: returns when all calls have. An exception of one ends the handing out, and is thrown again here. Where the
-///            system refuses a thread (limits of processes or memory) the others do its share, threads_were_refused()
-///            tells, and results are the same.
-/// Cost:      some 20 microseconds a thread beside the calling one. More threads than cores are not started, but up to four
-///            are on any machine.
+/// Guarantee: returns when all calls have. An exception of one ends the handing out, and is thrown again here.
+///            Where the system refuses a thread (limits of processes or memory) the others do its share,
+///            threads_were_refused() tells, and results are the same.
+/// Cost:      some 20 microseconds a thread beside the calling one. More threads than cores are not started, but
+///            up to four are on any machine.
 void share_ranges(std::size_t count, int threads, const std::function<void(SharedRanges&)>& work);
 
 /// Calls body(begin, end) on ranges that cover [0, count), on at most `threads` threads (0: all cores).
-///
-/// Guarantee: each index is in exactly one range; otherwise as share_ranges(). Ranges depend on scheduling: results must
-///            not.
+/// Each index is in exactly one range; ranges depend on scheduling: results must not.
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t, std::size_t)>& body);
 
-/// Calls body(state, begin, end) likewise, where `state` is what make() returned on this thread: one for each thread that
-/// has work, for scratch memory that is dear to make.
-///
-/// Guarantee: as parallel_for(). States depend on scheduling, too: results must not depend on what is left in them.
+/// Calls body(state, begin, end) likewise, where `state` is what make() returned on this thread: scratch memory
+/// that is dear to make. Results must not depend on what is left in it.
 template <class Make, class Body>
 void parallel_for_with(std::size_t count, int threads, const Make& make, const Body& body) {
   share_ranges(count, threads, [&](SharedRanges& ranges) {
@@ -61,7 +57,7 @@ void parallel_for_with(std::size_t count, int threads, const Make& make, const B
 /// The number of threads that 0 stands for.
 [[nodiscard]] int hardware_threads();
 
-/// Has the system refused to start a thread since the process began? Loops have done with fewer then, and took longer.
+/// Has the system refused to start a thread since the process began?
 [[nodiscard]] bool threads_were_refused() noexcept;
 
 }  // namespace snug

@@ -9,13 +9,12 @@
 namespace snug {
 
 /// The last n values that were made, each under its key. Not thread-safe.
-///
-/// Requires:  `make` gives equal values for equal keys, so that nothing depends on which of them are still here.
+/// Requires:  equal keys make equal values, so that nothing depends on which of them are still here.
 template <class Key, class Value, std::size_t n>
 class RecentValues {
  public:
-  /// The value of `key`, made where it is not here. It stays until n others have been made.
-  /// Errors:    whatever `make` throws, and nothing changes then.
+  /// The value of `key`, made where it is not here. It stays until n others have been made. If `make` throws,
+  /// nothing changes.
   template <class Make>
   [[nodiscard]] const Value& get(const Key& key, Make&& make) {
     const auto found = std::find_if(entries_.begin(), entries_.end(),

@@ -9,21 +9,19 @@
 
 namespace snug {
 
-/// A k-DOP around a set: half spaces across the 26 directions whose coordinates are -1, 0 and 1. Other than a box it says at
-/// once how far the set reaches along any direction.
+/// A k-DOP around a set: half spaces across the 26 directions whose coordinates are -1, 0 and 1. Other than a box it
+/// says at once how far the set reaches along any direction.
 class Dop26 {
  public:
   /// Holds nothing.
   Dop26() = default;
-  /// Around boxes, relative to `centre`.
-  /// Requires:  at least one.
-  /// Cost:      some 100 ns a box.
+  /// Around one or more boxes, relative to `centre`.
   Dop26(std::span<const Obb> boxes, const Point3& centre);
 
   /// Upper bound of dot(direction, x - centre) over the set, but for roundings.
   ///
-  /// Guarantee: the exact maximum is at most the result plus 16 u |direction|_1 radius(). For doubles in between 2^-400 and 2^400
-  ///            in size, or 0. Infinite or NaN where a box is not finite.
+  /// Guarantee: the exact maximum is at most the result plus 16 u |direction|_1 radius(), for doubles between 2^-400
+  ///            and 2^400 in size, or 0. Infinite or NaN where a box is not finite.
   /// Source:    derivations/boxes.md.
   [[nodiscard]] double reach(const Vector3& direction) const {
     // Coordinates by size, without branches that depend on them; places of directions count 1, 3 and 9 a coordinate.

@@ -17,20 +17,17 @@ BoundedPoint PlacedFrame::apply(const BoundedPoint& p) const {
 }
 
 RelativeFrame::RelativeFrame(const PlacedFrame& target, const PlacedFrame& source) {
-  const auto transposed = [&](const Vector3& v) {
-    return v.x * target.rows[0] + v.y * target.rows[1] + v.z * target.rows[2];
-  };
   scale = source.scale / target.scale;
   // Squares of what is beyond would leave the range of single precision.
   comparable = scale < 0x1p20 && target.scale > 0;
   if (!comparable) return;
   const double inverse = 1 / target.scale;
-  std::array<Vector3, 3> columns;
   for (std::size_t j = 0; j < 3; ++j) {
-    columns[j] = scale * transposed({source.rows[0][j], source.rows[1][j], source.rows[2][j]});
+    const Vector3 column{source.rows[0][j], source.rows[1][j], source.rows[2][j]};
+    const Vector3 seen = scale * transposed_times(target.rows, column);
+    for (std::size_t i = 0; i < 3; ++i) rows[i][j] = seen[i];
   }
-  for (std::size_t i = 0; i < 3; ++i) rows[i] = {columns[0][i], columns[1][i], columns[2][i]};
-  translation = transposed(inverse * (source.translation - target.translation));
+  translation = transposed_times(target.rows, inverse * (source.translation - target.translation));
   const double defects = target.defect + source.defect;
   // Translations may have underflowed when they were brought to the search's units.
   slack = enlarged(16 * (defects + 16 * unit_roundoff) * (1 + scale + max_abs(translation)) +

@@ -1,26 +1,20 @@
 #pragma once
 
-#include <array>
-
 #include <snug/geometry/motion.h>
 #include <snug/geometry/point.h>
 #include <snug/geometry/scaling.h>
 
 namespace snug {
 
-/// x -> scale (R x) + t with scale a power of two: a placement of a surface in the frame that a query works
-/// in.
+/// x -> scale (R x) + t with scale a power of two: a placement of a surface in the frame that a query works in.
 struct PlacedFrame {
-  std::array<Vector3, 3> rows;  ///< of R
+  Rows3 rows;  ///< of R
   double scale = 1;
   Vector3 translation;
   double defect = 0;  ///< upper bound of the largest entry of |R'R - I|
 
-  [[nodiscard]] Vector3 turn(const Vector3& v) const {
-    return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)};
-  }
   [[nodiscard]] Point3 apply(const Point3& p) const {
-    return Point3{} + (scale * turn(p - Point3{}) + translation);
+    return Point3{} + (scale * times(rows, p - Point3{}) + translation);
   }
   /// Upper bound, a coordinate, of |apply(p) - exact image|.
   [[nodiscard]] double apply_error(const Point3& p) const;
@@ -30,14 +24,14 @@ struct PlacedFrame {
   [[nodiscard]] double growth() const { return scale * (1 + 2 * defect); }
 };
 
-/// How points of one placed model are seen from the frame of another one: x -> M x + t, in double precision, and a bound
-/// of what is wrong with it.
+/// How points of one placed model are seen from the frame of another one: x -> M x + t, in double precision, and a
+/// bound of what is wrong with it.
 ///
 /// Guarantee: for points p of the target and q of the source, both at most 2 in their own frames,
 ///            |M q + t - p| <= (1 + 4 defects) / target.scale times their placed distance, plus `slack`.
 /// Source:    derivations/boxes.md.
 struct RelativeFrame {
-  std::array<Vector3, 3> rows;  ///< of M
+  Rows3 rows;  ///< of M
   Vector3 translation;
   double scale = 1;        ///< of M: source.scale / target.scale
   double slack = 0;        ///< in units of the target; a number of single precision
@@ -48,10 +42,9 @@ struct RelativeFrame {
   RelativeFrame() = default;
   RelativeFrame(const PlacedFrame& target, const PlacedFrame& source);
 
-  [[nodiscard]] Vector3 turn(const Vector3& v) const {
-    return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)};
+  [[nodiscard]] Point3 apply(const Point3& p) const {
+    return Point3{} + (times(rows, p - Point3{}) + translation);
   }
-  [[nodiscard]] Point3 apply(const Point3& p) const { return Point3{} + (turn(p - Point3{}) + translation); }
 };
 
 }  // namespace snug

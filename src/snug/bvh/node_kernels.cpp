@@ -32,17 +32,8 @@ HWY_INLINE V max3(V a, V b, V c) { return hn::Max(hn::Max(a, b), c); }
 // Squares of shorter lengths lose digits to the end of single precision, or all of them.
 constexpr float least_squared = 0x1p-50F;
 
-// Length of the vector of the positive ones of three gaps, or the largest if there are none or squares are too small.
-template <class D>
-HWY_INLINE V outside(D d, V x, V y, V z) {
-  const V zero = hn::Zero(d), largest = max3(x, y, z);
-  const V px = hn::Max(x, zero), py = hn::Max(y, zero), pz = hn::Max(z, zero);
-  const V length = hn::Mul(hn::Sqrt(sum3(hn::Mul(px, px), hn::Mul(py, py), hn::Mul(pz, pz))),
-                           hn::Set(d, 1 - 16 * 0x1p-24F));
-  return hn::IfThenElse(hn::Gt(largest, hn::Set(d, least_squared)), length, largest);
-}
-
-// The same of two sorts of gaps, by the better one.
+// Length of the vector of the positive ones of three gaps, or the largest if there are none or squares are too small;
+// of two sorts of gaps, by the better one.
 HWY_INLINE V outside(const V* one, const V* two) {
   const Tag d;
   const V zero = hn::Zero(d);
@@ -361,7 +352,7 @@ void boxes_to_point(const float* node, const float* point, float slack, float* o
                                    hn::Mul(row(8 + 3 * i), delta[2])));
       gap[i] = hn::Sub(hn::Sub(along, row(3 + i)), all_slack);
     }
-    const V gap_of_all = outside(d, gap[0], gap[1], gap[2]);
+    const V gap_of_all = outside(gap, gap);
     const V known = hn::IfThenElse(hn::Lt(reach, hn::Set(d, 1e18F)), gap_of_all, hn::Set(d, -INFINITY));
     hn::StoreU(computed(known), d, out + at);
   }

@@ -4,10 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
-/// Eight boxes against one, on the widest vectors that the processor has; chosen at run time. See bvh/wide_nodes.h, which
-/// is what others use.
-///
-/// Guarantee: every lane does the same operations in the same order on every instruction set, none of them fused.
+/// Eight boxes against one, on the widest vectors that the processor has; others use bvh/wide_nodes.h. Every lane does
+/// the same operations in the same order on every instruction set, none of them fused.
 namespace snug::kernels {
 
 /// Boxes of a node.
@@ -49,8 +47,8 @@ struct SeenNode {
   float rows[3][3];
   float offset[3];
   float scale;
-  /// A direction to try first, from the node's boxes to the other one's: of length at most 1, or zero. The same for the other
-  /// node: its product with `rows`.
+  /// A direction to try first, from the node's boxes to the other one's: of length at most 1, or zero. The same for
+  /// the other node: its product with `rows`.
   float direction[3];
   float other_direction[3];
 };

@@ -1,15 +1,29 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 
-#include <snug/geometry/extent.h>
 #include <snug/geometry/point.h>
 
 namespace snug {
 
-/// The set of x with |dot(axis_k, x - centre)| <= half_k for k = 0, 1, 2. Axes are orthonormal up to a few
-/// roundings; the set is meant with these very doubles.
+/// Bounds of dot(direction, x) over a set, rounding included; empty at first.
+struct Extent {
+  double lower = INFINITY, upper = -INFINITY;
+
+  void add(const Extent& other) {
+    lower = std::min(lower, other.lower);
+    upper = std::max(upper, other.upper);
+  }
+  void add(double height) { add(Extent{height, height}); }
+};
+/// Bounds of what cannot be bounded.
+inline constexpr Extent unbounded{-INFINITY, INFINITY};
+
+/// The set of x with |dot(axis_k, x - centre)| <= half_k for k = 0, 1, 2. Axes are orthonormal up to a few roundings;
+/// the set is meant with these very doubles.
 struct Obb {
   Point3 centre;
   std::array<Vector3, 3> axes{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
@@ -20,9 +34,8 @@ struct Obb {
 /// Source:    [Gottschalk96].
 [[nodiscard]] std::array<Vector3, 3> principal_axes(std::span<const Point3> points);
 
-/// The box with given axes around a set with these extents along them; one that nothing is certainly apart from where an
-/// extent is not finite.
-/// Guarantee: contains the set, rounding included.
+/// The box with given axes around a set with these extents along them, rounding included; one that nothing is
+/// certainly apart from where an extent is not finite.
 [[nodiscard]] Obb box_of(const std::array<Vector3, 3>& axes, const std::array<Extent, 3>& extents);
 
 /// The same, extent(direction) being the set's Extent along a direction.
@@ -31,8 +44,7 @@ template <class Extents>
   return box_of(axes, {extent(axes[0]), extent(axes[1]), extent(axes[2])});
 }
 
-/// A box around boxes.
-/// Requires:  at least one.
+/// A box around one or more boxes.
 [[nodiscard]] Obb merge(std::span<const Obb> boxes);
 
 /// A ball around a box.

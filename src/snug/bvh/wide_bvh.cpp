@@ -22,8 +22,8 @@ struct Item {
   std::uint32_t number;
 };
 
-// Eight parts by three halvings, each across the longest side of its box; parts are of whole leaves, so that all but the
-// last of these are full.
+// Eight parts by three halvings, each across the longest side of its box; parts are of whole leaves, so that all but
+// the last of these are full.
 void sort_items(std::span<Item> items, int threads) {
   constexpr std::size_t leaf_size = WideBvh::leaf_size;
   const std::size_t part = child_capacity((items.size() + leaf_size - 1) / leaf_size) * leaf_size;
@@ -45,8 +45,8 @@ void sort_items(std::span<Item> items, int threads) {
         }
       }
       for (std::size_t k = 0; k < 3; ++k) sides[k] = upper[k] - lower[k];
-      const std::size_t axis =
-          sides[0] >= sides[1] ? (sides[0] >= sides[2] ? 0u : 2u) : (sides[1] >= sides[2] ? 1u : 2u);
+      const auto axis =
+          static_cast<std::size_t>(std::max_element(sides.begin(), sides.end()) - sides.begin());
       std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(middle), range.end(),
                        [axis](const Item& a, const Item& b) {
                          const float x = a.centre[axis], y = b.centre[axis];
@@ -103,7 +103,6 @@ WideBvh::WideBvh(std::span<const Point3> centres, int threads,
   }
   nodes_.add(boxes, names);
   box_ = boxes[0];
-  ball_ = ball_around(box_);
   dop_ = Dop26(leaves, box_.centre);
 }
 

@@ -10,15 +10,12 @@
 
 namespace snug {
 
-/// A tree of oriented boxes over items, eight children a node; its leaves are up to eight items that lie near each other.
-/// Knows boxes and numbers only: what a leaf opens to is its owner's business.
-///
+/// A tree of oriented boxes over items, eight children a node; its leaves are up to eight items that lie near each
+/// other. Knows boxes and numbers only: what a leaf opens to is its owner's business.
 /// Guarantee: a child's box contains those of all leaves below it. Same tree for any number of threads.
-/// Cost:      n log n for sorting items by position, one fit a leaf.
 class WideBvh {
  public:
   static constexpr std::size_t leaf_size = WideNodes::width;
-
   /// Name of a child: another node, or a leaf with this bit set.
   static constexpr std::uint32_t leaf_bit = 0x80000000u;
 
@@ -30,7 +27,7 @@ class WideBvh {
   [[nodiscard]] const WideNodes& nodes() const { return nodes_; }
   /// The root is the one child of this node.
   [[nodiscard]] Child root() const { return {static_cast<std::uint32_t>(nodes_.size() - 1), 0}; }
-  [[nodiscard]] const Ball& ball() const { return ball_; }
+  [[nodiscard]] Ball ball() const { return ball_around(box_); }
   /// A box around everything.
   [[nodiscard]] const Obb& box() const { return box_; }
   /// A k-DOP around all leaves' boxes, relative to the centre of box().
@@ -42,7 +39,6 @@ class WideBvh {
  private:
   std::vector<std::uint32_t> items_;
   WideNodes nodes_;
-  Ball ball_;
   Obb box_;
   Dop26 dop_;
 };

@@ -34,10 +34,10 @@ void View::look_along(const Vector3& direction) {
   const double size = length(direction);
   if (!(size > 0) || !std::isfinite(1 / size)) return;
   const Vector3 n = ((1 - 0x1p-20) / size) * direction;
+  const Vector3 other = transposed_times(frame.rows, n);
   for (std::size_t j = 0; j < 3; ++j) {
     seen.direction[j] = static_cast<float>(n[j]);
-    const Vector3 column{frame.rows[0][j], frame.rows[1][j], frame.rows[2][j]};
-    seen.other_direction[j] = static_cast<float>(dot(n, column));
+    seen.other_direction[j] = static_cast<float>(other[j]);
   }
 }
 
@@ -99,7 +99,7 @@ PlacedBox WideNodes::placed(Child at, const View& view) const {
   const double inverse = 1 / view.frame.scale;
   for (std::size_t k = 0; k < 3; ++k) {
     out.box.half[k] = static_cast<float>(view.frame.scale * number(3 + k));
-    const Vector3 axis = view.frame.turn({number(6 + 3 * k), number(7 + 3 * k), number(8 + 3 * k)});
+    const Vector3 axis = times(view.frame.rows, {number(6 + 3 * k), number(7 + 3 * k), number(8 + 3 * k)});
     for (std::size_t i = 0; i < 3; ++i) out.box.axes[k][i] = static_cast<float>(inverse * axis[i]);
   }
   return out;

@@ -34,10 +34,9 @@ struct PlacedBox {
   kernels::OtherBox box;  // but for its centre
 };
 
-/// Nodes of up to eight boxes, in single precision relative to an origin of their own, so that all eight are compared with
-/// another box at once and small ones lose nothing far from the coordinates' origin.
-///
-/// Guarantee: rounding to single precision makes boxes larger, never smaller. Distances are the same, bit by bit, on every
+/// Nodes of up to eight boxes, in single precision relative to an origin of their own, so that all eight are compared
+/// with another box at once and small ones lose nothing far from the coordinates' origin.
+/// Guarantee: rounding to single precision makes boxes larger, never smaller. Distances have the same bits on every
 ///            instruction set.
 class WideNodes {
  public:
@@ -62,20 +61,16 @@ class WideNodes {
   /// Requires:  view.frame.comparable.
   [[nodiscard]] PlacedBox placed(Child at, const View& view) const;
 
-  /// Lower bounds of the distances from the boxes of a node to a box placed in the node's frame; zero or negative where no
-  /// gap shows, the more negative the deeper they overlap. In units of the frame.
-  ///
-  /// `prune_distance`: wider gaps than this are not looked for where one is found.
-  /// Returns:   the boxes with at most `prune_distance`, one bit each, and the least gap of the others; infinite if there
-  ///            are none.
+  /// Lower bounds of the distances from the boxes of a node to a box placed in the node's frame, in its units; zero or
+  /// negative where no gap shows, the more negative the deeper they overlap. Wider gaps than `prune_distance` are not
+  /// looked for where one is found. Returns the boxes with at most that, one bit each, and the least gap of the others.
   /// Guarantee: at most the exact distance where positive; `slack` is taken off. Where anything is not finite: minus
   ///            infinity.
   /// Source:    derivations/boxes.md; [Gottschalk96] for the axes.
   Near distances(std::uint32_t node, const PlacedBox& other, double slack, float prune_distance,
                  Distances& out) const;
-  /// The same of all boxes of two nodes, the other one seen through `view`. `out`: the pairs with at most `prune_distance`.
-  /// Returns:   the least gap of the others; infinite if there are none.
-  /// Requires:  view.frame.comparable.
+  /// The same of all boxes of two nodes, the other one seen through `view`, which is comparable. `out`: the pairs with
+  /// at most `prune_distance`. Returns the least gap of the others; infinite if there are none.
   struct Pairs {
     std::array<kernels::ChildPair, width * width> pairs;
     std::size_t count = 0;

@@ -6,6 +6,26 @@
 #include <snug/base/contract.h>
 
 namespace snug {
+namespace {
+
+// Around the exact values of four numbers that were rounded to nearest.
+Interval around(double p, double q, double r, double s) {
+  const auto [low, high] = std::minmax({p, q, r, s});
+  return {rounded_down(low), rounded_up(high)};
+}
+
+// Taylor of sin and cos on [0, pi/4]: terms alternate and fall, so the first one left out bounds the remainder.
+Interval alternating_series(Interval first, Interval x_sq, unsigned factor) {
+  Interval term = first, sum = first;
+  for (unsigned i = factor; i < 26; i += 2) {
+    term = -(term * x_sq) / Interval(static_cast<double>(i * (i + 1)));
+    sum = sum + term;
+  }
+  const double rest = std::fmax(std::fabs(term.lower), std::fabs(term.upper));
+  return {rounded_down(sum.lower - rest), rounded_up(sum.upper + rest)};
+}
+
+}  // namespace
 
 Interval operator+(Interval a, Interval b) {
   return {rounded_down(a.lower + b.lower), rounded_up(a.upper + b.upper)};
@@ -18,33 +38,13 @@ Interval operator-(Interval a, Interval b) {
 Interval operator-(Interval a) { return {-a.upper, -a.lower}; }
 
 Interval operator*(Interval a, Interval b) {
-  const auto [low, high] =
-      std::minmax({a.lower * b.lower, a.lower * b.upper, a.upper * b.lower, a.upper * b.upper});
-  return {rounded_down(low), rounded_up(high)};
+  return around(a.lower * b.lower, a.lower * b.upper, a.upper * b.lower, a.upper * b.upper);
 }
 
 Interval operator/(Interval a, Interval b) {
   if (b.contains(0)) return {-INFINITY, INFINITY};
-  const auto [low, high] =
-      std::minmax({a.lower / b.lower, a.lower / b.upper, a.upper / b.lower, a.upper / b.upper});
-  return {rounded_down(low), rounded_up(high)};
+  return around(a.lower / b.lower, a.lower / b.upper, a.upper / b.lower, a.upper / b.upper);
 }
-
-namespace {
-
-// Taylor of sin and cos on [0, pi/4]: terms alternate and fall, so the first one left out bounds the
-// remainder.
-Interval alternating_series(Interval first, Interval x_sq, unsigned factor) {
-  Interval term = first, sum = first;
-  for (unsigned i = factor; i < 26; i += 2) {
-    term = -(term * x_sq) / Interval(static_cast<double>(i * (i + 1)));
-    sum = sum + term;
-  }
-  const double rest = std::fmax(std::fabs(term.lower), std::fabs(term.upper));
-  return {rounded_down(sum.lower - rest), rounded_up(sum.upper + rest)};
-}
-
-}  // namespace
 
 Interval cos_of_turn(unsigned k, unsigned n) {
   SNUG_EXPECT(n >= 1);

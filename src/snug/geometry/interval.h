@@ -5,13 +5,10 @@
 
 namespace snug {
 
-/// Arithmetic of intervals. Every operation returns an interval that contains all exact results, by rounding
-/// to nearest and stepping to the neighbour: it needs no rounding mode. For masks and kinds, not for inner
-/// loops.
+/// Arithmetic of intervals, by rounding to nearest and stepping to the neighbour: no rounding mode is needed. For
+/// masks and kinds, not for inner loops. Division by an interval that contains zero gives the whole line.
 ///
-/// Guarantee: inclusion; a result is wider than the exact range by at most two units in the last place of
-///            each end.
-/// Errors:    division by an interval that contains zero gives the whole line.
+/// Guarantee: inclusion; a result is wider than the exact range by at most two units in the last place of each end.
 [[nodiscard]] Interval operator+(Interval a, Interval b);
 [[nodiscard]] Interval operator-(Interval a, Interval b);
 [[nodiscard]] Interval operator*(Interval a, Interval b);

@@ -96,12 +96,12 @@ void orthogonalise(Columns& a, Columns& v) {
   }
 }
 
-// One step of Newton and Schulz toward the nearest orthogonal matrix: from an error e to about e^2.
-Columns polished(const Columns& r) {
-  Columns result;
+// R + share R (I - R'R), from an error e to about e^2: by a share of 1/2 the step of Newton and Schulz toward the nearest
+// orthogonal matrix; by 1 the transpose of Newton's from R' toward the inverse, R' + (I - R'R) R'.
+Columns newton_step(const Columns& r, double share) {
+  Columns result = r;
   for (std::size_t j = 0; j < 3; ++j) {
-    result[j] = r[j];
-    for (std::size_t k = 0; k < 3; ++k) result[j] = result[j] + (0.5 * ((j == k) - dot(r[k], r[j]))) * r[k];
+    for (std::size_t k = 0; k < 3; ++k) result[j] = result[j] + (share * ((j == k) - dot(r[k], r[j]))) * r[k];
   }
   return result;
 }
@@ -128,7 +128,7 @@ Columns nearest_rotation(Columns a) {
   if (dot(a[2], u2) < 0) refuse_mirror();
   Columns result;
   for (std::size_t j = 0; j < 3; ++j) result[j] = v[0][j] * u0 + v[1][j] * u1 + v[2][j] * u2;
-  return polished(result);
+  return newton_step(result, 0.5);
 }
 
 Vector3 unit(const Vector3& axis) {
@@ -239,15 +239,8 @@ Motion operator*(const Motion& a, const Motion& b) {
   return Motion::settled(with_offset(rotation, a.rotate(b.offset()) + a.offset()));
 }
 
-// The inverse of R within defect squared, by one step of Newton from its transpose: R' + (I - R'R) R'.
 Motion Motion::inverse() const {
-  const Columns columns = columns_of(numbers_);
-  Columns rows;
-  for (std::size_t i = 0; i < 3; ++i) {
-    rows[i] = columns[i];
-    for (std::size_t k = 0; k < 3; ++k)
-      rows[i] = rows[i] + ((i == k) - dot(columns[i], columns[k])) * columns[k];
-  }
+  const Columns rows = newton_step(columns_of(numbers_), 1);
   const Vector3 t = offset();
   const Vector3 back{-dot(rows[0], t), -dot(rows[1], t), -dot(rows[2], t)};
   return settled({rows[0].x, rows[0].y, rows[0].z, back.x,  //

@@ -29,6 +29,11 @@ constexpr double max_abs(Vector3 a) {
 inline bool is_finite(Vector3 a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 inline bool is_finite(Point3 a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 
+/// A matrix by its rows; its product, and that of its transpose, with a vector.
+using Rows3 = std::array<Vector3, 3>;
+constexpr Vector3 times(const Rows3& m, Vector3 v) { return {dot(m[0], v), dot(m[1], v), dot(m[2], v)}; }
+constexpr Vector3 transposed_times(const Rows3& m, Vector3 v) { return v.x * m[0] + v.y * m[1] + v.z * m[2]; }
+
 /// Length of the longest side; 0 for an empty box.
 [[nodiscard]] constexpr double longest_side(const Box3& box) {
   if (box.empty()) return 0;

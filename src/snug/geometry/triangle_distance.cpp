@@ -26,8 +26,8 @@ double reach_of(const Corners& a, const Corners& b) {
 
 // Lower bound of the distance along the direction w.
 double supporting_gap(const Corners& a, const Corners& b, Vector3 w, double reach) {
-  const double size =
-      std::sqrt(length_sq(w) + 8 * underflow_error);  // where squares underflow, w gets shorter
+  // Where squares underflow, w gets shorter.
+  const double size = std::sqrt(length_sq(w) + 8 * underflow_error);
   if (!(size > 0) || !std::isfinite(1 / size)) return 0;
   w = (1 / size) * w;
   double highest_a = -INFINITY, lowest_b = INFINITY;
@@ -50,8 +50,8 @@ TriangleParameter clamped(Barycentric weights) {
 }
 
 NearestTriangles nearest(const Triangle& first, const Triangle& second) {
-  // Relative to one corner: triangles far from the coordinates' origin lose nothing. Each difference errs by
-  // half a unit in its last place; the gap is lowered for it below.
+  // Relative to one corner: triangles far from the coordinates' origin lose nothing. Each difference errs by half a
+  // unit in its last place; the gap is lowered for it below.
   const Point3 origin = first[0];
   const Corners a{Vector3{}, first[1] - origin, first[2] - origin};
   const Corners b{second[0] - origin, second[1] - origin, second[2] - origin};
@@ -66,18 +66,18 @@ std::optional<PairOfPoints> middle_of_contact(const Triangle& first, const Trian
   const Point3 origin = first[0];
   const Corners a{Vector3{}, first[1] - origin, first[2] - origin};
   const Corners b{second[0] - origin, second[1] - origin, second[2] - origin};
+  const kernels::Crossings found = kernels::crossings(a, b);
+  if (found.count == 0) return std::nullopt;
   PairOfPoints sum;
   double weights = 0;
-  const auto add = [&](Barycentric on_a, Barycentric on_b) {
+  for (std::size_t i = 0; i < found.count; ++i) {
+    const auto& [on_a, on_b] = found.points[i];
     // Not quite the middle: that lies on lines where pieces are split more often than not.
-    const double weight = weights == 0 ? 1.0 : 1.1234567;
+    const double weight = i == 0 ? 1.0 : 1.1234567;
     sum.on_a = {sum.on_a.b + weight * on_a.b, sum.on_a.c + weight * on_a.c};
     sum.on_b = {sum.on_b.b + weight * on_b.b, sum.on_b.c + weight * on_b.c};
     weights += weight;
-  };
-  const kernels::Crossings found = kernels::crossings(a, b);
-  for (std::size_t i = 0; i < found.count; ++i) add(found.points[i].on_a, found.points[i].on_b);
-  if (weights == 0) return std::nullopt;
+  }
   const double share = 1.0 / weights;
   return PairOfPoints{{share * sum.on_a.b, share * sum.on_a.c}, {share * sum.on_b.b, share * sum.on_b.c}};
 }

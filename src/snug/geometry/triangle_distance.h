@@ -9,20 +9,16 @@ namespace snug {
 /// Two triangles as near as they come.
 struct NearestTriangles {
   Barycentric on_a, on_b;  ///< of the points that were found nearest, in double precision
-  /// Lower bound of the distance: that of the planes through the triangles' supports along the direction
-  /// between those points. At most the distance; equal to it up to rounding where the points are the nearest
-  /// ones. Never below zero.
+  /// Distance of the supporting planes across the direction between those points: zero or a lower bound of the
+  /// triangles', equal to it up to rounding where the points are the nearest ones.
   double certain_distance;
 };
 
-/// Nearest points of two triangles, with a lower bound of their distance that does not depend on the points
-/// being nearest.
+/// Nearest points of two triangles, with a lower bound of their distance that does not depend on the points.
 ///
 /// Guarantee: the exact distance of the triangles is at least certain_distance.
 /// Requires:  finite corners of at most about 4.
-/// Cost:      about 0.17 microseconds with four lanes.
-/// Source:    [Ericson05, sec. 5.1.9, 5.1.10]; differs: a supporting slab certifies the result; searched by
-///            geometry/triangle_kernels.h.
+/// Source:    [Ericson05, sec. 5.1.9, 5.1.10]; differs: a supporting slab certifies the result.
 [[nodiscard]] NearestTriangles nearest(const Triangle& a, const Triangle& b);
 
 /// Weights that roundings may have left a little outside of the triangle, as a parameter inside.
@@ -33,8 +29,8 @@ struct PairOfPoints {
   Barycentric on_a, on_b;
 };
 
-/// About the middle of the segment in which two triangles cut each other, in double precision; nothing if they do not, or lie in
-/// one plane.
+/// About the middle of the segment in which two triangles cut each other, in double precision; nothing if they do
+/// not, or lie in one plane.
 [[nodiscard]] std::optional<PairOfPoints> middle_of_contact(const Triangle& a, const Triangle& b);
 
 }  // namespace snug

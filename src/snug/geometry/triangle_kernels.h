@@ -5,9 +5,7 @@
 
 #include <snug/geometry/triangle_distance.h>
 
-/// Searches over the edges and corners of two triangles, four at once.
-///
-/// Guarantee: results are the same on every instruction set, bit by bit, as in bounds/fit_kernels.h.
+/// Searches over the edges and corners of two triangles, four at once; the same bits on every instruction set.
 namespace snug::kernels {
 
 using Corners = std::array<Vector3, 3>;
@@ -21,9 +19,9 @@ struct Crossings {
 
 /// Nearest points in double precision, or the first of crossings() if there are any; true then.
 ///
-/// Guarantee: b >= 0, c >= 0 and b + c <= 1 of both points, in doubles. That they are nearest is true up to rounding only.
+/// Guarantee: b >= 0, c >= 0 and b + c <= 1 of both points, in doubles. That they are nearest is true up to rounding
+///            only.
 /// Requires:  finite corners.
-/// Cost:      about 400 operations, four pairs of edges or corners at once.
 /// Source:    [Ericson05, sec. 5.1.5, 5.1.9]; differs: corners and edges, insides of edges, and corners and faces are
 ///            tried each on their own, without branches.
 [[nodiscard]] bool nearest_points(const Corners& a, const Corners& b, PairOfPoints& out);
