@@ -6,7 +6,6 @@
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
 #include <snug/patch/evaluate.h>
-#include <snug/search/piece_extents.h>
 #include <snug/surface/control_hull.h>
 
 namespace snug {

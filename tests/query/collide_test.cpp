@@ -343,7 +343,7 @@ TEST(collide, edges_between_quads_and_polygons_are_closed) {
     SurfaceWorkspace scratch(model);
     ASSERT_FALSE(model.solid().fillers().empty()) << name_of(scheme);
     const PowerOfTwo back = surface.scale().inverse();
-    for (const Solid::Filler& filler : model.solid().fillers()) {
+    for (const LimitTriangle& filler : model.solid().fillers()) {
       const auto& [a, b, m] = filler.corners;
       // Between the chord and the curve, and beyond the curve.
       const Point3 chord = a + 0.5 * (b - a);

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <snug/bounds/table_triangle.h>
 #include <snug/patch/evaluate.h>
-#include <snug/search/piece_extents.h>
 #include <testing/containment.h>
 #include <testing/patches.h>
 #include <testing/scheme_surfaces.h>

@@ -10,11 +10,7 @@
 
 #include <snug/bvh/wide_nodes.h>
 #include <snug/patch/evaluate.h>
-#include <snug/search/piece_extents.h>
-#include <testing/disguises.h>
-#include <testing/scheme_surfaces.h>
-
-#include <cstdlib>
+#include <testing/disguised_surfaces.h>
 
 namespace snug {
 namespace {
@@ -124,25 +120,11 @@ void expect_sound(const LimitSurface& surface, std::mt19937_64& random, const st
 }
 
 TEST(pieces, of_all_kinds_in_all_disguises_are_in_what_queries_know_of_them) {
-  const char* const text = std::getenv("SNUG_PLACEMENTS");
-  const std::uint64_t rounds = text != nullptr ? 1 + std::strtoull(text, nullptr, 10) / 5000 : 1;
   std::size_t pieces = 0;
-  for (std::uint64_t round = 0; round < rounds; ++round) {
-    std::mt19937_64 random(81 + round);
-    testing::for_each_surface(81 + round, [&](const testing::NamedSurface& named) {
-      const auto library = std::make_shared<BoundsCache>();
-      for (const testing::Disguise& disguise : testing::disguises()) {
-        ControlMesh mesh = named.surface.mesh();
-        for (Point3& p : mesh.points) {
-          const oracle::Point q = disguise.change({p.x, p.y, p.z});
-          p = {q[0], q[1], q[2]};
-        }
-        const LimitSurface surface(std::move(mesh), named.surface.options(), library, 1);
-        expect_sound(surface, random, named.name + ", " + disguise.name, pieces);
-        if (::testing::Test::HasFailure()) return;
-      }
-    });
-  }
+  testing::for_each_disguised_surface(
+      81, [&](const LimitSurface& surface, const std::string& name, std::mt19937_64& random) {
+        expect_sound(surface, random, name, pieces);
+      });
   EXPECT_GT(pieces, 3'000u);
 }
 

@@ -8,8 +8,6 @@
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
 #include <snug/patch/evaluate.h>
-#include <snug/search/nearest_first.h>
-#include <snug/search/piece_extents.h>
 #include <snug/search/point_batch.h>
 #include <snug/search/precision.h>
 #include <snug/surface/evaluate.h>

@@ -8,8 +8,7 @@
 #include <snug/geometry/rounding.h>
 #include <snug/query/containment.h>
 #include <snug/search/crossing.h>
-#include <snug/search/nearest_first.h>
-#include <snug/search/outer_gap.h>
+#include <snug/search/pair_frames.h>
 #include <snug/surface/unscale.h>
 
 #include <snug/search/precision.h>

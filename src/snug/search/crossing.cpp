@@ -15,10 +15,10 @@ namespace {
 
 // Levels that a piece near the border's extraordinary corners is split before its whole net stands for its edge.
 constexpr unsigned edge_levels = 8;
-// Levels from the piece that was asked about to one that is small enough to pass between the strips.
+// Levels from the piece asked about to one that is small enough to pass between the strips.
 constexpr unsigned probe_levels = 16;
-// Least sine of the angle between the normal of a base triangle and an edge of the limit triangle. They are across each
-// other but for what the base triangle's plane and the limit triangle's differ.
+// Least sine of the angle between the normal of a base triangle and an edge of the limit triangle: they are across
+// each other but for what the planes of the two triangles differ.
 constexpr double least_sine = 0.5;
 
 // Bezier points of the polynomial `part` whose hull holds its edge from corner k to k + 1.
@@ -48,16 +48,10 @@ void visit_edge(const Patch& patch, std::size_t edge, unsigned level, const Visi
     return;
   }
   const std::size_t own = patch.to_kind(edge);  // corner of the kind that the edge begins at
-  if (patch.kind->form().parts == 1) {
-    visit_bezier_edge(patch, 0, own, visit);
-  } else if (own == 0) {  // parts are 0, 1, m and m, 1, 2
-    visit_bezier_edge(patch, 0, 0, visit);
-  } else if (own == 1) {
-    visit_bezier_edge(patch, 1, 1, visit);
-  } else {
-    visit_bezier_edge(patch, 0, 2, visit);
-    visit_bezier_edge(patch, 1, 2, visit);
-  }
+  // Two parts are 0, 1, m and m, 1, 2.
+  const bool halves = patch.kind->form().parts > 1;
+  visit_bezier_edge(patch, halves && own == 1 ? 1 : 0, own, visit);
+  if (halves && own == 2) visit_bezier_edge(patch, 1, own, visit);
 }
 
 }  // namespace
@@ -70,13 +64,7 @@ Crossed::Crossed(const Piece& piece, const Heights& heights) {
   lower_ = heights.lower;
   upper_ = heights.upper;
   const Patch& patch = piece.patch;
-  double corner_error = 0;
-  std::array<Point3, 3> corners;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const BoundedPoint corner = corner_point(patch, k).from(patch.origin);
-    corners[k] = corner.position;
-    corner_error = std::max(corner_error, corner.error);
-  }
+  const auto [corners, corner_error] = limit_triangle(patch);
   for (std::size_t k = 0; k < 3; ++k) {
     Strip& strip = strips_[k];
     const Vector3 edge = corners[(k + 1) % 3] - corners[k];
@@ -86,7 +74,7 @@ Crossed::Crossed(const Piece& piece, const Heights& heights) {
     strip.inward = normalized(inward);
     strip.from = corners[k];
     // Both ends of the edge belong to its curve: the exact corners are within their error of these.
-    double widest = std::max(0.0, dot(strip.inward, edge)) + 2 * spatial_error(corner_error);
+    double widest = std::max(0.0, dot(strip.inward, edge)) + 2 * corner_error;
     const Vector3 from = strip.from - patch.origin;
     double largest = max_abs(from);
     visit_edge(patch, k, 0, [&](const Vector3& p, double error) {
@@ -129,8 +117,7 @@ Crossed::Sides Crossed::sides(const Triangle& points, double error) const {
 
 namespace {
 
-// A piece, and a parameter of it. Of no use to anything but this question, so it is not kept: surfaces that nearly lie in
-// each other ask at every pair.
+// A piece, not kept, since surfaces that nearly lie in each other ask at every pair; and a parameter of it.
 struct Probe {
   Piece piece;
   TriangleParameter at;
@@ -144,9 +131,9 @@ std::optional<TriangleParameter> in_middle_child(TriangleParameter p) {
   return turned;
 }
 
-// Adds the children whose closed triangles hold the parameter: all have its limit point in common, so together they are
-// connected. False, with the child that descend() names alone, where its parameter there rounds: what holds that need not
-// hold the others'.
+// Adds the children whose closed triangles hold the parameter: all have its limit point in common, so together they
+// are connected. False, with the child that descend() names alone, where its parameter there rounds: what holds that
+// need not hold the others'.
 bool add_children(PieceCache& pieces, const Probe& probe, std::vector<Probe>& out) {
   const auto [u, v] = probe.at;
   const Descent certain = descend(probe.at);
@@ -170,8 +157,8 @@ bool add_children(PieceCache& pieces, const Probe& probe, std::vector<Probe>& ou
   return true;
 }
 
-}  // namespace
-
+// Do pieces of `id` around a parameter cross, those that meet there together? Splits some levels down, and keeps nothing.
+// seen: the pieces' frame as seen from that of the crossed piece.
 bool crosses_near(PieceCache& pieces, PieceId id, TriangleParameter at, const Crossed& crossed,
                   const RelativeFrame& seen) {
   if (!seen.comparable) return false;
@@ -183,17 +170,15 @@ bool crosses_near(PieceCache& pieces, PieceId id, TriangleParameter at, const Cr
     bool inside = true, below = false, above = false, last = false;
     for (const Probe& probe : probes) {
       const Piece& piece = probe.piece;
+      const LimitTriangle limit = limit_triangle(piece.patch);
       Triangle around, corners;
-      double error = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         around[k] = seen.apply(piece.offset.base[k]);
-        const BoundedPoint corner = corner_point(piece.patch, k).from(piece.patch.origin);
-        corners[k] = seen.apply(corner.position);
-        error = std::max(error, corner.error);
+        corners[k] = seen.apply(limit.corners[k]);
         extent = std::max(extent, length(corners[k] - corners[0]));
       }
       inside = inside && crossed.holds(around, growth * piece.offset.radius + seen.slack);
-      const Crossed::Sides sides = crossed.sides(corners, growth * spatial_error(error) + seen.slack);
+      const Crossed::Sides sides = crossed.sides(corners, growth * limit.error + seen.slack);
       below = below || sides.below;
       above = above || sides.above;
       last = last || piece.patch.path.level() == PiecePath::max_level;
@@ -207,6 +192,8 @@ bool crosses_near(PieceCache& pieces, PieceId id, TriangleParameter at, const Cr
     probes.swap(children);
   }
 }
+
+}  // namespace
 
 bool certainly_cross(PairFrames& frames, const PiecePair& pieces) {
   const std::optional<PairOfPoints> middle = middle_of_contact(pieces.base[0], pieces.base[1]);

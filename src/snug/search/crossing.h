@@ -6,8 +6,8 @@
 
 namespace snug {
 
-/// What a connected set must do to be proved to meet a piece: run from below it to above it inside the prism over what its
-/// border leaves free.
+/// What a connected set must do to be proved to meet a piece: run from below it to above it inside the prism over what
+/// its border leaves free.
 ///
 ///              . above .           The piece lies between two planes across n. Its border lies, seen along n, within
 ///          ___/_________\___       three strips along the edges of the limit triangle. A set that stays inside of the
@@ -23,8 +23,8 @@ class Crossed {
 
   /// False if the border leaves nothing free, or the piece has no normal.
   [[nodiscard]] bool possible() const { return possible_; }
-  /// Is all that lies within `radius` of the hull of `around` certainly inside of the strips? In the frame of the piece's
-  /// surface, and so below.
+  /// Is all that lies within `radius` of the hull of `around` certainly inside of the strips? In the frame of the
+  /// piece's surface, and so below.
   [[nodiscard]] bool holds(const Triangle& around, double radius) const;
   struct Sides {
     bool below = false, above = false;
@@ -48,11 +48,6 @@ class Crossed {
   };
   std::array<Strip, 3> strips_;
 };
-
-/// Do pieces of `id` around a parameter cross, those that meet there together? Splits some levels down, and keeps nothing.
-/// Requires:  seen: the pieces' frame as seen from that of the crossed piece.
-[[nodiscard]] bool crosses_near(PieceCache& pieces, PieceId id, TriangleParameter at, const Crossed& crossed,
-                                const RelativeFrame& seen);
 
 /// Is it proved that the two pieces, or smaller ones around where their base triangles are nearest, cross each other?
 /// Source:    derivations/contact.md.

@@ -1,18 +1,14 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include <snug/search/workspace.h>
 
 namespace snug {
 
-/// The power of two that brings both placed surfaces to about 1.
-[[nodiscard]] PowerOfTwo joint_scale(const PlacedBvh& a, const PlacedBvh& b);
-/// How a surface is placed, in units of which one mesh unit is `world` many.
-[[nodiscard]] PlacedFrame frame_of(const PlacedBvh& placed, PowerOfTwo world);
-
-/// Two placed surfaces as one query sees them. Lengths are in units of its own, powers of two away from mesh units, in which
-/// both are at most about 2 large and far.
+/// Two placed surfaces as one query sees them. Lengths are in units of its own, powers of two away from mesh units, in
+/// which both are at most about 2 large and far.
 class PairFrames {
  public:
   /// Errors:    InputError (value) unless each has a workspace of its own.
@@ -27,11 +23,8 @@ class PairFrames {
   [[nodiscard]] const PlacedFrame& frame(std::size_t side) const { return frame_[side]; }
   /// How the other side is seen from the frame of `side`; made on first use.
   [[nodiscard]] const View& view(std::size_t side) {
-    if (!viewed_[side]) {
-      view_[side] = View(frame_[side], frame_[1 - side]);
-      viewed_[side] = true;
-    }
-    return view_[side];
+    if (!view_[side]) view_[side].emplace(frame_[side], frame_[1 - side]);
+    return *view_[side];
   }
   /// Gaps are looked for along this direction, of length 1, first, from A to B: one that holds much of both apart.
   void look_along(const Vector3& direction);
@@ -40,8 +33,12 @@ class PairFrames {
   std::array<SurfaceWorkspace*, 2> workspace_;
   PowerOfTwo world_;
   std::array<PlacedFrame, 2> frame_;
-  std::array<View, 2> view_;
-  std::array<bool, 2> viewed_{};
+  std::array<std::optional<View>, 2> view_;
 };
+
+/// Lower bound, in mesh units, of the distance of two placed surfaces, along the line between their middles: cheap. Not
+/// positive where none shows, or where doubles do not reach.
+/// Source:    derivations/boxes.md, "Whole models".
+[[nodiscard]] double outer_gap(const PlacedBvh& a, const PlacedBvh& b);
 
 }  // namespace snug

@@ -12,21 +12,25 @@ constexpr float both_opened = 3;
 // And where they do not overlap by more than this part of the smaller one: else one of them is enough to find out where.
 constexpr float deep_overlap = 0.4F;
 
-// A gap in the query's units, rounded down: by one rounding of the factor, two of products, and what they lose where they
-// underflow.
-float in_world(float gap, float to_world) {
-  return gap > 0 ? gap * to_world * (1 - 4 * 0x1p-24F) - 0x1p-125F : gap * to_world;
-}
+// Gaps of what a pair opens to, in the query's units and not below the pair's own. Rounded down: by one rounding of the
+// factor, two of products, and what they lose where they underflow.
+struct GapInWorld {
+  float to_world, parent_gap;
+
+  GapInWorld(const View& view, const NodePair& pair)
+      : to_world(static_cast<float>(view.frame.to_world)), parent_gap(pair.gap > 0 ? pair.gap : -INFINITY) {}
+  float operator()(float gap) const {
+    return std::max(gap > 0 ? gap * to_world * (1 - 4 * 0x1p-24F) - 0x1p-125F : gap * to_world, parent_gap);
+  }
+};
 
 }  // namespace
 
 void nearest_last(std::vector<NodePair>& pairs, std::size_t from) {
   if (from == pairs.size()) return;
-  std::size_t nearest = from;
-  for (std::size_t i = from + 1; i < pairs.size(); ++i) {
-    if (pairs[i].gap < pairs[nearest].gap) nearest = i;
-  }
-  std::swap(pairs[nearest], pairs.back());
+  const auto nearer = [](const NodePair& x, const NodePair& y) { return x.gap < y.gap; };
+  std::iter_swap(std::min_element(pairs.begin() + static_cast<std::ptrdiff_t>(from), pairs.end(), nearer),
+                 pairs.end() - 1);
 }
 
 PairWalk::PairWalk(PairFrames& frames, SearchStats& stats)
@@ -66,63 +70,58 @@ float PairWalk::open(const NodePair& pair, Opening opening, double prune_distanc
   return open_one(pair, opening == Opening::b ? 1 : 0, prune_distance, out);
 }
 
+SurfaceWorkspace::Opened PairWalk::open_node(const NodePair& pair, std::size_t side) {
+  stats_.splits += pair.nodes[side].piece;
+  return frames_.workspace(side).open(pair.nodes[side]);
+}
+
+void PairWalk::put(NodePair& pair, std::size_t side, const SurfaceWorkspace::Opened& opened,
+                   std::size_t place) const {
+  pair.nodes[side] = opened.child(place);
+  pair.sizes[side] = scale_[side] * opened.nodes.size_of(pair.nodes[side].child());
+}
+
 float PairWalk::open_both(const NodePair& pair, double prune_distance, std::vector<NodePair>& out) {
-  std::array<SurfaceWorkspace::Opened, 2> opened;
-  std::array<const WideNodes*, 2> nodes;
-  for (std::size_t s = 0; s < 2; ++s) {
-    stats_.splits += pair.nodes[s].piece;
-    opened[s] = frames_.workspace(s).open(pair.nodes[s]);
-    nodes[s] = &frames_.workspace(s).nodes(opened[s].pieces);
-  }
-  stats_.box_tests += nodes[0]->count(opened[0].parent) * nodes[1]->count(opened[1].parent);
+  const SurfaceWorkspace::Opened a = open_node(pair, 0), b = open_node(pair, 1);
+  stats_.box_tests += a.count() * b.count();
   const View& view = frames_.view(0);
-  const auto to_world = static_cast<float>(view.frame.to_world);
+  const GapInWorld gap_of(view, pair);
   WideNodes::Pairs near;
-  const float others = nodes[0]->distances(opened[0].parent, *nodes[1], opened[1].parent, view,
-                                           static_cast<float>(prune_distance * view.frame.from_world), near);
-  const float parent_gap = pair.gap > 0 ? pair.gap : -INFINITY;
+  const float others = a.nodes.distances(a.parent, b.nodes, b.parent, view,
+                                         static_cast<float>(prune_distance * view.frame.from_world), near);
   for (std::size_t k = 0; k < near.count; ++k) {
     const kernels::ChildPair& found = near.pairs[k];
-    const std::array<std::uint8_t, 2> places{found.own, found.other};
     NodePair& next = out.emplace_back();
-    for (std::size_t s = 0; s < 2; ++s) {
-      next.nodes[s] = {opened[s].parent, places[s], opened[s].pieces};
-      next.sizes[s] = scale_[s] * nodes[s]->size_of(next.nodes[s].child());
-    }
-    next.gap = std::max(in_world(found.gap, to_world), parent_gap);
+    put(next, 0, a, found.own);
+    put(next, 1, b, found.other);
+    next.gap = gap_of(found.gap);
   }
-  return std::max(in_world(others, to_world), parent_gap);
+  return gap_of(others);
 }
 
 float PairWalk::open_one(const NodePair& pair, std::size_t side, double prune_distance,
                          std::vector<NodePair>& out) {
-  const Node node = pair.nodes[side], other = pair.nodes[1 - side];
-  stats_.splits += node.piece;
-  const SurfaceWorkspace::Opened opened = frames_.workspace(side).open(node);
-  const WideNodes& nodes = frames_.workspace(side).nodes(opened.pieces);
-  stats_.box_tests += nodes.count(opened.parent);
+  const SurfaceWorkspace::Opened opened = open_node(pair, side);
+  stats_.box_tests += opened.count();
   const View& view = frames_.view(side);
+  const GapInWorld gap_of(view, pair);
   WideNodes::Distances gaps;
-  WideNodes::Near near{(1u << nodes.count(opened.parent)) - 1, INFINITY};
+  WideNodes::Near near{(1u << opened.count()) - 1, INFINITY};
   if (view.frame.comparable) {
+    const Node other = pair.nodes[1 - side];
     const PlacedBox seen = frames_.workspace(1 - side).nodes(other.piece).placed(other.child(), view);
-    near = nodes.distances(opened.parent, seen, view.frame.slack,
-                           static_cast<float>(prune_distance * view.frame.from_world), gaps);
+    near = opened.nodes.distances(opened.parent, seen, view.frame.slack,
+                                  static_cast<float>(prune_distance * view.frame.from_world), gaps);
   } else {
     gaps.fill(-INFINITY);
   }
-  const auto to_world = static_cast<float>(view.frame.to_world);
-  const float parent_gap = pair.gap > 0 ? pair.gap : -INFINITY;
   for (std::uint32_t rest = near.places; rest != 0; rest &= rest - 1) {
-    const auto place = static_cast<std::uint8_t>(std::countr_zero(rest));
-    NodePair& next = out.emplace_back();
-    next.nodes[side] = {opened.parent, place, opened.pieces};
-    next.nodes[1 - side] = other;
-    next.sizes[side] = scale_[side] * nodes.size_of(next.nodes[side].child());
-    next.sizes[1 - side] = pair.sizes[1 - side];
-    next.gap = std::max(in_world(gaps[place], to_world), parent_gap);
+    const auto place = static_cast<std::size_t>(std::countr_zero(rest));
+    NodePair& next = out.emplace_back(pair);
+    put(next, side, opened, place);
+    next.gap = gap_of(gaps[place]);
   }
-  return std::max(in_world(near.others, to_world), parent_gap);
+  return gap_of(near.others);
 }
 
 }  // namespace snug

@@ -6,7 +6,6 @@
 
 #include <snug/collide.h>
 #include <snug/search/pair_frames.h>
-#include <snug/surface/evaluate.h>
 
 namespace snug {
 
@@ -14,8 +13,8 @@ namespace snug {
 struct NodePair {
   std::array<Node, 2> nodes;
   std::array<float, 2> sizes;  ///< upper bounds of the nodes' sizes, placed
-  /// Lower bound of their distance where positive, in the query's units, and not below that of what they are parts of; else
-  /// the more negative the deeper they overlap.
+  /// Lower bound of their distance where positive, in the query's units, and not below that of what they are parts of;
+  /// else the more negative the deeper they overlap.
   float gap;
 
   [[nodiscard]] bool of_pieces() const { return nodes[0].piece && nodes[1].piece; }
@@ -27,7 +26,6 @@ void nearest_last(std::vector<NodePair>& pairs, std::size_t from);
 /// The way down the trees of two placed surfaces: which node of a pair is opened, and what it opens to.
 class PairWalk {
  public:
-  /// Requires:  both outlive the walk.
   PairWalk(PairFrames& frames, SearchStats& stats);
 
   /// The whole surfaces, which are not compared.
@@ -45,12 +43,14 @@ class PairWalk {
                                  (opening != Opening::a && pair.nodes[1].piece ? 1u : 0u);
     return stats_.splits + pieces <= budget && !frames_.workspace(0).full() && !frames_.workspace(1).full();
   }
-  /// What nodes open to, against each other: pairs with a gap of at most `prune_distance` are added to `out`.
-  /// Returns:   the smallest gap of the others; infinite if there are none.
-  /// Requires:  not none.
+  /// What nodes open to, against each other: pairs with a gap of at most `prune_distance` are added to `out`. Returns the
+  /// smallest gap of the others; infinite if there are none.
+  /// Requires:  an opening that is not none.
   float open(const NodePair& pair, Opening opening, double prune_distance, std::vector<NodePair>& out);
 
  private:
+  SurfaceWorkspace::Opened open_node(const NodePair& pair, std::size_t side);
+  void put(NodePair& pair, std::size_t side, const SurfaceWorkspace::Opened& opened, std::size_t place) const;
   float open_both(const NodePair& pair, double prune_distance, std::vector<NodePair>& out);
   float open_one(const NodePair& pair, std::size_t side, double prune_distance, std::vector<NodePair>& out);
 

@@ -6,7 +6,6 @@
 #include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
-#include <snug/search/piece_extents.h>
 
 namespace snug {
 namespace {
@@ -57,8 +56,7 @@ double PiecePairs::placed_extent(std::size_t side, PieceId piece, const Vector3&
   const PlacedFrame& frame = frames_.frame(side);
   const HullPoints& hull = frames_.workspace(side).pieces().hull(piece);
   // w . (scale R x + t) = scale (R' w) . x + w . t
-  const Vector3 local = w.x * frame.rows[0] + w.y * frame.rows[1] + w.z * frame.rows[2];
-  const Extent own = extent_of(hull, local);
+  const Extent own = extent_of(hull, transposed_times(frame.rows, w));
   const double moved = dot(w, frame.translation);
   const double reach =
       frame.scale * (max_abs(hull.origin - Point3{}) + hull.largest) + max_abs(frame.translation);

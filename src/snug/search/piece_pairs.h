@@ -4,6 +4,7 @@
 
 #include <snug/geometry/triangle_distance.h>
 #include <snug/search/pair_walk.h>
+#include <snug/surface/evaluate.h>
 
 namespace snug {
 
@@ -30,7 +31,6 @@ struct Witness {
 /// Pieces of two placed surfaces against each other: their base triangles, their hulls, their limit points.
 class PiecePairs {
  public:
-  /// Requires:  both outlive this.
   PiecePairs(PairFrames& frames, SearchStats& stats) : frames_(frames), stats_(stats) {}
 
   /// Sum of the two radii, placed.
@@ -38,8 +38,8 @@ class PiecePairs {
   [[nodiscard]] double radii(const NodePair& pair) const;
   [[nodiscard]] PiecePair nearest(const NodePair& pair);
 
-  /// Lower bound of the distance of two pieces: that of the planes across `direction` that hold their hulls apart. Any
-  /// direction gives one; the best is that from the nearest point of A to that of B.
+  /// Lower bound of the distance of two pieces: that of the planes across `direction` that hold their hulls apart. The
+  /// best direction is that from the nearest point of A to that of B.
   [[nodiscard]] double hull_gap(const NodePair& pair, const Vector3& direction);
   /// A direction from A to B, that both the walk and gap_along() look along from now on.
   void look_along(const Vector3& direction);

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <snug/base/error.h>
-#include <snug/geometry.h>
+#include <snug/search/workspace.h>
 
 namespace snug {
 
@@ -26,14 +27,19 @@ template <class Options>
   return options;
 }
 
-/// A number of single precision that is not above a lower bound; below zero where single precision underflows.
-/// Requires:  x >= 0.
+/// Are bounds, in mesh units, as near as was asked for?
+template <class Options>
+[[nodiscard]] bool near_enough(const Interval& bounds, const Options& options) {
+  return bounds.upper - bounds.lower <= std::max(*options.absolute, *options.relative * bounds.upper);
+}
+
+/// A number of single precision that is not above a lower bound x >= 0; below zero where single precision underflows.
 [[nodiscard]] inline float single_down(double x) { return static_cast<float>(x * (1 - 0x1p-23)) - 0x1p-125F; }
 
 /// Bounds of a distance while they are searched for, in a search's units, in which surfaces are about 2 large.
 class DistanceBounds {
  public:
-  /// `absolute`, `noise`: bounds are not brought nearer to each other than this; `noise` where rounding hides what is left.
+  /// `absolute`, `noise`: bounds are not brought nearer to each other; `noise` where rounding hides what is left.
   DistanceBounds(double absolute, double relative, double noise)
       : absolute_(std::max(absolute, noise)), relative_(relative) {}
 
@@ -56,10 +62,35 @@ class DistanceBounds {
   double upper_ = INFINITY, pruned_ = INFINITY, floor_ = 0;
 };
 
-/// Are bounds, in mesh units, as near as was asked for?
-template <class Options>
-[[nodiscard]] bool near_enough(const Interval& bounds, const Options& options) {
-  return bounds.upper - bounds.lower <= std::max(*options.absolute, *options.relative * bounds.upper);
-}
+/// A node, and a lower bound of how far it is.
+struct NodeGap {
+  Node node;
+  float gap;
+};
+
+/// What is still to be opened, by a lower bound `gap` of its distance: the nearest comes first.
+template <class Item>
+class NearestFirst {
+ public:
+  /// Begins anew, with memory kept.
+  void start(const Item& root) { items_.assign(1, root); }
+  [[nodiscard]] bool empty() const { return items_.empty(); }
+  /// Requires:  not empty; so does take().
+  [[nodiscard]] const Item& nearest() const { return items_.front(); }
+  Item take() {
+    std::pop_heap(items_.begin(), items_.end(), farther);
+    const Item item = items_.back();
+    items_.pop_back();
+    return item;
+  }
+  void add(const Item& item) {
+    items_.push_back(item);
+    std::push_heap(items_.begin(), items_.end(), farther);
+  }
+
+ private:
+  static bool farther(const Item& x, const Item& y) { return x.gap > y.gap; }
+  std::vector<Item> items_;
+};
 
 }  // namespace snug

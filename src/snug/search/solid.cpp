@@ -8,29 +8,29 @@
 #include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
-#include <snug/search/piece_extents.h>
 
 namespace snug {
 namespace {
+
+[[noreturn]] void refuse(const std::string& reason) {
+  throw InputError(InputProblem::refused, "solids are bounded by closed surfaces, and " + reason);
+}
 
 void require_closed(const LimitSurface& surface) {
   const Topology& topology = surface.topology();
   for (std::size_t e = 0; e < topology.edge_count(); ++e) {
     if (!topology.ends_fans(EdgeId(e))) continue;
     const HalfEdge h = topology.half_of(EdgeId(e));
-    throw InputError(
-        InputProblem::refused,
-        "solids are bounded by closed surfaces, and edge (" + std::to_string(topology.from(h).value()) +
-            ", " + std::to_string(topology.to(h).value()) + ") of face " +
-            std::to_string(topology.face_of(h).value()) +
-            " does not have two faces that run along it in opposite directions; close the mesh or ask "
-            "about its surface");
+    refuse(
+        "edge (" + std::to_string(topology.from(h).value()) + ", " + std::to_string(topology.to(h).value()) +
+        ") of face " + std::to_string(topology.face_of(h).value()) +
+        " does not have two faces that run along it in opposite directions; close the mesh or ask about its "
+        "surface");
   }
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
     if (surface.has_patch(PatchId(p))) continue;
-    throw InputError(InputProblem::refused, "solids are bounded by closed surfaces, and face " +
-                                                std::to_string(surface.place(PatchId(p)).owner) +
-                                                " is a hole; fill it or ask about its surface");
+    refuse("face " + std::to_string(surface.place(PatchId(p)).owner) +
+           " is a hole; fill it or ask about its surface");
   }
 }
 
@@ -52,16 +52,14 @@ std::vector<PatchId> component_patches(const LimitSurface& surface) {
   std::vector<PatchId> patches;
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
     const std::uint32_t component = find(surface.corner_names(PatchId(p))[0]);
-    if (!seen[component]) {
-      seen[component] = true;
-      patches.emplace_back(p);
-    }
+    if (!seen[component]) patches.emplace_back(p);
+    seen[component] = true;
   }
   return patches;
 }
 
-// Calls visit(first, second, edge) for each edge of an owner that its first split cuts in two: the patches on the first and
-// on the second half of it. Their corners there are 0 and 1, and 1 and 2.
+// Calls visit(first, second, edge) for each edge of an owner that its first split cuts in two: the patches on the first
+// and on the second half of it. Their corners there are 0 and 1, and 1 and 2.
 template <class Visit>
 void for_each_cut_edge(const LimitSurface& surface, const Visit& visit) {
   for (std::size_t owner = 0; owner < surface.owner_count(); ++owner) {
@@ -74,8 +72,8 @@ void for_each_cut_edge(const LimitSurface& surface, const Visit& visit) {
   }
 }
 
-Solid::Filler make_filler(const LimitSurface& surface, PatchId first, PatchId second) {
-  Solid::Filler filler{};
+LimitTriangle make_filler(const LimitSurface& surface, PatchId first, PatchId second) {
+  LimitTriangle filler{};
   const auto set = [&](std::size_t place, const Patch& patch, std::size_t corner) {
     const BoundedPoint limit = corner_point(patch, corner).from(patch.origin);
     filler.corners[place] = limit.position;
@@ -102,7 +100,7 @@ Solid::Solid(const LimitSurface& surface) {
   if (fillers_.empty()) return;
   std::vector<Point3> centres;
   centres.reserve(fillers_.size());
-  for (const Filler& filler : fillers_) centres.push_back(filler.corners[2]);
+  for (const LimitTriangle& filler : fillers_) centres.push_back(filler.corners[2]);
   tree_ = std::make_unique<WideBvh>(centres, 1, [&](std::span<const std::uint32_t> items) {
     std::vector<OffsetTriangle> triangles;
     std::vector<Point3> spread;

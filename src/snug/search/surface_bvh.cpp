@@ -7,9 +7,6 @@
 
 #include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
-#include <snug/search/piece_cache.h>
-#include <snug/search/piece_extents.h>
-#include <snug/search/solid.h>
 #include <snug/surface/control_hull.h>
 
 namespace snug {
@@ -42,9 +39,9 @@ std::vector<PatchId> existing_patches(const LimitSurface& surface) {
     throw InputError(InputProblem::refused, "more than 2^31 patches: ask about parts of the mesh");
   }
   if (patches.empty()) {
-    throw InputError(InputProblem::refused,
-                     "no face has a limit surface: all are holes or touch the boundary; take another "
-                     "boundary rule");
+    throw InputError(
+        InputProblem::refused,
+        "no face has a limit surface: all are holes or touch the boundary; take another boundary rule");
   }
   return patches;
 }
@@ -68,10 +65,6 @@ WideBvh make_tree(const LimitSurface& surface, std::span<const PatchId> patches,
 
 }  // namespace
 
-SurfaceBvh::~SurfaceBvh() = default;
-SurfaceBvh::SurfaceBvh(SurfaceBvh&&) noexcept = default;
-SurfaceBvh& SurfaceBvh::operator=(SurfaceBvh&&) noexcept = default;
-
 SurfaceBvh::SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& options,
                        const WorkMonitor& monitor)
     : surface_(&surface),
@@ -80,7 +73,8 @@ SurfaceBvh::SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& opt
       tree_(make_tree(surface, patches_, options, monitor)),
       solid_(std::make_unique<Lazy<Solid>>()) {
   const PowerOfTwo back = surface.scale().inverse();
-  ball_ = {back.apply(tree_.ball().centre), enlarged(back.apply(tree_.ball().radius))};
+  const Ball scaled = tree_.ball();
+  ball_ = {back.apply(scaled.centre), enlarged(back.apply(scaled.radius))};
   // Beyond these sizes products lose digits to the ends of the range.
   if (!is_finite(ball_.centre) || !(ball_.radius < 0x1p500) || std::abs(back.exponent()) > 500) {
     ball_ = {Point3{}, INFINITY};

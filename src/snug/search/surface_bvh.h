@@ -5,26 +5,21 @@
 #include <vector>
 
 #include <snug/base/lazy.h>
-#include <snug/bvh/wide_bvh.h>
 #include <snug/monitor.h>
-#include <snug/surface.h>
-#include <snug/surface/limit_surface.h>
+#include <snug/search/solid.h>
 
 namespace snug {
 
-class Solid;
-
 struct SurfaceBvhOptions {
   BoundMethod method = BoundMethod::rows;  ///< of pieces
-  /// Bound all patches when the model is made, some microseconds each: a tighter tree, for models that are asked thousands
-  /// of times. Otherwise the tree is over the control net alone.
+  /// Bound all patches when the model is made, some microseconds each: a tighter tree, for models that are asked
+  /// thousands of times. Otherwise the tree is over the control net alone.
   bool tight = false;
   int threads = 0;  ///< that make it
 };
 
-/// A surface made ready for queries: a tree over its control net. Patches are bounded, and split, where and when a query
-/// comes near them (SurfaceWorkspace). Immutable; may be read by many threads.
-///
+/// A surface made ready for queries: a tree over its control net. Patches are bounded, and split, where and when a
+/// query comes near them (SurfaceWorkspace). Immutable; may be read by many threads.
 /// Cost:      about 0.3 microseconds and 15 bytes a patch; see bench/results/collide.txt.
 class SurfaceBvh {
  public:
@@ -32,9 +27,6 @@ class SurfaceBvh {
   /// Errors:    InputError (refused) if no face has a patch.
   explicit SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& options = {},
                       const WorkMonitor& monitor = {});
-  ~SurfaceBvh();
-  SurfaceBvh(SurfaceBvh&&) noexcept;
-  SurfaceBvh& operator=(SurfaceBvh&&) noexcept;
 
   [[nodiscard]] const LimitSurface& surface() const { return *surface_; }
   [[nodiscard]] BoundMethod method() const { return method_; }
@@ -44,7 +36,7 @@ class SurfaceBvh {
   /// Around the surface, in mesh units; infinite where that does not fit a double.
   [[nodiscard]] const Ball& ball() const { return ball_; }
   /// The solid that the surface bounds, made on first use.
-  /// Errors:    those of Solid: InputError (refused) for a surface that is not closed.
+  /// Errors:    InputError (refused) for a surface that is not closed.
   [[nodiscard]] const Solid& solid() const;
   /// Without the surface.
   [[nodiscard]] std::size_t bytes() const;

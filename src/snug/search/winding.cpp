@@ -7,10 +7,7 @@
 
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
-#include <snug/patch/evaluate.h>
-#include <snug/search/nearest_first.h>
 #include <snug/search/precision.h>
-#include <snug/search/solid.h>
 
 namespace snug {
 namespace {
@@ -27,33 +24,24 @@ constexpr std::array<Vector3, 8> directions{{{0.8236391, 0.2941752, 0.4848613},
                                              {0.2639471, -0.8931207, -0.3642918},
                                              {-0.1173952, 0.2387164, -0.9639721}}};
 
-// The direction that leads away from the middle.
-std::size_t shortest_way_out(const Vector3& from_middle) {
-  const auto along = [&](const Vector3& x, const Vector3& y) {
-    return dot(x, from_middle) < dot(y, from_middle);
-  };
-  return static_cast<std::size_t>(std::max_element(directions.begin(), directions.end(), along) -
-                                  directions.begin());
-}
-
 double determinant(const Vector3& a, const Vector3& b, const Vector3& c) { return dot(a, cross(b, c)); }
 
-// A ray from a point, and what it meets.
+// A ray from a point, known up to `error`, and what it meets.
 class Ray {
  public:
   Ray(const Point3& from, double error, const Vector3& direction)
       : from_(from), error_(error), direction_(direction) {}
 
-  // Adds the signed crossing with a triangle whose exact corners lie within `error` of these; false if it is not certain.
-  [[nodiscard]] bool add(const Triangle& triangle, double error) {
+  // Adds the signed crossing with a triangle; false if it is not certain.
+  [[nodiscard]] bool add(const LimitTriangle& triangle) {
     std::array<Vector3, 3> v;
     double largest = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      v[k] = triangle[k] - from_;
+      v[k] = triangle.corners[k] - from_;
       largest = std::max(largest, max_abs(v[k]));
     }
     // Determinants of three vectors: a sum of six products, each off by its factors' errors and by roundings.
-    const double off = enlarged(error + error_);
+    const double off = enlarged(triangle.error + error_);
     const double doubt = enlarged(12 * largest * off + 64 * unit_roundoff * largest * largest +
                                   12 * off * off + 16 * underflow_error);
     int positive = 0, negative = 0;
@@ -96,7 +84,7 @@ class Winding {
     const Ball& ball = workspace_.model().tree().ball();
     const double length = distance(point_, ball.centre) + ball.radius + 1;
     if (!std::isfinite(length)) return std::nullopt;
-    segment(direction, length);
+    set_segment(direction, length);
     Ray ray(point_, error_, direction);
     if (!add_first_fillers(ray)) return std::nullopt;
     stack_.assign(1, workspace_.root());
@@ -112,22 +100,20 @@ class Winding {
           return std::nullopt;
         }
         if (last) {
-          if (!add_triangle(workspace_.piece(node), ray)) return std::nullopt;
+          if (!ray.add(corners(workspace_.piece(node)))) return std::nullopt;
           continue;
         }
         if (!add_fillers(node, ray)) return std::nullopt;
       }
       const SurfaceWorkspace::Opened opened = workspace_.open(node);
-      const WideNodes& nodes = workspace_.nodes(opened.pieces);
       WideNodes::Distances to_segment, to_point;
-      nodes.distances(opened.parent, segment_, error_, 0, to_segment);
-      nodes.distances(opened.parent, point_, error_, to_point);
-      for (std::uint8_t i = 0; i < nodes.count(opened.parent); ++i) {
+      opened.nodes.distances(opened.parent, segment_, error_, 0, to_segment);
+      opened.nodes.distances(opened.parent, point_, error_, to_point);
+      for (std::size_t i = 0; i < opened.count(); ++i) {
         if (to_segment[i] > 0) continue;
-        const Node next{opened.parent, i, opened.pieces};
         if (!opened.pieces || !(to_point[i] > 0)) {
-          stack_.push_back(next);
-        } else if (!add_triangle(workspace_.piece(next), ray)) {
+          stack_.push_back(opened.child(i));
+        } else if (!ray.add(corners(workspace_.piece(opened.child(i))))) {
           return std::nullopt;
         }
       }
@@ -135,11 +121,11 @@ class Winding {
     return ray.crossings();
   }
 
-  /// Has a direction failed since pieces around the point could not be made small enough? Then all do.
+  // Has a direction failed since pieces around the point could not be made small enough? Then all do.
   [[nodiscard]] bool on_surface() const { return on_surface_; }
 
-  /// Lower bound of the distance of the surface: the least gap to the sets around pieces, which are split where they hold the
-  /// point. Not positive if that takes too long.
+  // Lower bound of the distance of the surface: the least gap to the sets around pieces, which are split where they hold
+  // the point. Not positive if that takes too long.
   double clearance() {
     NearestFirst<NodeGap> open;
     open.start({workspace_.root(), -INFINITY});
@@ -155,19 +141,16 @@ class Winding {
       }
       if (node.piece && ++splits > max_splits) return 0;
       const SurfaceWorkspace::Opened opened = workspace_.open(node);
-      const WideNodes& nodes = workspace_.nodes(opened.pieces);
       WideNodes::Distances gaps;
-      nodes.distances(opened.parent, point_, error_, gaps);
-      for (std::uint8_t i = 0; i < nodes.count(opened.parent); ++i) {
-        open.add({{opened.parent, i, opened.pieces}, gaps[i]});
-      }
+      opened.nodes.distances(opened.parent, point_, error_, gaps);
+      for (std::size_t i = 0; i < opened.count(); ++i) open.add({opened.child(i), gaps[i]});
     }
     return 0;
   }
 
  private:
-  // Lower bound of the distance of a piece, by its offset triangle: of one that cannot be split this is much nearer to it
-  // than the set around it.
+  // Lower bound of the distance of a piece, by its offset triangle: of one that cannot be split this is much nearer to
+  // it than the set around it.
   [[nodiscard]] double gap_of(PieceId id) const {
     const OffsetTriangle& offset = workspace_.pieces()[id].offset;
     const double apart = nearest({point_, point_, point_}, offset.base).certain_distance;
@@ -175,7 +158,7 @@ class Winding {
   }
 
   // The part of the ray that matters, as a set.
-  void segment(const Vector3& direction, double length) {
+  void set_segment(const Vector3& direction, double length) {
     segment_.centre = point_ + (length / 2) * direction;
     const Vector3 unit = (1 / snug::length(direction)) * direction;
     segment_.box = {};
@@ -183,38 +166,18 @@ class Winding {
     for (std::size_t k = 0; k < 3; ++k) segment_.box.axes[0][k] = static_cast<float>(unit[k]);
   }
 
-  struct Corners {
-    Triangle points;
-    double error;
-  };
-  [[nodiscard]] Corners corners(PieceId id) const {
-    const Piece& piece = workspace_.pieces()[id];
-    Corners result{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const BoundedPoint corner = corner_point(piece.patch, k).from(piece.patch.origin);
-      result.points[k] = corner.position;
-      result.error = std::max(result.error, corner.error);
-    }
-    result.error = spatial_error(result.error);
-    return result;
-  }
-
-  [[nodiscard]] bool add_triangle(PieceId id, Ray& ray) const {
-    const Corners c = corners(id);
-    return ray.add(c.points, c.error);
+  [[nodiscard]] LimitTriangle corners(PieceId id) const {
+    return limit_triangle(workspace_.pieces()[id].patch);
   }
 
   // A split piece: its children's triangles and these have the same border as its own one.
   [[nodiscard]] bool add_fillers(Node node, Ray& ray) const {
     const PieceId id = workspace_.piece(node), first = workspace_.pieces().split(id);
-    const Corners whole = corners(id);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Corners child = corners(PieceId(first.index() + k));
-      const Point3& middle = child.points[(k + 1) % 3];
-      if (!ray.add({whole.points[k], whole.points[(k + 1) % 3], middle},
-                   std::max(whole.error, child.error))) {
-        return false;
-      }
+    const LimitTriangle whole = corners(id);
+    for (std::size_t k = 0, next = 1; k < 3; ++k, next = (k + 1) % 3) {
+      const LimitTriangle child = corners(PieceId(first.index() + k));
+      const Triangle filler{whole.corners[k], whole.corners[next], child.corners[next]};
+      if (!ray.add({filler, std::max(whole.error, child.error)})) return false;
     }
     return true;
   }
@@ -239,8 +202,7 @@ class Winding {
           continue;
         }
         for (const std::uint32_t item : tree->leaf(name & ~WideBvh::leaf_bit)) {
-          const Solid::Filler& filler = solid.fillers()[item];
-          if (!ray.add(filler.corners, filler.error)) return false;
+          if (!ray.add(solid.fillers()[item])) return false;
         }
       }
     }
@@ -256,12 +218,15 @@ class Winding {
   bool on_surface_ = false;
 };
 
-// By the first direction that decides, the shortest way out first.
+// By the first direction that decides, that away from the middle first.
 std::optional<int> along_some_ray(Winding& winding, const Vector3& from_middle) {
-  const std::size_t first = shortest_way_out(from_middle);
+  const auto nearer = [&](const Vector3& x, const Vector3& y) {
+    return dot(x, from_middle) < dot(y, from_middle);
+  };
+  auto direction = std::max_element(directions.begin(), directions.end(), nearer);
   for (std::size_t i = 0; i < directions.size() && !winding.on_surface(); ++i) {
-    if (const std::optional<int> number = winding.along(directions[(first + i) % directions.size()]))
-      return number;
+    if (const std::optional<int> number = winding.along(*direction)) return number;
+    if (++direction == directions.end()) direction = directions.begin();
   }
   return std::nullopt;
 }

@@ -16,7 +16,6 @@ namespace snug {
 ///            Depends on the point and the surface alone.
 /// Requires:  point and error in scaled units of the surface.
 /// Errors:    those of SurfaceBvh::solid().
-/// Cost:      a walk along a ray, some microseconds; more pieces are split the nearer the point is to the surface.
 /// Source:    derivations/contact.md.
 [[nodiscard]] std::optional<int> winding_number(SurfaceWorkspace& workspace, const Point3& point,
                                                 double error, const WorkMonitor& monitor = {});

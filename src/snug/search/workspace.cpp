@@ -31,12 +31,12 @@ void SurfaceWorkspace::begin() {
   }
 }
 
-std::uint32_t SurfaceWorkspace::touch(std::uint32_t node) {
+SurfaceWorkspace::Opened SurfaceWorkspace::opened(std::uint32_t node) {
   if (stamps_[node] != query_) {
     stamps_[node] = query_;
     ++touched_;
   }
-  return node;
+  return {piece_nodes_, node, true};
 }
 
 std::uint32_t SurfaceWorkspace::add_node(std::span<const PieceId> pieces) {
@@ -65,17 +65,18 @@ SurfaceWorkspace::Opened SurfaceWorkspace::open(Node node) {
       for (std::size_t i = 0; i < 4; ++i) pieces[i] = PieceId(first.index() + i);
       of_piece_[id] = add_node(std::span(pieces).first(4));
     }
-    return {touch(of_piece_[id]), true};
+    return opened(of_piece_[id]);
   }
-  const std::uint32_t name = model_->tree().nodes().name(node.child());
-  if ((name & WideBvh::leaf_bit) == 0) return {name, false};
+  const WideNodes& nodes = model_->tree().nodes();
+  const std::uint32_t name = nodes.name(node.child());
+  if ((name & WideBvh::leaf_bit) == 0) return {nodes, name, false};
   const std::size_t leaf = name & ~WideBvh::leaf_bit;
   if (of_leaf_[leaf] == none) {
     const std::span<const std::uint32_t> items = model_->tree().leaf(leaf);
     for (std::size_t i = 0; i < items.size(); ++i) pieces[i] = pieces_.root(model_->patch(items[i]));
     of_leaf_[leaf] = add_node(std::span(pieces).first(items.size()));
   }
-  return {touch(of_leaf_[leaf]), true};
+  return opened(of_leaf_[leaf]);
 }
 
 }  // namespace snug

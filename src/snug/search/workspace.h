@@ -20,13 +20,11 @@ struct Node {
   [[nodiscard]] Child child() const { return {parent, place}; }
 };
 
-/// What queries have touched of one surface: its pieces, and their boxes in nodes. One a thread.
-///
+/// What queries have touched of one surface: its pieces, and their boxes in nodes. One a thread. Dropped between two
+/// queries when it has grown beyond 256 MiB.
 /// Guarantee: a node opens to the same boxes whatever came before: no answer depends on earlier queries.
-/// Cost:      about 1 KB a piece that was touched; dropped between two queries when it has grown beyond 256 MiB.
 class SurfaceWorkspace {
  public:
-  /// Requires:  the model outlives the workspace.
   explicit SurfaceWorkspace(const SurfaceBvh& model);
 
   [[nodiscard]] const SurfaceBvh& model() const { return *model_; }
@@ -44,7 +42,7 @@ class SurfaceWorkspace {
   [[nodiscard]] bool can_open(Node node) const {
     return !node.piece || (facts_[node.parent].can_split >> node.place & 1u) != 0;
   }
-  /// Does a node open to pieces, which may have to be made?
+  /// Does a node open to pieces?
   [[nodiscard]] bool opens_to_pieces(Node node) const {
     return node.piece || (model_->tree().nodes().name(node.child()) & WideBvh::leaf_bit) != 0;
   }
@@ -52,8 +50,13 @@ class SurfaceWorkspace {
   [[nodiscard]] float radius(Node node) const { return facts_[node.parent].radii[node.place]; }
   /// What a node opens to, made if need be: the children of a node of pieces or of the tree.
   struct Opened {
+    const WideNodes& nodes;
     std::uint32_t parent;
     bool pieces;
+    [[nodiscard]] std::size_t count() const { return nodes.count(parent); }
+    [[nodiscard]] Node child(std::size_t place) const {
+      return {parent, static_cast<std::uint8_t>(place), pieces};
+    }
   };
   /// Requires:  can_open(node).
   [[nodiscard]] Opened open(Node node);
@@ -92,7 +95,7 @@ class SurfaceWorkspace {
   };
 
   std::uint32_t add_node(std::span<const PieceId> pieces);
-  std::uint32_t touch(std::uint32_t node);
+  Opened opened(std::uint32_t node);
 
   const SurfaceBvh* model_;
   PieceCache pieces_;

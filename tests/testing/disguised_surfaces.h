@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdlib>
+
+#include <gtest/gtest.h>
+#include <testing/disguises.h>
+#include <testing/scheme_surfaces.h>
+
+namespace snug::testing {
+
+/// Calls visit(surface, name, random) for surfaces of every sort of kind in every disguise, until a test fails; with other
+/// meshes once more for every 5000 placements that the environment's SNUG_PLACEMENTS asks for.
+template <class Visit>
+void for_each_disguised_surface(std::uint64_t seed, const Visit& visit) {
+  const char* const text = std::getenv("SNUG_PLACEMENTS");
+  const std::uint64_t rounds = text != nullptr ? 1 + std::strtoull(text, nullptr, 10) / 5000 : 1;
+  for (std::uint64_t round = 0; round < rounds; ++round) {
+    std::mt19937_64 random(seed + round);
+    for_each_surface(seed + round, [&](const NamedSurface& named) {
+      const auto library = std::make_shared<BoundsCache>();
+      for (const Disguise& disguise : disguises()) {
+        ControlMesh mesh = named.surface.mesh();
+        for (Point3& p : mesh.points) {
+          const oracle::Point q = disguise.change({p.x, p.y, p.z});
+          p = {q[0], q[1], q[2]};
+        }
+        const LimitSurface surface(std::move(mesh), named.surface.options(), library, 1);
+        visit(surface, named.name + ", " + disguise.name, random);
+        if (::testing::Test::HasFailure()) return;
+      }
+    });
+  }
+}
+
+}  // namespace snug::testing
