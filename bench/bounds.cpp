@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <snug/io/mesh_file.h>
-#include <snug/query/collide.h>
+#include <snug/query/pairs.h>
 #include <snug/query/subdivide.h>
 
 #include "runner.h"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <snug/query/poses.h>
+#include <snug/query/pairs.h>
 
 #include "placements.h"
 
@@ -71,13 +71,13 @@ int main(int argc, char** argv) {
         [&](const PlacedBvh& x, const PlacedBvh& y) {
           return static_cast<double>(collide(x, y, touch).verdict);
         },
-        [&](PairWorkspaces& scratches) { return collide_poses(scratches, poses, touch); });
+        [&](PairWorkspaces& scratches) { return scratches.answers(collide, poses, touch); });
     poses.resize(poses.size() / 10);
     const DistanceOptions far{.absolute = precision};
     bench_pair(
         "distance, room 3, 0.1 %: " + names, a, b, poses, options,
         [&](const PlacedBvh& x, const PlacedBvh& y) { return distance(x, y, far).distance.upper; },
-        [&](PairWorkspaces& scratches) { return distance_poses(scratches, poses, far); });
+        [&](PairWorkspaces& scratches) { return scratches.answers(distance, poses, far); });
   }
   return 0;
 }

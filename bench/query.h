@@ -4,8 +4,7 @@
 #include <optional>
 
 #include <experiments/rooms.h>
-#include <snug/query/collide.h>
-#include <snug/query/distance.h>
+#include <snug/query/pairs.h>
 #include <snug/search/workspace.h>
 
 namespace snug::bench {

@@ -13,7 +13,7 @@
 #include <experiments/quantile.h>
 #include <experiments/rooms.h>
 #include <snug/base/error.h>
-#include <snug/query/collide.h>
+#include <snug/query/pairs.h>
 #include <snug/search/workspace.h>
 
 namespace snug {

@@ -49,7 +49,7 @@ void write_enclosure(JsonWriter& json, const Enclosure<N>& piece, unsigned level
 
 void write_piece(JsonWriter& json, const LimitSurface& surface, const PieceEnclosure& piece) {
   const SchemeRules& rules = surface.rules();
-  const LimitSurface::PatchPlace place = surface.place(piece.patch);
+  const PatchPlace place = surface.place(piece.patch);
   json.begin_object();
   json.field(rules.owner(), place.owner);
   if (!rules.triangular()) json.field("part", place.part);

@@ -1,4 +1,4 @@
-#include <snug/query/signed_distance.h>
+#include <snug/query/closest.h>
 
 #include <cmath>
 

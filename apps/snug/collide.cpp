@@ -1,4 +1,4 @@
-#include <snug/query/collide.h>
+#include <snug/query/pairs.h>
 
 #include <fmt/core.h>
 

@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 #include <snug/base/names.h>
 #include <snug/mesh/validate.h>
-#include <snug/query/face_distance.h>
+#include <snug/query/bound.h>
 #include <snug/scheme/rules.h>
 
 #include "common.h"

@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 #include <snug/geometry/rounding.h>
 #include <snug/mesh.h>
-#include <snug/query/face_distance.h>
+#include <snug/query/bound.h>
 
 #include "curve.h"
 #include "mesh_counts.h"

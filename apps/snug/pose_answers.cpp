@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 #include <snug/base/error.h>
-#include <snug/query/poses.h>
+#include <snug/query/pairs.h>
 
 #include "pose_file.h"
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <optional>
 
-#include <snug/query/penetration.h>
+#include <snug/query/pairs.h>
 
 #include "placed_pair.h"
 

@@ -1,7 +1,7 @@
 #include <experiments/kdop_tree.h>
 
 #include <gtest/gtest.h>
-#include <snug/query/collide.h>
+#include <snug/query/pairs.h>
 #include <testing/patches.h>
 #include <testing/placed_points.h>
 #include <testing/placements.h>

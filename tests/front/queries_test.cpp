@@ -7,8 +7,7 @@
 
 #include <gtest/gtest.h>
 #include <snug/query/closest.h>
-#include <snug/query/collide.h>
-#include <snug/query/distance.h>
+#include <snug/query/pairs.h>
 #include <snug/search/surface_data.h>
 #include <snug/search/workspace.h>
 

@@ -16,8 +16,7 @@
 #include <snug/patch/quad_parameter.h>
 #include <snug/query/bound.h>
 #include <snug/query/closest.h>
-#include <snug/query/collide.h>
-#include <snug/query/distance.h>
+#include <snug/query/pairs.h>
 #include <snug/surface/batch_bounds.h>
 #include <snug/surface/evaluate.h>
 

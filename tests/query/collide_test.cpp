@@ -1,11 +1,10 @@
-#include <snug/query/collide.h>
+#include <snug/query/pairs.h>
 
 #include <gtest/gtest.h>
 #include <snug/base/error.h>
 #include <snug/patch/evaluate.h>
 #include <snug/query/closest.h>
 #include <snug/query/containment.h>
-#include <snug/query/distance.h>
 #include <snug/search/piece_pairs.h>
 #include <snug/search/solid.h>
 #include <testing/patches.h>

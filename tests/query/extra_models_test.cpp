@@ -2,8 +2,7 @@
 // bounded and compared with the twin.
 
 #include <snug/query/bound.h>
-#include <snug/query/collide.h>
-#include <snug/query/distance.h>
+#include <snug/query/pairs.h>
 
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>

@@ -3,8 +3,7 @@
 #include <gtest/gtest.h>
 #include <peer_fcl.h>
 #include <snug/io/mesh_file.h>
-#include <snug/query/collide.h>
-#include <snug/query/distance.h>
+#include <snug/query/pairs.h>
 #include <testing/placements.h>
 
 #include <iostream>

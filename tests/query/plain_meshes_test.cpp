@@ -4,10 +4,9 @@
 #include <gtest/gtest.h>
 #include <oracle/polyhedron_twin.h>
 #include <snug/base/error.h>
+#include <snug/query/bound.h>
 #include <snug/query/closest.h>
-#include <snug/query/collide.h>
-#include <snug/query/distance.h>
-#include <snug/query/face_distance.h>
+#include <snug/query/pairs.h>
 #include <snug/search/piece_cache.h>
 #include <snug/surface/evaluate.h>
 #include <testing/exact_triangles.h>

@@ -1,4 +1,4 @@
-#include <snug/query/poses.h>
+#include <snug/query/pairs.h>
 
 #include <gtest/gtest.h>
 #include <snug/base/error.h>
@@ -38,8 +38,8 @@ TEST_F(poses, are_answered_as_one_by_one_whatever_the_threads) {
   const DistanceOptions far{.absolute = 1e-3};
   for (const int threads : {1, 2, 3, 8}) {
     PairWorkspaces scratches(a, b, threads);
-    const std::vector<Collision> collisions = collide_poses(scratches, list, touch);
-    const std::vector<Distance> distances = distance_poses(scratches, list, far);
+    const std::vector<Collision> collisions = scratches.answers(collide, list, touch);
+    const std::vector<Distance> distances = scratches.answers(distance, list, far);
     ASSERT_EQ(collisions.size(), list.size());
     std::set<Verdict> verdicts;
     for (std::size_t i = 0; i < list.size(); ++i) {
@@ -63,7 +63,7 @@ TEST_F(poses, are_answered_as_one_by_one_whatever_the_threads) {
 
 TEST_F(poses, none_have_no_answers) {
   PairWorkspaces scratches(a, b, 2);
-  EXPECT_TRUE(collide_poses(scratches, {}, {}).empty());
+  EXPECT_TRUE(scratches.answers(collide, {}, CollideOptions{}).empty());
 }
 
 TEST_F(poses, are_asked_once_each_and_never_two_at_once_in_one_scratch) {
@@ -94,13 +94,15 @@ TEST_F(poses, an_error_ends_all) {
                                   }),
                InputError);
   EXPECT_LT(asked, 1'000'000);
-  EXPECT_THROW(static_cast<void>(collide_poses(scratches, list, {.tolerance = -1})), InputError);
+  EXPECT_THROW(static_cast<void>(scratches.answers(collide, list, CollideOptions{.tolerance = -1})),
+               InputError);
 }
 
 TEST_F(poses, stop_when_asked) {
   std::atomic<bool> stop{true};
   PairWorkspaces scratches(a, b, 2);
-  EXPECT_THROW(static_cast<void>(collide_poses(scratches, list, {}, {.on_progress = {}, .stop = &stop})),
+  EXPECT_THROW(static_cast<void>(
+                   scratches.answers(collide, list, CollideOptions{}, {.on_progress = {}, .stop = &stop})),
                Interrupted);
 }
 

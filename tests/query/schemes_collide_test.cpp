@@ -1,7 +1,7 @@
 // Verdicts for Catmull-Clark, creases, boundaries, polygons and the dual schemes against dense limit samples of the twins:
 // no pair of samples is nearer than what is called separated.
 
-#include <snug/query/collide.h>
+#include <snug/query/pairs.h>
 
 #include <gtest/gtest.h>
 #include <oracle/dual_twin.h>

@@ -6,9 +6,8 @@
 
 #include <gtest/gtest.h>
 #include <snug/mesh/split_polygon.h>
-#include <snug/query/collide.h>
-#include <snug/query/distance.h>
-#include <snug/query/face_distance.h>
+#include <snug/query/bound.h>
+#include <snug/query/pairs.h>
 #include <snug/search/workspace.h>
 #include <snug/surface/evaluate.h>
 #include <testing/cad_parts.h>

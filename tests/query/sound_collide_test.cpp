@@ -1,7 +1,7 @@
 // Verdicts against the brute-force twin, on random placements of which a third are tuned to a true distance
 // between 0.5 and 2 tolerances. SNUG_PLACEMENTS sets how many; the default keeps the test short.
 
-#include <snug/query/collide.h>
+#include <snug/query/pairs.h>
 
 #include <gtest/gtest.h>
 #include <oracle/distance_twin.h>

@@ -7,7 +7,7 @@
 // SNUG_PLACEMENTS=1 one that failed alone, and SNUG_DUMP=FOLDER writes its meshes there. SNUG_SHOW=1 names what stayed
 // undecided.
 
-#include <snug/query/collide.h>
+#include <snug/query/pairs.h>
 #include <snug/search/winding.h>
 
 #include <gtest/gtest.h>

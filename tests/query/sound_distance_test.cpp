@@ -2,7 +2,7 @@
 //
 //   SNUG_PLACEMENTS=100000 build/release/bin/tests/sound_contact_test --gtest_filter=distance.intervals_hold_the_truth
 
-#include <snug/query/distance.h>
+#include <snug/query/pairs.h>
 
 #include <gtest/gtest.h>
 #include <testing/contact_trials.h>

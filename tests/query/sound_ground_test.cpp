@@ -9,8 +9,7 @@
 
 #include <snug/base/error.h>
 #include <snug/query/closest.h>
-#include <snug/query/collide.h>
-#include <snug/query/distance.h>
+#include <snug/query/pairs.h>
 
 #include <gtest/gtest.h>
 #include <oracle/polygon_twin.h>

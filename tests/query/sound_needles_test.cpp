@@ -6,8 +6,7 @@
 // runs 4,000 of each; a placement takes some 10 ms.
 
 #include <snug/query/closest.h>
-#include <snug/query/collide.h>
-#include <snug/query/distance.h>
+#include <snug/query/pairs.h>
 
 #include <gtest/gtest.h>
 #include <testing/tagged.h>

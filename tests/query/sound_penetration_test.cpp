@@ -1,12 +1,11 @@
 // Penetration depths against brute force: supports of convex solids along dense directions; for others, translations that an
 // independent search proves to separate them, which none may be shorter than the lower bound.
 
-#include <snug/query/penetration.h>
+#include <snug/query/pairs.h>
 
 #include <gtest/gtest.h>
 #include <oracle/contact_twin.h>
 #include <snug/patch/evaluate.h>
-#include <snug/query/collide.h>
 #include <snug/query/containment.h>
 #include <snug/surface/evaluate.h>
 #include <testing/patches.h>

@@ -5,12 +5,11 @@
 //
 // asks about so many points; SNUG_FIRST=N begins with solid N.
 
-#include <snug/query/signed_distance.h>
+#include <snug/query/closest.h>
 
 #include <gtest/gtest.h>
 #include <oracle/polyhedron_twin.h>
 #include <snug/base/error.h>
-#include <snug/query/containment.h>
 #include <snug/search/solid.h>
 #include <testing/solid_cases.h>
 

@@ -5,9 +5,8 @@
 //
 // asks about so many points; SNUG_FIRST=N begins with solid N.
 
-#include <snug/query/collide.h>
-#include <snug/query/containment.h>
-#include <snug/query/distance.h>
+#include <snug/query/closest.h>
+#include <snug/query/pairs.h>
 #include <snug/search/solid.h>
 #include <snug/search/winding.h>
 

@@ -7,14 +7,6 @@
 #include <snug/surface/batch_bounds.h>
 
 namespace snug {
-namespace {
-
-PatchPlace public_place(const LimitSurface& surface, PatchId patch) {
-  const LimitSurface::PatchPlace place = surface.place(patch);
-  return {place.owner, place.part};
-}
-
-}  // namespace
 
 BoundSummary bound(const Surface& surface, const BoundOptions& options,
                    const std::function<void(const PatchEnclosure&)>& sink, const WorkMonitor& monitor) {
@@ -22,7 +14,7 @@ BoundSummary bound(const Surface& surface, const BoundOptions& options,
   return bound(
       limit, options,
       [&](const PieceEnclosure& piece) {
-        sink({public_place(limit, piece.patch), piece.path.text(),
+        sink({limit.place(piece.patch), piece.path.text(),
               piece.path.level() + (limit.after_first_split(piece.patch) ? 1 : 0), piece.corners,
               piece.offset, piece.interval});
       },
@@ -39,7 +31,7 @@ PatchBounds::PatchBounds(const Surface& surface, int threads)
     : inside_(new Inside{
           surface.data(), BatchBounds(surface.data()->limit(), surface.data()->method(), threads), {}}) {
   for (const PatchId patch : inside_->bounds.patches()) {
-    inside_->places.push_back(public_place(surface.data()->limit(), patch));
+    inside_->places.push_back(surface.data()->limit().place(patch));
   }
 }
 

@@ -4,13 +4,11 @@
 #include <snug/base/parallel.h>
 #include <snug/evaluate.h>
 #include <snug/front/workspace.h>
+#include <snug/query/bound.h>
 #include <snug/query/closest.h>
-#include <snug/query/containment.h>
-#include <snug/query/face_distance.h>
-#include <snug/query/penetration.h>
-#include <snug/query/poses.h>
-#include <snug/query/signed_distance.h>
+#include <snug/query/pairs.h>
 #include <snug/query/subdivide.h>
+#include <snug/surface/evaluate.h>
 
 /// The public queries: from handles to trees and workspaces, and nothing else.
 namespace snug {
@@ -37,8 +35,7 @@ Collision collide(const PlacedSurface& a, const PlacedSurface& b, const CollideO
 
 std::vector<Collision> collide(const Surface& a, const Surface& b, std::span<const PosePair> poses,
                                const CollideOptions& options, int threads, const WorkMonitor& monitor) {
-  PairWorkspaces workspaces(bvh(a), bvh(b), threads);
-  return collide_poses(workspaces, poses, options, monitor);
+  return PairWorkspaces(bvh(a), bvh(b), threads).answers(collide, poses, options, monitor);
 }
 
 Penetration penetration(const PlacedSurface& a, const PlacedSurface& b, const PenetrationOptions& options,
@@ -57,8 +54,7 @@ Distance distance(const PlacedSurface& a, const PlacedSurface& b, const Distance
 
 std::vector<Distance> distance(const Surface& a, const Surface& b, std::span<const PosePair> poses,
                                const DistanceOptions& options, int threads, const WorkMonitor& monitor) {
-  PairWorkspaces workspaces(bvh(a), bvh(b), threads);
-  return distance_poses(workspaces, poses, options, monitor);
+  return PairWorkspaces(bvh(a), bvh(b), threads).answers(distance, poses, options, monitor);
 }
 
 ClosestPoint closest_point(const Surface& surface, const Point3& to, const ClosestOptions& options,

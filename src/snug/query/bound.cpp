@@ -15,18 +15,16 @@
 namespace snug {
 namespace {
 
-// How well a piece is enclosed.
-struct Fit {
-  double radius;  // in mesh units
-  bool stuck;     // rounding alone makes it up: splitting does not help
-};
-
+// Returns whether rounding alone makes up the radius: then splitting does not help.
 template <std::size_t N>
-Fit enclosed(const OffsetSimplex<N>& offset, const IntervalSimplex<N>& interval, PowerOfTwo back,
-             Enclosure<N>& out) {
+bool enclose(const std::array<Vector3, N>& corners, const Point3& origin, const OffsetSimplex<N>& offset,
+             const IntervalSimplex<N>& interval, PowerOfTwo back, Enclosure<N>& out) {
+  for (std::size_t k = 0; k < N; ++k) {
+    out.corners[k] = require_representable(back.apply(origin + corners[k]));
+  }
   out.offset = unscaled(offset, back);
   out.interval = unscaled(interval, back);
-  return {out.offset.radius, offset.radius <= 2 * offset.rounding};
+  return offset.radius <= 2 * offset.rounding;
 }
 
 class SurfacePieces {
@@ -42,19 +40,16 @@ class SurfacePieces {
   }
   [[nodiscard]] unsigned level(std::size_t i) const { return surface_.after_first_split(PatchId(i)) ? 1 : 0; }
 
-  Fit fit(std::size_t i, const Patch& patch, PieceEnclosure& piece) {
-    piece.patch = PatchId(i);
+  bool enclose(std::size_t i, const Patch& patch, PieceEnclosure& out) {
+    out.patch = PatchId(i);
     const std::array<Vector3, 3> corners = limit_corners(patch);
-    for (std::size_t k = 0; k < 3; ++k) {
-      piece.corners[k] = require_representable(back_.apply(patch.origin + corners[k]));
-    }
     if (options_.method == BoundMethod::table) {
       const TableTriangle triangle = table_triangle(surface_.library().table(*patch.kind), patch);
-      return enclosed(offset_triangle(triangle), triangle.interval, back_, piece);
+      return snug::enclose(corners, patch.origin, offset_triangle(triangle), triangle.interval, back_, out);
     }
     hull_points(surface_.library(), patch, points_);
     const OffsetTriangle offset = offset_triangle(surface_.library(), points_, corners);
-    return enclosed(offset, interval_simplex(points_, corners), back_, piece);
+    return snug::enclose(corners, patch.origin, offset, interval_simplex(points_, corners), back_, out);
   }
 
  private:
@@ -75,15 +70,13 @@ class CurvePieces {
   [[nodiscard]] std::optional<CurvePiece> whole(std::size_t i) const { return curves_.piece(EdgeId(i)); }
   [[nodiscard]] unsigned level(std::size_t) const { return 0; }
 
-  Fit fit(std::size_t i, const CurvePiece& piece, CurveEnclosure& out) {
+  bool enclose(std::size_t i, const CurvePiece& piece, CurveEnclosure& out) {
     out.edge = EdgeId(i);
     const std::array<LimitPoint, 2> limits = limit_ends(piece);
     const std::array<Vector3, 2> ends{limits[0].relative, limits[1].relative};
-    for (std::size_t k = 0; k < 2; ++k) {
-      out.corners[k] = require_representable(back_.apply(piece.origin + ends[k]));
-    }
     hull_points(piece, points_);
-    return enclosed(offset_simplex(points_, ends), interval_simplex(points_, ends), back_, out);
+    return snug::enclose(ends, piece.origin, offset_simplex(points_, ends), interval_simplex(points_, ends),
+                         back_, out);
   }
 
  private:
@@ -123,17 +116,16 @@ class Bounder {
     const bool room = result_.splits < budget_ && piece.path.level() < PiecePath::max_level;
     typename Pieces::Enclosure enclosure;
     enclosure.path = piece.path;
-    const Fit fit = pieces_.fit(whole_, piece, enclosure);
-    const bool more = options_.tolerance ? fit.radius > *options_.tolerance / 2
-                                         : level_ + piece.path.level() < options_.level;
-    if (more && room && !(options_.tolerance && fit.stuck)) return visit_children(piece);
-    if (more) result_.reached = false;
-    result_.max_radius = std::max(result_.max_radius, fit.radius);
-    result_.enclosures.push_back(std::move(enclosure));
-  }
-
-  template <class Piece>
-  void visit_children(const Piece& piece) {
+    const bool stuck = pieces_.enclose(whole_, piece, enclosure);
+    const double radius = enclosure.offset.radius;
+    const bool more =
+        options_.tolerance ? radius > *options_.tolerance / 2 : level_ + piece.path.level() < options_.level;
+    if (!more || !room || (options_.tolerance && stuck)) {
+      result_.reached = result_.reached && !more;
+      result_.max_radius = std::max(result_.max_radius, radius);
+      result_.enclosures.push_back(std::move(enclosure));
+      return;
+    }
     ++result_.splits;
     monitor_.checkpoint();
     for (unsigned child = 0; child < Pieces::children; ++child) visit(split(piece, child));
@@ -152,7 +144,9 @@ template <class Pieces, class Source>
 BoundSummary bound_all(const Source& source, std::size_t all, const BoundOptions& options,
                        const std::function<void(const typename Pieces::Enclosure&)>& sink,
                        const WorkMonitor& monitor) {
-  require_sound(options);
+  require_value(!options.tolerance || (*options.tolerance > 0 && std::isfinite(*options.tolerance)),
+                "bound: the tolerance must be finite and positive; leave it out to bound whole patches");
+  require_value(options.level <= PiecePath::max_level, "bound: the level is too high; give at most 60");
   // Patches or edges worked on at once: as many as their pieces are few, so that memory stays small and threads are busy.
   constexpr std::size_t most_wholes = 1024, most_pieces = 1 << 16;
   std::size_t chunk = 1;
@@ -191,12 +185,6 @@ BoundSummary bound_all(const Source& source, std::size_t all, const BoundOptions
 }
 
 }  // namespace
-
-void require_sound(const BoundOptions& options) {
-  require_value(!options.tolerance || (*options.tolerance > 0 && std::isfinite(*options.tolerance)),
-                "bound: the tolerance must be finite and positive; leave it out to bound whole patches");
-  require_value(options.level <= PiecePath::max_level, "bound: the level is too high; give at most 60");
-}
 
 BoundSummary bound(const LimitSurface& surface, const BoundOptions& options,
                    const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include <snug/bound.h>
 #include <snug/bounds/enclosure.h>
@@ -9,10 +10,6 @@
 #include <snug/surface/limit_surface.h>
 
 namespace snug {
-
-/// Throws InputError (value) unless the tolerance, if there is one, is finite and positive, and the level at most
-/// PiecePath::max_level.
-void require_sound(const BoundOptions& options);
 
 /// What encloses one piece, in mesh units.
 template <std::size_t N>
@@ -34,10 +31,12 @@ struct CurveEnclosure : Enclosure<2> {
 /// bound() of bound.h, patches by their names in LimitSurface.
 BoundSummary bound(const LimitSurface& surface, const BoundOptions& options,
                    const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor = {});
-/// The same of all limit curves, edge by edge, pieces of one from its first end to its last.
-/// Errors:    as above; InputError (value) for tables, which curves do not have.
-/// Cost:      about a microsecond a piece.
+/// The same of all limit curves, edge by edge, pieces of one from its first end to its last. InputError (value) for tables,
+/// which curves do not have.
 BoundSummary bound(const CurveSet& curves, const BoundOptions& options,
                    const std::function<void(const CurveEnclosure&)>& sink, const WorkMonitor& monitor = {});
+
+/// limit_to_faces() of evaluate.h.
+[[nodiscard]] std::optional<double> limit_to_faces(const LimitSurface& surface, int threads = 0);
 
 }  // namespace snug

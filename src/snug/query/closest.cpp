@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <snug/base/error.h>
 #include <snug/geometry/direction.h>
@@ -10,38 +11,48 @@
 #include <snug/patch/evaluate.h>
 #include <snug/search/point_batch.h>
 #include <snug/search/precision.h>
+#include <snug/search/winding.h>
 #include <snug/surface/evaluate.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {
 namespace {
 
-// Squares of the distance, in sizes of the surface, stay well inside single precision.
-constexpr double farthest_point = 0x1p40;
 // Bounds of gaps err by some hundred roundings of coordinates.
 constexpr double noise = 0x1p-45;
 
+// A point that is asked about, in units of the surface.
+struct Asked {
+  Asked(const LimitSurface& surface, const Point3& point, const char* query) {
+    if (!is_finite(point)) {
+      throw InputError(InputProblem::value,
+                       std::string(query) + ": a coordinate of the point is not finite; give three numbers");
+    }
+    const PowerOfTwo scale = surface.scale();
+    at = scale.apply(point);
+    // Scaling loses something only where the units are far from the point's own.
+    error = scale.exact(point.x) && scale.exact(point.y) && scale.exact(point.z) ? 0 : 2 * underflow_error;
+    // Squares of its distance, in sizes of the surface, stay well inside single precision.
+    tame = max_abs(at - Point3{}) <= 0x1p40;
+  }
+
+  Point3 at;
+  double error;  // upper bound, a coordinate
+  bool tame;
+};
+
 class Query {
  public:
-  Query(SurfaceWorkspace& workspace, const Point3& to, const ClosestOptions& options,
+  Query(SurfaceWorkspace& workspace, const Asked& to, const ClosestOptions& options,
         const WorkMonitor& monitor)
       : workspace_(workspace),
         surface_(workspace.model().surface()),
-        to_(surface_.scale().apply(to)),
+        to_(to.at),
+        point_error_(to.error),
         options_(options),
         monitor_(monitor),
         bounds_(surface_.scale().apply(*options.absolute) * (1 - 2 * unit_roundoff) - underflow_error,
-                *options.relative, noise * (2 + max_abs(to_ - Point3{}))) {
-    if (!(max_abs(to_ - Point3{}) <= farthest_point)) {
-      throw InputError(InputProblem::value,
-                       "closest: a point is more than 10^12 sizes of the surface away; give closer points");
-    }
-    // Scaling a point to units of the surface loses something only where these are far from its own.
-    point_error_ =
-        surface_.scale().exact(to.x) && surface_.scale().exact(to.y) && surface_.scale().exact(to.z)
-            ? 0
-            : 2 * underflow_error;
-  }
+                *options.relative, noise * (2 + max_abs(to_ - Point3{}))) {}
 
   ClosestPoint run() {
     workspace_.begin();
@@ -136,10 +147,10 @@ class Query {
   SurfaceWorkspace& workspace_;
   const LimitSurface& surface_;
   Point3 to_;
+  double point_error_;
   const ClosestOptions& options_;
   const WorkMonitor& monitor_;
   DistanceBounds bounds_;
-  double point_error_ = 0;
   BoundedPoint closest_;
   SurfaceParameter at_{};
   std::uint64_t splits_ = 0;
@@ -149,12 +160,38 @@ class Query {
 
 ClosestPoint closest_point(SurfaceWorkspace& workspace, const Point3& to, const ClosestOptions& options,
                            const WorkMonitor& monitor) {
-  if (!is_finite(to)) {
-    throw InputError(InputProblem::value,
-                     "closest: a coordinate of the point is not finite; give three numbers");
-  }
-  const ClosestOptions wanted = with_precision(options, workspace.model().surface().size());
-  return Query(workspace, to, wanted, monitor).run();
+  const LimitSurface& surface = workspace.model().surface();
+  const Asked asked(surface, to, "closest");
+  const ClosestOptions wanted = with_precision(options, surface.size());
+  require_value(asked.tame,
+                "closest: a point is more than 10^12 sizes of the surface away; give closer points");
+  return Query(workspace, asked, wanted, monitor).run();
+}
+
+std::optional<bool> contains(SurfaceWorkspace& workspace, const Point3& point, const WorkMonitor& monitor) {
+  const SurfaceBvh& model = workspace.model();
+  const Asked asked(model.surface(), point, "contains");
+  static_cast<void>(model.solid());
+  workspace.begin();
+  if (!asked.tame) return false;
+  const std::optional<int> number = winding_number(workspace, asked.at, spatial_error(asked.error), monitor);
+  return number ? std::optional(*number != 0) : std::nullopt;
+}
+
+SignedDistance signed_distance(SurfaceWorkspace& workspace, const Point3& point,
+                               const ClosestOptions& options, const WorkMonitor& monitor) {
+  const SurfaceBvh& model = workspace.model();
+  static_cast<void>(model.solid());
+  SignedDistance answer;
+  answer.nearest = closest_point(workspace, point, options, monitor);
+  const ClosestPoint& nearest = answer.nearest;
+  const std::optional<bool> inside = contains(workspace, point, monitor);
+  answer.distance = {inside == false ? nearest.distance.lower : -nearest.distance.upper,
+                     inside == true ? -nearest.distance.lower : nearest.distance.upper};
+  answer.reached =
+      nearest.reached &&
+      (inside.has_value() || near_enough(answer.distance, with_precision(options, model.surface().size())));
+  return answer;
 }
 
 std::vector<ClosestPoint> closest_points(const SurfaceBvh& model, std::span<const Point3> to,
@@ -163,6 +200,17 @@ std::vector<ClosestPoint> closest_points(const SurfaceBvh& model, std::span<cons
   std::vector<ClosestPoint> results(to.size());
   for_each_point(model, to, threads, monitor, [&](SurfaceWorkspace& workspace, std::size_t i) {
     results[i] = closest_point(workspace, to[i], options, monitor);
+  });
+  return results;
+}
+
+std::vector<SignedDistance> signed_distances(const SurfaceBvh& model, std::span<const Point3> points,
+                                             const ClosestOptions& options, int threads,
+                                             const WorkMonitor& monitor) {
+  static_cast<void>(model.solid());
+  std::vector<SignedDistance> results(points.size());
+  for_each_point(model, points, threads, monitor, [&](SurfaceWorkspace& workspace, std::size_t i) {
+    results[i] = signed_distance(workspace, points[i], options, monitor);
   });
   return results;
 }

@@ -1,5 +1,3 @@
-#include <snug/query/collide.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -8,7 +6,7 @@
 #include <snug/base/names.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/containment.h>
-#include <snug/query/distance.h>
+#include <snug/query/pairs.h>
 #include <snug/search/crossing.h>
 #include <snug/search/pair_frames.h>
 #include <snug/search/precision.h>
@@ -16,6 +14,11 @@
 
 namespace snug {
 namespace {
+
+constexpr auto verdict_names = std::to_array<Named<Verdict>>({{"separated", Verdict::separated},
+                                                              {"within", Verdict::within},
+                                                              {"intersecting", Verdict::intersecting},
+                                                              {"undecided", Verdict::undecided}});
 
 // Attempts to prove that surfaces intersect: of surfaces that nearly lie in each other every pair looks like a crossing.
 constexpr int max_attempts = 2000, max_attempts_within = 64;
@@ -28,14 +31,8 @@ class Query {
     reach_ = frames_.length_down((options.margin + *options.tolerance) * (1 - unit_roundoff));
   }
 
-  Collision run() {
-    descend();
-    return result();
-  }
-
- private:
   // Depth first; the pair that overlaps more deeply first.
-  void descend() {
+  Collision run() {
     thread_local std::vector<NodePair> stack;
     stack.clear();
     const NodePair roots = walk_.roots();
@@ -52,20 +49,21 @@ class Query {
       }
       const PairWalk::Opening opening = walk_.opening(pair, PairWalk::Bounding::sparing);
       if (opening == PairWalk::Opening::none) {
-        unresolved_ = true;
+        incomplete_ = true;
         continue;
       }
       if (!walk_.may_open(pair, opening, options_.budget)) {
-        exhausted_ = true;
+        incomplete_ = true;
         break;
       }
       const std::size_t before = stack.size();
       lower_ = std::min(lower_, static_cast<double>(walk_.open(pair, opening, margin_, stack)));
       nearest_last(stack, before);
     }
-    exhausted_ = exhausted_ || !stack.empty();
+    return result();
   }
 
+ private:
   [[nodiscard]] bool finished() const {
     if (crossing_) return true;
     return found_ && (!options_.prove_contact || attempts_ >= max_attempts_within);
@@ -115,15 +113,10 @@ class Query {
   Collision result() {
     Collision answer;
     answer.stats = stats_;
-    if (crossing_) {
-      answer.verdict = Verdict::intersecting;
-    } else if (found_) {
-      answer.verdict = Verdict::within;
-    } else if (exhausted_ || unresolved_) {
-      answer.verdict = Verdict::undecided;
-    } else {
-      answer.verdict = Verdict::separated;
-    }
+    answer.verdict = crossing_     ? Verdict::intersecting
+                     : found_      ? Verdict::within
+                     : incomplete_ ? Verdict::undecided
+                                   : Verdict::separated;
     const PowerOfTwo back = frames_.to_mesh_units();
     // Pairs that were not looked at, or not resolved, may be as near as 0.
     const bool whole = answer.verdict == Verdict::separated;
@@ -150,43 +143,23 @@ class Query {
   Witness best_;
   int attempts_ = 0;
   bool proving_ = false;
-  bool found_ = false, crossing_ = false, exhausted_ = false, unresolved_ = false;
+  // `incomplete_`: pairs were not opened, for the budget or because they cannot be.
+  bool found_ = false, crossing_ = false, incomplete_ = false;
 };
 
-}  // namespace
-
-constexpr auto verdict_names = std::to_array<Named<Verdict>>({{"separated", Verdict::separated},
-                                                              {"within", Verdict::within},
-                                                              {"intersecting", Verdict::intersecting},
-                                                              {"undecided", Verdict::undecided}});
-
-const char* name_of(Verdict verdict) { return name_in(verdict_names, verdict); }
-
-namespace {
-
-// What the answer about two closed surfaces is for the solids that they bound. A point of one surface in the other solid is
-// a common point of both solids, whatever is known of the surfaces.
-Collision as_solids(const PlacedBvh& a, const PlacedBvh& b, Collision answer, const WorkMonitor& monitor) {
-  const Nesting found =
-      answer.verdict == Verdict::separated ? nesting(a, b, monitor) : common_point(a, b, monitor);
+// Makes of an answer about two closed surfaces that for the solids that they bound. A point of one surface in the other solid
+// is a common point of both solids, whatever is known of the surfaces.
+void make_solid(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor, Collision& answer) {
+  const bool separated = answer.verdict == Verdict::separated;
+  const Nesting found = separated ? nesting(a, b, monitor) : common_point(a, b, monitor);
   if (found.inner) {
+    found.tell(answer);
     answer.verdict = Verdict::intersecting;
-    answer.inner = found.inner;
-    answer.distance = 0;
-    answer.witness = {found.point, found.point};
-    answer.witness_error = found.error;
-    answer.at = {};
-    answer.at[*found.inner] = found.at;
-  } else if (answer.verdict == Verdict::separated && !found.certain) {
+  } else if (separated && !found.certain) {
     answer.verdict = Verdict::undecided;
     answer.distance.lower = 0;
   }
-  return answer;
 }
-
-}  // namespace
-
-namespace {
 
 Collision ask(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
               const WorkMonitor& monitor) {
@@ -199,18 +172,16 @@ Collision ask(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& opti
   Collision answer = Query(a, b, options, monitor).run();
   const bool proved = answer.verdict == Verdict::intersecting ||
                       (answer.verdict == Verdict::within && !options.prove_contact);
-  return options.solid && !proved ? as_solids(a, b, answer, monitor) : answer;
+  if (options.solid && !proved) make_solid(a, b, monitor, answer);
+  return answer;
 }
 
 // Brings the bounds of separated surfaces, which hold for their solids too, to within a factor of 2.
 void measure(const PlacedBvh& a, const PlacedBvh& b, std::uint64_t budget, const WorkMonitor& monitor,
              Collision& answer) {
-  DistanceOptions precision;
-  precision.relative = 0.5;
-  precision.budget = budget;
   Distance found;
   try {
-    found = distance(a, b, precision, monitor);
+    found = distance(a, b, {.absolute = {}, .relative = 0.5, .budget = budget}, monitor);
   } catch (const InputError& error) {
     // An upper bound that does not fit a double takes nothing from the verdict.
     if (error.problem() == InputProblem::unrepresentable) return;
@@ -226,17 +197,17 @@ void measure(const PlacedBvh& a, const PlacedBvh& b, std::uint64_t budget, const
 
 }  // namespace
 
+const char* name_of(Verdict verdict) { return name_in(verdict_names, verdict); }
+
 Collision collide(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
                   const WorkMonitor& monitor) {
   CollideOptions wanted = options;
-  if (!wanted.tolerance)
+  if (!wanted.tolerance) {
     wanted.tolerance = share_of_size(1e-3, a.model.surface().size(), b.model.surface().size());
+  }
   require_length(*wanted.tolerance, "collide: the tolerance");
   require_length(options.margin, "collide: the margin");
-  if (options.solid) {
-    static_cast<void>(a.model.solid());
-    static_cast<void>(b.model.solid());
-  }
+  if (options.solid) require_solids(a, b);
   Collision answer = ask(a, b, wanted, monitor);
   const bool measured =
       answer.distance.upper < INFINITY && answer.distance.lower >= answer.distance.upper / 2;

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/search/pair_frames.h>
@@ -16,8 +15,6 @@
 namespace snug {
 namespace {
 
-// Points farther from a surface than this, in sizes of it, are outside without a look.
-constexpr double farthest_point = 0x1p40;
 // Of each surface, patches that are asked where the surfaces may meet.
 constexpr std::size_t max_patches = 32;
 
@@ -35,27 +32,25 @@ class Asking {
       : side_{&a, &b}, frames_(a, b), monitor_(monitor) {}
 
   Nesting components() {
-    for (std::size_t s = 0; s < 2 && !found_.inner; ++s) {
-      for (const PatchId p : side_[s]->model.solid().components()) {
-        ask(s, p, {0, 0});
-        if (found_.inner) break;
-      }
-    }
-    return found_;
+    return first_inside([&](std::size_t side) { return side_[side]->model.solid().components(); }, {0, 0});
   }
-
   // Middles of patches that are deepest in the box of the other one.
   Nesting deep_patches() {
-    for (std::size_t s = 0; s < 2 && !found_.inner; ++s) {
-      for (const PatchId p : deepest(s)) {
-        ask(s, p, {1.0 / 3, 1.0 / 3});
-        if (found_.inner) break;
-      }
-    }
-    return found_;
+    return first_inside([&](std::size_t side) { return deepest(side); }, {1.0 / 3, 1.0 / 3});
   }
 
  private:
+  template <class PatchesOf>
+  Nesting first_inside(const PatchesOf& patches_of, TriangleParameter at) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      for (const PatchId p : patches_of(side)) {
+        ask(side, p, at);
+        if (found_.inner) return found_;
+      }
+    }
+    return found_;
+  }
+
   // Is a limit point of `side` in the other solid?
   void ask(std::size_t side, PatchId p, TriangleParameter at) {
     const LimitSurface& surface = side_[side]->model.surface();
@@ -73,9 +68,7 @@ class Asking {
     found_.certain = found_.certain && number.has_value();
     if (number.value_or(0) == 0) return;
     found_.inner = side;
-    const BoundedPoint point = unscaled(placed, frames_.to_mesh_units());
-    found_.point = point.position;
-    found_.error = point.error;
+    found_.point = unscaled(placed, frames_.to_mesh_units());
     found_.at = place_of(surface, p, at);
   }
 
@@ -111,32 +104,19 @@ class Asking {
 
 }  // namespace
 
-Nesting nesting(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor) {
+void require_solids(const PlacedBvh& a, const PlacedBvh& b) {
   static_cast<void>(a.model.solid());
   static_cast<void>(b.model.solid());
+}
+
+Nesting nesting(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor) {
+  require_solids(a, b);
   return Asking(a, b, monitor).components();
 }
 
 Nesting common_point(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor) {
   const Nesting found = nesting(a, b, monitor);
   return found.inner ? found : Asking(a, b, monitor).deep_patches();
-}
-
-std::optional<bool> contains(SurfaceWorkspace& scratch, const Point3& point, const WorkMonitor& monitor) {
-  if (!is_finite(point)) {
-    throw InputError(InputProblem::value,
-                     "contains: a coordinate of the point is not finite; give three numbers");
-  }
-  const PowerOfTwo scale = scratch.model().surface().scale();
-  static_cast<void>(scratch.model().solid());
-  scratch.begin();
-  const Point3 scaled = scale.apply(point);
-  if (!(max_abs(scaled - Point3{}) <= farthest_point)) return false;
-  const bool exact = scale.exact(point.x) && scale.exact(point.y) && scale.exact(point.z);
-  const std::optional<int> number =
-      winding_number(scratch, scaled, exact ? 0 : spatial_error(2 * underflow_error), monitor);
-  if (!number) return std::nullopt;
-  return *number != 0;
 }
 
 }  // namespace snug

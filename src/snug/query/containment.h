@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 
@@ -9,23 +8,35 @@
 
 namespace snug {
 
+/// Throws InputError (refused) unless both surfaces are closed.
+void require_solids(const PlacedBvh& a, const PlacedBvh& b);
+
 /// Whether a component of one closed surface lies in the solid that another one bounds.
 struct Nesting {
   /// 0: a component of A has a point in the solid of B; 1: the other way round. Nothing where none has been found.
   std::optional<std::size_t> inner;
   /// Is it certain that there is none else? Not where a point is too near to the other surface to tell.
   bool certain = true;
-  Point3 point;  ///< of the inner surface, in the outer solid; mesh units, world coordinates
-  double error =
-      0;  ///< upper bound, a coordinate, of how far `point` is from the limit point that it stands for
+  BoundedPoint point;     ///< of the inner surface, in the outer solid; mesh units, world coordinates
   SurfaceParameter at{};  ///< where it lies on the inner surface
+
+  /// What a Collision or a Distance says of two solids with this point in common.
+  /// Requires:  inner.
+  template <class Answer>
+  void tell(Answer& answer) const {
+    answer.distance = 0;
+    answer.witness = {point.position, point.position};
+    answer.witness_error = point.error;
+    answer.at = {};
+    answer.at[*inner] = at;
+    answer.inner = inner;
+  }
 };
 
 /// Asks one limit point of each component of two placed surfaces whether it lies in the other solid.
 ///
 /// Guarantee: a point that is named lies on one surface and in the solid of the other one. Surfaces that do not meet bound
 ///            solids that do not meet if `certain` and there is no `inner`.
-/// Errors:    those of SurfaceBvh::solid(); InputError if the point does not fit a double; Interrupted.
 /// Cost:      a walk along a ray for each component.
 /// Source:    derivations/contact.md, "Two solids".
 [[nodiscard]] Nesting nesting(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor = {});
@@ -36,9 +47,5 @@ struct Nesting {
 ///
 /// Guarantee: as nesting(); nothing follows where none is found.
 [[nodiscard]] Nesting common_point(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor = {});
-
-/// contains() of a surface whose tree and workspace are at hand.
-[[nodiscard]] std::optional<bool> contains(SurfaceWorkspace& scratch, const Point3& point,
-                                           const WorkMonitor& monitor = {});
 
 }  // namespace snug

@@ -1,5 +1,3 @@
-#include <snug/query/distance.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -7,11 +5,13 @@
 #include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/containment.h>
+#include <snug/query/pairs.h>
 #include <snug/search/crossing.h>
+#include <snug/search/nearest_first.h>
+#include <snug/search/outer_gap.h>
 #include <snug/search/pair_frames.h>
-#include <snug/surface/unscale.h>
-
 #include <snug/search/precision.h>
+#include <snug/surface/unscale.h>
 
 namespace snug {
 namespace {
@@ -200,21 +200,13 @@ class Query {
 Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options,
                   const WorkMonitor& monitor) {
   const DistanceOptions wanted = with_precision(options, a.model.surface().size(), b.model.surface().size());
-  if (options.solid) {
-    static_cast<void>(a.model.solid());
-    static_cast<void>(b.model.solid());
-  }
+  if (options.solid) require_solids(a, b);
   Distance answer = Query(a, b, wanted, monitor).run();
   if (!options.solid || answer.distance.upper == 0) return answer;
   const Nesting found = answer.distance.lower > 0 ? nesting(a, b, monitor) : common_point(a, b, monitor);
   if (found.inner) {
-    answer.distance = 0;
+    found.tell(answer);
     answer.reached = true;
-    answer.witness = {found.point, found.point};
-    answer.witness_error = found.error;
-    answer.at = {};
-    answer.at[*found.inner] = found.at;
-    answer.inner = found.inner;
   } else if (!found.certain) {
     answer.distance.lower = 0;
     answer.reached = near_enough(answer.distance, wanted);

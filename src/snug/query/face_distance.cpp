@@ -1,10 +1,9 @@
-#include <snug/query/face_distance.h>
-
 #include <algorithm>
 #include <array>
 #include <vector>
 
 #include <snug/geometry/rounding.h>
+#include <snug/query/bound.h>
 #include <snug/surface/batch_bounds.h>
 #include <snug/surface/unscale.h>
 

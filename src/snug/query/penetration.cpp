@@ -1,5 +1,3 @@
-#include <snug/query/penetration.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,9 +7,8 @@
 #include <snug/base/error.h>
 #include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
-#include <snug/query/collide.h>
-#include <snug/query/distance.h>
-#include <snug/query/signed_distance.h>
+#include <snug/query/closest.h>
+#include <snug/query/pairs.h>
 
 namespace snug {
 namespace {
@@ -78,19 +75,15 @@ class Search {
   [[nodiscard]] bool separated(const Vector3& d) {
     monitor_.checkpoint();
     if (!is_finite(b_.pose.offset() + d)) return false;
-    CollideOptions options;
-    options.solid = true;
-    options.budget = options_.budget;
-    options.tolerance = 0;
-    options.prove_contact = options.measure = false;
+    const CollideOptions options{
+        .tolerance = 0, .budget = options_.budget, .prove_contact = false, .solid = true, .measure = false};
     return collide(a_, moved(d), options, monitor_).verdict == Verdict::separated;
   }
-  // Keeps a shorter translation that separates.
-  bool improve(const Vector3& d) {
-    const double size = length(d);
-    if (!(size < best_.length) || !separated(d)) return false;
-    best_ = {d, size};
-    return true;
+  // How far apart the surfaces are after a translation, to shares of its length and of the distance.
+  [[nodiscard]] Distance gap_after(const Candidate& at, double share, double relative) {
+    return snug::distance(a_, moved(at.translation),
+                          {.absolute = share * at.length, .relative = relative, .budget = options_.budget},
+                          monitor_);
   }
 
   void shorten() {
@@ -142,11 +135,7 @@ class Search {
   // that is blocked, straight back.
   void descend(Candidate at) {
     for (int i = 0; i < max_descents; ++i) {
-      DistanceOptions precision;
-      precision.relative = 0.05;
-      precision.absolute = 1e-3 * at.length;
-      precision.budget = options_.budget;
-      const Distance gap = snug::distance(a_, moved(at.translation), precision, monitor_);
+      const Distance gap = gap_after(at, 1e-3, 0.05);
       const Vector3 n = normalized(gap.witness[1] - gap.witness[0]);
       if (n == Vector3{}) return;
       const double along = dot(n, at.translation) - gap.distance.lower;
@@ -166,9 +155,7 @@ class Search {
 
   // The sum of the radii of two balls around one point, each in one of the solids.
   double depth_at(const Point3& local) {
-    ClosestOptions precision;
-    precision.relative = 0.02;
-    precision.budget = options_.budget;
+    const ClosestOptions precision{.absolute = {}, .relative = 0.02, .budget = options_.budget};
     const Point3 world = a_.pose.apply(local);
     const Motion back = b_.pose.inverse();
     const Point3 other = back.apply(world);
@@ -227,11 +214,7 @@ class Search {
   // Points of A's frame that may lie in both: where the surfaces touch once they are separated, half the way back, and the
   // middles of both.
   std::vector<Point3> starts() {
-    DistanceOptions precision;
-    precision.relative = 0.1;
-    precision.absolute = 1e-2 * best_.length;
-    precision.budget = options_.budget;
-    const Distance gap = snug::distance(a_, moved(best_.translation), precision, monitor_);
+    const Distance gap = gap_after(best_, 1e-2, 0.1);
     const Motion back = a_.pose.inverse();
     const Point3 touch = gap.witness[0] - 0.5 * best_.translation;
     return {back.apply(touch), back.apply(b_.pose.apply(b_.model.ball().centre)), a_.model.ball().centre};

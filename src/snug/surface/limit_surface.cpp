@@ -101,7 +101,7 @@ LimitSurface::PatchRange LimitSurface::patches_of(std::size_t owner) const {
   return {begins_[owner], begins_[owner + 1]};
 }
 
-LimitSurface::PatchPlace LimitSurface::place(PatchId p) const {
+PatchPlace LimitSurface::place(PatchId p) const {
   if (owners_.empty()) return {p.value(), 0};
   const std::uint32_t owner = owners_[p.index()];
   return {owner, p.value() - begins_[owner]};

@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include <snug/bound.h>
 #include <snug/bounds/bounds_cache.h>
 #include <snug/geometry/scaling.h>
 #include <snug/mesh/topology.h>
@@ -63,10 +64,6 @@ class LimitSurface {
     std::size_t begin, end;
   };
   [[nodiscard]] PatchRange patches_of(std::size_t owner) const;
-  struct PatchPlace {
-    std::uint32_t owner;
-    std::uint32_t part;
-  };
   [[nodiscard]] PatchPlace place(PatchId p) const;
   /// Is the patch half a quad that the first split of its owner made? Then it lies one level down.
   [[nodiscard]] bool after_first_split(PatchId p) const { return polygon_of(p) != nullptr; }

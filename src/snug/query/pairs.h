@@ -1,0 +1,70 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <snug/distance.h>
+#include <snug/search/workspace.h>
+
+/// The questions of collide.h and distance.h about surfaces whose trees and workspaces are at hand.
+namespace snug {
+
+/// Both trees are opened from their roots on, deepest overlap first. A pair of pieces is (a) dropped once sets around them
+/// are farther apart than the margin; (b) a witness if the limit points at the nearest parameters of its base triangles are
+/// near enough, or a proof that one crosses the other; (c) else its larger piece is split, below half the tolerance too.
+[[nodiscard]] Collision collide(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
+                                const WorkMonitor& monitor = {});
+
+/// Pairs of nodes are opened, the nearest first. Limit points at the nearest parameters of base triangles bound the
+/// distance from above; planes across the direction of the nearest ones, which hold pieces' hulls apart, from below. Where
+/// pieces cut each other, contact is proved as in collide().
+[[nodiscard]] Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options,
+                                const WorkMonitor& monitor = {});
+
+/// Requires:  two workspaces.
+[[nodiscard]] Penetration penetration(const PlacedBvh& a, const PlacedBvh& b,
+                                      const PenetrationOptions& options = {},
+                                      const WorkMonitor& monitor = {});
+
+/// Workspaces of two models for many poses, one pair a thread: what a thread has found out about pieces is of use for its
+/// next pose.
+class PairWorkspaces {
+ public:
+  /// `threads`: 0 for all cores.
+  /// Requires:  the models outlive it.
+  PairWorkspaces(const SurfaceBvh& a, const SurfaceBvh& b, int threads = 0);
+
+  /// Calls ask(a, b, pose) for each pose in [0, count), on the threads, no two at once with the same pair of workspaces.
+  /// Errors:    what `ask` throws ends the loop and is thrown again, of several one.
+  using Ask = std::function<void(SurfaceWorkspace& a, SurfaceWorkspace& b, std::size_t pose)>;
+  void for_each(std::size_t count, const Ask& ask, const WorkMonitor& monitor = {});
+
+  /// What query(a, b, options, monitor), such as collide(), answers for each pose, in their order.
+  /// Guarantee: the same bits as one by one, for any number of threads.
+  template <class Answer, class Options>
+  [[nodiscard]] std::vector<Answer> answers(Answer (*query)(const PlacedBvh&, const PlacedBvh&,
+                                                            const Options&, const WorkMonitor&),
+                                            std::span<const PosePair> poses, const Options& options,
+                                            const WorkMonitor& monitor = {}) {
+    std::vector<Answer> result(poses.size());
+    const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+    for_each(
+        poses.size(),
+        [&](SurfaceWorkspace& a, SurfaceWorkspace& b, std::size_t i) {
+          result[i] = query({a.model(), a, poses[i].a}, {b.model(), b, poses[i].b}, options, stop_only);
+        },
+        monitor);
+    return result;
+  }
+
+ private:
+  struct Pair {
+    Pair(const SurfaceBvh& in_a, const SurfaceBvh& in_b) : a(in_a), b(in_b) {}
+    SurfaceWorkspace a, b;
+  };
+  std::vector<std::unique_ptr<Pair>> pairs_;
+};
+
+}  // namespace snug
