@@ -102,11 +102,11 @@ inline bool at_boundary(const Far::TopologyLevel& level, int face) {
   return std::any_of(vertices.begin(), vertices.end(), [&](int v) { return level.IsVertexBoundary(v); });
 }
 
-// Where the boundary has no rule the refiner has made holes of the faces there, as snug's `none` does; but not
-// where boundary edges were infinitely sharp before. Such a mesh is one with edge_only and all of these holes.
+// With VTX_BOUNDARY_NONE the refiner has made holes of the faces at the boundary, as snug's `none` does, except
+// where boundary edges were tagged infinitely sharp. Such a mesh is read as edge_only with all of these holes.
 inline void read_holes(const Far::TopologyLevel& level, BoundaryRule& boundary, std::vector<FaceId>& holes) {
   std::vector<FaceId> all, inner;
-  bool bounded = false;  // is a face at the boundary no hole?
+  bool bounded = false;  // has a face at the boundary a surface?
   for (int f = 0; f < level.GetNumFaces(); ++f) {
     const bool inside = !at_boundary(level, f);
     if (!level.IsFaceHole(f)) {
@@ -166,7 +166,7 @@ MeshAndOptions read_strided(const Far::TopologyRefiner& refiner, std::span<const
 
 }  // namespace detail
 
-/// The base level of a refiner with these control points as a control mesh with tags, and the rules of its
+/// The base level of a refiner, with these control points, as a control mesh with tags, and the rules of its
 /// surface:
 ///
 ///     auto [mesh, options] = snug::opensubdiv::from_refiner(refiner, points);
@@ -179,9 +179,8 @@ MeshAndOptions read_strided(const Far::TopologyRefiner& refiner, std::span<const
 ///            makes, since BoundaryRule::none makes them too; but if sharp boundary edges kept a face there,
 ///            the boundary is edge_only and all holes are tags. `mesh.tags.boundary` is `options.boundary`.
 ///            It does not matter whether and how the refiner was refined; face-varying data is not read.
-/// Requires:  a point for each vertex of the base level; further points, such as those of refined levels, are
-///            ignored.
-/// Errors:    InputError (value) on too few points. Surface refuses meshes that snug does not support.
+///            Points beyond those of the base level, such as those of refined levels, are ignored.
+/// Errors:    InputError (value) for too few points. Surface refuses meshes that snug does not support.
 /// Cost:      linear, except for sorting the creases; copies the points.
 [[nodiscard]] inline MeshAndOptions from_refiner(const OpenSubdiv::Far::TopologyRefiner& refiner,
                                                  std::span<const Point3> points) {
@@ -195,7 +194,7 @@ MeshAndOptions read_strided(const Far::TopologyRefiner& refiner, std::span<const
 /// The same for x, y, z in an array of numbers, `stride` numbers from one point to the next. To skip leading
 /// numbers, pass a subspan.
 ///
-/// Requires:  stride >= 3; values up to the z of the last base vertex.
+/// Errors:    those above, and InputError (value) for a stride below 3. Values may end at the last z.
 [[nodiscard]] inline MeshAndOptions from_refiner(const OpenSubdiv::Far::TopologyRefiner& refiner,
                                                  std::span<const float> values, std::size_t stride = 3) {
   return detail::read_strided(refiner, values, stride);

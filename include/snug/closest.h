@@ -13,17 +13,16 @@ namespace snug {
 struct ClosestOptions {
   std::optional<double> absolute{};  ///< >= 0, mesh units
   std::optional<double> relative{};  ///< >= 0
-  std::uint64_t budget = 1'000'000;  ///< largest number of splits for each point
+  std::uint64_t budget = 1'000'000;  ///< most splits for each point
 };
 
 /// A limit point close to the closest one, in mesh units.
 struct ClosestPoint {
-  Interval distance;     ///< contains that of the surface; `point` is at most its upper end away
+  Interval distance;     ///< contains the exact distance; `point` is at most its upper end away
   bool reached = false;  ///< is it as narrow as requested?
   Point3 point;
-  double point_error =
-      0;  ///< upper bound, per coordinate, of the distance between `point` and the limit point at `at`
-  SurfaceParameter at;  ///< where it lies on the surface, rounded to doubles
+  double point_error = 0;  ///< upper bound, per coordinate, of |point - limit point at `at`|
+  SurfaceParameter at;     ///< where it lies on the surface, rounded to doubles
 };
 
 /// The point of a limit surface closest to a given point.

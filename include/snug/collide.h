@@ -23,12 +23,12 @@ struct CollideOptions {
   /// surface's size.
   std::optional<double> tolerance{};
   double margin = 0;                 ///< >= 0, mesh units
-  std::uint64_t budget = 1'000'000;  ///< largest number of splits
-  bool prove_contact = true;         ///< where surfaces are within, try to prove that they intersect
+  std::uint64_t budget = 1'000'000;  ///< most splits
+  bool prove_contact = true;         ///< before returning `within`, try to prove `intersecting`
   bool solid = false;  ///< compare the solids that closed surfaces bound: one inside the other intersects it
-  /// For separated surfaces, refine `distance` until its lower end is at least half of its upper end, and
-  /// give witnesses: about ten microseconds more. Otherwise the lower end is a by-product of the search, too
-  /// small by a median factor of 2 for surfaces far apart and of 100 for close ones.
+  /// For separated surfaces, refine `distance` until its lower end is at least half its upper end, and give
+  /// witnesses: about ten microseconds more. Without it the lower end is a by-product of the search: half the
+  /// distance in the median for surfaces far apart, a hundredth of it for close ones.
   bool measure = true;
 };
 
@@ -37,11 +37,11 @@ struct SearchStats {
   std::uint64_t box_tests = 0;       ///< pairs of BVH nodes compared
   std::uint64_t triangle_tests = 0;  ///< pairs of base triangles compared
   std::uint64_t evaluations = 0;     ///< pairs of limit points evaluated
-  std::uint64_t splits = 0;          ///< pieces split, counted every time
+  std::uint64_t splits = 0;          ///< pieces split or taken from the cache already split
 };
 
-/// Parameters of the witnesses on A and on B; empty for a witness that is known as a point of the other
-/// surface only.
+/// Parameters of the witnesses on A and on B; empty where a witness has been located on the other surface
+/// only.
 using WitnessPlaces = std::array<std::optional<SurfaceParameter>, 2>;
 
 /// The answer to "do these surfaces touch?", in mesh units and world coordinates.
@@ -85,7 +85,7 @@ struct Collision {
 struct PenetrationOptions {
   /// >= 0; the search ends once the width of `depth` is at most this fraction of its upper end.
   double relative = 0.05;
-  std::uint64_t budget = 20'000;  ///< largest number of splits for each collision query of the search
+  std::uint64_t budget = 20'000;  ///< most splits for each collision query of the search
 };
 
 /// How deeply two solids penetrate: the least length of a translation of B that separates them.

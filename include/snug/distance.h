@@ -9,13 +9,13 @@ namespace snug {
 struct DistanceOptions {
   std::optional<double> absolute{};  ///< >= 0, mesh units
   std::optional<double> relative{};  ///< >= 0
-  std::uint64_t budget = 1'000'000;  ///< largest number of splits
+  std::uint64_t budget = 1'000'000;  ///< most splits
   bool solid = false;  ///< compare the solids that closed surfaces bound: 0 apart where they meet
 };
 
 /// How far apart two surfaces are, in mesh units and world coordinates.
 struct Distance {
-  Interval distance;                 ///< contains it; [0, 0] if contact is proved
+  Interval distance;                 ///< contains the distance; [0, 0] if contact is proved
   bool reached = false;              ///< is it as narrow as requested?
   std::array<Point3, 2> witness;     ///< the two closest points found, on A and on B
   double witness_error = 0;          ///< as in Collision
@@ -26,8 +26,8 @@ struct Distance {
 
 /// The distance of two placed limit surfaces.
 ///
-/// Guarantee: `distance` contains it for the given doubles, whether the precision is reached or not. The
-///            result depends on the input alone, not on threads or earlier queries.
+/// Guarantee: `distance` contains the exact distance for the given doubles, whether the precision is reached
+///            or not. The result depends on the input alone, not on threads or earlier queries.
 /// Errors:    InputError: (value) for a precision that is negative or not finite; (unrepresentable) if a
 ///            result does not fit a double; (refused) if no face of a mesh has a limit surface, and with
 ///            `solid` if a surface is not closed. Interrupted.

@@ -8,10 +8,10 @@
 
 namespace snug {
 
-/// What a caller or a file got wrong; it decides the exit status of the command.
+/// What is wrong with an input.
 enum class InputProblem {
   unreadable,       ///< a file that cannot be opened, read, written or parsed
-  refused,          ///< a mesh that is well formed but that snug does not support
+  refused,          ///< a mesh that is defective or not supported
   pose,             ///< a transform that is not rigid, mirrors, or is not finite
   value,            ///< a point, tolerance, parameter or option that is not finite or out of its range
   unrepresentable,  ///< a result that does not fit a double

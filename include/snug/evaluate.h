@@ -24,7 +24,7 @@ struct SurfacePoint : BoundedPoint {
 /// Guarantee: `error` and `normal_error` are upper bounds. Tangents are in double precision, without a bound.
 /// Errors:    InputError: (value) if the surface has no such owner, corner or parameter, NaN included;
 ///            (unrepresentable) if a coordinate does not fit a double.
-/// Cost:      about a microsecond for one point, far less for each of many.
+/// Cost:      about a microsecond for one point, far less per point in a batch.
 [[nodiscard]] SNUG_API SurfacePoint evaluate(const Surface& surface, const SurfaceParameter& at);
 /// The same for many points, in the same order; results do not depend on threads.
 [[nodiscard]] SNUG_API std::vector<SurfacePoint> evaluate(const Surface& surface,
@@ -41,8 +41,8 @@ struct SurfaceNormal {
 [[nodiscard]] SNUG_API std::optional<SurfaceNormal> normal_at(const PlacedSurface& surface,
                                                               const SurfaceParameter& at);
 
-/// How far the limit surface may be from the faces of its control mesh, in mesh units: the loss when facets
-/// are used as a control mesh.
+/// How far the limit surface may be from the faces of its control mesh, in mesh units: the error of using
+/// facets as a control mesh.
 ///
 /// Guarantee: every limit point of a face is at most this far from the convex hull of the face's corners,
 ///            rounding included. A triangle is its own hull, and so is a planar convex polygon. 0 if every

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <limits>
 
-/// Points and sets as plain values. Arithmetic on them is private to the library, because its error bounds
-/// rely on how the library is compiled.
+/// Points and sets as plain values. Arithmetic on them is private to the library, since its error bounds
+/// depend on how it is compiled.
 namespace snug {
 
 /// A displacement. Points and vectors are different types: two points cannot be added by accident.
@@ -31,8 +31,7 @@ struct Point3 {
 /// A position that was computed, and how far it is from the exact one.
 struct BoundedPoint {
   Point3 position;
-  double error =
-      0;  ///< upper bound, a coordinate, of |position - exact|, rounding of the coordinates included
+  double error = 0;  ///< upper bound, per coordinate, of |position - exact|, rounding included
 };
 
 using Segment = std::array<Point3, 2>;
@@ -59,18 +58,17 @@ struct Box3 {
   [[nodiscard]] constexpr bool empty() const { return lower.x > upper.x; }
 };
 
-/// All points within `radius` of a triangle or a segment. Others call it a triangle-swept sphere and a line-swept sphere.
+/// All points within `radius` of a triangle or a segment; also called a triangle-swept or line-swept sphere.
 template <std::size_t N>
 struct OffsetSimplex {
   std::array<Point3, N> base;
   double radius = 0;
-  double rounding =
-      0;  ///< the part of the radius that accounts for rounding; splitting does not make it smaller
+  double rounding = 0;  ///< the part of the radius that is due to rounding; splitting does not reduce it
 };
 using OffsetTriangle = OffsetSimplex<3>;
 using OffsetSegment = OffsetSimplex<2>;
 
-/// Convex combinations of N boxes ("interval points"): sum l_k b_k with b_k in corner k's box, l_k >= 0, sum l_k = 1.
+/// The convex hull of N boxes, one for each corner of a triangle or end of a segment.
 template <std::size_t N>
 struct IntervalSimplex {
   std::array<Box3, N> corner;

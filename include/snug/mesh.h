@@ -14,7 +14,7 @@
 
 namespace snug {
 
-/// A typed index: indices of different kinds cannot be compared or mixed up.
+/// A typed index: a vertex index cannot be mixed up with a face index.
 template <class Tag>
 class Id {
  public:
@@ -38,9 +38,9 @@ using PolylineId = Id<struct PolylineTag>;
 enum class Scheme : std::uint8_t {
   loop,       ///< triangles
   catmark,    ///< Catmull-Clark: faces of any size
-  doo_sabin,  ///< dual: a patch a vertex
+  doo_sabin,  ///< dual: patches belong to vertices
   midedge,    ///< dual
-  bilinear,   ///< quads bilinear, other faces after a split into quads, as OpenSubdiv's
+  bilinear,   ///< quads are bilinear patches, other faces are first split into quads, as in OpenSubdiv
   flat,       ///< triangles as they are
 };
 [[nodiscard]] SNUG_API const char* name_of(Scheme scheme);
@@ -70,7 +70,7 @@ struct CornerTag {
   double sharpness;
 };
 
-/// Rules that a file attaches to parts of its mesh. They are read and written without change.
+/// Rules that a file attaches to its mesh or to elements of it. They are read and written unchanged.
 struct MeshTags {
   std::vector<CreaseTag> creases;
   std::vector<CornerTag> corners;
@@ -127,8 +127,8 @@ struct ReadOptions {
 };
 
 /// Reads a control mesh. The extension selects the format: .obj, .off, .ply or .stl, in upper or lower case.
-/// Standard input ("-") and files without an extension are recognised as PLY or OFF by their first bytes, and
-/// else read as OBJ.
+/// Standard input ("-") and files without an extension are recognised as PLY or OFF by their first bytes;
+/// otherwise they are read as OBJ.
 ///
 /// Notes:     those of the parser, and one line about what was welded.
 /// Errors:    InputError: (unreadable) for a file that cannot be read or parsed, naming the line; those of
@@ -140,14 +140,15 @@ struct ReadOptions {
 ///
 /// Notes:     one line for tags and one for polylines that the format cannot hold, and those of the format's
 ///            writer.
-/// Errors:    InputError (unreadable) for another extension, or if the file cannot be written. Interrupted.
+/// Errors:    InputError: (unreadable) for another extension, or if the file cannot be written; (refused) if
+///            the format cannot hold the faces, such as STL those that are not triangles. Interrupted.
 SNUG_API void write_mesh(const ControlMesh& mesh, const std::string& path, const Notes& notes = {},
                          const WorkMonitor& monitor = {});
 
 /// What weld() did to a mesh.
 struct Welded {
-  std::size_t vertices = 0;  ///< vertices merged into an earlier one
-  double farthest = 0;  ///< the largest distance of such a vertex from the earlier one, in double precision
+  std::size_t vertices = 0;   ///< vertices merged into an earlier one
+  double farthest = 0;        ///< the largest distance of such a vertex from the earlier one
   std::size_t shortened = 0;  ///< faces that lost corners and still have at least three different ones
   std::size_t dropped = 0;    ///< faces that were removed, with fewer than three left
 };
@@ -180,16 +181,16 @@ struct Sharpened {
   std::size_t flat_regions = 0;
   /// Curved regions that stay faceted, because all their vertices are corners.
   std::size_t fixed_regions = 0;
-  /// Non-convex faces of both that were split into triangles.
+  /// Non-convex faces of flat and fixed regions that were split into triangles.
   std::size_t split_faces = 0;
-  /// Faces of both that cross or touch themselves and could not be split: only their limit may leave the
-  /// polygon.
+  /// Faces of these regions that cross or touch themselves and could not be split. Their limit surface may
+  /// leave the polygon.
   std::size_t crossed_faces = 0;
   /// For each face that splitting appended: the face that it was a part of.
   std::vector<FaceId> parts_of;
 };
 
-/// Tags sharp edges by angle, for parts from CAD, whose faces are the shape that is meant.
+/// Tags sharp edges by angle, for parts from CAD, whose facets are the intended shape.
 ///
 /// - An edge of two faces whose normals differ by more than `angle` degrees becomes an infinitely sharp
 ///   crease. Boundary edges and non-manifold ones are sharp by rule and get no tag.
@@ -215,7 +216,7 @@ struct Sharpened {
 ///            are sharp is decided in double precision and may depend on rounding; the limit surface of the
 ///            resulting tags does not. Existing tags are kept, and new ones, which take precedence, are
 ///            appended. Positions do not change. Faces keep their numbers.
-/// Requires:  nothing; but dual schemes have no creases, and the tags change nothing there.
+///            Dual schemes ignore the tags.
 /// Errors:    InputError (value) unless 0 <= angle < 180.
 /// Cost:      linear, times the logarithm of the largest valence; splitting is quadratic in the corners of a
 ///            face. A mesh with faces of fewer than three vertices, references to missing vertices or

@@ -7,10 +7,10 @@
 
 namespace snug {
 
-/// How long-running work reports progress and is stopped. Both members are optional. As thread-safe as the
-/// callback.
+/// How long-running work reports progress and is stopped. Both members are optional.
 struct WorkMonitor {
-  /// Called with the fraction done, in [0, 1], at most a few thousand times.
+  /// Called with the fraction done, in [0, 1], at most a few thousand times. Must be thread-safe: several
+  /// threads may call it at once.
   std::function<void(double)> on_progress;
   /// Set from elsewhere, such as a signal handler, to stop the work.
   const std::atomic<bool>* stop = nullptr;

@@ -52,8 +52,7 @@ class SNUG_API Motion {
   /// by the nearest rigid transform, so chains of any length stay rigid.
   /// Errors:    InputError (pose) if t does not fit a double.
   SNUG_API friend Motion operator*(const Motion& a, const Motion& b);
-  /// The inverse: inverse() * motion is the identity up to a few roundings, or up to 2 defect() if the exact
-  /// inverse is not rigid within the tolerance.
+  /// Up to a few roundings, or up to 2 defect() if the exact inverse is not rigid within the tolerance.
   [[nodiscard]] Motion inverse() const;
 
   friend bool operator==(const Motion&, const Motion&) = default;

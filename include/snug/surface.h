@@ -33,7 +33,7 @@ struct SurfaceOptions {
 };
 
 /// The limit surface of a control mesh: a handle that is cheap to copy. The surface never changes and lives
-/// as long as any handle or running query needs it. Any number of threads may use it at once.
+/// as long as any handle to it. Any number of threads may use it at once.
 ///
 /// Cost:      linear in the mesh. The first query also builds a BVH, 0.3 microseconds a patch.
 class SNUG_API Surface {
@@ -92,8 +92,8 @@ struct SurfaceParameter {
   double u = 0, v = 0;
 };
 
-/// A cache of what queries worked out about surfaces: split pieces and their bounds. It makes later queries
-/// on the same surfaces several times faster and never changes an answer. For one thread at a time.
+/// A cache of split pieces and their bounds, filled by queries. It makes later queries on the same surfaces
+/// several times faster and never changes an answer. For one thread at a time.
 ///
 /// Guarantee: memory is bounded: beyond max_bytes() the least recently used entries are dropped. It does not
 ///            keep surfaces alive; entries of surfaces that are gone are dropped eventually.
@@ -110,6 +110,7 @@ class SNUG_API Workspace {
   [[nodiscard]] std::size_t bytes() const;
   /// 512 MiB. A single query may exceed it.
   [[nodiscard]] static std::size_t max_bytes();
+  /// Drops all entries.
   void clear();
 
   /// For internal use.
