@@ -1,4 +1,4 @@
-// Encloses the limit surface of a control mesh and says how tightly.
+// Encloses the limit surface of a control mesh and prints the number and size of the enclosures.
 //
 //   01_bound_a_mesh MESH
 
@@ -14,9 +14,8 @@ int main(int argc, char** argv) {
   }
   try {
     const snug::Surface surface = snug::load(argv[1]);
-    snug::BoundOptions options;
-    options.tolerance = 0.01 * surface.size();
-    const snug::BoundSummary summary = snug::bound(surface, options, [](const snug::PatchEnclosure&) {});
+    const auto ignore = [](const snug::PatchEnclosure&) {};
+    const snug::BoundSummary summary = snug::bound(surface, {.tolerance = 0.01 * surface.size()}, ignore);
     std::printf("%zu faces: %llu offset triangles contain the surface, largest radius %g\n",
                 surface.mesh().face_count(), static_cast<unsigned long long>(summary.count),
                 summary.max_radius);

@@ -1,4 +1,4 @@
-// Encloses the limit surface of a mesh whose control points move and whose connectivity stays, frame by frame.
+// Encloses the limit surface of a mesh whose control points move, frame by frame.
 //
 //   03_follow_a_moving_mesh MESH
 
@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
   }
   try {
     const snug::Surface surface = snug::load(argv[1]);
-    // What connectivity decides is done here, once.
+    // Everything that depends on connectivity alone is done here, once.
     snug::PatchBounds bounds(surface);
     std::vector<snug::OffsetTriangle> triangles(bounds.patches().size());
 

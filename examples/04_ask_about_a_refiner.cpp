@@ -17,7 +17,7 @@ namespace Sdc = OpenSubdiv::Sdc;
 
 namespace {
 
-// An octahedron with the rules of Loop, as a user of OpenSubdiv makes it.
+// An octahedron with Loop subdivision, made as in any program that uses OpenSubdiv.
 std::unique_ptr<Far::TopologyRefiner> make_refiner() {
   const std::vector<int> sizes(8, 3);
   const int corners[] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
@@ -44,12 +44,12 @@ int main() {
     auto [mesh, options] = snug::opensubdiv::from_refiner(*refiner, points);
     const snug::Surface surface(std::move(mesh), options);
 
-    snug::BoundOptions wanted;
-    wanted.tolerance = 0.001 * surface.size();
     snug::Box3 box;  // of all enclosures: proved to contain the limit surface
-    const snug::BoundSummary summary = snug::bound(surface, wanted, [&](const snug::PatchEnclosure& piece) {
+    const auto add_to_box = [&](const snug::PatchEnclosure& piece) {
       for (const snug::Box3& corner : piece.interval.corner) box.add(corner);
-    });
+    };
+    const snug::BoundSummary summary =
+        snug::bound(surface, {.tolerance = 0.001 * surface.size()}, add_to_box);
     std::printf("%zu faces: %llu enclosures contain the surface; its x lies between %g and %g\n",
                 surface.mesh().face_count(), static_cast<unsigned long long>(summary.count), box.lower.x,
                 box.upper.x);

@@ -1,4 +1,4 @@
-// Takes control points from an Eigen matrix and gives closest points back as one, without conversions in between.
+// Maps control points, query points and closest points as Eigen matrices, without copies.
 //
 //   05_with_eigen MESH
 
@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    // The mesh, moved to the origin and scaled to size 1.
+    // Move the mesh to the origin and scale it to size 1.
     snug::ControlMesh mesh = snug::read_mesh(argv[1]);
     Eigen::Map<Eigen::Matrix3Xd> vertices = columns(mesh.points);
     const Eigen::Vector3d lower = vertices.rowwise().minCoeff(), upper = vertices.rowwise().maxCoeff();
@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
     vertices /= (upper - lower).maxCoeff();
     const snug::Surface surface(std::move(mesh));
 
-    // Points around it, and the limit points closest to them.
+    // Random points around it, and the limit points closest to them.
     std::vector<snug::Point3> probes(1000);
     columns(probes).setRandom();
     const std::vector<snug::ClosestPoint> answers = snug::closest_points(surface, probes, {.relative = 1e-6});
