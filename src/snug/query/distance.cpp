@@ -7,7 +7,6 @@
 #include <snug/query/containment.h>
 #include <snug/query/pairs.h>
 #include <snug/search/crossing.h>
-#include <snug/search/outer_gap.h>
 #include <snug/search/pair_frames.h>
 #include <snug/search/precision.h>
 #include <snug/surface/unscale.h>
