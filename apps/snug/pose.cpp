@@ -28,8 +28,8 @@ std::vector<std::string> words_of(const std::string& text) {
 
 double number_of(const std::string& word, const std::string& option) {
   const ParsedReal number = parse_real(word);
-  if (number.fault != NumberFault::none) {
-    throw UsageError(fmt::format("{}: '{}' {}", option, word, describe(number.fault)));
+  if (!number.fault.empty()) {
+    throw UsageError(fmt::format("{}: '{}' {}", option, word, number.fault));
   }
   return number.value;
 }

@@ -99,8 +99,8 @@ class JsonLine {
     static_cast<void>(peek());
     const std::string_view word = rest_.substr(0, std::min(rest_.find_first_of(",]} \t\r"), rest_.size()));
     const ParsedReal parsed = parse_real(word);
-    if (parsed.fault != NumberFault::none) {
-      fail(fmt::format("'{}' {}; {}", word.substr(0, 40), describe(parsed.fault), forms));
+    if (!parsed.fault.empty()) {
+      fail(fmt::format("'{}' {}; {}", word.substr(0, 40), parsed.fault, forms));
     }
     rest_.remove_prefix(word.size());
     return parsed.value;
@@ -167,9 +167,9 @@ ReadPoses parse_pose_line(std::string_view text, bool nearest_rigid) {
     if (begin == std::string_view::npos) break;
     const auto end = std::min(text.find_first_of(" ,\t\r", begin), text.size());
     const ParsedReal number = parse_real(text.substr(begin, end - begin));
-    if (number.fault != NumberFault::none) {
+    if (!number.fault.empty()) {
       fail(fmt::format("'{}' {}; {}", text.substr(begin, std::min<std::size_t>(end - begin, 40)),
-                       describe(number.fault), forms));
+                       number.fault, forms));
     }
     numbers.push_back(number.value);
     text.remove_prefix(end);

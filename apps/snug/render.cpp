@@ -69,7 +69,7 @@ std::optional<std::array<double, count>> parse_numbers(std::string_view text) {
   for (auto begin = text.find_first_not_of(blanks); begin != std::string_view::npos;) {
     const auto end = std::min(text.find_first_of(blanks, begin), text.size());
     const ParsedReal number = parse_real(text.substr(begin, end - begin));
-    if (number.fault != NumberFault::none || found == count) return {};
+    if (!number.fault.empty() || found == count) return {};
     numbers[found++] = number.value;
     begin = text.find_first_not_of(blanks, end);
   }

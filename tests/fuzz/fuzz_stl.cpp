@@ -1,5 +1,6 @@
 #include <snug/io/stl.h>
 #include <snug/mesh/weld.h>
+#include <testing/written_forms.h>
 
 #include "claims.h"
 
@@ -9,7 +10,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::read_or_refuse(
       data, size, [](std::string_view bytes) { return parse_stl(bytes, "input"); },
       [](const ControlMesh& mesh) {
-        fuzz::claim_same(mesh, parse_stl(format_stl(mesh, "written", StlFormat::ascii), "written"));
+        fuzz::claim_same(mesh, parse_stl(testing::ascii_stl(mesh), "written"));
         // Rounding to floats may weld vertices, but only once.
         const ControlMesh rounded = parse_stl(format_stl(mesh, "written"), "written");
         fuzz::claim_same(rounded, parse_stl(format_stl(rounded, "written"), "written"));

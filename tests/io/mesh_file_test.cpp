@@ -9,6 +9,7 @@
 #include <snug/io/obj.h>
 #include <snug/io/off.h>
 #include <snug/io/ply.h>
+#include <testing/written_forms.h>
 
 #include "io_testing.h"
 
@@ -89,7 +90,7 @@ TEST(mesh_file, tells_the_formats_of_files_without_ending_apart) {
   const TemporaryFolder folder;
   put(folder / "plain", format_off(creased_triangle()));
   expect_same_arrays(creased_triangle(), read_mesh(folder / "plain"));
-  put(folder / "binary", format_ply(creased_triangle(), PlyFormat::binary_big_endian));
+  put(folder / "binary", testing::big_endian_ply(creased_triangle()));
   expect_same_arrays(creased_triangle(), read_mesh(folder / "binary"));
 }
 

@@ -13,17 +13,23 @@
 namespace snug {
 namespace {
 
+constexpr std::string_view none,
+    not_a_number = "is not a number", not_finite = "is not a finite number",
+    too_large = "is too large for a double",
+    decimal_comma = "is not a number: write a decimal point instead of the comma",
+    hexadecimal = "is a hexadecimal number: write it in decimal";
+
 using Limits = std::numeric_limits<double>;
 
 void expect_round_trip(double value) {
   std::string text;
   append_real(text, value);
   const ParsedReal parsed = parse_real(text);
-  ASSERT_EQ(parsed.fault, NumberFault::none) << text;
+  ASSERT_EQ(parsed.fault, none) << text;
   ASSERT_EQ(std::bit_cast<std::uint64_t>(parsed.value), std::bit_cast<std::uint64_t>(value)) << text;
 }
 
-NumberFault fault(std::string_view word) { return parse_real(word).fault; }
+std::string_view fault(std::string_view word) { return parse_real(word).fault; }
 
 TEST(number, random_bit_patterns_round_trip) {
   std::mt19937_64 random(20240501);
@@ -57,9 +63,9 @@ TEST(number, random_decimals_are_read_as_the_nearest_double) {
     const double expected = std::strtod(word.c_str(), nullptr);
     const ParsedReal parsed = parse_real(word);
     if (std::isinf(expected)) {
-      ASSERT_EQ(parsed.fault, NumberFault::too_large) << word;
+      ASSERT_EQ(parsed.fault, too_large) << word;
     } else {
-      ASSERT_EQ(parsed.fault, NumberFault::none) << word;
+      ASSERT_EQ(parsed.fault, none) << word;
       ASSERT_EQ(std::bit_cast<std::uint64_t>(parsed.value), std::bit_cast<std::uint64_t>(expected)) << word;
     }
   }
@@ -75,7 +81,7 @@ TEST(number, halfway_cases_go_to_even) {
 
 TEST(number, too_small_becomes_a_zero_of_the_same_sign) {
   for (const std::string word : {"1e-400", "0.0000001e-320", "123456789e-400", "1e-99999999999999999999"}) {
-    EXPECT_EQ(fault(word), NumberFault::none) << word;
+    EXPECT_EQ(fault(word), none) << word;
     EXPECT_EQ(std::bit_cast<std::uint64_t>(parse_real(word).value), 0u) << word;
     EXPECT_TRUE(std::signbit(parse_real("-" + word).value)) << word;
   }
@@ -83,17 +89,17 @@ TEST(number, too_small_becomes_a_zero_of_the_same_sign) {
 
 TEST(number, zeros_with_any_exponent_are_zero) {
   for (const char* word : {"0e400", "0.000e99999999999999999999", "0e-400", "-0"}) {
-    EXPECT_EQ(fault(word), NumberFault::none) << word;
+    EXPECT_EQ(fault(word), none) << word;
     EXPECT_EQ(parse_real(word).value, 0.0) << word;
   }
 }
 
 TEST(number, too_large_is_a_fault) {
   for (const char* word : {"1e400", "-1e400", "+1e400", "1.8e308", "0.00001e400", "1e99999999999999999999"}) {
-    EXPECT_EQ(fault(word), NumberFault::too_large) << word;
+    EXPECT_EQ(fault(word), too_large) << word;
   }
-  EXPECT_EQ(fault(std::string(400, '9')), NumberFault::too_large);
-  EXPECT_EQ(fault("1.7976931348623157e308"), NumberFault::none);
+  EXPECT_EQ(fault(std::string(400, '9')), too_large);
+  EXPECT_EQ(fault("1.7976931348623157e308"), none);
 }
 
 TEST(number, usual_spellings_are_read) {
@@ -107,18 +113,18 @@ TEST(number, usual_spellings_are_read) {
 TEST(number, what_is_not_finite_is_named_so) {
   for (const char* word :
        {"nan", "NaN", "-nan", "+nan(0x1)", "inf", "-inf", "INF", "Infinity", "-1.#IND", "1.#QNAN"}) {
-    EXPECT_EQ(fault(word), NumberFault::not_finite) << word;
+    EXPECT_EQ(fault(word), not_finite) << word;
   }
 }
 
 TEST(number, other_faults_are_told_apart) {
-  EXPECT_EQ(fault("0x1p3"), NumberFault::hexadecimal);
-  EXPECT_EQ(fault("-0X1"), NumberFault::hexadecimal);
-  EXPECT_EQ(fault("1,5"), NumberFault::decimal_comma);
-  EXPECT_EQ(fault("-1,5e3"), NumberFault::decimal_comma);
+  EXPECT_EQ(fault("0x1p3"), hexadecimal);
+  EXPECT_EQ(fault("-0X1"), hexadecimal);
+  EXPECT_EQ(fault("1,5"), decimal_comma);
+  EXPECT_EQ(fault("-1,5e3"), decimal_comma);
   for (const char* word :
        {"", "+", "-", ".", "e5", "1e", "1e+", "+-1", "--1", "1.2.3", "1 ", " 1", "1d5", "one", ","}) {
-    EXPECT_EQ(fault(word), NumberFault::not_a_number) << word;
+    EXPECT_EQ(fault(word), not_a_number) << word;
   }
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <snug/io/binary.h>
+#include <testing/written_forms.h>
 
 #include "io_testing.h"
 
@@ -14,10 +15,12 @@ namespace {
 
 using testing::corners;
 using testing::expect_same_arrays;
+using testing::ply_of;
+using testing::PlyForm;
 using testing::unreadable;
 using Ids = std::vector<std::uint32_t>;
 
-constexpr std::array formats{PlyFormat::ascii, PlyFormat::binary_little_endian, PlyFormat::binary_big_endian};
+constexpr std::array formats{PlyForm::ascii, PlyForm::little_endian, PlyForm::big_endian};
 
 ControlMesh parse(const std::string& bytes) { return parse_ply(bytes, "mesh.ply"); }
 std::string message(const std::string& bytes) {
@@ -113,7 +116,7 @@ TEST(ply, each_type_of_coordinate_gives_its_number) {
 TEST(ply, written_doubles_are_read_bit_by_bit) {
   for (const std::size_t most_corners : {7, 300}) {  // counted by bytes, and not
     const ControlMesh mesh = random_mesh(5000, most_corners);
-    for (const PlyFormat format : formats) expect_same_arrays(mesh, parse(format_ply(mesh, format)));
+    for (const PlyForm format : formats) expect_same_arrays(mesh, parse(ply_of(mesh, format)));
   }
 }
 
@@ -122,8 +125,8 @@ TEST(ply, binary_bytes_that_look_like_line_ends_are_kept) {
   const double newlines = std::bit_cast<double>(0x0A0D0A0D0A0D0A0D);
   mesh.points = {{newlines, newlines, newlines}, {1, 0, 0}, {0, 1, 0}};
   mesh.add_face(std::vector{VertexId(0), VertexId(1), VertexId(2)});
-  for (const PlyFormat format : formats) {
-    std::string file = format_ply(mesh, format);
+  for (const PlyForm format : formats) {
+    std::string file = ply_of(mesh, format);
     expect_same_arrays(mesh, parse(file));
     const std::size_t end = file.find("end_header\n") + 11;
     for (const std::string line_end : {"\r\n", "\r"}) {
@@ -218,9 +221,9 @@ TEST(ply, headers_that_announce_without_end_are_refused) {
 
 TEST(ply, every_truncation_is_refused) {
   const ControlMesh mesh = parse(head + vertices + faces);
-  for (const PlyFormat format : formats) {
-    const std::string file = format_ply(mesh, format);
-    const std::size_t end = format == PlyFormat::ascii ? file.size() - 2 : file.size();
+  for (const PlyForm format : formats) {
+    const std::string file = ply_of(mesh, format);
+    const std::size_t end = format == PlyForm::ascii ? file.size() - 2 : file.size();
     for (std::size_t size = 0; size < end; ++size) {
       EXPECT_FALSE(message(file.substr(0, size)).empty()) << size;
     }
@@ -231,7 +234,7 @@ TEST(ply, flipped_bytes_are_read_or_refused) {
   const ControlMesh plain = parse(head + vertices + faces);
   std::mt19937_64 random(5);
   for (int i = 0; i < 20'000; ++i) {
-    std::string bent = format_ply(plain, formats[random() % 3]);
+    std::string bent = ply_of(plain, formats[random() % 3]);
     for (std::size_t k = 0; k <= random() % 3; ++k)
       bent[random() % bent.size()] = static_cast<char>(random());
     try {

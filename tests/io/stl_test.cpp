@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <snug/io/binary.h>
+#include <testing/written_forms.h>
 
 #include "io_testing.h"
 
@@ -96,14 +97,12 @@ TEST(stl, binary_files_hold_the_nearest_floats_and_normals) {
   const ControlMesh mesh = mesh_of({{0, 0, 0}, {0.1, 0, 0}, {0, 0, 0.1}}, {{0, 1, 2}});
   std::vector<std::string> lines;
   const std::string file =
-      format_stl(mesh, "out.stl", StlFormat::binary, [&](const std::string& line) { lines.push_back(line); });
+      format_stl(mesh, "out.stl", [&](const std::string& line) { lines.push_back(line); });
   EXPECT_EQ(lines, (std::vector<std::string>{"out.stl: coordinates are rounded to single precision"}));
   EXPECT_EQ(facet_floats(file, 0), (std::vector<float>{0, -1, 0, 0, 0, 0, 0.1f, 0, 0, 0, 0, 0.1f}));
   lines.clear();
   const ControlMesh again = parse(file);
-  EXPECT_EQ(format_stl(again, "out.stl", StlFormat::binary,
-                       [&](const std::string& line) { lines.push_back(line); }),
-            file);
+  EXPECT_EQ(format_stl(again, "out.stl", [&](const std::string& line) { lines.push_back(line); }), file);
   EXPECT_TRUE(lines.empty());
 }
 
@@ -130,7 +129,7 @@ TEST(stl, ascii_files_keep_doubles_bit_by_bit) {
   for (std::size_t v = 0; v < mesh.vertex_count(); v += 3) {
     mesh.add_face(std::vector{VertexId(v), VertexId(v + 1), VertexId(v + 2)});
   }
-  expect_same_arrays(mesh, parse(format_stl(mesh, "out.stl", StlFormat::ascii)));
+  expect_same_arrays(mesh, parse(testing::ascii_stl(mesh)));
 }
 
 TEST(stl, writing_refuses_what_stl_cannot_hold) {
@@ -160,8 +159,7 @@ TEST(stl, faults_name_line_or_facet) {
 
 TEST(stl, every_truncation_is_refused) {
   const ControlMesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 0}});
-  const std::string binary = format_stl(mesh, "out.stl"),
-                    text = format_stl(mesh, "out.stl", StlFormat::ascii);
+  const std::string binary = format_stl(mesh, "out.stl"), text = testing::ascii_stl(mesh);
   for (std::size_t size = 0; size < binary.size(); ++size) {
     EXPECT_FALSE(message(binary.substr(0, size)).empty()) << size;
   }
@@ -173,7 +171,7 @@ TEST(stl, flipped_bytes_are_read_or_refused) {
   const ControlMesh plain = parse("solid\n" + two_facets + "endsolid\n");
   std::mt19937_64 random(5);
   for (int i = 0; i < 20'000; ++i) {
-    std::string bent = format_stl(plain, "out.stl", random() % 2 == 0 ? StlFormat::ascii : StlFormat::binary);
+    std::string bent = random() % 2 == 0 ? testing::ascii_stl(plain) : format_stl(plain, "out.stl");
     for (std::size_t k = 0; k <= random() % 3; ++k)
       bent[random() % bent.size()] = static_cast<char>(random());
     try {

@@ -9,7 +9,6 @@
 #include <snug/base/error.h>
 #include <snug/io/binary.h>
 #include <snug/io/number.h>
-#include <snug/io/single.h>
 
 namespace snug {
 namespace {

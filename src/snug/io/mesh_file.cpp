@@ -54,7 +54,7 @@ std::string formatted(const ControlMesh& mesh, const std::string& ending, const 
                       const Notes& notes) {
   if (ending == ".off") return format_off(mesh);
   if (ending == ".ply") return format_ply(mesh);
-  if (ending == ".stl") return format_stl(mesh, path, StlFormat::binary, notes);
+  if (ending == ".stl") return format_stl(mesh, path, notes);
   if (ending == ".glb") return format_glb(mesh, path, notes);
   return format_obj(mesh);
 }

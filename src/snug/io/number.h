@@ -5,23 +5,21 @@
 #include <string>
 #include <string_view>
 
+#include <snug/geometry/point.h>
+
 namespace snug {
 
-/// Why a word is not a finite real number.
-enum class NumberFault : std::uint8_t {
-  none,
-  not_a_number,
-  not_finite,
-  too_large,
-  decimal_comma,
-  hexadecimal
-};
-
-/// A real number read from a word; `value` is meaningful only without a fault.
+/// A real number read from a word, or why the word is none.
 struct ParsedReal {
   double value = 0;
-  NumberFault fault = NumberFault::none;
+  /// The end of a sentence that begins with the word: "is not a finite number". Empty for a number.
+  std::string_view fault;
 };
+
+/// In ASCII, whatever the locale.
+[[nodiscard]] constexpr char lower_case(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
 
 /// Reads a whole word as a decimal number, whatever the locale.
 ///
@@ -37,15 +35,13 @@ struct ParsedReal {
 /// nearest 64-bit number, so that a range check still sees them. Nothing if the word is not an integer.
 [[nodiscard]] std::optional<std::int64_t> parse_integer(std::string_view word);
 
-/// The end of a sentence that begins with the word: "is not a finite number".
-///
-/// Requires:  a fault other than none.
-[[nodiscard]] std::string_view describe(NumberFault fault);
-
 /// Appends the shortest decimal that parse_real reads back as the same double, sign of zero included.
 ///
 /// Errors:    InputError (value) on a number that is not finite.
 void append_real(std::string& text, double value);
+
+/// Appends "x y z", likewise.
+void append_point(std::string& text, const Point3& point);
 
 /// Appends a decimal integer.
 void append_integer(std::string& text, std::uint64_t value);

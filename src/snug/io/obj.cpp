@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <snug/base/error.h>
-#include <snug/io/element_text.h>
 #include <snug/io/number.h>
 #include <snug/io/obj_tags.h>
 #include <snug/io/text_cursor.h>

@@ -5,7 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include <snug/io/element_text.h>
 #include <snug/io/number.h>
 #include <snug/mesh/tag_names.h>
 
@@ -41,8 +40,8 @@ std::uint64_t read_id(const TextCursor& at, std::string_view word) {
 
 double read_sharpness(const TextCursor& at, std::string_view word) {
   const ParsedReal real = parse_real(word);
-  if (real.fault != NumberFault::none) {
-    at.fail("tag: sharpness " + in_quotes(word) + ' ' + std::string(describe(real.fault)));
+  if (!real.fault.empty()) {
+    at.fail("tag: sharpness " + in_quotes(word) + ' ' + std::string(real.fault));
   }
   if (real.value < 0) at.fail("tag: sharpness " + in_quotes(word) + " is negative");
   return real.value;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <snug/base/error.h>
-#include <snug/io/element_text.h>
 #include <snug/io/number.h>
 #include <snug/io/text_cursor.h>
 #include <snug/io/text_kind.h>

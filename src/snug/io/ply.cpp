@@ -5,16 +5,13 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include <snug/base/contract.h>
 #include <snug/base/error.h>
 #include <snug/base/names.h>
 #include <snug/io/binary.h>
-#include <snug/io/element_text.h>
 #include <snug/io/number.h>
 #include <snug/io/text_cursor.h>
 #include <snug/io/text_kind.h>
@@ -22,55 +19,41 @@
 namespace snug {
 namespace {
 
-constexpr auto ply_format_names =
-    std::to_array<Named<PlyFormat>>({{"ascii", PlyFormat::ascii},
-                                     {"binary_little_endian", PlyFormat::binary_little_endian},
-                                     {"binary_big_endian", PlyFormat::binary_big_endian}});
+enum class Format : std::uint8_t { ascii, little_endian, big_endian };
 
-enum class Scalar : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+constexpr auto format_names = std::to_array<Named<Format>>({{"ascii", Format::ascii},
+                                                            {"binary_little_endian", Format::little_endian},
+                                                            {"binary_big_endian", Format::big_endian}});
 
-constexpr auto scalar_names = std::to_array<Named<Scalar>>({{"char", Scalar::int8},
-                                                            {"int8", Scalar::int8},
-                                                            {"uchar", Scalar::uint8},
-                                                            {"uint8", Scalar::uint8},
-                                                            {"short", Scalar::int16},
-                                                            {"int16", Scalar::int16},
-                                                            {"ushort", Scalar::uint16},
-                                                            {"uint16", Scalar::uint16},
-                                                            {"int", Scalar::int32},
-                                                            {"int32", Scalar::int32},
-                                                            {"uint", Scalar::uint32},
-                                                            {"uint32", Scalar::uint32},
-                                                            {"float", Scalar::float32},
-                                                            {"float32", Scalar::float32},
-                                                            {"double", Scalar::float64},
-                                                            {"float64", Scalar::float64}});
+/// A type of numbers; those of integers have a range.
+struct Scalar {
+  const char *name, *new_name;
+  std::size_t size;
+  std::int64_t least = 0, most = 0;
 
-std::size_t size_of(Scalar type) {
-  constexpr std::array<std::size_t, 8> sizes{1, 1, 2, 2, 4, 4, 4, 8};
-  return sizes[static_cast<std::size_t>(type)];
-}
-
-bool is_integer(Scalar type) { return type < Scalar::float32; }
-
-struct IntegerRange {
-  std::int64_t least, most;
+  [[nodiscard]] bool is_integer() const { return most > 0; }
 };
 
-IntegerRange range_of(Scalar type) {
-  SNUG_EXPECT(is_integer(type));
-  const std::int64_t count = std::int64_t{1} << (8 * size_of(type));
-  const bool is_signed = type == Scalar::int8 || type == Scalar::int16 || type == Scalar::int32;
-  return is_signed ? IntegerRange{-count / 2, count / 2 - 1} : IntegerRange{0, count - 1};
-}
+constexpr std::array<Scalar, 8> scalars{{{"char", "int8", 1, INT8_MIN, INT8_MAX},
+                                         {"uchar", "uint8", 1, 0, UINT8_MAX},
+                                         {"short", "int16", 2, INT16_MIN, INT16_MAX},
+                                         {"ushort", "uint16", 2, 0, UINT16_MAX},
+                                         {"int", "int32", 4, INT32_MIN, INT32_MAX},
+                                         {"uint", "uint32", 4, 0, UINT32_MAX},
+                                         {"float", "float32", 4},
+                                         {"double", "float64", 8}}};
 
 /// What a property is to the mesh.
 enum class Role : std::uint8_t { x, y, z, corners, none };
 
+constexpr auto vertex_roles = std::to_array<Named<Role>>({{"x", Role::x}, {"y", Role::y}, {"z", Role::z}});
+constexpr auto face_roles =
+    std::to_array<Named<Role>>({{"vertex_index", Role::corners}, {"vertex_indices", Role::corners}});
+
 struct Property {
   std::string name;
-  Scalar type;
-  std::optional<Scalar> count_type;  ///< of a list
+  const Scalar* type = nullptr;
+  const Scalar* count_type = nullptr;  ///< of a list
   Role role = Role::none;
 };
 
@@ -82,54 +65,23 @@ struct Element {
 };
 
 struct Header {
-  PlyFormat format = PlyFormat::ascii;
+  Format format = Format::ascii;
   std::vector<Element> elements;
   std::size_t lines = 0;
   std::string_view body;
 };
 
-/// The lines of a header: text until a line end, and then perhaps bytes that are no text.
-class HeaderLines {
- public:
-  HeaderLines(std::string_view bytes, const std::string& name)
-      : rest_(bytes),
-        name_(name),
-        end_(bytes.starts_with("ply\r") && !bytes.starts_with("ply\r\n") ? '\r' : '\n') {}
-
-  TextCursor next() {
-    const std::size_t size = rest_.find(end_);
-    if (size == std::string_view::npos) {
-      throw InputError(InputProblem::unreadable,
-                       name_ + ": the header has no line end_header: the file is truncated");
-    }
-    std::string_view line = rest_.substr(0, size);
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    rest_.remove_prefix(size + 1);
-    TextCursor at(line, name_, ++count_);
-    if (line.find('\r') != std::string_view::npos) {
-      at.fail("some lines of the header end with CR and some with LF");
-    }
-    return at;
-  }
-
-  [[nodiscard]] std::size_t count() const { return count_; }
-  [[nodiscard]] std::string_view rest() const { return rest_; }
-
- private:
-  std::string_view rest_;
-  const std::string& name_;
-  char end_;
-  std::size_t count_ = 0;
-};
-
 class HeaderParser {
  public:
-  HeaderParser(std::string_view bytes, const std::string& name) : lines_(bytes, name) {}
+  HeaderParser(std::string_view bytes, const std::string& name)
+      : name_(name), line_end_(bytes.starts_with("ply\r") && !bytes.starts_with("ply\r\n") ? '\r' : '\n') {
+    header_.body = bytes;
+  }
 
   Header parse() {
-    lines_.next();  // ply
+    next_line();  // ply
     for (;;) {
-      TextCursor at = lines_.next();
+      TextCursor at = next_line();
       const std::string_view keyword = at.word();
       if (keyword == "comment" || keyword == "obj_info") continue;
       if (keyword == "format") {
@@ -141,8 +93,6 @@ class HeaderParser {
       } else if (keyword == "property") {
         read_property(at);
       } else if (keyword == "end_header") {
-        header_.lines = lines_.count();
-        header_.body = lines_.rest();
         for (Element& element : header_.elements) assign_roles(at, element);
         return std::move(header_);
       } else {
@@ -155,11 +105,27 @@ class HeaderParser {
   }
 
  private:
+  /// The lines of a header are text until a line end; then there may be bytes that are no text.
+  TextCursor next_line() {
+    const std::size_t size = header_.body.find(line_end_);
+    if (size == std::string_view::npos) {
+      fail_in_file(name_, "the header has no line end_header: the file is truncated");
+    }
+    std::string_view line = header_.body.substr(0, size);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    header_.body.remove_prefix(size + 1);
+    TextCursor at(line, name_, ++header_.lines);
+    if (line.find('\r') != std::string_view::npos) {
+      at.fail("some lines of the header end with CR and some with LF");
+    }
+    return at;
+  }
+
   void read_format(TextCursor& at) {
     if (has_format_) at.fail("the header names its format twice");
     const std::string_view format = at.word();
-    const auto known = value_in(ply_format_names, format);
-    if (!known) at.fail(in_quotes(format) + " is not a format: " + listed(all_names(ply_format_names), "or"));
+    const auto known = value_in(format_names, format);
+    if (!known) at.fail(in_quotes(format) + " is not a format: " + listed(all_names(format_names), "or"));
     header_.format = *known;
     const std::string_view version = at.word();
     if (version != "1.0") at.fail("the version is " + in_quotes(version) + ": only 1.0 is supported");
@@ -192,11 +158,11 @@ class HeaderParser {
 
   void read_property(TextCursor& at) {
     if (header_.elements.empty()) at.fail("a property comes before the first element");
-    Property property{};
+    Property property;
     std::string_view type = at.word();
     if (type == "list") {
       property.count_type = read_type(at, at.word());
-      if (!is_integer(*property.count_type)) at.fail("the count of a list must have an integer type");
+      if (!property.count_type->is_integer()) at.fail("the count of a list must have an integer type");
       type = at.word();
     }
     property.type = read_type(at, type);
@@ -212,10 +178,14 @@ class HeaderParser {
     properties.push_back(std::move(property));
   }
 
-  static Scalar read_type(const TextCursor& at, std::string_view word) {
-    const auto type = value_in(scalar_names, word);
-    if (!type) at.fail(in_quotes(word) + " is not a PLY type: char to double, or int8 to float64");
-    return *type;
+  static const Scalar* read_type(const TextCursor& at, std::string_view word) {
+    const auto type = std::find_if(scalars.begin(), scalars.end(), [&](const Scalar& scalar) {
+      return word == scalar.name || word == scalar.new_name;
+    });
+    if (type == scalars.end()) {
+      at.fail(in_quotes(word) + " is not a PLY type: char to double, or int8 to float64");
+    }
+    return type;
   }
 
   static void assign_roles(const TextCursor& at, Element& element) {
@@ -223,119 +193,92 @@ class HeaderParser {
       at.fail_at(element.line, "element " + in_quotes(element.name) + " has no properties");
     }
     std::size_t found = 0;
-    if (element.name == "vertex") {
-      for (Property& property : element.properties) {
-        constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
-        const auto axis = std::find(axes.begin(), axes.end(), property.name);
-        if (axis == axes.end()) continue;
-        if (property.count_type) at.fail_at(element.line, "a coordinate of the vertices is a list");
-        property.role = static_cast<Role>(axis - axes.begin());
-        ++found;
+    const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
+    for (Property& property : element.properties) {
+      if (is_vertex) property.role = value_in(vertex_roles, property.name).value_or(Role::none);
+      if (is_face) property.role = value_in(face_roles, property.name).value_or(Role::none);
+      if (property.role == Role::none) continue;
+      if (is_vertex && property.count_type) {
+        at.fail_at(element.line, "a coordinate of the vertices is a list");
       }
-      if (found < 3) at.fail_at(element.line, "the vertices lack one of the properties x, y and z");
-    } else if (element.name == "face") {
-      for (Property& property : element.properties) {
-        if (property.name != "vertex_index" && property.name != "vertex_indices") continue;
-        if (!property.count_type || !is_integer(property.type)) {
-          at.fail_at(element.line, "the corners of the faces are not a list of integers");
-        }
-        property.role = Role::corners;
-        ++found;
+      if (is_face && !(property.count_type && property.type->is_integer())) {
+        at.fail_at(element.line, "the corners of the faces are not a list of integers");
       }
-      if (found == 0) at.fail_at(element.line, "the faces lack a list vertex_indices");
-      if (found == 2) at.fail_at(element.line, "the faces have two lists of corners");
+      ++found;
     }
+    if (is_vertex && found < 3)
+      at.fail_at(element.line, "the vertices lack one of the properties x, y and z");
+    if (is_face && found == 0) at.fail_at(element.line, "the faces lack a list vertex_indices");
+    if (is_face && found == 2) at.fail_at(element.line, "the faces have two lists of corners");
   }
 
   // Of elements, and of the properties of one: all names are compared with one another.
   static constexpr std::size_t most_names = 1000;
 
-  HeaderLines lines_;
-  Header header_;
+  const std::string& name_;
+  char line_end_;
+  Header header_;  // its body begins with the next line
   bool has_format_ = false;
 };
 
-/// The values behind a header, element by element.
-class Body {
- public:
-  Body() = default;
-  virtual ~Body() = default;
-  Body(const Body&) = delete;
-  Body& operator=(const Body&) = delete;
+/// The element that is being read.
+struct Place {
+  const Element* element = nullptr;
+  std::size_t number = 0;
 
-  /// How many elements of this sort the rest of the file can hold at most.
-  [[nodiscard]] virtual std::uint64_t room_for(const Element& element) const = 0;
-  /// The next values belong to this element; messages name it.
-  void begin(const Element& element, std::size_t number) {
-    element_ = &element;
-    number_ = number;
-    step_to_element();
-  }
-  virtual double coordinate(Scalar type) = 0;
-  virtual std::int64_t integer(Scalar type) = 0;
-  /// Values that are passed over, checked only as far as they must be to find the next.
-  virtual void skip(Scalar type, std::uint64_t count) = 0;
-  virtual void end() = 0;
-  /// Refuses what follows the last element.
-  virtual void finish() = 0;
-  [[noreturn]] virtual void fail(const std::string& message) const = 0;
-
- protected:
-  virtual void step_to_element() = 0;
-  [[nodiscard]] std::size_t number() const { return number_; }
   [[nodiscard]] std::string in_element(const std::string& message) const {
-    const std::string quoted = in_quotes(element_->name);
-    return quoted.substr(1, quoted.size() - 2) + ' ' + std::to_string(number_) + ": " + message;
+    const std::string quoted = in_quotes(element->name);
+    return quoted.substr(1, quoted.size() - 2) + ' ' + std::to_string(number) + ": " + message;
   }
-
- private:
-  const Element* element_ = nullptr;
-  std::size_t number_ = 0;
 };
 
-class AsciiBody final : public Body {
+/// The values behind the header of a text, an element a line.
+class AsciiBody {
  public:
-  AsciiBody(std::string_view text, const std::string& name, std::size_t line) : cursor_(text, name, line) {}
+  AsciiBody(const Header& header, const std::string& name) : cursor_(header.body, name, header.lines + 1) {}
 
-  [[nodiscard]] std::uint64_t room_for(const Element& element) const override {
+  /// How many elements of this sort the rest of the file can hold at most.
+  [[nodiscard]] std::uint64_t room_for(const Element& element) const {
     return (std::uint64_t{cursor_.bytes_left()} + 1) / (2 * element.properties.size());  // digit and blank
   }
-  double coordinate(Scalar) override { return read_coordinate(cursor_, number(), cursor_.word()); }
-  std::int64_t integer(Scalar type) override {
-    const std::string_view word = next_word();
-    const auto value = parse_integer(word);
-    if (!value) fail(in_quotes(word) + " is not a whole number");
-    const IntegerRange range = range_of(type);
-    if (*value < range.least || *value > range.most) {
-      fail(in_quotes(word) + " does not fit the type " + name_in(scalar_names, type) +
-           " that the header declares");
-    }
-    return *value;
-  }
-  void skip(Scalar, std::uint64_t count) override {
-    for (; count > 0; --count) next_word();
-  }
-  void end() override {
-    if (const std::string_view extra = cursor_.word(); !extra.empty()) {
-      fail(in_quotes(extra) + " follows the values that the header declares");
-    }
-    cursor_.next_line();
-  }
-  void finish() override {
-    if (const std::string_view extra = cursor_.word_across_lines(); !extra.empty()) {
-      cursor_.fail(in_quotes(extra) + " follows the last element: correct the counts of the header");
-    }
-  }
-  [[noreturn]] void fail(const std::string& message) const override { cursor_.fail(in_element(message)); }
-
- private:
-  void step_to_element() override {
+  /// The next values belong to this element.
+  void begin(const Place& place) {
+    place_ = place;
     while (!cursor_.more_in_line()) {
       if (!cursor_.next_line()) {
         fail("the file ends before it: it is truncated, or its header declares too much");
       }
     }
   }
+  double coordinate(const Scalar&) { return read_coordinate(cursor_, place_.number, cursor_.word()); }
+  std::int64_t integer(const Scalar& type) {
+    const std::string_view word = next_word();
+    const auto value = parse_integer(word);
+    if (!value) fail(in_quotes(word) + " is not a whole number");
+    if (*value < type.least || *value > type.most) {
+      fail(in_quotes(word) + " does not fit the type " + type.name + " that the header declares");
+    }
+    return *value;
+  }
+  /// Values that are passed over are checked only as far as they must be to find the next.
+  void skip(const Scalar&, std::uint64_t count) {
+    for (; count > 0; --count) next_word();
+  }
+  void end() {
+    if (const std::string_view extra = cursor_.word(); !extra.empty()) {
+      fail(in_quotes(extra) + " follows the values that the header declares");
+    }
+    cursor_.next_line();
+  }
+  /// Refuses what follows the last element.
+  void finish() {
+    if (const std::string_view extra = cursor_.word_across_lines(); !extra.empty()) {
+      cursor_.fail(in_quotes(extra) + " follows the last element: correct the counts of the header");
+    }
+  }
+  [[noreturn]] void fail(const std::string& message) const { cursor_.fail(place_.in_element(message)); }
+
+ private:
   std::string_view next_word() {
     const std::string_view word = cursor_.word();
     if (word.empty()) fail("the line ends before its last value");
@@ -343,269 +286,162 @@ class AsciiBody final : public Body {
   }
 
   TextCursor cursor_;
+  Place place_;
 };
 
-class BinaryBody final : public Body {
+/// The same of a binary file.
+class BinaryBody {
  public:
-  BinaryBody(std::string_view bytes, const std::string& name, std::endian order)
-      : rest_(bytes), name_(name), order_(order) {}
+  BinaryBody(const Header& header, const std::string& name)
+      : rest_(header.body),
+        name_(name),
+        order_(header.format == Format::little_endian ? std::endian::little : std::endian::big) {}
 
-  [[nodiscard]] std::uint64_t room_for(const Element& element) const override {
+  [[nodiscard]] std::uint64_t room_for(const Element& element) const {
     std::size_t least = 0;
-    for (const Property& property : element.properties)
-      least += size_of(property.count_type.value_or(property.type));
+    for (const Property& property : element.properties) {
+      least += (property.count_type ? property.count_type : property.type)->size;
+    }
     return rest_.size() / least;
   }
-  double coordinate(Scalar type) override {
+  void begin(const Place& place) { place_ = place; }
+  double coordinate(const Scalar& type) {
     double value = 0;
-    if (is_integer(type)) {
+    if (type.is_integer()) {
       value = static_cast<double>(integer(type));
     } else {
       const char* const bytes = take(type, 1);
-      value = type == Scalar::float32 ? double{load<float>(bytes, order_)} : load<double>(bytes, order_);
+      value = type.size == sizeof(float) ? double{load<float>(bytes, order_)} : load<double>(bytes, order_);
     }
     if (!std::isfinite(value)) fail("a coordinate is not a finite number");
     return value;
   }
-  std::int64_t integer(Scalar type) override {
+  std::int64_t integer(const Scalar& type) {
     const char* const bytes = take(type, 1);
-    switch (type) {
-      case Scalar::int8:
-        return load<std::int8_t>(bytes, order_);
-      case Scalar::uint8:
-        return load<std::uint8_t>(bytes, order_);
-      case Scalar::int16:
-        return load<std::int16_t>(bytes, order_);
-      case Scalar::uint16:
-        return load<std::uint16_t>(bytes, order_);
-      case Scalar::int32:
-        return load<std::int32_t>(bytes, order_);
-      default:
-        SNUG_EXPECT(type == Scalar::uint32);
-        return load<std::uint32_t>(bytes, order_);
+    std::int64_t value = 0;
+    for (std::size_t i = 0; i < type.size; ++i) {
+      const char byte = bytes[order_ == std::endian::big ? i : type.size - 1 - i];
+      value = value << 8 | static_cast<unsigned char>(byte);
     }
+    return value > type.most ? value - (type.most - type.least + 1) : value;
   }
-  void skip(Scalar type, std::uint64_t count) override { take(type, count); }
-  void end() override {}
-  void finish() override {
+  void skip(const Scalar& type, std::uint64_t count) { take(type, count); }
+  void end() {}
+  void finish() {
     const auto is_blank = [](char c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
     if (!std::all_of(rest_.begin(), rest_.end(), is_blank)) {
-      throw InputError(InputProblem::unreadable,
-                       name_ + ": " + std::to_string(rest_.size()) +
-                           " bytes follow the last element: correct the counts of the header");
+      fail_in_file(name_, std::to_string(rest_.size()) +
+                              " bytes follow the last element: correct the counts of the header");
     }
   }
-  [[noreturn]] void fail(const std::string& message) const override {
-    throw InputError(InputProblem::unreadable, name_ + ": " + in_element(message));
+  [[noreturn]] void fail(const std::string& message) const {
+    fail_in_file(name_, place_.in_element(message));
   }
 
  private:
-  void step_to_element() override {}
-  const char* take(Scalar type, std::uint64_t count) {
-    if (count > rest_.size() / size_of(type)) {
+  const char* take(const Scalar& type, std::uint64_t count) {
+    if (count > rest_.size() / type.size) {
       fail("the file ends within it: it is truncated, or its header declares too much");
     }
     const char* const taken = rest_.data();
-    rest_.remove_prefix(count * size_of(type));
+    rest_.remove_prefix(count * type.size);
     return taken;
   }
 
   std::string_view rest_;
   const std::string& name_;
   std::endian order_;
+  Place place_;
 };
 
-class PlyParser {
+/// Reads the elements that a header declares.
+template <class Body>
+class MeshReader {
  public:
-  PlyParser(std::string_view bytes, const std::string& name)
-      : name_(name), header_(HeaderParser(bytes, name).parse()) {
-    if (header_.format == PlyFormat::ascii) {
-      body_ = std::make_unique<AsciiBody>(header_.body, name, header_.lines + 1);
-    } else {
-      const bool little = header_.format == PlyFormat::binary_little_endian;
-      body_ =
-          std::make_unique<BinaryBody>(header_.body, name, little ? std::endian::little : std::endian::big);
-    }
-  }
+  MeshReader(const Header& header, const std::string& name)
+      : header_(header), at_(std::string_view(), name), body_(header, name) {}
 
-  ControlMesh parse() {
+  ControlMesh read() {
     vertices_ = count_of("vertex");
-    const TextCursor whole({}, name_);
-    expect_elements(whole, vertices_, count_of("face"));
+    expect_elements(at_, vertices_, count_of("face"));
     for (const Element& element : header_.elements) {
       expect_promise(element);
-      if (element.name == "vertex") {
-        mesh_.points.reserve(element.count);
-        read_all(element, [this](const Element& vertex) { read_vertex(vertex); });
-      } else if (element.name == "face") {
-        mesh_.face_offsets.reserve(element.count + 1);
-        read_all(element, [this](const Element& face) { read_face(face); });
-      } else {
-        read_all(element, [this](const Element& other) {
-          for (const Property& property : other.properties) pass_over(property);
-        });
+      const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
+      if (is_vertex) mesh_.points.reserve(element.count);
+      if (is_face) mesh_.face_offsets.reserve(element.count + 1);
+      for (std::size_t i = 0; i < element.count; ++i) {
+        body_.begin({&element, i});
+        const Point3 point = read_properties(element);
+        if (is_vertex) mesh_.points.push_back(point);
+        if (is_face) mesh_.face_offsets.push_back(static_cast<std::uint32_t>(mesh_.face_vertices.size()));
+        body_.end();
       }
     }
-    body_->finish();
+    body_.finish();
     return std::move(mesh_);
   }
 
  private:
   [[nodiscard]] std::size_t count_of(std::string_view name) const {
-    for (const Element& element : header_.elements) {
-      if (element.name == name) return element.count;
-    }
-    return 0;
+    const auto found = std::ranges::find(header_.elements, name, &Element::name);
+    return found == header_.elements.end() ? 0 : found->count;
   }
 
   /// Before anything is allocated for them: can the file hold this many, and ids number them?
   void expect_promise(const Element& element) const {
-    const TextCursor at({}, name_);
     if (element.count == 0) return;
-    if (element.count > body_->room_for(element)) {
-      at.fail_at(element.line, "the header declares " + std::to_string(element.count) + " elements " +
-                                   in_quotes(element.name) +
-                                   ", more than the file can hold: it is truncated, or the count is wrong");
+    if (element.count > body_.room_for(element)) {
+      at_.fail_at(element.line, "the header declares " + std::to_string(element.count) + " elements " +
+                                    in_quotes(element.name) +
+                                    ", more than the file can hold: it is truncated, or the count is wrong");
     }
     if (element.count > most_elements) {
-      at.fail_at(element.line, "at most " + std::to_string(most_elements) + " elements of one kind are read");
+      at_.fail_at(element.line,
+                  "at most " + std::to_string(most_elements) + " elements of one kind are read");
     }
   }
 
-  template <class Read>
-  void read_all(const Element& element, const Read& read) {
-    for (std::size_t i = 0; i < element.count; ++i) {
-      body_->begin(element, i);
-      read(element);
-      body_->end();
-    }
-  }
-
-  void read_vertex(const Element& vertex) {
+  /// The coordinates among them, too.
+  Point3 read_properties(const Element& element) {
     Point3 point;
-    for (const Property& property : vertex.properties) {
+    for (const Property& property : element.properties) {
       if (property.role == Role::none) {
-        pass_over(property);
-      } else {
-        point[static_cast<std::size_t>(property.role)] = body_->coordinate(property.type);
-      }
-    }
-    mesh_.points.push_back(point);
-  }
-
-  void read_face(const Element& face) {
-    for (const Property& property : face.properties) {
-      if (property.role == Role::corners) {
+        body_.skip(*property.type, property.count_type ? list_count(property) : 1);
+      } else if (property.role == Role::corners) {
         read_corners(property);
       } else {
-        pass_over(property);
+        point[static_cast<std::size_t>(property.role)] = body_.coordinate(*property.type);
       }
     }
-    mesh_.face_offsets.push_back(static_cast<std::uint32_t>(mesh_.face_vertices.size()));
+    return point;
   }
 
   void read_corners(const Property& property) {
     const std::uint64_t count = list_count(property);
-    if (count == 0) body_->fail("0 is not a number of vertices");
+    if (count == 0) body_.fail("0 is not a number of vertices");
     for (std::uint64_t i = 0; i < count; ++i) {
-      const std::int64_t index = body_->integer(property.type);
+      const std::int64_t index = body_.integer(*property.type);
       if (index < 0 || static_cast<std::uint64_t>(index) >= vertices_) {
-        body_->fail("index " + std::to_string(index) + " is outside 0 to " + std::to_string(vertices_ - 1));
+        body_.fail("index " + std::to_string(index) + " is outside 0 to " + std::to_string(vertices_ - 1));
       }
       if (mesh_.face_vertices.size() >= most_elements) {
-        body_->fail("more than " + std::to_string(most_elements) + " face corners: split the mesh");
+        body_.fail("more than " + std::to_string(most_elements) + " face corners: split the mesh");
       }
       mesh_.face_vertices.emplace_back(static_cast<std::size_t>(index));
     }
   }
 
-  void pass_over(const Property& property) {
-    body_->skip(property.type, property.count_type ? list_count(property) : 1);
-  }
-
   std::uint64_t list_count(const Property& property) {
-    const std::int64_t count = body_->integer(*property.count_type);
-    if (count < 0) body_->fail(std::to_string(count) + " is not a number of values");
+    const std::int64_t count = body_.integer(*property.count_type);
+    if (count < 0) body_.fail(std::to_string(count) + " is not a number of values");
     return static_cast<std::uint64_t>(count);
   }
 
-  const std::string& name_;
-  Header header_;
-  std::unique_ptr<Body> body_;
+  const Header& header_;
+  TextCursor at_;  // for messages
+  Body body_;
   ControlMesh mesh_;
   std::size_t vertices_ = 0;
-};
-
-class PlyWriter {
- public:
-  PlyWriter(const ControlMesh& mesh, PlyFormat format) : mesh_(mesh), format_(format) {
-    for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-      most_corners_ = std::max(most_corners_, mesh.face(FaceId(face)).size());
-    }
-  }
-
-  std::string write() {
-    bytes_.reserve(400 + mesh_.vertex_count() * 24 + mesh_.face_count() + mesh_.face_vertices.size() * 4);
-    write_header();
-    for (const Point3& point : mesh_.points) write_vertex(point);
-    for (std::size_t face = 0; face < mesh_.face_count(); ++face) write_face(mesh_.face(FaceId(face)));
-    return std::move(bytes_);
-  }
-
- private:
-  [[nodiscard]] bool short_counts() const {
-    return most_corners_ <= std::numeric_limits<std::uint8_t>::max();
-  }
-
-  void write_header() {
-    const bool int_holds = mesh_.vertex_count() <= std::size_t{1} << 31;
-    bytes_ += "ply\nformat ";
-    bytes_ += name_in(ply_format_names, format_);
-    bytes_ += " 1.0\nelement vertex ";
-    append_integer(bytes_, mesh_.vertex_count());
-    bytes_ += "\nproperty double x\nproperty double y\nproperty double z\nelement face ";
-    append_integer(bytes_, mesh_.face_count());
-    bytes_ += short_counts() ? "\nproperty list uchar " : "\nproperty list uint ";
-    bytes_ += int_holds ? "int vertex_indices\nend_header\n" : "uint vertex_indices\nend_header\n";
-  }
-
-  void write_vertex(const Point3& point) {
-    require_value(is_finite(point), "PLY: a coordinate to write is not finite");
-    if (format_ == PlyFormat::ascii) {
-      append_point(bytes_, point);
-      bytes_ += '\n';
-      return;
-    }
-    for (std::size_t axis = 0; axis < 3; ++axis) append_binary(bytes_, point[axis], order());
-  }
-
-  void write_face(std::span<const VertexId> corners) {
-    require_value(!corners.empty(), "PLY: a face to write has no corners; take it out");
-    if (format_ == PlyFormat::ascii) {
-      append_integer(bytes_, corners.size());
-      for (const VertexId vertex : corners) {
-        bytes_ += ' ';
-        append_integer(bytes_, vertex.value());
-      }
-      bytes_ += '\n';
-      return;
-    }
-    if (short_counts()) {
-      append_binary(bytes_, static_cast<std::uint8_t>(corners.size()), order());
-    } else {
-      append_binary(bytes_, static_cast<std::uint32_t>(corners.size()), order());
-    }
-    for (const VertexId vertex : corners) append_binary(bytes_, vertex.value(), order());
-  }
-
-  [[nodiscard]] std::endian order() const {
-    return format_ == PlyFormat::binary_big_endian ? std::endian::big : std::endian::little;
-  }
-
-  const ControlMesh& mesh_;
-  PlyFormat format_;
-  std::size_t most_corners_ = 0;
-  std::string bytes_;
 };
 
 }  // namespace
@@ -617,11 +453,42 @@ bool begins_like_ply(std::string_view bytes) {
 ControlMesh parse_ply(std::string_view bytes, const std::string& name) {
   if (!begins_like_ply(bytes)) {
     refuse_other_formats(bytes, name);
-    throw InputError(InputProblem::unreadable, name + ": the file does not begin with the line 'ply'");
+    fail_in_file(name, "the file does not begin with the line 'ply'");
   }
-  return PlyParser(bytes, name).parse();
+  const Header header = HeaderParser(bytes, name).parse();
+  if (header.format == Format::ascii) return MeshReader<AsciiBody>(header, name).read();
+  return MeshReader<BinaryBody>(header, name).read();
 }
 
-std::string format_ply(const ControlMesh& mesh, PlyFormat format) { return PlyWriter(mesh, format).write(); }
+std::string format_ply(const ControlMesh& mesh) {
+  std::size_t most_corners = 0;
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    most_corners = std::max(most_corners, mesh.face(FaceId(face)).size());
+  }
+  const bool short_counts = most_corners <= UINT8_MAX,
+             int_holds = mesh.vertex_count() <= std::size_t{1} << 31;
+  std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex ";
+  bytes.reserve(400 + mesh.vertex_count() * 24 + mesh.face_count() + mesh.face_vertices.size() * 4);
+  append_integer(bytes, mesh.vertex_count());
+  bytes += "\nproperty double x\nproperty double y\nproperty double z\nelement face ";
+  append_integer(bytes, mesh.face_count());
+  bytes += short_counts ? "\nproperty list uchar " : "\nproperty list uint ";
+  bytes += int_holds ? "int vertex_indices\nend_header\n" : "uint vertex_indices\nend_header\n";
+  for (const Point3& point : mesh.points) {
+    require_value(is_finite(point), "PLY: a coordinate to write is not finite");
+    for (std::size_t axis = 0; axis < 3; ++axis) append_binary(bytes, point[axis]);
+  }
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const auto corners = mesh.face(FaceId(face));
+    require_value(!corners.empty(), "PLY: a face to write has no corners; take it out");
+    if (short_counts) {
+      append_binary(bytes, static_cast<std::uint8_t>(corners.size()));
+    } else {
+      append_binary(bytes, static_cast<std::uint32_t>(corners.size()));
+    }
+    for (const VertexId vertex : corners) append_binary(bytes, vertex.value());
+  }
+  return bytes;
+}
 
 }  // namespace snug

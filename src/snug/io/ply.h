@@ -1,14 +1,11 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 
 #include <snug/mesh/control_mesh.h>
 
 namespace snug {
-
-enum class PlyFormat : std::uint8_t { ascii, binary_little_endian, binary_big_endian };
 
 /// Whether the bytes begin with the line "ply".
 [[nodiscard]] bool begins_like_ply(std::string_view bytes);
@@ -32,12 +29,11 @@ enum class PlyFormat : std::uint8_t { ascii, binary_little_endian, binary_big_en
 /// Source:    Greg Turk's PLY files; differs: nothing may follow the last element but blanks and line ends.
 [[nodiscard]] ControlMesh parse_ply(std::string_view bytes, const std::string& name);
 
-/// The mesh as a PLY file with double coordinates, which parse_ply reads back bit by bit, without its tags:
-/// PLY has none. Lists of corners are counted by bytes where all faces have at most 255 corners; indices are
-/// `int`, or `uint` where a mesh has more vertices than that.
+/// The mesh as a binary PLY file, little endian, with double coordinates, which parse_ply reads back bit by bit,
+/// without its tags: PLY has none. Lists of corners are counted by bytes where all faces have at most 255 corners;
+/// indices are `int`, or `uint` where a mesh has more vertices than that.
 ///
 /// Errors:    InputError (value) on coordinates that are not finite and on faces without corners.
-[[nodiscard]] std::string format_ply(const ControlMesh& mesh,
-                                     PlyFormat format = PlyFormat::binary_little_endian);
+[[nodiscard]] std::string format_ply(const ControlMesh& mesh);
 
 }  // namespace snug

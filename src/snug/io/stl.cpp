@@ -10,9 +10,7 @@
 #include <snug/base/error.h>
 #include <snug/geometry/scaling.h>
 #include <snug/io/binary.h>
-#include <snug/io/element_text.h>
 #include <snug/io/number.h>
-#include <snug/io/single.h>
 #include <snug/io/text_cursor.h>
 #include <snug/io/text_kind.h>
 #include <snug/mesh/weld.h>
@@ -22,14 +20,8 @@ namespace {
 
 constexpr std::size_t header_size = 80, preamble_size = 84, facet_size = 50;
 
-[[noreturn]] void fail(const std::string& name, const std::string& message) {
-  throw InputError(InputProblem::unreadable, name + ": " + message);
-}
-
-bool same_word(std::string_view word, std::string_view lower_case) {
-  return word.size() == lower_case.size() &&
-         std::equal(word.begin(), word.end(), lower_case.begin(),
-                    [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
+bool same_word(std::string_view word, std::string_view keyword) {
+  return std::ranges::equal(word, keyword, {}, lower_case);
 }
 
 bool begins_like_ascii(std::string_view bytes) {
@@ -42,9 +34,9 @@ bool begins_like_ascii(std::string_view bytes) {
 using Corners = std::vector<Point3>;
 
 Corners read_binary(std::string_view bytes, std::size_t facets, const std::string& name) {
-  if (facets == 0) fail(name, "the file has no facets");
+  if (facets == 0) fail_in_file(name, "the file has no facets");
   if (facets > most_elements / 3) {
-    fail(name, "more than " + std::to_string(most_elements / 3) + " facets: split the mesh");
+    fail_in_file(name, "more than " + std::to_string(most_elements / 3) + " facets: split the mesh");
   }
   Corners corners;
   corners.reserve(3 * facets);
@@ -55,7 +47,7 @@ Corners read_binary(std::string_view bytes, std::size_t facets, const std::strin
       for (std::size_t axis = 0; axis < 3; ++axis, at += 4)
         point[axis] = load<float>(at, std::endian::little);
       if (!is_finite(point))
-        fail(name, "facet " + std::to_string(facet) + ": a coordinate is not a finite number");
+        fail_in_file(name, "facet " + std::to_string(facet) + ": a coordinate is not a finite number");
     }
   }
   return corners;
@@ -134,12 +126,12 @@ Corners read_corners(std::string_view bytes, const std::string& name) {
   if (begins_like_ascii(bytes)) return AsciiParser(plain_text(bytes, name), name).parse();
   refuse_other_formats(bytes, name);
   if (bytes.find('\0') == std::string_view::npos) {
-    fail(name, "this is not an STL file: neither text that begins with 'solid' nor binary");
+    fail_in_file(name, "this is not an STL file: neither text that begins with 'solid' nor binary");
   }
-  if (!has_count) fail(name, "the file is too short for binary STL: it is truncated");
-  fail(name, "the file declares " + std::to_string(facets) + " facets, which take " +
-                 std::to_string(preamble_size + facet_size * facets) + " bytes, but has " +
-                 std::to_string(bytes.size()));
+  if (!has_count) fail_in_file(name, "the file is too short for binary STL: it is truncated");
+  fail_in_file(name, "the file declares " + std::to_string(facets) + " facets, which take " +
+                         std::to_string(preamble_size + facet_size * facets) + " bytes, but has " +
+                         std::to_string(bytes.size()));
 }
 
 ControlMesh welded_mesh(const Corners& corners, const std::vector<std::uint32_t>& first) {
@@ -178,7 +170,24 @@ std::array<Point3, 3> triangle(const ControlMesh& mesh, std::size_t face) {
   return {mesh.points[corners[0].index()], mesh.points[corners[1].index()], mesh.points[corners[2].index()]};
 }
 
-std::string format_binary(const ControlMesh& mesh, const std::string& name, const Notes& notes) {
+}  // namespace
+
+ControlMesh parse_stl(std::string_view bytes, const std::string& name) {
+  const Corners corners = read_corners(bytes, name);
+  return welded_mesh(corners, first_of_welded(corners));
+}
+
+std::string format_stl(const ControlMesh& mesh, const std::string& name, const Notes& notes) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(InputProblem::refused, name + ": " + what);
+  };
+  if (mesh.face_count() > UINT32_MAX) refuse("too many faces for STL");
+  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
+    const std::size_t corners = mesh.face(FaceId(face)).size();
+    if (corners == 3) continue;
+    refuse("face " + std::to_string(face) + " has " + std::to_string(corners) +
+           " corners: STL holds triangles only; write PLY, OBJ or OFF");
+  }
   const auto points = in_single_precision(mesh.points, name, notes);
   std::string bytes = "binary STL written by snug";
   bytes.reserve(preamble_size + facet_size * mesh.face_count());
@@ -194,45 +203,6 @@ std::string format_binary(const ControlMesh& mesh, const std::string& name, cons
     append_binary(bytes, std::uint16_t{0});
   }
   return bytes;
-}
-
-std::string format_ascii(const ControlMesh& mesh) {
-  std::string text = "solid snug\n";
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const auto corners = triangle(mesh, face);
-    text += "facet normal ";
-    append_point(text, Point3{} + unit_normal(corners[0], corners[1], corners[2]));
-    text += "\nouter loop\n";
-    for (const Point3& corner : corners) {
-      text += "vertex ";
-      append_point(text, corner);
-      text += '\n';
-    }
-    text += "endloop\nendfacet\n";
-  }
-  return text += "endsolid snug\n";
-}
-
-}  // namespace
-
-ControlMesh parse_stl(std::string_view bytes, const std::string& name) {
-  const Corners corners = read_corners(bytes, name);
-  return welded_mesh(corners, first_of_welded(corners));
-}
-
-std::string format_stl(const ControlMesh& mesh, const std::string& name, StlFormat format,
-                       const Notes& notes) {
-  if (mesh.face_count() > UINT32_MAX)
-    throw InputError(InputProblem::refused, name + ": too many faces for STL");
-  for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const std::size_t corners = mesh.face(FaceId(face)).size();
-    if (corners != 3) {
-      throw InputError(InputProblem::refused,
-                       name + ": face " + std::to_string(face) + " has " + std::to_string(corners) +
-                           " corners: STL holds triangles only; write PLY, OBJ or OFF");
-    }
-  }
-  return format == StlFormat::binary ? format_binary(mesh, name, notes) : format_ascii(mesh);
 }
 
 }  // namespace snug

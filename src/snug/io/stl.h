@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -8,8 +7,6 @@
 #include <snug/mesh/control_mesh.h>
 
 namespace snug {
-
-enum class StlFormat : std::uint8_t { binary, ascii };
 
 /// The control mesh that an STL file describes. `name` is what messages call it.
 ///
@@ -26,14 +23,14 @@ enum class StlFormat : std::uint8_t { binary, ascii };
 /// Cost:      linear.
 [[nodiscard]] ControlMesh parse_stl(std::string_view bytes, const std::string& name);
 
-/// The mesh as an STL file with normals, without its tags. Binary files hold coordinates rounded to the nearest
-/// float; ascii ones, read again, have the same doubles. Vertices that no face uses are left out, and vertices
-/// in one place become one when it is read. `name` is what messages call the file.
+/// The mesh as a binary STL file with normals, without its tags. Coordinates are rounded to the nearest float;
+/// vertices that no face uses are left out, and vertices in one place become one when it is read. `name` is what
+/// messages call the file.
 ///
 /// Notes:     one line if coordinates were rounded.
 /// Errors:    InputError (refused) naming the face if one is no triangle, and the vertex if its coordinates do
 ///            not fit a float; for more than 2^32 - 1 facets. InputError (value) on coordinates that are not finite.
 [[nodiscard]] std::string format_stl(const ControlMesh& mesh, const std::string& name,
-                                     StlFormat format = StlFormat::binary, const Notes& notes = {});
+                                     const Notes& notes = {});
 
 }  // namespace snug

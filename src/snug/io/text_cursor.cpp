@@ -3,6 +3,7 @@
 #include <utility>
 
 #include <snug/base/error.h>
+#include <snug/io/number.h>
 
 namespace snug {
 namespace {
@@ -11,8 +12,6 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; 
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
 }  // namespace
-
-TextCursor::TextCursor(std::string_view text, std::string name) : TextCursor(text, std::move(name), 0) {}
 
 TextCursor::TextCursor(std::string_view text, std::string name, std::size_t line)
     : here_(text.data()), end_(text.data() + text.size()), name_(std::move(name)), line_(line) {}
@@ -86,12 +85,10 @@ std::string TextCursor::located(const std::string& message) const {
 void TextCursor::fail(const std::string& message) const { fail_at(line_, message); }
 
 void TextCursor::fail_at(std::size_t line, const std::string& message) const {
-  throw InputError(InputProblem::unreadable, name_ + ':' + std::to_string(line) + ": " + message);
+  fail_in_file(name_ + ':' + std::to_string(line), message);
 }
 
-void TextCursor::fail_everywhere(const std::string& message) const {
-  throw InputError(InputProblem::unreadable, name_ + ": " + message);
-}
+void TextCursor::fail_everywhere(const std::string& message) const { fail_in_file(name_, message); }
 
 std::string in_quotes(std::string_view word) {
   constexpr std::size_t longest = 40;
@@ -106,6 +103,31 @@ std::string in_quotes(std::string_view word) {
     }
   }
   return result += word.size() > longest ? "...'" : "'";
+}
+
+void fail_in_file(const std::string& name, const std::string& message) {
+  throw InputError(InputProblem::unreadable, name + ": " + message);
+}
+
+double read_coordinate(const TextCursor& at, std::size_t vertex, std::string_view word) {
+  const ParsedReal real = parse_real(word);
+  if (!real.fault.empty()) {
+    const std::string vertex_name = "vertex " + std::to_string(vertex);
+    if (word.empty()) at.fail(vertex_name + " has fewer than three coordinates");
+    at.fail(vertex_name + ": " + in_quotes(word) + ' ' + std::string(real.fault));
+  }
+  return real.value;
+}
+
+void expect_room(const TextCursor& at, std::size_t count, const char* what) {
+  if (count >= most_elements) {
+    at.fail("more than " + std::to_string(most_elements) + ' ' + what + ": split the mesh");
+  }
+}
+
+void expect_elements(const TextCursor& at, std::size_t vertices, std::size_t faces) {
+  if (vertices == 0) at.fail_everywhere("the file has no vertices");
+  if (faces == 0) at.fail_everywhere("the file has no faces");
 }
 
 }  // namespace snug

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -17,9 +18,8 @@ namespace snug {
 /// Cost:      one pass, no allocation except for messages.
 class TextCursor {
  public:
-  TextCursor(std::string_view text, std::string name);
   /// For the rest of a text: stands at the beginning of the line of this number.
-  TextCursor(std::string_view text, std::string name, std::size_t line);
+  TextCursor(std::string_view text, std::string name, std::size_t line = 0);
 
   /// Steps to the next line, at first to line 1; false when there is none.
   bool next_line();
@@ -58,5 +58,18 @@ class TextCursor {
 /// The word in single quotes, fit for a message of one line: bytes that are not printable ASCII become \xNN,
 /// and of a word longer than 40 bytes the rest becomes "...".
 [[nodiscard]] std::string in_quotes(std::string_view word);
+
+/// Throws InputError (unreadable) "name: message".
+[[noreturn]] void fail_in_file(const std::string& name, const std::string& message);
+
+/// More vertices, faces or face corners than this do not fit 32-bit ids.
+inline constexpr std::uint64_t most_elements = 0xFFFFFFFE;
+
+/// The coordinate of a vertex that a word is. Fails, naming vertex and word, unless it is a finite number.
+[[nodiscard]] double read_coordinate(const TextCursor& at, std::size_t vertex, std::string_view word);
+/// Fails unless one more element fits; `what` is the plural of its sort.
+void expect_room(const TextCursor& at, std::size_t count, const char* what);
+/// Fails if there are no vertices or no faces.
+void expect_elements(const TextCursor& at, std::size_t vertices, std::size_t faces);
 
 }  // namespace snug

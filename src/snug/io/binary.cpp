@@ -1,4 +1,4 @@
-#include <snug/io/single.h>
+#include <snug/io/binary.h>
 
 #include <cmath>
 #include <limits>
