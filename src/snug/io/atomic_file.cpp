@@ -19,6 +19,11 @@ namespace {
 
 constexpr std::size_t buffer_size = 64 * 1024;
 
+[[noreturn]] void refuse(const std::string& name, int reason) {
+  throw InputError(InputProblem::unreadable,
+                   name + ": cannot be written: " + std::generic_category().message(reason));
+}
+
 std::string folder_of(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   return folder.empty() ? "." : folder;
@@ -33,8 +38,8 @@ void sync_folder(const std::string& folder) {
   ::close(descriptor);
 }
 
-// Names for remove_unfinished_files(): they stay where they are, since a signal may come at any time. A place is taken, then
-// its name is written, then it counts.
+// Names for remove_unfinished_files(): they stay where they are, since a signal may come at any time. A place is
+// taken, then its name is written, then it counts.
 struct Unfinished {
   std::atomic<bool> taken{false}, there{false};
   std::array<char, 4096> name{};
@@ -73,8 +78,7 @@ void require_writable(const std::string& path) {
   if (!stream) {
     const AtomicFile trial(path);
   } else if (path != "-" && ::access(path.c_str(), W_OK) != 0) {
-    throw InputError(InputProblem::unreadable,
-                     path + ": cannot be written: " + std::generic_category().message(errno));
+    refuse(path, errno);
   }
 }
 
@@ -115,20 +119,15 @@ void AtomicFile::open_temporary(unsigned mode) {
   static std::atomic<unsigned> serial{0};
   const std::string stem = folder_of(target_) + "/.snug-" + std::to_string(::getpid()) + '-';
   do {
+    forget_temporary();
     temporary_ = stem + std::to_string(serial++) + ".part";
-  } while (!create_temporary(mode));
-}
-
-// False if there is a file of this name.
-bool AtomicFile::create_temporary(unsigned mode) {
-  // Known before it is there: no signal comes in between.
-  held_ = hold_name(temporary_);
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-  if (descriptor_ >= 0) return true;
+    held_ = hold_name(temporary_);  // before the file is there: no signal comes in between
+    descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+  } while (descriptor_ < 0 && errno == EEXIST);
+  if (descriptor_ >= 0) return;
   const int reason = errno;
   forget_temporary();
-  if (reason != EEXIST) fail(reason);
-  return false;
+  fail(reason);
 }
 
 void AtomicFile::forget_temporary() noexcept {
@@ -189,8 +188,7 @@ void AtomicFile::abandon() noexcept {
 void AtomicFile::fail(int reason) {
   abandon();
   finished_ = true;
-  throw InputError(InputProblem::unreadable,
-                   name_ + ": cannot be written: " + std::generic_category().message(reason));
+  refuse(name_, reason);
 }
 
 }  // namespace snug

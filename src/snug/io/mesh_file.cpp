@@ -1,7 +1,6 @@
 #include <snug/io/mesh_file.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <string_view>
 
@@ -13,30 +12,28 @@
 #include <snug/io/off.h>
 #include <snug/io/ply.h>
 #include <snug/io/read_file.h>
+#include <snug/io/stl.h>
 #include <snug/mesh/weld.h>
 
 namespace snug {
 namespace {
 
-std::string lower_case_ending(const std::string& path) {
+/// The lower-case ending of a name, which is its format; refused if it is not among those known.
+std::string format_among(std::initializer_list<std::string_view> known, const std::string& path,
+                         const char* what) {
   std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  std::ranges::transform(ending, ending.begin(), lower_case);
+  if (std::ranges::find(known, ending) == known.end()) {
+    throw InputError(InputProblem::unreadable, path + ": meshes are " + what + " files only");
+  }
   return ending;
-}
-
-[[noreturn]] void refuse_ending(const std::string& path, const std::string& what) {
-  throw InputError(InputProblem::unreadable, path + ": meshes are " + what);
 }
 
 /// The ending that names the format to write.
 std::string format_to_write(const std::string& path) {
-  std::string ending = path == "-" ? ".obj" : lower_case_ending(path);
-  constexpr std::array<std::string_view, 5> known{".obj", ".off", ".ply", ".stl", ".glb"};
-  if (std::find(known.begin(), known.end(), ending) == known.end()) {
-    refuse_ending(path, "written to .obj, .off, .ply, .stl and .glb files only");
-  }
-  return ending;
+  if (path == "-") return ".obj";
+  return format_among({".obj", ".off", ".ply", ".stl", ".glb"}, path,
+                      "written to .obj, .off, .ply, .stl and .glb");
 }
 
 bool changes_surface(const MeshTags& tags) {
@@ -61,11 +58,8 @@ std::string formatted(const ControlMesh& mesh, const std::string& ending, const 
 
 ControlMesh parsed(const std::string& path, const std::string& name, const Notes& notes,
                    const WorkMonitor& monitor) {
-  std::string ending = path == "-" ? "" : lower_case_ending(path);
-  constexpr std::array<std::string_view, 5> known{"", ".obj", ".off", ".ply", ".stl"};
-  if (std::find(known.begin(), known.end(), ending) == known.end()) {
-    refuse_ending(path, "read from .obj, .off, .ply and .stl files only");
-  }
+  std::string ending =
+      format_among({"", ".obj", ".off", ".ply", ".stl"}, path, "read from .obj, .off, .ply and .stl");
   const std::string bytes = read_file(path, monitor);
   if (ending.empty()) ending = sniffed_format(bytes);
   if (ending == ".off") return parse_off(bytes, name);
@@ -125,12 +119,11 @@ bool writes_polygons(const std::string& path) {
 void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& path, const Notes& notes,
                 const WorkMonitor& monitor) {
   const std::string ending = format_to_write(path);
-  if (ending != ".obj" && notes && changes_surface(mesh.tags)) {
-    notes(path + ": this format has no tags: creases and rules are dropped");
-  }
-  if (ending != ".obj" && notes && mesh.polyline_count() > 0) {
-    notes(path + ": this format has no polylines: they are dropped");
-  }
+  const auto note_if = [&](bool dropped, const char* what) {
+    if (dropped && ending != ".obj" && notes) notes(path + what);
+  };
+  note_if(changes_surface(mesh.tags), ": this format has no tags: creases and rules are dropped");
+  note_if(mesh.polyline_count() > 0, ": this format has no polylines: they are dropped");
   monitor.checkpoint();
   const std::string bytes = formatted(mesh, ending, path, notes);
   constexpr std::size_t part = std::size_t{1} << 20;

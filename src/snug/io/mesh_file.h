@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include <snug/io/stl.h>
 #include <snug/mesh.h>
 #include <snug/mesh/control_mesh.h>
 #include <snug/monitor.h>
@@ -15,14 +14,10 @@ class AtomicFile;
 void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& path, const Notes& notes,
                 const WorkMonitor& monitor);
 
-/// Before work whose result write_mesh will write: is there a writer for this name?
-///
-/// Errors:    InputError (unreadable) if not.
+/// Before work whose result write_mesh will write: throws InputError (unreadable) if there is no writer for this name.
 void require_writable_ending(const std::string& path);
 
-/// Does the format that write_mesh takes for this name hold faces of more than three corners?
-///
-/// Errors:    as require_writable_ending.
+/// Does the format that write_mesh takes for this name hold faces of more than three corners? Throws likewise.
 [[nodiscard]] bool writes_polygons(const std::string& path);
 
 }  // namespace snug

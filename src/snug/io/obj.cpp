@@ -46,9 +46,9 @@ class ObjParser {
       if (keyword == "v") {
         read_vertex();
       } else if (keyword == "f" || keyword == "fo") {
-        read_face();
+        read_element("face", "faces", mesh_.face_vertices, mesh_.face_offsets);
       } else if (keyword == "l") {
-        read_polyline();
+        read_element("polyline", "polylines", mesh_.polyline_vertices, mesh_.polyline_offsets);
       } else if (keyword == "t") {
         tags_.read(cursor_);
       } else if (is_smf_statement(keyword)) {
@@ -83,18 +83,11 @@ class ObjParser {
     mesh_.points.push_back(point);
   }
 
-  void read_face() { read_element("face", "faces", mesh_.face_vertices, mesh_.face_offsets); }
-
-  void read_polyline() {
-    read_element("polyline", "polylines", mesh_.polyline_vertices, mesh_.polyline_offsets);
-  }
-
   void read_element(const char* sort, const char* plural, std::vector<VertexId>& vertices,
                     std::vector<std::uint32_t>& offsets) {
-    const std::size_t number = offsets.size() - 1;
-    expect_room(cursor_, number, plural);
     sort_ = sort;
-    number_ = number;
+    number_ = offsets.size() - 1;
+    expect_room(cursor_, number_, plural);
     std::string_view corner = cursor_.word();
     if (corner.empty()) cursor_.fail(element() + " has no vertices");
     for (; !corner.empty(); corner = cursor_.word()) {
@@ -153,14 +146,6 @@ class ObjParser {
   std::size_t number_ = 0;
 };
 
-}  // namespace
-
-ControlMesh parse_obj(std::string_view text, const std::string& name, const Notes& notes) {
-  return ObjParser(plain_text(text, name), name, notes).parse();
-}
-
-namespace {
-
 void append_element(std::string& text, char keyword, std::span<const VertexId> vertices) {
   require_value(!vertices.empty(), "OBJ: a face or polyline to write has no corners; take it out");
   text += keyword;
@@ -172,6 +157,10 @@ void append_element(std::string& text, char keyword, std::span<const VertexId> v
 }
 
 }  // namespace
+
+ControlMesh parse_obj(std::string_view text, const std::string& name, const Notes& notes) {
+  return ObjParser(plain_text(text, name), name, notes).parse();
+}
 
 std::string format_obj(const ControlMesh& mesh) {
   std::string text;

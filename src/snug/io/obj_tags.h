@@ -44,27 +44,20 @@ class ObjTagReader {
   [[nodiscard]] MeshTags finish(const TextCursor& at, std::size_t vertex_count, std::size_t face_count);
 
  private:
-  struct Reference {
+  /// The largest id of a sort that tags name, and where.
+  struct Largest {
+    const char* sort;
     std::uint64_t id = 0;
     std::size_t line = 0;
   };
-  struct Values {
-    std::vector<std::uint64_t> ids;
-    std::vector<double> sharpness;
-    std::string text;
-  };
 
   void ignore(const TextCursor& at, std::string_view name);
-  Values read_values(TextCursor& at, std::string_view name);
-  void read_crease(const TextCursor& at, const Values& values);
-  void read_corner(const TextCursor& at, const Values& values);
-  VertexId vertex(const TextCursor& at, std::uint64_t id);
-  FaceId face(const TextCursor& at, std::uint64_t id);
+  static std::size_t reference(const TextCursor& at, std::uint64_t id, Largest& largest);
 
   const Notes& notes_;
   std::set<std::string, std::less<>> ignored_;
   MeshTags tags_;
-  Reference largest_vertex_, largest_face_;
+  Largest vertices_{"vertex"}, faces_{"face"};
 };
 
 /// Appends the `t` statements that ObjTagReader reads back as the same tags. One edge, vertex or face a

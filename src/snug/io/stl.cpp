@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/contract.h>
 #include <snug/base/error.h>
 #include <snug/geometry/scaling.h>
 #include <snug/io/binary.h>
@@ -134,22 +133,6 @@ Corners read_corners(std::string_view bytes, const std::string& name) {
                          std::to_string(bytes.size()));
 }
 
-ControlMesh welded_mesh(const Corners& corners, const std::vector<std::uint32_t>& first) {
-  ControlMesh mesh;
-  std::vector<std::uint32_t> number(corners.size());
-  mesh.face_vertices.reserve(corners.size());
-  mesh.face_offsets.reserve(corners.size() / 3 + 1);
-  for (std::uint32_t corner = 0; corner < corners.size(); ++corner) {
-    if (first[corner] == corner) {
-      number[corner] = static_cast<std::uint32_t>(mesh.points.size());
-      mesh.points.push_back(corners[corner]);
-    }
-    mesh.face_vertices.emplace_back(number[first[corner]]);
-    if (corner % 3 == 2) mesh.face_offsets.push_back(corner + 1);
-  }
-  return mesh;
-}
-
 /// Of length 1, or zero where the triangle has no area that a double tells from zero.
 Vector3 unit_normal(const Point3& a, const Point3& b, const Point3& c) {
   // Before the differences: they may overflow.
@@ -165,16 +148,24 @@ Vector3 unit_normal(const Point3& a, const Point3& b, const Point3& c) {
   return norm > 0 ? (1 / norm) * normal : Vector3{};
 }
 
-std::array<Point3, 3> triangle(const ControlMesh& mesh, std::size_t face) {
-  const auto corners = mesh.face(FaceId(face));
-  return {mesh.points[corners[0].index()], mesh.points[corners[1].index()], mesh.points[corners[2].index()]};
-}
-
 }  // namespace
 
 ControlMesh parse_stl(std::string_view bytes, const std::string& name) {
   const Corners corners = read_corners(bytes, name);
-  return welded_mesh(corners, first_of_welded(corners));
+  const std::vector<std::uint32_t> first = first_of_welded(corners);
+  ControlMesh mesh;
+  std::vector<std::uint32_t> number(corners.size());
+  mesh.face_vertices.reserve(corners.size());
+  mesh.face_offsets.reserve(corners.size() / 3 + 1);
+  for (std::uint32_t corner = 0; corner < corners.size(); ++corner) {
+    if (first[corner] == corner) {
+      number[corner] = static_cast<std::uint32_t>(mesh.points.size());
+      mesh.points.push_back(corners[corner]);
+    }
+    mesh.face_vertices.emplace_back(number[first[corner]]);
+    if (corner % 3 == 2) mesh.face_offsets.push_back(corner + 1);
+  }
+  return mesh;
 }
 
 std::string format_stl(const ControlMesh& mesh, const std::string& name, const Notes& notes) {
@@ -194,10 +185,11 @@ std::string format_stl(const ControlMesh& mesh, const std::string& name, const N
   bytes.resize(header_size, ' ');
   append_binary(bytes, static_cast<std::uint32_t>(mesh.face_count()));
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    const auto [a, b, c] = triangle(mesh, face);
-    const Vector3 normal = unit_normal(a, b, c);
+    const auto corners = mesh.face(FaceId(face));
+    const auto point = [&](std::size_t k) { return mesh.points[corners[k].index()]; };
+    const Vector3 normal = unit_normal(point(0), point(1), point(2));
     for (std::size_t axis = 0; axis < 3; ++axis) append_binary(bytes, static_cast<float>(normal[axis]));
-    for (const VertexId vertex : mesh.face(FaceId(face))) {
+    for (const VertexId vertex : corners) {
       for (const float x : points[vertex.index()]) append_binary(bytes, x);
     }
     append_binary(bytes, std::uint16_t{0});

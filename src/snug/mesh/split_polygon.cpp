@@ -118,7 +118,6 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(std::span<const PlanePoin
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(at));
     ++at;  // not the neighbour: fans of needles are avoided
     passed = 0;
-    if (left.size() == 2) break;
   }
   return triangles;
 }
