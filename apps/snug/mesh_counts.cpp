@@ -51,8 +51,8 @@ Edge ends_of(const ControlMesh& mesh, const HalfEdgeGroups& groups, EdgeId e) {
   return {mesh.face_vertices[h], mesh.face_vertices[next_in_face(mesh.face_offsets, groups.face(h), h)]};
 }
 
-/// Certainly true if no edge has one face and edges of two have them turned alike, but for one chance in 2^64: a
-/// sum over directed edges that opposite ones take out of it.
+/// Certainly true if no edge has one face and edges of two have them turned alike, but for one chance in
+/// 2^64: a sum over directed edges that opposite ones take out of it.
 bool looks_closed(const ControlMesh& mesh) {
   std::uint64_t sum = 0;
   const auto mixed = [](VertexId a, VertexId b) {

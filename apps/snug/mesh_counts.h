@@ -28,15 +28,15 @@ struct Coincidences {
   std::size_t vertices = 0;  ///< vertices of faces that stand exactly where another one stands
   std::size_t places = 0;    ///< where these stand
   std::size_t edges = 0;     ///< edges with one face whose ends stand where those of another such edge stand
-  /// Further vertices on edges with one face that weld() would join if given `reach`, and the least and largest
-  /// distance of one of them from the vertex that it would become.
+  /// Further vertices on edges with one face that weld() would join if given `reach`, and the least and
+  /// largest distance of one of them from the vertex that it would become.
   std::size_t near = 0;
   double nearest = 0, farthest = 0;
   double reach = 0;  ///< 2^-17 of the longest side of used_box()
 };
 
-/// Finds them; nothing is changed. Vertices without a face, and meshes with faces that name vertices which are not
-/// there or coordinates that are not finite, have none.
+/// Finds them; nothing is changed. Vertices without a face, and meshes with faces that name vertices which
+/// are not there or coordinates that are not finite, have none.
 ///
 /// Cost:      linear; on meshes with a boundary that of weld() on its vertices.
 [[nodiscard]] Coincidences coincidences(const ControlMesh& mesh);

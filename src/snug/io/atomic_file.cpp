@@ -38,8 +38,8 @@ void sync_folder(const std::string& folder) {
   ::close(descriptor);
 }
 
-// Names for remove_unfinished_files(): they stay where they are, since a signal may come at any time. A place is
-// taken, then its name is written, then it counts.
+// Names for remove_unfinished_files(): they stay where they are, since a signal may come at any time. A place
+// is taken, then its name is written, then it counts.
 struct Unfinished {
   std::atomic<bool> taken{false}, there{false};
   std::array<char, 4096> name{};

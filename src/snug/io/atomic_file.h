@@ -29,8 +29,8 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   void write(std::string_view bytes);
-  /// Brings all bytes to the disk, or to where the target takes them: what commit() has left to do is a rename. For
-  /// several files of which all are to be written or none.
+  /// Brings all bytes to the disk, or to where the target takes them: what commit() has left to do is a
+  /// rename. For several files of which all are to be written or none.
   void complete();
   /// complete(), and puts the file in place.
   void commit();
@@ -51,12 +51,12 @@ class AtomicFile {
   bool finished_ = false;  ///< committed or failed
 };
 
-/// Before work whose result an AtomicFile will take: can it be opened? Throws as its constructor. Nothing is left of
-/// the trial, and devices, pipes and sockets are not opened, which would be seen.
+/// Before work whose result an AtomicFile will take: can it be opened? Throws as its constructor. Nothing is
+/// left of the trial, and devices, pipes and sockets are not opened, which would be seen.
 void require_writable(const std::string& path);
 
-/// Removes the temporary files of all AtomicFiles of this process that are not committed; for handlers of signals
-/// that end it. At most 64 files at a time are known; names of more than 4095 bytes are not.
+/// Removes the temporary files of all AtomicFiles of this process that are not committed; for handlers of
+/// signals that end it. At most 64 files at a time are known; names of more than 4095 bytes are not.
 ///
 /// Guarantee: async-signal-safe.
 void remove_unfinished_files() noexcept;

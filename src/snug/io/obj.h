@@ -11,10 +11,10 @@ namespace snug {
 /// The control mesh that an OBJ text describes. `name` is what messages call the text.
 ///
 /// Reads:     `v` (three numbers; a weight or colour after them is ignored), `f` and its old name `fo`
-/// (corners as a, a/b, a//c or a/b/c; negative indices count back from the line they are on, positive ones
-/// may point ahead), `l` (a polyline, likewise), and the tags of obj_tags.h. Everything else is ignored:
-/// normals, texture coordinates, groups, free-form curves. Words may be separated and lines may end as in
-/// text_cursor.h.
+///            (corners as a, a/b, a//c or a/b/c; negative indices count back from the line they are on,
+///            positive ones may point ahead), `l` (a polyline, likewise), and the tags of obj_tags.h.
+///            Everything else is ignored: normals, texture coordinates, groups, free-form curves. Words may
+///            be separated and lines may end as in text_cursor.h.
 /// Guarantee: coordinates are the nearest doubles. Vertices, faces and polylines keep their order; messages
 ///            number them from 0, as everywhere in snug. Faces with repeated corners, or with one or two, are
 ///            kept: see mesh/validate.h.

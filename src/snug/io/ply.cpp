@@ -185,7 +185,7 @@ class HeaderParser {
     if (type == scalars.end()) {
       at.fail(in_quotes(word) + " is not a PLY type: char to double, or int8 to float64");
     }
-    return type;
+    return &*type;
   }
 
   static void assign_roles(const TextCursor& at, Element& element) {

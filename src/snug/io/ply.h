@@ -29,9 +29,9 @@ namespace snug {
 /// Source:    Greg Turk's PLY files; differs: nothing may follow the last element but blanks and line ends.
 [[nodiscard]] ControlMesh parse_ply(std::string_view bytes, const std::string& name);
 
-/// The mesh as a binary PLY file, little endian, with double coordinates, which parse_ply reads back bit by bit,
-/// without its tags: PLY has none. Lists of corners are counted by bytes where all faces have at most 255 corners;
-/// indices are `int`, or `uint` where a mesh has more vertices than that.
+/// The mesh as a binary PLY file, little endian, with double coordinates, which parse_ply reads back bit by
+/// bit, without its tags: PLY has none. Lists of corners are counted by bytes where all faces have at most
+/// 255 corners; indices are `int`, or `uint` where a mesh has more vertices than that.
 ///
 /// Errors:    InputError (value) on coordinates that are not finite and on faces without corners.
 [[nodiscard]] std::string format_ply(const ControlMesh& mesh);

@@ -10,15 +10,15 @@ namespace snug {
 
 /// The control mesh that an STL file describes. `name` is what messages call it.
 ///
-/// Reads:     binary files: exactly 84 + 50 n bytes, n facets, whatever the first 80 bytes are; and ascii files:
-/// text that begins with `solid`. Words count in any case, and the solids of one file are joined. Normals,
-/// attributes, and names are ignored.
-/// Guarantee: coordinates are exactly the floats of a binary file and the doubles nearest to the decimals of an
-///            ascii one. Corners become one vertex where they are equal, 0 and -0 being equal. Vertices are
-///            numbered in the order of their first corners. Facets keep their order; those with equal corners
-///            are kept, see mesh/validate.h.
-/// Errors:    InputError (unreadable) naming line or facet: coordinates that are not finite, facets that are no
-///            triangles, a size that does not agree with the number of facets, no facets, a file that is
+/// Reads:     binary files: exactly 84 + 50 n bytes, n facets, whatever the first 80 bytes are; and ascii
+///            files: text that begins with `solid`. Words count in any case, and the solids of one file are
+///            joined. Normals, attributes, and names are ignored.
+/// Guarantee: coordinates are exactly the floats of a binary file and the doubles nearest to the decimals of
+///            an ascii one. Corners become one vertex where they are equal, 0 and -0 being equal. Vertices
+///            are numbered in the order of their first corners. Facets keep their order; those with equal
+///            corners are kept, see mesh/validate.h.
+/// Errors:    InputError (unreadable) naming line or facet: coordinates that are not finite, facets that are
+///            no triangles, a size that does not agree with the number of facets, no facets, a file that is
 ///            neither.
 /// Cost:      linear.
 [[nodiscard]] ControlMesh parse_stl(std::string_view bytes, const std::string& name);

@@ -17,12 +17,12 @@ using PlanePoint = std::array<double, 2>;
 /// Guarantee: exact, unless products of coordinates overflow or fall below the least normal double times 2^53.
 [[nodiscard]] int side_of(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c);
 
-/// Points without the coordinate along which the normal is longest, in an order that keeps counter-clockwise polygons
-/// so, seen against the normal.
+/// Points without the coordinate along which the normal is longest, in an order that keeps counter-clockwise
+/// polygons so, seen against the normal.
 [[nodiscard]] std::vector<PlanePoint> dropped_along(const Vector3& normal, std::span<const Point3> points);
 
-/// Is the closed polygon convex and counter-clockwise? Points on an edge between its neighbours are allowed; edges that
-/// run back, or around twice, are not. Exact as side_of().
+/// Is the closed polygon convex and counter-clockwise? Points on an edge between its neighbours are allowed;
+/// edges that run back, or around twice, are not. Exact as side_of().
 [[nodiscard]] bool is_convex(std::span<const PlanePoint> polygon);
 
 /// Corners of triangles that together are the polygon, each counter-clockwise and with an area, or nothing where a

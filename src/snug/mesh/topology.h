@@ -66,8 +66,8 @@ class Topology {
 
   /// One half-edge of an edge; the lower-numbered one.
   [[nodiscard]] HalfEdge half_of(EdgeId e) const { return edge_half_[e.index()]; }
-  /// A half-edge that leaves v: in an open fan the clockwise-most one, so that ccw() walks the whole
-  /// fan. no_half_edge for an isolated vertex.
+  /// A half-edge that leaves v: in an open fan the clockwise-most one, so that ccw() walks the whole fan.
+  /// no_half_edge for an isolated vertex.
   [[nodiscard]] HalfEdge leaving(VertexId v) const { return leaving_[v.index()]; }
   /// Other half-edges that leave v, one a further fan of a non-manifold vertex, each as leaving() has it.
   [[nodiscard]] std::vector<HalfEdge> more_fans(VertexId v) const;

@@ -49,8 +49,8 @@ struct Defect {
 /// Cost:      linear, times the logarithm of the largest valence.
 [[nodiscard]] std::vector<Defect> defects(const ControlMesh& mesh);
 
-/// Those of them that show without looking at neighbours: of faces each on its own, of duplicate faces, points and tags.
-/// All but legal ones, where the mesh's topology is manifold.
+/// Those of them that show without looking at neighbours: of faces each on its own, of duplicate faces,
+/// points and tags. All but legal ones, where the mesh's topology is manifold.
 /// Requires:  faces of three vertices or more, in range.
 [[nodiscard]] std::vector<Defect> defects_of_elements(const ControlMesh& mesh);
 

@@ -64,8 +64,8 @@ class Grid {
   }
 
   DisjointSets weld() {
-    // Half of the offsets (i, j): each pair of cells is met once. Cells that weld are at most two apart, since
-    // the distance is 1.96 cells.
+    // Half of the offsets (i, j): each pair of cells is met once. Cells that weld are at most two apart,
+    // since the distance is 1.96 cells.
     for (std::int64_t i = 0; i <= 2; ++i) {
       for (std::int64_t j = i == 0 ? 0 : -2; j <= 2; ++j) weld_across(i, j);
     }
