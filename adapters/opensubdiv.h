@@ -102,8 +102,9 @@ inline bool at_boundary(const Far::TopologyLevel& level, int face) {
   return std::any_of(vertices.begin(), vertices.end(), [&](int v) { return level.IsVertexBoundary(v); });
 }
 
-// With VTX_BOUNDARY_NONE the refiner has made holes of the faces at the boundary, as snug's `none` does, except
-// where boundary edges were tagged infinitely sharp. Such a mesh is read as edge_only with all of these holes.
+// With VTX_BOUNDARY_NONE the refiner has made holes of the faces at the boundary, as snug's `none` does,
+// except where boundary edges were tagged infinitely sharp. Such a mesh is read as edge_only with all these
+// holes.
 inline void read_holes(const Far::TopologyLevel& level, BoundaryRule& boundary, std::vector<FaceId>& holes) {
   std::vector<FaceId> all, inner;
   bool bounded = false;  // has a face at the boundary a surface?

@@ -155,7 +155,7 @@ Command closest_command() {
       .required();
   list.add(Group::own, "--precision LENGTH", &options->precision,
            "Largest width of a distance interval; mesh units, or percent of the mesh");
-  list.add(Group::own, "--relative SHARE", &options->relative, "Or this fraction of the distance")
+  list.add(Group::own, "--relative SHARE", &options->relative, "Or this fraction of the upper bound")
       .between(0, 1);
   list.add(Group::own, "--signed", &options->with_sign,
            "Signed distances to a closed surface, negative inside; the sign is proved");

@@ -39,9 +39,10 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 }
 
 void add_common_options(OptionList& list, CommonOptions& options) {
-  Option& scheme = add_scheme_option(list, "--scheme", options.scheme,
-                                     "Subdivision scheme; auto is loop for triangles alone, curve for "
-                                     "polylines alone, else catmark");
+  Option& scheme =
+      add_scheme_option(list, "--scheme", options.scheme,
+                        "Subdivision scheme; auto: curve if there are polylines only, loop if all "
+                        "faces are triangles, else catmark");
   scheme.choices.emplace_back("curve");
   list.add(Group::mesh, "--boundary RULE", &options.boundary,
            "Boundary rule; default: the file's tag, else edge-and-corner")
@@ -53,16 +54,17 @@ void add_common_options(OptionList& list, CommonOptions& options) {
            "Merge vertices this close; mesh units, or percent of the mesh (0.001%); 0: equal ones");
   list.add(Group::mesh, "--sharp ANGLE", &options.sharp,
            "For parts from CAD: edges whose face normals differ by more than ANGLE degrees stay sharp, and "
-           "flat faces stay flat; auto is 30");
+           "flat regions stay flat; auto: 30");
   add_output_options(list, options);
 }
 
 void add_output_options(OptionList& list, CommonOptions& options) {
   list.add(Group::output, "--json", &options.json, "Print one JSON document");
-  list.add(Group::output, "-o FILE", &options.output, "Output file; its extension selects the format");
+  list.add(Group::output, "-o FILE", &options.output,
+           "Output file: JSON (.json), or the mesh or picture; - for standard output");
   list.add(Group::output, "--quiet", &options.quiet, "No progress and no notes on standard error");
   list.add(Group::effort, "--threads N", &options.threads,
-           "Threads, up to 1024; 0: all cores. Results do not depend on it")
+           "Threads, up to 1024; 0: all cores. Results do not depend on threads")
       .between(0, 1024);
 }
 

@@ -70,15 +70,15 @@ ExitStatus run(const Options& options) {
     write_answer(report.write(), sides_of(pair.a(), pair.b()), answer);
   }
   if (answer.distance.upper == 0) {
-    report.text(answer.inner ? inner_sentence(*answer.inner) + ": proved, the solids meet"
-                             : "the limit surfaces have a point in common: proved");
+    report.text(answer.inner ? "proved: " + inner_sentence(*answer.inner)
+                             : "proved: the limit surfaces have a point in common");
   } else {
     report.text(fmt::format("the limit surfaces are at least {} and at most {} apart{}",
                             text_at_most(answer.distance.lower), text_at_most(answer.distance.upper, true),
                             answer.reached ? ""
                             : answer.stats.splits >= options.budget
-                                ? "; that is not as precise as asked, give a larger --budget"
-                                : "; that is not as precise as asked, rounding or memory stands in the way"));
+                                ? "; the precision was not reached, give a larger --budget"
+                                : "; the precision was not reached because of rounding or memory"));
   }
   for (const std::string& line : witness_lines(sides_of(pair.a(), pair.b()), answer.witness, answer.at)) {
     report.text(line);
@@ -94,7 +94,7 @@ Command distance_command() {
   OptionList list;
   list.add(Group::own, "--precision LENGTH", &options->precision,
            "Largest width of the interval; mesh units, or percent of the larger mesh");
-  list.add(Group::own, "--relative SHARE", &options->relative, "Or this fraction of the distance")
+  list.add(Group::own, "--relative SHARE", &options->relative, "Or this fraction of the upper bound")
       .between(0, 1);
   list.add(Group::own, "--solid", &options->solid,
            "Compare solids bounded by closed surfaces: 0 if one is inside the other");

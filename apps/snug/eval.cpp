@@ -24,7 +24,7 @@ std::string place_words(const SchemeRules& rules) {
   return std::string(rules.owner()) + (rules.triangular() ? " u v" : " u v [corner]");
 }
 
-// Lines "face u v"; blank lines and those that begin with # are passed over.
+// Lines "face u v"; blank lines and those that begin with # are skipped.
 std::vector<SurfaceParameter> read_requests(const std::string& path, const LimitSurface& surface) {
   const std::string text = read_file(path, stopped_by_interrupts());
   const SchemeRules& rules = surface.rules();
@@ -226,8 +226,8 @@ Command eval_command() {
            "Evaluate a grid with N steps, 1 to 1000, along each edge of every face or polyline")
       .between(1, 1000);
   list.add(Group::own, "--at FILE", &options->at,
-           "File with lines 'face u v' (Loop: p = (1-u-v) c0 + u c1 + v c2; quads: u from c0 towards c1), a "
-           "corner after it for the quads of other faces; of curves: 'edge t'")
+           "File with lines 'face u v' (triangles: (1-u-v) c0 + u c1 + v c2; quads: u from c0 towards c1), "
+           "'face u v corner' for faces that are not quads, or 'edge t' for curves")
       .excludes("--samples");
   add_degree_option(list, options->degree);
   add_common_options(list, *options);

@@ -58,11 +58,11 @@ constexpr std::array topics{
     std::pair{Topic::one_surface, "One surface, or curves"},
     std::pair{Topic::files, "Meshes and pictures"},
     std::pair{Topic::tables, "Tables and figures of the dissertation"},
-    std::pair{Topic::comparisons, "What lost a comparison"},
+    std::pair{Topic::comparisons, "Alternatives that were not adopted"},
 };
 
 constexpr std::array groups{
-    std::pair{Group::own, "Options"},   std::pair{Group::placement, "Where the meshes stand"},
+    std::pair{Group::own, "Options"},   std::pair{Group::placement, "Poses"},
     std::pair{Group::mesh, "Meshes"},   std::pair{Group::output, "Output"},
     std::pair{Group::effort, "Effort"}, std::pair{Group::research, "For research"},
 };

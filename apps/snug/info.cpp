@@ -94,9 +94,9 @@ ExitStatus run(const Options& options) {
                           scheme.primal ? "vertices" : "faces", counts.boundary_edges,
                           mesh.tags.creases.size()));
   if (kinds) {
-    report.text(fmt::format("scheme {}: {} kinds of patches", scheme.name, *kinds));
+    report.text(fmt::format("scheme {}, patch topologies: {}", scheme.name, *kinds));
     if (apart) {
-      report.text("the limit surface is at most " + text_of_length(*apart, size) + " away from the faces");
+      report.text("the limit surface is within " + text_of_length(*apart, size) + " of the faces");
     }
   } else {
     report.text(fmt::format("scheme {}: refused: {}", scheme.name, refusal));

@@ -27,10 +27,9 @@ void note_coincidences(const ControlMesh& mesh, const std::string& path, const C
   const Coincidences found = coincidences(mesh);
   if (found.vertices > 0) {
     const std::string edges =
-        found.edges == 0 ? "" : fmt::format(" and {} boundary edges lie on others", found.edges);
+        found.edges == 0 ? "" : fmt::format(", and {} boundary edges coincide", found.edges);
     note(fmt::format(
-        "{}: {} vertices stand exactly where others stand, in {} place{}{}: they are not joined; --weld 0 "
-        "joins them",
+        "{}: {} vertices coincide with others, in {} place{}{}: they are not merged; --weld 0 merges them",
         path, found.vertices, found.places, found.places == 1 ? "" : "s", edges));
   }
   if (found.near > 0) {
@@ -38,7 +37,7 @@ void note_coincidences(const ControlMesh& mesh, const std::string& path, const C
         found.nearest == found.farthest
             ? text_at_most(found.farthest, true)
             : fmt::format("{} to {}", text_at_most(found.nearest), text_at_most(found.farthest, true));
-    note(fmt::format("{}: {} boundary {} {} from another one: not joined; --weld {} joins {}", path,
+    note(fmt::format("{}: {} boundary {} {} from another one: not merged; --weld {} merges {}", path,
                      found.near, found.near == 1 ? "vertex is" : "vertices are", gaps,
                      text_at_most(found.farthest, true), found.near == 1 ? "it" : "them"));
   }
@@ -66,16 +65,16 @@ void sharpen_mesh(ControlMesh& mesh, const std::string& path, double angle, cons
   const Notes note = notes_for(options);
   if (!note) return;
   std::string text = fmt::format(
-      "{}: --sharp {} made {} creases and {} corners; {} planar and {} curved regions are kept facet by "
-      "facet",
-      path, angle, done.creases, done.corners, done.flat_regions, done.fixed_regions);
+      "{}: --sharp {} made {} creases and {} corners; {} planar and {} curved regions stay as they are", path,
+      angle, done.creases, done.corners, done.flat_regions, done.fixed_regions);
   if (done.split_faces > 0) {
-    text += fmt::format("; {} of their faces, not convex, are triangles now, further ones numbered from {}",
-                        done.split_faces, faces);
+    text +=
+        fmt::format("; {} of their faces were not convex and are split into triangles, new ones from {} on",
+                    done.split_faces, faces);
   }
   if (done.crossed_faces > 0) {
     text +=
-        fmt::format("; {} of their faces cross themselves and may leave their outline", done.crossed_faces);
+        fmt::format("; {} of their faces cross themselves, and their surface may differ", done.crossed_faces);
   }
   note(text);
 }
@@ -96,7 +95,7 @@ bool is_stl(const std::string& path) {
 }
 
 std::string how_far(std::optional<double> apart, const LimitSurface& surface) {
-  return apart ? "at most " + text_of_length(*apart, surface.size()) : "which this scheme shrinks";
+  return apart ? "at most " + text_of_length(*apart, surface.size()) : "this scheme shrinks it";
 }
 
 }  // namespace
@@ -105,10 +104,9 @@ void note_smooth_facets(const std::string& path, const CommonOptions& options, c
   const Notes note = notes_for(options);
   const SchemeRules* const rules = scheme_named(options.scheme);
   if (!note || !options.sharp.empty() || !is_stl(path) || (rules && rules->local)) return;
-  note(path + ": the facets are used as a control mesh, whose smooth limit surface is away from them, " +
-       far +
-       "; --sharp auto keeps edges and flat faces of a part from CAD, --scheme flat takes the triangles as "
-       "they are");
+  note(path +
+       ": the facets are used as a control mesh, whose smooth limit surface differs from them: " + far +
+       "; --sharp auto keeps sharp edges and flat faces, --scheme flat takes the triangles as they are");
 }
 
 void note_distance_to_faces(const LimitSurface& surface, const std::string& path,
@@ -125,8 +123,7 @@ void note_distance_to_faces(const LimitSurface& surface, const std::string& path
   if (!sharp) {
     note_smooth_facets(path, options, how_far(apart, surface));
   } else if (apart && *apart > 0) {
-    note(path + ": where it is not sharp the limit surface is away from the faces, " +
-         how_far(apart, surface));
+    note(path + ": where it is smooth the limit surface differs from the faces: " + how_far(apart, surface));
   }
 }
 

@@ -26,7 +26,7 @@ void sharpen_mesh(ControlMesh& mesh, const std::string& path, double angle, cons
 
 /// Without --sharp, a note that the limit surface of an STL file is not its facets; `far` says how far it is.
 void note_smooth_facets(const std::string& path, const CommonOptions& options, const std::string& far);
-/// What note_smooth_facets() is told where nobody has measured.
+/// For note_smooth_facets() where the distance was not computed.
 inline constexpr const char* ask_info = "'snug info' says how far";
 
 /// The same with how far the surface may be from its faces, which is measured unless it is known or the mesh is very large; with

@@ -126,8 +126,8 @@ Motion parse_pose(const std::string& text, const std::string& option, const Mend
   const TakenPose pose = naming_option(option, [&] { return take_matrix(numbers, mending.nearest_rigid); });
   if (pose.mended && mending.notes) {
     mending.notes(fmt::format(
-        "{}: off from rigid by {:.2g} (an entry of R'R); the nearest rotation, which changes an entry "
-        "by up to {:.2g}, takes its place",
+        "{}: off from rigid by {:.2g} (an entry of R'R); replaced by the nearest rotation, which changes "
+        "entries by up to {:.2g}",
         option, pose.mended->defect, pose.mended->change));
   }
   return pose.motion;

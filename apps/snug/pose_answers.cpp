@@ -32,7 +32,7 @@ class Mended {
     if (count_ == 0 || !notes) return;
     notes(fmt::format(
         "{}: {} lines with poses off from rigid by up to {:.2g} (an entry of R'R), the first is line {}; "
-        "the nearest rotations take their places",
+        "replaced by the nearest rotations",
         file, count_, worst_, first_));
   }
 

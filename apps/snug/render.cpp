@@ -339,10 +339,10 @@ Command render_command() {
            "Control meshes (OBJ, OFF, PLY or STL; - for standard input)");
   list.add(Group::own, "--size WxH", &options->size, "Pixels: WxH, or one number");
   list.add(Group::own, "--samples N", &options->samples, "N * N rays a pixel, N from 1 to 16").between(1, 16);
-  list.add(Group::own, "--cage", &options->cage, "Draw the edges of the control meshes too");
+  list.add(Group::own, "--cage", &options->cage, "Draw the edges of the control meshes");
   list.add(
       Group::own, "--witness \"X Y Z  X Y Z\"", &options->witnesses,
-      "Draw two points and the segment between them, such as the witnesses of collide and distance; may be "
+      "Draw two points, such as the witnesses of collide and distance, and the segment between them; may be "
       "repeated");
   list.add(Group::own, "--enclosures", &options->enclosures,
            "Draw the enclosures of the surfaces, half transparent");

@@ -25,7 +25,7 @@ void write_inner(JsonWriter& json, const std::optional<std::size_t>& inner) {
 }
 
 std::string inner_sentence(std::size_t inner) {
-  return inner == 0 ? "A, or a part of it, lies inside of B" : "B, or a part of it, lies inside of A";
+  return inner == 0 ? "A or a part of it lies inside B" : "B or a part of it lies inside A";
 }
 
 void note_nesting(const CommonOptions& options, const PlacedBvh& a, const PlacedBvh& b,
@@ -34,8 +34,7 @@ void note_nesting(const CommonOptions& options, const PlacedBvh& a, const Placed
   if (!notes || !is_closed(a.model) || !is_closed(b.model)) return;
   const Nesting found = nesting(a, b, monitor);
   if (found.inner) {
-    notes(inner_sentence(*found.inner) +
-          "; these are surfaces, which do not meet: --solid asks about solids");
+    notes(inner_sentence(*found.inner) + ", but the surfaces do not meet; --solid compares solids");
   }
 }
 
@@ -46,10 +45,10 @@ void write_penetration(JsonWriter& json, const Penetration& found) {
 }
 
 std::string penetration_sentence(const Penetration& found) {
-  if (found.depth.upper == 0) return "the solids are separated as they stand";
+  if (found.depth.upper == 0) return "the solids are separated where they are";
   return fmt::format(
-      "the solids are at least {} deep in each other; moving B by ({:.6g} {:.6g} {:.6g}), {} long, separates "
-      "them: proved",
+      "proved: the penetration depth is at least {}; moving B by ({:.6g} {:.6g} {:.6g}), {} long, separates "
+      "the solids",
       text_at_most(found.depth.lower), found.translation.x, found.translation.y, found.translation.z,
       text_at_most(found.depth.upper, true));
 }

@@ -12,10 +12,10 @@ namespace snug::command {
 /// "inner": "a" or "b", the part that lies in the other one, or null.
 void write_inner(JsonWriter& json, const std::optional<std::size_t>& inner);
 
-/// "B lies inside of A", or with a witness on it.
+/// "B or a part of it lies inside A".
 [[nodiscard]] std::string inner_sentence(std::size_t inner);
 
-/// Two surfaces that do not meet, closed both, one inside of the other: a note that they do as solids.
+/// Two surfaces that do not meet, closed both, one inside the other: a note that they do as solids.
 void note_nesting(const CommonOptions& options, const PlacedBvh& a, const PlacedBvh& b,
                   const WorkMonitor& monitor);
 

@@ -121,16 +121,16 @@ Command bounds_command() {
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Split until each radius, or half a box's longest side, is at most half of this (default 1%)");
-  list.add(Group::own, "--level N", &options->level, "Or split every patch this often, 0 to 12")
+  list.add(Group::own, "--level N", &options->level, "Or split every patch N times, 0 to 12")
       .between(0, 12)
       .excludes("--tolerance");
-  list.add(Group::own, "--budget N", &options->budget, "Most patches split, by each")
+  list.add(Group::own, "--budget N", &options->budget, "Split at most N patches, by each method")
       .between(0, std::uint64_t{1} << 40);
   add_degree_option(list, options->degree);
   add_common_options(list, *options);
   return {"bounds",
           Topic::comparisons,
-          "Pieces by hull rows, tables of two layouts, control boxes, and after splitting at creases",
+          "Number of pieces by bounding rows, tables of two layouts, boxes, and after splitting at creases",
           {"snug-experiments bounds bracket.obj --tolerance 2%"},
           std::move(list),
           [options] { return counts(*options); }};

@@ -305,14 +305,13 @@ ExitStatus prism(const RadiiOptions& options) {
   return ExitStatus::answered;
 }
 
-// What tightness and prism take.
+// The options of tightness and prism.
 OptionList radii_options(RadiiOptions& options) {
   OptionList list;
   list.add(Group::own, "--nets N", &options.nets, "Nets for each valence and shape").between(1, 100'000);
-  list.add(Group::own, "--samples N", &options.samples,
-           "Steps of the lattice of limit points along an edge, 1 to 1000")
+  list.add(Group::own, "--samples N", &options.samples, "Limit points sampled along an edge, 1 to 1000")
       .between(1, 1000);
-  list.add(Group::own, "--seed N", &options.seed, "Seed of what is drawn");
+  list.add(Group::own, "--seed N", &options.seed, "Random seed");
   add_output_options(list, options);
   return list;
 }
@@ -323,7 +322,7 @@ Command prism_command() {
   auto options = std::make_shared<RadiiOptions>();
   return {"prism",
           Topic::comparisons,
-          "Kobbelt's bounding prism, which patches leave, beside what encloses them",
+          "Kobbelt's bounding prism, which does not contain all patches, beside sets that do",
           {"snug-experiments prism --nets 10"},
           radii_options(*options),
           [options] { return prism(*options); }};
@@ -334,11 +333,11 @@ Command pair_test_command() {
   OptionList list;
   list.add(Group::own, "--pairs N", &options->pairs, "Random pairs in all, over three families")
       .between(1, 1'000'000'000);
-  list.add(Group::own, "--seed N", &options->seed, "Seed of what is drawn");
+  list.add(Group::own, "--seed N", &options->seed, "Random seed");
   add_output_options(list, *options);
   return {"pair-test",
           Topic::tables,
-          "How often the pair test as printed misses a near pair",
+          "How often the dissertation's pair test, as printed, misses a close pair",
           {"snug-experiments pair-test --pairs 200000"},
           std::move(list),
           [options] { return pair_test(*options); }};
@@ -347,19 +346,18 @@ Command pair_test_command() {
 Command rates_command() {
   auto options = std::make_shared<RatesOptions>();
   OptionList list;
-  list.add(Group::own, "--scheme NAME", &options->of, "Of which subdivision")
+  list.add(Group::own, "--scheme NAME", &options->of, "Subdivision scheme")
       .one_of({"loop", "catmark", "doo-sabin", "midedge", "curve"});
   list.add(Group::own, "--at PLACE", &options->at,
-           "What is in the middle of the nets; all but interior with --scheme loop or catmark, for dual "
-           "schemes have neither patches at boundaries nor creases")
+           "What is at the centre of each control net; all but interior with --scheme loop or catmark only")
       .one_of({"interior", "boundary", "corner", "crease", "dart", "semi-sharp"});
   list.add(Group::own, "--nets N", &options->nets, "Nets for each valence").between(1, 100'000);
-  list.add(Group::own, "--levels N", &options->levels, "How often a patch is split, 4 to 40").between(4, 40);
-  list.add(Group::own, "--seed N", &options->seed, "Seed of what is drawn");
+  list.add(Group::own, "--levels N", &options->levels, "Splits of each patch, 4 to 40").between(4, 40);
+  list.add(Group::own, "--seed N", &options->seed, "Random seed");
   add_output_options(list, *options);
   return {"rates",
           Topic::tables,
-          "How fast enclosures shrink at an extraordinary corner, or those of curves",
+          "How fast enclosures shrink at extraordinary vertices, or on curves",
           {"snug-experiments rates --scheme catmark"},
           std::move(list),
           [options] { return options->of == "curve" ? curve_rates(*options) : rates(*options); }};
@@ -369,7 +367,7 @@ Command tightness_command() {
   auto options = std::make_shared<RadiiOptions>();
   return {"tightness",
           Topic::tables,
-          "Radii over the least possible for the same base triangle",
+          "Radii divided by the least possible for the same base triangle",
           {"snug-experiments tightness --json"},
           radii_options(*options),
           [options] { return tightness(*options); }};

@@ -255,11 +255,11 @@ ExitStatus room_table(const Options& options) {
   return ExitStatus::answered;
 }
 
-// What the three take.
+// The options of all three.
 OptionList table_options(Options& options) {
   OptionList list;
   list.add(Group::own, "MODEL", &options.models,
-           "Control meshes of triangles, for table-5-3 two by two; default: six of examples/models")
+           "Triangle meshes, taken in pairs by table-5-3; default: six of examples/models")
       .must = false;
   add_output_options(list, options);
   return list;
@@ -271,7 +271,7 @@ Command leaves_command() {
   auto options = std::make_shared<Options>();
   return {"table-5-1",
           Topic::tables,
-          "Triangles for 2, 1 and 0.5 %, by what bounds them",
+          "Number of triangles for tolerances of 2, 1 and 0.5 %, by bounding method",
           {"snug-experiments table-5-1 star.obj"},
           table_options(*options),
           [options] { return leaves_table(*options); }};
@@ -281,7 +281,7 @@ Command creation_command() {
   auto options = std::make_shared<Options>();
   return {"table-5-2",
           Topic::tables,
-          "How long it takes to make a hierarchy",
+          "Time to build a hierarchy",
           {"snug-experiments table-5-2 star.obj"},
           table_options(*options),
           [options] { return creation_table(*options); }};
@@ -290,12 +290,12 @@ Command creation_command() {
 Command rooms_command() {
   auto options = std::make_shared<Options>();
   OptionList list = table_options(*options);
-  list.add(Group::own, "--placements N", &options->placements, "Random placements of a pair in a room")
+  list.add(Group::own, "--placements N", &options->placements, "Random poses of each pair in each room")
       .between(1, 100'000'000);
-  list.add(Group::own, "--seed N", &options->seed, "Seed of what is drawn");
+  list.add(Group::own, "--seed N", &options->seed, "Random seed");
   return {"table-5-3",
           Topic::tables,
-          "Queries of two models thrown into a room",
+          "Query times for two models at random poses in a room",
           {"snug-experiments table-5-3 --placements 2000"},
           std::move(list),
           [options] { return room_table(*options); }};

@@ -196,8 +196,8 @@ TEST(help, is_in_groups_with_an_example_and_options_for_research_last) {
                                      "Example", "  snug collide"});
   expect_help(run_snug({"collide", "--help"}),
               {"Usage: snug collide A B [OPTIONS]", "Options:\n", "--tolerance LENGTH", "(default 0.1%)",
-               "Where the meshes stand:\n", "--place-a", "Meshes:\n", "--scheme", "Output:\n", "--json",
-               "Effort:\n", "--threads", "For research:\n", "--bounds", "Example:\n  snug collide "});
+               "Poses:\n", "--place-a", "Meshes:\n", "--scheme", "Output:\n", "--json", "Effort:\n",
+               "--threads", "For research:\n", "--bounds", "Example:\n  snug collide "});
   expect_help(run_snug({"bound", "-h"}), {"--tolerance", "For research:\n", "--bounds"});
   expect_help(run_snug({"subdivide", "--help"}), {"--level", "Example"});
   for (const char* command : {"distance", "closest", "render"}) {
