@@ -37,7 +37,7 @@ struct Option {
   std::vector<std::string> excluded{}, needed{};
   bool must{};  ///< without it the command cannot run
 
-  /// The value is one of these words. Neither case nor '-' or '_' inside of a word matters: edgeOnly is edge-only.
+  /// The value is one of these words. Neither case nor '-' or '_' inside a word matters: edgeOnly is edge-only.
   Option& one_of(std::vector<std::string> words);
   /// Another name of a choice.
   Option& alias(const std::string& word, const std::string& choice);

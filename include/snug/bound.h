@@ -12,7 +12,7 @@
 namespace snug {
 
 struct BoundOptions {
-  BoundMethod method = BoundMethod::rows;
+  BoundMethod method = BoundMethod::rows;  ///< for bound(), whatever SurfaceOptions::bounds is
   /// Split until each radius is at most half of this, in mesh units.
   std::optional<double> tolerance{};
   /// Without a tolerance: split every patch this many times. The first split of a face into quads counts.

@@ -24,7 +24,7 @@ enum class BoundMethod : std::uint8_t {
 struct SurfaceOptions {
   std::optional<Scheme> scheme{};          ///< default: Loop if all faces are triangles, else Catmull-Clark
   std::optional<BoundaryRule> boundary{};  ///< default: the mesh's tag, else edge_and_corner
-  BoundMethod bounds = BoundMethod::rows;  ///< how queries bound pieces
+  BoundMethod bounds = BoundMethod::rows;  ///< for queries and PatchBounds
   /// Bound every patch at the first query, some microseconds each. The BVH becomes tighter, which pays off
   /// for surfaces that are queried thousands of times. Otherwise it is built from control points alone.
   bool tight = false;
@@ -65,14 +65,15 @@ class SNUG_API Surface {
   std::shared_ptr<const SurfaceData> data_;
 };
 
-/// The limit surface of a mesh file, with the file's rules and tags unless `options` overrides them.
+/// The limit surface of a mesh file, with the file's rules and tags unless `options` overrides them. Notes of
+/// the reader, such as about tags that snug does not know, are lost; read_mesh() passes them on.
 /// Errors:    those of read_mesh() and Surface, with the name of the file.
 [[nodiscard]] SNUG_API Surface load(const std::string& path, const SurfaceOptions& options = {});
 
 /// A surface and its pose. A Surface alone has the identity as its pose.
 class PlacedSurface {
  public:
-  PlacedSurface(Surface surface) : surface_(surface) {}  // NOLINT: at the identity
+  PlacedSurface(Surface surface) : surface_(surface) {}  // NOLINT: implicit, at the identity
   PlacedSurface(Surface surface, const Motion& pose) : surface_(surface), pose_(pose) {}
   [[nodiscard]] const Surface& surface() const { return surface_; }
   [[nodiscard]] const Motion& pose() const { return pose_; }

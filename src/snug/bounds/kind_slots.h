@@ -63,8 +63,7 @@ class KindSlots {
 
   std::atomic<const T*>& slot(std::size_t index) {
     if (index / block_size >= blocks_.size()) {
-      throw InputError(InputProblem::refused,
-                       "more than 16 million kinds of patches: ask about parts of the mesh");
+      throw InputError(InputProblem::refused, "more than 16 million patch topologies: split the mesh");
     }
     std::atomic<Block*>& place = blocks_[index / block_size];
     Block* block = place.load(std::memory_order_acquire);

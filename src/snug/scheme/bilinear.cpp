@@ -107,8 +107,8 @@ class FlatRules : public LocalRules {
                     .min_valence = 1,
                     .max_valence = SIZE_MAX,
                     .wants_triangles =
-                        "the flat scheme has triangles as they are: triangulate the mesh, or take "
-                        "the bilinear scheme",
+                        "the scheme flat needs triangles: triangulate the mesh, or use the scheme "
+                        "bilinear",
                     .creases = false,
                     .local = true}) {}
   [[nodiscard]] BezierRows bezier(const Topology&, std::span<const CornerFan>) const override {

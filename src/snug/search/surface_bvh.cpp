@@ -36,12 +36,12 @@ std::vector<PatchId> existing_patches(const LimitSurface& surface) {
     if (surface.has_patch(PatchId(p))) patches.emplace_back(p);
   }
   if (patches.size() >= WideBvh::leaf_bit) {
-    throw InputError(InputProblem::refused, "more than 2^31 patches: ask about parts of the mesh");
+    throw InputError(InputProblem::refused, "more than 2^31 patches: split the mesh");
   }
   if (patches.empty()) {
     throw InputError(
         InputProblem::refused,
-        "no face has a limit surface: all are holes or touch the boundary; take another boundary rule");
+        "no face has a limit surface: all are holes or touch the boundary; use another boundary rule");
   }
   return patches;
 }
