@@ -17,20 +17,21 @@ namespace {
 const LimitSurface& limit(const Surface& surface) { return surface.data()->limit(); }
 const SurfaceBvh& bvh(const Surface& surface) { return surface.data()->bvh(); }
 
-template <class Ask>
-auto ask_both(const PlacedSurface& a, const PlacedSurface& b, Workspace& workspace, const Ask& ask) {
-  const Workspace::Pieces::Pair pieces = workspace.pieces().of(a.surface(), b.surface());
-  return ask(PlacedBvh{bvh(a.surface()), pieces.a, a.pose()},
-             PlacedBvh{bvh(b.surface()), pieces.b, b.pose()});
-}
+// Two placed surfaces with their trees and workspaces.
+struct Placed {
+  Placed(const PlacedSurface& in_a, const PlacedSurface& in_b, const Workspace::Pieces::Pair& pieces)
+      : a{pieces.a.model(), pieces.a, in_a.pose()}, b{pieces.b.model(), pieces.b, in_b.pose()} {}
+  Placed(const PlacedSurface& in_a, const PlacedSurface& in_b, Workspace& workspace)
+      : Placed(in_a, in_b, workspace.pieces().of(in_a.surface(), in_b.surface())) {}
+  PlacedBvh a, b;
+};
 
 }  // namespace
 
 Collision collide(const PlacedSurface& a, const PlacedSurface& b, const CollideOptions& options,
                   const WorkMonitor& monitor, Workspace& workspace) {
-  return ask_both(a, b, workspace, [&](const PlacedBvh& in_a, const PlacedBvh& in_b) {
-    return collide(in_a, in_b, options, monitor);
-  });
+  const Placed at(a, b, workspace);
+  return collide(at.a, at.b, options, monitor);
 }
 
 std::vector<Collision> collide(const Surface& a, const Surface& b, std::span<const PosePair> poses,
@@ -40,16 +41,14 @@ std::vector<Collision> collide(const Surface& a, const Surface& b, std::span<con
 
 Penetration penetration(const PlacedSurface& a, const PlacedSurface& b, const PenetrationOptions& options,
                         const WorkMonitor& monitor, Workspace& workspace) {
-  return ask_both(a, b, workspace, [&](const PlacedBvh& in_a, const PlacedBvh& in_b) {
-    return penetration(in_a, in_b, options, monitor);
-  });
+  const Placed at(a, b, workspace);
+  return penetration(at.a, at.b, options, monitor);
 }
 
 Distance distance(const PlacedSurface& a, const PlacedSurface& b, const DistanceOptions& options,
                   const WorkMonitor& monitor, Workspace& workspace) {
-  return ask_both(a, b, workspace, [&](const PlacedBvh& in_a, const PlacedBvh& in_b) {
-    return distance(in_a, in_b, options, monitor);
-  });
+  const Placed at(a, b, workspace);
+  return distance(at.a, at.b, options, monitor);
 }
 
 std::vector<Distance> distance(const Surface& a, const Surface& b, std::span<const PosePair> poses,

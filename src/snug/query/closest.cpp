@@ -133,15 +133,10 @@ class Query {
 
   ClosestPoint result() const {
     const PowerOfTwo back = surface_.scale().inverse();
-    ClosestPoint answer;
-    answer.distance = {unscaled_down(std::max(0.0, bounds_.lower()), back),
-                       require_representable(unscaled_up(bounds_.upper(), back))};
-    answer.reached = near_enough(answer.distance, options_);
+    const Interval distance{unscaled_down(std::max(0.0, bounds_.lower()), back),
+                            require_representable(unscaled_up(bounds_.upper(), back))};
     const BoundedPoint closest = unscaled(closest_, back);
-    answer.point = closest.position;
-    answer.point_error = closest.error;
-    answer.at = at_;
-    return answer;
+    return {distance, near_enough(distance, options_), closest.position, closest.error, at_};
   }
 
   SurfaceWorkspace& workspace_;

@@ -122,11 +122,8 @@ class Query {
     const bool whole = answer.verdict == Verdict::separated;
     answer.distance.lower = whole ? unscaled_down(std::min(lower_, best_.distance), back) : 0.0;
     if (best_.distance < INFINITY) {
-      answer.witness = {require_representable(back.apply(best_.points[0])),
-                        require_representable(back.apply(best_.points[1]))};
       answer.distance.upper = require_representable(unscaled_up(best_.distance, back));
-      answer.witness_error = unscaled_up(best_.error, back) + underflow_error;
-      answer.at = pieces_.places(best_);
+      pieces_.tell(best_, answer);
     }
     if (crossing_) answer.distance.upper = 0;
     return answer;

@@ -171,11 +171,7 @@ class Query {
     answer.distance = {unscaled_down(bounds_.lower(), back),
                        require_representable(unscaled_up(bounds_.upper(), back))};
     answer.reached = near_enough(answer.distance, options_);
-    for (std::size_t s = 0; s < 2; ++s) {
-      answer.witness[s] = require_representable(back.apply(witness_.points[s]));
-    }
-    answer.witness_error = unscaled_up(witness_.error, back) + underflow_error;
-    answer.at = pieces_.places(witness_);
+    pieces_.tell(witness_, answer);
     return answer;
   }
 

@@ -28,11 +28,10 @@ struct Candidate {
 
 std::vector<Vector3> some_directions() {
   std::vector<Vector3> directions;
-  for (int x = -1; x <= 1; ++x) {
-    for (int y = -1; y <= 1; ++y) {
-      for (int z = -1; z <= 1; ++z) {
-        const Vector3 d{static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
-        if (d != Vector3{}) directions.push_back(normalized(d));
+  for (const double x : {-1.0, 0.0, 1.0}) {
+    for (const double y : {-1.0, 0.0, 1.0}) {
+      for (const double z : {-1.0, 0.0, 1.0}) {
+        if (const Vector3 d{x, y, z}; d != Vector3{}) directions.push_back(normalized(d));
       }
     }
   }

@@ -48,21 +48,14 @@ void drop_boundary(ControlMesh& mesh, const Topology& topology) {
   }
 }
 
-// Faces of a refined mesh that have limit positions at all corners. Empty: all.
+// Faces of a refined mesh that have limit positions at all corners.
 std::vector<bool> faces_with_limit(const ControlMesh& mesh, const Topology& topology,
                                    const SchemeRules& rules) {
-  std::vector<bool> kept;
-  if (!rules.primal) {
-    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-      if (!touches_boundary(topology, FaceId(f))) continue;
-      if (kept.empty()) kept.assign(mesh.face_count(), true);
-      kept[f] = false;
-    }
-    return kept;
-  }
-  for (const FaceId hole : mesh.tags.holes) {
-    if (kept.empty()) kept.assign(mesh.face_count(), true);
-    kept[hole.index()] = false;
+  std::vector<bool> kept(mesh.face_count(), true);
+  if (rules.primal) {
+    for (const FaceId hole : mesh.tags.holes) kept[hole.index()] = false;
+  } else {
+    for (std::size_t f = 0; f < kept.size(); ++f) kept[f] = !touches_boundary(topology, FaceId(f));
   }
   return kept;
 }
@@ -121,7 +114,7 @@ ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned l
     }
     mesh.points = std::move(positions);
     const std::vector<bool> kept = faces_with_limit(mesh, topology, rules_of(rules.scheme));
-    if (!kept.empty()) {
+    if (std::find(kept.begin(), kept.end(), false) != kept.end()) {
       mesh = only(mesh, kept);
       dropped = true;
     }

@@ -2,9 +2,11 @@
 
 #include <array>
 
+#include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
 #include <snug/search/pair_walk.h>
 #include <snug/surface/evaluate.h>
+#include <snug/surface/unscale.h>
 
 namespace snug {
 
@@ -48,10 +50,19 @@ class PiecePairs {
 
   /// At the parameters where the base triangles are nearest.
   [[nodiscard]] Witness witness(const PiecePair& pieces);
-  /// Where the points of a witness of this query lie.
-  [[nodiscard]] WitnessPlaces places(const Witness& witness) const;
+  /// What a Collision or a Distance says of a witness of this query, in mesh units.
+  template <class Answer>
+  void tell(const Witness& witness, Answer& answer) const {
+    const PowerOfTwo back = frames_.to_mesh_units();
+    answer.witness = {require_representable(back.apply(witness.points[0])),
+                      require_representable(back.apply(witness.points[1]))};
+    answer.witness_error = unscaled_up(witness.error, back) + underflow_error;
+    answer.at = places(witness);
+  }
 
  private:
+  // Where its points lie.
+  [[nodiscard]] WitnessPlaces places(const Witness& witness) const;
   [[nodiscard]] PieceId piece(const NodePair& pair, std::size_t side) const {
     return frames_.workspace(side).piece(pair.nodes[side]);
   }

@@ -224,10 +224,4 @@ void BatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
   }
 }
 
-std::size_t BatchBounds::bytes() const {
-  return sizeof(*this) + patches_.size() * sizeof(PatchId) + unused_.size() * sizeof(VertexId) +
-         groups_.size() * sizeof(Group) + chunks_.size() * sizeof(Chunk) + places_.size() * sizeof(Place) +
-         control_.size() * sizeof(VertexId) + scaled_.size() * sizeof(Point3);
-}
-
 }  // namespace snug

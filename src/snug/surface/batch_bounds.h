@@ -10,33 +10,18 @@
 
 namespace snug {
 
-/// Offset triangles of the whole patches of a surface, again and again while its control points move and its
-/// connectivity stays: for animation, and the fastest way to bound a large mesh once.
-///
-/// Cost:      see bench/results/rows.txt. Memory: 4 bytes a control point and patch, 24 a vertex.
+/// PatchBounds of bound.h, of all patches of a surface or of some.
+/// Requires:  the surface outlives the bounds.
 class BatchBounds {
  public:
   /// Makes what the kinds of the surface need: their rows, or their tables.
-  /// Requires:  the surface outlives the bounds.
-  /// Errors:    InputError (value) for a patch that is not there.
   explicit BatchBounds(const LimitSurface& surface, BoundMethod method = BoundMethod::rows, int threads = 0);
-  /// The same for some of the patches, in any order.
+  /// In any order. InputError (value) for a patch that is not there.
   BatchBounds(const LimitSurface& surface, std::vector<PatchId> patches,
               BoundMethod method = BoundMethod::rows, int threads = 0);
 
-  /// The patches that update() answers for, in this order; all that are there unless chosen.
   [[nodiscard]] std::span<const PatchId> patches() const { return patches_; }
-
-  /// Bounds of all patches for these control points, in mesh units.
-  ///
-  /// Guarantee: every limit point of a patch is within its radius of its base, rounding included; results do
-  ///            not depend on threads. One thread allocates nothing after its first call.
-  /// Errors:    InputError (value) unless there is a point for each vertex of the mesh and out.size() == patches().size();
-  ///            (refused) if a point that a face uses is not finite, or a result no double. Then `out` is in no
-  ///            particular state.
   void update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads = 1);
-
-  [[nodiscard]] std::size_t bytes() const;
 
  private:
   // Patches of one kind, in the order of patches_. A polygon's are apart, part by part: their control points are

@@ -19,7 +19,7 @@ namespace snug {
 [[nodiscard]] SurfaceParameter place_of(const LimitSurface& surface, PatchId patch, TriangleParameter at);
 
 /// The patch that a place lies on.
-/// Errors:    nothing where there is no such owner, corner or parameter, or no surface.
+/// Nothing where there is no such owner, corner or parameter, or no surface.
 [[nodiscard]] std::optional<PatchId> patch_at(const LimitSurface& surface, const SurfaceParameter& at);
 
 /// The limit point at a place: evaluate() of evaluate.h.
@@ -30,17 +30,14 @@ namespace snug {
 [[nodiscard]] std::optional<SurfaceNormal> normal_at(const LimitSurface& surface, const SurfaceParameter& at,
                                                      const Motion& pose = {});
 
-/// Evaluates many points of one patch with a single set-up. For one thread.
-///
-/// Errors:    InputError (value) for a patch that is not there and a parameter that is not on it, NaN included;
-///            (unrepresentable) if a coordinate does not fit a double.
+/// Evaluates many points of one patch with a single set-up. InputError (value) for a patch that is not there and a parameter
+/// that is not on it, NaN included.
 class PatchEvaluator {
  public:
   PatchEvaluator(const LimitSurface& surface, PatchId p);
   /// The point at a place of its owner that lies on this patch.
   [[nodiscard]] SurfacePoint operator()(const SurfaceParameter& at) const;
-  /// The point at a parameter of the patch, with derivatives along its own u and v.
-  /// u, v >= 0 and u + v <= 1.
+  /// The point at a parameter of the patch, with derivatives along its own u and v; u, v >= 0 and u + v <= 1.
   [[nodiscard]] SurfacePoint operator()(TriangleParameter at) const;
 
  private:
@@ -56,11 +53,8 @@ struct CurveSetPoint : BoundedPoint {
   Vector3 tangent;  ///< in double precision without a bound; 0 where the curve has none
 };
 
-/// The limit point of an edge at t: 0 at the limit of its first vertex, 1 at that of the second.
-///
-/// Guarantee: as CurveSetPoint says, for exactly this t.
-/// Errors:    InputError (value) unless edge < curves.edge_count() and 0 <= t <= 1; (unrepresentable) if a coordinate does
-///            not fit a double.
+/// The limit point of an edge at exactly this t: 0 at the limit of its first vertex, 1 at that of the second. InputError
+/// (value) unless edge < curves.edge_count() and 0 <= t <= 1.
 [[nodiscard]] CurveSetPoint evaluate(const CurveSet& curves, EdgeId edge, double t);
 
 }  // namespace snug

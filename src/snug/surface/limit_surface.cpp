@@ -68,9 +68,9 @@ bool LimitSurface::has_surface(std::size_t owner, const Sharpness& sharpness,
   return options_.boundary != BoundaryRule::none || !loses_surface(topology_, sharpness, FaceId(owner));
 }
 
-HalfEdge LimitSurface::start_of(std::size_t owner, std::uint32_t part) const {
+HalfEdge LimitSurface::corner_at(std::size_t owner, std::size_t k) const {
   HalfEdge h = rules_->primal ? topology_.first_of(FaceId(owner)) : topology_.leaving(VertexId(owner));
-  for (std::uint32_t k = 0; k < 2 * part; ++k) h = rules_->primal ? topology_.next(h) : topology_.ccw(h);
+  for (; k > 0; --k) h = rules_->primal ? topology_.next(h) : topology_.ccw(h);
   return h;
 }
 
@@ -81,7 +81,7 @@ void LimitSurface::find_kinds(std::size_t owner, const Sharpness& sharpness) {
     firsts_[owner] = key.first;
     return;
   }
-  const HalfEdge start = start_of(owner);
+  const HalfEdge start = corner_at(owner);
   const std::size_t begin = begins_[owner];
   const KindKey key = kind_key_from(topology_, start, options_, sharpness);
   const Kind& whole = library_->kinds().find(key);
@@ -93,7 +93,7 @@ void LimitSurface::find_kinds(std::size_t owner, const Sharpness& sharpness) {
   }
   kinds_[begin] = &whole;
   kinds_[begin + 1] =
-      &library_->kinds().find(kind_key_from(topology_, start_of(owner, 1), options_, sharpness));
+      &library_->kinds().find(kind_key_from(topology_, corner_at(owner, 2), options_, sharpness));
 }
 
 LimitSurface::PatchRange LimitSurface::patches_of(std::size_t owner) const {
@@ -116,9 +116,9 @@ void LimitSurface::control_vertices(PatchId p, std::vector<VertexId>& out) const
                 "surface: there is no such patch; has_patch() tells which are there");
   const PatchPlace at = place(p);
   if (const Kind* polygon = polygon_of(p)) {
-    polygon->control_vertices(topology_, start_of(at.owner), out);
+    polygon->control_vertices(topology_, corner_at(at.owner), out);
   } else {
-    kind(p).control_vertices(topology_, start_of(at.owner, at.part) + first(p), out);
+    kind(p).control_vertices(topology_, corner_at(at.owner, 2 * std::size_t{at.part}) + first(p), out);
   }
 }
 
@@ -151,15 +151,8 @@ std::array<std::uint32_t, 3> LimitSurface::corner_names(PatchId p) const {
   const bool primal = rules_->primal;
   const std::size_t vertices = topology_.vertex_count(), edges = topology_.edge_count();
   const auto name = [](std::size_t n) { return static_cast<std::uint32_t>(n); };
-  // The half-edge of corner k: of the face from there, or from the vertex in face k.
-  const HalfEdge start = start_of(owner);
-  const auto corner_at = [&](std::size_t k) {
-    HalfEdge h = start;
-    for (; k > 0; --k) h = primal ? topology_.next(h) : topology_.ccw(h);
-    return h;
-  };
-  const auto corner = [&](std::size_t k) {
-    const HalfEdge h = corner_at(k);
+  const auto corner = [&, place_owner = owner](std::size_t k) {
+    const HalfEdge h = corner_at(place_owner, k);
     return primal ? topology_.from(h).value() : name(vertices + edges + topology_.face_of(h).index());
   };
   if (rules_->triangular()) return {corner(0), corner(1), corner(2)};
@@ -168,7 +161,7 @@ std::array<std::uint32_t, 3> LimitSurface::corner_names(PatchId p) const {
                      : std::array{corner(2), corner(3), corner(0)};
   }
   const std::size_t k = part / 2;
-  const HalfEdge h = corner_at(k);
+  const HalfEdge h = corner_at(owner, k);
   const std::uint32_t centre = primal ? name(vertices + edges + owner) : owner;
   const auto edge = [&](HalfEdge g) { return name(vertices + topology_.edge_of(g).index()); };
   // Between corners k and k + 1, and between k - 1 and k.

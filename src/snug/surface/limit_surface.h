@@ -27,13 +27,11 @@ using PatchId = Id<struct PatchTag>;
 /// corner and from the face's centre.
 /// Dual schemes likewise, with the faces around the vertex, from topology().leaving() on, as corners.
 ///
-/// Inside, coordinates are scaled by a power of two so that the largest lies in [1, 2); `scale()` leads there
-/// from mesh units. Everything below surface/ works in scaled units, everything that questions answer with is
-/// in mesh units.
+/// Inside, coordinates are scaled by a power of two so that the largest lies in [1, 2); `scale()` leads there from mesh
+/// units. Everything below surface/ works in scaled units, all answers are in mesh units.
 ///
 /// Errors:    InputError (refused) from require_subdividable, and (value) for a library that is null.
-/// Cost:      linear; 9 bytes a patch beside mesh and topology. Rows of kinds are made when a patch is first
-///            bounded.
+/// Cost:      linear; 9 bytes a patch beside mesh and topology. Rows of kinds are made when a patch is first bounded.
 class LimitSurface {
  public:
   /// The mesh's tags name creases, corners, holes, the crease method and how triangles are treated; options.boundary
@@ -80,15 +78,12 @@ class LimitSurface {
   }
   /// The kind of the polygon that a patch is made of in a first split; none for others.
   [[nodiscard]] const Kind* polygon_of(PatchId p) const;
-  /// The control vertices of a patch, or of its polygon, in the order of its kind.
-  /// Errors:    InputError (value) unless has_patch(p).
+  /// The control vertices of a patch, or of its polygon, in the order of its kind. InputError (value) unless has_patch(p).
   void control_vertices(PatchId p, std::vector<VertexId>& out) const;
   [[nodiscard]] const Point3& scaled_point(VertexId v) const { return scaled_[v.index()]; }
   /// The middle of its owner's corners, in scaled units.
   [[nodiscard]] Point3 middle(PatchId p) const;
-  /// The whole patch, in scaled units.
-  /// Errors:    InputError (value) unless has_patch(p).
-  /// Cost:      a walk around its corners; of a polygon a product with its stencils.
+  /// The whole patch, in scaled units. InputError (value) unless has_patch(p).
   [[nodiscard]] Patch patch(PatchId p) const;
   /// Names of the patch's three corners: equal names, equal limit points. Below corner_name_count().
   [[nodiscard]] std::array<std::uint32_t, 3> corner_names(PatchId p) const;
@@ -101,8 +96,8 @@ class LimitSurface {
   [[nodiscard]] bool has_surface(std::size_t owner, const Sharpness& sharpness,
                                  const std::vector<bool>& holes) const;
   void find_kinds(std::size_t owner, const Sharpness& sharpness);
-  // Where the patches of an owner that is no polygon begin: part 0, and part 1 opposite of it.
-  [[nodiscard]] HalfEdge start_of(std::size_t owner, std::uint32_t part = 0) const;
+  // The half-edge of corner k: of the face from there, or from the vertex in face k.
+  [[nodiscard]] HalfEdge corner_at(std::size_t owner, std::size_t k = 0) const;
 
   ControlMesh mesh_;
   SchemeOptions options_;
