@@ -5,7 +5,8 @@
 #include <limits>
 
 /// Points and sets as plain values. Arithmetic on them is private to the library, since its error bounds
-/// depend on how it is compiled.
+/// depend on how it is compiled. Comparisons are inlined wherever they are used: the library has its own,
+/// never those of a program built with other flags.
 namespace snug {
 
 /// A displacement. Points and vectors are different types: two points cannot be added by accident.
@@ -15,7 +16,7 @@ struct Vector3 {
     return axis == 0 ? x : axis == 1 ? y : z;
   }
   constexpr double& operator[](std::size_t axis) { return axis == 0 ? x : axis == 1 ? y : z; }
-  friend constexpr bool operator==(const Vector3&, const Vector3&) = default;
+  [[gnu::always_inline]] friend constexpr bool operator==(const Vector3&, const Vector3&) = default;
 };
 
 /// A position.
@@ -25,7 +26,7 @@ struct Point3 {
     return axis == 0 ? x : axis == 1 ? y : z;
   }
   constexpr double& operator[](std::size_t axis) { return axis == 0 ? x : axis == 1 ? y : z; }
-  friend constexpr bool operator==(const Point3&, const Point3&) = default;
+  [[gnu::always_inline]] friend constexpr bool operator==(const Point3&, const Point3&) = default;
 };
 
 /// A position that was computed, and how far it is from the exact one.
@@ -43,19 +44,19 @@ struct Box3 {
 
   Point3 lower{infinity, infinity, infinity};
   Point3 upper{-infinity, -infinity, -infinity};
-  friend constexpr bool operator==(const Box3&, const Box3&) = default;
+  [[gnu::always_inline]] friend constexpr bool operator==(const Box3&, const Box3&) = default;
 
-  constexpr void add(Point3 p) {
+  [[gnu::always_inline]] constexpr void add(Point3 p) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (p[axis] < lower[axis]) lower[axis] = p[axis];
       if (p[axis] > upper[axis]) upper[axis] = p[axis];
     }
   }
-  constexpr void add(const Box3& box) {
+  [[gnu::always_inline]] constexpr void add(const Box3& box) {
     add(box.lower);
     add(box.upper);
   }
-  [[nodiscard]] constexpr bool empty() const { return lower.x > upper.x; }
+  [[nodiscard, gnu::always_inline]] constexpr bool empty() const { return lower.x > upper.x; }
 };
 
 /// All points within `radius` of a triangle or a segment; also called a triangle-swept or line-swept sphere.
@@ -83,8 +84,10 @@ struct Interval {
   constexpr Interval() = default;
   constexpr Interval(double exact) : lower(exact), upper(exact) {}  // NOLINT: a number is an interval
   constexpr Interval(double low, double high) : lower(low), upper(high) {}
-  [[nodiscard]] constexpr bool contains(double x) const { return lower <= x && x <= upper; }
-  friend constexpr bool operator==(const Interval&, const Interval&) = default;
+  [[nodiscard, gnu::always_inline]] constexpr bool contains(double x) const {
+    return lower <= x && x <= upper;
+  }
+  [[gnu::always_inline]] friend constexpr bool operator==(const Interval&, const Interval&) = default;
 };
 
 }  // namespace snug

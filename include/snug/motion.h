@@ -55,7 +55,7 @@ class SNUG_API Motion {
   /// Up to a few roundings, or up to 2 defect() if the exact inverse is not rigid within the tolerance.
   [[nodiscard]] Motion inverse() const;
 
-  friend bool operator==(const Motion&, const Motion&) = default;
+  [[gnu::always_inline]] friend bool operator==(const Motion&, const Motion&) = default;
 
  private:
   Motion(const std::array<double, 12>& numbers, double defect) : numbers_(numbers), defect_(defect) {}

@@ -73,8 +73,8 @@ class SNUG_API Surface {
 /// A surface and its pose. A Surface alone has the identity as its pose.
 class PlacedSurface {
  public:
-  PlacedSurface(Surface surface) : surface_(surface) {}  // NOLINT: implicit, at the identity
-  PlacedSurface(Surface surface, const Motion& pose) : surface_(surface), pose_(pose) {}
+  PlacedSurface(const Surface& surface) : surface_(surface) {}  // NOLINT: implicit, at the identity
+  PlacedSurface(const Surface& surface, const Motion& pose) : surface_(surface), pose_(pose) {}
   [[nodiscard]] const Surface& surface() const { return surface_; }
   [[nodiscard]] const Motion& pose() const { return pose_; }
 
