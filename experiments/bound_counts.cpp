@@ -5,7 +5,6 @@
 
 #include <experiments/control_box.h>
 #include <snug/base/error.h>
-#include <snug/bounds/curve_points.h>
 #include <snug/bounds/enclosure.h>
 #include <snug/geometry/rounding.h>
 #include <snug/surface/unscale.h>
@@ -128,7 +127,7 @@ PieceCount count_pieces(const CurveSet& curves, BoundWay way, const CountOptions
     if (way == BoundWay::control_box) return size_of_box(control_box(piece, scratch), piece.error, back);
     const std::array<LimitPoint, 2> ends = limit_ends(piece);
     hull_points(piece, scratch);
-    const OffsetSegment offset = offset_simplex<2>(scratch, {ends[0].relative, ends[1].relative});
+    const OffsetSegment offset = offset_segment(scratch, {ends[0].relative, ends[1].relative});
     return {unscaled(offset, back).radius, offset.radius <= 2 * offset.rounding};
   };
   Counter<CurvePiece> counter(options, 2, size_of, monitor);

@@ -3,28 +3,18 @@
 #include <algorithm>
 #include <array>
 
+#include <snug/geometry/rounding.h>
+
 namespace snug {
 
 void control_points(const Patch& patch, HullPoints& out) {
-  out.origin = patch.origin;
-  out.resize(patch.points.size());
-  for (std::size_t i = 0; i < patch.points.size(); ++i) out.set(i, patch.points[i]);
-  out.largest = patch.largest;
-  out.error = patch.error;
-  out.tips = {};
+  out.restart(patch.origin);
+  out.add(patch.points, patch.error, patch.largest);
 }
 
 void control_points(const CurvePiece& piece, HullPoints& out) {
-  out.resize(0);
-  out.origin = piece.origin;
-  out.error = out.largest = 0;
-  out.tips = {};
-  const auto add = [&](const Vector3& point, double error) {
-    out.resize(out.size() + 1);
-    out.set(out.size() - 1, point);
-    out.largest = std::max(out.largest, max_abs(point));
-    out.error = std::max(out.error, error);
-  };
+  out.restart(piece.origin);
+  const auto add = [&](const Vector3& point, double error) { out.add({&point, 1}, error, max_abs(point)); };
   const std::array<LimitPoint, 2> ends = limit_ends(piece);
   const std::span<const Vector3> controls = piece.controls();
   for (std::size_t i = 0; i < controls.size(); ++i) {
@@ -34,6 +24,19 @@ void control_points(const CurvePiece& piece, HullPoints& out) {
   for (std::size_t end = 0; end < 2; ++end) {
     if (piece.ghost[end]) add(ends[end].relative, ends[end].error);
   }
+}
+
+Box3 outer_box(const HullPoints& points) {
+  Box3 box;
+  const kernels::Coordinates all = points.coordinates();
+  const std::array<const double*, 3> axes{all.x, all.y, all.z};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto [low, high] = std::minmax_element(axes[a], axes[a] + all.count);
+    const double o = points.origin[a];
+    box.lower[a] = rounded_down(o + rounded_down(*low - points.error));
+    box.upper[a] = rounded_up(o + rounded_up(*high + points.error));
+  }
+  return box;
 }
 
 }  // namespace snug

@@ -11,7 +11,11 @@ namespace snug {
 void control_points(const Patch& patch, HullPoints& out);
 void control_points(const CurvePiece& piece, HullPoints& out);
 
-/// The box around them.
+/// Least box around points, moved to the coordinates' origin.
+/// Guarantee: contains what their hull does, rounding included.
+[[nodiscard]] Box3 outer_box(const HullPoints& points);
+
+/// The box around control points.
 /// Guarantee: contains the patch, or the piece, rounding included.
 template <class Piece>
 [[nodiscard]] Box3 control_box(const Piece& piece, HullPoints& scratch) {

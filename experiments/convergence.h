@@ -40,6 +40,14 @@ inline constexpr std::array all_thickness_measures{ThicknessMeasure::radius, Thi
                                                    ThicknessMeasure::normal};
 [[nodiscard]] const char* name_of(ThicknessMeasure measure);
 
+/// Longest side of the boxes [Wu05, sec. 4.7].
+template <std::size_t N>
+[[nodiscard]] double thickness(const IntervalSimplex<N>& simplex) {
+  double widest = 0;
+  for (const Box3& box : simplex.corner) widest = std::max(widest, longest_side(box));
+  return widest;
+}
+
 /// A thickness level by level, in mesh units; ends where rounding makes up more than a thousandth.
 using Thicknesses = std::vector<double>;
 

@@ -7,7 +7,6 @@
 #include <experiments/quantile.h>
 #include <snug/base/error.h>
 #include <snug/base/names.h>
-#include <snug/bounds/curve_points.h>
 #include <snug/bounds/enclosure.h>
 #include <snug/surface/curve_set.h>
 
@@ -44,7 +43,7 @@ std::array<Thicknesses, 2> thicknesses(const CurveSet& curves, EdgeId edge, unsi
     hull_points(piece, points);
     const std::array<LimitPoint, 2> limits = limit_ends(piece);
     const std::array<Vector3, 2> ends{limits[0].relative, limits[1].relative};
-    const OffsetSegment offset = offset_simplex<2>(points, ends);
+    const OffsetSegment offset = offset_segment(points, ends);
     const std::array<double, 2> value{offset.radius, thickness(interval_simplex<2>(points, ends))};
     for (std::size_t m = 0; m < 2; ++m) {
       const bool ended = result[m].size() < level;

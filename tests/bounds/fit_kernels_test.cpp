@@ -42,7 +42,8 @@ using Corners = std::array<Vector3, 3>;
 Triangle placed(const Corners& c) { return {Point3{} + c[0], Point3{} + c[1], Point3{} + c[2]}; }
 
 std::optional<kernels::Reach> farthest(const Cloud& cloud, const Corners& c) {
-  return kernels::farthest(cloud.coordinates(), c[0], c[1], c[2]);
+  const auto both = kernels::farthest(cloud.coordinates(), cloud.x.size(), c[0], c[1], c[2]);
+  return both ? std::optional((*both)[0]) : std::nullopt;
 }
 
 // ---- the twin: exact enough, and written without a plane's frame ----
@@ -314,9 +315,9 @@ TEST(farthest, of_two_parts_is_that_of_each) {
         const kernels::Coordinates points =
             part == 0 ? cloud.coordinates().first(split) : cloud.coordinates().from(split);
         const kernels::Reach& found = (*both)[part];
-        const auto alone = kernels::farthest(points, c[0], c[1], c[2]);
-        EXPECT_EQ(found.distance, points.count ? alone->distance : 0);
-        EXPECT_EQ(found.rounding, points.count ? alone->rounding : 0);
+        const auto alone = kernels::farthest(points, points.count, c[0], c[1], c[2]);
+        EXPECT_EQ(found.distance, points.count ? (*alone)[0].distance : 0);
+        EXPECT_EQ(found.rounding, points.count ? (*alone)[0].rounding : 0);
       }
     }
   }
@@ -420,8 +421,8 @@ class Nets {
 
   [[nodiscard]] std::size_t size() const { return control_.size() / order_.size(); }
 
-  [[nodiscard]] std::vector<kernels::BatchFit> fits(std::size_t begin, std::size_t end) const {
-    std::vector<kernels::BatchFit> out(end - begin);
+  [[nodiscard]] std::vector<OffsetTriangle> fits(std::size_t begin, std::size_t end) const {
+    std::vector<OffsetTriangle> out(end - begin);
     const std::size_t n = order_.size();
     kernels::fit_regular(points_, std::span(control_).subspan(begin * n, (end - begin) * n), out);
     return out;
@@ -434,7 +435,7 @@ class Nets {
     const Patch patch = make_patch(kind, 0, points_, std::span(control_).subspan(i * n, n));
     HullPoints hull;
     hull_points(surface_.library().rows(kind), patch, hull);
-    return offset_simplex(hull, limit_corners(patch));
+    return offset_triangle(surface_.library(), hull, limit_corners(patch));
   }
 
  private:
@@ -596,7 +597,7 @@ Bits everything() {
   oracle::TwinMesh flat = regular_net();
   for (oracle::Point& p : flat.points) p[2] = -0.0;
   nets.add(flat);
-  for (const kernels::BatchFit& fit : nets.fits(0, nets.size())) {
+  for (const OffsetTriangle& fit : nets.fits(0, nets.size())) {
     for (const Point3& p : fit.base) {
       for (const double value : {p.x, p.y, p.z}) add(bits, value);
     }

@@ -1,4 +1,3 @@
-#include <snug/bounds/curve_points.h>
 #include <snug/bounds/enclosure.h>
 
 #include <gtest/gtest.h>
@@ -12,8 +11,7 @@ namespace {
 
 HullPoints points_of(const std::vector<Vector3>& list) {
   HullPoints points;
-  points.resize(list.size());
-  for (std::size_t i = 0; i < list.size(); ++i) points.set(i, list[i]);
+  points.add(list, 0, 0);
   return points;
 }
 
@@ -31,7 +29,7 @@ TEST(segment, rests_are_perpendicular_inside_and_reach_to_the_ends_outside) {
 
 TEST(segment, is_moved_to_the_middle_of_an_arc) {
   const HullPoints points = points_of({{0, 0, 0}, {1, 1, 0}, {2, 1, 0}, {3, 0, 0}});
-  const OffsetSegment offset = offset_simplex<2>(points, {Vector3{0, 0, 0}, Vector3{3, 0, 0}});
+  const OffsetSegment offset = offset_segment(points, {Vector3{0, 0, 0}, Vector3{3, 0, 0}});
   EXPECT_EQ(offset.base[0], (Point3{0, 0.5, 0}));
   EXPECT_EQ(offset.base[1], (Point3{3, 0.5, 0}));
   EXPECT_GE(offset.radius, 0.5);
@@ -39,14 +37,14 @@ TEST(segment, is_moved_to_the_middle_of_an_arc) {
   const IntervalSegment interval = interval_simplex<2>(points, {Vector3{0, 0, 0}, Vector3{3, 0, 0}});
   EXPECT_LE(interval.corner[0].lower.y, 0);
   EXPECT_GE(interval.corner[1].upper.y, 1);
-  EXPECT_LT(thickness(interval), 1 + 1e-12);
+  for (const Box3& box : interval.corner) EXPECT_LT(longest_side(box), 1 + 1e-12);
 }
 
 TEST(segment, of_what_is_not_finite_has_an_infinite_radius) {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     const HullPoints points = points_of({{0, 0, 0}, {1, bad, 0}, {3, 0, 0}});
-    EXPECT_EQ(offset_simplex<2>(points, {Vector3{0, 0, 0}, Vector3{3, 0, 0}}).radius,
+    EXPECT_EQ(offset_segment(points, {Vector3{0, 0, 0}, Vector3{3, 0, 0}}).radius,
               std::numeric_limits<double>::infinity());
   }
 }

@@ -1,6 +1,6 @@
-#include <snug/bounds/table_kernel.h>
 
 #include <gtest/gtest.h>
+#include <snug/bounds/fit_kernels.h>
 #include <snug/bounds/table_triangle.h>
 #include <testing/patches.h>
 
@@ -65,7 +65,7 @@ TEST(fit_table, is_the_tables_offset_triangle) {
       if (broken < count) {
         b.points[broken * kind.control_count() + 5].x = count % 2 ? NAN : INFINITY;
       }
-      std::vector<kernels::BatchFit> out(count);
+      std::vector<OffsetTriangle> out(count);
       kernels::fit_table(table, b.points, b.control, out);
       for (std::size_t i = 0; i < count; ++i) {
         if (i == broken) {
@@ -89,9 +89,9 @@ TEST(fit_table, has_the_same_bits_on_every_instruction_set) {
   const Batch b = batch(kind, 7, random, 1, {0.1, 0.2, 0.3});
   const auto everything = [&] {
     std::vector<double> all;
-    std::vector<kernels::BatchFit> out(7);
+    std::vector<OffsetTriangle> out(7);
     kernels::fit_table(library.table(kind), b.points, b.control, out);
-    for (const kernels::BatchFit& fit : out) {
+    for (const OffsetTriangle& fit : out) {
       for (const Point3& p : fit.base) all.insert(all.end(), {p.x, p.y, p.z});
       all.insert(all.end(), {fit.radius, fit.rounding});
     }

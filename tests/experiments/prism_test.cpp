@@ -25,7 +25,7 @@ TEST(kobbelt_prism, misses_a_strongly_curved_patch_that_our_enclosures_contain) 
     const auto corners = limit_corners(patch);
     hull_points(surface.library().rows(*patch.kind), patch, points);
     const Prism prism = kobbelt_prism(points, corners);
-    const OffsetTriangle offset = offset_simplex(points, corners);
+    const OffsetTriangle offset = offset_triangle(surface.library(), points, corners);
     for (int i = 0; i <= 32; ++i) {
       for (int j = 0; i + j <= 32; ++j) {
         const LimitPoint at = limit_point(patch, {i / 32.0, j / 32.0});

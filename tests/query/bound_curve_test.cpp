@@ -1,7 +1,6 @@
 #include <experiments/control_box.h>
 #include <experiments/quantile.h>
 #include <snug/base/error.h>
-#include <snug/bounds/curve_points.h>
 #include <snug/query/bound.h>
 #include <snug/query/subdivide.h>
 #include <snug/surface/evaluate.h>
@@ -101,7 +100,7 @@ TEST(bound_curve, has_enclosures_at_the_last_level) {
     HullPoints points;
     hull_points(piece, points);
     const auto limits = limit_ends(piece);
-    EXPECT_LT(offset_simplex<2>(points, {limits[0].relative, limits[1].relative}).radius, 1e-12);
+    EXPECT_LT(offset_segment(points, {limits[0].relative, limits[1].relative}).radius, 1e-12);
     EXPECT_LT(longest_side(control_box(piece, points)), 1e-12);
   }
 }

@@ -1,4 +1,3 @@
-#include <snug/bounds/curve_points.h>
 #include <snug/query/bound.h>
 #include <snug/surface/evaluate.h>
 #include <snug/surface/unscale.h>
@@ -129,7 +128,7 @@ TEST(curves, lie_in_their_enclosures_after_fifty_splits) {
             hull_points(piece, points);
             const auto limits = limit_ends(piece);
             const std::array<Vector3, 2> ends{limits[0].relative, limits[1].relative};
-            const OffsetSegment offset = unscaled(offset_simplex<2>(points, ends), back);
+            const OffsetSegment offset = unscaled(offset_segment(points, ends), back);
             const IntervalSegment interval = unscaled(interval_simplex<2>(points, ends), back);
             for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
               ++checks;

@@ -20,11 +20,6 @@ struct DenseRows {
   std::vector<double> errors;    // a row
   std::vector<double> abs_sums;  // a row: of the entries as stored
   [[nodiscard]] std::size_t count() const { return errors.size(); }
-  void clear() {
-    entries.clear();
-    errors.clear();
-    abs_sums.clear();
-  }
 };
 
 DenseRows identity(std::size_t count) {
@@ -35,9 +30,9 @@ DenseRows identity(std::size_t count) {
 }
 
 void append_all(const DenseRows& from, DenseRows& to) {
-  to.entries.insert(to.entries.end(), from.entries.begin(), from.entries.end());
-  to.errors.insert(to.errors.end(), from.errors.begin(), from.errors.end());
-  to.abs_sums.insert(to.abs_sums.end(), from.abs_sums.begin(), from.abs_sums.end());
+  for (const auto part : {&DenseRows::entries, &DenseRows::errors, &DenseRows::abs_sums}) {
+    (to.*part).insert((to.*part).end(), (from.*part).begin(), (from.*part).end());
+  }
 }
 
 // The chosen rows of stencils * net, appended to out.
@@ -69,8 +64,8 @@ void append_product(const Stencils& stencils, std::size_t r, const DenseRows& ne
 
 // Writes stencils * net over `out`, which keeps its memory.
 void multiply(const Stencils& stencils, const DenseRows& net, DenseRows& out) {
-  out.clear();
   out.width = net.width;
+  for (std::vector<double>* part : {&out.entries, &out.errors, &out.abs_sums}) part->clear();
   out.entries.reserve(stencils.row_count() * net.width);
   for (std::size_t r = 0; r < stencils.row_count(); ++r) append_product(stencils, r, net, out);
 }
@@ -105,22 +100,18 @@ class Collector {
     // A split brings Bezier points nearer, but for a plane.
     if (kind.polynomial() && (depth > 0 || kind.form().degree == 1)) {
       const PolynomialForm& form = kind.form();
-      const std::size_t count = bezier_count(form.degree);
       for (std::size_t part = 0; part < form.parts; ++part) {
-        const CoveredEdges& own = form.parts == 1 ? covered : CoveredEdges{false, false, false};
         for (std::size_t j = 0; j <= form.degree; ++j) {
           for (std::size_t i = 0; i + j <= form.degree; ++i) {
-            if (on_covered_edge(form.degree, i, j, own)) continue;
-            append_product(form.rows, part * count + bezier_index(form.degree, i, j), net, rows_);
+            if (form.parts == 1 && on_covered_edge(form.degree, i, j, covered)) continue;
+            const std::size_t row = part * bezier_count(form.degree) + bezier_index(form.degree, i, j);
+            append_product(form.rows, row, net, rows_);
           }
         }
       }
       return;
     }
-    if (depth >= depth_limit(kind, depth)) {
-      append_all(net, tips_);
-      return;
-    }
+    if (depth >= depth_limit(kind, depth)) return append_all(net, tips_);
     const auto& children = kind.children();
     const bool middle_polynomial = children[3].kind->polynomial();
     for (const bool polynomial : {true, false}) {
@@ -129,11 +120,8 @@ class Collector {
         if (child.kind->polynomial() != polynomial) continue;
         // In the parent's order, child c keeps corner c: its edges that face the other corners lie on the
         // parent's.
-        CoveredEdges inherited{false, false, false};
-        if (c < 3) {
-          inherited = covered;
-          inherited[c] = middle_polynomial;
-        }
+        CoveredEdges inherited = c < 3 ? covered : CoveredEdges{};
+        if (c < 3) inherited[c] = middle_polynomial;
         CoveredEdges own;
         for (std::size_t k = 0; k < 3; ++k) own[k] = inherited[(k + child.first) % 3];
         DenseRows& child_net = nets_[depth];
@@ -192,21 +180,6 @@ double BoundRows::result_error(double largest, double error) const {
          3 * static_cast<double>(control_count_) * underflow_error;
 }
 
-void BoundRows::find_tips(const Kind& kind, unsigned levels) {
-  tips_ = {};
-  if (kind.polynomial() || !has_lasting_tips(kind)) return;
-  std::size_t found = 0, end = 0;
-  for (std::size_t corner = 0; corner < 3; ++corner) {
-    const KindChild& child = kind.children()[corner];
-    if (child.kind->polynomial()) continue;
-    const Kind* const there =
-        (*tip_kinds(child, corner))[std::clamp(levels, 1u, unsigned{TipKinds{}.size()}) - 1];
-    tips_[found++] = {there, end};
-    end += there->control_count();
-  }
-  for (std::size_t i = 0; i < found; ++i) tips_[i].begin += count_ - end;
-}
-
 bool has_lasting_tips(const Kind& kind) {
   if (!kind.shared()) return false;
   for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -229,10 +202,31 @@ unsigned tip_depth(const CornerFan& fan, Scheme scheme) {
   return std::clamp(static_cast<unsigned>(std::ceil(levels)), 3u, deepest_tip);
 }
 
+namespace {
+
+// Where the nets of the tips are among `count` rows.
+std::array<BoundRows::Tip, 3> tips_of(const Kind& kind, unsigned levels, std::size_t count) {
+  std::array<BoundRows::Tip, 3> tips;
+  if (kind.polynomial() || !has_lasting_tips(kind)) return tips;
+  std::size_t found = 0, end = 0;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    const KindChild& child = kind.children()[corner];
+    if (child.kind->polynomial()) continue;
+    const Kind* const there =
+        (*tip_kinds(child, corner))[std::clamp(levels, 1u, unsigned{TipKinds{}.size()}) - 1];
+    tips[found++] = {there, end};
+    end += there->control_count();
+  }
+  for (std::size_t i = 0; i < found; ++i) tips[i].begin += count - end;
+  return tips;
+}
+
+}  // namespace
+
 BoundRows make_bound_rows(const Kind& kind, unsigned most_levels) {
   SNUG_EXPECT(!kind.key().polygon);
   Collector collector(kind, most_levels);
-  collector.collect(kind, identity(kind.control_count()), 0, {false, false, false});
+  collector.collect(kind, identity(kind.control_count()), 0, {});
   const DenseRows rows = collector.take();
   BoundRows result;
   result.count_ = rows.count();
@@ -244,7 +238,7 @@ BoundRows make_bound_rows(const Kind& kind, unsigned most_levels) {
     result.entry_error_ = std::max(result.entry_error_, rows.errors[r]);
     result.abs_sum_ = std::max(result.abs_sum_, rows.abs_sums[r]);
   }
-  result.find_tips(kind, most_levels);
+  result.tips_ = tips_of(kind, most_levels, result.count_);
   return result;
 }
 

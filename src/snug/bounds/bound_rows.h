@@ -8,9 +8,6 @@
 
 namespace snug {
 
-/// Levels at an extraordinary corner after which rows end at the latest.
-inline constexpr unsigned deepest_tip = 24;
-
 /// Hull rows of a kind: a matrix M such that, whatever the control points c, the limit patch lies in the
 /// convex hull of the points M c.
 ///
@@ -46,19 +43,20 @@ class BoundRows {
 
  private:
   friend BoundRows make_bound_rows(const Kind& kind, unsigned most_levels);
-  void find_tips(const Kind& kind, unsigned levels);
   std::size_t count_ = 0, control_count_ = 0;
   std::vector<double> weights_;
   std::array<Tip, 3> tips_;
   double entry_error_ = 0, abs_sum_ = 0;
 };
 
-/// Requires:  a patch, no polygon.
-/// Makes the rows of a kind: Bezier points of the polynomial pieces after one split; at an extraordinary
-/// corner of the rings of pieces around it down to tip_depth() levels, and the control net of the last tip.
-/// Tips end at `most_levels` if that is less. Where sharpness decays, or polygons are about, control nets of pieces a few
-/// levels down end it.
+/// Levels at an extraordinary corner after which rows end at the latest.
+inline constexpr unsigned deepest_tip = 24;
+
+/// The rows of a kind: Bezier points of the polynomial pieces after one split; at an extraordinary corner of the rings of
+/// pieces around it down to tip_depth() levels, and the control net of the last tip. Tips end at `most_levels` if that is
+/// less. Where sharpness decays, or polygons are about, control nets of pieces a few levels down end it.
 ///
+/// Requires:  a patch, no polygon.
 /// Cost:      up to valence 12 well below a millisecond; for valence n about 20 n^2 multiply-adds a level.
 [[nodiscard]] BoundRows make_bound_rows(const Kind& kind, unsigned most_levels = deepest_tip);
 

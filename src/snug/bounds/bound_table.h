@@ -41,12 +41,11 @@ struct BoundTable {
   }
 };
 
-/// Makes the table of a kind from its rows.
+/// The table of a kind from its rows: each plane is the one of least volume over the triangle above (below) the hull points of
+/// its function, up to about 1e-12.
 ///
-/// Tightness: each plane is the one of least volume over the triangle above (below) the hull points of its
-///            function, up to about 1e-12.
 /// Requires:  rows of this kind.
-/// Cost:      two linear programmes a control point, linear in the number of rows (bench/results).
+/// Cost:      two linear programmes a control point, linear in the number of rows.
 [[nodiscard]] BoundTable make_bound_table(const Kind& kind, const BoundRows& rows);
 /// The same over any layout; where laid_by_rings(), its first three points are (0, 0), (1, 0), (0, 1).
 [[nodiscard]] BoundTable make_bound_table(const Kind& kind, const BoundRows& rows,

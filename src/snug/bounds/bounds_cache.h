@@ -17,15 +17,11 @@ class BoundsCache {
  public:
   explicit BoundsCache(std::size_t most_bytes_of_rows = std::size_t{256} << 20) : rows_(most_bytes_of_rows) {}
 
-  /// The library of kinds that this one keeps rows for.
   [[nodiscard]] KindCache& kinds() { return kinds_; }
   [[nodiscard]] const KindCache& kinds() const { return kinds_; }
 
-  /// The rows of a kind. With several extraordinary corners they go down one level only: the tips there are of
-  /// kinds that have rows of their own, and there are far fewer of these.
-  /// They stay until this thread has asked for the rows of several other kinds.
-  /// Requires:  a kind of kinds().
-  /// Errors:    InputError (refused) beyond 16 million kinds.
+  /// The rows of a kind of kinds(). With several extraordinary corners they go down one level only: the tips there are of
+  /// kinds that have rows of their own, and there are far fewer of these. They stay as KindSlots says.
   [[nodiscard]] const BoundRows& rows(const Kind& kind);
   /// The table of a kind, made from rows that go down to tip_depth().
   [[nodiscard]] const BoundTable& table(const Kind& kind);

@@ -114,7 +114,7 @@ Rests rests_of(const HullPoints& points, std::size_t begin, std::size_t end,
   return all;
 }
 
-// For triangles without a plane of their own: the nearest points of the edges, each found on its own.
+// The nearest points of the edges, each found on its own.
 kernels::Reach farthest_by_feet(const HullPoints& points, std::size_t begin, std::size_t end,
                                 const Corners& corner) {
   const Rests rests = rests_of(points, begin, end, corner);
@@ -122,23 +122,24 @@ kernels::Reach farthest_by_feet(const HullPoints& points, std::size_t begin, std
   return {rests.farthest + rounding, rounding};
 }
 
-OffsetTriangle finished(const Base<3>& base, const HullPoints& points, const kernels::Reach& reach) {
-  const double given = spatial_error(enlarged(points.error + base.placing_error));
-  const double radius = reach.distance + given;
-  return {base.placed, std::isfinite(radius) ? enlarged(radius) : INFINITY, enlarged(reach.rounding + given)};
+// Of the points `begin` to `split` - 1, and of those up to `end` - 1: in the triangle's plane, if it has one.
+std::array<kernels::Reach, 2> farthest(const HullPoints& points, std::size_t begin, std::size_t split,
+                                       std::size_t end, const Corners& corner) {
+  const kernels::Coordinates all = points.coordinates().first(end).from(begin);
+  if (const auto in_plane = kernels::farthest(all, split - begin, corner[0], corner[1], corner[2])) {
+    return *in_plane;
+  }
+  return {farthest_by_feet(points, begin, split, corner), farthest_by_feet(points, split, end, corner)};
 }
 
 // Refines the tips whose nets stick out of the rest of the hull, which is within `rest` of the base. Nets that stick out
 // along the normal have moved the base towards them: then both sides are about as far.
 bool refine_what_sticks_out(BoundsCache& library, const Base<3>& base, double rest, HullPoints& points) {
-  const auto& corner = base.relative;
   const double most = (base.tips_stick_out ? 1 - notable_excess : 1 + notable_excess) * rest;
   std::array<bool, 3> which{};
   for (std::size_t i = 0; i < 3 && points.tips[i].kind; ++i) {
     const std::size_t begin = points.tips[i].begin, count = points.tips[i].kind->control_count();
-    const auto reach =
-        kernels::farthest(points.coordinates().from(begin).first(count), corner[0], corner[1], corner[2]);
-    which[i] = (reach ? *reach : farthest_by_feet(points, begin, begin + count, corner)).distance > most;
+    which[i] = farthest(points, begin, begin + count, begin + count, base.relative)[0].distance > most;
   }
   if (which == std::array<bool, 3>{}) return false;
   refine_tips(library, which, points);
@@ -147,37 +148,28 @@ bool refine_what_sticks_out(BoundsCache& library, const Base<3>& base, double re
 
 }  // namespace
 
-template <std::size_t N>
-OffsetSimplex<N> offset_simplex(const HullPoints& points, const std::array<Vector3, N>& corners) {
-  const Base<N> base = moved_base(points, corners);
-  const auto& c = base.relative;
-  if constexpr (N == 3) {
-    const auto in_plane = kernels::farthest(points.coordinates(), c[0], c[1], c[2]);
-    return finished(base, points, in_plane ? *in_plane : farthest_by_feet(points, 0, points.size(), c));
-  } else {
-    const Rests rests = rests_of(points, 0, points.size(), c);
-    const double rounding =
-        enlarged(spatial_error(enlarged(points.error + base.placing_error + rests.error)));
-    return {base.placed, enlarged(rests.farthest + rounding), rounding};
-  }
+OffsetSegment offset_segment(const HullPoints& points, const std::array<Vector3, 2>& ends) {
+  const Base<2> base = moved_base(points, ends);
+  const Rests rests = rests_of(points, 0, points.size(), base.relative);
+  const double rounding = enlarged(spatial_error(enlarged(points.error + base.placing_error + rests.error)));
+  return {base.placed, enlarged(rests.farthest + rounding), rounding};
 }
 
 OffsetTriangle offset_triangle(BoundsCache& library, HullPoints& points,
                                const std::array<Vector3, 3>& corners) {
   for (std::size_t round = 0;; ++round) {
     const Base<3> base = moved_base(points, corners);
-    const auto& c = base.relative;
-    const std::size_t begin = points.tips_begin();
-    auto reach = kernels::farthest(points.coordinates(), begin, c[0], c[1], c[2]);
-    if (!reach) {
-      reach = {farthest_by_feet(points, 0, begin, c), farthest_by_feet(points, begin, points.size(), c)};
-    }
-    const auto& [rest, tips] = *reach;
+    const auto [rest, tips] = farthest(points, 0, points.tips_begin(), points.size(), base.relative);
     const bool tight = !base.tips_stick_out && tips.distance <= (1 + notable_excess) * rest.distance;
-    if (tight || round == max_tip_refinements ||
-        !refine_what_sticks_out(library, base, rest.distance, points)) {
-      return finished(base, points, rest.distance >= tips.distance ? rest : tips);
+    if (!tight && round < max_tip_refinements &&
+        refine_what_sticks_out(library, base, rest.distance, points)) {
+      continue;
     }
+    const kernels::Reach& reach = rest.distance >= tips.distance ? rest : tips;
+    const double given = spatial_error(enlarged(points.error + base.placing_error));
+    const double radius = reach.distance + given;
+    return {base.placed, std::isfinite(radius) ? enlarged(radius) : INFINITY,
+            enlarged(reach.rounding + given)};
   }
 }
 
@@ -196,18 +188,7 @@ IntervalSimplex<N> interval_simplex(const HullPoints& points, const std::array<V
   return result;
 }
 
-template <std::size_t N>
-double thickness(const IntervalSimplex<N>& simplex) {
-  double widest = 0;
-  for (const Box3& box : simplex.corner) widest = std::max(widest, longest_side(box));
-  return widest;
-}
-
-template OffsetSegment offset_simplex(const HullPoints&, const Ends&);
-template OffsetTriangle offset_simplex(const HullPoints&, const Corners&);
 template IntervalSegment interval_simplex(const HullPoints&, const Ends&);
 template IntervalTriangle interval_simplex(const HullPoints&, const Corners&);
-template double thickness(const IntervalSegment&);
-template double thickness(const IntervalTriangle&);
 
 }  // namespace snug

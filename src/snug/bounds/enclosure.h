@@ -10,40 +10,31 @@
 /// apart.
 namespace snug {
 
-/// The radius at which the moved simplex covers the piece.
+/// The radius at which the moved segment covers the piece.
 ///
 /// Guarantee: every limit point of the piece is within `radius` of `base`, these very doubles, rounding included. Infinite
 ///            radius if anything is not finite.
-/// Requires:  corners: limit positions of the piece's corners, relative to points.origin.
-/// Cost:      about 15 ns a hull point.
-/// Source:    [Wu05, eq. 5.1, 5.2]; differs: fitted to hull rows instead of corner boxes, derivations/hull_rows.md; of
-///            curves, derivations/curves.md.
-template <std::size_t N>
-[[nodiscard]] OffsetSimplex<N> offset_simplex(const HullPoints& points,
-                                              const std::array<Vector3, N>& corners);
+/// Requires:  ends: limit positions of the piece's ends, relative to points.origin.
+/// Source:    [Wu05, eq. 5.1, 5.2]; differs: fitted to hull points instead of corner boxes, derivations/curves.md.
+[[nodiscard]] OffsetSegment offset_segment(const HullPoints& points, const std::array<Vector3, 2>& ends);
 
-/// The same; where the net of a tip makes the radius larger than the patch needs, the tip is refined first, and
-/// `points` with it.
+/// The same for a triangle, derivations/hull_rows.md. Where the net of a tip makes the radius larger than the patch needs,
+/// the tip is refined first, and `points` with it.
 ///
 /// Tightness: the radius is at most 1.08 times the least possible for the same base in the median, 1.02 on gently
 ///            bent nets (docs/convergence.md).
 /// Requires:  points of hull_points() with rows of this library.
-/// Cost:      one fit, and one more with about 200 points a refinement, of which there are at most three.
+/// Cost:      about 15 ns a hull point, and one more fit with about 200 points a refinement, of which there are at most three.
 [[nodiscard]] OffsetTriangle offset_triangle(BoundsCache& library, HullPoints& points,
                                              const std::array<Vector3, 3>& corners);
 
 /// The corners of the moved simplex, widened alike until every hull point is covered.
 ///
 /// Guarantee: contains every limit point of the piece, rounding included.
-/// Requires:  as offset_simplex.
-/// Cost:      about 15 ns a hull point.
-/// Source:    [Wu05, lemma 11]; differs and of curves: as offset_simplex.
+/// Requires:  as offset_segment().
+/// Source:    [Wu05, lemma 11]; differs: as offset_segment().
 template <std::size_t N>
 [[nodiscard]] IntervalSimplex<N> interval_simplex(const HullPoints& points,
                                                   const std::array<Vector3, N>& corners);
-
-/// Longest side of the boxes [Wu05, sec. 4.7].
-template <std::size_t N>
-[[nodiscard]] double thickness(const IntervalSimplex<N>& simplex);
 
 }  // namespace snug

@@ -1,4 +1,4 @@
-#include <snug/bounds/fair_layout.h>
+#include <snug/bounds/layout.h>
 
 #include <algorithm>
 #include <array>

@@ -330,17 +330,10 @@ HWY_INLINE void bezier(D d, const V* c, V* b) {
 template <class V, std::size_t n>
 struct Pyramid {
   V at[n][n];
-  HWY_INLINE Pyramid(V half, const V* q, std::size_t stride) {
-    unrolled<n>([&](auto k) HWY_ATTR { at[0][k] = q[k * stride]; });
-    rise(half);
-  }
-  // The points take(0), take(1), ...
+  // From the points take(0), take(1), ...
   template <class Take>
   HWY_INLINE Pyramid(V half, const Take& take) {
     unrolled<n>([&](auto k) HWY_ATTR { at[0][k] = take(k); });
-    rise(half);
-  }
-  HWY_INLINE void rise(V half) {
     unrolled<n - 1>([&](auto i) HWY_ATTR {
       unrolled<n - 1 - i>([&](auto k) HWY_ATTR { at[i + 1][k] = mean(half, at[i][k], at[i][k + 1]); });
     });
@@ -358,7 +351,7 @@ HWY_INLINE void split_once(D d, const V* b, V* out) {
   V upper[5][5];              // f(m20^i, v1^j, v2^(4-i-j)) at [i][j]
   constexpr std::array<std::size_t, 5> row_start{0, 5, 9, 12, 14};
   unrolled<5>([&](auto j) HWY_ATTR {
-    const Pyramid<V, 5 - j> p(half, b + row_start[j], 1);
+    const Pyramid<V, 5 - j> p(half, [&](auto k) HWY_ATTR { return b[row_start[j] + k]; });
     unrolled<5 - j>([&](auto i) HWY_ATTR {
       left[i][j] = p.at[i][0];
       right[i][j] = p.at[i][4 - j - i];
@@ -378,7 +371,7 @@ HWY_INLINE void split_once(D d, const V* b, V* out) {
     // Edges of the patch that i alone and j alone walk along.
     constexpr std::size_t edge_i = child == 2 ? 2 : 0, edge_j = child == 0 ? 2 : 1;
     unrolled<5>([&](auto i) HWY_ATTR {
-      const Pyramid<V, 5 - i> p(half, along[i], 1);
+      const Pyramid<V, 5 - i> p(half, [&](auto k) HWY_ATTR { return along[i][k]; });
       unrolled<5 - i>([&](auto j) HWY_ATTR {
         if constexpr (i == 0 && j == 0) {
           out[child * of_edge] = p.at[0][0];
@@ -424,9 +417,8 @@ struct BicubicShape {
 
   // The bicubic Bezier points (i, j), at i + 4 j, that each hull point is a sum of.
   struct Sums {
-    std::size_t begin[hull_count + 1] = {};
-    std::size_t point[8 * hull_count] = {};
-    double weight[8 * hull_count] = {};
+    std::size_t terms[hull_count] = {}, point[hull_count][8] = {};
+    double weight[hull_count][8] = {};
   };
   static constexpr Sums make_sums() {
     constexpr int binomial[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 2, 1, 0}, {1, 3, 3, 1}};
@@ -442,7 +434,7 @@ struct BicubicShape {
         }
       }
     }
-    int u_of[hull_count] = {}, v_of[hull_count] = {};
+    Sums result{};
     std::size_t inner = 3 * of_edge;
     for (int v = 0; v <= 6; ++v) {
       for (int u = 0; u + v <= 6; ++u) {
@@ -451,21 +443,14 @@ struct BicubicShape {
                                : w == 0 && v < 6 ? of_edge + static_cast<std::size_t>(v)
                                : u == 0 && v > 0 ? 2 * of_edge + static_cast<std::size_t>(w)
                                                  : inner++;
-        u_of[at] = u;
-        v_of[at] = v;
+        const double multinomial = factorial[6] / (factorial[u] * factorial[v] * factorial[w]);
+        for (std::size_t b = 0; b < 16; ++b) {
+          if (sums[u][v][b] == 0) continue;
+          const std::size_t term = result.terms[at]++;
+          result.point[at][term] = b;
+          result.weight[at][term] = sums[u][v][b] / multinomial;
+        }
       }
-    }
-    Sums result{};
-    std::size_t count = 0;
-    for (std::size_t at = 0; at < hull_count; ++at) {
-      const int u = u_of[at], v = v_of[at];
-      const double multinomial = factorial[6] / (factorial[u] * factorial[v] * factorial[6 - u - v]);
-      for (std::size_t b = 0; b < 16; ++b) {
-        if (sums[u][v][b] == 0) continue;
-        result.point[count] = b;
-        result.weight[count++] = sums[u][v][b] / multinomial;
-      }
-      result.begin[at + 1] = count;
     }
     return result;
   }
@@ -499,8 +484,8 @@ struct BicubicShape {
 #ifndef __SANITIZE_ADDRESS__
 #pragma GCC unroll 8
 #endif
-      for (std::size_t t = sums.begin[p]; t < sums.begin[p + 1]; ++t) {
-        sum = hn::Add(sum, hn::Mul(hn::Set(d, sums.weight[t]), b[sums.point[t]]));
+      for (std::size_t t = 0; t < sums.terms[p]; ++t) {
+        sum = hn::Add(sum, hn::Mul(hn::Set(d, sums.weight[p][t]), b[sums.point[p][t]]));
       }
       out[p] = sum;
     }
@@ -508,7 +493,7 @@ struct BicubicShape {
 };
 
 template <class Shape, class D, class V = hn::Vec<D>>
-HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* out) {
+HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, std::span<OffsetTriangle> out) {
   constexpr std::size_t controls = Shape::controls, hull_count = Shape::hull_count, of_edge = Shape::of_edge;
   const std::size_t lanes = hn::Lanes(d);
   V hull[3][hull_count];
@@ -575,47 +560,38 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, BatchFit* ou
   const V answer =
       hn::IfThenElse(hn::And(good, hn::Lt(widened, hn::Set(d, INFINITY))), widened, hn::Set(d, -1.0));
 
-  HWY_ALIGN double lane[11][HWY_MAX_BYTES / sizeof(double)];
+  HWY_ALIGN double lane[11 * HWY_MAX_BYTES / sizeof(double)];
   for (std::size_t k = 0; k < 3; ++k) {
-    hn::Store(corner[k].x, d, lane[3 * k]);
-    hn::Store(corner[k].y, d, lane[3 * k + 1]);
-    hn::Store(corner[k].z, d, lane[3 * k + 2]);
+    hn::Store(corner[k].x, d, lane + 3 * k * lanes);
+    hn::Store(corner[k].y, d, lane + (3 * k + 1) * lanes);
+    hn::Store(corner[k].z, d, lane + (3 * k + 2) * lanes);
   }
-  hn::Store(answer, d, lane[9]);
-  hn::Store(rounding, d, lane[10]);
-  for (std::size_t l = 0; l < lanes; ++l) {
-    for (std::size_t k = 0; k < 3; ++k)
-      out[l].base[k] = {lane[3 * k][l], lane[3 * k + 1][l], lane[3 * k + 2][l]};
-    out[l].radius = lane[9][l];
-    out[l].rounding = lane[10][l];
-  }
+  hn::Store(answer, d, lane + 9 * lanes);
+  hn::Store(rounding, d, lane + 10 * lanes);
+  scatter_lanes(lane, lanes, out);
 }
 
 template <class Shape>
-void FitAll(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
+void FitAll(std::span<const Point3> points, std::span<const VertexId> control,
+            std::span<OffsetTriangle> out) {
   constexpr std::size_t controls = Shape::controls;
   const hn::ScalableTag<double> d;
   const std::size_t lanes = hn::Lanes(d);
   HWY_ALIGN double gathered[3 * controls * HWY_MAX_BYTES / sizeof(double)];
-  BatchFit answers[HWY_MAX_BYTES / sizeof(double)];
   for (std::size_t begin = 0; begin < out.size(); begin += lanes) {
-    // The last group is filled up with copies of its last patch.
     const std::size_t here = std::min(lanes, out.size() - begin);
     gather_lanes(points, control.data() + controls * begin, controls, 0, controls, here, lanes, gathered);
-    if (here == lanes) {
-      fit_group<Shape>(d, gathered, out.data() + begin);
-    } else {
-      fit_group<Shape>(d, gathered, answers);
-      std::copy_n(answers, here, out.data() + begin);
-    }
+    fit_group<Shape>(d, gathered, out.subspan(begin, here));
   }
 }
 
-void FitRegular(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
+void FitRegular(std::span<const Point3> points, std::span<const VertexId> control,
+                std::span<OffsetTriangle> out) {
   FitAll<LoopShape>(points, control, out);
 }
 
-void FitBicubic(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
+void FitBicubic(std::span<const Point3> points, std::span<const VertexId> control,
+                std::span<OffsetTriangle> out) {
   FitAll<BicubicShape>(points, control, out);
 }
 
@@ -653,18 +629,13 @@ std::optional<std::array<Reach, 2>> farthest(const Coordinates& points, std::siz
   return reach;
 }
 
-std::optional<Reach> farthest(const Coordinates& points, const Vector3& a, const Vector3& b,
-                              const Vector3& c) {
-  const auto both = farthest(points, points.count, a, b, c);
-  if (!both) return std::nullopt;
-  return (*both)[0];
-}
-
-void fit_regular(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
+void fit_regular(std::span<const Point3> points, std::span<const VertexId> control,
+                 std::span<OffsetTriangle> out) {
   HWY_DYNAMIC_DISPATCH(FitRegular)(points, control, out);
 }
 
-void fit_bicubic(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out) {
+void fit_bicubic(std::span<const Point3> points, std::span<const VertexId> control,
+                 std::span<OffsetTriangle> out) {
   HWY_DYNAMIC_DISPATCH(FitBicubic)(points, control, out);
 }
 

@@ -5,8 +5,12 @@
 #include <optional>
 #include <span>
 
-#include <snug/geometry/point.h>
+#include <snug/geometry.h>
 #include <snug/mesh.h>
+
+namespace snug {
+struct BoundTable;
+}
 
 /// The loops that bounds spend their time in, on the widest vectors that the processor has; chosen at run time.
 ///
@@ -28,7 +32,6 @@ struct Coordinates {
 };
 
 /// x, y, z = M points, for a column-major matrix of `rows` rows. Sums run over the columns in order.
-/// Cost:      3 rows points.size() multiply-adds, four to eight at once.
 void apply_rows(const double* weights, std::size_t rows, std::span<const Vector3> points, double* x,
                 double* y, double* z);
 
@@ -45,45 +48,44 @@ struct Reach {
   double rounding;  ///< the part of it that accounts for rounding
 };
 
-/// Largest distance of the points to the triangle; nothing for a triangle that is too flat for its own plane:
-/// the sine of its sharpest angle below 1/32, without area, not finite, or of a size whose fourth power leaves
-/// the range of doubles.
+/// Largest distance to the triangle of the first `split` points and of the others, 0 for none; nothing for a triangle that
+/// is too flat for its own plane: the sine of its sharpest angle below 1/32, without area, not finite, or of a size whose
+/// fourth power leaves the range of doubles.
 ///
 /// Guarantee: largest distance <= distance, for the triangle of these very doubles; distance <= largest
 ///            distance + 3 rounding, times 1 + 2^-39 where its longest edge is below 1e-70;
 ///            rounding <= (16 + 112 / sine) u (distance + 2 longest edge).
-/// Requires:  points in scaled coordinates (geometry/scaling.h), or not finite.
+/// Requires:  points in scaled coordinates (geometry/scaling.h), or not finite; split <= points.count.
 /// Source:    derivations/rounding.md, "Distance in the triangle's plane".
-[[nodiscard]] std::optional<Reach> farthest(const Coordinates& points, const Vector3& a, const Vector3& b,
-                                            const Vector3& c);
-/// The same for the first `split` points and for the others; no distance for none.
-/// Requires:  split <= points.count.
 [[nodiscard]] std::optional<std::array<Reach, 2>> farthest(const Coordinates& points, std::size_t split,
                                                            const Vector3& a, const Vector3& b,
                                                            const Vector3& c);
 
-/// What the batch says of one patch.
-struct BatchFit {
-  Point3 base[3];
-  double radius;    ///< negative: not answered, take the general way
-  double rounding;  ///< part of the radius
-};
-
 /// Offset triangles of regular patches inside the surface, straight from their control points: Bezier points,
-/// one split of de Casteljau's, fit; a patch a lane.
+/// one split of de Casteljau's, fit; a patch a lane. A negative radius is no answer: take the general way.
 ///
-/// Guarantee: as offset_simplex() on the patch's hull points. A triangle that farthest() does not answer is
-///            marked.
+/// Guarantee: as offset_triangle() on the patch's hull points; marked where farthest() has no answer.
 /// Requires:  control: twelve vertices of `points` a patch, in the kind's order; out.size() patches; points as
 ///            in farthest().
 /// Cost:      about 0.15 to 0.2 microseconds a patch with four lanes.
-void fit_regular(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out);
+void fit_regular(std::span<const Point3> points, std::span<const VertexId> control,
+                 std::span<OffsetTriangle> out);
 
 /// The same of regular Catmull-Clark patches inside the surface, halves of bicubic quads: their Bezier points without a
 /// split, sixteen control points a patch.
 ///
 /// Guarantee: the patch lies in the offset triangle; its radius is at least that of fits to points after a split.
-/// Cost:      about 0.15 microseconds a half with four lanes.
-void fit_bicubic(std::span<const Point3> points, std::span<const VertexId> control, std::span<BatchFit> out);
+void fit_bicubic(std::span<const Point3> points, std::span<const VertexId> control,
+                 std::span<OffsetTriangle> out);
+
+/// Offset triangles of many patches of one kind from its table.
+///
+/// Guarantee: as offset_triangle(table_triangle()); base in the kind's order of corners. Infinite radius where a point is
+///            not finite.
+/// Requires:  table.first_bounded() == 3; control: table.control_count() vertices of `points` a patch, in the
+///            kind's order; out.size() patches; coordinates of at most about 2 (geometry/scaling.h).
+/// Cost:      about 20 operations a control point and coordinate, four to eight patches at once.
+void fit_table(const BoundTable& table, std::span<const Point3> points, std::span<const VertexId> control,
+               std::span<OffsetTriangle> out);
 
 }  // namespace snug::kernels

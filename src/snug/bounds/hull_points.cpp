@@ -10,15 +10,6 @@
 namespace snug {
 namespace {
 
-// The points of rows times patch take the place of out's points from `begin` on.
-void apply(const BoundRows& rows, const Patch& patch, std::size_t begin, HullPoints& out) {
-  SNUG_EXPECT(rows.control_count() == patch.points.size());
-  out.resize(begin + rows.count());
-  out.multiply(rows, patch.points);
-  out.error = std::max(out.error, rows.result_error(patch.largest, patch.error));
-  out.largest = std::max(out.largest, enlarged((rows.abs_sum() + rows.entry_error()) * patch.largest));
-}
-
 // The net of a tip that begins at point `begin`, as a patch.
 void take_net(const HullPoints& points, const Kind& kind, std::size_t begin, Patch& net) {
   net.kind = &kind;
@@ -37,11 +28,16 @@ void take_net(const HullPoints& points, const Kind& kind, std::size_t begin, Pat
 
 }  // namespace
 
+void HullPoints::restart(const Point3& new_origin) {
+  origin = new_origin;
+  error = largest = 0;
+  tips = {};
+  count_ = 0;
+}
+
 void HullPoints::reserve(std::size_t count) {
   if (count <= x_.size()) return;
-  x_.resize(count);
-  y_.resize(count);
-  z_.resize(count);
+  for (std::vector<double>* axis : {&x_, &y_, &z_}) axis->resize(count);
 }
 
 void HullPoints::assign(const HullPoints& other) {
@@ -50,101 +46,85 @@ void HullPoints::assign(const HullPoints& other) {
   largest = other.largest;
   tips = other.tips;
   count_ = other.count_;
-  const auto copy = [&](const std::vector<double>& from) {
-    return std::vector<double>(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(count_));
-  };
-  x_ = copy(other.x_);
-  y_ = copy(other.y_);
-  z_ = copy(other.z_);
+  for (const auto axis : {&HullPoints::x_, &HullPoints::y_, &HullPoints::z_}) {
+    const double* const from = (other.*axis).data();
+    (this->*axis).assign(from, from + count_);
+  }
 }
 
-void HullPoints::resize(std::size_t count) {
-  reserve(count);
-  count_ = count;
+std::size_t HullPoints::extend(std::size_t by) {
+  const std::size_t begin = count_;
+  count_ += by;
+  reserve(count_);
+  return begin;
 }
 
-void HullPoints::multiply(const BoundRows& rows, std::span<const Vector3> points) {
-  const std::size_t begin = count_ - rows.count();
-  kernels::apply_rows(rows.column(0), rows.count(), points, x_.data() + begin, y_.data() + begin,
-                      z_.data() + begin);
+inline void HullPoints::set(std::size_t i, const Vector3& p) {
+  x_[i] = p.x;
+  y_[i] = p.y;
+  z_[i] = p.z;
+}
+
+void HullPoints::widen(double of_error, double of_largest) {
+  error = std::max(error, of_error);
+  largest = std::max(largest, of_largest);
+}
+
+void HullPoints::add(std::span<const Vector3> points, double of_error, double of_largest) {
+  std::size_t at = extend(points.size());
+  for (const Vector3& p : points) set(at++, p);
+  widen(of_error, of_largest);
+}
+
+void HullPoints::add(const BoundRows& rows, const Patch& patch) {
+  SNUG_EXPECT(rows.control_count() == patch.points.size());
+  const std::size_t at = extend(rows.count());
+  kernels::apply_rows(rows.column(0), rows.count(), patch.points, x_.data() + at, y_.data() + at,
+                      z_.data() + at);
+  widen(rows.result_error(patch.largest, patch.error),
+        enlarged((rows.abs_sum() + rows.entry_error()) * patch.largest));
+}
+
+void HullPoints::add(const Stencils& rows, const Patch& patch) {
+  std::size_t at = extend(rows.row_count());
+  for (std::size_t r = 0; r < rows.row_count(); ++r) set(at++, rows.apply<Vector3>(r, patch.points));
+  widen(rows.result_error(patch.largest, patch.error), enlarged(rows.max_abs_sum() * patch.largest));
 }
 
 void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out) {
-  out.origin = patch.origin;
-  out.error = out.largest = 0;
-  apply(rows, patch, 0, out);
+  out.restart(patch.origin);
+  out.add(rows, patch);
   out.tips = rows.tips();
 }
 
 namespace {
 
-// What a patch is bounded by as it is; nothing where it has to be split first.
-enum class Source : std::uint8_t { bezier, rows, net, none };
-
 // Levels that a patch is split, before the nets of its pieces do: one of a passing kind, and at a crowded corner.
 constexpr unsigned passing_levels = 5, crowded_levels = 12;
 
-Source source_of(const Kind& kind, unsigned level) {
-  if (kind.polynomial()) return Source::bezier;
-  if (kind.shared()) return Source::rows;
-  return level >= (kind.passing() ? passing_levels : crowded_levels) ? Source::net : Source::none;
-}
-
-// Calls visit(part, source) for the parts of a patch that `level` splits have made; `scratch` has a patch for each of the
-// next ones.
-template <class Visit>
-void for_each_part(const Patch& patch, unsigned level, std::span<Patch> scratch, const Visit& visit) {
-  const Source source = source_of(*patch.kind, level);
-  if (source != Source::none) return visit(patch, source);
+// The points of the parts of a patch of a kind that few share; `scratch` has a patch for each of the next levels.
+void add_parts(BoundsCache& library, const Patch& patch, unsigned level, std::span<Patch> scratch,
+               HullPoints& out) {
+  const Kind& kind = *patch.kind;
+  if (kind.polynomial()) return out.add(kind.bezier(), patch);
+  if (kind.shared()) return out.add(library.rows(kind), patch);
+  if (level >= (kind.passing() ? passing_levels : crowded_levels)) {
+    return out.add(patch.points, patch.error, patch.largest);
+  }
   for (unsigned child = 0; child < 4; ++child) {
     split(patch, child, scratch[0]);
-    for_each_part(scratch[0], level + 1, scratch.subspan(1), visit);
+    add_parts(library, scratch[0], level + 1, scratch.subspan(1), out);
   }
-}
-
-void clear(const Patch& patch, HullPoints& out) {
-  out.origin = patch.origin;
-  out.error = out.largest = 0;
-  out.tips = {};
-  out.resize(0);
-}
-
-void add_bezier_points(const Patch& patch, HullPoints& out) {
-  const Stencils& rows = patch.kind->bezier();
-  std::size_t at = out.size();
-  out.resize(at + rows.row_count());
-  for (std::size_t r = 0; r < rows.row_count(); ++r) out.set(at++, rows.apply<Vector3>(r, patch.points));
-  out.error = std::max(out.error, rows.result_error(patch.largest, patch.error));
-  out.largest = std::max(out.largest, enlarged(rows.max_abs_sum() * patch.largest));
-}
-
-void add_net(const Patch& patch, HullPoints& out) {
-  std::size_t at = out.size();
-  out.resize(at + patch.points.size());
-  for (const Vector3& p : patch.points) out.set(at++, p);
-  out.error = std::max(out.error, patch.error);
-  out.largest = std::max(out.largest, patch.largest);
-}
-
-// The points of a kind that few patches share: those of its parts.
-void points_of_parts(BoundsCache& library, const Patch& patch, HullPoints& out) {
-  thread_local std::array<Patch, crowded_levels> scratch;
-  clear(patch, out);
-  for_each_part(patch, 0, scratch, [&](const Patch& part, Source source) {
-    if (source == Source::bezier) {
-      add_bezier_points(part, out);
-    } else if (source == Source::rows) {
-      apply(library.rows(*part.kind), part, out.size(), out);
-    } else {
-      add_net(part, out);
-    }
-  });
 }
 
 }  // namespace
 
 void hull_points(BoundsCache& library, const Patch& patch, HullPoints& out) {
-  if (!patch.kind->shared()) return points_of_parts(library, patch, out);
+  if (!patch.kind->shared()) {
+    thread_local std::array<Patch, crowded_levels> scratch;
+    out.restart(patch.origin);
+    return add_parts(library, patch, 0, scratch, out);
+  }
   hull_points(library.rows(*patch.kind), patch, out);
   std::size_t count = out.size();
   for (std::size_t i = 0; i < 3 && out.tips[i].kind; ++i) {
@@ -154,10 +134,23 @@ void hull_points(BoundsCache& library, const Patch& patch, HullPoints& out) {
   if (out.tips[1].kind) refine_tips(library, {true, true, true}, out);
 }
 
+void hull_points(const CurvePiece& piece, HullPoints& out) {
+  out.restart(piece.origin);
+  CurvePiece whole = piece;
+  whole.path = {};  // a path may have no room for two more digits
+  for (const unsigned half : {0u, 1u}) {
+    const CurvePiece parent = split(whole, half);
+    for (const unsigned child : {0u, 1u}) {
+      const CurveBezier bezier = bezier_points(split(parent, child));
+      out.add({bezier.points.data(), bezier.count}, bezier.error, bezier.largest);
+    }
+  }
+}
+
 void close_points(BoundsCache& library, const Patch& patch, HullPoints& out) {
   if (!patch.kind->polynomial()) return hull_points(library, patch, out);
-  clear(patch, out);
-  add_bezier_points(patch, out);
+  out.restart(patch.origin);
+  out.add(patch.kind->bezier(), patch);
 }
 
 // A patch of the kind asks for all that the others will.
@@ -185,28 +178,16 @@ void refine_tips(BoundsCache& library, const std::array<bool, 3>& which, HullPoi
     const BoundRows& rows = library.rows(*nets[i].kind);
     const Kind* const deeper = rows.tips()[0].kind;
     SNUG_EXPECT(deeper && !rows.tips()[1].kind);
-    apply(rows, nets[i], count, points);
+    points.cut(count);
+    points.add(rows, nets[i]);
     count += rows.tips_begin();
     take_net(points, *deeper, count, nets[i]);
   }
+  points.cut(count);
   for (std::size_t i = 0; i < tips; ++i) {
-    points.tips[i] = {nets[i].kind, count};
-    points.resize(count + nets[i].points.size());
-    for (const Vector3& p : nets[i].points) points.set(count++, p);
+    points.tips[i] = {nets[i].kind, points.size()};
+    points.add(nets[i].points, nets[i].error, nets[i].largest);
   }
-}
-
-Box3 outer_box(const HullPoints& points) {
-  Box3 box;
-  const kernels::Coordinates all = points.coordinates();
-  const std::array<const double*, 3> axes{all.x, all.y, all.z};
-  for (std::size_t a = 0; a < 3; ++a) {
-    const auto [low, high] = std::minmax_element(axes[a], axes[a] + all.count);
-    const double o = points.origin[a];
-    box.lower[a] = rounded_down(o + rounded_down(*low - points.error));
-    box.upper[a] = rounded_up(o + rounded_up(*high + points.error));
-  }
-  return box;
 }
 
 Slab outer_slab(const HullPoints& points, const Vector3& normal) {

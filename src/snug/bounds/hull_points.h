@@ -6,11 +6,12 @@
 
 #include <snug/bounds/bounds_cache.h>
 #include <snug/bounds/fit_kernels.h>
+#include <snug/patch/curve_piece.h>
 #include <snug/patch/patch.h>
 
 namespace snug {
 
-/// Points whose convex hull contains a limit patch, relative to its origin; one array a coordinate.
+/// Points whose convex hull contains a piece of a surface or a curve, relative to its origin; one array a coordinate.
 class HullPoints {
  public:
   Point3 origin;
@@ -24,21 +25,26 @@ class HullPoints {
   [[nodiscard]] kernels::Coordinates coordinates() const { return {x_.data(), y_.data(), z_.data(), count_}; }
   [[nodiscard]] Vector3 at(std::size_t i) const { return {x_[i], y_[i], z_[i]}; }
 
-  /// The first points stay; new ones may be anything. Keeps its memory.
-  void resize(std::size_t count);
-  /// A copy with no more memory than it needs.
-  void assign(const HullPoints& other);
+  /// No points, about another origin. Keeps its memory.
+  void restart(const Point3& new_origin);
+  /// Leaves the first points. Keeps its memory.
+  void cut(std::size_t count) { count_ = count; }
   /// Memory for so many.
   void reserve(std::size_t count);
-  void set(std::size_t i, const Vector3& p) {
-    x_[i] = p.x;
-    y_[i] = p.y;
-    z_[i] = p.z;
-  }
-  /// Writes rows times points over the last rows.count() points.
-  void multiply(const BoundRows& rows, std::span<const Vector3> points);
+  /// A copy with no more memory than it needs.
+  void assign(const HullPoints& other);
+  /// Adds points of at most `of_largest` that are off by at most `of_error`.
+  void add(std::span<const Vector3> points, double of_error, double of_largest);
+  /// Adds rows times the points of a patch.
+  void add(const BoundRows& rows, const Patch& patch);
+  void add(const Stencils& rows, const Patch& patch);
 
  private:
+  // Makes room for so many more; where the first of them is.
+  std::size_t extend(std::size_t by);
+  void set(std::size_t i, const Vector3& p);
+  void widen(double of_error, double of_largest);
+
   std::size_t count_ = 0;
   std::vector<double> x_, y_, z_;  // as large as they ever were
 };
@@ -53,12 +59,15 @@ inline constexpr std::size_t max_tip_refinements = 3;
 /// Cost:      3 rows.count() rows.control_count() multiply-adds; no allocation once `out` has been as large.
 void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out);
 
-/// The same from the rows that a library keeps; the tips of a kind with several are refined, its own rows being
-/// for one level only. Takes memory for all refinements to come. Passing and crowded kinds, which few patches share, have
-/// no rows: the patch is split, and its pieces have theirs.
+/// The same from the rows that a library keeps; the tips of a kind with several are refined, its own rows being for one
+/// level only. Takes memory for all refinements to come. Passing and crowded kinds, which few patches share, have no rows:
+/// the patch is split, and its pieces have theirs.
 void hull_points(BoundsCache& library, const Patch& patch, HullPoints& out);
 /// Makes the rows that the call above will need for patches of this kind.
 void prepare_hull_points(BoundsCache& library, const Kind& kind);
+
+/// The same of a curve: the Bezier points of its four quarters.
+void hull_points(const CurvePiece& piece, HullPoints& out);
 
 /// Few points whose hull holds the patch closely: the Bezier points of a polynomial one, for others those above.
 void close_points(BoundsCache& library, const Patch& patch, HullPoints& out);
@@ -66,10 +75,6 @@ void close_points(BoundsCache& library, const Patch& patch, HullPoints& out);
 /// Replaces the control nets of some tips by the points that the rows of their own kinds make of them: the hull
 /// shrinks to the pieces around these corners, and nets some levels farther down.
 void refine_tips(BoundsCache& library, const std::array<bool, 3>& which, HullPoints& points);
-
-/// Least box around the points, moved to the coordinates' origin.
-/// Guarantee: contains the patch, rounding included.
-[[nodiscard]] Box3 outer_box(const HullPoints& points);
 
 /// The set lower <= dot(normal, p) <= upper.
 struct Slab {

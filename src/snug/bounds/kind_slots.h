@@ -14,8 +14,7 @@
 
 namespace snug {
 
-/// One value of type T a kind, made on first use, then immutable. Thread-safe; looking up costs two loads. Beyond a limit of
-/// memory values are made when they are needed, and a thread keeps its last eight.
+/// One value of type T a kind, made on first use, then immutable. Thread-safe; looking up costs two loads.
 ///
 /// Requires:  `make` gives equal values for equal kinds: two threads may both make one, and the first to
 ///            finish keeps it.
@@ -23,7 +22,7 @@ namespace snug {
 template <class T>
 class KindSlots {
  public:
-  /// Keeps so many bytes of values, and the value that goes beyond them.
+  /// Keeps so many bytes of values, and the value that goes beyond them; others are made when they are needed.
   explicit KindSlots(std::size_t most_bytes = SIZE_MAX) : most_bytes_(most_bytes) {}
   KindSlots(const KindSlots&) = delete;
   KindSlots& operator=(const KindSlots&) = delete;
@@ -76,14 +75,10 @@ class KindSlots {
   }
 
   std::array<std::atomic<Block*>, 4096> blocks_{};
-  // No two share it, as they may an address one after the other.
-  static std::uint64_t next_serial() {
-    static std::atomic<std::uint64_t> last{0};
-    return ++last;
-  }
-
   std::size_t most_bytes_;
-  std::uint64_t serial_ = next_serial();
+  // No two share it, as they may an address one after the other.
+  static inline std::atomic<std::uint64_t> last_serial_{0};
+  std::uint64_t serial_ = ++last_serial_;
   std::mutex growth_;
   std::atomic<std::size_t> count_{0}, bytes_{0};
 };

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include <snug/geometry/point.h>
+#include <snug/geometry.h>
 #include <snug/mesh.h>
 
 namespace snug::kernels {
@@ -26,6 +26,19 @@ inline void gather_lanes(std::span<const Point3> points, const VertexId* control
       at[2 * lanes] = p.z;
       at += 3 * lanes;
     }
+  }
+}
+
+/// Answers from lanes: coordinate a of corner k of patch l at lane[(3 k + a) lanes + l], then radii, then roundings.
+inline void scatter_lanes(const double* lane, std::size_t lanes, std::span<OffsetTriangle> out) {
+  for (std::size_t l = 0; l < out.size(); ++l) {
+    const double* from = lane + l;
+    for (Point3& corner : out[l].base) {
+      corner = {from[0], from[lanes], from[2 * lanes]};
+      from += 3 * lanes;
+    }
+    out[l].radius = from[0];
+    out[l].rounding = from[lanes];
   }
 }
 

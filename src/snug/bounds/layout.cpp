@@ -6,7 +6,6 @@
 #include <optional>
 
 #include <snug/base/contract.h>
-#include <snug/bounds/fair_layout.h>
 #include <snug/geometry/interval.h>
 
 namespace snug {

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include <snug/base/contract.h>
+#include <snug/bounds/bound_table.h>
+#include <snug/bounds/fit_kernels.h>
 #include <snug/bounds/lanes.h>
-#include <snug/bounds/table_kernel.h>
 #include <snug/geometry/rounding.h>
 
 #ifndef SNUG_ENCLOSE_TABLE_KERNEL_ONCE
@@ -80,7 +81,7 @@ HWY_INLINE V at(D d, const LinearV<V>& l, double u, double v) {
 
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void fit_lanes(D d, const FlatTable& table, std::span<const Point3> points,
-                          const VertexId* control, std::size_t here, BatchFit* out) {
+                          const VertexId* control, std::span<OffsetTriangle> out) {
   const std::size_t lanes = hn::Lanes(d), count = table.columns.size() + 3;
   HWY_ALIGN double gathered[3 * block * HWY_MAX_BYTES / sizeof(double)];
   V origin[3], middle[3][3], half[3][3];  // [axis][corner]
@@ -88,7 +89,7 @@ HWY_INLINE void fit_lanes(D d, const FlatTable& table, std::span<const Point3> p
   V largest = hn::Zero(d);
   for (std::size_t from = 0; from < count; from += block) {
     const std::size_t to = std::min(count, from + block);
-    gather_lanes(points, control, count, from, to, here, lanes, gathered);
+    gather_lanes(points, control, count, from, to, out.size(), lanes, gathered);
     for (std::size_t a = 0; a < 3; ++a) {
       const auto load = [&](std::size_t i)
                             HWY_ATTR { return hn::Load(d, gathered + (3 * (i - from) + a) * lanes); };
@@ -155,28 +156,22 @@ HWY_INLINE void fit_lanes(D d, const FlatTable& table, std::span<const Point3> p
   const auto finite = hn::And(hn::Lt(radius, hn::Set(d, INFINITY)), hn::Eq(probe, hn::Zero(d)));
   const V answer = hn::IfThenElse(finite, radius, hn::Set(d, INFINITY));
 
-  HWY_ALIGN double lane[11][HWY_MAX_BYTES / sizeof(double)];
+  HWY_ALIGN double lane[11 * HWY_MAX_BYTES / sizeof(double)];
   for (std::size_t k = 0; k < 3; ++k) {
-    for (std::size_t a = 0; a < 3; ++a) hn::Store(middle[a][k], d, lane[3 * k + a]);
+    for (std::size_t a = 0; a < 3; ++a) hn::Store(middle[a][k], d, lane + (3 * k + a) * lanes);
   }
-  hn::Store(answer, d, lane[9]);
-  hn::Store(hn::Mul(hn::Set(d, spatial_error(1)), error), d, lane[10]);
-  for (std::size_t l = 0; l < here; ++l) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      out[l].base[k] = {lane[3 * k][l], lane[3 * k + 1][l], lane[3 * k + 2][l]};
-    }
-    out[l].radius = lane[9][l];
-    out[l].rounding = lane[10][l];
-  }
+  hn::Store(answer, d, lane + 9 * lanes);
+  hn::Store(hn::Mul(hn::Set(d, spatial_error(1)), error), d, lane + 10 * lanes);
+  scatter_lanes(lane, lanes, out);
 }
 
 void FitTable(const FlatTable& table, std::span<const Point3> points, const VertexId* control,
-              std::span<BatchFit> out) {
+              std::span<OffsetTriangle> out) {
   const hn::ScalableTag<double> d;
   const std::size_t lanes = hn::Lanes(d), count = table.columns.size() + 3;
   for (std::size_t begin = 0; begin < out.size(); begin += lanes) {
-    fit_lanes(d, table, points, control + count * begin, std::min(lanes, out.size() - begin),
-              out.data() + begin);
+    fit_lanes(d, table, points, control + count * begin,
+              out.subspan(begin, std::min(lanes, out.size() - begin)));
   }
 }
 
@@ -190,7 +185,7 @@ namespace snug::kernels {
 HWY_EXPORT(FitTable);
 
 void fit_table(const BoundTable& table, std::span<const Point3> points, std::span<const VertexId> control,
-               std::span<BatchFit> out) {
+               std::span<OffsetTriangle> out) {
   SNUG_EXPECT(table.first_bounded() == 3);
   thread_local std::vector<TableColumn> memory;
   HWY_DYNAMIC_DISPATCH(FitTable)(flatten(table, memory), points, control.data(), out);

@@ -20,7 +20,6 @@ struct TableTriangle {
 ///
 /// Guarantee: contains every limit point of the patch, rounding and the control points' own error included.
 /// Requires:  the table of the patch's kind.
-/// Cost:      about 30 operations a control point and coordinate; no allocation.
 /// Source:    [Wu05, eq. 4.1, lemma 11]; differs: boxes lie at the corners of the widened triangle, and are
 ///            rounded outwards.
 [[nodiscard]] TableTriangle table_triangle(const BoundTable& table, const Patch& patch);

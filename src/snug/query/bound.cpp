@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <snug/base/parallel.h>
-#include <snug/bounds/curve_points.h>
 #include <snug/bounds/table_triangle.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
@@ -75,7 +74,7 @@ class CurvePieces {
     const std::array<LimitPoint, 2> limits = limit_ends(piece);
     const std::array<Vector3, 2> ends{limits[0].relative, limits[1].relative};
     hull_points(piece, points_);
-    return snug::enclose(ends, piece.origin, offset_simplex(points_, ends), interval_simplex(points_, ends),
+    return snug::enclose(ends, piece.origin, offset_segment(points_, ends), interval_simplex(points_, ends),
                          back_, out);
   }
 

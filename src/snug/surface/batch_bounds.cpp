@@ -8,7 +8,6 @@
 #include <snug/base/error.h>
 #include <snug/base/parallel.h>
 #include <snug/bounds/fit_kernels.h>
-#include <snug/bounds/table_kernel.h>
 #include <snug/bounds/table_triangle.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
@@ -23,7 +22,7 @@ constexpr std::size_t chunk_size = 256;
 struct Scratch {
   Patch patch, polygon;
   HullPoints hull;
-  std::array<kernels::BatchFit, chunk_size> answers;
+  std::array<OffsetTriangle, chunk_size> answers;
 };
 
 bool regular_inside(const Kind& kind) {
@@ -32,7 +31,7 @@ bool regular_inside(const Kind& kind) {
          std::all_of(corners.begin(), corners.end(), [](const CornerFan& fan) { return fan.closed; });
 }
 
-OffsetTriangle turned(const kernels::BatchFit& fit, std::uint8_t first) {
+OffsetTriangle turned(const OffsetTriangle& fit, std::uint8_t first) {
   OffsetTriangle result;
   for (std::size_t k = 0; k < 3; ++k) result.base[k] = fit.base[(k + 3 - first) % 3];
   result.radius = fit.radius;
@@ -41,7 +40,7 @@ OffsetTriangle turned(const kernels::BatchFit& fit, std::uint8_t first) {
 }
 
 // unscaled(turned()) at a moderate power of two, straight to where it belongs: copies would cost as much as the fit.
-void turn_and_scale(const kernels::BatchFit& fit, std::uint8_t first, double factor, OffsetTriangle& out) {
+void turn_and_scale(const OffsetTriangle& fit, std::uint8_t first, double factor, OffsetTriangle& out) {
   std::size_t from = (3 - first) % 3;
   for (Point3& corner : out.base) {
     const Point3& p = fit.base[from];
@@ -186,7 +185,7 @@ void BatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
   const std::size_t count = chunk.end - chunk.begin, controls = control_count(group);
   const std::span<const VertexId> control(
       control_.data() + group.first_control + (chunk.begin - group.first_place) * controls, count * controls);
-  const std::span<kernels::BatchFit> answers(scratch.answers.data(), count);
+  const std::span<OffsetTriangle> answers(scratch.answers.data(), count);
   const bool by_rows = !group.table && !group.polygon && regular_inside(kind);
   if (group.table && !group.polygon && group.table->first_bounded() == 3) {
     kernels::fit_table(*group.table, scaled_, control, answers);
@@ -195,7 +194,7 @@ void BatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
   } else if (by_rows && kind.rules().kernel == RegularKernel::bicubic) {
     kernels::fit_bicubic(scaled_, control, answers);
   } else {
-    for (kernels::BatchFit& answer : answers) answer.radius = -1;
+    for (OffsetTriangle& answer : answers) answer.radius = -1;
   }
   for (std::size_t i = 0; i < count; ++i) {
     const Place& place = places_[chunk.begin + i];
