@@ -169,7 +169,7 @@ std::array<Thicknesses, 3> corner_thicknesses(const LimitSurface& surface, Patch
                                               BoundSource source, unsigned levels) {
   require_value(levels <= PiecePath::max_level, "thicknesses: there are too many levels; give at most 60");
   Patch patch = surface.patch(p);
-  const std::optional<Vector3> normal = limit_frame(patch, {0, 0}).normal;
+  const std::optional<Vector3> normal = limit_frame(patch, TriangleParameter{0, 0}).normal;
   const PowerOfTwo back = surface.scale().inverse();
   std::array<Thicknesses, 3> result;
   HullPoints points;

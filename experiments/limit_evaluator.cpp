@@ -8,7 +8,6 @@
 #include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/descent.h>
-#include <snug/patch/monomials.h>
 
 namespace snug {
 namespace {

@@ -22,7 +22,7 @@ ControlMesh subdivide_by_older_rule(ControlMesh mesh, unsigned level) {
     ControlMesh fine = refined_mesh(mesh, rules, topology, refined);
     for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
       if (topology.isolated(VertexId(v))) continue;
-      gather_star(topology, sharpness, VertexId(v), rules.boundary, star);
+      gather_star({topology, rules, sharpness}, VertexId(v), star);
       if (vertex_rule(star.sharpness, star.spokes) != VertexRule::smooth) continue;
       // The standard rule's point P has Q + 2 R = n P - (n - 3) S.
       const double quarters = static_cast<double>(star.faces.size()) / 4;

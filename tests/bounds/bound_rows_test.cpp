@@ -45,7 +45,7 @@ TEST(bound_rows, end_with_the_control_nets_of_the_tips) {
       const BoundRows rows = make_bound_rows(kind, most);
       std::vector<Point3> points(kind.control_count());
       for (Point3& p : points) p = {unit(), unit(), unit()};
-      const Patch patch = make_patch(kind, 0, points);
+      const Patch patch = testing::patch_of(kind, points);
       std::size_t row = rows.tips_begin(), tip = 0;
       for (unsigned corner = 0; corner < 3; ++corner) {
         if (kind.regular_corner(corner)) continue;

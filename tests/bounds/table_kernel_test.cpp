@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <snug/bounds/fit_kernels.h>
 #include <snug/bounds/table_triangle.h>
+#include <testing/kinds.h>
 #include <testing/patches.h>
 
 #include <hwy/targets.h>
@@ -47,7 +48,7 @@ Batch batch(const Kind& kind, std::size_t count, Random& random, double size, co
       result.control.push_back(VertexId(result.points.size()));
       result.points.push_back(own.back());
     }
-    result.patches.push_back(make_patch(kind, 0, own));
+    result.patches.push_back(testing::patch_of(kind, own));
   }
   return result;
 }

@@ -69,7 +69,7 @@ TEST(table_triangle, of_an_affine_image_of_the_layout_is_a_triangle) {
     std::vector<Point3> points;
     for (const LayoutPoint& u : table.layout)
       points.push_back({1 + 0.05 * u[0], 0.5 + 0.05 * u[1], 0.1 * u[0] - 0.07 * u[1]});
-    const TableTriangle found = table_triangle(table, make_patch(kind, 0, points));
+    const TableTriangle found = table_triangle(table, testing::patch_of(kind, points));
     for (const Box3& box : found.interval.corner) {
       EXPECT_LT(longest_side(box), 1e-11);
       EXPECT_LE(longest_side(box), 8 * found.rounding);

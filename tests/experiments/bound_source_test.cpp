@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
-#include <snug/scheme/loop_masks.h>
 #include <snug/scheme/rules.h>
 #include <testing/containment.h>
 #include <testing/kinds.h>
@@ -30,7 +29,9 @@ TEST(characteristic_layout, shrinks_by_the_subdominant_eigenvalue) {
         double refined = 0;
         for (std::size_t i = 0; i < row.sources.size(); ++i)
           refined += row.weights[i] * layout[row.sources[i]][a];
-        EXPECT_NEAR(refined - origin[a], loop::subdominant(n) * (layout[r][a] - origin[a]), 1e-13) << n;
+        EXPECT_NEAR(refined - origin[a],
+                    rules_of(Scheme::loop).shrink_factor(inside(n)) * (layout[r][a] - origin[a]), 1e-13)
+            << n;
       }
     }
     EXPECT_NE(layout, make_layout(kind)) << n;

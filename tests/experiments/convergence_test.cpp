@@ -133,7 +133,7 @@ TEST(convergence, slabs_along_the_normal_hold_limit_points) {
   for (const std::size_t n : {3u, 6u, 9u}) {
     const LimitSurface surface(corner_net(NetShape::bent, n, 5), {}, std::make_shared<BoundsCache>(), 1);
     Patch patch = surface.patch(PatchId(0));
-    const Vector3 normal = *limit_frame(patch, {0, 0}).normal;
+    const Vector3 normal = *limit_frame(patch, TriangleParameter{0, 0}).normal;
     const double back = surface.scale().inverse().apply(1.0);
     std::vector<double> widths;
     for (int level = 0; level <= 6; ++level) {

@@ -131,7 +131,7 @@ TEST(limit_frame, has_derivatives_that_differences_confirm) {
       const Patch patch = patches[f];
       const double u = 0.1 + 0.3 * static_cast<double>(random() >> 11) * 0x1p-53;
       const double v = 0.1 + 0.3 * static_cast<double>(random() >> 11) * 0x1p-53;
-      const LimitFrame frame = limit_frame(patch, {u, v});
+      const LimitFrame frame = limit_frame(patch, TriangleParameter{u, v});
       ASSERT_TRUE(frame.differentiable);
       const double h = 1e-6;
       const Vector3 du =
@@ -171,8 +171,8 @@ TEST(limit_frame, has_no_normal_where_everything_is_flat_to_a_line) {
   oracle::TwinMesh line = oracle::meshes::icosahedron();
   for (oracle::Point& p : line.points) p = {p[0], 0, 0};
   Patches patches(line);
-  EXPECT_FALSE(limit_frame(patches[0], {0.25, 0.25}).normal);
-  EXPECT_FALSE(limit_frame(patches[0], {0, 0}).normal);
+  EXPECT_FALSE(limit_frame(patches[0], TriangleParameter{0.25, 0.25}).normal);
+  EXPECT_FALSE(limit_frame(patches[0], TriangleParameter{0, 0}).normal);
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include <experiments/rooms.h>
 #include <experiments/tightness.h>
 #include <snug/patch/evaluate.h>
-#include <snug/patch/quad_parameter.h>
 #include <snug/query/bound.h>
 #include <snug/query/closest.h>
 #include <snug/query/pairs.h>
@@ -94,7 +93,7 @@ TEST(callers_mistakes, points_of_a_surface_have_parameters_on_it) {
       static_cast<void>(limit_point(loop.patch(PatchId(0)), TriangleParameter{x, 0}));
     });
     expect_refused("half", [&] {
-      static_cast<void>(limit_point(quad.patch(PatchId(0)), QuadParameter{x, 0}));
+      static_cast<void>(limit_frame(quad.patch(PatchId(0)), QuadParameter{x, 0}));
     });
   }
   expect_refused("sum", [&] { static_cast<void>(evaluate(loop, {0, 0, 0.5, 0.5 + 0x1p-52})); });

@@ -33,8 +33,8 @@ TEST(limit_stencils, of_darts_stay_under_a_step_within_their_errors) {
       const RefinedTopology step = refine(topology, options, sharpness);
       const std::size_t count = topology.vertex_count();
       Stencils limit, next;
-      rules_of(scheme).add_limit_row(topology, VertexId(0), options, sharpness, limit);
-      rules_of(scheme).add_limit_row(step.topology, VertexId(0), options, step.sharpness, next);
+      rules_of(scheme).add_limit_row({topology, options, sharpness}, VertexId(0), limit);
+      rules_of(scheme).add_limit_row({step.topology, options, step.sharpness}, VertexId(0), next);
       const double error = limit.row(0).error, next_error = next.row(0).error;
       EXPECT_GT(error, 0x1p-53) << n;
       EXPECT_LT(error, 1e-10) << n;
@@ -61,7 +61,7 @@ TEST(limit_stencils, of_darts_are_the_same_however_many_came_between) {
     const ControlMesh mesh = testing::control_mesh(twin);
     const Topology topology(mesh);
     Stencils limit;
-    rules_of(scheme).add_limit_row(topology, VertexId(0), {scheme}, sharpness_of(mesh, topology), limit);
+    rules_of(scheme).add_limit_row({topology, {scheme}, sharpness_of(mesh, topology)}, VertexId(0), limit);
     std::vector<double> all = dense(limit.row(0), topology.vertex_count());
     all.push_back(limit.row(0).error);
     return all;

@@ -1,6 +1,6 @@
-#include <snug/scheme/creased.h>
 #include <snug/scheme/limits.h>
 #include <snug/scheme/refine.h>
+#include <snug/scheme/rules.h>
 
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
@@ -80,17 +80,18 @@ TEST(refine, keeps_a_lone_triangle_s_corners_and_makes_it_smooth_with_edge_only)
 }
 
 // Tangent rows kill constants and are kept by a step up to their eigenvalue: directions are limits.
-TEST(tangent_rows, keep_their_direction_under_refinement) {
+TEST(corner_tangents, keep_their_direction_under_refinement) {
   for (const oracle::TwinMesh& twin : testing::assorted_meshes(8)) {
     const SchemeOptions options = testing::rules(twin);
     if (options.boundary == BoundaryRule::none) continue;
     const ControlMesh coarse = testing::control_mesh(twin);
     const ControlMesh fine = refine(coarse, options);
     const Topology coarse_topology(coarse), fine_topology(fine);
-    const auto& rules = static_cast<const CreasedRules&>(rules_of(options.scheme));
+    const SchemeRules& rules = rules_of(options.scheme);
     for (std::size_t v = 0; v < coarse.vertex_count(); ++v) {
-      const Stencils before = rules.tangent_rows(coarse_topology, VertexId(v), options);
-      const Stencils after = rules.tangent_rows(fine_topology, VertexId(v), options);
+      Stencils before, after;
+      rules.add_corner_tangents({coarse_topology, options, {}}, coarse_topology.leaving(VertexId(v)), before);
+      rules.add_corner_tangents({fine_topology, options, {}}, fine_topology.leaving(VertexId(v)), after);
       Vector3 normal[2];
       for (int side = 0; side < 2; ++side) {
         const Stencils& rows = side == 0 ? before : after;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <oracle/twin_mesh.h>
-#include <snug/patch/neighbourhood.h>
+#include <snug/patch/patch.h>
 
 #include <vector>
 
@@ -17,6 +17,13 @@ namespace snug::testing {
     if (fan.sharp) return oracle::Boundary::edge_and_corner;
   }
   return oracle::Boundary::edge_only;
+}
+
+/// A patch of the kind with these control points.
+[[nodiscard]] inline Patch patch_of(const Kind& kind, std::span<const Point3> points) {
+  std::vector<VertexId> which;
+  for (std::size_t i = 0; i < points.size(); ++i) which.emplace_back(i);
+  return make_patch(kind, 0, points, which);
 }
 
 /// Kinds with one and three extraordinary corners, at boundaries, with sharp corners.

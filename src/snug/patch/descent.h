@@ -4,11 +4,10 @@
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 
-/// How a parameter goes down to the pieces of a patch. For the files of patch/ alone.
+/// How a parameter goes down to the pieces of a patch.
 namespace snug {
 
-// Where a parameter lies after one split: which child, and its parameter there. Doubling is exact; 1 - 2u may
-// round once, below one unit roundoff.
+// Where a parameter lies after one split. Doubling is exact; 1 - 2u may round once, below one unit roundoff.
 struct Descent {
   unsigned child;
   TriangleParameter at;

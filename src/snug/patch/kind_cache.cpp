@@ -1,7 +1,6 @@
 #include <snug/patch/kind_cache.h>
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include <snug/base/contract.h>
@@ -11,6 +10,35 @@
 namespace snug {
 namespace {
 
+// The polynomial form of a kind, if every corner is regular: degree 4 for Loop and Doo-Sabin, 6 for the half of a bicubic
+// Catmull-Clark quad, two quadratic parts for Midedge. Smooth boundaries and sharp corners of the regular sort are
+// completed by ghost points, which reproduce them exactly.
+// Guarantee: entries of rows are small fractions, each rounded once; those of weights are these, times a whole number
+//            and rounded again.
+// Source:    derivations/loop_bezier.md, tensor_bezier.md, midedge_bezier.md; [Stam98] gives the same basis for Loop.
+std::optional<PolynomialForm> polynomial_form(const KindKey& key) {
+  const SchemeRules& rules = rules_of(key.scheme);
+  const std::span<const CornerFan> fans(key.corners.data(), rules.corners);
+  if (!key.plain() || key.polygon ||
+      !std::all_of(fans.begin(), fans.end(), [&](const CornerFan& fan) { return rules.regular(fan); })) {
+    return {};
+  }
+  const Topology ring = rules.ring(key.corners);
+  PolynomialForm form{rules.bezier(ring, fans), {}};
+  const std::size_t count = bezier_count(form.degree), blocks = (ring.vertex_count() + 3) / 4;
+  form.weights.resize(form.parts * blocks * count * 4);
+  for (std::size_t r = 0; r < form.parts * count; ++r) {
+    const std::size_t part = r / count, place = r % count;
+    const Stencils::Row row = form.rows.row(r);
+    for (std::size_t i = 0; i < row.sources.size(); ++i) {
+      const std::size_t block = part * blocks + row.sources[i] / 4;
+      form.weights[(block * count + place) * 4 + row.sources[i] % 4] =
+          multinomial(form.degree, place) * row.weights[i];
+    }
+  }
+  return form;
+}
+
 std::vector<KindChild> make_children(KindCache& library, const KindKey& key) {
   const Neighbourhood around = neighbourhood(key);
   const RefinedTopology refined = refine(around.topology, around.options, around.sharpness);
@@ -18,8 +46,6 @@ std::vector<KindChild> make_children(KindCache& library, const KindKey& key) {
   const std::vector<HalfEdge> starts = rules.child_starts(around.topology, refined.topology);
   std::vector<KindChild> children(starts.size());
   std::vector<VertexId> control;
-  std::vector<std::uint32_t> same_names(around.topology.vertex_count());
-  std::iota(same_names.begin(), same_names.end(), 0u);
   for (std::size_t k = 0; k < starts.size(); ++k) {
     TurnedKey child;
     if (rules.triangular()) {
@@ -33,7 +59,7 @@ std::vector<KindChild> make_children(KindCache& library, const KindKey& key) {
     std::size_t entries = 0;
     for (const VertexId v : control) entries += refined.stencils.row(v.index()).sources.size();
     children[k].stencils.reserve(control.size(), entries);
-    for (const VertexId v : control) children[k].stencils.append(refined.stencils.row(v.index()), same_names);
+    for (const VertexId v : control) children[k].stencils.append(refined.stencils.row(v.index()));
   }
   return children;
 }
@@ -50,28 +76,6 @@ bool is_passing(const Neighbourhood& around, const KindKey& key) {
   }
   return false;
 }
-
-}  // namespace
-
-Kind::Kind(KindCache& library, KindId id, const KindKey& key) : Kind(library, id, key, neighbourhood(key)) {}
-
-Kind::Kind(KindCache& library, KindId id, const KindKey& key, const Neighbourhood& around)
-    : library_(library),
-      rules_(rules_of(key.scheme)),
-      id_(id),
-      key_(key),
-      order_(key, around.topology),
-      form_(polynomial_form(key)) {
-  control_count_ = around.topology.vertex_count();
-  passing_ = is_passing(around, key);
-}
-
-std::size_t Kind::inner_count() const {
-  if (!key_.plain()) return 0;
-  return rules().primal ? rules().corners : 1;
-}
-
-namespace {
 
 // Upper bound over the patch of the function with these control values, which are accurate to far less than what is added
 // in the end: in x, as stencils are applied to points.
@@ -100,11 +104,24 @@ double largest_value(const Kind& kind, const std::vector<Vector3>& values, unsig
 
 }  // namespace
 
+Kind::Kind(KindCache& library, KindId id, const KindKey& key) : Kind(library, id, key, neighbourhood(key)) {}
+
+Kind::Kind(KindCache& library, KindId id, const KindKey& key, const Neighbourhood& around)
+    : library_(library),
+      rules_(rules_of(key.scheme)),
+      id_(id),
+      key_(key),
+      order_(key, around.topology),
+      form_(polynomial_form(key)) {
+  control_count_ = around.topology.vertex_count();
+  passing_ = is_passing(around, key);
+}
+
 double Kind::outer_weight() const {
   SNUG_EXPECT(!key_.polygon);
   std::call_once(outer_weight_made_, [&] {
-    const std::size_t inner = inner_count();
-    if (inner == 0 || crowded()) return;
+    if (!key_.plain() || crowded()) return;
+    const std::size_t inner = rules().primal ? rules().corners : 1;
     if (inner == control_count_) {
       outer_weight_ = 0;
       return;
@@ -121,16 +138,14 @@ const Stencils& Kind::corner_limits() const {
   std::call_once(limits_made_, [&] {
     const Neighbourhood around = neighbourhood(key_);
     for (std::size_t i = 0; i < 3; ++i) {
-      if (rules().add_corner_limit(around.topology, i, around.options, around.sharpness, corner_limits_)) {
-        continue;
-      }
+      const HalfEdge corner = rules().corner_of(around.topology, i);
+      if (rules().add_corner_limit(around.ruled(), corner, corner_limits_)) continue;
       if (passing_) {  // the child at the corner shares the work with other patches
         const KindChild& child = children()[i];
         add_product(child.kind->corner_limits().row((3 + i - child.first) % 3), child.stencils, {},
                     corner_limits_);
       } else {
-        rules().add_limit_row(around.topology, around.topology.face(FaceId(0))[i], around.options,
-                              around.sharpness, corner_limits_);
+        rules().add_limit_row(around.ruled(), around.topology.from(corner), corner_limits_);
       }
     }
   });
@@ -148,7 +163,7 @@ const Stencils& Kind::corner_tangents() const {
   std::call_once(tangents_made_, [&] {
     const Neighbourhood around = neighbourhood(key_);
     for (std::size_t i = 0; i < 3; ++i) {
-      rules().add_corner_tangents(around.topology, i, around.options, around.sharpness, corner_tangents_);
+      rules().add_corner_tangents(around.ruled(), rules().corner_of(around.topology, i), corner_tangents_);
     }
   });
   return corner_tangents_;

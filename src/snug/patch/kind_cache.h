@@ -2,12 +2,12 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
 #include <unordered_map>
 #include <vector>
 
 #include <snug/patch/neighbourhood.h>
-#include <snug/patch/polynomial.h>
 #include <snug/scheme/rules.h>
 
 namespace snug {
@@ -18,6 +18,14 @@ class KindCache;
 /// A patch kind in a KindCache.
 using KindId = Id<struct KindTag>;
 
+/// A patch as one polynomial or two, and what evaluates it.
+/// Guarantee: entries of rows are small fractions, each rounded once.
+struct PolynomialForm : BezierRows {
+  /// The rows, each times its multinomial coefficient, rounded again: of w^k u^i v^j from control points. A part after the
+  /// other, in it four control points after the other (zeros where there are none), in these four doubles a row.
+  std::vector<double> weights;
+};
+
 /// A quarter of a patch after one step of subdivision; of a polygon half a quad.
 struct KindChild {
   const Kind* kind;
@@ -26,8 +34,7 @@ struct KindChild {
   Stencils stencils;  ///< its control points from the parent's
 };
 
-/// What all patches with equal connectivity share. Immutable; parts that cost much are made on first use.
-/// Thread-safe.
+/// What all patches with equal connectivity share. Immutable; parts that cost much are made on first use. Thread-safe.
 class Kind {
  public:
   Kind(KindCache& library, KindId id, const KindKey& key);
@@ -51,30 +58,21 @@ class Kind {
   /// Is a corner one of very many faces between creases or boundaries? All its patches are of kinds of their own, and the
   /// matrix of points that bound one would be as large as the fan for each of many levels.
   [[nodiscard]] bool crowded() const;
-  /// Do many patches share such kinds, so that rows are kept for them? Patches of others are split where they are bounded.
+  /// Do many patches share such kinds, so that rows are kept for them? Others are split where they are bounded.
   [[nodiscard]] bool shared() const { return !passing() && !crowded(); }
 
-  /// Is the patch polynomial, or made of two polynomials (Midedge)? Then bezier() gives them.
+  /// Is the patch polynomial, or made of two polynomials (Midedge)? Only then it has a form.
   [[nodiscard]] bool polynomial() const { return form_.has_value(); }
-  /// Requires:  polynomial().
   [[nodiscard]] const PolynomialForm& form() const { return *form_; }
-  /// Bezier points of the patch, as form() counts them.
-  /// Requires:  polynomial().
   [[nodiscard]] const Stencils& bezier() const { return form_->rows; }
 
+  // Requires, of the next three: a patch, no polygon.
   /// Limit positions of the corners: three rows.
-  /// Requires:  a patch, no polygon; so do the tangents.
   [[nodiscard]] const Stencils& corner_limits() const;
-  /// Two tangent rows a corner, those of corner i at 2 i and 2 i + 1 (scheme/limits.h).
+  /// Two tangent rows a corner, those of corner i at 2 i and 2 i + 1 (SchemeRules::add_corner_tangents).
   [[nodiscard]] const Stencils& corner_tangents() const;
-
-  /// The control points 0 to inner_count() - 1 are the corners of the face, or the vertex, that the patch belongs to; none
-  /// where what surrounds the patch needs details.
-  [[nodiscard]] std::size_t inner_count() const;
-  /// Upper bound, over the patch, of the sum of the weights of all other control points: the patch lies in the sum of
-  /// 1 - outer_weight() times the hull of the inner ones and outer_weight() times the hull of all.
-  /// Requires:  a patch, no polygon.
-  /// Cost:      made on first use by some splits.
+  /// Upper bound w, over the patch, of the sum of the weights of all control points but those of the face, or the vertex, that
+  /// the patch belongs to: it lies in the sum of 1 - w times the hull of the latter and w times the hull of all.
   [[nodiscard]] double outer_weight() const;
 
   /// The four children of a patch; 0 to 2 keep that corner, 3 is the middle one. Of a polygon with n corners 2 n: at
@@ -99,7 +97,6 @@ class Kind {
 };
 
 /// All kinds met so far. Grows, never forgets; kinds stay where they are as long as the library lives.
-///
 /// Guarantee: thread-safe; a kind is made once.
 /// Cost:      find: one hash look-up; a new kind with its rows 0.05 to 0.5 ms up to valence 12 (bench/).
 class KindCache {

@@ -40,7 +40,7 @@ CornerView view_of(const Topology& topology, const Sharpness& sharpness, HalfEdg
   const VertexId v = topology.from(corner);
   if (!sharpness.none() || !topology.is_manifold()) {
     thread_local Star star;
-    gather_star(topology, sharpness, v, options.boundary, star);
+    gather_star({topology, options, sharpness}, v, star);
     view.plain = is_stationary(star);
     const auto infinite = std::count_if(star.spokes.begin(), star.spokes.end(), [](const Spoke& spoke) {
       return spoke.sharpness >= infinite_sharpness;
@@ -106,24 +106,18 @@ KindKey dual_key(const Topology& topology, HalfEdge start, const SchemeRules& ru
 // The other ends of the edges at the corners of a face, each once.
 std::vector<VertexId> spoke_ends(const Topology& topology, HalfEdge start) {
   std::vector<VertexId> ends;
-  const auto add = [&](VertexId v) {
-    if (std::find(ends.begin(), ends.end(), v) == ends.end()) ends.push_back(v);
-  };
   HalfEdge corner = start;
   do {
-    topology.for_each_fan(topology.from(corner), [&](HalfEdge first) {
-      topology.walk_fan(first, [&](HalfEdge h) {
-        add(topology.to(h));
-        add(topology.from(topology.prev(h)));
-      });
+    walk_edges(topology, topology.from(corner), [&](EdgeId, VertexId v) {
+      if (std::find(ends.begin(), ends.end(), v) == ends.end()) ends.push_back(v);
     });
     corner = topology.next(corner);
   } while (corner != start);
   return ends;
 }
 
-// The faces around the corners of a face, its own first, each as the half-edge that leaves the corner where it was met; then, if
-// wide, those around the far ends of the edges at the corners.
+// The faces around the corners of a face, its own first, each as the half-edge that leaves the corner where it was met;
+// then, if wide, those around the far ends of the edges at the corners.
 std::vector<HalfEdge> faces_around(const Topology& topology, HalfEdge start, Scheme scheme, bool wide) {
   if (rules_of(scheme).local) return {start};
   thread_local CompactNumbering met;
@@ -136,32 +130,23 @@ std::vector<HalfEdge> faces_around(const Topology& topology, HalfEdge start, Sch
   HalfEdge corner = start;
   do {
     topology.walk_fan(corner, add);
-    if (topology.twin(corner) != no_half_edge) {
-      for (HalfEdge h = topology.cw(corner); h != no_half_edge && h != corner; h = topology.cw(h)) add(h);
-    }
-    topology.for_each_fan(topology.from(corner), [&](HalfEdge first) { topology.walk_fan(first, add); });
+    for (HalfEdge h = topology.cw(corner); h != no_half_edge && h != corner; h = topology.cw(h)) add(h);
+    walk_fans(topology, topology.from(corner), add);
     corner = topology.next(corner);
   } while (corner != start);
   if (!wide) return found;
-  for (const VertexId end : spoke_ends(topology, start)) {
-    topology.for_each_fan(end, [&](HalfEdge first) { topology.walk_fan(first, add); });
-  }
+  for (const VertexId end : spoke_ends(topology, start)) walk_fans(topology, end, add);
   return found;
 }
 
-bool is_corner(const Topology& topology, HalfEdge start, VertexId v) {
-  const auto corners = topology.face(topology.face_of(start));
-  return std::find(corners.begin(), corners.end(), v) != corners.end();
-}
-
 // Does the sharpness of edges at the corners depend on that of edges which do not touch them?
-bool is_wide(const Topology& topology, HalfEdge start, const SchemeOptions& options,
-             const Sharpness& sharpness) {
+bool is_wide(const RuledMesh& mesh, HalfEdge start) {
+  const auto corners = mesh.topology.face(mesh.topology.face_of(start));
   std::vector<VertexId> ends;
-  for (const VertexId v : topology.face(topology.face_of(start))) {
-    add_far_ends(topology, sharpness, v, options, ends);
-  }
-  return std::any_of(ends.begin(), ends.end(), [&](VertexId v) { return !is_corner(topology, start, v); });
+  for (const VertexId v : corners) add_far_ends(mesh, v, ends);
+  return std::any_of(ends.begin(), ends.end(), [&](VertexId v) {
+    return std::find(corners.begin(), corners.end(), v) == corners.end();
+  });
 }
 
 // Keeps what is sharp at some places; nothing left is no entries.
@@ -180,7 +165,7 @@ void keep_only(std::vector<double>& sharpness, const Keeps& keeps) {
 std::shared_ptr<const Neighbourhood> surroundings(const Topology& topology, HalfEdge start,
                                                   const SchemeOptions& options, const Sharpness& sharpness) {
   const bool local = rules_of(options.scheme).local;
-  const bool wide = !local && is_wide(topology, start, options, sharpness);
+  const bool wide = !local && is_wide({topology, options, sharpness}, start);
   PartOfMesh part =
       part_of(topology, sharpness, options.boundary, faces_around(topology, start, options.scheme, wide));
   Sharpness& kept = part.sharpness;

@@ -21,6 +21,7 @@ struct Neighbourhood {
   bool wide;              ///< Does it reach to the faces around the far ends of the corners' edges?
   std::size_t hash;
   Neighbourhood(Topology faces, Sharpness sharp, const SchemeOptions& rules, bool is_wide = false);
+  [[nodiscard]] RuledMesh ruled() const { return {topology, options, sharpness}; }
   friend bool operator==(const Neighbourhood& a, const Neighbourhood& b);
 };
 

@@ -10,11 +10,9 @@ namespace snug {
 
 /// A limit patch, or a piece of one: its kind and its control points.
 ///
-/// Points are kept relative to `origin`, an exact double point near the patch: rows sum to 1, so a patch far
-/// from the coordinates' origin loses nothing.
-///
-/// Corners are counted as in the control face (or the piece, see scheme/refine.h): corner k of the patch is
-/// corner (k - first) mod 3 of the kind.
+/// Points are kept relative to `origin`, an exact double point near the patch: rows sum to 1, so a patch far from the
+/// coordinates' origin loses nothing. Corners are counted as in the control face (or the piece, see scheme/refine.h):
+/// corner k of the patch is corner (k - first) mod 3 of the kind.
 struct Patch {
   const Kind* kind = nullptr;
   std::uint8_t first = 0;
@@ -27,25 +25,16 @@ struct Patch {
   [[nodiscard]] std::size_t to_kind(std::size_t corner) const { return (corner + 3 - first) % 3; }
 };
 
-/// The patch of some control points, in the kind's order (control_vertices).
-///
-/// Requires:  finite points of at most about 2 (geometry/scaling.h); points.size() == kind.control_count().
-[[nodiscard]] Patch make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> points);
-/// The same, gathered from the points of a whole mesh.
+/// The patch of some points of a mesh, which are named in the kind's order (Kind::control_vertices).
+/// Requires:  finite points of at most about 2 (geometry/scaling.h).
 [[nodiscard]] Patch make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> all,
                                std::span<const VertexId> which);
 /// The same, written over `out`, which keeps its memory.
 void make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> all,
                 std::span<const VertexId> which, Patch& out);
 
-/// Half a quad of a polygon that is no patch itself (KindKey), as Kind::children() counts them. Its path is that of the
-/// polygon.
-[[nodiscard]] Patch patch_of_polygon(const Patch& polygon, std::size_t part);
-/// The same, written over `piece`, which keeps its memory.
-void patch_of_polygon(const Patch& polygon, std::size_t part, Patch& piece);
-
-/// Piece `child` (0 to 3) of a patch after one step of subdivision.
-///
+/// Piece `child` of a patch after one step of subdivision, 0 to 3; of a polygon that is no patch itself (KindKey) half a
+/// quad, as Kind::children() counts them, with the polygon's path.
 /// Guarantee: `error` of the result covers the parent's, the rounding of this step and of the masks.
 /// Cost:      one sparse product: 4 to 7 multiply-adds a control point and coordinate.
 [[nodiscard]] Patch split(const Patch& patch, unsigned child);

@@ -9,8 +9,7 @@
 
 namespace snug {
 
-/// Which piece of a control face's patch: one digit a level, 0 to 2 the quarter at that corner, 3 the middle
-/// one.
+/// Which piece of a control face's patch: one digit a level, 0 to 2 the quarter at that corner, 3 the middle one.
 class PiecePath {
  public:
   static constexpr unsigned max_level = 60;
@@ -40,19 +39,11 @@ class PiecePath {
 /// A piece's own parameter as one of the whole face. Exact while the digits fit a double.
 [[nodiscard]] inline TriangleParameter to_face(const PiecePath& path, TriangleParameter p) {
   for (unsigned i = path.level(); i-- > 0;) {
-    switch (path.digit(i)) {
-      case 0:
-        p = {p.u / 2, p.v / 2};
-        break;
-      case 1:
-        p = {(1 + p.u) / 2, p.v / 2};
-        break;
-      case 2:
-        p = {p.u / 2, (1 + p.v) / 2};
-        break;
-      default:
-        p = {(1 - p.u) / 2, (1 - p.v) / 2};
-        break;
+    const unsigned digit = path.digit(i);
+    if (digit == 3) {
+      p = {(1 - p.u) / 2, (1 - p.v) / 2};
+    } else {
+      p = {(digit == 1 ? 1 + p.u : p.u) / 2, (digit == 2 ? 1 + p.v : p.v) / 2};
     }
   }
   return p;

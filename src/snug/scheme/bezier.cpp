@@ -1,9 +1,6 @@
 #include <snug/scheme/bezier.h>
 
 #include <array>
-#include <cmath>
-
-#include <snug/geometry/rounding.h>
 
 namespace snug {
 namespace {
@@ -72,13 +69,7 @@ BezierRows tensor_bezier(std::size_t d, const Lattice& lattice) {
   }
   BezierRows out{2 * d, 1, {}};
   for (std::size_t place = 0; place < sums.size(); ++place) {
-    const double divisor = scale * multinomial(2 * d, place);
-    for (std::size_t c = 0; c < controls; ++c) {
-      if (sums[place][c] == 0) continue;
-      const double weight = static_cast<double>(sums[place][c]) / divisor;
-      out.rows.add(static_cast<std::uint32_t>(c), weight, std::fabs(weight) * unit_roundoff);
-    }
-    out.rows.end_row();
+    add_fractions(sums[place], scale * multinomial(2 * d, place), out.rows);
   }
   return out;
 }

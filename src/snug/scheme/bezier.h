@@ -1,9 +1,13 @@
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
+#include <snug/geometry/rounding.h>
 #include <snug/scheme/stencils.h>
 
 namespace snug {
@@ -20,6 +24,33 @@ inline constexpr std::size_t max_degree = 6;
 /// degree! / (i! j! k!) of the Bezier point at a place, k = degree - i - j.
 [[nodiscard]] double multinomial(std::size_t degree, std::size_t place);
 
+/// Monomials w^k u^i v^j of barycentric coordinates, k = degree - i - j, in the order of bezier_index(). At most
+/// degree - 1 roundings each.
+template <std::size_t degree>
+void monomials(double w, double u, double v, double* out) {
+  std::array<double, degree + 1> us{1}, vs{1}, ws{1};
+  for (std::size_t k = 1; k <= degree; ++k)
+    us[k] = us[k - 1] * u, vs[k] = vs[k - 1] * v, ws[k] = ws[k - 1] * w;
+  for (std::size_t j = 0; j <= degree; ++j) {
+    for (std::size_t i = 0; i + j <= degree; ++i) *out++ = ws[degree - i - j] * us[i] * vs[j];
+  }
+}
+
+/// visit(degree) with one of the degrees that patches have as a constant.
+template <class Visit>
+auto with_degree(std::size_t degree, const Visit& visit) {
+  switch (degree) {
+    case 1:
+      return visit(std::integral_constant<std::size_t, 1>{});
+    case 2:
+      return visit(std::integral_constant<std::size_t, 2>{});
+    case 4:
+      return visit(std::integral_constant<std::size_t, 4>{});
+    default:
+      return visit(std::integral_constant<std::size_t, 6>{});
+  }
+}
+
 /// A patch as one polynomial on its triangle, or as two: of the corners 0, 1 and m, and of m, 1 and 2, m being the middle
 /// of the edge 02.
 struct BezierRows {
@@ -31,6 +62,18 @@ struct BezierRows {
 /// A point of a lattice as an integer combination of control points.
 using Combination = std::vector<int>;
 [[nodiscard]] Combination unit_combination(std::size_t i, std::size_t count);
+
+/// Adds the row numerators / divisor; each weight is rounded once, or not at all where `roundoff` is 0.
+template <class Number>
+void add_fractions(const std::vector<Number>& numerators, double divisor, Stencils& out,
+                   double roundoff = unit_roundoff) {
+  for (std::size_t c = 0; c < numerators.size(); ++c) {
+    if (numerators[c] == 0) continue;
+    const double weight = static_cast<double>(numerators[c]) / divisor;
+    out.add(static_cast<std::uint32_t>(c), weight, std::fabs(weight) * roundoff);
+  }
+  out.end_row();
+}
 
 /// Control points of a B-spline patch of degree d in both directions, place (x, y) at x + (d + 1) y; its corner 0 is at
 /// (0, 0), its corner 1 at (1, 0) of the parameters.

@@ -17,13 +17,13 @@ class LocalRules : public SchemeRules {
     return is_legal(kind) || is_non_manifold(kind);
   }
 
-  [[nodiscard]] RefinedTopology refine(const Topology& topology, const SchemeOptions&, const Sharpness&,
-                                       const WorkMonitor& monitor) const override {
+  [[nodiscard]] RefinedTopology refine(const RuledMesh& mesh, const WorkMonitor& monitor) const override {
+    const Topology& topology = mesh.topology;
     RefinedTopology result;
     RowBuilder row;
     for (std::size_t v = 0; v < topology.vertex_count(); ++v) {
       monitor.checkpoint();
-      add_vertex(VertexId(v), result.stencils);
+      add_limit_row(mesh, VertexId(v), result.stencils);
     }
     for (std::size_t e = 0; e < topology.edge_count(); ++e) {
       monitor.checkpoint();
@@ -31,34 +31,27 @@ class LocalRules : public SchemeRules {
       for (const VertexId end : {topology.from(h), topology.to(h)}) row.add(end.value(), 0.5);
       row.end_row(result.stencils);
     }
-    for (std::size_t f = 0; f < topology.face_count() && !triangular(); ++f) {
-      monitor.checkpoint();
-      add_mean(topology.face(FaceId(f)), Interval(1), row);
-      row.end_row(result.stencils);
-    }
+    if (!triangular()) add_face_means(topology, monitor, result.stencils);
     result.topology = split_faces(topology, corners);
     return result;
   }
-  void add_limit_row(const Topology&, VertexId v, const SchemeOptions&, const Sharpness&,
-                     Stencils& out) const override {
-    add_vertex(v, out);
+  void add_limit_row(const RuledMesh&, VertexId v, Stencils& out) const override {
+    out.add_unit_row(v.value());
   }
 
   [[nodiscard]] Topology ring(std::span<const CornerFan>) const override {
     const std::array<VertexId, 4> face{VertexId(0u), VertexId(1u), VertexId(2u), VertexId(3u)};
     return {{0, static_cast<std::uint32_t>(corners)}, {face.begin(), face.begin() + corners}, corners};
   }
-  [[nodiscard]] bool add_corner_limit(const Topology& ring, std::size_t corner, const SchemeOptions&,
-                                      const Sharpness&, Stencils& out) const override {
-    add_vertex(ring.face(FaceId(0))[corner], out);
+  [[nodiscard]] bool add_corner_limit(const RuledMesh& mesh, HalfEdge corner, Stencils& out) const override {
+    out.add_unit_row(mesh.topology.from(corner).value());
     return true;
   }
-  void add_corner_tangents(const Topology& ring, std::size_t corner, const SchemeOptions&, const Sharpness&,
-                           Stencils& out) const override {
-    const auto face = ring.face(FaceId(0));
-    for (const std::size_t step : {std::size_t{1}, face.size() - 1}) {
-      out.add(face[corner].value(), -1.0);
-      out.add(face[(corner + step) % face.size()].value(), 1.0);
+  void add_corner_tangents(const RuledMesh& mesh, HalfEdge corner, Stencils& out) const override {
+    const Topology& topology = mesh.topology;
+    for (const VertexId end : {topology.to(corner), topology.from(topology.prev(corner))}) {
+      out.add(topology.from(corner).value(), -1.0);
+      out.add(end.value(), 1.0);
       out.end_row();
     }
   }
@@ -68,12 +61,6 @@ class LocalRules : public SchemeRules {
 
  protected:
   using SchemeRules::SchemeRules;
-
- private:
-  static void add_vertex(VertexId v, Stencils& out) {
-    out.add(v.value(), 1.0);
-    out.end_row();
-  }
 };
 
 constexpr std::array bilinear_names{"scheme-bilinear"};
@@ -113,24 +100,14 @@ class FlatRules : public LocalRules {
                     .local = true}) {}
   [[nodiscard]] BezierRows bezier(const Topology&, std::span<const CornerFan>) const override {
     BezierRows form{1, 1, {}};
-    for (std::uint32_t corner = 0; corner < 3; ++corner) {
-      form.rows.add(corner, 1.0);
-      form.rows.end_row();
-    }
+    for (const std::uint32_t corner : {0u, 1u, 2u}) form.rows.add_unit_row(corner);
     return form;
   }
 };
 
 }  // namespace
 
-const SchemeRules& bilinear_rules() {
-  static const BilinearRules rules;
-  return rules;
-}
-
-const SchemeRules& flat_rules() {
-  static const FlatRules rules;
-  return rules;
-}
+const SchemeRules& bilinear_rules() { return only<BilinearRules>(); }
+const SchemeRules& flat_rules() { return only<FlatRules>(); }
 
 }  // namespace snug

@@ -15,8 +15,8 @@ Interval ratio(std::size_t p, std::size_t q) {
   return (q & (q - 1)) == 0 ? Interval(a / b) : Interval(a) / Interval(b);
 }
 
-// Weights of a vertex, of each vertex at the far end of one of its edges, and of each diagonally across one of its quads, or of
-// each face's centre. They sum to 1.
+// Weights of a vertex, of each vertex at the far end of one of its edges, and of each diagonally across one of its quads,
+// or of each face's centre. They sum to 1.
 struct StarMask {
   Interval centre, edge, face;
 };
@@ -31,12 +31,6 @@ StarMask vertex_centre_mask(std::size_t n) { return {ratio(n - 2, n), ratio(1, n
 
 // Limit position of an interior vertex among quads. [HalsteadKassDeRose93]
 StarMask limit_mask(std::size_t n) { return {ratio(n, n + 5), ratio(4, n * (n + 5)), ratio(1, n * (n + 5))}; }
-
-// New point of an interior edge between quads: its ends, and the four vertices beyond.
-constexpr double edge_end = 0.375, edge_wing = 0.0625;
-// By face centres: a quarter each; 0.470 for the centre of a triangle where these are to be smooth.
-constexpr double edge_face = 0.25;
-Interval smooth_triangle_face() { return Interval(47) / Interval(100); }
 
 // Subdominant eigenvalue at an interior vertex.
 double subdominant(std::size_t n) {
@@ -119,8 +113,8 @@ class CatmarkRules : public CreasedRules {
                       .min_valence = 2,
                       .kernel = RegularKernel::bicubic}) {}
 
-  void add_smooth_vertex(const Topology& topology, const SchemeOptions&, VertexId v, const Star& star,
-                         const Interval& share, RowBuilder& row) const override {
+  void add_smooth_vertex(const Topology& topology, VertexId v, const Star& star, const Interval& share,
+                         RowBuilder& row) const override {
     const std::size_t n = star.faces.size();
     if (among_quads(topology, star)) {
       const StarMask mask = vertex_mask(n);
@@ -139,28 +133,29 @@ class CatmarkRules : public CreasedRules {
     }
   }
 
-  void add_smooth_edge(const Topology& topology, const SchemeOptions& options, HalfEdge h,
-                       const Interval& share, RowBuilder& row) const override {
+  // Between quads 3/8 of its ends, 1/16 of the four vertices beyond; else by the centres of its faces, a quarter each, or
+  // 0.470 of a triangle's where these are to be smooth.
+  void add_smooth_edge(const Topology& topology, SmoothTriangles triangles, HalfEdge h, const Interval& share,
+                       RowBuilder& row) const override {
     const HalfEdge twin = topology.twin(h);
-    const VertexId a = topology.from(h), b = topology.to(h);
+    const std::array ends{topology.from(h), topology.to(h)};
     if (is_quad(topology, h) && is_quad(topology, twin)) {
-      for (const VertexId end : {a, b}) row.add(end.value(), times(share, edge_end));
+      for (const VertexId end : ends) row.add(end.value(), times(share, 0.375));
       for (const HalfEdge g : {h, twin}) {
-        row.add(topology.from(topology.prev(g)).value(), times(share, edge_wing));
-        row.add(topology.to(topology.next(g)).value(), times(share, edge_wing));
+        row.add(topology.from(topology.prev(g)).value(), times(share, 0.0625));
+        row.add(topology.to(topology.next(g)).value(), times(share, 0.0625));
       }
       return;
     }
-    Interval face = edge_face;  // both faces' weight
-    if (options.triangles == SmoothTriangles::smooth) {
+    Interval face = 0.25;  // both faces' weight
+    if (triangles == SmoothTriangles::smooth) {
       const auto weight = [&](HalfEdge g) {
-        return topology.face(topology.face_of(g)).size() == 3 ? smooth_triangle_face() : Interval(edge_face);
+        return topology.face(topology.face_of(g)).size() == 3 ? Interval(47) / Interval(100) : Interval(0.25);
       };
       face = Interval(0.5) * (weight(h) + weight(twin));
     }
-    const Interval end = Interval(0.5) * (Interval(1) - Interval(2) * face);
-    row.add(a.value(), share * end);
-    row.add(b.value(), share * end);
+    const Interval each = Interval(0.5) * (Interval(1) - Interval(2) * face);
+    for (const VertexId end : ends) row.add(end.value(), share * each);
     for (const HalfEdge g : {h, twin}) add_mean(topology.face(topology.face_of(g)), share * face, row);
   }
 
@@ -176,16 +171,14 @@ class CatmarkRules : public CreasedRules {
   }
   // The diagonal after spoke i lies between spokes i and i + 1.
   void add_smooth_tangents(const Topology& topology, const Star& star, Stencils& out) const override {
-    const auto n = static_cast<unsigned>(star.spokes.size());
-    const auto cosine = [&](unsigned quarters) { return cos_of_turn(quarters % (4 * n), 4 * n); };
-    for (const unsigned turn : {0u, 3 * n}) {      // sin x = cos(x - pi/2), in quarters of a step
-      for (unsigned i = 0; i < n && n > 2; ++i) {  // of 2 the row of the cosine vanishes: no plane
-        const Interval c = cosine(4 * i + turn);
-        out.add(star.spokes[i].end.value(), Interval(spoke_weight(subdominant(n))) * c);
-        out.add(topology.to(topology.next(star.faces[i])).value(), c + cosine(4 * (i + 1) + turn));
-      }
-      out.end_row();
-    }
+    const std::size_t n = star.spokes.size();
+    const auto add = [&](unsigned i, const auto& wave) {
+      if (n == 2) return;  // the row of the cosine vanishes: no plane
+      const Interval c = wave(i);
+      out.add(star.spokes[i].end.value(), Interval(spoke_weight(subdominant(n))) * c);
+      out.add(topology.to(topology.next(star.faces[i])).value(), c + wave(i + 1));
+    };
+    add_first_modes(n, add, out);
   }
   [[nodiscard]] AcrossCrease across_crease(std::size_t faces) const override {
     const auto sine = [step = std::numbers::pi / static_cast<double>(faces)](std::size_t i) {
@@ -211,9 +204,6 @@ class CatmarkRules : public CreasedRules {
 
 }  // namespace
 
-const SchemeRules& catmark_rules() {
-  static const CatmarkRules rules;
-  return rules;
-}
+const SchemeRules& catmark_rules() { return only<CatmarkRules>(); }
 
 }  // namespace snug

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include <snug/scheme/loop_masks.h>
 #include <snug/scheme/rings.h>
 
 namespace snug {
@@ -13,33 +12,30 @@ namespace {
 // The rows of vertices and edges.
 class Rows {
  public:
-  Rows(const CreasedRules& rules, const Topology& topology, const SchemeOptions& options,
-       const Sharpness& sharpness)
-      : rules_(rules), topology_(topology), options_(options), sharpness_(sharpness) {}
+  Rows(const CreasedRules& rules, const RuledMesh& mesh) : rules_(rules), mesh_(mesh) {}
 
   void add_vertex(VertexId v, Stencils& out) {
     if (topology_.isolated(v)) {
-      out.add(v.value(), 1.0);
-      out.end_row();
+      out.add_unit_row(v.value());
       return;
     }
-    gather_star(topology_, sharpness_, v, options_.boundary, star_);
-    const VertexRule now = vertex_rule(star_.sharpness, star_.spokes);
+    gather_star(mesh_, v, star_);
+    const VertexRule now = vertex_rule(star_);
     if (is_stationary(star_)) {
       add_by_rule(v, now, star_.spokes, Interval(1));
     } else {
       // Where the rule changes, the share of the old one is the mean of the sharpnesses that end.
-      next_ = star_.spokes;
       double sum = 0;
       int ending = 0;
-      for (std::size_t i = 0; i < next_.size(); ++i) {
-        next_[i].sharpness = decayed(star_, star_.spokes[i], options_.creases);
-        if (star_.spokes[i].sharpness > 0 && next_[i].sharpness == 0)
-          sum += star_.spokes[i].sharpness, ++ending;
+      const auto left = [&](double sharpness, double next) {
+        if (sharpness > 0 && next == 0) sum += sharpness, ++ending;
+        return next;
+      };
+      next_ = star_.spokes;
+      for (Spoke& spoke : next_) {
+        spoke.sharpness = left(spoke.sharpness, decayed(star_, spoke, mesh_.options.creases));
       }
-      const double own = decayed(star_.sharpness);
-      if (star_.sharpness > 0 && own == 0) sum += star_.sharpness, ++ending;
-      const VertexRule then = vertex_rule(own, next_);
+      const VertexRule then = vertex_rule(left(star_.sharpness, decayed(star_.sharpness)), next_);
       const Interval share = then == now || ending == 0 || sum >= ending ? Interval(1)
                              : ending == 1                               ? Interval(sum)
                                                                          : Interval(sum) / Interval(ending);
@@ -51,15 +47,16 @@ class Rows {
 
   void add_edge(EdgeId e, Stencils& out) {
     const HalfEdge h = topology_.half_of(e);
-    const double s = edge_sharpness(topology_, sharpness_, e);
+    const double s = edge_sharpness(topology_, mesh_.sharpness, e);
     const bool crease = s >= 1 || (s > 0 && stays_sharp(e));
     const Interval share = crease ? 1.0 : s;
     if (s > 0) {
-      row_.add(topology_.from(h).value(), share * Interval(loop::curve_edge_end));
-      row_.add(topology_.to(h).value(), share * Interval(loop::curve_edge_end));
+      for (const VertexId end : {topology_.from(h), topology_.to(h)})
+        row_.add(end.value(), share * Interval(0.5));
     }
     if (!crease) {
-      rules_.add_smooth_edge(topology_, options_, h, s > 0 ? Interval(1) - share : Interval(1), row_);
+      rules_.add_smooth_edge(topology_, mesh_.options.triangles, h, s > 0 ? Interval(1) - share : Interval(1),
+                             row_);
     }
     row_.end_row(out);
   }
@@ -71,34 +68,33 @@ class Rows {
         row_.add(v.value(), share);
         return;
       case VertexRule::crease:
-        row_.add(v.value(), times(share, loop::curve_centre));
+        row_.add(v.value(), times(share, 0.75));
         for (const Spoke& spoke : spokes) {
-          if (spoke.sharpness > 0) row_.add(spoke.end.value(), times(share, loop::curve_side));
+          if (spoke.sharpness > 0) row_.add(spoke.end.value(), times(share, 0.125));
         }
         return;
       case VertexRule::smooth:
-        rules_.add_smooth_vertex(topology_, options_, v, star_, share, row_);
+        rules_.add_smooth_vertex(topology_, v, star_, share, row_);
         return;
     }
   }
 
   // Chaikin may keep both halves of an edge sharp that is below 1.
   bool stays_sharp(EdgeId e) {
-    if (options_.creases == CreaseMethod::uniform) return false;
+    if (mesh_.options.creases == CreaseMethod::uniform) return false;
     const HalfEdge h = topology_.half_of(e);
     for (const VertexId v : {topology_.from(h), topology_.to(h)}) {
-      gather_star(topology_, sharpness_, v, options_.boundary, star_);
+      gather_star(mesh_, v, star_);
       for (const Spoke& spoke : star_.spokes) {
-        if (spoke.edge == e && decayed(star_, spoke, options_.creases) == 0) return false;
+        if (spoke.edge == e && decayed(star_, spoke, mesh_.options.creases) == 0) return false;
       }
     }
     return true;
   }
 
   const CreasedRules& rules_;
-  const Topology& topology_;
-  const SchemeOptions& options_;
-  const Sharpness& sharpness_;
+  const RuledMesh& mesh_;
+  const Topology& topology_ = mesh_.topology;
   Star star_;
   std::vector<Spoke> next_;
   RowBuilder row_;
@@ -106,69 +102,59 @@ class Rows {
 
 // Where a face runs along an edge twice, or along one from a vertex to itself, pieces of what ended the fans may be twins
 // after a step: they are kept infinitely sharp. The middle of the latter stays where the vertex is.
-void keep_closed_edges_sharp(const Topology& topology, const SchemeOptions& options, const Topology& refined,
+void keep_closed_edges_sharp(const Topology& topology, std::size_t corners, const Topology& refined,
                              Sharpness& result) {
   for (std::size_t e = 0; e < topology.edge_count(); ++e) {
     if (!topology.ends_fans(EdgeId(e))) continue;
     const HalfEdge h = topology.half_of(EdgeId(e));
-    for (const HalfEdge half : halves_of(topology, rules_of(options.scheme).corners, h)) {
+    for (const HalfEdge half : halves_of(topology, corners, h)) {
       const EdgeId own = refined.edge_of(half);
       if (refined.ends_fans(own)) continue;
-      if (result.edges.empty()) result.edges.assign(refined.edge_count(), 0.0);
-      result.edges[own.index()] = infinite_sharpness;
+      set_sharpness(result.edges, refined.edge_count(), own.index(), infinite_sharpness);
     }
     if (topology.from(h) != topology.to(h)) continue;
-    if (result.vertices.empty()) result.vertices.assign(refined.vertex_count(), 0.0);
-    result.vertices[topology.vertex_count() + e] = infinite_sharpness;
+    set_sharpness(result.vertices, refined.vertex_count(), topology.vertex_count() + e, infinite_sharpness);
   }
 }
 
-Sharpness sharpness_left(const Topology& topology, const SchemeOptions& options, const Sharpness& sharpness,
-                         const Topology& refined) {
+Sharpness sharpness_left(const RuledMesh& mesh, std::size_t corners, const Topology& refined) {
+  const auto& [topology, options, sharpness] = mesh;
   Sharpness result;
-  const auto set_edge = [&](HalfEdge h, double s) {
-    if (s == 0) return;
-    if (result.edges.empty()) result.edges.assign(refined.edge_count(), 0.0);
-    result.edges[refined.edge_of(h).index()] = s;
-  };
   Star star;
   for (std::size_t e = 0; e < sharpness.edges.size(); ++e) {
     if (sharpness.edges[e] == 0 || topology.ends_fans(EdgeId(e))) continue;
     const HalfEdge h = topology.half_of(EdgeId(e));
-    const std::array<HalfEdge, 2> halves = halves_of(topology, rules_of(options.scheme).corners, h);
+    const std::array<HalfEdge, 2> halves = halves_of(topology, corners, h);
     for (std::size_t end = 0; end < 2; ++end) {
       double s = decayed(sharpness.edges[e]);
       if (options.creases == CreaseMethod::chaikin) {
-        gather_star(topology, sharpness, end == 0 ? topology.from(h) : topology.to(h), options.boundary,
-                    star);
+        gather_star(mesh, end == 0 ? topology.from(h) : topology.to(h), star);
         for (const Spoke& spoke : star.spokes) {
           if (spoke.edge == EdgeId(e)) s = decayed(star, spoke, options.creases);
         }
       }
-      set_edge(halves[end], s);
+      set_sharpness(result.edges, refined.edge_count(), refined.edge_of(halves[end]).index(), s);
     }
   }
   result.vertices_complete = sharpness.vertices_complete || !topology.is_manifold();
   const bool derived = result.vertices_complete && !sharpness.vertices_complete;
   for (std::size_t v = 0; v < (derived ? topology.vertex_count() : sharpness.vertices.size()); ++v) {
-    const double s = decayed(derived ? vertex_sharpness(topology, sharpness, VertexId(v), options.boundary)
-                                     : sharpness.vertices[v]);
-    if (s == 0) continue;
-    if (result.vertices.empty()) result.vertices.assign(refined.vertex_count(), 0.0);
-    result.vertices[v] = s;
+    const double s = derived ? vertex_sharpness(topology, sharpness, VertexId(v), options.boundary)
+                             : sharpness.vertices[v];
+    set_sharpness(result.vertices, refined.vertex_count(), v, decayed(s));
   }
-  if (!topology.is_manifold()) keep_closed_edges_sharp(topology, options, refined, result);
+  if (!topology.is_manifold()) keep_closed_edges_sharp(topology, corners, refined, result);
   return result;
 }
 
 }  // namespace
 
-RefinedTopology CreasedRules::refine(const Topology& topology, const SchemeOptions& options,
-                                     const Sharpness& sharpness, const WorkMonitor& monitor) const {
+RefinedTopology CreasedRules::refine(const RuledMesh& mesh, const WorkMonitor& monitor) const {
+  const Topology& topology = mesh.topology;
   const std::size_t vertices = topology.vertex_count(), edges = topology.edge_count();
   RefinedTopology result;
   result.stencils.reserve(vertices + edges, 7 * vertices + 4 * edges);
-  Rows rows(*this, topology, options, sharpness);
+  Rows rows(*this, mesh);
   for (std::size_t v = 0; v < vertices; ++v) {
     monitor.checkpoint();
     rows.add_vertex(VertexId(v), result.stencils);
@@ -177,15 +163,10 @@ RefinedTopology CreasedRules::refine(const Topology& topology, const SchemeOptio
     monitor.checkpoint();
     rows.add_edge(EdgeId(e), result.stencils);
   }
-  RowBuilder row;
-  for (std::size_t f = 0; f < topology.face_count() && !triangular(); ++f) {
-    monitor.checkpoint();
-    add_mean(topology.face(FaceId(f)), Interval(1), row);
-    row.end_row(result.stencils);
-  }
+  if (!triangular()) add_face_means(topology, monitor, result.stencils);
   result.topology = split_faces(topology, corners);
   monitor.checkpoint();
-  result.sharpness = sharpness_left(topology, options, sharpness, result.topology);
+  result.sharpness = sharpness_left(mesh, corners, result.topology);
   return result;
 }
 

@@ -6,34 +6,21 @@
 
 namespace snug {
 
-/// What Loop and Catmull-Clark have in common: smooth inside, with curves along creases and boundaries, and corners.
-/// [DeRose98]; OpenSubdiv.
+/// What Loop and Catmull-Clark have in common: smooth inside, with cubic B-spline curves along creases and boundaries, and
+/// corners. [DeRose98]; OpenSubdiv.
 class CreasedRules : public SchemeRules {
  public:
-  [[nodiscard]] RefinedTopology refine(const Topology& topology, const SchemeOptions& options,
-                                       const Sharpness& sharpness, const WorkMonitor& monitor) const override;
-  void add_limit_row(const Topology& topology, VertexId v, const SchemeOptions& options,
-                     const Sharpness& sharpness, Stencils& out) const override;
-
+  [[nodiscard]] RefinedTopology refine(const RuledMesh& mesh, const WorkMonitor& monitor) const override;
+  void add_limit_row(const RuledMesh& mesh, VertexId v, Stencils& out) const override;
   [[nodiscard]] Topology ring(std::span<const CornerFan> fans) const override;
-  [[nodiscard]] bool add_corner_limit(const Topology& ring, std::size_t corner, const SchemeOptions& options,
-                                      const Sharpness& sharpness, Stencils& out) const override;
-  void add_corner_tangents(const Topology& ring, std::size_t corner, const SchemeOptions& options,
-                           const Sharpness& sharpness, Stencils& out) const override;
-
-  /// Two rows whose images span the tangent plane at the limit of v, wherever there is one: the limits of the
-  /// directions, of no particular length; their weights sum to 0. Counter-clockwise: their cross product points to the side
-  /// from which faces look counter-clockwise. At a boundary the first runs along it.
-  /// Requires:  v is not isolated; at a crease inside a mesh `side`, a half-edge that leaves v, says in which sector.
-  /// Source:    left eigenvectors of the local subdivision matrix, derivations/loop_limits.md, catmark_limits.md.
-  [[nodiscard]] Stencils tangent_rows(const Topology& topology, VertexId v, const SchemeOptions& options,
-                                      const Sharpness& sharpness = {}, HalfEdge side = no_half_edge) const;
+  [[nodiscard]] bool add_corner_limit(const RuledMesh& mesh, HalfEdge corner, Stencils& out) const override;
+  void add_corner_tangents(const RuledMesh& mesh, HalfEdge corner, Stencils& out) const override;
 
   /// The new position of a smooth vertex, times `share`.
-  virtual void add_smooth_vertex(const Topology& topology, const SchemeOptions& options, VertexId v,
-                                 const Star& star, const Interval& share, RowBuilder& row) const = 0;
+  virtual void add_smooth_vertex(const Topology& topology, VertexId v, const Star& star,
+                                 const Interval& share, RowBuilder& row) const = 0;
   /// The new point of a smooth edge, times `share`; h has a twin.
-  virtual void add_smooth_edge(const Topology& topology, const SchemeOptions& options, HalfEdge h,
+  virtual void add_smooth_edge(const Topology& topology, SmoothTriangles triangles, HalfEdge h,
                                const Interval& share, RowBuilder& row) const = 0;
 
   /// Does a smooth vertex at rest, or a dart, have its limit in its star?

@@ -1,6 +1,7 @@
 #include <snug/scheme/creases.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 namespace snug {
@@ -9,43 +10,40 @@ namespace {
 // The edge between two vertices, if there is one.
 EdgeId edge_between(const Topology& topology, VertexId a, VertexId b) {
   EdgeId found;
-  topology.for_each_fan(a, [&](HalfEdge start) {
-    topology.walk_fan(start, [&](HalfEdge h) {
-      if (topology.to(h) == b) found = topology.edge_of(h);
-      const HalfEdge in = topology.prev(h);
-      if (topology.from(in) == b) found = topology.edge_of(in);
-    });
+  walk_edges(topology, a, [&](EdgeId e, VertexId end) {
+    if (end == b) found = e;
   });
   return found;
 }
 
 bool is_topological_corner(const Topology& topology, VertexId v) {
   const HalfEdge h = topology.leaving(v);
-  return topology.more_fans(v).empty() && topology.on_boundary(topology.edge_of(h)) &&
-         topology.on_boundary(topology.edge_of(topology.prev(h)));
+  return topology.on_boundary(topology.edge_of(h)) &&
+         topology.on_boundary(topology.edge_of(topology.prev(h))) && topology.more_fans(v).empty();
 }
 
 // Does a crease of non-manifold edges run through the vertex?
 bool on_non_manifold_curve(const Topology& topology, VertexId v) {
-  std::vector<EdgeId> edges;
-  std::size_t faces = 0;
-  topology.for_each_fan(v, [&](HalfEdge start) {
-    topology.walk_fan(start, [&](HalfEdge h) {
-      edges.push_back(topology.edge_of(h));
-      edges.push_back(topology.edge_of(topology.prev(h)));
-      ++faces;
-    });
+  std::set<EdgeId> edges;
+  std::size_t sides = 0;  // of edges, two a face
+  walk_edges(topology, v, [&](EdgeId e, VertexId) {
+    edges.insert(e);
+    ++sides;
   });
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   const auto odd =
       std::count_if(edges.begin(), edges.end(), [&](EdgeId e) { return !topology.is_manifold(e); });
   const bool boundary =
       std::any_of(edges.begin(), edges.end(), [&](EdgeId e) { return topology.on_boundary(e); });
-  return odd == 2 && !boundary && faces > edges.size();
+  return odd == 2 && !boundary && sides > 2 * edges.size();
 }
 
 }  // namespace
+
+void set_sharpness(std::vector<double>& entries, std::size_t count, std::size_t i, double sharpness) {
+  if (sharpness == 0) return;
+  if (entries.empty()) entries.assign(count, 0.0);
+  entries[i] = sharpness;
+}
 
 Sharpness sharpness_of(const ControlMesh& mesh, const Topology& topology) {
   Sharpness result;
@@ -68,20 +66,14 @@ Sharpness sharpness_of(const ControlMesh& mesh, const Topology& topology) {
 }
 
 bool loses_surface(const Topology& topology, const Sharpness& sharpness, FaceId f) {
-  const auto opens = [&](EdgeId e) {
-    return topology.on_boundary(e) &&
-           (sharpness.edges.empty() || sharpness.edges[e.index()] < infinite_sharpness);
-  };
+  bool open = false;
   for (const VertexId v : topology.face(f)) {
-    bool open = false;
-    topology.for_each_fan(v, [&](HalfEdge start) {
-      topology.walk_fan(start, [&](HalfEdge h) {
-        open = open || opens(topology.edge_of(h)) || opens(topology.edge_of(topology.prev(h)));
-      });
+    walk_edges(topology, v, [&](EdgeId e, VertexId) {
+      open = open || (topology.on_boundary(e) &&
+                      (sharpness.edges.empty() || sharpness.edges[e.index()] < infinite_sharpness));
     });
-    if (open) return true;
   }
-  return false;
+  return open;
 }
 
 double edge_sharpness(const Topology& topology, const Sharpness& sharpness, EdgeId e) {
@@ -92,37 +84,28 @@ double edge_sharpness(const Topology& topology, const Sharpness& sharpness, Edge
 double vertex_sharpness(const Topology& topology, const Sharpness& sharpness, VertexId v,
                         BoundaryRule boundary) {
   if (topology.isolated(v)) return infinite_sharpness;
-  if (sharpness.vertices_complete) return sharpness.vertices.empty() ? 0 : sharpness.vertices[v.index()];
-  const HalfEdge h = topology.leaving(v);
-  const bool open = topology.twin(h) == no_half_edge;
-  if (open && boundary == BoundaryRule::edge_and_corner && topology.ccw(h) == no_half_edge &&
-      is_topological_corner(topology, v)) {
-    return infinite_sharpness;
-  }
-  if (!topology.is_manifold() && !topology.is_manifold(v) && !on_non_manifold_curve(topology, v)) {
-    return infinite_sharpness;
-  }
-  return sharpness.vertices.empty() ? 0 : sharpness.vertices[v.index()];
+  const double own = sharpness.vertices.empty() ? 0 : sharpness.vertices[v.index()];
+  if (sharpness.vertices_complete) return own;
+  const bool corner = boundary == BoundaryRule::edge_and_corner && is_topological_corner(topology, v);
+  const bool odd = !topology.is_manifold() && !topology.is_manifold(v) && !on_non_manifold_curve(topology, v);
+  return corner || odd ? infinite_sharpness : own;
 }
 
-void gather_star(const Topology& topology, const Sharpness& sharpness, VertexId v, BoundaryRule boundary,
-                 Star& out) {
+void gather_star(const RuledMesh& mesh, VertexId v, Star& out) {
+  const Topology& topology = mesh.topology;
   out.spokes.clear();
   out.faces.clear();
   const auto add = [&](EdgeId e, VertexId end) {
-    out.spokes.push_back({e, end, edge_sharpness(topology, sharpness, e)});
+    out.spokes.push_back({e, end, edge_sharpness(topology, mesh.sharpness, e)});
   };
   topology.for_each_fan(v, [&](HalfEdge start) {
-    HalfEdge last = start;
     topology.walk_fan(start, [&](HalfEdge h) {
       out.faces.push_back(h);
       add(topology.edge_of(h), topology.to(h));
-      last = h;
     });
-    if (topology.twin(start) == no_half_edge) {
-      const HalfEdge in = topology.prev(last);
-      add(topology.edge_of(in), topology.from(in));
-    }
+    if (topology.twin(start) != no_half_edge) return;
+    const HalfEdge in = topology.prev(out.faces.back());
+    add(topology.edge_of(in), topology.from(in));
   });
   if (!topology.is_manifold()) {  // an edge may end several fans
     std::vector<Spoke> once;
@@ -132,7 +115,7 @@ void gather_star(const Topology& topology, const Sharpness& sharpness, VertexId 
     }
     out.spokes = std::move(once);
   }
-  out.sharpness = vertex_sharpness(topology, sharpness, v, boundary);
+  out.sharpness = vertex_sharpness(topology, mesh.sharpness, v, mesh.options.boundary);
 }
 
 VertexRule vertex_rule(double own, std::span<const Spoke> spokes) {
@@ -160,14 +143,13 @@ double decayed(const Star& star, const Spoke& spoke, CreaseMethod method) {
   return std::max(0.0, 0.75 * spoke.sharpness + 0.25 * others - 1);
 }
 
-void add_far_ends(const Topology& topology, const Sharpness& sharpness, VertexId v,
-                  const SchemeOptions& options, std::vector<VertexId>& out) {
-  if (options.creases == CreaseMethod::uniform || sharpness.edges.empty()) return;
+void add_far_ends(const RuledMesh& mesh, VertexId v, std::vector<VertexId>& out) {
+  if (mesh.options.creases == CreaseMethod::uniform || mesh.sharpness.edges.empty()) return;
   Star here, there;
-  gather_star(topology, sharpness, v, options.boundary, here);
+  gather_star(mesh, v, here);
   for (const Spoke& spoke : here.spokes) {
     if (!is_semi_sharp(spoke.sharpness)) continue;
-    gather_star(topology, sharpness, spoke.end, options.boundary, there);
+    gather_star(mesh, spoke.end, there);
     const auto another = [&](const Spoke& other) {
       return other.edge != spoke.edge && is_semi_sharp(other.sharpness);
     };

@@ -17,7 +17,17 @@ struct Sharpness {
   friend bool operator==(const Sharpness&, const Sharpness&) = default;
 };
 
+/// Sets one of `count` entries, which are kept only where one is not 0.
+void set_sharpness(std::vector<double>& entries, std::size_t count, std::size_t i, double sharpness);
+
 [[nodiscard]] constexpr bool is_semi_sharp(double s) { return s > 0 && s < infinite_sharpness; }
+
+/// A mesh as the rules of a scheme see it.
+struct RuledMesh {
+  const Topology& topology;
+  const SchemeOptions& options;
+  const Sharpness& sharpness;
+};
 
 /// The tags of a mesh. Tags on edges that are no edges of it, and of sharpness 0, are passed over; the last tag of an
 /// edge or vertex counts.
@@ -52,13 +62,30 @@ struct Star {
 };
 
 /// Writes the star over `out`, which keeps its memory.
-void gather_star(const Topology& topology, const Sharpness& sharpness, VertexId v, BoundaryRule boundary,
-                 Star& out);
+void gather_star(const RuledMesh& mesh, VertexId v, Star& out);
+
+/// Calls visit(h) for the half-edges that leave v, fan after fan.
+template <class Visit>
+void walk_fans(const Topology& topology, VertexId v, const Visit& visit) {
+  topology.for_each_fan(v, [&](HalfEdge start) { topology.walk_fan(start, visit); });
+}
+/// Calls visit(edge, other end) for the two edges at v of each of its faces.
+template <class Visit>
+void walk_edges(const Topology& topology, VertexId v, const Visit& visit) {
+  walk_fans(topology, v, [&](HalfEdge h) {
+    const HalfEdge in = topology.prev(h);
+    visit(topology.edge_of(h), topology.to(h));
+    visit(topology.edge_of(in), topology.from(in));
+  });
+}
 
 enum class VertexRule : std::uint8_t { corner, crease, smooth };
 
 /// Corner: own sharpness, or three sharp edges and more; crease: two; smooth: fewer, a dart being smooth.
 [[nodiscard]] VertexRule vertex_rule(double own, std::span<const Spoke> spokes);
+[[nodiscard]] inline VertexRule vertex_rule(const Star& star) {
+  return vertex_rule(star.sharpness, star.spokes);
+}
 
 /// Sharpness after one step: less by 1. Infinite ones stay.
 [[nodiscard]] double decayed(double sharpness);
@@ -68,10 +95,9 @@ enum class VertexRule : std::uint8_t { corner, crease, smooth };
 [[nodiscard]] double decayed(const Star& star, const Spoke& spoke, CreaseMethod method);
 
 /// With Chaikin the half of an edge at its far end depends on what is semi-sharp there, and with it the middle of the edge
-/// (whether both halves stay sharp) and all that follows at this end. Adds to `out` the ends of semi-sharp spokes of v at which
-/// other edges are semi-sharp, too; none with the uniform method.
-void add_far_ends(const Topology& topology, const Sharpness& sharpness, VertexId v,
-                  const SchemeOptions& options, std::vector<VertexId>& out);
+/// (whether both halves stay sharp) and all that follows at this end. Adds to `out` the ends of semi-sharp spokes of v at
+/// which other edges are semi-sharp, too; none with the uniform method.
+void add_far_ends(const RuledMesh& mesh, VertexId v, std::vector<VertexId>& out);
 
 /// Is everything here at rest: no sharpness that decays?
 [[nodiscard]] bool is_stationary(const Star& star);

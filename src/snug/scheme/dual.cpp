@@ -42,23 +42,19 @@ class DualRules : public SchemeRules {
   // There are no faces to make at what is no manifold.
   [[nodiscard]] bool answers(DefectKind kind) const override { return is_legal(kind); }
 
-  [[nodiscard]] RefinedTopology refine(const Topology& topology, const SchemeOptions&, const Sharpness&,
-                                       const WorkMonitor& monitor) const override {
+  [[nodiscard]] RefinedTopology refine(const RuledMesh& mesh, const WorkMonitor& monitor) const override {
+    const Topology& topology = mesh.topology;
     RefinedTopology result;
     std::vector<std::uint32_t> offsets{0};
     std::vector<VertexId> new_vertices;
     const auto end_face = [&] { offsets.push_back(static_cast<std::uint32_t>(new_vertices.size())); };
     for (std::size_t f = 0; f < topology.face_count(); ++f) {
       monitor.checkpoint();
-      const auto face = topology.face(FaceId(f));
-      const std::size_t n = face.size();
-      const std::vector<Interval> mask = mask_(n);
-      for (std::size_t k = 0; k < n; ++k) {
-        for (std::size_t i = 0; i < n; ++i) {
-          if (mask[i] != Interval(0)) result.stencils.add(face[(k + i) % n].value(), mask[i]);
-        }
-        result.stencils.end_row();
-        new_vertices.emplace_back(topology.first_of(FaceId(f)) + k);
+      const HalfEdge first = topology.first_of(FaceId(f));
+      const std::vector<Interval> mask = mask_(topology.face(FaceId(f)).size());
+      for (HalfEdge h = first; h < first + mask.size(); ++h) {
+        add_new_vertex(topology, h, mask, result.stencils);
+        new_vertices.emplace_back(h);
       }
       end_face();
     }
@@ -80,27 +76,20 @@ class DualRules : public SchemeRules {
   }
 
   // The middle of a vertex's patch: the mean of the corners of its own new face.
-  void add_limit_row(const Topology& topology, VertexId v, const SchemeOptions& options, const Sharpness&,
-                     Stencils& out) const override {
+  void add_limit_row(const RuledMesh& mesh, VertexId v, Stencils& out) const override {
+    const Topology& topology = mesh.topology;
     if (topology.on_boundary(v)) {
-      out.add(v.value(), 1.0);
-      out.end_row();
+      out.add_unit_row(v.value());
       return;
     }
-    std::vector<HalfEdge> firsts;
-    topology.walk_fan(topology.leaving(v), [&](HalfEdge h) { firsts.push_back(h); });
-    const PartOfMesh part = part_of(topology, {}, options.boundary, firsts);
-    const RefinedTopology refined = refine(part.topology, options, {}, {});
+    Stencils new_face;
+    topology.walk_fan(topology.leaving(v), [&](HalfEdge h) {
+      add_new_vertex(topology, h, mask_(topology.face(topology.face_of(h)).size()), new_face);
+    });
     RowBuilder row;
-    const Interval each = Interval(1) / Interval(static_cast<double>(firsts.size()));
-    for (std::size_t f = 0; f < firsts.size(); ++f) {
-      row.add(each, refined.stencils.row(part.topology.first_of(FaceId(f))));
-    }
-    Stencils one;
-    row.end_row(one);
-    std::vector<std::uint32_t> names;
-    for (const VertexId own : part.names) names.push_back(own.value());
-    out.append(one.row(0), names);
+    const Interval each = Interval(1) / Interval(static_cast<double>(new_face.row_count()));
+    for (std::size_t k = 0; k < new_face.row_count(); ++k) row.add(each, new_face.row(k));
+    row.end_row(out);
   }
 
   [[nodiscard]] Topology ring(std::span<const CornerFan> fans) const override {
@@ -127,27 +116,32 @@ class DualRules : public SchemeRules {
     return starts;
   }
   // The mean of the face there.
-  [[nodiscard]] bool add_corner_limit(const Topology& ring, std::size_t corner, const SchemeOptions&,
-                                      const Sharpness&, Stencils& out) const override {
+  [[nodiscard]] bool add_corner_limit(const RuledMesh& mesh, HalfEdge corner, Stencils& out) const override {
     RowBuilder row;
-    add_mean(ring.face(FaceId(corner)), Interval(1), row);
+    add_mean(mesh.topology.face(mesh.topology.face_of(corner)), Interval(1), row);
     row.end_row(out);
     return true;
   }
-  // First Fourier modes of that face, counter-clockwise.
-  void add_corner_tangents(const Topology& ring, std::size_t corner, const SchemeOptions&, const Sharpness&,
-                           Stencils& out) const override {
-    const auto face = ring.face(FaceId(corner));
-    const auto n = static_cast<unsigned>(face.size());
-    for (const unsigned turn : {0u, 3 * n}) {  // sin x = cos(x - pi/2), in quarters of a step
-      for (unsigned i = 0; i < n; ++i) out.add(face[i].value(), cos_of_turn((4 * i + turn) % (4 * n), 4 * n));
-      out.end_row();
-    }
+  // First Fourier modes of that face.
+  void add_corner_tangents(const RuledMesh& mesh, HalfEdge corner, Stencils& out) const override {
+    const auto face = mesh.topology.face(mesh.topology.face_of(corner));
+    const auto add = [&](unsigned i, const auto& wave) { out.add(face[i].value(), wave(i)); };
+    add_first_modes(face.size(), add, out);
   }
 
   [[nodiscard]] bool regular(const CornerFan& fan) const override { return regular_among_quads(fan); }
 
  private:
+  // The vertex that half-edge h makes.
+  static void add_new_vertex(const Topology& topology, HalfEdge h, const std::vector<Interval>& mask,
+                             Stencils& out) {
+    for (const Interval& weight : mask) {
+      if (weight != Interval(0)) out.add(topology.from(h).value(), weight);
+      h = topology.next(h);
+    }
+    out.end_row();
+  }
+
   Mask mask_;
 };
 
@@ -155,68 +149,26 @@ class DualRules : public SchemeRules {
 // one, the ends of its edges (left, below, right, above), the far ones of the faces.
 constexpr std::array<std::size_t, 9> biquadratic_places{5, 2, 6, 1, 0, 3, 8, 4, 7};
 
-Lattice biquadratic_lattice() {
-  Lattice lattice;
-  for (const std::size_t v : biquadratic_places) lattice.push_back(unit_combination(v, 9));
-  return lattice;
-}
-
 class DooSabinRules : public DualRules {
  public:
   DooSabinRules()
       : DualRules({.scheme = Scheme::doo_sabin, .name = "doo-sabin", .primal = false, .creases = false},
                   doo_sabin_mask) {}
   [[nodiscard]] BezierRows bezier(const Topology&, std::span<const CornerFan>) const override {
-    return tensor_bezier(2, biquadratic_lattice());
+    Lattice lattice;
+    for (const std::size_t v : biquadratic_places) lattice.push_back(unit_combination(v, 9));
+    return tensor_bezier(2, lattice);
   }
   // The first Fourier mode has 1/4 + 2 / (4n) n/2 for every n.
   [[nodiscard]] double shrink_factor(const CornerFan&) const override { return 0.5; }
 };
 
-// Two quadratics, from the values at their corners and the middles of their edges; all weights are multiples of 1/32.
-// derivations/midedge_bezier.md.
-Stencils midedge_rows() {
-  using Row = std::array<double, 9>;
-  const auto spoke = [](std::size_t k) { return 1 + k % 4; };
-  const auto far = [](std::size_t k) { return 5 + k % 4; };
-  const auto face = [&](std::size_t k) {
-    Row r{};
-    r[0] = r[spoke(k)] = r[spoke(k + 1)] = r[far(k)] = 0.25;
-    return r;
-  };
-  const auto between_faces = [&](std::size_t k) {  // the middle between faces k and k + 1
-    Row r{};
-    r[0] = r[spoke(k + 1)] = 6.0 / 16;
-    r[spoke(k)] = r[spoke(k + 2)] = r[far(k)] = r[far(k + 1)] = 1.0 / 16;
-    return r;
-  };
-  const auto towards_middle = [&](std::size_t k) {  // halfway from face k to the middle of the patch
-    Row r{};
-    r[0] = 14.0 / 32;
-    r[spoke(k)] = r[spoke(k + 1)] = 7.0 / 32;
-    r[far(k)] = 2.0 / 32;
-    r[spoke(k + 2)] = r[spoke(k + 3)] = 1.0 / 32;
-    return r;
-  };
-  const Row middle{0.5, 0.125, 0.125, 0.125, 0.125, 0, 0, 0, 0};
-  const auto inner = [](const Row& half, const Row& a, const Row& b) {  // 2 f(1/2) - (f(0) + f(1)) / 2
-    Row r{};
-    for (std::size_t c = 0; c < 9; ++c) r[c] = 2 * half[c] - (a[c] + b[c]) / 2;
-    return r;
-  };
-  Stencils out;
-  const auto add = [&](const Row& row) {
-    for (std::size_t c = 0; c < 9; ++c) {
-      if (row[c] != 0) out.add(static_cast<std::uint32_t>(c), row[c]);
-    }
-    out.end_row();
-  };
-  const auto spine = [&](std::size_t k) { return inner(towards_middle(k), face(k), middle); };
-  const auto side = [&](std::size_t k) { return inner(between_faces(k), face(k), face(k + 1)); };
-  for (const Row& row : {face(0), side(0), face(1), spine(0), spine(1), middle}) add(row);
-  for (const Row& row : {middle, spine(1), face(1), spine(2), side(1), face(2)}) add(row);
-  return out;
-}
+// 8 times the Bezier points of two quadratics, j outermost. derivations/midedge_bezier.md
+constexpr int midedge_rows[12][9]{
+    {2, 2, 2, 0, 0, 2, 0, 0, 0}, {4, 0, 4, 0, 0, 0, 0, 0, 0}, {2, 0, 2, 2, 0, 0, 2, 0, 0},
+    {4, 2, 2, 0, 0, 0, 0, 0, 0}, {4, 0, 2, 2, 0, 0, 0, 0, 0}, {4, 1, 1, 1, 1, 0, 0, 0, 0},
+    {4, 1, 1, 1, 1, 0, 0, 0, 0}, {4, 0, 2, 2, 0, 0, 0, 0, 0}, {2, 0, 2, 2, 0, 0, 2, 0, 0},
+    {4, 0, 0, 2, 2, 0, 0, 0, 0}, {4, 0, 0, 4, 0, 0, 0, 0, 0}, {2, 0, 0, 2, 2, 0, 0, 2, 0}};
 
 constexpr std::array midedge_names{"mid-edge"};
 
@@ -230,7 +182,9 @@ class MidedgeRules : public DualRules {
                    .creases = false},
                   midedge_mask) {}
   [[nodiscard]] BezierRows bezier(const Topology&, std::span<const CornerFan>) const override {
-    return {2, 2, midedge_rows()};
+    BezierRows out{2, 2, {}};
+    for (const auto& row : midedge_rows) add_fractions(Combination(row, row + 9), 8, out.rows, 0);
+    return out;
   }
   // Modes 1 and n - 1; for n = 3 there are no others, and 1/4 is what remains.
   [[nodiscard]] double shrink_factor(const CornerFan& fan) const override {
@@ -240,14 +194,7 @@ class MidedgeRules : public DualRules {
 
 }  // namespace
 
-const SchemeRules& doo_sabin_rules() {
-  static const DooSabinRules rules;
-  return rules;
-}
-
-const SchemeRules& midedge_rules() {
-  static const MidedgeRules rules;
-  return rules;
-}
+const SchemeRules& doo_sabin_rules() { return only<DooSabinRules>(); }
+const SchemeRules& midedge_rules() { return only<MidedgeRules>(); }
 
 }  // namespace snug

@@ -34,22 +34,17 @@ PartOfMesh part_of(const Topology& topology, const Sharpness& sharpness, Boundar
   }
   part.topology = Topology(std::move(offsets), std::move(corners), part.names.size());
 
-  const auto keep = [](std::vector<double>& all, std::size_t count, std::size_t i, double s) {
-    if (s == 0) return;
-    if (all.empty()) all.assign(count, 0.0);
-    all[i] = s;
-  };
   for (std::size_t i = 0; i < part.names.size(); ++i) {
-    keep(part.sharpness.vertices, part.names.size(), i,
-         vertex_sharpness(topology, sharpness, part.names[i], boundary));
+    set_sharpness(part.sharpness.vertices, part.names.size(), i,
+                  vertex_sharpness(topology, sharpness, part.names[i], boundary));
   }
   part.sharpness.vertices_complete = true;
   HalfEdge own = 0;
   for (const HalfEdge first : firsts) {
     HalfEdge h = first;
     do {
-      keep(part.sharpness.edges, part.topology.edge_count(), part.topology.edge_of(own).index(),
-           edge_sharpness(topology, sharpness, topology.edge_of(h)));
+      set_sharpness(part.sharpness.edges, part.topology.edge_count(), part.topology.edge_of(own).index(),
+                    edge_sharpness(topology, sharpness, topology.edge_of(h)));
       h = topology.next(h);
       ++own;
     } while (h != first);
@@ -65,10 +60,9 @@ Stencils limit_stencils(const Topology& topology, const SchemeOptions& options, 
   for (std::size_t v = 0; v < topology.vertex_count(); ++v) {
     monitor.checkpoint();
     if (topology.isolated(VertexId(v))) {
-      out.add(static_cast<std::uint32_t>(v), 1.0);
-      out.end_row();
+      out.add_unit_row(static_cast<std::uint32_t>(v));
     } else {
-      rules.add_limit_row(topology, VertexId(v), options, sharpness, out);
+      rules.add_limit_row({topology, options, sharpness}, VertexId(v), out);
     }
   }
   return out;

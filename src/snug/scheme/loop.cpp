@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include <snug/base/contract.h>
-#include <snug/geometry/rounding.h>
 #include <snug/scheme/creased.h>
 #include <snug/scheme/loop_masks.h>
 
@@ -39,23 +38,19 @@ RingMask limit_mask(std::size_t n) {
   return {w, (Interval(1) - w) / Interval(static_cast<double>(n))};
 }
 
-RingMask curve_limit_mask() { return {Interval(2) / Interval(3), Interval(1) / Interval(6)}; }
-
-double subdominant(std::size_t n) { return 0.375 + 0.25 * middle(cos_of_turn(1, static_cast<unsigned>(n))); }
-
-double subdominant_across_boundary(std::size_t faces) {
-  return 0.375 + 0.25 * middle(cos_of_turn(1, static_cast<unsigned>(2 * faces)));
-}
-
 }  // namespace snug::loop
 
 namespace snug {
 namespace {
 
+// 3/8 + cos(2 pi/n) / 4: subdominant eigenvalue at an interior vertex of valence n, and of the direction across a smooth
+// boundary with n / 2 faces. What is around shrinks by it a level.
+double subdominant(std::size_t n) { return 0.375 + 0.25 * middle(cos_of_turn(1, static_cast<unsigned>(n))); }
+
 constexpr std::size_t full_count = 12;  // control points of a full Loop lattice
 
-// 24 times the Bezier points (i, j), j outermost, of a patch whose twelve control points lie as drawn in
-// rings.h. Derived in derivations/loop_bezier.md.
+// 24 times the Bezier points (i, j), j outermost, of a patch whose twelve control points lie as drawn in rings.h.
+// derivations/loop_bezier.md
 constexpr std::array<std::array<int, full_count>, bezier_count(4)> full_rows{{
     {12, 2, 2, 2, 0, 2, 2, 2, 0, 0, 0, 0},
     {12, 4, 3, 3, 0, 1, 0, 1, 0, 0, 0, 0},
@@ -83,63 +78,34 @@ Combination ghost(std::size_t p, std::size_t q, std::size_t r, std::size_t count
   return c;
 }
 
-// The twelve places of the full lattice, ghosts filled in. A regular boundary corner has three faces; its
-// ring of six is the four vertices of its fan and two ghosts.
+// The twelve places of the full lattice, ghosts filled in. A regular boundary corner has three faces; its ring of six is
+// the four vertices of its fan and two ghosts.
 std::array<Combination, full_count> complete(const Topology& topology, std::span<const CornerFan> fans) {
   const std::size_t count = topology.vertex_count();
   std::array<Combination, full_count> places;
-  for (std::size_t i = 0; i < 3; ++i) places[i] = unit_combination(i, count);
+  Star star;
   for (std::size_t i = 0; i < 3; ++i) {
-    const HalfEdge corner = topology.first_of(FaceId(0)) + static_cast<HalfEdge>(i);
-    // Ring counter-clockwise from the clockwise boundary neighbour, or from v_{i+1} in a closed fan.
-    HalfEdge start = corner;
-    std::size_t before = 0;
-    while (!fans[i].closed && topology.cw(start) != no_half_edge) {
-      start = topology.cw(start);
-      ++before;
-    }
-    std::vector<std::size_t> fan;
-    for (HalfEdge h = start;;) {
-      fan.push_back(topology.to(h).index());
-      const HalfEdge after = topology.ccw(h);
-      if (after == start) break;
-      if (after == no_half_edge) {
-        fan.push_back(topology.from(topology.prev(h)).index());
-        break;
-      }
-      h = after;
-    }
-    std::array<Combination, 6> ring;
-    for (std::size_t k = 0; k < 6; ++k) {
-      if (k < fan.size()) ring[k] = unit_combination(fan[k], count);
+    places[i] = unit_combination(i, count);
+    gather_star({topology, {}, {}}, VertexId(i), star);
+    std::vector<Combination> ring;
+    std::size_t first = 0;  // where v_{i+1} is
+    for (std::size_t k = 0; k < star.spokes.size(); ++k) {
+      const std::size_t end = star.spokes[k].end.index();
+      ring.push_back(unit_combination(end, count));
+      if (end == (i + 1) % 3) first = k;
     }
     if (!fans[i].closed) {
-      ring[4] = ghost(i, fan[3], fan[2], count);
-      ring[5] = ghost(i, fan[0], fan[1], count);
+      const auto fan = [&](std::size_t k) { return star.spokes[k].end.index(); };
+      ring.push_back(ghost(i, fan(3), fan(2), count));
+      ring.push_back(ghost(i, fan(0), fan(1), count));
     }
-    const auto seen = [&](std::size_t k) { return ring[(k + before) % 6]; };  // counted from v_{i+1}
+    const auto seen = [&](std::size_t k) { return ring[(k + first) % 6]; };  // counted from v_{i+1}
     places[3 + (i + 2) % 3] = seen(2);
     places[6 + 2 * i] = seen(3);
     places[7 + 2 * i] = seen(4);
     places[3 + i] = seen(5);
   }
   return places;
-}
-
-Stencils box_spline_rows(const Topology& ring, std::span<const CornerFan> fans) {
-  const std::array<Combination, full_count> places = complete(ring, fans);
-  Stencils out;
-  for (const auto& row : full_rows) {
-    for (std::size_t c = 0; c < places[0].size(); ++c) {
-      int sum = 0;
-      for (std::size_t k = 0; k < full_count; ++k) sum += row[k] * places[k][c];
-      if (sum == 0) continue;
-      const double weight = sum / 24.0;
-      out.add(static_cast<std::uint32_t>(c), weight, std::fabs(weight) * unit_roundoff);
-    }
-    out.end_row();
-  }
-  return out;
 }
 
 constexpr std::array loop_names{"scheme-loop"};
@@ -161,19 +127,18 @@ class LoopRules : public CreasedRules {
     return kind != DefectKind::duplicate_face && CreasedRules::answers(kind);
   }
 
-  void add_smooth_vertex(const Topology&, const SchemeOptions&, VertexId v, const Star& star,
-                         const Interval& share, RowBuilder& row) const override {
+  void add_smooth_vertex(const Topology&, VertexId v, const Star& star, const Interval& share,
+                         RowBuilder& row) const override {
     const loop::RingMask mask = loop::vertex_mask(star.spokes.size());
     row.add(v.value(), times(share, mask.centre));
     for (const Spoke& spoke : star.spokes) row.add(spoke.end.value(), times(share, mask.each));
   }
-  void add_smooth_edge(const Topology& topology, const SchemeOptions&, HalfEdge h, const Interval& share,
+  // 3/8 of its ends, 1/8 of the two vertices that face it.
+  void add_smooth_edge(const Topology& topology, SmoothTriangles, HalfEdge h, const Interval& share,
                        RowBuilder& row) const override {
-    for (const VertexId end : {topology.from(h), topology.to(h)}) {
-      row.add(end.value(), times(share, loop::edge_end));
-    }
+    for (const VertexId end : {topology.from(h), topology.to(h)}) row.add(end.value(), times(share, 0.375));
     for (const HalfEdge g : {h, topology.twin(h)}) {
-      row.add(topology.from(topology.prev(g)).value(), times(share, loop::edge_wing));
+      row.add(topology.from(topology.prev(g)).value(), times(share, 0.125));
     }
   }
 
@@ -184,20 +149,15 @@ class LoopRules : public CreasedRules {
     for (const Spoke& spoke : star.spokes) out.add(spoke.end.value(), mask.each);
   }
   void add_smooth_tangents(const Topology&, const Star& star, Stencils& out) const override {
-    const auto n = static_cast<unsigned>(star.spokes.size());
-    for (const unsigned turn : {0u, 3 * n}) {  // sin x = cos(x - pi/2), in quarters of a step
-      for (unsigned i = 0; i < n; ++i) {
-        out.add(star.spokes[i].end.value(), cos_of_turn((4 * i + turn) % (4 * n), 4 * n));
-      }
-      out.end_row();
-    }
+    const auto add = [&](unsigned i, const auto& wave) { out.add(star.spokes[i].end.value(), wave(i)); };
+    add_first_modes(star.spokes.size(), add, out);
   }
   [[nodiscard]] AcrossCrease across_crease(std::size_t faces) const override {
     const double step = std::numbers::pi / static_cast<double>(faces);
     AcrossCrease across;
     for (std::size_t i = 1; i < faces; ++i) across.inner.push_back(std::sin(static_cast<double>(i) * step));
     const double sum = std::accumulate(across.inner.begin(), across.inner.end(), 0.0);
-    across.end = (std::sin(step) - sum) / (8 * loop::subdominant_across_boundary(faces) - 2);
+    across.end = (std::sin(step) - sum) / (8 * subdominant(2 * faces) - 2);
     return across;
   }
 
@@ -205,19 +165,24 @@ class LoopRules : public CreasedRules {
     return !fan.odd && !fan.sharp && (fan.closed ? fan.after == 5 : fan.faces() == 3);
   }
   [[nodiscard]] BezierRows bezier(const Topology& ring, std::span<const CornerFan> fans) const override {
-    return {4, 1, box_spline_rows(ring, fans)};
+    const std::array<Combination, full_count> places = complete(ring, fans);
+    BezierRows out{4, 1, {}};
+    for (const auto& row : full_rows) {
+      Combination sum(ring.vertex_count(), 0);
+      for (std::size_t k = 0; k < full_count; ++k) {
+        for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += row[k] * places[k][c];
+      }
+      add_fractions(sum, 24, out.rows);
+    }
+    return out;
   }
   [[nodiscard]] double shrink_factor(const CornerFan& fan) const override {
-    return fan.closed ? loop::subdominant(fan.faces())
-                      : std::max(0.5, loop::subdominant_across_boundary(fan.faces()));
+    return fan.closed ? subdominant(fan.faces()) : std::max(0.5, subdominant(2 * fan.faces()));
   }
 };
 
 }  // namespace
 
-const SchemeRules& loop_rules() {
-  static const LoopRules rules;
-  return rules;
-}
+const SchemeRules& loop_rules() { return only<LoopRules>(); }
 
 }  // namespace snug

@@ -99,7 +99,7 @@ MeshTags refined_tags(const ControlMesh& mesh, const SchemeOptions& options, con
 
 RefinedTopology refine(const Topology& topology, const SchemeOptions& options, const Sharpness& sharpness,
                        const WorkMonitor& monitor) {
-  return rules_of(options.scheme).refine(topology, options, sharpness, monitor);
+  return rules_of(options.scheme).refine({topology, options, sharpness}, monitor);
 }
 
 ControlMesh refine(const ControlMesh& mesh, const SchemeOptions& options) {

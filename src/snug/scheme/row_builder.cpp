@@ -17,6 +17,15 @@ void add_mean(std::span<const VertexId> face, const Interval& share, RowBuilder&
   for (const VertexId v : face) row.add(v.value(), each);
 }
 
+void add_face_means(const Topology& topology, const WorkMonitor& monitor, Stencils& out) {
+  RowBuilder row;
+  for (std::size_t f = 0; f < topology.face_count(); ++f) {
+    monitor.checkpoint();
+    add_mean(topology.face(FaceId(f)), Interval(1), row);
+    row.end_row(out);
+  }
+}
+
 void add_product(const Stencils::Row& outer, const Stencils& inner, std::span<const VertexId> names,
                  Stencils& out) {
   RowBuilder builder;

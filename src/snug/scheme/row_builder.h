@@ -3,7 +3,8 @@
 #include <span>
 #include <vector>
 
-#include <snug/mesh/control_mesh.h>
+#include <snug/mesh/topology.h>
+#include <snug/monitor.h>
 #include <snug/scheme/stencils.h>
 
 namespace snug {
@@ -50,6 +51,9 @@ class RowBuilder {
 [[nodiscard]] Interval times(const Interval& factor, const Interval& weight);
 /// Adds the mean of the vertices of a face, times `share`.
 void add_mean(std::span<const VertexId> face, const Interval& share, RowBuilder& row);
+
+/// Adds a row for each face: the mean of its vertices.
+void add_face_means(const Topology& topology, const WorkMonitor& monitor, Stencils& out);
 
 /// Adds the product of a row and a matrix to `out`, sources renamed; without names they keep their own.
 void add_product(const Stencils::Row& outer, const Stencils& inner, std::span<const VertexId> names,

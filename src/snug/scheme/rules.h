@@ -37,7 +37,6 @@ struct SchemeFacts {
 };
 
 /// All that snug knows of one scheme. Each has a file of its own; other files ask for its properties, not for its name.
-/// Immutable; thread-safe.
 class SchemeRules : public SchemeFacts {
  public:
   SchemeRules(const SchemeRules&) = delete;
@@ -48,32 +47,36 @@ class SchemeRules : public SchemeFacts {
   /// What a patch belongs to, in a word.
   [[nodiscard]] const char* owner() const { return primal ? "face" : "vertex"; }
 
-  /// Does it answer questions about the surface of a mesh with such a defect all the same? Not where a face names a vertex
-  /// twice: its patches have no corners that can be told apart.
+  /// Does it answer questions about the surface of a mesh with such a defect all the same? Not where a face names a
+  /// vertex twice: its patches have no corners that can be told apart.
   [[nodiscard]] virtual bool answers(DefectKind kind) const;
 
   /// One step of subdivision, see refine.h.
-  [[nodiscard]] virtual RefinedTopology refine(const Topology& topology, const SchemeOptions& options,
-                                               const Sharpness& sharpness,
-                                               const WorkMonitor& monitor) const = 0;
+  [[nodiscard]] virtual RefinedTopology refine(const RuledMesh& mesh, const WorkMonitor& monitor) const = 0;
   /// See limits.h.
-  virtual void add_limit_row(const Topology& topology, VertexId v, const SchemeOptions& options,
-                             const Sharpness& sharpness, Stencils& out) const = 0;
+  virtual void add_limit_row(const RuledMesh& mesh, VertexId v, Stencils& out) const = 0;
 
   /// The faces around a patch whose corners have these fans, as a mesh: the order of its vertices is that of the control
-  /// points of the patch, and stands here alone. Its face 0 is the patch's own; of a dual scheme the first half-edge of each
-  /// face leaves the patch's vertex, 0.
+  /// points of the patch, and stands here alone. Its face 0 is the patch's own; of a dual scheme the first half-edge of
+  /// each face leaves the patch's vertex, 0.
   [[nodiscard]] virtual Topology ring(std::span<const CornerFan> fans) const = 0;
   /// Half-edges of the refined ring that the children of a patch begin at, or those of a polygon; see Kind::children().
   [[nodiscard]] virtual std::vector<HalfEdge> child_starts(const Topology& ring,
                                                            const Topology& refined) const;
-  /// Adds the limit of a patch's corner 0, 1 or 2, if it can be read off its ring at once, and returns whether it could.
-  [[nodiscard]] virtual bool add_corner_limit(const Topology& ring, std::size_t corner,
-                                              const SchemeOptions& options, const Sharpness& sharpness,
+  /// The half-edge of a ring that tells corner 0, 1 or 2 of its patch.
+  [[nodiscard]] HalfEdge corner_of(const Topology& ring, std::size_t corner) const {
+    return primal ? static_cast<HalfEdge>(corner) : ring.first_of(FaceId(corner));
+  }
+  /// Adds the limit at such a half-edge's vertex (dual schemes: face), if it can be read off what surrounds it at once, and
+  /// returns whether it could.
+  [[nodiscard]] virtual bool add_corner_limit(const RuledMesh& mesh, HalfEdge corner,
                                               Stencils& out) const = 0;
-  /// Adds two rows that span the tangent plane there (limits.h).
-  virtual void add_corner_tangents(const Topology& ring, std::size_t corner, const SchemeOptions& options,
-                                   const Sharpness& sharpness, Stencils& out) const = 0;
+  /// Adds two rows whose images span the tangent plane there, wherever there is one: the limits of the directions, of no
+  /// particular length; their weights sum to 0. Counter-clockwise: their cross product points to the side from which
+  /// faces look counter-clockwise. At a boundary the first runs along it; at a crease they are those of the half-edge's
+  /// sector.
+  /// Source:    left eigenvectors of the local subdivision matrix, derivations/loop_limits.md, catmark_limits.md.
+  virtual void add_corner_tangents(const RuledMesh& mesh, HalfEdge corner, Stencils& out) const = 0;
 
   /// Is the surface near a corner as on a regular lattice?
   [[nodiscard]] virtual bool regular(const CornerFan& fan) const = 0;
@@ -92,7 +95,28 @@ class SchemeRules : public SchemeFacts {
 /// The rules of the scheme with this name, its own or another one; none: there is no such scheme.
 [[nodiscard]] const SchemeRules* scheme_named(std::string_view name);
 
+// For the files of schemes.
+
+/// The one object of a scheme's class.
+template <class Rules>
+[[nodiscard]] const SchemeRules& only() {
+  static const Rules rules;
+  return rules;
+}
+
 /// SchemeRules::regular() where patches are halves of quads.
 [[nodiscard]] bool regular_among_quads(const CornerFan& fan);
+
+/// Adds two rows, first Fourier modes of n directions counter-clockwise: of cosines, then of sines. add(i, wave) adds
+/// entries by wave(i), which is the one at direction i.
+template <class Add>
+void add_first_modes(std::size_t directions, const Add& add, Stencils& out) {
+  const auto n = static_cast<unsigned>(directions);
+  for (const unsigned turn : {0u, 3 * n}) {  // sin x = cos(x - pi/2), in quarters of a step
+    const auto wave = [=](unsigned i) { return cos_of_turn((4 * i + turn) % (4 * n), 4 * n); };
+    for (unsigned i = 0; i < n; ++i) add(i, wave);
+    out.end_row();
+  }
+}
 
 }  // namespace snug

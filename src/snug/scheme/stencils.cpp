@@ -38,8 +38,13 @@ void Stencils::end_row() {
   open_error_ = open_sum_ = 0;
 }
 
-void Stencils::append(const Row& row, std::span<const std::uint32_t> new_name) {
-  for (std::size_t i = 0; i < row.sources.size(); ++i) add(new_name[row.sources[i]], row.weights[i]);
+void Stencils::add_unit_row(std::uint32_t source) {
+  add(source, 1.0);
+  end_row();
+}
+
+void Stencils::append(const Row& row) {
+  for (std::size_t i = 0; i < row.sources.size(); ++i) add(row.sources[i], row.weights[i]);
   open_error_ += row.error;
   end_row();
 }

@@ -31,16 +31,16 @@ class Stencils {
   void add(std::uint32_t source, double weight, double error);
   /// Ends the row.
   void end_row();
-  /// Adds a copy of a row with its sources renamed by the caller's table.
-  void append(const Row& row, std::span<const std::uint32_t> new_name);
+  /// Adds a row that is one of the sources.
+  void add_unit_row(std::uint32_t source);
+  /// Adds a copy of a row.
+  void append(const Row& row);
 
   [[nodiscard]] std::size_t row_count() const { return offsets_.size() - 1; }
   [[nodiscard]] Row row(std::size_t r) const {
     const std::size_t begin = offsets_[r], count = offsets_[r + 1] - begin;
     return {{sources_.data() + begin, count}, {weights_.data() + begin, count}, errors_[r], abs_sums_[r]};
   }
-  /// Longest row.
-  [[nodiscard]] std::size_t max_entries() const { return max_entries_; }
   /// Largest entry error and absolute sum of a row.
   [[nodiscard]] double max_error() const { return max_error_; }
   [[nodiscard]] double max_abs_sum() const { return max_abs_sum_; }

@@ -210,7 +210,7 @@ void BatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
     const std::span<const VertexId> own = control.subspan(i * controls, controls);
     if (group.polygon) {
       make_patch(*group.polygon, 0, scaled_, own, scratch.polygon);
-      patch_of_polygon(scratch.polygon, group.part, patch);
+      split(scratch.polygon, group.part, patch);
     } else {
       make_patch(kind, place.first, scaled_, own, patch);
     }

@@ -6,7 +6,6 @@
 #include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
-#include <snug/patch/quad_parameter.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {

@@ -135,7 +135,7 @@ Patch LimitSurface::patch(PatchId p) const {
   thread_local std::vector<VertexId> control;
   control_vertices(p, control);
   if (const Kind* polygon = polygon_of(p)) {
-    return patch_of_polygon(make_patch(*polygon, 0, scaled_, control), place(p).part);
+    return split(make_patch(*polygon, 0, scaled_, control), place(p).part);
   }
   return make_patch(kind(p), first(p), scaled_, control);
 }
