@@ -1,4 +1,3 @@
-#include <snug/scheme/limits.h>
 #include <snug/scheme/refine.h>
 #include <snug/scheme/rules.h>
 

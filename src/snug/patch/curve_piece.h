@@ -11,10 +11,8 @@
 namespace snug {
 
 /// A piece of a limit curve by its own control points, and the error they carry. Path digits are 0 and 1, the
-/// halves.
-///
-/// At an open end the neighbour that is not there is a ghost, g = 2 p0 - p1: refinement keeps this relation,
-/// so that ends need no kinds of their own.
+/// halves. At an open end the neighbour that is not there is a ghost, g = 2 p0 - p1: refinement keeps this
+/// relation.
 struct CurvePiece {
   CurveWindow window{};
   PiecePath path;
@@ -28,14 +26,12 @@ struct CurvePiece {
 };
 
 /// The piece of the edge from b to c; `before` and `after` are absent at open ends.
-///
 /// Requires:  finite points of at most about 2 (geometry/scaling.h).
 [[nodiscard]] CurvePiece make_curve_piece(CurveDegree degree, const std::optional<Point3>& before,
                                           const Point3& b, const Point3& c,
                                           const std::optional<Point3>& after);
 
 /// The first (child 0) or the second half.
-///
 /// Guarantee: `error` of the result covers the parent's and the rounding of this step.
 [[nodiscard]] CurvePiece split(const CurvePiece& piece, unsigned child);
 

@@ -13,8 +13,8 @@ struct Descent {
   TriangleParameter at;
 };
 
-// Is the exact sum u + v at most `limit`? Rounding is monotonic, so only a tie needs the sum's own error, which is exact
-// [Higham02, sec. 4.3].
+// Is the exact sum u + v at most `limit`? Rounding is monotonic, so only a tie needs the sum's own error,
+// which is exact [Higham02, sec. 4.3].
 inline bool sum_at_most(double u, double v, double limit) {
   const double sum = u + v;
   if (sum != limit) return sum < limit;
@@ -22,8 +22,8 @@ inline bool sum_at_most(double u, double v, double limit) {
   return (u - (sum - rest)) + (v - rest) <= 0;
 }
 
-// The parameter that is meant by one whose exact sum is a rounding above 1: the nearest on the far edge. Both differences
-// are exact.
+// The parameter that is meant by one whose exact sum is a rounding above 1: the nearest on the far edge. Both
+// differences are exact.
 inline TriangleParameter on_triangle(TriangleParameter p) {
   if (sum_at_most(p.u, p.v, 1)) return p;
   if (p.u >= 0.5) return {p.u, 1 - p.u};
@@ -52,8 +52,8 @@ inline TriangleParameter checked(TriangleParameter at) {
   return on_triangle(at);
 }
 
-// What a piece at the depth limit answers for each of its parameters: a corner, off by the size of its control net, which
-// bounds the distance of any two of its limit points.
+// What a piece at the depth limit answers for each of its parameters: a corner, off by the size of its
+// control net, which bounds the distance of any two of its limit points.
 inline LimitPoint stopped_point(const Patch& piece) {
   Box3 box;
   for (const Vector3& p : piece.points) box.add(Point3{} + p);

@@ -11,7 +11,8 @@
 namespace snug {
 namespace {
 
-// PieceParameter coordinates on a piece, in its kind's order of corners. `off` bounds the sum of their errors.
+// PieceParameter coordinates on a piece, in its kind's order of corners. `off` bounds the sum of their
+// errors.
 struct PieceParameter {
   std::array<double, 3> at;
   double off;
@@ -25,8 +26,8 @@ PieceParameter to_kind(const Patch& patch, TriangleParameter p, double drift) {
   return result;
 }
 
-// The part of form() that holds a parameter, and where it does: a triangle split at the middle m of its edge 02 has
-// w c0 + u c1 + v c2 = (w - v) c0 + u c1 + 2 v m = 2 w m + u c1 + (v - w) c2.
+// The part of form() that holds a parameter, and where it does: a triangle split at the middle m of its edge
+// 02 has w c0 + u c1 + v c2 = (w - v) c0 + u c1 + 2 v m = 2 w m + u c1 + (v - w) c2.
 struct InPart {
   std::size_t part;
   PieceParameter p;
@@ -168,9 +169,9 @@ struct Half {
 
 bool at_corner(QuadParameter p) { return (p.u == 0 || p.u == 1) && (p.v == 0 || p.v == 1); }
 
-// Down to a polynomial piece, or to where the parameter is a corner: doubling, and 2 u - 1 from 1/2 on, are exact. The
-// quarters at the corners 0 and 2 of a triangle are halves of the same sort; the quarter at its corner 1 has one of each,
-// its children 1 and 3.
+// Down to a polynomial piece, or to where the parameter is a corner: doubling, and 2 u - 1 from 1/2 on, are
+// exact. The quarters at the corners 0 and 2 of a triangle are halves of the same sort; the quarter at its
+// corner 1 has one of each, its children 1 and 3.
 Half descend(const Patch& patch, QuadParameter at) {
   Half here{patch, part_of(at), at};
   while (!here.piece.kind->polynomial() && !at_corner(here.at) &&
@@ -267,8 +268,8 @@ LimitFrame limit_frame(const Patch& patch, QuadParameter at) {
                 "a parameter is outside its quad: u and v must be from 0 to 1");
   const Half here = descend(patch, at);
   LimitFrame frame = limit_frame(here.piece, on_triangle(here));
-  // What the roundings of on_triangle() move a point by: parameters by one roundoff of 1, points by at most 2 degree
-  // largest as much in a polynomial piece; elsewhere the parameter is a corner.
+  // What the roundings of on_triangle() move a point by: parameters by one roundoff of 1, points by at most 2
+  // degree largest as much in a polynomial piece; elsewhere the parameter is a corner.
   frame.point.error += enlarged(64 * unit_roundoff * here.piece.largest);
   if (frame.differentiable) {
     const std::array<Vector3, 2> t = frame.tangents;

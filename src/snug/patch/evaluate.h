@@ -23,7 +23,7 @@ struct LimitPoint {
 /// A limit point with what the surface does there.
 struct LimitFrame {
   LimitPoint point;
-  /// Derivatives along u and v where they exist; elsewhere two limit tangents, counter-clockwise, of no particular length.
+  /// Derivatives along u and v where they exist; elsewhere two limit tangents, counter-clockwise, of any length.
   std::array<Vector3, 2> tangents;
   bool differentiable;            ///< tangents are derivatives in (u, v)
   std::optional<Vector3> normal;  ///< of length 1; absent where the tangents are parallel or vanish
@@ -31,30 +31,30 @@ struct LimitFrame {
   std::optional<double> tangent_error{};
 };
 
-/// A parameter on a quad with corners (0,0), (1,0), (1,1), (0,1), of which a patch is half: part 0 where v <= u, part 1
-/// where v >= u.
+/// A parameter on a quad (0,0), (1,0), (1,1), (0,1), of which a patch is half: part 0 where v <= u, 1 where v >= u.
 struct QuadParameter {
   double u = 0, v = 0;
 };
 [[nodiscard]] constexpr unsigned part_of(QuadParameter p) { return p.v <= p.u ? 0 : 1; }
 
 /// Limit point at any parameter, extraordinary corners included.
-/// Guarantee: |relative - exact| <= error a coordinate, for the point whose parameters are exactly these doubles.
-/// Errors:    InputError (value) unless u >= 0, v >= 0, u + v <= 1 in doubles. Where the exact sum is above 1 all the same,
-///            the smaller of the two is lowered to the far edge, and the point meant is the one there.
-/// Cost:      regular: a product of 15 monomials with a matrix of the kind, then with the control points, about 90 ns
-///            (Catmull-Clark: 28); near an extraordinary corner one split a level more, at most 60.
+/// Guarantee: |relative - exact| <= error a coordinate, at exactly these doubles.
+/// Errors:    InputError (value) unless u >= 0, v >= 0, u + v <= 1 in doubles. Where the exact sum is above 1
+///            all the same, the smaller of the two is lowered to the far edge: that point is meant.
+/// Cost:      regular: a product of 15 monomials with a matrix of the kind, then with the control points,
+///            about 90 ns (Catmull-Clark: 28); near an extraordinary corner a split a level, at most 60.
 [[nodiscard]] LimitPoint limit_point(const Patch& patch, TriangleParameter at);
 
 /// The same with tangents and normal, in double precision without a bound for the normal: see normal_error().
 [[nodiscard]] LimitFrame limit_frame(const Patch& patch, TriangleParameter at);
-/// The same on a quad, in corners too where a triangle's own parameters are coarser, with derivatives along its u and v.
+/// The same on a quad, in corners too where a triangle's own parameters are coarser, with derivatives along
+/// its u and v.
 /// Requires:  patch: half part_of(at), whole.
 /// Errors:    InputError (value) unless 0 <= u, v <= 1.
 [[nodiscard]] LimitFrame limit_frame(const Patch& patch, QuadParameter at);
 
-/// Upper bound of the length of normal - exact normal for tangents that are off by `tangent_error` a coordinate; nothing
-/// where they are too small, or too nearly parallel, for one.
+/// Upper bound of the length of normal - exact normal for tangents that are off by `tangent_error` a
+/// coordinate; nothing where they are too small, or too nearly parallel, for one.
 /// Source:    derivations/rounding.md, "Normals".
 [[nodiscard]] std::optional<double> normal_error(const std::array<Vector3, 2>& tangents,
                                                  double tangent_error);

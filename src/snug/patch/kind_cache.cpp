@@ -5,17 +5,17 @@
 
 #include <snug/base/contract.h>
 #include <snug/scheme/refine.h>
-#include <snug/scheme/row_builder.h>
 
 namespace snug {
 namespace {
 
-// The polynomial form of a kind, if every corner is regular: degree 4 for Loop and Doo-Sabin, 6 for the half of a bicubic
-// Catmull-Clark quad, two quadratic parts for Midedge. Smooth boundaries and sharp corners of the regular sort are
-// completed by ghost points, which reproduce them exactly.
-// Guarantee: entries of rows are small fractions, each rounded once; those of weights are these, times a whole number
-//            and rounded again.
-// Source:    derivations/loop_bezier.md, tensor_bezier.md, midedge_bezier.md; [Stam98] gives the same basis for Loop.
+// The polynomial form of a kind, if every corner is regular: degree 4 for Loop and Doo-Sabin, 6 for the half
+// of a bicubic Catmull-Clark quad, two quadratic parts for Midedge. Smooth boundaries and sharp corners of
+// the regular sort are completed by ghost points, which reproduce them exactly.
+// Guarantee: entries of rows are small fractions, each rounded once; those of weights are these, times a
+//            whole number and rounded again.
+// Source:    derivations/loop_bezier.md, tensor_bezier.md, midedge_bezier.md; [Stam98] gives the same basis
+//            for Loop.
 std::optional<PolynomialForm> polynomial_form(const KindKey& key) {
   const SchemeRules& rules = rules_of(key.scheme);
   const std::span<const CornerFan> fans(key.corners.data(), rules.corners);
@@ -47,12 +47,10 @@ std::vector<KindChild> make_children(KindCache& library, const KindKey& key) {
   std::vector<KindChild> children(starts.size());
   std::vector<VertexId> control;
   for (std::size_t k = 0; k < starts.size(); ++k) {
-    TurnedKey child;
-    if (rules.triangular()) {
-      child = kind_key(refined.topology, FaceId(k), around.options, refined.sharpness);
-    } else {
-      child.key = kind_key_from(refined.topology, starts[k], around.options, refined.sharpness);
-    }
+    const TurnedKey child =
+        rules.triangular()
+            ? kind_key(refined.topology, FaceId(k), around.options, refined.sharpness)
+            : TurnedKey{kind_key_from(refined.topology, starts[k], around.options, refined.sharpness), 0};
     children[k].kind = &library.find(child.key);
     children[k].kind->control_vertices(refined.topology, starts[k] + child.first, control);
     children[k].first = child.first;
@@ -77,8 +75,8 @@ bool is_passing(const Neighbourhood& around, const KindKey& key) {
   return false;
 }
 
-// Upper bound over the patch of the function with these control values, which are accurate to far less than what is added
-// in the end: in x, as stencils are applied to points.
+// Upper bound over the patch of the function with these control values, which are accurate to far less than
+// what is added in the end: in x, as stencils are applied to points.
 double largest_value(const Kind& kind, const std::vector<Vector3>& values, unsigned levels) {
   double largest = 0;
   if (kind.polynomial()) {

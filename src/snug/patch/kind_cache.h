@@ -21,8 +21,9 @@ using KindId = Id<struct KindTag>;
 /// A patch as one polynomial or two, and what evaluates it.
 /// Guarantee: entries of rows are small fractions, each rounded once.
 struct PolynomialForm : BezierRows {
-  /// The rows, each times its multinomial coefficient, rounded again: of w^k u^i v^j from control points. A part after the
-  /// other, in it four control points after the other (zeros where there are none), in these four doubles a row.
+  /// The rows, each times its multinomial coefficient, rounded again: of w^k u^i v^j from control points. A
+  /// part after the other, in it four control points after the other (zeros where there are none), in these
+  /// four doubles a row.
   std::vector<double> weights;
 };
 
@@ -34,7 +35,8 @@ struct KindChild {
   Stencils stencils;  ///< its control points from the parent's
 };
 
-/// What all patches with equal connectivity share. Immutable; parts that cost much are made on first use. Thread-safe.
+/// What all patches with equal connectivity share. Immutable; parts that cost much are made on first use.
+/// Thread-safe.
 class Kind {
  public:
   Kind(KindCache& library, KindId id, const KindKey& key);
@@ -55,10 +57,11 @@ class Kind {
   [[nodiscard]] bool regular_corner(std::size_t i) const { return rules_.regular(key_.corners[i]); }
   /// Not for ever: sharpness decays, or polygons that are no quads lie around it.
   [[nodiscard]] bool passing() const { return passing_; }
-  /// Is a corner one of very many faces between creases or boundaries? All its patches are of kinds of their own, and the
-  /// matrix of points that bound one would be as large as the fan for each of many levels.
+  /// Is a corner one of very many faces between creases or boundaries? All its patches are of kinds of their
+  /// own, and the matrix of points that bound one would be as large as the fan for each of many levels.
   [[nodiscard]] bool crowded() const;
-  /// Do many patches share such kinds, so that rows are kept for them? Others are split where they are bounded.
+  /// Do many patches share such kinds, so that rows are kept for them? Others are split where they are
+  /// bounded.
   [[nodiscard]] bool shared() const { return !passing() && !crowded(); }
 
   /// Is the patch polynomial, or made of two polynomials (Midedge)? Only then it has a form.
@@ -71,12 +74,13 @@ class Kind {
   [[nodiscard]] const Stencils& corner_limits() const;
   /// Two tangent rows a corner, those of corner i at 2 i and 2 i + 1 (SchemeRules::add_corner_tangents).
   [[nodiscard]] const Stencils& corner_tangents() const;
-  /// Upper bound w, over the patch, of the sum of the weights of all control points but those of the face, or the vertex, that
-  /// the patch belongs to: it lies in the sum of 1 - w times the hull of the latter and w times the hull of all.
+  /// Upper bound w, over the patch, of the sum of the weights of all control points but those of the face, or
+  /// the vertex, that the patch belongs to: it lies in the sum of 1 - w times the hull of the latter and w
+  /// times the hull of all.
   [[nodiscard]] double outer_weight() const;
 
-  /// The four children of a patch; 0 to 2 keep that corner, 3 is the middle one. Of a polygon with n corners 2 n: at
-  /// corner k the half of its quad that begins there, then the other one, which begins at the centre.
+  /// The four children of a patch; 0 to 2 keep that corner, 3 is the middle one. Of a polygon with n corners
+  /// 2 n: at corner k the half of its quad that begins there, then the other one, which begins at the centre.
   [[nodiscard]] const std::vector<KindChild>& children() const;
 
  private:

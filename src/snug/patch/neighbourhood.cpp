@@ -6,11 +6,30 @@
 
 #include <snug/base/compact_numbering.h>
 #include <snug/base/contract.h>
-#include <snug/scheme/limits.h>
+#include <snug/scheme/refine.h>
 #include <snug/scheme/rules.h>
 
 namespace snug {
 namespace {
+
+class Hash {
+ public:
+  void mix(std::uint64_t word) {
+    hash_ = (hash_ ^ word) * 0x9e3779b97f4a7c15u;
+    hash_ ^= hash_ >> 31;
+  }
+  void mix(const std::vector<double>& values) {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (values[i] == 0) continue;
+      mix(i);
+      mix(std::bit_cast<std::uint64_t>(values[i]));
+    }
+  }
+  [[nodiscard]] std::size_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0;
+};
 
 // A corner as its patch sees it.
 struct CornerView {
@@ -76,8 +95,9 @@ CornerView view_of(const Topology& topology, const Sharpness& sharpness, HalfEdg
     ++fan.before;
     standard = standard && is_standard(h);
   }
-  // From an edge of many faces, or a cut, back to it. At a crease it goes on elsewhere; at a corner the first and the last
-  // vertex of the fan are one, which vertices of three faces beside it, or a fan of one's own, cannot tell.
+  // From an edge of many faces, or a cut, back to it. At a crease it goes on elsewhere; at a corner the first
+  // and the last vertex of the fan are one, which vertices of three faces beside it, or a fan of one's own,
+  // cannot tell.
   fan.odd = fan.odd || (cutting && topology.edge_of(h) == last);
   if (!cutting && !fan.odd) {  // the short way: nothing is sharp but what connectivity makes so
     fan.sharp = vertex_sharpness(topology, sharpness, v, options.boundary) >= infinite_sharpness;
@@ -116,8 +136,8 @@ std::vector<VertexId> spoke_ends(const Topology& topology, HalfEdge start) {
   return ends;
 }
 
-// The faces around the corners of a face, its own first, each as the half-edge that leaves the corner where it was met;
-// then, if wide, those around the far ends of the edges at the corners.
+// The faces around the corners of a face, its own first, each as the half-edge that leaves the corner where
+// it was met; then, if wide, those around the far ends of the edges at the corners.
 std::vector<HalfEdge> faces_around(const Topology& topology, HalfEdge start, Scheme scheme, bool wide) {
   if (rules_of(scheme).local) return {start};
   thread_local CompactNumbering met;
@@ -160,8 +180,8 @@ void keep_only(std::vector<double>& sharpness, const Keeps& keeps) {
   if (!any) sharpness.clear();
 }
 
-// What surrounds a patch whose corners' fans do not say everything, and what is sharp at its corners or, if that depends on
-// edges which do not touch them, at the far ends of their edges too.
+// What surrounds a patch whose corners' fans do not say everything, and what is sharp at its corners or, if
+// that depends on edges which do not touch them, at the far ends of their edges too.
 std::shared_ptr<const Neighbourhood> surroundings(const Topology& topology, HalfEdge start,
                                                   const SchemeOptions& options, const Sharpness& sharpness) {
   const bool local = rules_of(options.scheme).local;
@@ -205,29 +225,6 @@ bool operator==(const Neighbourhood& a, const Neighbourhood& b) {
   }
   return true;
 }
-
-namespace {
-
-class Hash {
- public:
-  void mix(std::uint64_t word) {
-    hash_ = (hash_ ^ word) * 0x9e3779b97f4a7c15u;
-    hash_ ^= hash_ >> 31;
-  }
-  void mix(const std::vector<double>& values) {
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (values[i] == 0) continue;
-      mix(i);
-      mix(std::bit_cast<std::uint64_t>(values[i]));
-    }
-  }
-  [[nodiscard]] std::size_t value() const { return hash_; }
-
- private:
-  std::uint64_t hash_ = 0;
-};
-
-}  // namespace
 
 Neighbourhood::Neighbourhood(Topology faces, Sharpness sharp, const SchemeOptions& rules, bool is_wide)
     : topology(std::move(faces)), sharpness(std::move(sharp)), options(rules), wide(is_wide) {

@@ -10,9 +10,9 @@ namespace snug {
 
 /// A limit patch, or a piece of one: its kind and its control points.
 ///
-/// Points are kept relative to `origin`, an exact double point near the patch: rows sum to 1, so a patch far from the
-/// coordinates' origin loses nothing. Corners are counted as in the control face (or the piece, see scheme/refine.h):
-/// corner k of the patch is corner (k - first) mod 3 of the kind.
+/// Points are kept relative to `origin`, an exact double point near the patch: rows sum to 1, so a patch far
+/// from the coordinates' origin loses nothing. Corners are counted as in the control face (or the piece, see
+/// scheme/refine.h): corner k of the patch is corner (k - first) mod 3 of the kind.
 struct Patch {
   const Kind* kind = nullptr;
   std::uint8_t first = 0;
@@ -33,8 +33,8 @@ struct Patch {
 void make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> all,
                 std::span<const VertexId> which, Patch& out);
 
-/// Piece `child` of a patch after one step of subdivision, 0 to 3; of a polygon that is no patch itself (KindKey) half a
-/// quad, as Kind::children() counts them, with the polygon's path.
+/// Piece `child` of a patch after one step of subdivision, 0 to 3; of a polygon that is no patch itself
+/// (KindKey) half a quad, as Kind::children() counts them, with the polygon's path.
 /// Guarantee: `error` of the result covers the parent's, the rounding of this step and of the masks.
 /// Cost:      one sparse product: 4 to 7 multiply-adds a control point and coordinate.
 [[nodiscard]] Patch split(const Patch& patch, unsigned child);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include <snug/geometry/scaling.h>
-#include <snug/scheme/limits.h>
 #include <snug/scheme/refine.h>
 #include <snug/scheme/rules.h>
 #include <snug/surface/curve_set.h>

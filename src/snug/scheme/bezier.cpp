@@ -43,7 +43,8 @@ Combination unit_combination(std::size_t i, std::size_t count) {
   return c;
 }
 
-// With x = u + v and y = v the product B_i(x) B_j(y) is C(d,i) (u+v)^i w^(d-i) C(d,j) v^j (w+u)^(d-j), of degree 2 d.
+// With x = u + v and y = v the product B_i(x) B_j(y) is C(d,i) (u+v)^i w^(d-i) C(d,j) v^j (w+u)^(d-j), of
+// degree 2 d.
 BezierRows tensor_bezier(std::size_t d, const Lattice& lattice) {
   const auto& [scale, segment] = segments[d];
   const std::size_t controls = lattice[0].size();

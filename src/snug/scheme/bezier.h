@@ -24,8 +24,8 @@ inline constexpr std::size_t max_degree = 6;
 /// degree! / (i! j! k!) of the Bezier point at a place, k = degree - i - j.
 [[nodiscard]] double multinomial(std::size_t degree, std::size_t place);
 
-/// Monomials w^k u^i v^j of barycentric coordinates, k = degree - i - j, in the order of bezier_index(). At most
-/// degree - 1 roundings each.
+/// Monomials w^k u^i v^j of barycentric coordinates, k = degree - i - j, in the order of bezier_index(). At
+/// most degree - 1 roundings each.
 template <std::size_t degree>
 void monomials(double w, double u, double v, double* out) {
   std::array<double, degree + 1> us{1}, vs{1}, ws{1};
@@ -51,8 +51,8 @@ auto with_degree(std::size_t degree, const Visit& visit) {
   }
 }
 
-/// A patch as one polynomial on its triangle, or as two: of the corners 0, 1 and m, and of m, 1 and 2, m being the middle
-/// of the edge 02.
+/// A patch as one polynomial on its triangle, or as two: of the corners 0, 1 and m, and of m, 1 and 2, m
+/// being the middle of the edge 02.
 struct BezierRows {
   std::size_t degree = 0;  ///< of each
   std::size_t parts = 1;
@@ -75,11 +75,12 @@ void add_fractions(const std::vector<Number>& numerators, double divisor, Stenci
   out.end_row();
 }
 
-/// Control points of a B-spline patch of degree d in both directions, place (x, y) at x + (d + 1) y; its corner 0 is at
-/// (0, 0), its corner 1 at (1, 0) of the parameters.
+/// Control points of a B-spline patch of degree d in both directions, place (x, y) at x + (d + 1) y; its
+/// corner 0 is at (0, 0), its corner 1 at (1, 0) of the parameters.
 using Lattice = std::vector<Combination>;
 
-/// Bezier points on the triangle (0,0), (1,0), (1,1) of a tensor product of uniform B-splines of degree d, 1 to 3.
+/// Bezier points on the triangle (0,0), (1,0), (1,1) of a tensor product of uniform B-splines of degree d, 1
+/// to 3.
 /// Guarantee: weights are small fractions, each rounded once.
 /// Source:    derivations/tensor_bezier.md.
 [[nodiscard]] BezierRows tensor_bezier(std::size_t d, const Lattice& lattice);

@@ -1,12 +1,12 @@
 #include <array>
 #include <cstdint>
 
-#include <snug/scheme/row_builder.h>
 #include <snug/scheme/rules.h>
 
-// Schemes whose limit surface is made of the faces themselves: `bilinear`, OpenSubdiv's third, has the bilinear patch of
-// each quad and splits other faces into quads at the mean of their vertices and the middles of their edges; `flat` has
-// triangles as they are. Nothing but a face's own vertices matters to it; tags of sharpness change nothing.
+// Schemes whose limit surface is made of the faces themselves: `bilinear`, OpenSubdiv's third, has the
+// bilinear patch of each quad and splits other faces into quads at the mean of their vertices and the middles
+// of their edges; `flat` has triangles as they are. Nothing but a face's own vertices matters to it; tags of
+// sharpness change nothing.
 namespace snug {
 namespace {
 

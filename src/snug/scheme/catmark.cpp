@@ -15,8 +15,8 @@ Interval ratio(std::size_t p, std::size_t q) {
   return (q & (q - 1)) == 0 ? Interval(a / b) : Interval(a) / Interval(b);
 }
 
-// Weights of a vertex, of each vertex at the far end of one of its edges, and of each diagonally across one of its quads,
-// or of each face's centre. They sum to 1.
+// Weights of a vertex, of each vertex at the far end of one of its edges, and of each diagonally across one
+// of its quads, or of each face's centre. They sum to 1.
 struct StarMask {
   Interval centre, edge, face;
 };
@@ -60,8 +60,8 @@ bool has_distinct_places(const Topology& topology, const Star& star) {
 // Of a spoke's weight, against diagonals' c_i + c_{i+1}. derivations/catmark_limits.md
 double spoke_weight(double eigenvalue) { return 16 * eigenvalue - 4; }
 
-// The corners of a quad, counter-clockwise, lie at (1, 1) to (1, 2) of sixteen places. What is missing beyond a
-// boundary mirrors what is inside: 2 p - q.
+// The corners of a quad, counter-clockwise, lie at (1, 1) to (1, 2) of sixteen places. What is missing beyond
+// a boundary mirrors what is inside: 2 p - q.
 Lattice bicubic_lattice(const Topology& topology, std::span<const CornerFan> fans) {
   const std::size_t count = topology.vertex_count();
   Lattice lattice(16);
@@ -133,8 +133,8 @@ class CatmarkRules : public CreasedRules {
     }
   }
 
-  // Between quads 3/8 of its ends, 1/16 of the four vertices beyond; else by the centres of its faces, a quarter each, or
-  // 0.470 of a triangle's where these are to be smooth.
+  // Between quads 3/8 of its ends, 1/16 of the four vertices beyond; else by the centres of its faces, a
+  // quarter each, or 0.470 of a triangle's where these are to be smooth.
   void add_smooth_edge(const Topology& topology, SmoothTriangles triangles, HalfEdge h, const Interval& share,
                        RowBuilder& row) const override {
     const HalfEdge twin = topology.twin(h);

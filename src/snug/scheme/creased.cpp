@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include <snug/scheme/rings.h>
-
 namespace snug {
 
 namespace {
@@ -100,8 +98,9 @@ class Rows {
   RowBuilder row_;
 };
 
-// Where a face runs along an edge twice, or along one from a vertex to itself, pieces of what ended the fans may be twins
-// after a step: they are kept infinitely sharp. The middle of the latter stays where the vertex is.
+// Where a face runs along an edge twice, or along one from a vertex to itself, pieces of what ended the fans
+// may be twins after a step: they are kept infinitely sharp. The middle of the latter stays where the vertex
+// is.
 void keep_closed_edges_sharp(const Topology& topology, std::size_t corners, const Topology& refined,
                              Sharpness& result) {
   for (std::size_t e = 0; e < topology.edge_count(); ++e) {

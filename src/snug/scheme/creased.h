@@ -1,13 +1,12 @@
 #pragma once
 
 #include <snug/scheme/creases.h>
-#include <snug/scheme/row_builder.h>
 #include <snug/scheme/rules.h>
 
 namespace snug {
 
-/// What Loop and Catmull-Clark have in common: smooth inside, with cubic B-spline curves along creases and boundaries, and
-/// corners. [DeRose98]; OpenSubdiv.
+/// What Loop and Catmull-Clark have in common: smooth inside, with cubic B-spline curves along creases and
+/// boundaries, and corners. [DeRose98]; OpenSubdiv.
 class CreasedRules : public SchemeRules {
  public:
   [[nodiscard]] RefinedTopology refine(const RuledMesh& mesh, const WorkMonitor& monitor) const override;

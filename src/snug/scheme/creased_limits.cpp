@@ -26,8 +26,8 @@ bool settled(const CreasedRules& rules, const Topology& topology, const Star& st
          (vertex_rule(star) != VertexRule::smooth || rules.is_settled(topology, star, is_dart(star)));
 }
 
-// The star of a vertex one step on, with what the sharpness of its edges depends on, and the rows that lead there. The
-// vertex comes first.
+// The star of a vertex one step on, with what the sharpness of its edges depends on, and the rows that lead
+// there. The vertex comes first.
 struct NextStar {
   PartOfMesh part;
   SchemeOptions options;
@@ -93,8 +93,8 @@ struct DartStep {
     return result;
   }
 
-  // Upper bound of the sum over all k of |r S^k|, for a row r of sum 0 and |r| = 1: once all rows of S^m are within 1/2
-  // of each other, it is at most 2 m.
+  // Upper bound of the sum over all k of |r S^k|, for a row r of sum 0 and |r| = 1: once all rows of S^m are
+  // within 1/2 of each other, it is at most 2 m.
   [[nodiscard]] double decay() const {
     std::vector<std::vector<double>> power;
     for (std::size_t r = 0; r < names.size(); ++r) {
@@ -133,8 +133,8 @@ DartRow make_dart_row(const DartStep& step) {
   return {std::move(row), error};
 }
 
-// Rows of darts whose places are all different depend on scheme and valence alone, and cost the square of it: the last few
-// are kept, at most 256 KiB.
+// Rows of darts whose places are all different depend on scheme and valence alone, and cost the square of it:
+// the last few are kept, at most 256 KiB.
 DartRow shared_dart_row(const CreasedRules& rules, const DartStep& step) {
   static std::mutex mutex;
   static RecentValues<std::pair<Scheme, std::size_t>, DartRow, 16> rows;
@@ -151,9 +151,9 @@ void add_dart_row(const CreasedRules& rules, const DartStep& step, Stencils& out
   out.end_row();
 }
 
-// Left eigenvectors of the largest eigenvalues below 1, symmetric to the sharp edge and not; by iteration. The sine row has
-// no part but its own Fourier mode's, so 40 steps end it; in 300 its roundings would grow into the symmetric one, whose
-// eigenvalue is larger below five faces.
+// Left eigenvectors of the largest eigenvalues below 1, symmetric to the sharp edge and not; by iteration.
+// The sine row has no part but its own Fourier mode's, so 40 steps end it; in 300 its roundings would grow
+// into the symmetric one, whose eigenvalue is larger below five faces.
 void add_dart_tangents(const DartStep& step, Stencils& out) {
   const auto n = static_cast<double>(step.spokes.size());
   const std::vector<double> zero(step.names.size(), 0.0);
@@ -203,8 +203,9 @@ std::optional<Sector> sector_of(const RuledMesh& mesh, HalfEdge side) {
   }
 }
 
-// Along the crease, from its last spoke to its first, and across. Left eigenvectors with sin(i pi/k) on the spokes inside,
-// which fixes the rest; the sum of all weights is 0. derivations/loop_limits.md, catmark_limits.md.
+// Along the crease, from its last spoke to its first, and across. Left eigenvectors with sin(i pi/k) on the
+// spokes inside, which fixes the rest; the sum of all weights is 0. derivations/loop_limits.md,
+// catmark_limits.md.
 void add_crease_tangents(const CreasedRules& rules, const Topology& topology, VertexId v,
                          const Sector& sector, Stencils& out) {
   const VertexId first = sector.spokes.front(), last = sector.spokes.back();
@@ -237,8 +238,8 @@ void add_direction(VertexId v, VertexId to, Stencils& out) {
   out.end_row();
 }
 
-// A corner whose sector has more than two faces, or none that ends, is a spike: there is no plane, and both rows are the
-// same.
+// A corner whose sector has more than two faces, or none that ends, is a spike: there is no plane, and both
+// rows are the same.
 void add_spike_tangents(const std::optional<Sector>& sector, VertexId v, const Star& star, Stencils& out) {
   if (sector) {
     add_direction(v, sector->spokes.front(), out);

@@ -7,11 +7,11 @@
 
 namespace snug {
 
-/// Sharpness of edges and vertices beyond what connectivity alone makes infinitely sharp. Empty: 0 everywhere.
+/// Sharpness of edges and vertices beyond what connectivity alone makes infinitely sharp. Empty: 0.
 struct Sharpness {
   std::vector<double> edges, vertices;
-  /// Do `vertices` say all of their sharpness, and connectivity no more? So it is after a step from a non-manifold mesh:
-  /// what made a vertex sharp there may be gone, and the middle of a non-manifold edge is no corner, whatever lies around.
+  /// Do `vertices` say all of their sharpness, and connectivity no more? So after a step from a non-manifold
+  /// mesh: what made a vertex sharp may be gone, and the middle of a non-manifold edge is no corner.
   bool vertices_complete = false;
   [[nodiscard]] bool none() const { return edges.empty() && vertices.empty(); }
   friend bool operator==(const Sharpness&, const Sharpness&) = default;
@@ -29,19 +29,19 @@ struct RuledMesh {
   const Sharpness& sharpness;
 };
 
-/// The tags of a mesh. Tags on edges that are no edges of it, and of sharpness 0, are passed over; the last tag of an
-/// edge or vertex counts.
+/// The tags of a mesh. Tags on edges that are no edges of it, and of sharpness 0, are passed over; the last
+/// tag of an edge or vertex counts.
 /// Requires:  tags without defects (mesh/validate.h).
 [[nodiscard]] Sharpness sharpness_of(const ControlMesh& mesh, const Topology& topology);
 
-/// With BoundaryRule::none: does a face lose its surface? So it is at a vertex with a boundary edge, unless that is tagged
-/// infinitely sharp.
+/// With BoundaryRule::none: does a face lose its surface? So it is at a vertex with a boundary edge, unless
+/// that is tagged infinitely sharp.
 [[nodiscard]] bool loses_surface(const Topology& topology, const Sharpness& sharpness, FaceId f);
 
 /// Sharpness that the rules go by: infinite on the boundary and on non-manifold edges.
 [[nodiscard]] double edge_sharpness(const Topology& topology, const Sharpness& sharpness, EdgeId e);
-/// Infinite at corners of the boundary, where its rule makes them, and at non-manifold vertices, but those on a curve: of
-/// two non-manifold edges, no boundary edge, and more faces than edges.
+/// Infinite at corners of the boundary, where its rule makes them, and at non-manifold vertices, but those on
+/// a curve: of two non-manifold edges, no boundary edge, and more faces than edges.
 /// Source:    OpenSubdiv's Far::TopologyRefinerFactory.
 [[nodiscard]] double vertex_sharpness(const Topology& topology, const Sharpness& sharpness, VertexId v,
                                       BoundaryRule boundary);
@@ -53,8 +53,8 @@ struct Spoke {
   double sharpness;
 };
 
-/// What the rules at a vertex look at. In a fan spokes come counter-clockwise, those of an open one from its first to its
-/// last; each edge once.
+/// What the rules at a vertex look at. In a fan spokes come counter-clockwise, those of an open one from its
+/// first to its last; each edge once.
 struct Star {
   std::vector<Spoke> spokes;
   std::vector<HalfEdge> faces;  ///< half-edges that leave the vertex, one a face
@@ -89,14 +89,14 @@ enum class VertexRule : std::uint8_t { corner, crease, smooth };
 
 /// Sharpness after one step: less by 1. Infinite ones stay.
 [[nodiscard]] double decayed(double sharpness);
-/// Of a spoke, on the half of the edge at the star's vertex. Chaikin first mixes in a quarter of the mean of the other
-/// semi-sharp spokes. These sums are meant in doubles, as OpenSubdiv means them in single precision.
+/// Of a spoke, on the half of the edge at the star's vertex. Chaikin first mixes in a quarter of the mean of
+/// the other semi-sharp spokes. These sums are meant in doubles, as OpenSubdiv means them in floats.
 /// Source:    [DeRose98, sec. 3]; OpenSubdiv's Sdc::Crease.
 [[nodiscard]] double decayed(const Star& star, const Spoke& spoke, CreaseMethod method);
 
-/// With Chaikin the half of an edge at its far end depends on what is semi-sharp there, and with it the middle of the edge
-/// (whether both halves stay sharp) and all that follows at this end. Adds to `out` the ends of semi-sharp spokes of v at
-/// which other edges are semi-sharp, too; none with the uniform method.
+/// With Chaikin the half of an edge at its far end depends on what is semi-sharp there, and with it the
+/// middle of the edge (whether both halves stay sharp) and all that follows at this end. Adds to `out` the
+/// ends of semi-sharp spokes of v at which other edges are semi-sharp, too; none with the uniform method.
 void add_far_ends(const RuledMesh& mesh, VertexId v, std::vector<VertexId>& out);
 
 /// Is everything here at rest: no sharpness that decays?

@@ -1,7 +1,6 @@
 #include <snug/scheme/curve_masks.h>
 
 #include <array>
-#include <initializer_list>
 #include <span>
 #include <string>
 #include <utility>
@@ -35,7 +34,7 @@ struct Placed {
   Mask mask;
 };
 
-Stencils rows_of(std::initializer_list<Placed> list) {
+Stencils rows_of(std::span<const Placed> list) {
   Stencils rows;
   for (const auto& [first, mask] : list) {
     for (std::uint32_t i = 0; i < 3; ++i) {
@@ -49,18 +48,14 @@ Stencils rows_of(std::initializer_list<Placed> list) {
   return rows;
 }
 
+// Points in a row after a step: the window of the second child begins one later than that of the first.
 Stencils make_child_rows(CurveWindow window, unsigned child) {
-  switch (window) {
-    case CurveWindow::cubic_edge:
-      return child == 0 ? rows_of({{0, edge_middle}, {0, cubic_vertex}, {1, edge_middle}, {1, cubic_vertex}})
-                        : rows_of({{0, cubic_vertex}, {1, edge_middle}, {1, cubic_vertex}, {2, edge_middle}});
-    case CurveWindow::quadratic_edge:
-      return child == 0 ? rows_of({{0, second_cut}, {1, first_cut}, {1, second_cut}})
-                        : rows_of({{1, first_cut}, {1, second_cut}, {2, first_cut}});
-    default:
-      return child == 0 ? rows_of({{0, first_cut}, {0, second_cut}, {1, first_cut}})
-                        : rows_of({{0, second_cut}, {1, first_cut}, {1, second_cut}});
-  }
+  constexpr std::array<Placed, 5> cubic{
+      {{0, edge_middle}, {0, cubic_vertex}, {1, edge_middle}, {1, cubic_vertex}, {2, edge_middle}}};
+  constexpr std::array<Placed, 5> cuts{
+      {{0, first_cut}, {0, second_cut}, {1, first_cut}, {1, second_cut}, {2, first_cut}}};
+  if (window == CurveWindow::cubic_edge) return rows_of(std::span(cubic).subspan(child, 4));
+  return rows_of(std::span(cuts).subspan(child + (window == CurveWindow::quadratic_edge ? 1 : 0), 3));
 }
 
 Point3 applied(const Mask& mask, const Point3& a, const Point3& b, const Point3& c) {
@@ -94,9 +89,10 @@ const Stencils& child_rows(CurveWindow window, unsigned child) {
 
 const Stencils& bezier_rows(CurveWindow window) {
   SNUG_EXPECT(window != CurveWindow::quadratic_edge);
-  static const Stencils cubic =
-      rows_of({{0, cubic_limit}, {1, first_third}, {1, second_third}, {1, cubic_limit}});
-  static const Stencils quadratic = rows_of({{0, edge_middle}, {1, vertex_itself}, {1, edge_middle}});
+  static const Stencils cubic = rows_of(
+      std::array<Placed, 4>{{{0, cubic_limit}, {1, first_third}, {1, second_third}, {1, cubic_limit}}});
+  static const Stencils quadratic =
+      rows_of(std::array<Placed, 3>{{{0, edge_middle}, {1, vertex_itself}, {1, edge_middle}}});
   return window == CurveWindow::cubic_edge ? cubic : quadratic;
 }
 
@@ -133,9 +129,9 @@ ControlPolygon refine(const ControlPolygon& polygon, CurveDegree degree) {
 ControlPolygon limit_positions(const ControlPolygon& polygon, CurveDegree degree) {
   ControlPolygon result{{}, polygon.closed};
   result.points.reserve(polygon.points.size());
+  const Mask& mask = degree == CurveDegree::cubic ? cubic_limit : quadratic_limit;
   for (std::size_t i = 0; i < polygon.points.size(); ++i) {
-    result.points.push_back(
-        moved_vertex(polygon, i, degree == CurveDegree::cubic ? cubic_limit : quadratic_limit));
+    result.points.push_back(moved_vertex(polygon, i, mask));
   }
   return result;
 }
@@ -147,18 +143,17 @@ void require_curves(const ControlMesh& mesh) {
   std::vector<bool> used(mesh.vertex_count(), false);
   for (std::size_t p = 0; p < mesh.polyline_count(); ++p) {
     const auto vertices = mesh.polyline(PolylineId(p));
+    const std::string line = "polyline " + number(p);
     if (vertices.size() < 2) {
-      found.push_back(
-          {DefectKind::too_few_vertices,
-           "polyline " + number(p) + " has " + number(vertices.size()) + " vertices, a polyline needs 2"});
+      found.push_back({DefectKind::too_few_vertices,
+                       line + " has " + number(vertices.size()) + " vertices, a polyline needs 2"});
     }
     for (const VertexId v : vertices) {
-      if (v.index() < mesh.vertex_count()) {
+      if (v.index() < used.size()) {
         used[v.index()] = true;
       } else {
-        found.push_back({DefectKind::index_out_of_range, "polyline " + number(p) + " uses vertex " +
-                                                             number(v.index()) + " of " +
-                                                             number(mesh.vertex_count())});
+        found.push_back({DefectKind::index_out_of_range,
+                         line + " uses vertex " + number(v.index()) + " of " + number(used.size())});
       }
     }
   }

@@ -15,7 +15,7 @@ enum class CurveDegree : std::uint8_t {
 };
 
 /// The control points that a piece of a curve depends on. Parameters run as on the polyline: a vertex at 0,
-/// the next one at 1.
+/// the next at 1.
 ///
 ///     cubic_edge          a   b===c   d     between the limits of b and c
 ///     quadratic_edge      a   b===c   d     the same; two parabolas that meet in the middle of bc
@@ -58,9 +58,9 @@ struct ControlPolygon {
 /// The limit position of every vertex, in double precision.
 [[nodiscard]] ControlPolygon limit_positions(const ControlPolygon& polygon, CurveDegree degree);
 
-/// Throws InputError (refused) unless every polyline has a limit curve: at least one polyline, two vertices
-/// each (twice the same is legal), all of them there and finite, none tagged as a corner. The message names
-/// the elements.
+/// Throws InputError (refused), naming elements, unless every polyline has a limit curve: at least one
+/// polyline, two vertices each (twice the same is legal), all of them there and finite, none tagged as a
+/// corner.
 void require_curves(const ControlMesh& mesh);
 
 }  // namespace snug

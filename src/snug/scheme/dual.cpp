@@ -3,11 +3,10 @@
 #include <utility>
 
 #include <snug/base/contract.h>
-#include <snug/scheme/rings.h>
-#include <snug/scheme/row_builder.h>
 #include <snug/scheme/rules.h>
 
-// Doo-Sabin and Midedge: each corner of a face makes a vertex, quads are regular, a patch lies around a vertex.
+// Doo-Sabin and Midedge: each corner of a face makes a vertex, quads are regular, a patch lies around a
+// vertex.
 namespace snug {
 namespace {
 
@@ -92,13 +91,9 @@ class DualRules : public SchemeRules {
     row.end_row(out);
   }
 
-  [[nodiscard]] Topology ring(std::span<const CornerFan> fans) const override {
-    std::vector<std::size_t> sizes;
-    for (const CornerFan& fan : fans) sizes.push_back(fan.faces());
-    return ring_of_vertex(sizes);
-  }
-  // New vertex k lies in face k, near the patch's own vertex. Its faces counter-clockwise: k, the one of the edge between k
-  // and k + 1, the patch's own, the one of the edge before.
+  [[nodiscard]] Topology ring(std::span<const CornerFan> fans) const override { return ring_of_vertex(fans); }
+  // New vertex k lies in face k, near the patch's own vertex. Its faces counter-clockwise: k, the one of the
+  // edge between k and k + 1, the patch's own, the one of the edge before.
   [[nodiscard]] std::vector<HalfEdge> child_starts(const Topology& ring,
                                                    const Topology& refined) const override {
     const auto around = [&](std::size_t k, std::size_t step) {
@@ -145,8 +140,8 @@ class DualRules : public SchemeRules {
   Mask mask_;
 };
 
-// Nine places; the corners are faces, face 0 at the lower left. Vertices as dual neighbourhoods number them: the middle
-// one, the ends of its edges (left, below, right, above), the far ones of the faces.
+// Nine places; the corners are faces, face 0 at the lower left. Vertices as dual neighbourhoods number them:
+// the middle one, the ends of its edges (left, below, right, above), the far ones of the faces.
 constexpr std::array<std::size_t, 9> biquadratic_places{5, 2, 6, 1, 0, 3, 8, 4, 7};
 
 class DooSabinRules : public DualRules {

@@ -6,13 +6,18 @@
 
 #include <snug/base/contract.h>
 #include <snug/scheme/creased.h>
-#include <snug/scheme/loop_masks.h>
 
 // Loop's scheme: triangles, box splines of degree 4. [Loop87]
-namespace snug::loop {
+namespace snug {
 namespace {
 
-// The share of the ring. Exact where the cosine is rational.
+// A symmetric mask: one weight for the vertex, one for each vertex of its ring. They sum to 1.
+struct RingMask {
+  Interval centre, each;
+};
+
+// The share of the ring of an interior vertex: a = 5/8 - (3 + 2 cos(2 pi/n))^2 / 64. Exact where the cosine
+// is rational.
 Interval ring_share(std::size_t n) {
   SNUG_EXPECT(n >= 3);
   if (n == 3) return 0.5625;
@@ -22,8 +27,7 @@ Interval ring_share(std::size_t n) {
   return Interval(0.625) - f * f * Interval(0x1p-6);
 }
 
-}  // namespace
-
+// New position:  (1 - a) v + a mean(ring).
 RingMask vertex_mask(std::size_t n) {
   const Interval a = ring_share(n);
   if (n == 3) return {0.4375, 0.1875};
@@ -32,25 +36,21 @@ RingMask vertex_mask(std::size_t n) {
   return {Interval(1) - a, a / Interval(static_cast<double>(n))};
 }
 
+// Limit position:  w v + (1 - w) mean(ring),  w = 1 / (1 + 8 a / 3).
 RingMask limit_mask(std::size_t n) {
   const Interval third = Interval(1) + Interval(8) * ring_share(n) / Interval(3);
   const Interval w = n == 6 ? Interval(0.5) : Interval(1) / third;
   return {w, (Interval(1) - w) / Interval(static_cast<double>(n))};
 }
 
-}  // namespace snug::loop
-
-namespace snug {
-namespace {
-
-// 3/8 + cos(2 pi/n) / 4: subdominant eigenvalue at an interior vertex of valence n, and of the direction across a smooth
-// boundary with n / 2 faces. What is around shrinks by it a level.
+// 3/8 + cos(2 pi/n) / 4: subdominant eigenvalue at an interior vertex of valence n, and of the direction
+// across a smooth boundary with n / 2 faces. What is around shrinks by it a level.
 double subdominant(std::size_t n) { return 0.375 + 0.25 * middle(cos_of_turn(1, static_cast<unsigned>(n))); }
 
 constexpr std::size_t full_count = 12;  // control points of a full Loop lattice
 
-// 24 times the Bezier points (i, j), j outermost, of a patch whose twelve control points lie as drawn in rings.h.
-// derivations/loop_bezier.md
+// 24 times the Bezier points (i, j), j outermost, of a patch whose twelve control points lie as drawn in
+// rings.h. derivations/loop_bezier.md
 constexpr std::array<std::array<int, full_count>, bezier_count(4)> full_rows{{
     {12, 2, 2, 2, 0, 2, 2, 2, 0, 0, 0, 0},
     {12, 4, 3, 3, 0, 1, 0, 1, 0, 0, 0, 0},
@@ -78,8 +78,8 @@ Combination ghost(std::size_t p, std::size_t q, std::size_t r, std::size_t count
   return c;
 }
 
-// The twelve places of the full lattice, ghosts filled in. A regular boundary corner has three faces; its ring of six is
-// the four vertices of its fan and two ghosts.
+// The twelve places of the full lattice, ghosts filled in. A regular boundary corner has three faces; its
+// ring of six is the four vertices of its fan and two ghosts.
 std::array<Combination, full_count> complete(const Topology& topology, std::span<const CornerFan> fans) {
   const std::size_t count = topology.vertex_count();
   std::array<Combination, full_count> places;
@@ -129,7 +129,7 @@ class LoopRules : public CreasedRules {
 
   void add_smooth_vertex(const Topology&, VertexId v, const Star& star, const Interval& share,
                          RowBuilder& row) const override {
-    const loop::RingMask mask = loop::vertex_mask(star.spokes.size());
+    const RingMask mask = vertex_mask(star.spokes.size());
     row.add(v.value(), times(share, mask.centre));
     for (const Spoke& spoke : star.spokes) row.add(spoke.end.value(), times(share, mask.each));
   }
@@ -144,7 +144,7 @@ class LoopRules : public CreasedRules {
 
   [[nodiscard]] bool is_settled(const Topology&, const Star&, bool) const override { return true; }
   void add_smooth_limit(const Topology&, VertexId v, const Star& star, Stencils& out) const override {
-    const loop::RingMask mask = loop::limit_mask(star.spokes.size());
+    const RingMask mask = limit_mask(star.spokes.size());
     out.add(v.value(), mask.centre);
     for (const Spoke& spoke : star.spokes) out.add(spoke.end.value(), mask.each);
   }

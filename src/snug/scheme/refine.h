@@ -22,9 +22,9 @@ namespace snug {
 ///      / 0 \   / 1 \        .
 ///    c0 --- m01 --- c1
 ///
-/// Catmull-Clark: further the centre of face f is vertex_count + edge_count + f; the corner that half-edge h leaves
-/// becomes face h: of a quad with all corners in their places, so that it is a quarter of the square; of other faces
-/// from that corner on.
+/// Catmull-Clark: further the centre of face f is vertex_count + edge_count + f; the corner that half-edge h
+/// leaves becomes face h: of a quad with all corners in their places, so that it is a quarter of the square;
+/// of other faces from that corner on.
 ///
 ///    c3 -- m -- c2
 ///    |  3  | 2  |
@@ -32,9 +32,9 @@ namespace snug {
 ///    |  0  | 1  |
 ///    c0 -- m -- c1
 ///
-/// Dual schemes: half-edge h makes the new vertex h, in its face near the vertex it leaves. Faces are first those of the
-/// faces, then quads for the edges between two faces, then those of the vertices inside. Rows of points that lie in a
-/// face only depend on that face.
+/// Dual schemes: half-edge h makes the new vertex h, in its face near the vertex it leaves. Faces are first
+/// those of the faces, then quads for the edges between two faces, then those of the vertices inside. Rows of
+/// points that lie in a face only depend on that face.
 struct RefinedTopology {
   Topology topology;
   Sharpness sharpness;
@@ -49,18 +49,38 @@ struct RefinedTopology {
 /// Requires:  a topology that require_subdividable accepts, or a part of one: rules at its rim are those of a
 ///            boundary.
 /// Errors:    Interrupted; InputError (refused) where the step takes more than 2^32 weights.
-/// Cost:      linear.
 [[nodiscard]] RefinedTopology refine(const Topology& topology, const SchemeOptions& options,
                                      const Sharpness& sharpness = {}, const WorkMonitor& monitor = {});
 
 /// A refined control mesh, its tags decayed; tags that do not change the surface are left out of it.
 /// Requires:  options as with_tags() makes them.
 [[nodiscard]] ControlMesh refine(const ControlMesh& mesh, const SchemeOptions& options);
-/// The same, of a step that refine() has made. Several steps of a non-manifold mesh need this one: connectivity and
-/// sharpness of the step know what the mesh cannot say (Sharpness::vertices_complete).
-/// Errors:    Interrupted.
+/// The same, of a step that refine() has made. Several steps of a non-manifold mesh need this one:
+/// connectivity and sharpness of the step know what the mesh cannot say (Sharpness::vertices_complete).
 [[nodiscard]] ControlMesh refined_mesh(const ControlMesh& mesh, const SchemeOptions& options,
                                        const Topology& topology, const RefinedTopology& refined,
                                        const WorkMonitor& monitor = {});
+
+/// Limit position of every vertex; isolated ones give themselves. For dual schemes a vertex stands for the
+/// middle of its patch; at the boundary, where there is none, for itself.
+/// Errors:    Interrupted.
+[[nodiscard]] Stencils limit_stencils(const Topology& topology, const SchemeOptions& options,
+                                      const Sharpness& sharpness = {}, const WorkMonitor& monitor = {});
+
+/// Some faces as a mesh of their own.
+struct PartOfMesh {
+  Topology topology;
+  Sharpness sharpness;
+  std::vector<VertexId> names;  ///< of its vertices in the whole mesh
+  std::vector<FaceId> faces;    ///< likewise
+};
+/// The faces of these half-edges, one a face, which they begin with. Vertices are numbered as the faces name
+/// them.
+[[nodiscard]] PartOfMesh part_of(const Topology& topology, const Sharpness& sharpness, BoundaryRule boundary,
+                                 std::span<const HalfEdge> firsts);
+
+/// The vertices of such a part alone, and, if asked for, the corners of its faces by their new numbers.
+void vertices_of(const Topology& topology, std::span<const HalfEdge> firsts, std::vector<VertexId>& names,
+                 std::vector<VertexId>* corners = nullptr);
 
 }  // namespace snug

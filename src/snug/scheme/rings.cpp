@@ -46,8 +46,8 @@ class FaceRing {
   // Is there a face across the edge from corner i?
   [[nodiscard]] bool there(std::size_t i) const { return fans_[i].closed || fans_[i].before > 0; }
 
-  // The vertices across an edge: at its first corner and at its second one, which are one beyond a triangle. At an interior
-  // vertex of valence 3 those of both its edges meet.
+  // The vertices across an edge: at its first corner and at its second one, which are one beyond a triangle.
+  // At an interior vertex of valence 3 those of both its edges meet.
   void number_across() {
     const std::size_t last = size_ - 1;
     for (std::size_t i = 0; i < size_; ++i) {
@@ -60,7 +60,8 @@ class FaceRing {
     }
   }
 
-  // The faces of corner i that are not across an edge of the patch. A quad has a vertex more, diagonally across.
+  // The faces of corner i that are not across an edge of the patch. A quad has a vertex more, diagonally
+  // across.
   void add_fan(std::size_t i) {
     const CornerFan& fan = fans_[i];
     std::size_t last = far_[(i + size_ - 1) % size_];
@@ -88,14 +89,14 @@ class FaceRing {
 
 Topology ring_of_face(std::span<const CornerFan> fans) { return FaceRing(fans).make(); }
 
-Topology ring_of_vertex(std::span<const std::size_t> face_sizes) {
+Topology ring_of_vertex(std::span<const CornerFan> fans) {
   FaceList faces;
-  const std::size_t n = face_sizes.size();
+  const std::size_t n = fans.size();
   std::size_t count = n + 1;
   for (std::size_t k = 0; k < n; ++k) {
     faces.corners.emplace_back(0u);
     faces.corners.emplace_back(1 + k);
-    for (std::size_t i = 3; i < face_sizes[k]; ++i) faces.corners.emplace_back(count++);
+    for (std::size_t i = 3; i < fans[k].faces(); ++i) faces.corners.emplace_back(count++);
     faces.corners.emplace_back(1 + (k + 1) % n);
     faces.end_face();
   }

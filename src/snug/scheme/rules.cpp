@@ -31,8 +31,8 @@ bool SchemeRules::answers(DefectKind kind) const {
   return is_legal(kind) || (is_non_manifold(kind) && kind != DefectKind::repeated_vertex);
 }
 
-// Half a quad c0 c1 c2 splits into halves of the quarters at its corners, and the other half of the one at c1. In each
-// quarter of a quad all corners are in their places.
+// Half a quad c0 c1 c2 splits into halves of the quarters at its corners, and the other half of the one at
+// c1. In each quarter of a quad all corners are in their places.
 std::vector<HalfEdge> SchemeRules::child_starts(const Topology& ring, const Topology&) const {
   const std::size_t size = ring.face(FaceId(0)).size();
   if (triangular()) return {0, 3, 6, 9};

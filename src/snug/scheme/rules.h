@@ -6,9 +6,8 @@
 #include <vector>
 
 #include <snug/scheme/bezier.h>
-#include <snug/scheme/corner_fan.h>
-#include <snug/scheme/limits.h>
 #include <snug/scheme/refine.h>
+#include <snug/scheme/rings.h>
 
 namespace snug {
 
@@ -36,7 +35,7 @@ struct SchemeFacts {
   RegularKernel kernel = RegularKernel::none;
 };
 
-/// All that snug knows of one scheme. Each has a file of its own; other files ask for its properties, not for its name.
+/// All that snug knows of one scheme. Each has a file; other files ask for its properties, not for its name.
 class SchemeRules : public SchemeFacts {
  public:
   SchemeRules(const SchemeRules&) = delete;
@@ -47,35 +46,35 @@ class SchemeRules : public SchemeFacts {
   /// What a patch belongs to, in a word.
   [[nodiscard]] const char* owner() const { return primal ? "face" : "vertex"; }
 
-  /// Does it answer questions about the surface of a mesh with such a defect all the same? Not where a face names a
-  /// vertex twice: its patches have no corners that can be told apart.
+  /// Does it answer questions about the surface of a mesh with such a defect all the same? Not where a face
+  /// names a vertex twice: its patches have no corners that can be told apart.
   [[nodiscard]] virtual bool answers(DefectKind kind) const;
 
   /// One step of subdivision, see refine.h.
   [[nodiscard]] virtual RefinedTopology refine(const RuledMesh& mesh, const WorkMonitor& monitor) const = 0;
-  /// See limits.h.
+  /// See limit_stencils().
   virtual void add_limit_row(const RuledMesh& mesh, VertexId v, Stencils& out) const = 0;
 
-  /// The faces around a patch whose corners have these fans, as a mesh: the order of its vertices is that of the control
-  /// points of the patch, and stands here alone. Its face 0 is the patch's own; of a dual scheme the first half-edge of
-  /// each face leaves the patch's vertex, 0.
+  /// The faces around a patch whose corners have these fans, as a mesh: the order of its vertices is that of
+  /// the control points of the patch, and stands here alone. Its face 0 is the patch's own; of a dual scheme
+  /// the first half-edge of each face leaves the patch's vertex, 0.
   [[nodiscard]] virtual Topology ring(std::span<const CornerFan> fans) const = 0;
-  /// Half-edges of the refined ring that the children of a patch begin at, or those of a polygon; see Kind::children().
+  /// Half-edges of the refined ring that the children of a patch, or of a polygon, begin at (Kind::children).
   [[nodiscard]] virtual std::vector<HalfEdge> child_starts(const Topology& ring,
                                                            const Topology& refined) const;
   /// The half-edge of a ring that tells corner 0, 1 or 2 of its patch.
   [[nodiscard]] HalfEdge corner_of(const Topology& ring, std::size_t corner) const {
     return primal ? static_cast<HalfEdge>(corner) : ring.first_of(FaceId(corner));
   }
-  /// Adds the limit at such a half-edge's vertex (dual schemes: face), if it can be read off what surrounds it at once, and
-  /// returns whether it could.
+  /// Adds the limit at such a half-edge's vertex (dual schemes: face), if it can be read off what surrounds
+  /// it at once, and returns whether it could.
   [[nodiscard]] virtual bool add_corner_limit(const RuledMesh& mesh, HalfEdge corner,
                                               Stencils& out) const = 0;
-  /// Adds two rows whose images span the tangent plane there, wherever there is one: the limits of the directions, of no
-  /// particular length; their weights sum to 0. Counter-clockwise: their cross product points to the side from which
-  /// faces look counter-clockwise. At a boundary the first runs along it; at a crease they are those of the half-edge's
-  /// sector.
-  /// Source:    left eigenvectors of the local subdivision matrix, derivations/loop_limits.md, catmark_limits.md.
+  /// Adds two rows whose images span the tangent plane there, wherever there is one: the limits of the
+  /// directions, of no particular length; their weights sum to 0. Counter-clockwise: their cross product
+  /// points to the side from which faces look counter-clockwise. At a boundary the first runs along it; at a
+  /// crease they are those of the half-edge's sector.
+  /// Source:    left eigenvectors of the local matrix, derivations/loop_limits.md, catmark_limits.md.
   virtual void add_corner_tangents(const RuledMesh& mesh, HalfEdge corner, Stencils& out) const = 0;
 
   /// Is the surface near a corner as on a regular lattice?
@@ -107,8 +106,8 @@ template <class Rules>
 /// SchemeRules::regular() where patches are halves of quads.
 [[nodiscard]] bool regular_among_quads(const CornerFan& fan);
 
-/// Adds two rows, first Fourier modes of n directions counter-clockwise: of cosines, then of sines. add(i, wave) adds
-/// entries by wave(i), which is the one at direction i.
+/// Adds two rows, first Fourier modes of n directions counter-clockwise: of cosines, then of sines. add(i,
+/// wave) adds entries by wave(i), which is the one at direction i.
 template <class Add>
 void add_first_modes(std::size_t directions, const Add& add, Stencils& out) {
   const auto n = static_cast<unsigned>(directions);

@@ -39,15 +39,21 @@ void require_sound(std::vector<Defect> refusing, const SchemeRules& rules, Purpo
 }
 
 void require_fitting_faces(const ControlMesh& mesh, const SchemeRules& rules) {
-  if (!rules.wants_triangles) return;
-  std::size_t others = 0, first = 0;
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    if (mesh.face(FaceId(f)).size() == 3) continue;
-    if (others++ == 0) first = f;
+  std::size_t others = 0, first = 0, large = mesh.face_count();
+  for (std::size_t f = mesh.face_count(); f-- > 0;) {
+    const std::size_t size = mesh.face(FaceId(f)).size();
+    if (size != 3) ++others, first = f;
+    if (size > max_face_size) large = f;
   }
-  if (others == 0) return;
-  refuse("face " + number(first) + " has " + number(mesh.face(FaceId(first)).size()) + " vertices (" +
-         number(others) + " faces are not triangles); " + rules.wants_triangles);
+  const auto text = [&](std::size_t f) {
+    return "face " + number(f) + " has " + number(mesh.face(FaceId(f)).size()) + " vertices";
+  };
+  if (rules.wants_triangles && others > 0) {
+    refuse(text(first) + " (" + number(others) + " faces are not triangles); " + rules.wants_triangles);
+  }
+  if (large < mesh.face_count()) {
+    refuse(text(large) + "; at most " + number(max_face_size) + " are taken: split it");
+  }
 }
 
 void require_valences(const Topology& topology, const SchemeRules& rules) {
@@ -70,14 +76,16 @@ void require_valences(const Topology& topology, const SchemeRules& rules) {
          " to 1000 faces, boundary ones at most 1000: split faces there");
 }
 
-void require_small_faces(const ControlMesh& mesh) {
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    const std::size_t n = mesh.face(FaceId(f)).size();
-    if (n > max_face_size) {
-      refuse("face " + number(f) + " has " + number(n) + " vertices; at most " + number(max_face_size) +
-             " are taken: split it");
-    }
-  }
+Topology require_fit_for(Purpose purpose, const ControlMesh& mesh, const SchemeOptions& options) {
+  if (mesh.face_count() == 0) refuse("the mesh has no faces");
+  const SchemeRules& rules = rules_of(options.scheme);
+  Topology topology;
+  if (has_topology(mesh)) topology = Topology(mesh);
+  const bool manifold = topology.face_count() > 0 && topology.is_manifold();
+  require_sound(manifold ? defects_of_elements(mesh) : defects(mesh), rules, purpose);
+  require_fitting_faces(mesh, rules);
+  require_valences(topology, rules);
+  return topology;
 }
 
 }  // namespace
@@ -96,23 +104,6 @@ SchemeOptions with_tags(SchemeOptions options, const MeshTags& tags) {
   options.triangles = tags.smooth_triangles;
   return options;
 }
-
-namespace {
-
-Topology require_fit_for(Purpose purpose, const ControlMesh& mesh, const SchemeOptions& options) {
-  if (mesh.face_count() == 0) refuse("the mesh has no faces");
-  const SchemeRules& rules = rules_of(options.scheme);
-  Topology topology;
-  if (has_topology(mesh)) topology = Topology(mesh);
-  const bool manifold = topology.face_count() > 0 && topology.is_manifold();
-  require_sound(manifold ? defects_of_elements(mesh) : defects(mesh), rules, purpose);
-  require_fitting_faces(mesh, rules);
-  require_small_faces(mesh);
-  require_valences(topology, rules);
-  return topology;
-}
-
-}  // namespace
 
 Topology require_subdividable(const ControlMesh& mesh, const SchemeOptions& options) {
   return require_fit_for(Purpose::refinement, mesh, options);

@@ -26,11 +26,11 @@ inline constexpr std::size_t max_face_size = 1000;
 /// The scheme of a mesh that names none: Loop for triangles alone, else Catmull-Clark.
 [[nodiscard]] Scheme natural_scheme(const ControlMesh& mesh);
 
-/// Throws InputError (refused) unless the limit surface of this mesh under these rules is one that snug
-/// answers questions about: no refusing defect (mesh/validate.h), faces and valences that the scheme takes. Non-manifold
-/// edges and vertices and faces of inconsistent orientation are kept by Loop and Catmull-Clark, infinitely sharp, as
-/// OpenSubdiv has them; dual schemes refuse them. The message names elements and the next step.
-/// Returns:   the topology of the mesh.
+/// The topology of the mesh. Throws InputError (refused), naming elements and the next step, unless the limit
+/// surface under these rules is one that snug answers questions about: no refusing defect (mesh/validate.h),
+/// faces and valences that the scheme takes. Non-manifold edges and vertices and faces of inconsistent
+/// orientation are kept by Loop and Catmull-Clark, infinitely sharp, as OpenSubdiv has them; dual schemes
+/// refuse them.
 Topology require_surface(const ControlMesh& mesh, const SchemeOptions& options);
 /// The same for refinement alone, which Loop and Catmull-Clark also do to faces that name a vertex twice.
 Topology require_subdividable(const ControlMesh& mesh, const SchemeOptions& options);

@@ -8,13 +8,14 @@
 
 #include <snug/geometry/interval.h>
 #include <snug/geometry/point.h>
+#include <snug/mesh/topology.h>
+#include <snug/monitor.h>
 
 namespace snug {
 
-/// Rows of a sparse matrix: each new point is a sum of weighted old points. The exact weights of a row sum
-/// to 1.
-///
-/// Guarantee: row_error(r) is at least the sum over a row's entries of |weight stored - exact weight|.
+/// Rows of a sparse matrix: each new point is a sum of weighted old points. The exact weights of a row sum to
+/// 1.
+/// Guarantee: a row's error is at least the sum over its entries of |weight stored - exact weight|.
 class Stencils {
  public:
   struct Row {
@@ -29,7 +30,6 @@ class Stencils {
   void add(std::uint32_t source, double weight) { add(source, weight, 0); }
   void add(std::uint32_t source, const Interval& weight) { add(source, middle(weight), radius(weight)); }
   void add(std::uint32_t source, double weight, double error);
-  /// Ends the row.
   void end_row();
   /// Adds a row that is one of the sources.
   void add_unit_row(std::uint32_t source);
@@ -70,5 +70,55 @@ class Stencils {
   std::size_t max_entries_ = 0;
   double max_error_ = 0, max_abs_sum_ = 0;
 };
+
+/// One row in the making, each source once. Intervals keep its entries sound.
+class RowBuilder {
+ public:
+  void add(std::uint32_t source, const Interval& weight) {
+    for (Entry& entry : entries_) {
+      if (entry.source != source) continue;
+      entry.weight = entry.weight + weight;
+      return;
+    }
+    entries_.push_back({source, weight});
+  }
+  /// factor times a row of `rows`.
+  void add(const Interval& factor, const Stencils::Row& row) {
+    for (std::size_t i = 0; i < row.sources.size(); ++i) {
+      // The row's error is one of all its entries together: each may have all of it.
+      const double w = row.weights[i], e = row.error;
+      add(row.sources[i], factor * (e == 0 ? Interval(w) : Interval(rounded_down(w - e), rounded_up(w + e))));
+    }
+  }
+  /// Multiplies everything by a factor.
+  void scale(const Interval& factor) {
+    for (Entry& entry : entries_) entry.weight = factor * entry.weight;
+  }
+  /// Writes the row, and begins anew.
+  void end_row(Stencils& out) {
+    for (const Entry& entry : entries_) out.add(entry.source, entry.weight);
+    out.end_row();
+    entries_.clear();
+  }
+
+ private:
+  struct Entry {
+    std::uint32_t source;
+    Interval weight;
+  };
+  std::vector<Entry> entries_;
+};
+
+/// factor * weight; of a factor 1 the weight itself: rows of regular parts are free of rounding.
+[[nodiscard]] Interval times(const Interval& factor, const Interval& weight);
+/// Adds the mean of the vertices of a face, times `share`.
+void add_mean(std::span<const VertexId> face, const Interval& share, RowBuilder& row);
+
+/// Adds a row for each face: the mean of its vertices.
+void add_face_means(const Topology& topology, const WorkMonitor& monitor, Stencils& out);
+
+/// Adds the product of a row and a matrix to `out`, sources renamed; without names they keep their own.
+void add_product(const Stencils::Row& outer, const Stencils& inner, std::span<const VertexId> names,
+                 Stencils& out);
 
 }  // namespace snug
