@@ -5,8 +5,7 @@
 
 namespace snug {
 
-/// Numbers some of many things in the order in which they are first met. Used again, it costs no memory and no
-/// clearing.
+/// Numbers some of many things in the order in which they are first met. Using it again costs no clearing.
 class CompactNumbering {
  public:
   /// Forgets all; indices are below `size`.

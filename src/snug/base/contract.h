@@ -19,6 +19,7 @@ ContractHandler set_contract_handler(ContractHandler handler) noexcept;
 
 }  // namespace snug
 
-/// A bug of our own: checked in every build. What a caller, a file or the machine gets wrong is an InputError instead.
+/// A bug of our own, checked in every build. What a caller, a file or the machine gets wrong is an
+/// InputError.
 #define SNUG_EXPECT(condition) \
   ((condition) ? static_cast<void>(0) : ::snug::contract_violated(#condition, __FILE__, __LINE__))

@@ -6,8 +6,8 @@
 
 namespace snug {
 
-/// A value that is made on first use, then immutable. Thread-safe. Not std::call_once: an exception that leaves
-/// it may end the process or lock it up.
+/// A value that is made on first use, then immutable. Thread-safe. Not std::call_once: an exception that
+/// leaves it may end the process or lock it up.
 template <class T>
 class Lazy {
  public:

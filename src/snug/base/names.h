@@ -8,8 +8,8 @@
 
 namespace snug {
 
-/// An enumerator and its name in files, on the command line and in answers. The names of an enumeration stand in
-/// one table, std::to_array<Named<E>>({...}); a second name of a value is read, and never written.
+/// An enumerator and its name in files, on the command line and in answers. The names of an enumeration stand
+/// in one table, std::to_array<Named<E>>({...}); a second name of a value is read, and never written.
 template <class E>
 struct Named {
   const char* name;

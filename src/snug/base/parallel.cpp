@@ -22,9 +22,9 @@ std::size_t useful_threads(std::size_t count, int threads) {
   return std::min(count, static_cast<std::size_t>(wanted));
 }
 
-// Starts a thread that calls run(); false where the system has none to give. The C library ends the process where it has no
-// memory for the destructors of a thread's own objects, which are made in its first steps: without some room to begin with
-// there is an exception instead.
+// Starts a thread that calls run(); false where the system has none to give. The C library ends the process
+// where it has no memory for the destructors of a thread's own objects, which are made in its first steps:
+// without some room to begin with there is an exception instead.
 template <class Run>
 bool start(std::vector<std::thread>& helpers, const Run& run) {
   const auto run_with_headroom = [&run]() noexcept {

@@ -7,8 +7,8 @@
 
 namespace snug {
 
-/// Hands out ranges that cover [0, count) once, to the threads that share a loop: long ones first, so that few are needed,
-/// short ones at the end, so that all threads end together.
+/// Hands out ranges that cover [0, count) once, to the threads that share a loop: long ones first, so that
+/// few are needed, short ones at the end, so that all threads end together.
 class SharedRanges {
  public:
   struct Range {
@@ -28,22 +28,21 @@ class SharedRanges {
   std::atomic<bool> ended_{false};
 };
 
-/// Calls work(ranges) on at most `threads` threads (0: all cores), the calling one among them; each is to take
-/// ranges until there are none.
+/// Calls work(ranges) on at most `threads` threads (0: all cores), this one among them; each takes all it can
+/// get.
 ///
-/// Guarantee: returns when all calls have. An exception of one ends the handing out, and is thrown again here.
-///            Where the system refuses a thread (limits of processes or memory) the others do its share,
-///            threads_were_refused() tells, and results are the same.
-/// Cost:      some 20 microseconds a thread beside the calling one. More threads than cores are not started, but
-///            up to four are on any machine.
+/// Guarantee: returns when all calls have. An exception of one ends the handing out, and is thrown again
+///            here. Where the system refuses a thread (limits of processes or memory) the others do its
+///            share, threads_were_refused() tells, and results are the same.
+/// Cost:      some 20 microseconds a thread. No more are started than there are cores, but up to four anyway.
 void share_ranges(std::size_t count, int threads, const std::function<void(SharedRanges&)>& work);
 
-/// Calls body(begin, end) on ranges that cover [0, count), on at most `threads` threads (0: all cores).
-/// Each index is in exactly one range; ranges depend on scheduling: results must not.
+/// Calls body(begin, end) on ranges that cover [0, count), on at most `threads` threads (0: all cores). Each
+/// index is in exactly one range; ranges depend on scheduling: results must not.
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t, std::size_t)>& body);
 
-/// Calls body(state, begin, end) likewise, where `state` is what make() returned on this thread: scratch memory
-/// that is dear to make. Results must not depend on what is left in it.
+/// Calls body(state, begin, end) likewise, where `state` is what make() returned on this thread: scratch
+/// memory that is dear to make. Results must not depend on what is left in it.
 template <class Make, class Body>
 void parallel_for_with(std::size_t count, int threads, const Make& make, const Body& body) {
   share_ranges(count, threads, [&](SharedRanges& ranges) {

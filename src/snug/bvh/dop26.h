@@ -9,8 +9,8 @@
 
 namespace snug {
 
-/// A k-DOP around a set: half spaces across the 26 directions whose coordinates are -1, 0 and 1. Other than a box it
-/// says at once how far the set reaches along any direction.
+/// A k-DOP around a set: half spaces across the 26 directions whose coordinates are -1, 0 and 1. Other than a
+/// box it says at once how far the set reaches along any direction.
 class Dop26 {
  public:
   /// Holds nothing.
@@ -20,11 +20,11 @@ class Dop26 {
 
   /// Upper bound of dot(direction, x - centre) over the set, but for roundings.
   ///
-  /// Guarantee: the exact maximum is at most the result plus 16 u |direction|_1 radius(), for doubles between 2^-400
-  ///            and 2^400 in size, or 0. Infinite or NaN where a box is not finite.
+  /// Guarantee: the exact maximum is at most the result plus 16 u |direction|_1 radius(), for doubles between
+  ///            2^-400 and 2^400 in size, or 0. Infinite or NaN where a box is not finite.
   /// Source:    derivations/boxes.md.
   [[nodiscard]] double reach(const Vector3& direction) const {
-    // Coordinates by size, without branches that depend on them; places of directions count 1, 3 and 9 a coordinate.
+    // Coordinates by size, without branches on them; places of directions count 1, 3 and 9 a coordinate.
     const double x = std::fabs(direction.x), y = std::fabs(direction.y), z = std::fabs(direction.z);
     const int xy = x < y ? 1 : 0, xz = x < z ? 1 : 0, yz = y < z ? 1 : 0;
     const std::array<int, 3> rank{xy + xz, 1 - xy + yz, 2 - xz - yz};

@@ -6,7 +6,7 @@
 
 namespace snug {
 
-/// x -> scale (R x) + t with scale a power of two: a placement of a surface in the frame that a query works in.
+/// x -> scale (R x) + t with scale a power of two: how a surface is placed in the frame of a query.
 struct PlacedFrame {
   Rows3 rows;  ///< of R
   double scale = 1;
@@ -24,8 +24,8 @@ struct PlacedFrame {
   [[nodiscard]] double growth() const { return scale * (1 + 2 * defect); }
 };
 
-/// How points of one placed model are seen from the frame of another one: x -> M x + t, in double precision, and a
-/// bound of what is wrong with it.
+/// How points of one placed model are seen from the frame of another one: x -> M x + t, in double precision,
+/// and a bound of what is wrong with it.
 ///
 /// Guarantee: for points p of the target and q of the source, both at most 2 in their own frames,
 ///            |M q + t - p| <= (1 + 4 defects) / target.scale times their placed distance, plus `slack`.

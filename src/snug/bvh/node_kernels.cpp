@@ -15,7 +15,7 @@ namespace {
 using Tag = hn::CappedTag<float, 8>;
 using V = hn::Vec<Tag>;
 
-// More than what roundings to single precision can do to any of the gaps, in units of 2^-24 of all that is involved.
+// More than what roundings to single precision can do to a gap, as a part of all that is involved.
 constexpr float roundings = 64 * 0x1p-24F;
 // The same where the other box, too, was placed in single precision.
 constexpr float pair_roundings = 256 * 0x1p-24F;
@@ -32,8 +32,8 @@ HWY_INLINE V max3(V a, V b, V c) { return hn::Max(hn::Max(a, b), c); }
 // Squares of shorter lengths lose digits to the end of single precision, or all of them.
 constexpr float least_squared = 0x1p-50F;
 
-// Length of the vector of the positive ones of three gaps, or the largest if there are none or squares are too small;
-// of two sorts of gaps, by the better one.
+// Length of the vector of the positive ones of three gaps, or the largest if there are none or squares are
+// too small; of two sorts of gaps, by the better one.
 HWY_INLINE V outside(const V* one, const V* two) {
   const Tag d;
   const V zero = hn::Zero(d);
@@ -121,7 +121,7 @@ HWY_INLINE V gaps(const float* node, std::size_t at, const Row& other, V all_sla
   // Lane by lane, so that it makes no difference how many a vector has.
   const auto settled = hn::Gt(gap, hn::Set(d, prune_distance));
   if (!hn::AllTrue(d, settled)) {
-    // Cross products of axes are at most 1 long: an overlap along a short one says little, so only gaps count.
+    // Cross products of axes are at most 1 long: overlaps along short ones say little, so only gaps count.
     V across = all_slack;
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3;
@@ -276,7 +276,7 @@ HWY_INLINE void compare_balls(const BoxNode& node, const BoxNode& other, const S
 
 // Axes of eight of these pairs from `begin` on: those that are left go to `out`.
 HWY_INLINE void compare_axes(const float* rows, const float* placed, Left& left, std::size_t begin,
-                             V all_slack, float prune_distance, ChildPair* out, NearPairs& near, V& others) {
+                             V all_slack, float prune_distance, NearPairs& near, V& others) {
   const Tag d;
   const std::size_t count = std::min<std::size_t>(8, left.count - begin);
   std::int32_t* const own = left.own + begin;
@@ -303,23 +303,25 @@ HWY_INLINE void compare_axes(const float* rows, const float* placed, Left& left,
   }
   for (near_bits &= (1u << count) - 1; near_bits != 0; near_bits &= near_bits - 1) {
     const auto l = static_cast<std::size_t>(std::countr_zero(near_bits));
-    out[near.count++] = {static_cast<std::uint8_t>(own[l]), static_cast<std::uint8_t>(other[l]), found[l]};
+    near.pairs[near.count++] = {static_cast<std::uint8_t>(own[l]), static_cast<std::uint8_t>(other[l]),
+                                found[l]};
   }
 }
 
-NearPairs box_pairs(const BoxNode& node, const BoxNode& other, const SeenNode& seen, float slack,
-                    float prune_distance, ChildPair* out) {
+void box_pairs(const BoxNode& node, const BoxNode& other, const SeenNode& seen, float slack,
+               float prune_distance, NearPairs& near) {
   const Tag d;
   const float offset = std::fabs(seen.offset[0]) + std::fabs(seen.offset[1]) + std::fabs(seen.offset[2]);
   const float reach = node.reach + 2 * seen.scale * other.reach + offset;
-  NearPairs near{0, INFINITY};
+  near.count = 0;
+  near.others = INFINITY;
   if (!(reach < 1e18F)) {  // nor a NaN
     for (std::uint32_t j = 0; j < other.count; ++j) {
       for (std::uint32_t i = 0; i < node.count; ++i) {
-        out[near.count++] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), -INFINITY};
+        near.pairs[near.count++] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), -INFINITY};
       }
     }
-    return near;
+    return;
   }
   const V all_slack = hn::Set(d, pair_roundings * reach + slack);
   V others = hn::Set(d, INFINITY);
@@ -329,10 +331,9 @@ NearPairs box_pairs(const BoxNode& node, const BoxNode& other, const SeenNode& s
   compare_balls(node, other, seen, placed, all_slack, hn::Set(d, prune_distance), left, others);
   if (left.count != 0) place_axes(other, seen, placed);
   for (std::size_t begin = 0; begin < left.count; begin += 8) {
-    compare_axes(node.rows, placed, left, begin, all_slack, prune_distance, out, near, others);
+    compare_axes(node.rows, placed, left, begin, all_slack, prune_distance, near, others);
   }
   near.others = hn::GetLane(hn::MinOfLanes(d, others));
-  return near;
 }
 
 void boxes_to_point(const float* node, const float* point, float slack, float* out) {
@@ -380,9 +381,9 @@ Near obb_distances(const float* node, float reach, const OtherBox& other, float 
   return HWY_DYNAMIC_DISPATCH(boxes)(node, reach, other, slack, prune_distance, out);
 }
 
-NearPairs obb_pairs(const BoxNode& node, const BoxNode& other, const SeenNode& seen, float slack,
-                    float prune_distance, ChildPair* out) {
-  return HWY_DYNAMIC_DISPATCH(box_pairs)(node, other, seen, slack, prune_distance, out);
+void obb_pairs(const BoxNode& node, const BoxNode& other, const SeenNode& seen, float slack,
+               float prune_distance, NearPairs& near) {
+  HWY_DYNAMIC_DISPATCH(box_pairs)(node, other, seen, slack, prune_distance, near);
 }
 
 void obb_distances(const float* node, const float point[3], float slack, float* out) {

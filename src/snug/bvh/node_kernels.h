@@ -1,11 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 
-/// Eight boxes against one, on the widest vectors that the processor has; others use bvh/wide_nodes.h. Every lane does
-/// the same operations in the same order on every instruction set, none of them fused.
+/// Eight boxes against one, on the widest vectors that the processor has; others use bvh/wide_nodes.h. Every
+/// lane does the same operations in the same order on every instruction set, none of them fused.
 namespace snug::kernels {
 
 /// Boxes of a node.
@@ -22,14 +23,12 @@ struct OtherBox {
     return std::fabs(centre[0]) + std::fabs(centre[1]) + std::fabs(centre[2]) + (half[0] + half[1] + half[2]);
   }
 };
-/// Which boxes have a distance of at most `prune_distance`, a bit each, and the least of the others; infinite if there are
-/// none.
+/// The boxes within `prune_distance`, a bit each, and the least distance of the others; infinite without any.
 struct Near {
   std::uint32_t places;
   float others;
 };
-/// `reach`: at least the sum of a box's half sizes and the absolute coordinates of its centre. Cross products of axes are
-/// tried only where the others show no gap above `prune_distance`.
+/// `reach`: at least the sum of a box's half sizes and the absolute coordinates of its centre.
 Near obb_distances(const float* node, float reach, const OtherBox& other, float slack, float prune_distance,
                    float* out);
 void obb_distances(const float* node, const float point[3], float slack, float* out);
@@ -41,14 +40,14 @@ struct BoxNode {
   std::uint32_t count;
   float reach;
 };
-/// How another node's coordinates are seen from a node: x -> rows x + offset, which makes lengths `scale`, a power of two,
-/// times as large.
+/// How another node is seen: x -> rows x + offset, which makes lengths `scale`, a power of two, times as
+/// large.
 struct SeenNode {
   float rows[3][3];
   float offset[3];
   float scale;
-  /// A direction to try first, from the node's boxes to the other one's: of length at most 1, or zero. The same for
-  /// the other node: its product with `rows`.
+  /// A direction to try first, from the node's boxes to the other one's: of length at most 1, or zero. The
+  /// same for the other node: its product with `rows`.
   float direction[3];
   float other_direction[3];
 };
@@ -57,13 +56,14 @@ struct ChildPair {
   std::uint8_t own, other;
   float gap;
 };
-/// How many pairs have a distance of at most `prune_distance`, and the least of the others; infinite if there are none.
+/// The pairs within `prune_distance`, and the least distance of the others; infinite without any.
 struct NearPairs {
-  std::uint32_t count;
-  float others;
+  std::array<ChildPair, node_width * node_width> pairs;
+  std::size_t count = 0;
+  float others = INFINITY;
 };
-/// Compares all boxes of two nodes; `out` gets the pairs with at most `prune_distance`, of which there may be 64.
-NearPairs obb_pairs(const BoxNode& node, const BoxNode& other, const SeenNode& seen, float slack,
-                    float prune_distance, ChildPair* out);
+/// Compares all boxes of two nodes.
+void obb_pairs(const BoxNode& node, const BoxNode& other, const SeenNode& seen, float slack,
+               float prune_distance, NearPairs& near);
 
 }  // namespace snug::kernels

@@ -72,8 +72,8 @@ Extent extent_of(std::span<const Obb> boxes, const Vector3& direction) {
     double reach = 0;
     for (std::size_t k = 0; k < 3; ++k) reach += box.half[k] * std::fabs(dot(direction, box.axes[k]));
     const double middle = dot(direction, box.centre - Point3{});
-    // The box as a set of inequalities lies in that of the combinations of its axes, made larger by what the axes lack
-    // of orthonormality; at most 64 roundings.
+    // The box as a set of inequalities lies in that of the combinations of its axes, made larger by what the
+    // axes lack of orthonormality; at most 64 roundings.
     const double error =
         128 * unit_roundoff * (max_abs(box.centre - Point3{}) + box.half.x + box.half.y + box.half.z);
     all.add({middle - reach - error, middle + reach + error});
@@ -92,8 +92,8 @@ std::array<Vector3, 3> principal_axes(std::span<const Point3> points) {
   return axes_of(covariance);
 }
 
-// Where x is a corner of what the extents hold, dot(axis, x - centre) is off from dot(axis, x) - dot(axis, centre) by
-// no more than the roundings counted here.
+// Where x is a corner of what the extents hold, dot(axis, x - centre) is off from dot(axis, x) - dot(axis,
+// centre) by no more than the roundings counted here.
 Obb box_of(const std::array<Vector3, 3>& axes, const std::array<Extent, 3>& extents) {
   Obb box;
   for (const Extent& extent : extents) {

@@ -22,8 +22,8 @@ struct Extent {
 /// Bounds of what cannot be bounded.
 inline constexpr Extent unbounded{-INFINITY, INFINITY};
 
-/// The set of x with |dot(axis_k, x - centre)| <= half_k for k = 0, 1, 2. Axes are orthonormal up to a few roundings;
-/// the set is meant with these very doubles.
+/// The set of x with |dot(axis_k, x - centre)| <= half_k for k = 0, 1, 2. Axes are orthonormal up to a few
+/// roundings; the set is meant with these very doubles.
 struct Obb {
   Point3 centre;
   std::array<Vector3, 3> axes{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};

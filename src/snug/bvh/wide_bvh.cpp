@@ -22,8 +22,8 @@ struct Item {
   std::uint32_t number;
 };
 
-// Eight parts by three halvings, each across the longest side of its box; parts are of whole leaves, so that all but
-// the last of these are full.
+// Eight parts by three halvings, each across the longest side of its box; parts are of whole leaves, so that
+// all but the last of these are full.
 void sort_items(std::span<Item> items, int threads) {
   constexpr std::size_t leaf_size = WideBvh::leaf_size;
   const std::size_t part = child_capacity((items.size() + leaf_size - 1) / leaf_size) * leaf_size;

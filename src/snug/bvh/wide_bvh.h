@@ -10,8 +10,8 @@
 
 namespace snug {
 
-/// A tree of oriented boxes over items, eight children a node; its leaves are up to eight items that lie near each
-/// other. Knows boxes and numbers only: what a leaf opens to is its owner's business.
+/// A tree of oriented boxes over items, eight children a node; its leaves are up to eight items that lie near
+/// each other. Knows boxes and numbers only: what a leaf opens to is its owner's business.
 /// Guarantee: a child's box contains those of all leaves below it. Same tree for any number of threads.
 class WideBvh {
  public:

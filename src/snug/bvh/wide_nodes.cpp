@@ -10,8 +10,8 @@ namespace snug {
 namespace {
 
 constexpr double single_roundoff = 0x1p-24;
-// More than what some hundred operations in single precision lose where they underflow, be it by flushing. Gaps are
-// lowered by it, as by a slack.
+// More than what some hundred operations in single precision lose where they underflow, be it by flushing.
+// Gaps are lowered by it, as by a slack.
 constexpr double single_underflow = 0x1p-118;
 
 float float_up(double x) {
@@ -120,10 +120,8 @@ float WideNodes::distances(std::uint32_t node, const WideNodes& others, std::uin
   kernels::SeenNode seen = view.seen;
   const Vector3 offset = view.frame.apply(others.heads_[other].origin) - heads_[node].origin;
   for (std::size_t k = 0; k < 3; ++k) seen.offset[k] = static_cast<float>(offset[k]);
-  const kernels::NearPairs near = kernels::obb_pairs(
-      boxes(node), others.boxes(other), seen, float_up(view.frame.slack), prune_distance, out.pairs.data());
-  out.count = near.count;
-  return near.others;
+  kernels::obb_pairs(boxes(node), others.boxes(other), seen, float_up(view.frame.slack), prune_distance, out);
+  return out.others;
 }
 
 void WideNodes::distances(std::uint32_t node, const Point3& point, double slack, Distances& out) const {

@@ -24,7 +24,7 @@ struct View {
 
   View() = default;
   View(const PlacedFrame& target, const PlacedFrame& source);
-  /// Gaps of pairs of nodes are looked for along this direction first, from the target's boxes to the source's.
+  /// Gaps of pairs of nodes are looked for along this direction first, from the target to the source.
   void look_along(const Vector3& direction);
 };
 
@@ -34,15 +34,15 @@ struct PlacedBox {
   kernels::OtherBox box;  // but for its centre
 };
 
-/// Nodes of up to eight boxes, in single precision relative to an origin of their own, so that all eight are compared
-/// with another box at once and small ones lose nothing far from the coordinates' origin.
-/// Guarantee: rounding to single precision makes boxes larger, never smaller. Distances have the same bits on every
-///            instruction set.
+/// Nodes of up to eight boxes, in single precision relative to an origin of their own, so that all eight are
+/// compared with another box at once and small ones lose nothing far from the coordinates' origin.
+/// Guarantee: rounding to single precision never makes boxes smaller. The same bits on every instruction set.
 class WideNodes {
  public:
   static constexpr std::size_t width = kernels::node_width;
   using Distances = std::array<float, width>;
   using Near = kernels::Near;
+  using Pairs = kernels::NearPairs;
 
   [[nodiscard]] std::size_t size() const { return heads_.size(); }
   [[nodiscard]] std::size_t bytes() const;
@@ -61,20 +61,17 @@ class WideNodes {
   /// Requires:  view.frame.comparable.
   [[nodiscard]] PlacedBox placed(Child at, const View& view) const;
 
-  /// Lower bounds of the distances from the boxes of a node to a box placed in the node's frame, in its units; zero or
-  /// negative where no gap shows, the more negative the deeper they overlap. Wider gaps than `prune_distance` are not
-  /// looked for where one is found. Returns the boxes with at most that, one bit each, and the least gap of the others.
-  /// Guarantee: at most the exact distance where positive; `slack` is taken off. Where anything is not finite: minus
-  ///            infinity.
+  /// Lower bounds of the distances from the boxes of a node to a box placed in the node's frame, in its
+  /// units; zero or negative where no gap shows, the more negative the deeper they overlap. Wider gaps than
+  /// `prune_distance` are not looked for where one is found. Returns the boxes with at most that, one bit
+  /// each, and the least gap of the others.
+  /// Guarantee: at most the exact distance less `slack` where positive; minus infinity if anything is not
+  ///            finite.
   /// Source:    derivations/boxes.md; [Gottschalk96] for the axes.
   Near distances(std::uint32_t node, const PlacedBox& other, double slack, float prune_distance,
                  Distances& out) const;
-  /// The same of all boxes of two nodes, the other one seen through `view`, which is comparable. `out`: the pairs with
-  /// at most `prune_distance`. Returns the least gap of the others; infinite if there are none.
-  struct Pairs {
-    std::array<kernels::ChildPair, width * width> pairs;
-    std::size_t count = 0;
-  };
+  /// The same of all boxes of two nodes, the other one seen through `view`, which is comparable. `out`: the
+  /// pairs with at most `prune_distance`. Returns the least gap of the others; infinite if there are none.
   float distances(std::uint32_t node, const WideNodes& others, std::uint32_t other, const View& view,
                   float prune_distance, Pairs& out) const;
   /// The same to a point.

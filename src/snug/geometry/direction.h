@@ -4,8 +4,8 @@
 
 namespace snug {
 
-/// The direction of a vector, of length 1 up to 5 roundings, whatever the vector's length; zero for a vector that is
-/// zero or not finite.
+/// The direction of a vector of any length, 1 long up to 5 roundings; zero for one that is zero or not
+/// finite.
 inline Vector3 normalized(const Vector3& v) {
   if (const double size = length(v); size >= 0x1p-400 && size <= 0x1p400) return (1 / size) * v;
   if (!is_finite(v) || v == Vector3{}) return {};

@@ -14,7 +14,7 @@ Interval around(double p, double q, double r, double s) {
   return {rounded_down(low), rounded_up(high)};
 }
 
-// Taylor of sin and cos on [0, pi/4]: terms alternate and fall, so the first one left out bounds the remainder.
+// Taylor of sin and cos on [0, pi/4]: terms alternate and fall, so the first left out bounds the remainder.
 Interval alternating_series(Interval first, Interval x_sq, unsigned factor) {
   Interval term = first, sum = first;
   for (unsigned i = factor; i < 26; i += 2) {

@@ -5,10 +5,10 @@
 
 namespace snug {
 
-/// Arithmetic of intervals, by rounding to nearest and stepping to the neighbour: no rounding mode is needed. For
-/// masks and kinds, not for inner loops. Division by an interval that contains zero gives the whole line.
+/// Arithmetic of intervals, by rounding to nearest and stepping to the neighbour: no rounding mode is needed.
+/// For masks and kinds, not for inner loops. Division by an interval that contains zero gives the whole line.
 ///
-/// Guarantee: inclusion; a result is wider than the exact range by at most two units in the last place of each end.
+/// Guarantee: inclusion; each end is off from that of the exact range by at most two units in its last place.
 [[nodiscard]] Interval operator+(Interval a, Interval b);
 [[nodiscard]] Interval operator-(Interval a, Interval b);
 [[nodiscard]] Interval operator*(Interval a, Interval b);

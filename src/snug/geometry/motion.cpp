@@ -96,8 +96,8 @@ void orthogonalise(Columns& a, Columns& v) {
   }
 }
 
-// R + share R (I - R'R), from an error e to about e^2: by a share of 1/2 the step of Newton and Schulz toward the nearest
-// orthogonal matrix; by 1 the transpose of Newton's from R' toward the inverse, R' + (I - R'R) R'.
+// R + share R (I - R'R), from an error e to about e^2: with 1/2 the step of Newton and Schulz toward the
+// nearest orthogonal matrix; with 1 Newton's from R' toward the inverse, transposed.
 Columns newton_step(const Columns& r, double share) {
   Columns result = r;
   for (std::size_t j = 0; j < 3; ++j) {
@@ -110,7 +110,7 @@ Columns newton_step(const Columns& r, double share) {
 Columns nearest_rotation(Columns a) {
   Columns v{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   orthogonalise(a, v);
-  // The longest first; swapping two columns of both and the sign of one of each changes neither matrix nor determinants.
+  // The longest first; swapping two columns of both and one's sign changes neither matrix nor determinants.
   for (const auto& [p, q] : {std::pair{0u, 1u}, {1u, 2u}, {0u, 1u}}) {
     if (length_sq(a[p]) >= length_sq(a[q])) continue;
     std::swap(a[p], a[q]);

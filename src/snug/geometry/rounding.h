@@ -17,7 +17,7 @@ namespace snug {
 /// Half the distance from 1 to the next double: one rounding to nearest errs by at most this, relatively.
 inline constexpr double unit_roundoff = 0x1p-53;
 
-/// What flushing of denormals can take from one operation: DBL_MIN, because programs that link snug may flush.
+/// What flushing of denormals, which programs that link snug may do, can take from one operation.
 inline constexpr double underflow_error = DBL_MIN;
 
 /// Upper bound of k u / (1 - k u), the relative error of k roundings in a row [Higham02, lemma 3.1].
@@ -26,7 +26,7 @@ inline constexpr double underflow_error = DBL_MIN;
   return static_cast<double>(k) * unit_roundoff * (1 + 0x1p-12);
 }
 
-/// Upper bound of a non-negative quantity that was itself computed in doubles by at most a thousand roundings.
+/// Upper bound of a non-negative quantity that was computed in doubles by at most a thousand roundings.
 [[nodiscard]] constexpr double enlarged(double x) { return x * (1 + 0x1p-42) + underflow_error; }
 
 /// The neighbours of x: with correctly rounded x they enclose the exact value.

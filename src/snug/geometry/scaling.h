@@ -9,9 +9,9 @@
 
 namespace snug {
 
-/// Multiplication by a power of two, to bring coordinates to about 1 before any arithmetic and results back after it.
+/// Multiplication by a power of two: brings coordinates to about 1 before any arithmetic, and results back.
 ///
-/// Guarantee: exact, but for results below DBL_MIN (off by less than underflow_error) and above DBL_MAX (refused).
+/// Guarantee: exact, but for results below DBL_MIN, off by less than underflow_error, and above DBL_MAX.
 class PowerOfTwo {
  public:
   PowerOfTwo() = default;
@@ -31,7 +31,7 @@ class PowerOfTwo {
   [[nodiscard]] double apply(double x) const { return factor_ > 0 ? x * factor_ : std::ldexp(x, exponent_); }
   [[nodiscard]] Point3 apply(Point3 p) const { return {apply(p.x), apply(p.y), apply(p.z)}; }
   [[nodiscard]] Vector3 apply(Vector3 v) const { return {apply(v.x), apply(v.y), apply(v.z)}; }
-  /// Far from both ends of the range: apply(x) cannot overflow for |x| <= 2^60, and loses less than underflow_error.
+  /// Then apply(x) cannot overflow for |x| <= 2^60, and loses less than underflow_error.
   [[nodiscard]] bool moderate() const { return std::abs(exponent_) <= 900; }
   /// 2^exponent(), if moderate().
   [[nodiscard]] double factor() const { return factor_; }

@@ -16,9 +16,9 @@ struct Barycentric {
 
 /// Feet of many points on one triangle, prepared once. The triangle may be a needle or a point.
 ///
-/// Guarantee: b >= 0, c >= 0 and b + c <= 1, in doubles: whatever the rounding, the foot is a point of the triangle
-///            up to 2 unit roundoffs of its edges, so |p - foot| is never below the distance by more than that. No
-///            proof rests on its being the nearest one.
+/// Guarantee: b >= 0, c >= 0 and b + c <= 1, in doubles: whatever the rounding, the foot is a point of the
+///            triangle up to 2 unit roundoffs of its edges, so |p - foot| is never below the distance by more
+///            than that. No proof rests on its being the nearest one.
 /// Source:    [Ericson05, sec. 5.1.5]; differs: the plane's foot by dual vectors, edges each on their own.
 class TriangleFoot {
  public:

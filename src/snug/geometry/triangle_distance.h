@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 
 #include <snug/geometry/triangle.h>
@@ -9,8 +11,8 @@ namespace snug {
 /// Two triangles as near as they come.
 struct NearestTriangles {
   Barycentric on_a, on_b;  ///< of the points that were found nearest, in double precision
-  /// Distance of the supporting planes across the direction between those points: zero or a lower bound of the
-  /// triangles', equal to it up to rounding where the points are the nearest ones.
+  /// Distance of the supporting planes across the direction between those points: zero or a lower bound of
+  /// the triangles', equal to it up to rounding where the points are the nearest ones.
   double certain_distance;
 };
 
@@ -29,8 +31,13 @@ struct PairOfPoints {
   Barycentric on_a, on_b;
 };
 
-/// About the middle of the segment in which two triangles cut each other, in double precision; nothing if they do
-/// not, or lie in one plane.
+/// Where edges of one triangle pass through the inside of the other: edge 0 of a, edge 0 of b, edge 1 of a...
+struct Crossings {
+  std::size_t count = 0;
+  std::array<PairOfPoints, 6> points;
+};
+
+/// About the middle of the segment in which two triangles cut each other; nothing if none is found.
 [[nodiscard]] std::optional<PairOfPoints> middle_of_contact(const Triangle& a, const Triangle& b);
 
 }  // namespace snug

@@ -1,5 +1,5 @@
-// Vector code, compiled once for each instruction set. A file of it defines HWY_TARGET_INCLUDE as its own path and
-// includes this first: no #pragma once, since each instruction set reads it again.
+// Vector code, compiled once for each instruction set. A file of it defines HWY_TARGET_INCLUDE as its own
+// path and includes this first: no #pragma once, since each instruction set reads it again.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
 #include <hwy/foreach_target.h>
 // After it, as the library wants it.

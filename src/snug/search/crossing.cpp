@@ -13,12 +13,12 @@
 namespace snug {
 namespace {
 
-// Levels that a piece near the border's extraordinary corners is split before its whole net stands for its edge.
+// Levels that a piece near an extraordinary corner is split before its whole net stands for its edge.
 constexpr unsigned edge_levels = 8;
 // Levels from the piece asked about to one that is small enough to pass between the strips.
 constexpr unsigned probe_levels = 16;
-// Least sine of the angle between the normal of a base triangle and an edge of the limit triangle: they are across
-// each other but for what the planes of the two triangles differ.
+// Least sine of the angle between the normal of a base triangle and an edge of the limit triangle: they are
+// across each other but for what the planes of the two triangles differ.
 constexpr double least_sine = 0.5;
 
 // Bezier points of the polynomial `part` whose hull holds its edge from corner k to k + 1.
@@ -35,7 +35,8 @@ void visit_bezier_edge(const Patch& patch, std::size_t part, std::size_t edge, c
   }
 }
 
-// Points, relative to the patch's origin, whose hull holds the curve from its corner k to k + 1, each with its error.
+// Points with their errors, relative to the patch's origin, whose hull holds the curve from corner k to k +
+// 1.
 template <class Visit>
 void visit_edge(const Patch& patch, std::size_t edge, unsigned level, const Visit& visit) {
   if (!patch.kind->polynomial()) {
@@ -131,9 +132,9 @@ std::optional<TriangleParameter> in_middle_child(TriangleParameter p) {
   return turned;
 }
 
-// Adds the children whose closed triangles hold the parameter: all have its limit point in common, so together they
-// are connected. False, with the child that descend() names alone, where its parameter there rounds: what holds that
-// need not hold the others'.
+// Adds the children whose closed triangles hold the parameter: all have its limit point in common, so
+// together they are connected. False, with the child that descend() names alone, where its parameter there
+// rounds: what holds that need not hold the others'.
 bool add_children(PieceCache& pieces, const Probe& probe, std::vector<Probe>& out) {
   const auto [u, v] = probe.at;
   const Descent certain = descend(probe.at);
@@ -157,8 +158,8 @@ bool add_children(PieceCache& pieces, const Probe& probe, std::vector<Probe>& ou
   return true;
 }
 
-// Do pieces of `id` around a parameter cross, those that meet there together? Splits some levels down, and keeps nothing.
-// seen: the pieces' frame as seen from that of the crossed piece.
+// Do pieces of `id` around a parameter cross, those that meet there together? Splits some levels down, and
+// keeps nothing. seen: the pieces' frame as seen from that of the crossed piece.
 bool crosses_near(PieceCache& pieces, PieceId id, TriangleParameter at, const Crossed& crossed,
                   const RelativeFrame& seen) {
   if (!seen.comparable) return false;

@@ -6,16 +6,16 @@
 
 namespace snug {
 
-/// What a connected set must do to be proved to meet a piece: run from below it to above it inside the prism over what
-/// its border leaves free.
+/// What a connected set must do to be proved to meet a piece: run from below it to above it inside the prism over
+/// what its border leaves free.
 ///
-///              . above .           The piece lies between two planes across n. Its border lies, seen along n, within
-///          ___/_________\___       three strips along the edges of the limit triangle. A set that stays inside of the
-///         /   | . . . . |   \      strips and has a point below and one above is cut by the piece: else the degree of
-///        /____|_________|____\     the map (point of the piece) - (point of the set) on the sphere around the product of
-///              \ below /           both would be zero, and it is one.
+///              . above .           The piece lies between two planes across n. Its border lies, seen along n,
+///          ___/_________\___       within three strips along the edges of the limit triangle. A set inside of the
+///         /   | . . . . |   \      strips with a point below and one above is cut by the piece: else the degree of
+///        /____|_________|____\     the map (point of the piece) - (point of the set) on the sphere around the
+///              \ below /           product of both would be zero, and it is one.
 ///
-/// Guarantee: a connected set meets the piece if holds() all its parts and some of its points are certainly on either side.
+/// Guarantee: a connected set meets the piece if holds() all its parts and certainly has points on either side.
 /// Source:    derivations/contact.md.
 class Crossed {
  public:
@@ -23,8 +23,7 @@ class Crossed {
 
   /// False if the border leaves nothing free, or the piece has no normal.
   [[nodiscard]] bool possible() const { return possible_; }
-  /// Is all that lies within `radius` of the hull of `around` certainly inside of the strips? In the frame of the
-  /// piece's surface, and so below.
+  /// Is all within `radius` of the hull of `around`, in the piece's frame, certainly inside of the strips?
   [[nodiscard]] bool holds(const Triangle& around, double radius) const;
   struct Sides {
     bool below = false, above = false;
@@ -49,7 +48,7 @@ class Crossed {
   std::array<Strip, 3> strips_;
 };
 
-/// Is it proved that the two pieces, or smaller ones around where their base triangles are nearest, cross each other?
+/// Is it proved that two pieces, or smaller ones where their base triangles are nearest, cross each other?
 /// Source:    derivations/contact.md.
 [[nodiscard]] bool certainly_cross(PairFrames& frames, const PiecePair& pieces);
 

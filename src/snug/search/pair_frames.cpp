@@ -46,8 +46,8 @@ struct Outline {
   }
 };
 
-// A lower bound of the distance along the line between the middles, in some units; not positive where none shows. NaN
-// where numbers come near the ends of the range in these units.
+// A lower bound of the distance along the line between the middles, in some units; not positive where none
+// shows. NaN where numbers come near the ends of the range in these units.
 double gap_between(const PlacedBvh& a, const PlacedBvh& b, PowerOfTwo units) {
   const Outline one(a, units), other(b, units);
   const Vector3 between = other.centre - one.centre;

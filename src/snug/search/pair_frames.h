@@ -7,8 +7,8 @@
 
 namespace snug {
 
-/// Two placed surfaces as one query sees them. Lengths are in units of its own, powers of two away from mesh units, in
-/// which both are at most about 2 large and far.
+/// Two placed surfaces as one query sees them. Lengths are in units of its own, powers of two away from mesh
+/// units, in which both are at most about 2 large and far.
 class PairFrames {
  public:
   /// Errors:    InputError (value) unless each has a workspace of its own.
@@ -26,7 +26,7 @@ class PairFrames {
     if (!view_[side]) view_[side].emplace(frame_[side], frame_[1 - side]);
     return *view_[side];
   }
-  /// Gaps are looked for along this direction, of length 1, first, from A to B: one that holds much of both apart.
+  /// Gaps are looked for along this direction, of length 1, from A to B, before any other.
   void look_along(const Vector3& direction);
 
  private:
@@ -36,8 +36,8 @@ class PairFrames {
   std::array<std::optional<View>, 2> view_;
 };
 
-/// Lower bound, in mesh units, of the distance of two placed surfaces, along the line between their middles: cheap. Not
-/// positive where none shows, or where doubles do not reach.
+/// Lower bound, in mesh units, of the distance of two placed surfaces, along the line between their middles:
+/// cheap. Not positive where none shows, or where doubles do not reach.
 /// Source:    derivations/boxes.md, "Whole models".
 [[nodiscard]] double outer_gap(const PlacedBvh& a, const PlacedBvh& b);
 

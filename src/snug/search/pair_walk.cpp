@@ -9,11 +9,11 @@ namespace {
 
 // Nodes are opened together where the larger one is at most so many times as large.
 constexpr float both_opened = 3;
-// And where they do not overlap by more than this part of the smaller one: else one of them is enough to find out where.
+// And where they overlap by at most this part of the smaller one: else opening one of them is enough.
 constexpr float deep_overlap = 0.4F;
 
-// Gaps of what a pair opens to, in the query's units and not below the pair's own. Rounded down: by one rounding of the
-// factor, two of products, and what they lose where they underflow.
+// Gaps of what a pair opens to, in the query's units and not below the pair's own. Rounded down: by one
+// rounding of the factor, two of products, and what they lose where they underflow.
 struct GapInWorld {
   float to_world, parent_gap;
 

@@ -13,8 +13,8 @@ namespace snug {
 struct NodePair {
   std::array<Node, 2> nodes;
   std::array<float, 2> sizes;  ///< upper bounds of the nodes' sizes, placed
-  /// Lower bound of their distance where positive, in the query's units, and not below that of what they are parts of;
-  /// else the more negative the deeper they overlap.
+  /// Lower bound of their distance where positive, in the query's units, and not below that of what they are
+  /// parts of; else the more negative the deeper they overlap.
   float gap;
 
   [[nodiscard]] bool of_pieces() const { return nodes[0].piece && nodes[1].piece; }
@@ -37,14 +37,14 @@ class PairWalk {
   enum class Bounding : std::uint8_t { sparing, eager };
   /// none: neither can be opened.
   [[nodiscard]] Opening opening(const NodePair& pair, Bounding bounding) const;
-  /// May a query that may open so many pieces open these nodes? Not if it has taken as much memory as it may, either.
+  /// May a query with this budget of pieces open these nodes? Not if its memory is full, either.
   [[nodiscard]] bool may_open(const NodePair& pair, Opening opening, std::uint64_t budget) const {
     const std::uint64_t pieces = (opening != Opening::b && pair.nodes[0].piece ? 1u : 0u) +
                                  (opening != Opening::a && pair.nodes[1].piece ? 1u : 0u);
     return stats_.splits + pieces <= budget && !frames_.workspace(0).full() && !frames_.workspace(1).full();
   }
-  /// What nodes open to, against each other: pairs with a gap of at most `prune_distance` are added to `out`. Returns the
-  /// smallest gap of the others; infinite if there are none.
+  /// What nodes open to, against each other: pairs with a gap of at most `prune_distance` are added to `out`.
+  /// Returns the smallest gap of the others; infinite if there are none.
   /// Requires:  an opening that is not none.
   float open(const NodePair& pair, Opening opening, double prune_distance, std::vector<NodePair>& out);
 

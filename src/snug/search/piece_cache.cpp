@@ -84,8 +84,8 @@ Heights heights_of(const Piece& piece, const HullPoints& points) {
   return {rounded_down(range.lower - error), rounded_up(range.upper + error)};
 }
 
-// Of all that the offset triangle holds. On needles the computed normal is off by far more than a rounding, so that
-// the corners have heights, too.
+// Of all that the offset triangle holds. On needles the computed normal is off by far more than a rounding,
+// so that the corners have heights, too.
 Heights heights_of(const OffsetTriangle& offset) {
   const Vector3 normal = unit_normal(offset.base);
   Heights heights{0, 0};

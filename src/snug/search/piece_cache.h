@@ -24,7 +24,7 @@ struct Piece {
   PieceId first_child;  ///< of four in a row; invalid while the piece is whole
 };
 
-/// A piece with its offset triangle, made from a patch: fitted to hull rows, for which `scratch` is used, or from tables.
+/// A piece made from a patch: its offset triangle is fitted to hull rows, in `scratch`, or comes from tables.
 [[nodiscard]] Piece make_piece(BoundsCache& library, PatchId root, Patch patch, HullPoints& scratch,
                                BoundMethod method = BoundMethod::rows);
 
@@ -39,8 +39,8 @@ struct LimitTriangle {
 /// The normal of a triangle, of length 1 up to a few roundings; zero if it has none.
 [[nodiscard]] Vector3 unit_normal(const Triangle& triangle);
 
-/// Bounds of dot(unit_normal(piece.offset.base), x - piece.offset.base[0]) over the piece, rounding included: narrower
-/// than its radius, which must cover what bulges sideways too.
+/// Bounds of dot(unit_normal(piece.offset.base), x - piece.offset.base[0]) over the piece, rounding included:
+/// narrower than its radius, which must cover what bulges sideways too.
 struct Heights {
   double lower, upper;
 };
@@ -60,11 +60,11 @@ template <std::ranges::range Sets>
   });
 }
 
-/// Patches of one surface, split lazily and in place, pieces with their heights. Scratch memory of a query: one a thread.
+/// Patches of one surface, split lazily and in place. Scratch memory of a query: one a thread.
 ///
 /// Guarantee: what it returns depends on the surface alone, not on the order of calls.
-/// Cost:      a piece about 1 KB; a split four small products and fits. Memory grows with what was touched; a query that
-///            splits counts its own steps against its budget.
+/// Cost:      a piece about 1 KB; a split four small products and fits. Memory grows with what was touched; a
+///            query that splits counts its own steps against its budget.
 class PieceCache {
  public:
   /// Requires:  the surface outlives it.
@@ -76,7 +76,7 @@ class PieceCache {
   [[nodiscard]] PieceId root(PatchId patch);
   [[nodiscard]] const Piece& operator[](PieceId id) const { return pieces_[id.index()].piece; }
   [[nodiscard]] const Heights& heights(PieceId id) const { return pieces_[id.index()].heights; }
-  /// A box around the piece: along its base triangle and its normal, or the coordinate axes where it has none.
+  /// A box around the piece, along its base triangle and normal, or the coordinate axes where it has none.
   [[nodiscard]] const Obb& box(PieceId id) const { return pieces_[id.index()].box; }
   /// Points whose hull holds the piece closely, kept once they are made.
   [[nodiscard]] const HullPoints& hull(PieceId id);

@@ -75,7 +75,7 @@ void PiecePairs::look_along(const Vector3& direction) {
   const Vector3 w = normalized(direction);
   if (w == Vector3{}) return;
   along_ = w;
-  for (std::size_t s = 0; s < 2; ++s) frames_.workspace(s).extents().forget();
+  for (std::size_t s = 0; s < 2; ++s) frames_.workspace(s).forget_extents();
   frames_.look_along(w);
 }
 
@@ -84,7 +84,7 @@ double PiecePairs::gap_along(const NodePair& pair) {
   std::array<double, 2> extents;
   for (std::size_t s = 0; s < 2; ++s) {
     const PieceId id = piece(pair, s);
-    double& known = frames_.workspace(s).extents()[id.index()];
+    double& known = frames_.workspace(s).extent(id);
     if (std::isnan(known)) known = placed_extent(s, id, along_);
     extents[s] = known;
   }

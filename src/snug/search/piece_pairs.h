@@ -40,8 +40,8 @@ class PiecePairs {
   [[nodiscard]] double radii(const NodePair& pair) const;
   [[nodiscard]] PiecePair nearest(const NodePair& pair);
 
-  /// Lower bound of the distance of two pieces: that of the planes across `direction` that hold their hulls apart. The
-  /// best direction is that from the nearest point of A to that of B.
+  /// Lower bound of the distance of two pieces: that of the planes across `direction` that hold their hulls
+  /// apart. The best direction is that from the nearest point of A to that of B.
   [[nodiscard]] double hull_gap(const NodePair& pair, const Vector3& direction);
   /// A direction from A to B, that both the walk and gap_along() look along from now on.
   void look_along(const Vector3& direction);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include <snug/base/parallel.h>
@@ -19,11 +18,15 @@ std::uint32_t spread(std::uint32_t bits) {
   return (bits | bits << 2) & 0x09249249u;
 }
 
-// Where the points stand along the curve.
-std::vector<std::uint32_t> spatial_order(std::span<const Point3> points) {
+struct Place {
+  std::uint32_t along, point;
+};
+
+// The points in the order of the curve.
+std::vector<Place> spatial_order(std::span<const Point3> points) {
   Box3 box;
   for (const Point3& p : points) box.add(p);
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> places;
+  std::vector<Place> places;
   places.reserve(points.size());
   for (const Point3& p : points) {
     std::uint32_t code = 0;
@@ -32,13 +35,12 @@ std::vector<std::uint32_t> spatial_order(std::span<const Point3> points) {
       const double cell = share >= 0 && share <= 1 ? 1023 * share : 0;
       code |= spread(static_cast<std::uint32_t>(cell)) << k;
     }
-    places.emplace_back(code, static_cast<std::uint32_t>(places.size()));
+    places.push_back({code, static_cast<std::uint32_t>(places.size())});
   }
-  std::sort(places.begin(), places.end());
-  std::vector<std::uint32_t> order;
-  order.reserve(places.size());
-  for (const auto& place : places) order.push_back(place.second);
-  return order;
+  std::sort(places.begin(), places.end(), [](const Place& x, const Place& y) {
+    return x.along != y.along ? x.along < y.along : x.point < y.point;
+  });
+  return places;
 }
 
 }  // namespace
@@ -46,13 +48,13 @@ std::vector<std::uint32_t> spatial_order(std::span<const Point3> points) {
 void for_each_point(const SurfaceBvh& model, std::span<const Point3> points, int threads,
                     const WorkMonitor& monitor,
                     const std::function<void(SurfaceWorkspace&, std::size_t)>& ask) {
-  const std::vector<std::uint32_t> order = spatial_order(points);
+  const std::vector<Place> order = spatial_order(points);
   std::atomic<std::size_t> done{0};
   parallel_for_with(
       points.size(), threads, [&] { return SurfaceWorkspace(model); },
       [&](SurfaceWorkspace& scratch, std::size_t begin, std::size_t end) {
-        for (const std::uint32_t i : std::span(order).subspan(begin, end - begin)) {
-          ask(scratch, i);
+        for (const Place& place : std::span(order).subspan(begin, end - begin)) {
+          ask(scratch, place.point);
           const std::size_t count = ++done;
           if (count % (1 + points.size() / 1000) == 0) {
             monitor.report(static_cast<double>(count) / static_cast<double>(points.size()));

@@ -33,13 +33,13 @@ template <class Options>
   return bounds.upper - bounds.lower <= std::max(*options.absolute, *options.relative * bounds.upper);
 }
 
-/// A number of single precision that is not above a lower bound x >= 0; below zero where single precision underflows.
+/// A number of single precision not above a lower bound x >= 0; below zero where single precision underflows.
 [[nodiscard]] inline float single_down(double x) { return static_cast<float>(x * (1 - 0x1p-23)) - 0x1p-125F; }
 
-/// Bounds of a distance while they are searched for, in a search's units, in which surfaces are about 2 large.
+/// Bounds of a distance while it is searched for, in units in which surfaces are about 2 large.
 class DistanceBounds {
  public:
-  /// `absolute`, `noise`: bounds are not brought nearer to each other; `noise` where rounding hides what is left.
+  /// `absolute`, `noise`: bounds come no nearer to each other; `noise` since rounding hides what is left.
   DistanceBounds(double absolute, double relative, double noise)
       : absolute_(std::max(absolute, noise)), relative_(relative) {}
 

@@ -58,8 +58,8 @@ std::vector<PatchId> component_patches(const LimitSurface& surface) {
   return patches;
 }
 
-// Calls visit(first, second, edge) for each edge of an owner that its first split cuts in two: the patches on the first
-// and on the second half of it. Their corners there are 0 and 1, and 1 and 2.
+// Calls visit(first, second, edge) for each edge of an owner that its first split cuts in two: the patches on
+// the first and on the second half of it. Their corners there are 0 and 1, and 1 and 2.
 template <class Visit>
 void for_each_cut_edge(const LimitSurface& surface, const Visit& visit) {
   for (std::size_t owner = 0; owner < surface.owner_count(); ++owner) {

@@ -8,16 +8,16 @@
 
 namespace snug {
 
-/// What a closed limit surface needs to be asked about inside and outside: the solid that it bounds is the surface with
-/// all points around which it winds. Immutable; may be read by many threads.
+/// What a closed limit surface needs to be asked about inside and outside: the solid that it bounds is the
+/// surface with all points around which it winds. Immutable; may be read by many threads.
 /// Source:    derivations/contact.md, "Inside or outside of a closed surface".
 class Solid {
  public:
-  /// Errors:    InputError (refused), naming an edge or a face, unless every edge of the surface's mesh has two faces
-  ///            that run along it in opposite directions, and all have a limit surface.
+  /// Errors:    InputError (refused), naming an edge or a face, unless every edge of the surface's mesh has
+  ///            two faces that run along it in opposite directions, and all have a limit surface.
   explicit Solid(const LimitSurface& surface);
 
-  /// The triangles (a, b, m) over edges from a to b whose middle m belongs to the first split of one side alone.
+  /// Triangles (a, b, m) over edges from a to b whose middle m belongs to the first split of one side alone.
   [[nodiscard]] const std::vector<LimitTriangle>& fillers() const { return fillers_; }
   /// Over the fillers; null if there are none.
   [[nodiscard]] const WideBvh* filler_tree() const { return tree_.get(); }

@@ -12,14 +12,14 @@ namespace snug {
 
 struct SurfaceBvhOptions {
   BoundMethod method = BoundMethod::rows;  ///< of pieces
-  /// Bound all patches when the model is made, some microseconds each: a tighter tree, for models that are asked
-  /// thousands of times. Otherwise the tree is over the control net alone.
+  /// Bound all patches when the model is made, some microseconds each: a tighter tree, for models that are
+  /// asked thousands of times. Otherwise the tree is over the control net alone.
   bool tight = false;
   int threads = 0;  ///< that make it
 };
 
-/// A surface made ready for queries: a tree over its control net. Patches are bounded, and split, where and when a
-/// query comes near them (SurfaceWorkspace). Immutable; may be read by many threads.
+/// A surface made ready for queries: a tree over its control net. Patches are bounded, and split, where and
+/// when a query comes near them (SurfaceWorkspace). Immutable; may be read by many threads.
 /// Cost:      about 0.3 microseconds and 15 bytes a patch; see bench/results/collide.txt.
 class SurfaceBvh {
  public:

@@ -38,11 +38,9 @@ std::uint64_t next_number() {
 }  // namespace
 
 SurfaceData::SurfaceData(ControlMesh mesh, const SurfaceOptions& options)
-    : limit_(make_surface(std::move(mesh), options)), number_(next_number()) {
-  bvh_options_.method = options.bounds;
-  bvh_options_.tight = options.tight;
-  bvh_options_.threads = options.threads;
-}
+    : limit_(make_surface(std::move(mesh), options)),
+      bvh_options_{.method = options.bounds, .tight = options.tight, .threads = options.threads},
+      number_(next_number()) {}
 
 const SurfaceBvh& SurfaceData::bvh() const {
   return bvh_.get([&] { return SurfaceBvh(limit_, bvh_options_); });

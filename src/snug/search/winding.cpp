@@ -124,8 +124,8 @@ class Winding {
   // Has a direction failed since pieces around the point could not be made small enough? Then all do.
   [[nodiscard]] bool on_surface() const { return on_surface_; }
 
-  // Lower bound of the distance of the surface: the least gap to the sets around pieces, which are split where they hold
-  // the point. Not positive if that takes too long.
+  // Lower bound of the distance of the surface: the least gap to the sets around pieces, which are split
+  // where they hold the point. Not positive if that takes too long.
   double clearance() {
     NearestFirst<NodeGap> open;
     open.start({workspace_.root(), -INFINITY});
@@ -149,8 +149,8 @@ class Winding {
   }
 
  private:
-  // Lower bound of the distance of a piece, by its offset triangle: of one that cannot be split this is much nearer to
-  // it than the set around it.
+  // Lower bound of the distance of a piece, by its offset triangle: of one that cannot be split this is much
+  // nearer to it than the set around it.
   [[nodiscard]] double gap_of(PieceId id) const {
     const OffsetTriangle& offset = workspace_.pieces()[id].offset;
     const double apart = nearest({point_, point_, point_}, offset.base).certain_distance;
@@ -239,7 +239,7 @@ std::optional<int> winding_number(SurfaceWorkspace& workspace, const Point3& poi
   Winding winding(workspace, point, error, monitor);
   if (const std::optional<int> number = along_some_ray(winding, from_middle)) return number;
   if (winding.on_surface()) return std::nullopt;
-  // In the plane of a filler no ray decides. All points that are nearer than the surface have the same number.
+  // In the plane of a filler no ray decides. All points nearer than the surface have the same number.
   const double clearance = winding.clearance();
   if (!(clearance > 8 * error + 0x1p-45)) return std::nullopt;
   for (const Vector3& direction : directions) {

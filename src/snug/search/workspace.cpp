@@ -14,7 +14,8 @@ SurfaceWorkspace::SurfaceWorkspace(const SurfaceBvh& model)
     : model_(&model), pieces_(model.surface(), model.method()), of_leaf_(model.tree().leaf_count(), none) {}
 
 std::size_t SurfaceWorkspace::bytes() const {
-  return pieces_.bytes() + piece_nodes_.bytes() + extents_.bytes() + facts_.capacity() * sizeof(Facts) +
+  return pieces_.bytes() + piece_nodes_.bytes() + extents_.capacity() * sizeof(KnownExtent) +
+         facts_.capacity() * sizeof(Facts) +
          (of_leaf_.capacity() + of_piece_.capacity() + stamps_.capacity()) * sizeof(std::uint32_t);
 }
 

@@ -20,8 +20,8 @@ struct Node {
   [[nodiscard]] Child child() const { return {parent, place}; }
 };
 
-/// What queries have touched of one surface: its pieces, and their boxes in nodes. One a thread. Dropped between two
-/// queries when it has grown beyond 256 MiB.
+/// What queries have touched of one surface: its pieces, and their boxes in nodes. One a thread. Dropped
+/// between two queries when it has grown beyond 256 MiB.
 /// Guarantee: a node opens to the same boxes whatever came before: no answer depends on earlier queries.
 class SurfaceWorkspace {
  public:
@@ -61,28 +61,15 @@ class SurfaceWorkspace {
   /// Requires:  can_open(node).
   [[nodiscard]] Opened open(Node node);
 
-  /// A number for each piece, for as long as a query likes; NaN for those that it has not given one.
-  class Numbers {
-   public:
-    [[nodiscard]] double& operator[](std::size_t piece) {
-      if (piece >= kept_.size()) kept_.resize(piece + 1, {0, 0});
-      Number& number = kept_[piece];
-      if (number.stamp != stamp_) number = {NAN, stamp_};
-      return number.value;
-    }
-    void forget() { ++stamp_; }
-    [[nodiscard]] std::size_t bytes() const { return kept_.capacity() * sizeof(Number); }
-
-   private:
-    struct Number {
-      double value;
-      std::uint64_t stamp;
-    };
-    std::vector<Number> kept_;
-    std::uint64_t stamp_ = 1;
-  };
-  /// How far pieces reach along the direction that a query looks along.
-  [[nodiscard]] Numbers& extents() { return extents_; }
+  /// How far a piece reaches along the direction that a query looks along; NaN where that is not yet known.
+  [[nodiscard]] double& extent(PieceId id) {
+    if (id.index() >= extents_.size()) extents_.resize(id.index() + 1, {0, 0});
+    KnownExtent& known = extents_[id.index()];
+    if (known.direction != direction_) known = {NAN, direction_};
+    return known.extent;
+  }
+  /// The query looks along another direction: no extent is known.
+  void forget_extents() { ++direction_; }
 
   /// Has the query opened as many different nodes of pieces as one may? Bounds its memory.
   [[nodiscard]] bool full() const { return touched_ >= 50'000; }
@@ -94,14 +81,20 @@ class SurfaceWorkspace {
     std::uint8_t can_split;
   };
 
+  struct KnownExtent {
+    double extent;
+    std::uint64_t direction;
+  };
+
   std::uint32_t add_node(std::span<const PieceId> pieces);
   Opened opened(std::uint32_t node);
 
   const SurfaceBvh* model_;
   PieceCache pieces_;
   WideNodes piece_nodes_;
-  std::vector<Facts> facts_;  // of piece_nodes_
-  Numbers extents_;
+  std::vector<Facts> facts_;          // of piece_nodes_
+  std::vector<KnownExtent> extents_;  // of pieces
+  std::uint64_t direction_ = 1;
   // The nodes that leaves and pieces open to; `none` where not opened.
   std::vector<std::uint32_t> of_leaf_, of_piece_;
   std::vector<std::uint32_t> stamps_;  // of piece_nodes_: the query that opened them last
