@@ -6,16 +6,16 @@
 
 namespace snug {
 
-/// What a connected set must do to be proved to meet a piece: run from below it to above it inside the prism over
-/// what its border leaves free.
+/// What a connected set must do to be proved to meet a piece: run from below it to above it inside the prism
+/// over what its border leaves free.
 ///
-///              . above .           The piece lies between two planes across n. Its border lies, seen along n,
-///          ___/_________\___       within three strips along the edges of the limit triangle. A set inside of the
-///         /   | . . . . |   \      strips with a point below and one above is cut by the piece: else the degree of
-///        /____|_________|____\     the map (point of the piece) - (point of the set) on the sphere around the
-///              \ below /           product of both would be zero, and it is one.
+///              . above .           The piece lies between two planes across n, and its border, seen along n,
+///          ___/_________\___       within three strips along the edges of the limit triangle. A set inside
+///         /   | . . . . |   \      of the strips with a point below and one above is cut by the piece: else
+///        /____|_________|____\     the degree of the map (point of the piece) - (point of the set) on the
+///              \ below /           sphere around the product of both would be zero, and it is one.
 ///
-/// Guarantee: a connected set meets the piece if holds() all its parts and certainly has points on either side.
+/// Guarantee: a connected set meets the piece if holds() all its parts and sides() finds points on either.
 /// Source:    derivations/contact.md.
 class Crossed {
  public:

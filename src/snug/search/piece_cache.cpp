@@ -145,7 +145,7 @@ const HullPoints& PieceCache::hull(PieceId id) {
   if (!kept.hull) {
     // Scratch memory is several times as large as what it is needed for.
     close_points(surface_.library(), kept.piece.patch, scratch_);
-    auto hull = std::make_unique<HullPoints>();
+    auto hull = std::make_shared<HullPoints>();
     hull->assign(scratch_);
     kept.hull = std::move(hull);
     bytes_ += sizeof(HullPoints) + 3 * scratch_.size() * sizeof(double);

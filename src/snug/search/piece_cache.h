@@ -99,7 +99,7 @@ class PieceCache {
     Piece piece;
     Heights heights;
     Obb box;
-    std::unique_ptr<HullPoints> hull;  // once it was asked for
+    std::shared_ptr<const HullPoints> hull;  // once it was asked for
   };
 
   PieceId add(PatchId root, Patch patch);

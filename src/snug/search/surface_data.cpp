@@ -17,16 +17,11 @@ std::shared_ptr<BoundsCache> shared_bounds() {
   return cache;
 }
 
-SchemeOptions rules_for(const ControlMesh& mesh, const SurfaceOptions& options) {
+LimitSurface make_surface(ControlMesh mesh, const SurfaceOptions& options) {
   SchemeOptions rules;
   rules.scheme = options.scheme ? *options.scheme : natural_scheme(mesh);
   rules.boundary =
       options.boundary ? *options.boundary : mesh.tags.boundary.value_or(BoundaryRule::edge_and_corner);
-  return rules;
-}
-
-LimitSurface make_surface(ControlMesh mesh, const SurfaceOptions& options) {
-  const SchemeOptions rules = rules_for(mesh, options);
   return {std::move(mesh), rules, shared_bounds(), options.threads, options.monitor};
 }
 

@@ -95,15 +95,11 @@ class Winding {
       if (node.piece) {
         monitor_.checkpoint();
         const bool last = !workspace_.can_open(node);
-        if (last ? !(gap_of(workspace_.piece(node)) > 0) : ++splits > max_splits) {
-          on_surface_ = true;
-          return std::nullopt;
-        }
-        if (last) {
-          if (!ray.add(corners(workspace_.piece(node)))) return std::nullopt;
-          continue;
-        }
-        if (!add_fillers(node, ray)) return std::nullopt;
+        on_surface_ = last ? !(gap_of(workspace_.piece(node)) > 0) : ++splits > max_splits;
+        if (on_surface_) return std::nullopt;
+        const bool added = last ? ray.add(corners(workspace_.piece(node))) : add_fillers(node, ray);
+        if (!added) return std::nullopt;
+        if (last) continue;
       }
       const SurfaceWorkspace::Opened opened = workspace_.open(node);
       WideNodes::Distances to_segment, to_point;
