@@ -276,7 +276,8 @@ HWY_INLINE void compare_balls(const BoxNode& node, const BoxNode& other, const S
 
 // Axes of eight of these pairs from `begin` on: those that are left go to `out`.
 HWY_INLINE void compare_axes(const float* rows, const float* placed, Left& left, std::size_t begin,
-                             V all_slack, float prune_distance, NearPairs& near, V& others) {
+                             V all_slack, float prune_distance, ChildPair* out, std::size_t& found_count,
+                             V& others) {
   const Tag d;
   const std::size_t count = std::min<std::size_t>(8, left.count - begin);
   std::int32_t* const own = left.own + begin;
@@ -303,8 +304,7 @@ HWY_INLINE void compare_axes(const float* rows, const float* placed, Left& left,
   }
   for (near_bits &= (1u << count) - 1; near_bits != 0; near_bits &= near_bits - 1) {
     const auto l = static_cast<std::size_t>(std::countr_zero(near_bits));
-    near.pairs[near.count++] = {static_cast<std::uint8_t>(own[l]), static_cast<std::uint8_t>(other[l]),
-                                found[l]};
+    out[found_count++] = {static_cast<std::uint8_t>(own[l]), static_cast<std::uint8_t>(other[l]), found[l]};
   }
 }
 
@@ -330,9 +330,11 @@ void box_pairs(const BoxNode& node, const BoxNode& other, const SeenNode& seen, 
   Left left;
   compare_balls(node, other, seen, placed, all_slack, hn::Set(d, prune_distance), left, others);
   if (left.count != 0) place_axes(other, seen, placed);
+  std::size_t count = 0;  // not near.count, which what is written may be for all that a compiler knows
   for (std::size_t begin = 0; begin < left.count; begin += 8) {
-    compare_axes(node.rows, placed, left, begin, all_slack, prune_distance, near, others);
+    compare_axes(node.rows, placed, left, begin, all_slack, prune_distance, near.pairs.data(), count, others);
   }
+  near.count = count;
   near.others = hn::GetLane(hn::MinOfLanes(d, others));
 }
 

@@ -75,12 +75,6 @@ SurfaceWorkspace::Opened PairWalk::open_node(const NodePair& pair, std::size_t s
   return frames_.workspace(side).open(pair.nodes[side]);
 }
 
-void PairWalk::put(NodePair& pair, std::size_t side, const SurfaceWorkspace::Opened& opened,
-                   std::size_t place) const {
-  pair.nodes[side] = opened.child(place);
-  pair.sizes[side] = scale_[side] * opened.nodes.size_of(pair.nodes[side].child());
-}
-
 float PairWalk::open_both(const NodePair& pair, double prune_distance, std::vector<NodePair>& out) {
   const SurfaceWorkspace::Opened a = open_node(pair, 0), b = open_node(pair, 1);
   stats_.box_tests += a.count() * b.count();
@@ -91,10 +85,11 @@ float PairWalk::open_both(const NodePair& pair, double prune_distance, std::vect
                                          static_cast<float>(prune_distance * view.frame.from_world), near);
   for (std::size_t k = 0; k < near.count; ++k) {
     const kernels::ChildPair& found = near.pairs[k];
-    NodePair& next = out.emplace_back();
-    put(next, 0, a, found.own);
-    put(next, 1, b, found.other);
-    next.gap = gap_of(found.gap);
+    const Node of_a = a.child(found.own), of_b = b.child(found.other);
+    out.push_back(
+        {.nodes = {of_a, of_b},
+         .sizes = {scale_[0] * a.nodes.size_of(of_a.child()), scale_[1] * b.nodes.size_of(of_b.child())},
+         .gap = gap_of(found.gap)});
   }
   return gap_of(others);
 }
@@ -118,7 +113,8 @@ float PairWalk::open_one(const NodePair& pair, std::size_t side, double prune_di
   for (std::uint32_t rest = near.places; rest != 0; rest &= rest - 1) {
     const auto place = static_cast<std::size_t>(std::countr_zero(rest));
     NodePair& next = out.emplace_back(pair);
-    put(next, side, opened, place);
+    next.nodes[side] = opened.child(place);
+    next.sizes[side] = scale_[side] * opened.nodes.size_of(next.nodes[side].child());
     next.gap = gap_of(gaps[place]);
   }
   return gap_of(near.others);

@@ -50,7 +50,6 @@ class PairWalk {
 
  private:
   SurfaceWorkspace::Opened open_node(const NodePair& pair, std::size_t side);
-  void put(NodePair& pair, std::size_t side, const SurfaceWorkspace::Opened& opened, std::size_t place) const;
   float open_both(const NodePair& pair, double prune_distance, std::vector<NodePair>& out);
   float open_one(const NodePair& pair, std::size_t side, double prune_distance, std::vector<NodePair>& out);
 
