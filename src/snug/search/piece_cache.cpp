@@ -129,28 +129,33 @@ PieceId PieceCache::add(PatchId root, Patch patch) {
   const Obb box = fit_box(box_axes(piece.offset.base), [&](const Vector3& d) {
     return by_table ? extent_of(piece.offset, d) : extent_of(scratch_, d);
   });
-  bytes_ += sizeof(Kept) + piece.patch.points.capacity() * sizeof(Vector3);
-  pieces_.push_back({std::move(piece), heights, box, nullptr});
+  bytes_ += sizeof(Piece) + sizeof(Around) + piece.patch.points.capacity() * sizeof(Vector3);
+  pieces_.push_back(std::move(piece));
+  around_.push_back({heights, box});
   return PieceId(pieces_.size() - 1);
 }
 
 void PieceCache::clear() {
   std::fill(roots_.begin(), roots_.end(), PieceId());
   pieces_.clear();
+  hulls_.clear();
+  around_.clear();
+  hull_places_.clear();
   bytes_ = 0;
 }
 
 const HullPoints& PieceCache::hull(PieceId id) {
-  Kept& kept = pieces_[id.index()];
-  if (!kept.hull) {
+  if (id.index() >= hull_places_.size()) hull_places_.resize(pieces_.size(), 0);
+  std::uint32_t& place = hull_places_[id.index()];
+  if (place == 0) {
     // Scratch memory is several times as large as what it is needed for.
-    close_points(surface_.library(), kept.piece.patch, scratch_);
-    auto hull = std::make_shared<HullPoints>();
-    hull->assign(scratch_);
-    kept.hull = std::move(hull);
-    bytes_ += sizeof(HullPoints) + 3 * scratch_.size() * sizeof(double);
+    close_points(surface_.library(), pieces_[id.index()].patch, scratch_);
+    HullPoints& points = hulls_.emplace_back();
+    points.assign(scratch_);
+    place = static_cast<std::uint32_t>(hulls_.size());
+    bytes_ += sizeof(HullPoints) + 3 * points.size() * sizeof(double);
   }
-  return *kept.hull;
+  return hulls_[place - 1];
 }
 
 PieceId PieceCache::root(PatchId patch) {
@@ -169,7 +174,7 @@ bool PieceCache::can_split(PieceId id) const {
 }
 
 PieceId PieceCache::split(PieceId id) {
-  Piece& parent = pieces_[id.index()].piece;  // stays where it is while others are added
+  Piece& parent = pieces_[id.index()];  // stays where it is while others are added
   if (parent.first_child.valid()) return parent.first_child;
   SNUG_EXPECT(parent.patch.path.level() < PiecePath::max_level);
   const PieceId first(pieces_.size());

