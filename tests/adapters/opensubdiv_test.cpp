@@ -13,8 +13,8 @@
 #include <opensubdiv/far/topologyDescriptor.h>
 #include <snug/adapters/opensubdiv.h>
 #include <snug/evaluate.h>
+#include <snug/io/formats.h>
 #include <snug/io/mesh_file.h>
-#include <snug/io/obj.h>
 #include <snug/search/surface_data.h>
 
 namespace snug {

@@ -1,4 +1,4 @@
-#include <snug/io/ply.h>
+#include <snug/io/formats.h>
 #include <testing/written_forms.h>
 
 #include "claims.h"

@@ -1,4 +1,4 @@
-#include <snug/io/stl.h>
+#include <snug/io/formats.h>
 #include <snug/mesh/weld.h>
 #include <testing/written_forms.h>
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <snug/io/formats.h>
 #include <snug/io/mesh_file.h>
-#include <snug/io/obj.h>
 
 #include "io_testing.h"
 

@@ -1,4 +1,4 @@
-#include <snug/io/glb.h>
+#include <snug/io/formats.h>
 
 #include <array>
 #include <bit>

@@ -6,9 +6,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <snug/io/obj.h>
-#include <snug/io/off.h>
-#include <snug/io/ply.h>
+#include <snug/io/formats.h>
 #include <testing/written_forms.h>
 
 #include "io_testing.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <snug/io/obj.h>
+#include <snug/io/formats.h>
 
 #include "io_testing.h"
 

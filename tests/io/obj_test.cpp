@@ -1,4 +1,4 @@
-#include <snug/io/obj.h>
+#include <snug/io/formats.h>
 
 #include <bit>
 #include <cmath>

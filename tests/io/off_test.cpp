@@ -1,4 +1,4 @@
-#include <snug/io/off.h>
+#include <snug/io/formats.h>
 
 #include <bit>
 #include <random>

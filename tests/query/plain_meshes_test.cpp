@@ -202,8 +202,8 @@ TEST(flat, refuses_other_faces_and_says_which_scheme_takes_them) {
   } catch (const InputError& error) {
     EXPECT_STREQ(
         error.what(),
-        "face 0 has 4 vertices (6 faces are not triangles); the flat scheme has triangles as they are: "
-        "triangulate the mesh, or take the bilinear scheme");
+        "face 0 has 4 vertices (6 faces are not triangles); the scheme flat needs triangles: triangulate the "
+        "mesh, or use the scheme bilinear");
   }
 }
 

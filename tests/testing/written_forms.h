@@ -6,8 +6,8 @@
 #include <string>
 
 #include <snug/io/binary.h>
+#include <snug/io/formats.h>
 #include <snug/io/number.h>
-#include <snug/io/ply.h>
 #include <snug/mesh.h>
 
 /// Files as other programs write them: the forms of PLY and STL that snug reads and does not write.

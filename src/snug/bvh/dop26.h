@@ -24,28 +24,28 @@ class Dop26 {
   ///            2^-400 and 2^400 in size, or 0. Infinite or NaN where a box is not finite.
   /// Source:    derivations/boxes.md.
   [[nodiscard]] double reach(const Vector3& direction) const {
-    // Coordinates by size, without branches on them; places of directions count 1, 3 and 9 a coordinate.
-    const double x = std::fabs(direction.x), y = std::fabs(direction.y), z = std::fabs(direction.z);
-    const int xy = x < y ? 1 : 0, xz = x < z ? 1 : 0, yz = y < z ? 1 : 0;
-    const std::array<int, 3> rank{xy + xz, 1 - xy + yz, 2 - xz - yz};
-    const std::array<double, 3> size{x, y, z};
-    std::array<double, 3> sizes;
-    std::array<int, 3> steps;
-    for (std::size_t k = 0, step = 1; k < 3; ++k, step *= 3) {
-      const auto r = static_cast<std::size_t>(rank[k]);
-      sizes[r] = size[k];
-      steps[r] = std::signbit(direction[k]) ? -static_cast<int>(step) : static_cast<int>(step);
-    }
-    const int axis = middle + steps[0], edge = axis + steps[1], corner = edge + steps[2];
-    return (sizes[0] - sizes[1]) * reach_[static_cast<std::size_t>(axis)] +
-           (sizes[1] - sizes[2]) * reach_[static_cast<std::size_t>(edge)] +
-           sizes[2] * reach_[static_cast<std::size_t>(corner)];
+    // Coordinates by size, without branches that depend on them; places of directions count 1, 3 and 9 each.
+    double s0 = std::fabs(direction.x), s1 = std::fabs(direction.y), s2 = std::fabs(direction.z);
+    int step0 = std::signbit(direction.x) ? -1 : 1, step1 = std::signbit(direction.y) ? -3 : 3,
+        step2 = std::signbit(direction.z) ? -9 : 9;
+    larger_first(s0, step0, s1, step1);
+    larger_first(s1, step1, s2, step2);
+    larger_first(s0, step0, s1, step1);
+    const int axis = middle + step0, edge = axis + step1, corner = edge + step2;
+    return (s0 - s1) * reach_[static_cast<std::size_t>(axis)] +
+           (s1 - s2) * reach_[static_cast<std::size_t>(edge)] + s2 * reach_[static_cast<std::size_t>(corner)];
   }
   /// Upper bound of |x - centre| a coordinate.
   [[nodiscard]] double radius() const { return radius_; }
 
  private:
   static constexpr int middle = 13;
+  static void larger_first(double& x, int& step_x, double& y, int& step_y) {
+    const bool less = x < y;
+    const double larger = less ? y : x, smaller = less ? x : y;
+    const int first = less ? step_y : step_x, second = less ? step_x : step_y;
+    x = larger, y = smaller, step_x = first, step_y = second;
+  }
   std::array<double, 27> reach_{};  // along (i - 1, j - 1, k - 1) at i + 3 j + 9 k
   double radius_ = 0;
 };

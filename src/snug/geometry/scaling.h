@@ -33,8 +33,9 @@ class PowerOfTwo {
   [[nodiscard]] Vector3 apply(Vector3 v) const { return {apply(v.x), apply(v.y), apply(v.z)}; }
   /// Then apply(x) cannot overflow for |x| <= 2^60, and loses less than underflow_error.
   [[nodiscard]] bool moderate() const { return std::abs(exponent_) <= 900; }
-  /// 2^exponent(), if moderate().
+  /// 2^exponent() and 2^-exponent(), if moderate().
   [[nodiscard]] double factor() const { return factor_; }
+  [[nodiscard]] double inverse_factor() const { return inverse_factor_; }
   /// Does x survive the way there and back?
   [[nodiscard]] bool exact(double x) const {
     return factor_ > 0 ? (x * factor_) * inverse_factor_ == x

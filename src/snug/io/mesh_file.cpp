@@ -6,13 +6,9 @@
 
 #include <snug/base/error.h>
 #include <snug/io/atomic_file.h>
-#include <snug/io/glb.h>
+#include <snug/io/formats.h>
 #include <snug/io/number.h>
-#include <snug/io/obj.h>
-#include <snug/io/off.h>
-#include <snug/io/ply.h>
 #include <snug/io/read_file.h>
-#include <snug/io/stl.h>
 #include <snug/mesh/weld.h>
 
 namespace snug {

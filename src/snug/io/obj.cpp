@@ -1,4 +1,4 @@
-#include <snug/io/obj.h>
+#include <snug/io/formats.h>
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 #include <snug/base/error.h>
 #include <snug/io/number.h>
 #include <snug/io/obj_tags.h>
+#include <snug/io/read_file.h>
 #include <snug/io/text_cursor.h>
-#include <snug/io/text_kind.h>
 
 namespace snug {
 namespace {

@@ -1,4 +1,4 @@
-#include <snug/io/off.h>
+#include <snug/io/formats.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 #include <snug/base/error.h>
 #include <snug/io/number.h>
+#include <snug/io/read_file.h>
 #include <snug/io/text_cursor.h>
-#include <snug/io/text_kind.h>
 
 namespace snug {
 namespace {

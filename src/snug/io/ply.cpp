@@ -1,4 +1,4 @@
-#include <snug/io/ply.h>
+#include <snug/io/formats.h>
 
 #include <algorithm>
 #include <array>
@@ -13,8 +13,8 @@
 #include <snug/base/names.h>
 #include <snug/io/binary.h>
 #include <snug/io/number.h>
+#include <snug/io/read_file.h>
 #include <snug/io/text_cursor.h>
-#include <snug/io/text_kind.h>
 
 namespace snug {
 namespace {

@@ -1,4 +1,4 @@
-#include <snug/io/stl.h>
+#include <snug/io/formats.h>
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 #include <snug/geometry/scaling.h>
 #include <snug/io/binary.h>
 #include <snug/io/number.h>
+#include <snug/io/read_file.h>
 #include <snug/io/text_cursor.h>
-#include <snug/io/text_kind.h>
 #include <snug/mesh/weld.h>
 
 namespace snug {

@@ -18,38 +18,44 @@ PowerOfTwo joint_scale(const PlacedBvh& a, const PlacedBvh& b) {
   return scale.apply(t) < 2 ? scale : PowerOfTwo(-std::max(exponent, std::ilogb(t)));
 }
 
+// From the units of a surface.
+double scale_to(PowerOfTwo world, PowerOfTwo own) { return (own.inverse() * world).apply(1.0); }
+
 // How a surface is placed, in units of which one mesh unit is `world` many.
 PlacedFrame frame_of(const PlacedBvh& placed, PowerOfTwo world) {
   const Motion& pose = placed.pose;
   return {.rows = {pose.row(0), pose.row(1), pose.row(2)},
-          .scale = (placed.model.surface().scale().inverse() * world).apply(1.0),
+          .scale = scale_to(world, placed.model.surface().scale()),
           .translation = world.apply(pose.offset()),
           .defect = pose.defect()};
 }
 
-// A placed surface as a k-DOP, in some units.
+// A placed surface as a k-DOP, in units of which one mesh unit is `world` many; `scale` leads there from its own.
 struct Outline {
   const Dop26& dop;
-  PlacedFrame frame;
+  std::array<Vector3, 3> rows;
+  double scale;
   Point3 centre;  // of the k-DOP, placed
   double size;    // of what was summed up for it
 
-  Outline(const PlacedBvh& model, PowerOfTwo units)
-      : dop(model.model.tree().dop()), frame(frame_of(model, units)) {
-    const Vector3 local = frame.scale * (model.model.tree().box().centre - Point3{});
-    centre = Point3{} + (times(frame.rows, local) + frame.translation);
-    size = 2 * max_abs(local) + max_abs(frame.translation) + frame.scale * dop.radius();
+  Outline(const PlacedBvh& placed, double in_scale, PowerOfTwo world)
+      : dop(placed.model.tree().dop()),
+        rows{placed.pose.row(0), placed.pose.row(1), placed.pose.row(2)},
+        scale(in_scale) {
+    const Vector3 local = scale * (placed.model.tree().box().centre - Point3{}),
+                  translation = world.apply(placed.pose.offset());
+    centre = Point3{} + (times(rows, local) + translation);
+    size = 2 * max_abs(local) + max_abs(translation) + scale * dop.radius();
   }
   // Upper bound, but for roundings, of dot(direction, x - centre) over the surface.
   [[nodiscard]] double reach(const Vector3& direction) const {
-    return frame.scale * dop.reach(transposed_times(frame.rows, direction));
+    return scale * dop.reach(transposed_times(rows, direction));
   }
 };
 
-// A lower bound of the distance along the line between the middles, in some units; not positive where none
+// A lower bound of the distance along the line between the middles, in their units; not positive where none
 // shows. NaN where numbers come near the ends of the range in these units.
-double gap_between(const PlacedBvh& a, const PlacedBvh& b, PowerOfTwo units) {
-  const Outline one(a, units), other(b, units);
+double gap_between(const Outline& one, const Outline& other) {
   const Vector3 between = other.centre - one.centre;
   const double apart_sq = length_sq(between), apart = std::sqrt(apart_sq);
   // Far enough from the ends for squares and products of three.
@@ -84,9 +90,13 @@ void PairFrames::look_along(const Vector3& direction) {
 }
 
 double outer_gap(const PlacedBvh& a, const PlacedBvh& b) {
-  if (const double gap = gap_between(a, b, PowerOfTwo()); !std::isnan(gap)) return gap;
+  const PowerOfTwo scale_a = a.model.surface().scale(), scale_b = b.model.surface().scale();
+  if (scale_a.moderate() && scale_b.moderate()) {
+    const double gap = gap_between({a, scale_a.inverse_factor(), {}}, {b, scale_b.inverse_factor(), {}});
+    if (!std::isnan(gap)) return gap;
+  }
   const PowerOfTwo world = joint_scale(a, b);
-  const double gap = gap_between(a, b, world);
+  const double gap = gap_between({a, scale_to(world, scale_a), world}, {b, scale_to(world, scale_b), world});
   return gap > 0 ? unscaled_down(gap, world.inverse()) : -INFINITY;
 }
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <string>
 
 #include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
+#include <snug/mesh/disjoint_sets.h>
 #include <snug/patch/evaluate.h>
 
 namespace snug {
@@ -35,23 +35,15 @@ void require_closed(const LimitSurface& surface) {
 }
 
 std::vector<PatchId> component_patches(const LimitSurface& surface) {
-  std::vector<std::uint32_t> parent(surface.corner_name_count());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto find = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  DisjointSets components(surface.corner_name_count());
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
     const auto names = surface.corner_names(PatchId(p));
-    for (std::size_t k = 1; k < 3; ++k) {
-      const std::uint32_t x = find(names[0]), y = find(names[k]);
-      parent[std::max(x, y)] = std::min(x, y);
-    }
+    for (std::size_t k = 1; k < 3; ++k) components.join(names[0], names[k]);
   }
-  std::vector<bool> seen(parent.size());
+  std::vector<bool> seen(surface.corner_name_count());
   std::vector<PatchId> patches;
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
-    const std::uint32_t component = find(surface.corner_names(PatchId(p))[0]);
+    const std::uint32_t component = components.least(surface.corner_names(PatchId(p))[0]);
     if (!seen[component]) patches.emplace_back(p);
     seen[component] = true;
   }
