@@ -135,7 +135,6 @@ ExitStatus run(const Options& options) {
   const bool triangles = !options.polyhedra.empty() && !writes_polygons(options.polyhedra);
   if (!options.polyhedra.empty()) require_writable(options.polyhedra);
   BoundOptions how;
-  how.method = bound_method(options);
   how.level = options.level;
   how.budget = options.budget;
   how.threads = options.threads;
@@ -145,8 +144,9 @@ ExitStatus run(const Options& options) {
   std::optional<CurveSet> curves;
   std::optional<LimitSurface> surface;
   if (asks_for_curves("bound", mesh, options.mesh, options, options.degree)) {
-    for (const auto& [asked, option] : {std::pair(!options.polyhedra.empty(), "--polyhedra"),
-                                        std::pair(how.method == BoundMethod::table, "--bounds table")}) {
+    for (const auto& [asked, option] :
+         {std::pair(!options.polyhedra.empty(), "--polyhedra"),
+          std::pair(bound_method(options) == BoundMethod::table, "--bounds table")}) {
       if (!asked) continue;
       throw UsageError(
           fmt::format("bound: {} is for surfaces; {} is answered as curves", option, options.mesh));
@@ -172,8 +172,8 @@ ExitStatus run(const Options& options) {
       if (report.json()) write_piece(report.write(), *surface, piece);
       if (!options.polyhedra.empty()) polyhedra.add(piece);
     };
-    summary =
-        curves ? bound(*curves, how, keep_curve, bar.monitor()) : bound(*surface, how, keep, bar.monitor());
+    summary = curves ? bound(*curves, how, keep_curve, bar.monitor())
+                     : bound(*surface, how, keep, bar.monitor(), bound_method(options));
   });
   const std::string whole = curves ? fmt::format("{} edges contain the limit curves of degree {}",
                                                  curves->edge_count(), static_cast<int>(curves->degree()))

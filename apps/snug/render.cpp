@@ -151,7 +151,6 @@ Enclosures enclose(const Options& options, const std::optional<Length>& toleranc
   Enclosures result;
   if (!options.enclosures) return result;
   BoundOptions how;
-  how.method = bound_method(options);
   how.level = options.level;
   how.budget = drawable_budget(options, surfaces);
   how.threads = options.threads;
@@ -161,7 +160,7 @@ Enclosures enclose(const Options& options, const std::optional<Length>& toleranc
     naming(options.meshes[part], [&] {
       if (tolerance) how.tolerance = tolerance->in_mesh_units(surfaces[part].size());
       ProgressBar bar("bounding " + options.meshes[part], options.quiet);
-      const BoundSummary summary = bound(surfaces[part], how, keep, bar.monitor());
+      const BoundSummary summary = bound(surfaces[part], how, keep, bar.monitor(), bound_method(options));
       how.budget -= summary.splits;
       result.count += pieces.size();
       result.reached = result.reached && summary.reached;

@@ -12,13 +12,12 @@
 namespace snug {
 
 struct BoundOptions {
-  BoundMethod method = BoundMethod::rows;  ///< for bound(), whatever SurfaceOptions::bounds is
   /// Split until each radius is at most half of this, in mesh units.
   std::optional<double> tolerance{};
   /// Without a tolerance: split every patch this many times. The first split of a face into quads counts.
   unsigned level = 0;
-  std::uint64_t budget = 10'000'000;  ///< most splits in all; spent patch by patch
-  int threads = 0;                    ///< 0: all cores
+  std::uint64_t budget = 1'000'000;  ///< most splits in all; spent patch by patch
+  int threads = 0;                   ///< 0: all cores
 };
 
 /// A patch of a surface; every patch is a triangle. Triangle schemes have one for each face, part 0. The
@@ -49,7 +48,7 @@ struct BoundSummary {
   bool reached = true;  ///< false if the budget, 60 levels or rounding ended splitting before the tolerance
 };
 
-/// Enclosures of the whole limit surface, passed to `sink` patch by patch.
+/// Enclosures of the whole limit surface by its SurfaceOptions::bounds, passed to `sink` patch by patch.
 ///
 /// Guarantee: every limit point of a patch lies in the union of its pieces' offset triangles, and in that of
 ///            their interval triangles, rounding included, even if `reached` is false. The output does not

@@ -24,7 +24,7 @@ struct SurfacePoint : BoundedPoint {
 /// Guarantee: `error` and `normal_error` are upper bounds. Tangents are in double precision, without a bound.
 /// Errors:    InputError: (value) if the surface has no such owner, corner or parameter, NaN included;
 ///            (unrepresentable) if a coordinate does not fit a double.
-/// Cost:      about a microsecond for one point, far less per point in a batch.
+/// Cost:      about a microsecond.
 [[nodiscard]] SNUG_API SurfacePoint evaluate(const Surface& surface, const SurfaceParameter& at);
 /// The same for many points, in the same order; results do not depend on threads.
 [[nodiscard]] SNUG_API std::vector<SurfacePoint> evaluate(const Surface& surface,

@@ -24,7 +24,7 @@ enum class BoundMethod : std::uint8_t {
 struct SurfaceOptions {
   std::optional<Scheme> scheme{};          ///< default: Loop if all faces are triangles, else Catmull-Clark
   std::optional<BoundaryRule> boundary{};  ///< default: the mesh's tag, else edge_and_corner
-  BoundMethod bounds = BoundMethod::rows;  ///< for queries and PatchBounds
+  BoundMethod bounds = BoundMethod::rows;  ///< how pieces are bounded
   /// Bound every patch at the first query, some microseconds each. The BVH becomes tighter, which pays off
   /// for surfaces that are queried thousands of times. Otherwise it is built from control points alone.
   bool tight = false;

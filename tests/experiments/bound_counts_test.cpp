@@ -24,8 +24,9 @@ TEST(bound_counts, are_those_of_bound_for_rows_and_tables) {
   for (const auto& [way, method] :
        {std::pair{BoundWay::rows, BoundMethod::rows}, {BoundWay::ngon, BoundMethod::table}}) {
     for (const std::optional<double> tolerance : {std::optional<double>{}, {0.05}, {0.004}}) {
-      BoundOptions options{.method = method, .tolerance = tolerance, .level = 2};
-      const BoundSummary expected = bound(surface, options, [](const PieceEnclosure&) {});
+      BoundOptions options{.tolerance = tolerance, .level = 2};
+      const BoundSummary expected = bound(
+          surface, options, [](const PieceEnclosure&) {}, {}, method);
       const PieceCount found = count_pieces(surface, tables, way, {.tolerance = tolerance, .level = 2});
       EXPECT_EQ(found.count, expected.count);
       EXPECT_EQ(found.splits, expected.splits);

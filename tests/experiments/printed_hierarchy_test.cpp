@@ -9,9 +9,10 @@ namespace {
 
 std::uint64_t bound_count(const LimitSurface& surface, BoundMethod method, double tolerance) {
   BoundOptions options;
-  options.method = method;
   options.tolerance = tolerance;
-  return bound(surface, options, [](const PieceEnclosure&) {}).count;
+  return bound(
+             surface, options, [](const PieceEnclosure&) {}, {}, method)
+      .count;
 }
 
 TEST(leaves, are_as_many_as_bound_makes) {

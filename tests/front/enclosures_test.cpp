@@ -34,6 +34,26 @@ TEST(enclosures, name_their_patches_and_hold_their_corners) {
   }
 }
 
+// Tables of a cage make other sets than rows do, and PatchBounds makes those of bound().
+TEST(enclosures, are_made_as_the_surface_says) {
+  const ControlMesh mesh = model("star.obj").mesh();
+  std::vector<double> radii;
+  for (const BoundMethod method : {BoundMethod::rows, BoundMethod::table}) {
+    const Surface surface(mesh, {.bounds = method});
+    std::vector<OffsetTriangle> offsets;
+    const BoundSummary summary =
+        bound(surface, {}, [&](const PatchEnclosure& piece) { offsets.push_back(piece.offset); });
+    radii.push_back(summary.max_radius);
+    PatchBounds bounds(surface);
+    std::vector<OffsetTriangle> whole(offsets.size());
+    bounds.update(mesh.points, whole);
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      EXPECT_NEAR(whole[i].radius, offsets[i].radius, 1e-9 * surface.size());
+    }
+  }
+  EXPECT_LT(radii[0], 0.9 * radii[1]);
+}
+
 TEST(enclosures, follow_a_mesh_that_moves) {
   const Surface surface = model("star.obj");
   PatchBounds bounds(surface);

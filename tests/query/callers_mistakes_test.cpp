@@ -70,10 +70,10 @@ TEST(callers_mistakes, bound_needs_a_positive_tolerance_and_a_level_that_there_i
     bound(surface, options, [](const PieceEnclosure&) {});
   };
   for (const double tolerance : std::vector<double>{NAN, INFINITY, -INFINITY, 0, -1e-300}) {
-    expect_refused("tolerance", [&] { run({.method = BoundMethod::rows, .tolerance = tolerance}); });
+    expect_refused("tolerance", [&] { run({.tolerance = tolerance}); });
   }
-  expect_refused("level", [&] { run({.method = BoundMethod::rows, .tolerance = {}, .level = 61}); });
-  expect_refused("level", [&] { run({.method = BoundMethod::rows, .tolerance = {}, .level = UINT32_MAX}); });
+  expect_refused("level", [&] { run({.tolerance = {}, .level = 61}); });
+  expect_refused("level", [&] { run({.tolerance = {}, .level = UINT32_MAX}); });
 }
 
 TEST(callers_mistakes, points_of_a_surface_have_parameters_on_it) {
@@ -107,15 +107,14 @@ TEST(callers_mistakes, points_of_a_surface_have_parameters_on_it) {
   expect_refused("room", [&] { kept(two, one); });
 }
 
-TEST(callers_mistakes, curves_have_edges_parameters_and_no_tables) {
+TEST(callers_mistakes, curves_have_edges_and_parameters) {
   ControlMesh mesh;
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
   mesh.add_polyline(std::array{VertexId(0), VertexId(1), VertexId(2)});
   const CurveSet curves(std::move(mesh), CurveDegree::cubic);
   const auto run = [&](const BoundOptions& options) { bound(curves, options, [](const CurveEnclosure&) {}); };
-  expect_refused("tables", [&] { run({.method = BoundMethod::table, .tolerance = {}}); });
-  expect_refused("tolerance", [&] { run({.method = BoundMethod::rows, .tolerance = -1}); });
-  expect_refused("level", [&] { run({.method = BoundMethod::rows, .tolerance = {}, .level = 61}); });
+  expect_refused("tolerance", [&] { run({.tolerance = -1}); });
+  expect_refused("level", [&] { run({.tolerance = {}, .level = 61}); });
   expect_refused("edge", [&] { static_cast<void>(evaluate(curves, EdgeId(2), 0)); });
   for (const double t : std::vector<double>{NAN, -1e-300, 1 + 0x1p-52}) {
     expect_refused("t", [&] { static_cast<void>(evaluate(curves, EdgeId(0), t)); });

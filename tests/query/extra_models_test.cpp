@@ -24,9 +24,12 @@ constexpr std::size_t most_faces = 8000;  // what the twin samples in a few seco
 
 // Checks samples of every face against the union of its pieces; returns how many there were.
 std::size_t check(const LimitSurface& surface, const BoundOptions& options,
-                  const std::vector<oracle::LimitSample>& samples, const std::string& name) {
+                  const std::vector<oracle::LimitSample>& samples, const std::string& name,
+                  BoundMethod method = BoundMethod::rows) {
   std::vector<std::vector<PieceEnclosure>> pieces(surface.face_count());
-  bound(surface, options, [&](const PieceEnclosure& piece) { pieces[piece.patch.index()].push_back(piece); });
+  bound(
+      surface, options, [&](const PieceEnclosure& piece) { pieces[piece.patch.index()].push_back(piece); },
+      {}, method);
   for (const oracle::LimitSample& s : samples) {
     const testing::Extended p{s.position[0], s.position[1], s.position[2]};
     const long double slack = 2.0L * s.error;
@@ -64,8 +67,7 @@ TEST(extra_models, limit_points_lie_inside_their_enclosures) {
       points += check(surface, options, samples, path);
       options.tolerance = 0.01 * surface.size();
       points += check(surface, options, samples, path);
-      options.method = BoundMethod::table;
-      points += check(surface, options, samples, path);
+      points += check(surface, options, samples, path, BoundMethod::table);
       ++accepted;
     } catch (const InputError&) {
       ++refused;

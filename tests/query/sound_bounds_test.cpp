@@ -106,12 +106,14 @@ TEST(bounds, contain_a_million_adversarial_limit_points) {
         for (const Source& source : sources) {
           std::map<std::pair<std::size_t, std::string>, PieceEnclosure> pieces;
           BoundOptions options;
-          options.method = source.method;
           options.level = level;
           options.threads = 1;
-          bound(surface, options, [&](const PieceEnclosure& e) {
-            pieces[{e.patch.index(), e.path.text()}] = e;
-          });
+          bound(
+              surface, options,
+              [&](const PieceEnclosure& e) {
+                pieces[{e.patch.index(), e.path.text()}] = e;
+              },
+              {}, source.method);
           for (const oracle::LimitSample& s : samples) {
             const auto it = pieces.find({s.face, piece_at(s.u, s.v, level)});
             ASSERT_NE(it, pieces.end());

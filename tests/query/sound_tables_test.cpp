@@ -80,10 +80,14 @@ using Pieces = std::map<std::pair<std::size_t, std::string>, PieceEnclosure>;
 Pieces pieces_of(const LimitSurface& surface, unsigned level) {
   Pieces pieces;
   BoundOptions options;
-  options.method = BoundMethod::table;
   options.level = level;
   options.threads = 1;
-  bound(surface, options, [&](const PieceEnclosure& e) { pieces[{e.patch.index(), e.path.text()}] = e; });
+  bound(
+      surface, options,
+      [&](const PieceEnclosure& e) {
+        pieces[{e.patch.index(), e.path.text()}] = e;
+      },
+      {}, BoundMethod::table);
   return pieces;
 }
 

@@ -18,7 +18,7 @@ BoundSummary bound(const Surface& surface, const BoundOptions& options,
               piece.path.level() + (limit.after_first_split(piece.patch) ? 1 : 0), piece.corners,
               piece.offset, piece.interval});
       },
-      monitor);
+      monitor, surface.data()->method());
 }
 
 struct PatchBounds::Inside {

@@ -31,8 +31,8 @@ class SurfacePieces {
   using Enclosure = PieceEnclosure;
   static constexpr unsigned children = 4;
 
-  SurfacePieces(const LimitSurface& surface, const BoundOptions& options)
-      : surface_(surface), options_(options), back_(surface.scale().inverse()) {}
+  SurfacePieces(const LimitSurface& surface, BoundMethod method)
+      : surface_(surface), method_(method), back_(surface.scale().inverse()) {}
 
   [[nodiscard]] std::optional<Patch> whole(std::size_t i) const {
     return surface_.has_patch(PatchId(i)) ? std::optional(surface_.patch(PatchId(i))) : std::nullopt;
@@ -42,7 +42,7 @@ class SurfacePieces {
   bool enclose(std::size_t i, const Patch& patch, PieceEnclosure& out) {
     out.patch = PatchId(i);
     const std::array<Vector3, 3> corners = limit_corners(patch);
-    if (options_.method == BoundMethod::table) {
+    if (method_ == BoundMethod::table) {
       const TableTriangle triangle = table_triangle(surface_.library().table(*patch.kind), patch);
       return snug::enclose(corners, patch.origin, offset_triangle(triangle), triangle.interval, back_, out);
     }
@@ -53,7 +53,7 @@ class SurfacePieces {
 
  private:
   const LimitSurface& surface_;
-  const BoundOptions& options_;
+  BoundMethod method_;
   PowerOfTwo back_;
   HullPoints points_;
 };
@@ -63,8 +63,7 @@ class CurvePieces {
   using Enclosure = CurveEnclosure;
   static constexpr unsigned children = 2;
 
-  CurvePieces(const CurveSet& curves, const BoundOptions&)
-      : curves_(curves), back_(curves.scale().inverse()) {}
+  explicit CurvePieces(const CurveSet& curves) : curves_(curves), back_(curves.scale().inverse()) {}
 
   [[nodiscard]] std::optional<CurvePiece> whole(std::size_t i) const { return curves_.piece(EdgeId(i)); }
   [[nodiscard]] unsigned level(std::size_t) const { return 0; }
@@ -96,9 +95,8 @@ struct Bounded {
 template <class Pieces>
 class Bounder {
  public:
-  template <class Source>
-  Bounder(const Source& source, const BoundOptions& options, const WorkMonitor& monitor)
-      : pieces_(source, options), options_(options), monitor_(monitor) {}
+  Bounder(const Pieces& pieces, const BoundOptions& options, const WorkMonitor& monitor)
+      : pieces_(pieces), options_(options), monitor_(monitor) {}
 
   Bounded<Pieces> run(std::size_t i, std::uint64_t budget) {
     result_ = {};
@@ -139,8 +137,8 @@ class Bounder {
   Bounded<Pieces> result_;
 };
 
-template <class Pieces, class Source>
-BoundSummary bound_all(const Source& source, std::size_t all, const BoundOptions& options,
+template <class Pieces>
+BoundSummary bound_all(const Pieces& wholes, std::size_t all, const BoundOptions& options,
                        const std::function<void(const typename Pieces::Enclosure&)>& sink,
                        const WorkMonitor& monitor) {
   require_value(!options.tolerance || (*options.tolerance > 0 && std::isfinite(*options.tolerance)),
@@ -158,7 +156,7 @@ BoundSummary bound_all(const Source& source, std::size_t all, const BoundOptions
         options.budget - summary.splits, std::max<std::uint64_t>(64, most_pieces / (3 * count)));
     results.assign(count, {});
     parallel_for_with(
-        count, options.threads, [&] { return Bounder<Pieces>(source, options, monitor); },
+        count, options.threads, [&] { return Bounder<Pieces>(wholes, options, monitor); },
         [&](Bounder<Pieces>& bounder, std::size_t from, std::size_t to) {
           for (std::size_t i = from; i < to; ++i) results[i] = bounder.run(begin + i, left);
         });
@@ -168,7 +166,7 @@ BoundSummary bound_all(const Source& source, std::size_t all, const BoundOptions
       Bounded<Pieces>& result = results[i];
       const std::uint64_t rest = options.budget - summary.splits;
       if (result.splits > rest || (result.splits == left && left < rest)) {
-        result = Bounder<Pieces>(source, options, monitor).run(begin + i, rest);
+        result = Bounder<Pieces>(wholes, options, monitor).run(begin + i, rest);
       }
       summary.splits += result.splits;
       summary.reached = summary.reached && result.reached;
@@ -186,14 +184,14 @@ BoundSummary bound_all(const Source& source, std::size_t all, const BoundOptions
 }  // namespace
 
 BoundSummary bound(const LimitSurface& surface, const BoundOptions& options,
-                   const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor) {
-  return bound_all<SurfacePieces>(surface, surface.patch_count(), options, sink, monitor);
+                   const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor,
+                   BoundMethod method) {
+  return bound_all(SurfacePieces(surface, method), surface.patch_count(), options, sink, monitor);
 }
 
 BoundSummary bound(const CurveSet& curves, const BoundOptions& options,
                    const std::function<void(const CurveEnclosure&)>& sink, const WorkMonitor& monitor) {
-  require_value(options.method != BoundMethod::table, "bound: curves have no tables; give BoundMethod::rows");
-  return bound_all<CurvePieces>(curves, curves.edge_count(), options, sink, monitor);
+  return bound_all(CurvePieces(curves), curves.edge_count(), options, sink, monitor);
 }
 
 }  // namespace snug

@@ -30,9 +30,9 @@ struct CurveEnclosure : Enclosure<2> {
 
 /// bound() of bound.h, patches by their names in LimitSurface.
 BoundSummary bound(const LimitSurface& surface, const BoundOptions& options,
-                   const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor = {});
-/// The same of all limit curves, edge by edge, pieces of one from its first end to its last. InputError (value) for tables,
-/// which curves do not have.
+                   const std::function<void(const PieceEnclosure&)>& sink, const WorkMonitor& monitor = {},
+                   BoundMethod method = BoundMethod::rows);
+/// The same of all limit curves, edge by edge, pieces of one from its first end to its last.
 BoundSummary bound(const CurveSet& curves, const BoundOptions& options,
                    const std::function<void(const CurveEnclosure&)>& sink, const WorkMonitor& monitor = {});
 

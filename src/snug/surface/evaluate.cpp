@@ -75,7 +75,7 @@ std::optional<SurfaceNormal> normal_at(const LimitSurface& surface, const Surfac
 SurfacePoint evaluate(const LimitSurface& surface, const SurfaceParameter& at) {
   const std::optional<PatchId> patch = patch_at(surface, at);
   require_value(patch.has_value(),
-                "evaluate: there is no limit surface at this place; patch_at() tells where there is one");
+                "evaluate: the surface has no such face, corner or parameter; give one that it has");
   return PatchEvaluator(surface, *patch)(at);
 }
 
