@@ -1,8 +1,10 @@
+#include <array>
 #include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <snug/front/workspace.h>
+#include <snug/search/surface_data.h>
 #include <snug/snug.h>
 
 namespace snug {
@@ -41,6 +43,30 @@ TEST(workspace, outlives_handles_and_moves) {
   const Collision before = collide(placed, star(), {}, {}, workspace);
   Workspace moved = std::move(workspace);
   EXPECT_EQ(collide(placed, star(), {}, {}, moved).distance, before.distance);
+}
+
+// Each crease makes patch topologies of its own; only so many are shared with the next surface.
+TEST(workspace, surfaces_leave_a_cache_that_knows_very_many_topologies) {
+  constexpr std::uint32_t size = 60;
+  ControlMesh mesh;
+  for (std::uint32_t i = 0; i <= size; ++i) {
+    for (std::uint32_t k = 0; k <= size; ++k) {
+      mesh.points.push_back({static_cast<double>(i), static_cast<double>(k), 0});
+    }
+  }
+  const auto at = [](std::uint32_t i, std::uint32_t k) { return VertexId(i * (size + 1) + k); };
+  for (std::uint32_t i = 0; i < size; ++i) {
+    for (std::uint32_t k = 0; k < size; ++k) {
+      mesh.add_face(std::array{at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1)});
+      mesh.tags.creases.push_back({at(i, k), at(i, k + 1), 0.5 + 1e-4 * (size * i + k)});
+    }
+  }
+  const auto cache = [](const Surface& surface) { return &surface.data()->limit().library(); };
+  const Surface first = star(), second = star(), large(mesh), third = star(), fourth = star();
+  EXPECT_EQ(cache(first), cache(second));
+  EXPECT_EQ(cache(first), cache(large));
+  EXPECT_NE(cache(large), cache(third));
+  EXPECT_EQ(cache(third), cache(fourth));
 }
 
 TEST(workspace, of_each_thread_gives_the_same_answers) {

@@ -7,13 +7,16 @@
 namespace snug {
 namespace {
 
+// Kinds are never forgotten, so a cache that knows this many is left to the surfaces that have it.
+constexpr std::size_t most_shared_kinds = 4096;
+
 // What surfaces with equal connectivity share: there as long as one of them is.
 std::shared_ptr<BoundsCache> shared_bounds() {
   static std::mutex mutex;
   static std::weak_ptr<BoundsCache> kept;
   const std::lock_guard lock(mutex);
   std::shared_ptr<BoundsCache> cache = kept.lock();
-  if (!cache) kept = cache = std::make_shared<BoundsCache>();
+  if (!cache || cache->kinds().size() >= most_shared_kinds) kept = cache = std::make_shared<BoundsCache>();
   return cache;
 }
 
