@@ -1,4 +1,5 @@
-// bench_bounds A B: what bounds cost beside the cheapest baseline, the box of the control points, and what queries cost.
+// bench_bounds A B: what bounds cost beside the cheapest baseline, the box of the control points, and what
+// queries cost.
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
-// bench_collide: triangles, first answers, memory and boolean queries, beside the dissertation's method and beside OpenSubdiv
-// with FCL. Files: the triangle models of examples/models.
+// bench_collide: triangles, first answers, memory and boolean queries, beside the dissertation's method and
+// beside OpenSubdiv with FCL. Files: the triangle models of examples/models.
 
 #include <algorithm>
 #include <cstdio>
@@ -251,8 +251,8 @@ std::vector<Times> run_contest(Contest& contest, const std::string& title, const
   return times;
 }
 
-// The same queries by a plain walk over trees of each sort of volume, in scalars and a pair at a time: how many tests each
-// sort needs (docs/decisions/0010).
+// The same queries by a plain walk over trees of each sort of volume, in scalars and a pair at a time: how
+// many tests each sort needs (docs/decisions/0010).
 void bench_volumes(const std::vector<Model>& models, const std::string& room, const PlacementsOfPairs& at,
                    const Options& options) {
   const Library library = std::make_shared<BoundsCache>();

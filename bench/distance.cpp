@@ -1,5 +1,5 @@
-// bench_distance: distances of limit surfaces beside FCL's distances of uniform meshes. Files: the triangle models of
-// examples/models.
+// bench_distance: distances of limit surfaces beside FCL's distances of uniform meshes. Files: the triangle
+// models of examples/models.
 
 #include <cstdio>
 #include <memory>

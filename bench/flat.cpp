@@ -1,5 +1,5 @@
-// bench_flat: triangle meshes as they are, by the flat scheme, beside FCL on the same triangles in the same poses. Files: the
-// triangle models of examples/models.
+// bench_flat: triangle meshes as they are, by the flat scheme, beside FCL on the same triangles in the same
+// poses. Files: the triangle models of examples/models.
 
 #include <cstdio>
 #include <memory>

@@ -1,4 +1,5 @@
-// bench_front: what a warm query through public handles costs beside the query inside, whose trees and workspaces are at hand.
+// bench_front: what a warm query through public handles costs beside the query inside, whose trees and
+// workspaces are at hand.
 // Files: bust and pawn of examples/models.
 
 #include <random>

@@ -1,4 +1,5 @@
-// bench_kinds: what a kind costs that was never met: the kind itself, its descendants' matrices, and its rows.
+// bench_kinds: what a kind costs that was never met: the kind itself, its descendants' matrices, and its
+// rows.
 
 #include <array>
 #include <cstdio>

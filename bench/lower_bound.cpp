@@ -1,4 +1,5 @@
-// bench_lower_bound: how far collide's lower bound stays behind the distance of surfaces that are apart, and what a query costs.
+// bench_lower_bound: how far collide's lower bound stays behind the distance of surfaces that are apart, and
+// what a query costs.
 // Files: the triangle models of examples/models.
 
 #include <algorithm>

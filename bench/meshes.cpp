@@ -21,7 +21,8 @@ struct GridSize {
   std::size_t columns, rows;
 };
 
-// Edges of about equal length on average: the torus is three times as long around its axis as around its tube.
+// Edges of about equal length on average: the torus is three times as long around its axis as around its
+// tube.
 GridSize grid_size(std::size_t faces) {
   const double rows = std::max(3.0, std::round(std::sqrt(static_cast<double>(faces) / 6)));
   return {static_cast<std::size_t>(std::max(3.0, std::round(static_cast<double>(faces) / (2 * rows)))),
@@ -137,7 +138,8 @@ ControlMesh irregular_mesh(std::size_t faces, const Irregularity& options) {
 
 namespace {
 
-// A torus of columns * rows vertices; vertex (c, r) at c + columns * r, quad (c, r) from there to (c + 1, r + 1).
+// A torus of columns * rows vertices; vertex (c, r) at c + columns * r, quad (c, r) from there to (c + 1, r +
+// 1).
 struct QuadTorus {
   std::size_t columns, rows;
   [[nodiscard]] VertexId vertex(std::size_t c, std::size_t r) const {

@@ -19,8 +19,8 @@ namespace snug::bench {
 /// Closed torus of about `faces` quads, every vertex of valence 4.
 [[nodiscard]] ControlMesh quad_torus(std::size_t faces);
 
-/// A torus of about `faces` faces, a quarter of them triangles and hexagons, after random moves, with about `creases`
-/// creased edges in curves of one sharpness each: 0.5 to 3.5 in halves, some infinite.
+/// A torus of about `faces` faces, a quarter of them triangles and hexagons, after random moves, with about
+/// `creases` creased edges in curves of one sharpness each: 0.5 to 3.5 in halves, some infinite.
 /// Guarantee: the same mesh for the same arguments on every machine.
 [[nodiscard]] ControlMesh character_mesh(std::size_t faces, std::size_t creases);
 
@@ -33,8 +33,8 @@ struct Irregularity {
   std::uint64_t seed = 1;
 };
 
-/// A torus grid of about `faces` triangles after random edge flips and moves of its vertices: valences 3 to 12
-/// in the mixture of a simplified or scanned mesh.
+/// A torus grid of about `faces` triangles after random edge flips and moves of its vertices: valences 3 to
+/// 12 in the mixture of a simplified or scanned mesh.
 ///
 /// Guarantee: closed, manifold, no edge twice; the same mesh for the same arguments on every machine.
 [[nodiscard]] ControlMesh irregular_mesh(std::size_t faces, const Irregularity& options = {});
@@ -44,7 +44,8 @@ struct Irregularity {
 /// Faces with `corners` extraordinary corners.
 [[nodiscard]] std::vector<PatchId> faces_with(const LimitSurface& surface, std::size_t corners);
 
-/// Prints sizes, the histogram of valences, the number of kinds, the shares of faces by extraordinary corners.
+/// Prints sizes, the histogram of valences, the number of kinds, the shares of faces by extraordinary
+/// corners.
 void print_statistics(const char* name, const LimitSurface& surface);
 
 }  // namespace snug::bench

@@ -50,8 +50,9 @@ struct Placed {
 [[nodiscard]] std::vector<PosePair> of(const std::vector<Placed>& all, Nearness nearness);
 [[nodiscard]] std::vector<PosePair> of(const std::vector<Placed>& all);
 
-/// Placements near first contact: random ones whose model b comes along the line of the middles until the models touch, then goes
-/// on or back by up to `reach`, evenly. Those that pass by each other stay as they are drawn.
+/// Placements near first contact: random ones whose model b comes along the line of the middles until the
+/// models touch, then goes on or back by up to `reach`, evenly. Those that pass by each other stay as they
+/// are drawn.
 [[nodiscard]] std::vector<PosePair> contact_placements(const Model& a, const Model& b, double side,
                                                        double reach, std::size_t count, std::uint64_t seed);
 

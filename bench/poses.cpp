@@ -1,5 +1,5 @@
-// bench_poses: many poses of one pair, one by one and all at once, on one thread and on two. Files: the triangle models of
-// examples/models.
+// bench_poses: many poses of one pair, one by one and all at once, on one thread and on two. Files: the
+// triangle models of examples/models.
 
 #include <memory>
 #include <random>

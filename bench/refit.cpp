@@ -1,8 +1,8 @@
 // bench_refit: the same mesh with other positions: what it costs until every patch is bounded again.
 //
-// The peer has no bounds. Its columns are the least that a refit of its tables does, before anything is bounded:
-// the vertices of one refinement; three limit corners a patch; ten limit points a patch. All from tables made
-// beforehand.
+// The peer has no bounds. Its columns are the least that a refit of its tables does, before anything is
+// bounded: the vertices of one refinement; three limit corners a patch; ten limit points a patch. All from
+// tables made beforehand.
 
 #include <cstdio>
 #include <string>
@@ -43,8 +43,8 @@ std::vector<Table> tables(const ControlMesh& mesh) {
 #endif
 
 #ifdef SNUG_BENCH_OPENSUBDIV
-// As many limit points a patch as snug has hull points, spread evenly: what a bound from the peer's points would need
-// at least, were it a proof.
+// As many limit points a patch as snug has hull points, spread evenly: what a bound from the peer's points
+// would need at least, were it a proof.
 void bench_as_many_points(const Options& options) {
   const ControlMesh mesh = irregular_mesh(options.size(5'000, 2'000));
   ControlMesh moved = mesh;

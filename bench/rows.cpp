@@ -1,4 +1,5 @@
-// bench_rows: offset triangles of many patches whose kinds are known, from gathering the control points to writing.
+// bench_rows: offset triangles of many patches whose kinds are known, from gathering the control points to
+// writing.
 
 #include <algorithm>
 #include <cstdio>

@@ -39,9 +39,9 @@ struct Times {
 ///   name  us an item  items a second  times the baseline  [least-most us, busy share, cal]  checksum
 ///
 /// Times are processor time, all threads together, so that others on the same machine disturb little; busy is
-/// that over wall time (below 1 somebody else had the processor; above 1 there are threads); cal is how
-/// long calibrate() took around these runs, relative to its best in this process. `times` is the ratio of times
-/// an item to the first contestant's: above 1 is slower.
+/// that over wall time (below 1 somebody else had the processor; above 1 there are threads); cal is how long
+/// calibrate() took around these runs, relative to its best in this process. `times` is the ratio of times an
+/// item to the first contestant's: above 1 is slower.
 class Group {
  public:
   /// `item`: what one item is called, as in "us/patch".

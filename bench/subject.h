@@ -12,8 +12,8 @@
 
 namespace snug::bench {
 
-/// snug as the measurements see it: many patches at once, on one thread. Whatever way the library has to do that
-/// faster belongs in here, so that every program of bench/ gets it.
+/// snug as the measurements see it: many patches at once, on one thread. Whatever way the library has to do
+/// that faster belongs in here, so that every program of bench/ gets it.
 class Subject {
  public:
   /// Everything before the first bound, with a library of kinds of its own.

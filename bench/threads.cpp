@@ -46,8 +46,8 @@ Run run(const Work& work, int threads) {
   return {wall, static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC, checksum};
 }
 
-// A line: milliseconds of both, how many times faster two threads are, and how much processor time they take beside one:
-// what they do twice, which shows on a busy machine, too.
+// A line: milliseconds of both, how many times faster two threads are, and how much processor time they take
+// beside one: what they do twice, which shows on a busy machine, too.
 void compare(const Options& options, const std::string& name, const Work& work) {
   std::vector<double> one, two, faster, more;
   double checksum = 0;

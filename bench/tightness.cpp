@@ -1,6 +1,7 @@
-// bench_tightness MODEL...: radius of the offset triangles over the least possible for the same base triangles
-// (experiments/tightness.h), on real meshes and on patches with several extraordinary corners. The ratios are upper
-// bounds. `snug-experiments tightness` has patches with one extraordinary corner, and tables.
+// bench_tightness MODEL...: radius of the offset triangles over the least possible for the same base
+// triangles (experiments/tightness.h), on real meshes and on patches with several extraordinary corners. The
+// ratios are upper bounds. `snug-experiments tightness` has patches with one extraordinary corner, and
+// tables.
 
 #include <algorithm>
 #include <cstdio>

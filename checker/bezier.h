@@ -9,8 +9,8 @@
 
 namespace checker {
 
-/// The exponents of a Bernstein polynomial in the weights of corners 0, 1 and 2; they sum to the degree. Over the degree
-/// they are a lattice point of the triangle.
+/// The exponents of a Bernstein polynomial in the weights of corners 0, 1 and 2; they sum to the degree. Over
+/// the degree they are a lattice point of the triangle.
 using Exponents = std::array<unsigned, 3>;
 [[nodiscard]] const std::vector<Exponents>& exponents(unsigned degree);
 

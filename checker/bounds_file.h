@@ -15,8 +15,9 @@ inline constexpr std::array<Scheme, 4> schemes{Scheme::loop, Scheme::catmark, Sc
                                                Scheme::midedge};
 [[nodiscard]] const char* name_of(Scheme scheme);
 
-/// Faces around a corner of a patch, as snug/patch/neighbourhood.h names them: `after` counter-clockwise from the
-/// patch, `before` clockwise; all in `after` if the fan is closed. Dual schemes: vertices of the face at the corner.
+/// Faces around a corner of a patch, as snug/patch/neighbourhood.h names them: `after` counter-clockwise from
+/// the patch, `before` clockwise; all in `after` if the fan is closed. Dual schemes: vertices of the face at
+/// the corner.
 struct Fan {
   std::uint16_t before = 0, after = 0;
   bool closed = false, sharp = false;
@@ -67,7 +68,8 @@ struct BoundsFile {
 /// The file of these contents, with the right hash.
 [[nodiscard]] std::vector<std::byte> to_bytes(const BoundsFile& file);
 
-/// Writes the right length and hash into the header of bytes that were changed; nothing where they are too few.
+/// Writes the right length and hash into the header of bytes that were changed; nothing where they are too
+/// few.
 void seal(std::vector<std::byte>& bytes);
 
 }  // namespace checker

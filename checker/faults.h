@@ -19,8 +19,8 @@ struct Fault {
 /// Requires:  a file that is proved and has two kinds at least.
 [[nodiscard]] std::vector<Fault> faults(const BoundsFile& file);
 
-/// The kinds of a scheme that faults are planted in, to keep proofs short: a small one inside, and one at a boundary; of a
-/// dual scheme two inside.
+/// The kinds of a scheme that faults are planted in, to keep proofs short: a small one inside, and one at a
+/// boundary; of a dual scheme two inside.
 /// Errors:    Rejected if the file has none of these.
 [[nodiscard]] BoundsFile excerpt(const BoundsFile& file, Scheme scheme);
 

@@ -16,9 +16,9 @@ namespace checker {
 
 class Shapes;
 
-/// What all patches of Catmull-Clark, Doo-Sabin or Midedge with these faces at the corners of their quad have in common:
-/// the net around them, with control points numbered as snug/patch/neighbourhood.h documents. Catmull-Clark: face 0 is
-/// the quad. Dual schemes: vertex 0 is the patch's own, its faces are the corners.
+/// What all patches of Catmull-Clark, Doo-Sabin or Midedge with these faces at the corners of their quad have
+/// in common: the net around them, with control points numbered as snug/patch/neighbourhood.h documents.
+/// Catmull-Clark: face 0 is the quad. Dual schemes: vertex 0 is the patch's own, its faces are the corners.
 class Shape {
  public:
   /// Weights of control points.
@@ -43,8 +43,9 @@ class Shape {
   [[nodiscard]] std::size_t control_count() const { return count_; }
   /// All four corners regular: then the patch is polynomial, with Midedge on each side of its diagonals.
   [[nodiscard]] bool polynomial() const;
-  /// Quarters 0 to 3 keep that corner of the quad as their own corner of the same number; 4 is quarter 1 turned by half
-  /// a turn: the middle of the quad is corner 1 of that one, and corner 1 of the quad its corner 3.
+  /// Quarters 0 to 3 keep that corner of the quad as their own corner of the same number; 4 is quarter 1
+  /// turned by half a turn: the middle of the quad is corner 1 of that one, and corner 1 of the quad its
+  /// corner 3.
   /// Errors:    Rejected if a quarter has other corners than the scheme gives it.
   [[nodiscard]] const std::vector<Quarter>& quarters() const;
   /// The half (0,0), (4,0), (4,4): one part, Midedge two.
@@ -119,7 +120,8 @@ struct HalfQuad {
 /// The net of a kind, its control points as unit rows.
 /// Errors:    Rejected for a key that no patch has.
 [[nodiscard]] HalfQuad root_half(Shapes& shapes, Scheme scheme, const Key& key);
-/// One step of the scheme: halves 0 to 2 keep that corner as their own corner of the same number; 3 is the middle one.
+/// One step of the scheme: halves 0 to 2 keep that corner as their own corner of the same number; 3 is the
+/// middle one.
 /// Errors:    Rejected as Shape::quarters(), or past 28 levels.
 [[nodiscard]] std::array<HalfQuad, 4> split(const HalfQuad& piece);
 /// The polynomials of a half.

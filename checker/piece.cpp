@@ -120,8 +120,8 @@ Row new_edge_point(const Piece& piece, const std::map<Edge, std::size_t>& third,
 
 Place middle(const Place& a, const Place& b) { return {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2}; }
 
-// Across which vertex each edge 01, 12, 20 looks; nothing at a boundary. A corner of valence 3 makes its two the
-// same.
+// Across which vertex each edge 01, 12, 20 looks; nothing at a boundary. A corner of valence 3 makes its two
+// the same.
 std::array<std::optional<std::size_t>, 3> across_edges(const Key& key) {
   std::array<std::optional<std::size_t>, 3> across;
   std::size_t next = 3;

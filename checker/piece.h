@@ -18,8 +18,8 @@ using Row = std::vector<Real>;
 using Place = std::array<std::int64_t, 2>;
 inline constexpr unsigned place_bits = 30;
 
-/// A triangle of a net that was subdivided some levels, with all that its limit patch depends on: the faces around
-/// its corners, and their vertices as rows.
+/// A triangle of a net that was subdivided some levels, with all that its limit patch depends on: the faces
+/// around its corners, and their vertices as rows.
 struct Piece {
   using Face = std::array<std::size_t, 3>;  // counter-clockwise
 
@@ -30,8 +30,8 @@ struct Piece {
   std::vector<std::shared_ptr<const Row>> rows;
   unsigned depth = 0;
 
-  /// The ring of corner k, counter-clockwise from corner k + 1 round a closed fan, else from one boundary neighbour
-  /// to the other.
+  /// The ring of corner k, counter-clockwise from corner k + 1 round a closed fan, else from one boundary
+  /// neighbour to the other.
   struct Ring {
     std::vector<std::size_t> vertices;
     bool closed = false;
@@ -47,8 +47,8 @@ struct Piece {
 /// Errors:    Rejected for a key that no patch has.
 [[nodiscard]] Piece root_piece(const Key& key);
 
-/// One step of Loop's scheme: children 0 to 2 keep that corner as their own corner of the same number; 3 is the
-/// middle one.
+/// One step of Loop's scheme: children 0 to 2 keep that corner as their own corner of the same number; 3 is
+/// the middle one.
 /// Errors:    Rejected if a child has other fans than the scheme gives it, or past 28 levels.
 [[nodiscard]] std::array<Piece, 4> split(const Piece& piece);
 

@@ -63,8 +63,9 @@ class StoredRows {
     }
   }
 
-  // Is some stored row certainly within entry_error of this one, in the sum of absolute values? Only rows whose
-  // image of one functional is close are looked at: one more overlooked is a match not found, no false one.
+  // Is some stored row certainly within entry_error of this one, in the sum of absolute values? Only rows
+  // whose image of one functional is close are looked at: one more overlooked is a match not found, no false
+  // one.
   [[nodiscard]] bool match(const Row& row) const {
     double sum = 0;
     for (std::size_t c = 0; c < row.size(); ++c) sum += probe(c) * row[c].approximately();
@@ -138,8 +139,8 @@ class RowsProver {
     return true;
   }
 
-  // The inner points must be stored, and all where there are none. Those on edges may else be covered, which is decided in
-  // the end.
+  // The inner points must be stored, and all where there are none. Those on edges may else be covered, which
+  // is decided in the end.
   template <class AnyPiece>
   bool prove_polynomial(const AnyPiece& piece) {
     const std::vector<BezierTriangle> triangles = bezier_triangles(piece);

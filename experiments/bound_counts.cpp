@@ -30,7 +30,8 @@ class Counter {
     require_value(options.level <= PiecePath::max_level, "pieces: the level is too high; give at most 60");
   }
 
-  // `begin`: the level that the whole piece counts as. Calls passes(piece) to learn whether a piece is split whatever its size.
+  // `begin`: the level that the whole piece counts as. Calls passes(piece) to learn whether a piece is split
+  // whatever its size.
   template <class Passes, class Sink>
   void visit(const Piece& piece, unsigned begin, const Passes& passes, const Sink& sink) {
     const bool room = count_.splits < options_.budget && piece.path.level() < PiecePath::max_level;

@@ -39,7 +39,8 @@ struct PieceCount {
 };
 
 /// Pieces of the whole surface; `sink` is called with each and its radius.
-/// Errors:    InputError (value) for a tolerance that is not positive, and a level beyond PiecePath::max_level; Interrupted.
+/// Errors:    InputError (value) for a tolerance that is not positive, and a level beyond
+///            PiecePath::max_level; Interrupted.
 [[nodiscard]] PieceCount count_pieces(const LimitSurface& surface, LayoutTables& tables, BoundWay way,
                                       const CountOptions& options,
                                       const std::function<void(PatchId, const Patch&, double)>& sink = {},

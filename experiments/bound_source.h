@@ -20,8 +20,9 @@ enum class BoundSource : std::uint8_t {
 inline constexpr std::array all_bound_sources{BoundSource::rows, BoundSource::ngon,
                                               BoundSource::characteristic};
 
-/// The control net of the characteristic map of a Loop kind inside the mesh with at most one extraordinary corner: under
-/// subdivision towards that corner it shrinks by the subdominant eigenvalue. Other kinds: make_layout().
+/// The control net of the characteristic map of a Loop kind inside the mesh with at most one extraordinary
+/// corner: under subdivision towards that corner it shrinks by the subdominant eigenvalue. Other kinds:
+/// make_layout().
 ///
 /// Cost:      some 200 products with the stencils of a child.
 /// Source:    [Reif95]; derivations/tables.md.

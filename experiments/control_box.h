@@ -6,8 +6,8 @@
 /// The baseline of all comparisons: the least box around control points.
 namespace snug {
 
-/// Control points, whose hull holds the limit because all masks are non-negative; of a curve's end the end of the polyline in
-/// the place of a ghost (derivations/curves.md).
+/// Control points, whose hull holds the limit because all masks are non-negative; of a curve's end the end of
+/// the polyline in the place of a ghost (derivations/curves.md).
 void control_points(const Patch& patch, HullPoints& out);
 void control_points(const CurvePiece& piece, HullPoints& out);
 

@@ -106,8 +106,8 @@ struct RateRow {
 /// normal.
 ///
 /// Guarantee: the same for any number of threads.
-/// Errors:    InputError (value) unless nets >= 1; 4 <= levels <= PiecePath::max_level; a primal scheme for all places but the
-///            interior.
+/// Errors:    InputError (value) unless nets >= 1; 4 <= levels <= PiecePath::max_level; a primal scheme for
+///            all places but the interior.
 /// Cost:      some 0.2 ms a net at the default levels.
 [[nodiscard]] std::vector<RateRow> measure_rates(const RateOptions& options, const WorkMonitor& monitor = {});
 

@@ -80,7 +80,8 @@ struct NetPlace {
 /// The bent net for a scheme. The first patch of owner 0 has its corner 0 in the middle; with creases it lies
 /// beside one.
 ///
-/// Errors:    InputError (value) unless n >= 3, on a boundary n >= 1; a primal scheme for all but the interior.
+/// Errors:    InputError (value) unless n >= 3, on a boundary n >= 1; a primal scheme for all but the
+///            interior.
 [[nodiscard]] ControlMesh bent_net(Scheme scheme, const NetPlace& place, std::uint64_t seed);
 
 /// The valences of the experiments.

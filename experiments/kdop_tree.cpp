@@ -59,7 +59,8 @@ class Decomposition {
   static Which both(std::size_t i, std::size_t j) {
     return {i == 0 || j == 0, i == 1 || j == 1, i == 2 || j == 2};
   }
-  // The direction with the signs of v in some coordinates and zero in the others, or its opposite with a negative weight.
+  // The direction with the signs of v in some coordinates and zero in the others, or its opposite with a
+  // negative weight.
   void add(const Which& which, double weight) {
     Vector3 wanted;
     for (std::size_t i = 0; i < 3; ++i) wanted[i] = which[i] ? (v_[i] < 0 ? -1.0 : 1.0) : 0.0;

@@ -12,7 +12,8 @@
 
 namespace snug {
 
-/// Sorts of convex sets that trees can be made of: boxes along the coordinate axes, boxes with axes of their own, and k-DOPs.
+/// Sorts of convex sets that trees can be made of: boxes along the coordinate axes, boxes with axes of their
+/// own, and k-DOPs.
 enum class Volume : std::uint8_t { aabb, obb, dop14, dop18, dop26 };
 inline constexpr std::array all_volumes{Volume::aabb, Volume::obb, Volume::dop14, Volume::dop18,
                                         Volume::dop26};
@@ -39,7 +40,8 @@ struct BoundingVolume {
 /// How volumes of one sort are seen from another frame.
 struct VolumeView {
   RelativeFrame frame;
-  /// Every direction of the frame as a sum of three of the set's own with weights of either sign: k-DOPs alone.
+  /// Every direction of the frame as a sum of three of the set's own with weights of either sign: k-DOPs
+  /// alone.
   struct Sum {
     std::array<std::uint8_t, 3> place;
     std::array<double, 3> weight;
@@ -49,14 +51,14 @@ struct VolumeView {
   VolumeView(Volume volume, const PlacedFrame& target, const PlacedFrame& source);
 };
 
-/// Lower bound of the distance from a set to another one seen through `view`, in units of the target; zero or negative where
-/// no gap shows. Minus infinity where something is not finite.
+/// Lower bound of the distance from a set to another one seen through `view`, in units of the target; zero or
+/// negative where no gap shows. Minus infinity where something is not finite.
 /// Requires:  view.frame.comparable; coordinates of at most about 4.
 [[nodiscard]] double gap(Volume volume, const BoundingVolume& set, const BoundingVolume& other,
                          const VolumeView& view);
 
-/// A tree of volumes of one sort over a surface, eight children a node, and over its pieces where a walk came near them.
-/// Compares sorts of volumes in one plain walk, a pair at a time in double.
+/// A tree of volumes of one sort over a surface, eight children a node, and over its pieces where a walk came
+/// near them. Compares sorts of volumes in one plain walk, a pair at a time in double.
 class KdopTree {
  public:
   /// Requires:  the surface outlives the tree, and has a patch.

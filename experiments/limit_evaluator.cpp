@@ -64,9 +64,9 @@ LimitEvaluator::Child LimitEvaluator::make(Patch&& piece, double drift) {
       }
     }
   }
-  // Monomials, their products with the weights and the sum: at most 3 degree + 28 roundings. w = 1 - u - v is off by 2 u,
-  // and the parameters by `drift`, in a part by four times that and 8 u more; the derivative is the degree times a
-  // difference of Bezier points.
+  // Monomials, their products with the weights and the sum: at most 3 degree + 28 roundings. w = 1 - u - v is
+  // off by 2 u, and the parameters by `drift`, in a part by four times that and 8 u more; the derivative is
+  // the degree times a difference of Bezier points.
   const double off = form.parts == 1 ? drift + 2 * unit_roundoff : 4 * drift + 10 * unit_roundoff;
   polynomial.error = enlarged((gamma_bound(3 * d + 32) + 4 * static_cast<double>(d) * off) * largest +
                               form.rows.result_error(piece.largest, piece.error) + 64 * underflow_error);

@@ -14,8 +14,8 @@ namespace snug {
 ///
 /// Guarantee: as limit_point(); a result does not depend on earlier ones.
 /// Cost:      about 30 ns a point in a regular patch, 10 ns a level more near an extraordinary corner
-///            (bench/); a piece met for the first time about 300 ns. Memory: 0.5 to 0.9 KB a polynomial piece, at most
-///            some 700 others.
+///            (bench/); a piece met for the first time about 300 ns. Memory: 0.5 to 0.9 KB a polynomial
+///            piece, at most some 700 others.
 class LimitEvaluator {
  public:
   LimitEvaluator() = default;

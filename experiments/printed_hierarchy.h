@@ -15,7 +15,8 @@ namespace snug {
 struct LeafOptions {
   double tolerance = 0;  ///< > 0, mesh units: a leaf's radius is at most half of it
   BoundMethod method = BoundMethod::rows;
-  /// Split until a piece has at most one extraordinary corner, too: the dissertation has bounds for no others.
+  /// Split until a piece has at most one extraordinary corner, too: the dissertation has bounds for no
+  /// others.
   bool one_extraordinary = false;
 };
 
@@ -23,13 +24,14 @@ struct LeafOptions {
 ///
 /// Guarantee: every limit point is in one of them, rounding included.
 /// Requires:  coordinates of about 1: see unit_model (rooms.h).
-/// Errors:    InputError (value) for a tolerance that is not positive, (refused) where it is not reached at the last level.
+/// Errors:    InputError (value) for a tolerance that is not positive, (refused) where it is not reached at
+///            the last level.
 /// Source:    [Wu05, sec. 5.1.2].
 [[nodiscard]] std::vector<OffsetTriangle> leaves(const LimitSurface& surface, const LeafOptions& options,
                                                  const WorkMonitor& monitor = {});
 
-/// The dissertation's hierarchy: all leaves made beforehand, a tree of oriented boxes over them, and its own pair test at two
-/// leaves. NOT a bound: kept as an experiment; no query may call it.
+/// The dissertation's hierarchy: all leaves made beforehand, a tree of oriented boxes over them, and its own
+/// pair test at two leaves. NOT a bound: kept as an experiment; no query may call it.
 ///
 /// Source:    [Wu05, sec. 5.1.1, 5.1.2], [Gottschalk96]: binary, split along the longest axis at the mean.
 class PrintedHierarchy {

@@ -12,7 +12,8 @@ namespace snug {
 
 /// Tolerances of the tables, of models of size 1.
 inline constexpr std::array table_tolerances{0.02, 0.01, 0.005};
-/// Rooms: the two that are printed, then two in which about as many placements collide as the text says of those.
+/// Rooms: the two that are printed, then two in which about as many placements collide as the text says of
+///        those.
 inline constexpr std::array room_sides{6.0, 3.0, 4.5, 2.4};
 
 /// Table 5.1: leaves at one tolerance.
@@ -26,8 +27,8 @@ struct LeafCounts {
 [[nodiscard]] LeafCounts count_leaves(const LimitSurface& surface, double tolerance,
                                       const WorkMonitor& monitor = {});
 
-/// Table 5.2: processor time from a control mesh in memory until queries can be asked, in seconds, medians. Kinds are known
-/// beforehand, as tables were then.
+/// Table 5.2: processor time from a control mesh in memory until queries can be asked, in seconds, medians.
+/// Kinds are known beforehand, as tables were then.
 struct CreationTimes {
   double model = 0;    ///< a query model as it is by default: pieces are bounded when a query touches them
   double tight = 0;    ///< one with a tight tree
@@ -46,10 +47,11 @@ struct RoomOptions {
   std::uint64_t seed = 1;
 };
 
-/// Table 5.3: queries for random placements in a room, and what they answered. Times are processor times a query, in seconds,
-/// of one thread, after a few hundred queries that are not timed. Models have tight trees.
+/// Table 5.3: queries for random placements in a room, and what they answered. Times are processor times a
+/// query, in seconds, of one thread, after a few hundred queries that are not timed. Models have tight trees.
 ///
-/// The text adds an epsilon to the radii without saying which: the tolerance, which is timed, or Moeller's own.
+/// The text adds an epsilon to the radii without saying which: the tolerance, which is timed, or Moeller's
+/// own.
 struct RoomRow {
   double rows = 0;         ///< collide(), hull rows
   double tables = 0;       ///< collide(), the dissertation's tables

@@ -23,7 +23,8 @@ namespace tablegen {
 ///              f64 weights[control point][row]
 ///              u64 tables: 1, or 0
 ///     a table  f64 layout[control point][2]     f64 triangle[3][2]
-///              f64 lower[control point - first_bounded][3], the same of upper; first_bounded is 3 for Loop, else 0
+///              f64 lower[control point - first_bounded][3], the same of upper; first_bounded is 3 for Loop,
+///              else 0
 ///
 /// The hash of words w1, w2, ... of 8 bytes: start with 0xcbf29ce484222325; for each word
 /// h = (h xor w) * 0x100000001b3, then h = h xor (h >> 29).

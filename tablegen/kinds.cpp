@@ -24,7 +24,8 @@ snug::KindKey least_turn(const std::array<CornerFan, 3>& fans) {
   return {snug::Scheme::loop, {best[0], best[1], best[2]}};
 }
 
-// The next corner and the last one around `fan`, regular, at the boundary where an edge they share with it is.
+// The next corner and the last one around `fan`, regular, at the boundary where an edge they share with it
+// is.
 snug::KindKey with_regular_others(const CornerFan& fan) {
   const bool first_edge = !fan.closed && fan.before == 0, last_edge = !fan.closed && fan.after == 0;
   return least_turn(
@@ -64,8 +65,8 @@ void add_inside(snug::Scheme scheme, std::initializer_list<std::uint16_t> sizes,
   }
 }
 
-// Catmull-Clark's half quads with a boundary, or an infinitely sharp crease: along one edge, or two that meet in a lone
-// sharp corner.
+// Catmull-Clark's half quads with a boundary, or an infinitely sharp crease: along one edge, or two that meet
+// in a lone sharp corner.
 void add_at_boundary(std::vector<snug::KindKey>& keys) {
   for (const bool lone : {false, true}) {
     for (std::size_t corner = 0; corner < 4; ++corner) {

@@ -14,9 +14,9 @@ namespace tablegen {
 ///     the other corners regular, and at the boundary only where an edge of the patch is (18);
 ///   - a lone sharp corner, the others regular (1).
 ///
-/// Catmull-Clark: regular inside (1), one extraordinary corner of valence 3, 5 or 6 in each place (12), a boundary along
-/// one edge (4) or along two that meet in a lone sharp corner (4). Doo-Sabin and Midedge: regular (1), one face of 3, 5 or
-/// 6 corners in each place (12).
+/// Catmull-Clark: regular inside (1), one extraordinary corner of valence 3, 5 or 6 in each place (12), a
+///                boundary along one edge (4) or along two that meet in a lone sharp corner (4). Doo-Sabin
+///                and Midedge: regular (1), one face of 3, 5 or 6 corners in each place (12).
 [[nodiscard]] std::vector<snug::KindKey> common_kinds();
 
 }  // namespace tablegen

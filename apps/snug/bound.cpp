@@ -113,8 +113,8 @@ void write_polyhedra(const Polyhedra& polyhedra, const Options& options, AtomicF
                           polyhedra.count(), polyhedra.mesh().face_count()));
 }
 
-// The end of the command, after its last enclosure: the fields of the summary, the sentence `found` with the largest radius, and
-// why not all was reached.
+// The end of the command, after its last enclosure: the fields of the summary, the sentence `found` with the
+// largest radius, and why not all was reached.
 void write_bound_summary(Report& report, const BoundSummary& summary, const BoundOptions& how,
                          const std::string& found) {
   if (report.json()) {

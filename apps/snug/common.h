@@ -79,7 +79,8 @@ void naming(const std::string& path, const std::function<void()>& work);
 [[nodiscard]] BoundMethod bound_method(const CommonOptions& options);
 
 /// Before any work: can what -o names be written, and is its ending one that the command writes?
-/// Errors:    UsageError for an ending; InputError (unreadable) for what cannot be written. Nothing is left of the trial.
+/// Errors:    UsageError for an ending; InputError (unreadable) for what cannot be written. Nothing is left
+///            of the trial.
 void require_output(const std::string& command, const std::string& output);
 
 /// The output of a command: one JSON document on standard output or in the file of -o, or a few lines of
@@ -100,8 +101,9 @@ class Report {
   void text(const std::string& line);
   /// Lets lines of text out at once.
   void flush_text();
-  /// The end of a command: ends the document and puts the file in place, and another one that the command has written. Where
-  /// anything cannot be written, neither is left. What the command ends with: was all `reached` that was asked for?
+  /// The end of a command: ends the document and puts the file in place, and another one that the command has
+  /// written. Where anything cannot be written, neither is left. What the command ends with: was all
+  /// `reached` that was asked for?
   /// Notes:     one line if threads could not be started.
   /// Errors:    InputError (unreadable) if standard output or a file cannot be written; Interrupted.
   ExitStatus finish(bool reached = true, AtomicFile* other = nullptr);
@@ -114,7 +116,8 @@ class Report {
   std::unique_ptr<JsonWriter> writer_;
 };
 
-/// About six digits of a proved bound, rounded to the safe side: down for lower bounds, up with `at_least` for upper ones.
+/// About six digits of a proved bound, rounded to the safe side: down for lower bounds, up with `at_least`
+/// for upper ones.
 [[nodiscard]] std::string text_at_most(double x, bool at_least = false);
 
 [[nodiscard]] Command info_command();

@@ -13,7 +13,8 @@ namespace snug::command {
 
 /// Writes one JSON document piece by piece, so that a million enclosures need no gigabytes.
 ///
-/// Guarantee: numbers are the shortest that read back as the same double; text is UTF-8, with U+FFFD for bytes that are none.
+/// Guarantee: numbers are the shortest that read back as the same double; text is UTF-8, with U+FFFD for
+///            bytes that are none.
 /// Requires:  calls in an order that makes a document.
 /// Errors:    InputError (unrepresentable) on a number that is not finite.
 class JsonWriter {

@@ -23,7 +23,8 @@ struct MeshCounts {
 /// Cost:      linear, times the logarithm of the largest valence.
 [[nodiscard]] MeshCounts count_elements(const ControlMesh& mesh, std::size_t regular_valence);
 
-/// Vertices and boundary edges that stand where others do and are not joined: faces meet there to the eye alone.
+/// Vertices and boundary edges that stand where others do and are not joined: faces meet there to the eye
+/// alone.
 struct Coincidences {
   std::size_t vertices = 0;  ///< vertices of faces that stand exactly where another one stands
   std::size_t places = 0;    ///< where these stand

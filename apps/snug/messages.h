@@ -12,7 +12,8 @@ namespace snug::command {
 /// The text as UTF-8: bytes that are none become U+FFFD, the mark for that.
 [[nodiscard]] std::string as_utf8(std::string_view text);
 
-/// Writes to standard error as it is. Nothing happens where that is closed or full: there is nobody left to tell.
+/// Writes to standard error as it is. Nothing happens where that is closed or full: there is nobody left to
+/// tell.
 /// Guarantee: async-signal-safe.
 void to_standard_error(std::string_view text) noexcept;
 
@@ -23,8 +24,8 @@ void tell(std::string_view text) noexcept;
 /// Errors:    InputError (unreadable) where it is closed or full.
 void write_output(std::string_view text);
 
-/// Descriptors 0 to 2 that are closed become ones that fail as closed ones do, so that no file is opened in their place and
-/// receives messages: to be called before any file is opened.
+/// Descriptors 0 to 2 that are closed become ones that fail as closed ones do, so that no file is opened in
+/// their place and receives messages: to be called before any file is opened.
 void hold_standard_descriptors() noexcept;
 
 }  // namespace snug::command

@@ -7,8 +7,9 @@
 
 namespace snug::command {
 
-/// The candidate that a mistyped word most likely means: the one with the fewest letters to insert, delete, replace or swap
-/// with a neighbour, at most one in three of the longer word's; or one that the word begins. The first of several.
+/// The candidate that a mistyped word most likely means: the one with the fewest letters to insert, delete,
+/// replace or swap with a neighbour, at most one in three of the longer word's; or one that the word begins.
+/// The first of several.
 [[nodiscard]] std::optional<std::string> nearest_word(std::string_view word,
                                                       const std::vector<std::string>& candidates);
 

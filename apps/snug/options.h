@@ -13,8 +13,8 @@
 ///
 ///     options.add(Group::own, "--level N", level, "Steps of subdivision").between(0, 12).excludes("--tolerance");
 ///
-/// A bool is a flag, a vector an option that may be given several times; a name without dashes is an argument such as MESH, and
-/// must be given.
+/// A bool is a flag, a vector an option that may be given several times; a name without dashes is an argument
+/// such as MESH, and must be given.
 namespace snug::command {
 
 /// The parts of a command's --help, in this order.
@@ -37,7 +37,8 @@ struct Option {
   std::vector<std::string> excluded{}, needed{};
   bool must{};  ///< without it the command cannot run
 
-  /// The value is one of these words. Neither case nor '-' or '_' inside a word matters: edgeOnly is edge-only.
+  /// The value is one of these words. Neither case nor '-' or '_' inside a word matters: edgeOnly is
+  /// edge-only.
   Option& one_of(std::vector<std::string> words);
   /// Another name of a choice.
   Option& alias(const std::string& word, const std::string& choice);
@@ -66,7 +67,8 @@ class OptionList {
   Option& add(Group group, const std::string& usage, Target target, const std::string& help);
   [[nodiscard]] const std::deque<Option>& all() const { return options_; }
 
-  /// Puts what the command line gave into the targets: words by the option's name; a flag that is set has one word.
+  /// Puts what the command line gave into the targets: words by the option's name; a flag that is set has one
+  /// word.
   ///
   /// Errors:    UsageError that names the option.
   void assign(const std::map<std::string, std::vector<std::string>>& given) const;

@@ -19,7 +19,8 @@ using AskPose = std::function<PoseAnswer(const PlacedBvh& a, const PlacedBvh& b)
 /// Answers every pose of --poses in the file's order, to the end of the report: `results` and `count`, or a row each below
 /// `header`.
 ///
-/// Guarantee: memory does not grow with the number of poses. What is written depends on the file and the options alone.
+/// Guarantee: memory does not grow with the number of poses. What is written depends on the file and the
+///            options alone.
 /// Returns:   not_reached if one was not.
 /// Errors:    InputError that names the line, after the answers before it were written; Interrupted.
 [[nodiscard]] ExitStatus answer_poses(PairArguments& pair, Report& report, const std::string& header,

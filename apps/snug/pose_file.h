@@ -32,9 +32,10 @@ class PoseFile {
   /// What messages call a line: "poses.txt:7".
   [[nodiscard]] std::string name_of(std::size_t line) const;
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// The next lines but blank ones and those that begin with #: what is there at once, at least one. None at the end. They
-  /// are gone with the next call.
-  /// Errors:    InputError (unreadable) for a line of more than 256 KiB, and whatever the system reports; Interrupted.
+  /// The next lines but blank ones and those that begin with #: what is there at once, at least one. None at
+  /// the end. They are gone with the next call.
+  /// Errors:    InputError (unreadable) for a line of more than 256 KiB, and whatever the system reports;
+  ///            Interrupted.
   [[nodiscard]] std::vector<PoseLine> next(const WorkMonitor& monitor);
   /// How much has been handed out, in [0, 1]; 0 for a stream.
   [[nodiscard]] double share() const;
@@ -59,8 +60,8 @@ struct ReadPoses {
   std::optional<double> defect;  ///< the worst that was mended
 };
 
-/// Twelve or sixteen numbers, the pose of B; or the same as a JSON list; or a JSON object with `a`, `b` or both, each a list
-/// or {"quaternion": [w, x, y, z], "translation": [x, y, z]}.
+/// Twelve or sixteen numbers, the pose of B; or the same as a JSON list; or a JSON object with `a`, `b` or
+/// both, each a list or {"quaternion": [w, x, y, z], "translation": [x, y, z]}.
 ///
 /// Errors:    InputError: unreadable for another text, pose for what is no motion.
 [[nodiscard]] ReadPoses parse_pose_line(std::string_view text, bool nearest_rigid);

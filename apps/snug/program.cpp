@@ -26,8 +26,8 @@ namespace {
 
 constexpr const char* out_of_memory = "out of memory: the mesh or the answer is too large for this machine";
 
-// Memory for the way out, a part for each failure: without it unwinding, and what the C library allocates meanwhile, would
-// end the process. Parts are small enough to come from the heap.
+// Memory for the way out, a part for each failure: without it unwinding, and what the C library allocates
+// meanwhile, would end the process. Parts are small enough to come from the heap.
 std::array<std::atomic<void*>, 64> reserve;
 
 void release_a_part() {

@@ -35,8 +35,8 @@ class ProgressBar {
 
 /// Set by SIGINT, SIGTERM and SIGHUP, from before main on.
 ///
-/// Guarantee: work that does not end by itself within 0.3 s of the first signal is ended then, or at a second signal:
-///            temporary files removed, standard output as far as it was written, status 130.
+/// Guarantee: work that does not end by itself within 0.3 s of the first signal is ended then, or at a second
+///            signal: temporary files removed, standard output as far as it was written, status 130.
 extern std::atomic<bool> stop_requested;
 /// A monitor that stops at an interrupt and shows nothing.
 [[nodiscard]] WorkMonitor stopped_by_interrupts();

@@ -21,8 +21,8 @@
 namespace snug::command {
 namespace {
 
-// Edges of surface triangles on the picture, in pixels: at most this in nine faces of ten, and in the rest; unless there
-// would be too many triangles.
+// Edges of surface triangles on the picture, in pixels: at most this in nine faces of ten, and in the rest;
+// unless there would be too many triangles.
 constexpr double usual_edge = 3, longest_edge = 6;
 constexpr double most_surface_triangles = 2e6;
 constexpr std::uint64_t most_enclosures = 200'000;
@@ -129,7 +129,8 @@ struct Enclosures {
   bool reached = true;
 };
 
-// The budget of splits that keeps the enclosures drawable. Refuses what is too much without any split, or at a fixed level.
+// The budget of splits that keeps the enclosures drawable. Refuses what is too much without any split, or at
+// a fixed level.
 std::uint64_t drawable_budget(const Options& options, const std::vector<LimitSurface>& surfaces) {
   std::uint64_t pieces = 0;
   for (const LimitSurface& surface : surfaces) {

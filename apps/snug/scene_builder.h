@@ -105,7 +105,8 @@ struct SolidStyle {
 /// Adds what an eye sees of a convex solid by itself: the facets towards the eye and their edges.
 void add_polyhedron(Scene& scene, const Polyhedron& solid, Point3 eye, const SolidStyle& style);
 
-/// Adds two points of the world and the segment between them; `scale` is the picture's smaller side over a thousand pixels.
+/// Adds two points of the world and the segment between them; `scale` is the picture's smaller side over a
+/// thousand pixels.
 /// Errors:    InputError (value) for points so far away that the picture cannot hold them.
 void add_witness(Scene& scene, const std::array<Point3, 2>& points, const PictureUnits& units, double scale);
 

@@ -12,8 +12,8 @@
 
 namespace snug::command {
 
-/// The fields face (dual: vertex), part or corner of its split, u, v, normal and normal_error of a place, into the object that is
-/// open.
+/// The fields face (dual: vertex), part or corner of its split, u, v, normal and normal_error of a place,
+/// into the object that is open.
 void write_place(JsonWriter& json, const LimitSurface& surface, const SurfaceParameter& at,
                  const Motion& pose = {});
 
@@ -26,8 +26,8 @@ struct Sides {
   return {{&a.model.surface(), &b.model.surface()}, {a.pose, b.pose}};
 }
 
-/// Witnesses and where they lie: "witness_at": two objects, null for a witness that is a point of the other surface alone, or null
-/// without witnesses.
+/// Witnesses and where they lie: "witness_at": two objects, null for a witness that is a point of the other
+/// surface alone, or null without witnesses.
 void write_places(JsonWriter& json, const Sides& sides, const WitnessPlaces* places);
 
 /// The field stats: what the query did.

@@ -24,7 +24,8 @@ bool parse(std::string_view word, Number& number) {
   return error == std::errc() && end == word.data() + word.size() && !word.empty();
 }
 
-/// Calls visit(line, number) for the lines of a text, from 1 on, but for blank ones and those that begin with #.
+/// Calls visit(line, number) for the lines of a text, from 1 on, but for blank ones and those that begin with
+/// #.
 template <class Visit>
 void for_each_line(std::string_view text, Visit&& visit) {
   std::size_t number = 0;

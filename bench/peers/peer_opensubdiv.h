@@ -29,7 +29,8 @@ class OsdMesh {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Bfr surfaces of faces, initialised and kept; Bfr's own settings (irregular patches approximated from level 2).
+/// Bfr surfaces of faces, initialised and kept; Bfr's own settings (irregular patches approximated from level
+/// 2).
 class OsdSurfaces {
  public:
   /// `cache`: with the factory's cache of topologies, which Bfr's default is.
@@ -56,8 +57,8 @@ class OsdSurfaces {
 /// A table of stencils, in double precision as Far makes it.
 class OsdStencils {
  public:
-  /// Limit stencils at the same parameters of every face: Far::LimitStencilTableFactory after adaptive refinement
-  /// to `isolation` levels; no derivatives.
+  /// Limit stencils at the same parameters of every face: Far::LimitStencilTableFactory after adaptive
+  /// refinement to `isolation` levels; no derivatives.
   static OsdStencils limit(const ControlMesh& mesh, std::span<const TriangleParameter> at, int isolation);
   /// The vertices of the mesh after one step of uniform refinement: the least that any refit of finer patches
   /// starts from.
@@ -89,21 +90,22 @@ struct OsdLimitSample {
   Point3 point;
 };
 
-/// Corners of all faces after `level` steps, at their limit positions, in the order of control faces. A corner
-/// that pieces of one face share is listed once for each.
+/// Corners of all faces after `level` steps, at their limit positions, in the order of control faces. A
+/// corner that pieces of one face share is listed once for each.
 [[nodiscard]] std::vector<OsdLimitSample> osd_limit_samples(const ControlMesh& mesh, int level);
 
-/// The mesh after `level` uniform steps, as a user of Far writes it: a topology refiner, RefineUniform, PrimvarRefiner.
-/// `snapped`: its vertices at their limit positions.
+/// The mesh after `level` uniform steps, as a user of Far writes it: a topology refiner, RefineUniform,
+/// PrimvarRefiner. `snapped`: its vertices at their limit positions.
 [[nodiscard]] TriangleMesh osd_uniform(const ControlMesh& mesh, int level, bool snapped = false);
 
-/// The first level at which every vertex is within tolerance / 2 of its limit position: what "uniform Loop" means in
-/// [Wu05, table 5.1]. Nothing says how near triangles are between their vertices.
+/// The first level at which every vertex is within tolerance / 2 of its limit position: what "uniform Loop"
+/// means in [Wu05, table 5.1]. Nothing says how near triangles are between their vertices.
 /// Errors:    std::runtime_error if that is beyond level 10.
 [[nodiscard]] int osd_uniform_level(const ControlMesh& mesh, double tolerance);
 
-/// The first level at which the mesh snapped to the limit looks fine enough: the limit of the vertex that one more step puts on an edge is
-/// within tolerance / 2 of that edge. What somebody would take who knows limit positions; measured at these points, not proved.
+/// The first level at which the mesh snapped to the limit looks fine enough: the limit of the vertex that one
+/// more step puts on an edge is within tolerance / 2 of that edge. What somebody would take who knows limit
+/// positions; measured at these points, not proved.
 /// Errors:    std::runtime_error if that is beyond level 10.
 [[nodiscard]] int osd_snapped_level(const ControlMesh& mesh, double tolerance);
 

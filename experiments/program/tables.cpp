@@ -25,7 +25,8 @@ struct Models {
   std::vector<ControlMesh> meshes;
 };
 
-// A file such as "examples/models/star.obj" below the current folder, or below one of those above this executable.
+// A file such as "examples/models/star.obj" below the current folder, or below one of those above this
+// executable.
 std::optional<std::string> file_around(const std::string& name) {
   namespace fs = std::filesystem;
   std::error_code ignored;

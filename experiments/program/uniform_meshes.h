@@ -8,9 +8,9 @@
 #include <snug/mesh/control_mesh.h>
 #include <snug/monitor.h>
 
-/// The columns of uniform Loop meshes in the dissertation's tables: OpenSubdiv refines to the first level whose vertices are all
-/// within half the tolerance of their limit, FCL builds trees and answers. In the order of the tables' rows; nothing where
-/// either of them was not there to build with.
+/// The columns of uniform Loop meshes in the dissertation's tables: OpenSubdiv refines to the first level
+/// whose vertices are all within half the tolerance of their limit, FCL builds trees and answers. In the
+/// order of the tables' rows; nothing where either of them was not there to build with.
 namespace snug {
 
 /// Triangles, of table 5.1.

@@ -405,7 +405,8 @@ TEST(opensubdiv_adapter, hands_on_non_manifold_meshes) {
 }
 
 TEST(opensubdiv_adapter, keeps_corners_on_the_edge_of_a_wall_inside) {
-  // Two cubes side by side with a wall between them: its vertices are smooth along its edges unless they are tagged.
+  // Two cubes side by side with a wall between them: its vertices are smooth along its edges unless they are
+  // tagged.
   ControlMesh mesh;
   for (std::size_t v = 0; v < 12; ++v) {
     mesh.points.push_back({double(v / 4), double(v % 4 / 2), double(v % 2)});

@@ -136,8 +136,8 @@ TEST(ngon_layout, touches_the_far_edge_and_keeps_to_its_triangle) {
     }
     EXPECT_NEAR(farthest, 1, 1e-14) << n;
     EXPECT_GE(least, -1e-14) << n;
-    // The table's triangle is hardly wider: the net of the tip sticks out by 1 % of the width, and nothing beyond
-    // the far edge.
+    // The table's triangle is hardly wider: the net of the tip sticks out by 1 % of the width, and nothing
+    // beyond the far edge.
     const auto& t = table.triangle;
     EXPECT_LT(from_centre(t[(centre + 1) % 3][0], t[(centre + 1) % 3][1]), 1.03) << n;
     EXPECT_GT(t[0][0], -0.015) << n;

@@ -31,7 +31,8 @@ TEST(bound_library, hands_every_thread_the_same_rows_and_tables) {
   EXPECT_GT(library.bytes(), 0u);
 }
 
-// Everything that bounding all patches of some surfaces makes of rows: with no tips, one and several, passing and crowded.
+// Everything that bounding all patches of some surfaces makes of rows: with no tips, one and several, passing
+// and crowded.
 std::vector<std::vector<double>> numbers_with(const std::shared_ptr<BoundsCache>& library) {
   std::vector<std::vector<double>> all;
   for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {

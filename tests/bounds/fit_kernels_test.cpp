@@ -97,7 +97,8 @@ std::array<Vector3, 3> any_frame(Random& random) {
   return {a, b, cross(a, b)};
 }
 
-// Needles up to and beyond what is answered, obtuse, acute and equilateral ones; in any place, or in the plane z = 0.
+// Needles up to and beyond what is answered, obtuse, acute and equilateral ones; in any place, or in the
+// plane z = 0.
 Corners any_corners(Random& random, double size) {
   double x = uniform(random, -0.5, 1.5), y = std::pow(2.0, uniform(random, -6, 1));
   if (random() % 4 == 0) x = 0.5, y = 0.8660254037844386;

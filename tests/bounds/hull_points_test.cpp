@@ -19,8 +19,8 @@ Box3 box_around(const HullPoints& points) {
   return box;
 }
 
-// How far the hull reaches behind the corners of a patch, as a share of its size: beyond each corner along the line from
-// the middle of the opposite edge.
+// How far the hull reaches behind the corners of a patch, as a share of its size: beyond each corner along
+// the line from the middle of the opposite edge.
 double distance_behind(const std::array<Vector3, 3>& corners, const HullPoints& points) {
   double most = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -61,7 +61,8 @@ TEST(hull_points, and_their_slab_contain_the_limit_patch) {
   }
 }
 
-// Seen from the limit, a patch fills a sector at its extraordinary corner, but the net of the tip all around it.
+// Seen from the limit, a patch fills a sector at its extraordinary corner, but the net of the tip all around
+// it.
 TEST(refine_tips, leaves_the_patch_inside_and_cuts_what_lies_behind_its_corner) {
   for (const std::uint32_t n : {3u, 5u, 7u, 9u, 30u}) {
     const LimitSurface surface = testing::surface_of(oracle::meshes::bipyramid(n));

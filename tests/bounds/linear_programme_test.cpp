@@ -26,7 +26,8 @@ double largest_violation(const Points& points, const Plane& plane) {
   return worst;
 }
 
-// By the definition: of all planes through three of the points that no point is above, the least at the centre.
+// By the definition: of all planes through three of the points that no point is above, the least at the
+// centre.
 double brute_force(const Points& p, double cx, double cy) {
   double best = INFINITY;
   for (std::size_t i = 0; i < p.x.size(); ++i) {

@@ -1,4 +1,5 @@
-// Nothing that comes from outside ends the command without one line and a status: descriptors, limits, signals, files.
+// Nothing that comes from outside ends the command without one line and a status: descriptors, limits,
+// signals, files.
 #include <gtest/gtest.h>
 
 #include <fcntl.h>
@@ -366,7 +367,8 @@ TEST(border, a_signal_while_the_file_is_written_leaves_nothing) {
                                  while (folder.empty()) std::this_thread::yield();
                                  for (int i = 0; i < signals; ++i) kill(child, SIGTERM);
                                }};
-    // The first file that appears is the trial before the work; the name is taken from then on by others of its kind.
+    // The first file that appears is the trial before the work; the name is taken from then on by others of
+    // its kind.
     const Outcome outcome = run_snug_in(
         watched, {"bound", model("bust.obj"), "--level", "6", "--quiet", "-o", folder.file("a.json")});
     EXPECT_EQ(outcome.status, 130);

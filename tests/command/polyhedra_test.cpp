@@ -38,7 +38,8 @@ std::vector<Part> parts(const ControlMesh& mesh) {
       most = std::max(most, v.value());
     }
     if (least >= seen) result.emplace_back();
-    // Gift wrapping numbers corners in the order of the facets, so a later facet of a part reaches back into it.
+    // Gift wrapping numbers corners in the order of the facets, so a later facet of a part reaches back into
+    // it.
     result.back().faces.emplace_back(f);
     seen = std::max(seen, most + 1);
   }

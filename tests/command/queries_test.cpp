@@ -1,5 +1,5 @@
-// collide, distance and closest as people script them: bad placements, lengths at the ends of the doubles, shapes without
-// thickness.
+// collide, distance and closest as people script them: bad placements, lengths at the ends of the doubles,
+// shapes without thickness.
 
 #include <gtest/gtest.h>
 
@@ -79,7 +79,8 @@ TEST_F(queries, bad_placements_are_refused_and_leave_no_file) {
 TEST_F(queries, placements_off_by_less_than_1e_9_are_taken_as_they_stand) {
   const std::string low = write("low.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
                     high = write("high.obj", "v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n");
-  // The second lies 1 above the first, or by 1e-10 more where z is stretched; the margin is half of that more.
+  // The second lies 1 above the first, or by 1e-10 more where z is stretched; the margin is half of that
+  // more.
   const auto verdict = [&](const char* placement) {
     return answer({"collide", low, high, "--tolerance", "1e-12", "--margin", "1.00000000005", "--place-b",
                    placement})["verdict"];

@@ -12,7 +12,8 @@ namespace {
 
 using nlohmann::json;
 
-/// A prism with triangles above and below and quads around: under Catmull-Clark the triangles' first split meets quads.
+/// A prism with triangles above and below and quads around: under Catmull-Clark the triangles' first split
+/// meets quads.
 constexpr const char* prism =
     "v 0 0 -1\nv 2 0 -1\nv 0.7 1.8 -1\nv 0 0 1\nv 2 0 1\nv 0.7 1.8 1\n"
     "f 3 2 1\nf 4 5 6\nf 1 2 5 4\nf 2 3 6 5\nf 3 1 4 6\n";

@@ -27,8 +27,8 @@ TEST(leaves, are_as_many_as_bound_makes) {
   }
 }
 
-// Each face is split once, and then no more: every corner of an icosahedron has valence 5, two of each face of this bipyramid
-// have valence 4.
+// Each face is split once, and then no more: every corner of an icosahedron has valence 5, two of each face
+// of this bipyramid have valence 4.
 TEST(leaves, have_one_extraordinary_corner_on_request) {
   const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
   EXPECT_EQ(leaves(surface, {100, BoundMethod::table}).size(), 20u);

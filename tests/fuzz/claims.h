@@ -63,7 +63,8 @@ inline void claim_one_line(const InputError& error) {
     claim(c >= ' ' && c <= '~', "messages are one printable line");
 }
 
-/// Reads the input and, if it is accepted, hands the mesh to `check`. Anything but InputError ends the process.
+/// Reads the input and, if it is accepted, hands the mesh to `check`. Anything but InputError ends the
+/// process.
 template <class Parse, class Check>
 void read_or_refuse(const std::uint8_t* data, std::size_t size, const Parse& parse, const Check& check) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);

@@ -156,7 +156,8 @@ TEST(sharpen, sees_flat_regions_through_the_rounding_of_long_thin_triangles) {
   }
 }
 
-/// The mesh with a triangle of hardly any width along the edge from a to b of one face, whose other side it takes.
+/// The mesh with a triangle of hardly any width along the edge from a to b of one face, whose other side it
+/// takes.
 ControlMesh with_narrow_face(const ControlMesh& mesh, std::uint32_t a, std::uint32_t b) {
   ControlMesh result;
   result.points = mesh.points;

@@ -71,7 +71,8 @@ void expect_split(const Polygon& polygon, std::size_t triangles_at_most) {
     }
   }
   EXPECT_NEAR(area, twice_area(polygon), 1e-9 * std::fabs(area));
-  // As chains, the triangles' boundary is the polygon: with the areas positive they cover it, each point once.
+  // As chains, the triangles' boundary is the polygon: with the areas positive they cover it, each point
+  // once.
   for (std::uint32_t v = 0; v < polygon.size(); ++v)
     --edges[{v, static_cast<std::uint32_t>((v + 1) % polygon.size())}];
   for (const auto& [edge, count] : edges) {

@@ -208,7 +208,8 @@ class Connectivities {
     return rows;
   }
 
-  /// Calls use(net, i) with nets whose points i, i + 1 and i + 2 are the unit vectors and whose others are zero.
+  /// Calls use(net, i) with nets whose points i, i + 1 and i + 2 are the unit vectors and whose others are
+  /// zero.
   template <class Use>
   static void for_units(const Net<double>& net, Use use) {
     Net<double> units = net;

@@ -18,24 +18,26 @@ struct ContactGoal {
   std::size_t effort = 20'000;  ///< or after so many pairs of patches
 };
 
-/// lower <= distance <= upper, whether or not the goal was reached. on_a and on_b are placed limit points at a distance
-/// of at most upper, up to their rounding.
+/// lower <= distance <= upper, whether or not the goal was reached. on_a and on_b are placed limit points at
+/// a distance of at most upper, up to their rounding.
 struct ContactBounds {
   double lower, upper;
   Point on_a, on_b;
   bool spent;  ///< the effort ended the search
 };
 
-/// A Loop limit surface for very many questions about distances: a fast sibling of SurfaceTwin that
-/// takes one-sided questions. Patches are split by matrices, one for each connectivity of a net, made once a thread by
-/// the masks of loop_net.h.
+/// A Loop limit surface for very many questions about distances: a fast sibling of SurfaceTwin that takes
+/// one-sided questions. Patches are split by matrices, one for each connectivity of a net, made once a thread
+/// by the masks of loop_net.h.
 ///
 /// Rounding:  plain doubles; a net after L splits is off by at most (L + 2) (K + 16) 2^-52 S a coordinate, K the largest
 ///            number of points in a net, S the largest |coordinate|. Every bound is moved outwards by that. A pair's frame
 ///            is that of the first surface without its translation, so far away pairs are as exact as near ones as
 ///            long as the difference of the translations is.
-/// Errors:    std::invalid_argument, see TwinMesh; also if no face has a surface or a placement is not finite.
-/// Requires:  coordinates between 1e-140 and 1e140 in size, or zero; each surface is used by the thread that made it.
+/// Errors:    std::invalid_argument, see TwinMesh; also if no face has a surface or a placement is not
+///            finite.
+/// Requires:  coordinates between 1e-140 and 1e140 in size, or zero; each surface is used by the thread that
+///            made it.
 /// Cost:      a split some 4 microseconds, a pair of patches one or two.
 class ContactSurface {
  public:
@@ -49,8 +51,8 @@ class ContactSurface {
 
   /// Distance bounds of two placed surfaces, or of one and itself.
   ///
-  /// Guarantee: lower <= distance <= upper, rounding included. Where the goal has a threshold: lower > threshold, or
-  ///            upper <= threshold, or `spent`, or rounding hides the answer.
+  /// Guarantee: lower <= distance <= upper, rounding included. Where the goal has a threshold: lower >
+  ///            threshold, or upper <= threshold, or `spent`, or rounding hides the answer.
   friend ContactBounds contact_bounds(ContactSurface& a, const Placement& place_a, ContactSurface& b,
                                       const Placement& place_b, const ContactGoal& goal);
 

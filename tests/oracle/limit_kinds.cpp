@@ -14,7 +14,8 @@ namespace {
 using Id = std::uint32_t;
 using Rows = NetOf<SparseRow>;
 
-/// A face, the faces that touch its corners, and what is sharp there: the same numbers for the same connectivity.
+/// A face, the faces that touch its corners, and what is sharp there: the same numbers for the same
+/// connectivity.
 template <class P>
 struct Piece {
   NetOf<P> net;         // face 0 is the one meant
@@ -59,7 +60,8 @@ std::vector<std::pair<Id, std::size_t>> faces_around(const NetOf<P>& net, const 
 
 bool is_finite(const Quad& s) { return s > 0 && s < kInfinitelySharp; }
 
-/// Sharpness is kept where masks look at it: at the face's corners, under chaikin at all vertices of the piece.
+/// Sharpness is kept where masks look at it: at the face's corners, under chaikin at all vertices of the
+/// piece.
 template <class P>
 class PieceMaker {
  public:
@@ -238,8 +240,8 @@ class PrimalKinds final : public PatchKinds {
   std::vector<Rows> nets_;  // until it is split
 };
 
-/// Faces around a vertex, in turn. Control points: the vertex, the ends of the edges between the faces (the first before
-/// face 0), then the other vertices of each face.
+/// Faces around a vertex, in turn. Control points: the vertex, the ends of the edges between the faces (the
+/// first before face 0), then the other vertices of each face.
 class DualKinds final : public PatchKinds {
  public:
   explicit DualKinds(DualScheme scheme) : scheme_(scheme) {}
@@ -385,8 +387,8 @@ class DualKinds final : public PatchKinds {
   std::map<std::size_t, std::vector<Quad>> masks_;
 };
 
-/// Bernstein polynomials of a patch at a parameter; `whole` times their values at the nodes of a B-spline or box spline are
-/// whole numbers.
+/// Bernstein polynomials of a patch at a parameter; `whole` times their values at the nodes of a B-spline or
+/// box spline are whole numbers.
 struct Bernstein {
   bool triangle;
   int degree;
@@ -415,7 +417,8 @@ Bernstein bernstein(Polynomial polynomial) {
                                              : Bernstein{false, 2, 4};
 }
 
-/// Solves for the rows of the unknowns, which are written after those of the matrix; more equations than unknowns must agree.
+/// Solves for the rows of the unknowns, which are written after those of the matrix; more equations than
+/// unknowns must agree.
 void eliminate(std::vector<std::vector<double>>& table, std::size_t unknowns) {
   for (std::size_t k = 0; k < unknowns; ++k) {
     const auto pivot =

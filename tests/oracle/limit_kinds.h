@@ -10,7 +10,8 @@
 #include <utility>
 #include <vector>
 
-/// What splitting a patch does to its control points, whatever these are: for every scheme and tag. Internal to limit_twin.
+/// What splitting a patch does to its control points, whatever these are: for every scheme and tag. Internal
+/// to limit_twin.
 namespace oracle::detail {
 
 /// Weights of the control points of one patch for a point of another; each control point once.
@@ -27,7 +28,8 @@ struct WeightRow {
 /// What a regular patch is, in terms of Bezier points.
 enum class Polynomial : std::uint8_t { none, biquadratic, bicubic, quartic };
 
-/// Patches of the same connectivity, rules and sharpness. A patch lies in the convex hull of its control points.
+/// Patches of the same connectivity, rules and sharpness. A patch lies in the convex hull of its control
+/// points.
 struct PatchKind {
   struct Child {
     std::uint32_t kind;

@@ -111,7 +111,8 @@ struct LimitTwin::Tree final : detail::PatchTree {
     append(patch);
   }
 
-  /// Where there is no formula, by going to the child at the corner until there is one, or nothing is left to go.
+  /// Where there is no formula, by going to the child at the corner until there is one, or nothing is left to
+  /// go.
   [[nodiscard]] Corner limit_of(Id kind, std::vector<Point> net, Id corner) const {
     double extent = 0;
     for (Id level = 0;; ++level) {

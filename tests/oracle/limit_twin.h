@@ -10,7 +10,8 @@
 
 namespace oracle {
 
-/// What patches of one scheme and its rules do when they are split: found once for all surfaces that share it.
+/// What patches of one scheme and its rules do when they are split: found once for all surfaces that share
+/// it.
 class LimitRules {
  public:
   /// Catmull-Clark and Loop with every tag. Chaikin's dart edges are clamped, so that all masks are convex.
@@ -28,17 +29,21 @@ class LimitRules {
 
 /// The limit surface of a mesh of any scheme with any tags, for questions about distances.
 ///
-/// Every patch is known by its control points, in whose convex hull it lies since all masks are convex combinations, and by
-/// limit points at its corners. Patches are split by matrices that the refinement of polygon_twin and dual_twin, applied to
-/// unit vectors in 113 bits, gives for each connectivity and sharpness.
+/// Every patch is known by its control points, in whose convex hull it lies since all masks are convex
+/// combinations, and by limit points at its corners. Patches are split by matrices that the refinement of
+/// polygon_twin and dual_twin, applied to unit vectors in 113 bits, gives for each connectivity and
+/// sharpness.
 ///
-/// Rounding:  as ContactSurface: plain doubles; control points after L splits are off by at most (L + 2) (K + 16) 2^-52 S a
-///            coordinate, K the largest number of control points of a patch. Every bound is moved outwards by that, and
-///            by how far a limit corner is from its limit where no formula is known.
-/// Errors:    std::invalid_argument, see TaggedMesh; also if there is no surface or a placement is not finite. Dual
-///            schemes want an oriented manifold.
-/// Requires:  coordinates between 1e-140 and 1e140 in size, or zero; rules and surfaces are used by one thread.
-/// Cost:      a split some microseconds once the kind is known; a kind a millisecond, hundreds at valences of hundreds.
+/// Rounding:  as ContactSurface: plain doubles; control points after L splits are off by at most (L + 2) (K +
+///            16) 2^-52 S a coordinate, K the largest number of control points of a patch. Every bound is
+///            moved outwards by that, and by how far a limit corner is from its limit where no formula is
+///            known.
+/// Errors:    std::invalid_argument, see TaggedMesh; also if there is no surface or a placement is not
+///            finite. Dual schemes want an oriented manifold.
+/// Requires:  coordinates between 1e-140 and 1e140 in size, or zero; rules and surfaces are used by one
+///            thread.
+/// Cost:      a split some microseconds once the kind is known; a kind a millisecond, hundreds at valences of
+///            hundreds.
 class LimitTwin {
  public:
   LimitTwin(const TaggedMesh& mesh, std::shared_ptr<LimitRules> rules);
@@ -49,8 +54,8 @@ class LimitTwin {
   /// Guarantee: as ContactSurface's.
   friend ContactBounds contact_bounds(LimitTwin& a, const Placement& place_a, LimitTwin& b,
                                       const Placement& place_b, const ContactGoal& goal);
-  /// Bounds of the distance of a point to the placed surface, or to its part that belongs to a face (a vertex, with a dual
-  /// scheme).
+  /// Bounds of the distance of a point to the placed surface, or to its part that belongs to a face (a
+  /// vertex, with a dual scheme).
   [[nodiscard]] ContactBounds distance_to(const Placement& placement, const Point& point,
                                           const ContactGoal& goal, std::optional<std::uint32_t> owner = {});
   /// Is a limit point within `tolerance` of `point`? True only if there is one.
@@ -63,8 +68,9 @@ class LimitTwin {
   /// A limit point at a corner of patch `i`, modulo their number.
   [[nodiscard]] Point some_limit_point(std::size_t i) const;
 
-  /// How often the surface winds around a point. All patches are split equally often, until none has the point in its
-  /// hull; then that of the polyhedron of limit corners is the same. Nothing where `most_levels` do not reach.
+  /// How often the surface winds around a point. All patches are split equally often, until none has the
+  /// point in its hull; then that of the polyhedron of limit corners is the same. Nothing where `most_levels`
+  /// do not reach.
   /// Requires:  a closed surface.
   [[nodiscard]] std::optional<int> winding_number(const Point& point, int most_levels = 5);
 

@@ -12,8 +12,8 @@ struct TaggedFile {
   bool chaikin = false, smooth_triangles = false;
 };
 
-/// Reads `v`, `f` and the tags crease, corner, hole, creasemethod and smoothtriangles of an OBJ file; every other
-/// line is passed over.
+/// Reads `v`, `f` and the tags crease, corner, hole, creasemethod and smoothtriangles of an OBJ file; every
+/// other line is passed over.
 ///
 /// Errors: std::runtime_error if it cannot be read or a number is missing.
 [[nodiscard]] TaggedFile read_tagged_obj(const std::filesystem::path& path);

@@ -12,8 +12,8 @@
 namespace oracle {
 namespace {
 
-/// OpenSubdiv's own regression shapes, where the environment says they are: SNUG_EXTRA_MODELS/osd. A name that
-/// begins with "loop" asks for Loop.
+/// OpenSubdiv's own regression shapes, where the environment says they are: SNUG_EXTRA_MODELS/osd. A name
+/// that begins with "loop" asks for Loop.
 TEST(polygon_twin_and_opensubdiv, agree_on_the_regression_shapes) {
   const char* folder = std::getenv("SNUG_EXTRA_MODELS");
   if (folder == nullptr) GTEST_SKIP() << "SNUG_EXTRA_MODELS is not set";

@@ -81,7 +81,8 @@ TEST(polygon_twin, has_one_vertex_rule_at_valence_four) {
   EXPECT_FALSE(same(box));
 }
 
-/// By hand: after one step corner 0 of the cube is (Q + 2R + S) / 4 with Q = (1/3, 1/3, 1/3), R = (1/6, 1/6, 1/6).
+/// By hand: after one step corner 0 of the cube is (Q + 2R + S) / 4 with Q = (1/3, 1/3, 1/3), R = (1/6, 1/6,
+/// 1/6).
 TEST(polygon_twin, knows_the_old_vertex_rule) {
   Rules rules;
   rules.old_vertex_rule = true;

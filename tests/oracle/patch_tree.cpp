@@ -264,7 +264,8 @@ class ContactSearch {
       pair.lower = std::max(pair.lower, found * (1 - 1e-14) - error_here);
       return good_enough(pair.lower);
     };
-    // Along the normals, then Gilbert's iteration from a point of hull(b) - hull(a) towards the one nearest to 0.
+    // Along the normals, then Gilbert's iteration from a point of hull(b) - hull(a) towards the one nearest
+    // to 0.
     bool done = false;
     for (Point normal : normals_) {
       const double size = length(normal);

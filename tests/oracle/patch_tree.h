@@ -7,7 +7,8 @@
 #include <optional>
 #include <vector>
 
-/// Trees of sub-patches of a limit surface, and the search for distances that they share. Internal to the twins.
+/// Trees of sub-patches of a limit surface, and the search for distances that they share. Internal to the
+/// twins.
 namespace oracle::detail {
 
 constexpr std::uint32_t kNoPatch = UINT32_MAX;

@@ -10,7 +10,8 @@
 
 namespace oracle {
 
-/// How far the points of either list are from their nearest in the other at most; infinite if their numbers differ.
+/// How far the points of either list are from their nearest in the other at most; infinite if their numbers
+/// differ.
 [[nodiscard]] inline double farthest_from_partner(const std::vector<Point>& a, const std::vector<Point>& b) {
   if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
   double worst = 0;

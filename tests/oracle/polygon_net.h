@@ -15,8 +15,8 @@ namespace oracle::detail {
 
 using QuadPoint = std::array<Quad, 3>;
 
-/// A sum of weighted points of another net, which need not be in order nor each once; weights are off by some units of
-/// roundoff of a double.
+/// A sum of weighted points of another net, which need not be in order nor each once; weights are off by some
+/// units of roundoff of a double.
 struct SparseRow {
   std::vector<std::pair<std::uint32_t, double>> terms;
 };
@@ -54,9 +54,9 @@ struct Neighbours {
 /// The control net, with boundaries and non-manifold places made sharp, and the faces that have a surface.
 ///
 /// Source: OpenSubdiv 3.5, Far::TopologyRefinerFactoryBase and Vtr::Level: a second edge between two vertices
-///         arises where one face would run along it twice; an edge is non-manifold if it is one of those, joins
-///         a vertex to itself, has more than two faces or two that run along it the same way; a vertex is if
-///         one of its edges is or its corners are not one fan.
+///         arises where one face would run along it twice; an edge is non-manifold if it is one of those,
+///         joins a vertex to itself, has more than two faces or two that run along it the same way; a vertex
+///         is if one of its edges is or its corners are not one fan.
 struct ControlNet {
   PolygonNet net;
   std::vector<char> has_surface;
@@ -68,8 +68,8 @@ enum class Rule : std::uint8_t { smooth, dart, crease, corner };
 
 /// One step. The child faces of a face follow each other.
 ///
-/// Catmull-Clark: child k holds corner k; it is (corner, edge point, face point, edge point before), turned for
-///                a parent with four corners so that the corner is number k again.
+/// Catmull-Clark: child k holds corner k; it is (corner, edge point, face point, edge point before), turned
+///                for a parent with four corners so that the corner is number k again.
 /// Loop:          corner children 0, 1, 2 as child_corners() says, then the centre.
 /// Child vertices: those of faces (Catmull-Clark), of edges, of vertices, in this order.
 template <class P>

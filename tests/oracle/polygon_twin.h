@@ -22,16 +22,17 @@ struct FaceSample {
 
 /// Limit positions of all vertices after `levels` refinements of the whole mesh.
 ///
-/// Guarantee: each (face, part, u, v) once, faces without surface left out (holes, and with Boundary::none those
-///            with a vertex on a boundary edge that is not infinitely sharp). Exact limits where finite
+/// Guarantee: each (face, part, u, v) once, faces without surface left out (holes, and with Boundary::none
+///            those with a vertex on a boundary edge that is not infinitely sharp). Exact limits where finite
 ///            sharpness is still alive, too: the vertex is refined on its own until its masks stay the same.
 ///            Positions are within `error`: in 113-bit arithmetic a step is at most three nested convex
-///            combinations of up to N terms, N the largest valence or face, so it adds at most (N + 12) 2^-112
-///            M, M the largest coordinate; limits without a closed formula (one infinitely sharp edge; the old
-///            vertex rule) lie in the hull of a ring of 2^-80 M. Under chaikin dart edges may be no convex
-///            combination: the bound takes the largest coordinate that occurs, times two.
+///            combinations of up to N terms, N the largest valence or face, so it adds at most (N + 12)
+///            2^-112 M, M the largest coordinate; limits without a closed formula (one infinitely sharp edge;
+///            the old vertex rule) lie in the hull of a ring of 2^-80 M. Under chaikin dart edges may be no
+///            convex combination: the bound takes the largest coordinate that occurs, times two.
 /// Requires:  0 <= levels <= 10.
-/// Errors:    std::invalid_argument, see TaggedMesh and Requires, and for faces without three corners and Loop.
+/// Errors:    std::invalid_argument, see TaggedMesh and Requires, and for faces without three corners and
+///            Loop.
 /// Cost:      some 10 microseconds a sample; a millisecond to a second for a vertex without a formula.
 /// Source:    [Loop87], [CatmullClark78], creases, boundaries and non-manifold places by OpenSubdiv 3.5.
 /// differs:   OpenSubdiv's own limit masks are not the limit at vertices with one sharp edge, at interior vertices

@@ -39,8 +39,9 @@ struct Rules {
   bool chaikin = false;           ///< the other way for sharpness to fall
   bool smooth_triangles = false;  ///< Catmull-Clark only
   bool old_vertex_rule = false;   ///< Catmull-Clark only: (Q + 2R + S) / 4 at every valence
-  /// With chaikin an edge of sharpness > 1 may become smooth at one end only. OpenSubdiv's refiner then weights
-  /// the midpoint with the sharpness itself, though its comments say that more than one counts as one.
+  /// With chaikin an edge of sharpness > 1 may become smooth at one end only. OpenSubdiv's refiner then
+  /// weights the midpoint with the sharpness itself, though its comments say that more than one counts as
+  /// one.
   bool clamp_dart_edges = false;
 };
 

@@ -14,8 +14,8 @@ namespace {
 using Id = std::uint32_t;
 using Polygons = std::vector<std::vector<Id>>;
 
-// Turns faces round until all edges have two faces that run along them in opposite directions. The first `seeds` faces are
-// right as they are.
+// Turns faces round until all edges have two faces that run along them in opposite directions. The first
+// `seeds` faces are right as they are.
 void orient(Polygons& faces, std::size_t seeds) {
   std::map<std::pair<Id, Id>, std::vector<std::size_t>> faces_of;
   for (std::size_t f = 0; f < faces.size(); ++f)

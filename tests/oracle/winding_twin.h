@@ -13,13 +13,13 @@ namespace oracle {
 /// What refines a closed mesh: a primal scheme's rules, or a dual scheme.
 using WindingScheme = std::variant<Rules, DualScheme>;
 
-/// How often the limit surface of a closed, oriented mesh winds around points, from a refined mesh and the hulls of its
-/// one-rings.
+/// How often the limit surface of a closed, oriented mesh winds around points, from a refined mesh and the
+/// hulls of its one-rings.
 ///
-/// The refined mesh is split into parts that lie each in the hull of some of its vertices, which holds the part of the limit
-/// surface it goes to as well: faces with the faces that touch them (primal schemes), corners of faces with the faces around
-/// their vertex (dual ones). Around a point in no box of such a hull both wind alike: straight lines between them do not
-/// meet the point.
+/// The refined mesh is split into parts that lie each in the hull of some of its vertices, which holds the
+/// part of the limit surface it goes to as well: faces with the faces that touch them (primal schemes),
+/// corners of faces with the faces around their vertex (dual ones). Around a point in no box of such a hull
+/// both wind alike: straight lines between them do not meet the point.
 ///
 /// Requires:  a mesh whose edges have two faces each that run along them in opposite directions.
 /// Errors:    std::invalid_argument, see TaggedMesh.

@@ -49,7 +49,8 @@ TEST(split, keeps_the_limit_surface) {
   }
 }
 
-// Control points that are off by as much as `error` allows: what is made of them is off by no more than it says.
+// Control points that are off by as much as `error` allows: what is made of them is off by no more than it
+// says.
 TEST(patch_error, covers_points_that_are_off_through_splits_and_evaluation) {
   KindCache library;
   std::mt19937_64 random(32);

@@ -141,8 +141,8 @@ TEST(render, shows_no_pinholes_in_a_dense_closed_mesh) {
 }
 
 TEST(render, rays_through_edges_and_vertices_meet_exactly_one_triangle) {
-  // All edges of an 8 x 8 grid pass through pixel middles, and its vertices lie on them; half opaque, so that a ray that
-  // meets two triangles or none shows.
+  // All edges of an 8 x 8 grid pass through pixel middles, and its vertices lie on them; half opaque, so that
+  // a ray that meets two triangles or none shows.
   Scene scene{{unlit(white, 0.5)}, {}, {}};
   const int cells = 8, size = 33;
   const auto at = [](int i, int j) { return Point3{i / 4.0 - 1, j / 4.0 - 1, -33.0 / 32}; };
@@ -271,7 +271,8 @@ TEST(render, a_line_is_hidden_behind_a_surface_and_shown_before_and_in_it) {
 }
 
 TEST(render, the_depth_of_a_slanted_line_is_that_of_its_points) {
-  // From before the surface to behind it: it disappears where it pierces it, here at the middle of the picture.
+  // From before the surface to behind it: it disappears where it pierces it, here at the middle of the
+  // picture.
   Scene scene{{unlit(red)}, {}, {}};
   add_square(scene, 9, 4, 0);
   scene.lines.push_back({{-1, 0, -1}, {1, 0, -7}, 1, green});

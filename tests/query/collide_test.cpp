@@ -107,8 +107,8 @@ TEST(closest, ends_at_rounding_where_the_point_lies_on_the_surface) {
   SurfaceWorkspace scratch(model);
   const Patch patch = surface.patch(PatchId(3));
   const Point3 on = surface.scale().inverse().apply(patch.origin + limit_point(patch, {0, 0}).relative);
-  // No distance is small beside none: precision relative to it alone is never reached, and pieces around a vertex
-  // could be split for long.
+  // No distance is small beside none: precision relative to it alone is never reached, and pieces around a
+  // vertex could be split for long.
   const ClosestPoint found = closest_point(scratch, on, {0, 1e-3});
   EXPECT_LE(found.distance.upper, 1e-13);
   EXPECT_LT(scratch.pieces().size(), 250u);
@@ -330,8 +330,8 @@ TEST(collide, solids_that_share_planes_intersect) {
   }
 }
 
-// Where the first split of a polygon meets a quad, the triangle over the middle of their edge belongs to the cycle whose
-// winding number is taken: a ray that leaves through it counts it.
+// Where the first split of a polygon meets a quad, the triangle over the middle of their edge belongs to the
+// cycle whose winding number is taken: a ray that leaves through it counts it.
 TEST(collide, edges_between_quads_and_polygons_are_closed) {
   for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
     oracle::TaggedMesh shape = oracle::meshes::prism(3);

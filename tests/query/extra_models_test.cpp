@@ -1,5 +1,5 @@
-// More meshes, for those who have them: SNUG_EXTRA_MODELS names a folder. Every OBJ and OFF file in it that is accepted is
-// bounded and compared with the twin.
+// More meshes, for those who have them: SNUG_EXTRA_MODELS names a folder. Every OBJ and OFF file in it that
+// is accepted is bounded and compared with the twin.
 
 #include <snug/query/bound.h>
 #include <snug/query/pairs.h>

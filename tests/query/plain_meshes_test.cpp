@@ -1,5 +1,5 @@
-// Meshes that are taken as they are: triangles of the flat scheme against exact arithmetic on whole numbers, bilinear quads
-// against sampling and against Catmull-Clark with everything infinitely sharp.
+// Meshes that are taken as they are: triangles of the flat scheme against exact arithmetic on whole numbers,
+// bilinear quads against sampling and against Catmull-Clark with everything infinitely sharp.
 
 #include <gtest/gtest.h>
 #include <oracle/polyhedron_twin.h>
@@ -258,7 +258,8 @@ TEST(bilinear, points_are_those_of_the_quads) {
   }
 }
 
-// A quad with nothing but sharp corners and edges has the bilinear patch as its limit under Catmull-Clark, too.
+// A quad with nothing but sharp corners and edges has the bilinear patch as its limit under Catmull-Clark,
+// too.
 TEST(bilinear, distances_are_those_of_catmark_with_sharp_edges) {
   std::mt19937_64 random(15);
   std::size_t meet = 0;

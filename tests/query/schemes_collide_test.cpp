@@ -1,5 +1,5 @@
-// Verdicts for Catmull-Clark, creases, boundaries, polygons and the dual schemes against dense limit samples of the twins:
-// no pair of samples is nearer than what is called separated.
+// Verdicts for Catmull-Clark, creases, boundaries, polygons and the dual schemes against dense limit samples
+// of the twins: no pair of samples is nearer than what is called separated.
 
 #include <snug/query/pairs.h>
 

@@ -1,5 +1,5 @@
-// Evaluation of Catmull-Clark, creases, boundaries, polygons and the dual schemes: positions against the twins and against
-// the general evaluation, derivatives and normals against differences.
+// Evaluation of Catmull-Clark, creases, boundaries, polygons and the dual schemes: positions against the
+// twins and against the general evaluation, derivatives and normals against differences.
 
 #include <snug/surface/evaluate.h>
 
@@ -169,7 +169,8 @@ TEST(patch_evaluator, derivatives_at_edges_agree_with_one_sided_differences) {
   });
 }
 
-// At corners: what is regular has derivatives; elsewhere the normals beside come near the corner's own, if it has one.
+// At corners: what is regular has derivatives; elsewhere the normals beside come near the corner's own, if it
+// has one.
 TEST(patch_evaluator, corners_agree_with_what_is_beside_them) {
   std::size_t regular = 0, smooth = 0, without = 0;
   for_each_surface(95, [&](const NamedSurface& s) {
@@ -215,8 +216,8 @@ TEST(patch_evaluator, corners_agree_with_what_is_beside_them) {
         }
         ASSERT_TRUE(near) << where;
         ++smooth;
-        // Left out: what comes near like 1 / level only, sharp corners of two quads and creases around one; and creases
-        // around many, where a mode across shrinks no faster than the crease.
+        // Left out: what comes near like 1 / level only, sharp corners of two quads and creases around one;
+        // and creases around many, where a mode across shrinks no faster than the crease.
         if (!fan.closed && (fan.faces() > 3 || fan.faces() == (fan.sharp ? 2u : 1u))) continue;
         const double off = length(*near - *point.normal);
         EXPECT_LT(off, slow ? 1.0 : 0.2) << where;

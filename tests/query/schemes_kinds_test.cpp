@@ -1,5 +1,5 @@
-// What patches of every scheme must agree on: names of corners with limit points, children with their parent and with
-// each other.
+// What patches of every scheme must agree on: names of corners with limit points, children with their parent
+// and with each other.
 
 #include <snug/surface/evaluate.h>
 

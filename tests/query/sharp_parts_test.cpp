@@ -1,4 +1,5 @@
-// Parts from CAD: what sharpen() makes of them has the limit surface that it says, and the distances that exact ones have.
+// Parts from CAD: what sharpen() makes of them has the limit surface that it says, and the distances that
+// exact ones have.
 //
 //   SNUG_PARTS=10000 build/release/bin/tests/sharp_parts_test
 
@@ -219,7 +220,8 @@ TEST(sharp_parts, every_limit_point_lies_on_its_face_and_every_face_is_covered) 
   }
 }
 
-// Boundary points of a face, walked around once by the limit of its edges: with all points inside, it is covered.
+// Boundary points of a face, walked around once by the limit of its edges: with all points inside, it is
+// covered.
 TEST(sharp_parts, polygons_of_catmull_clark_end_at_their_edges) {
   const LimitSurface surface = sharp(testing::pin(3, 0, 1, 11, false));
   const ControlMesh& mesh = surface.mesh();

@@ -1,5 +1,5 @@
-// The promises of closest_point, against a twin that refines by itself: points near, on and far from surfaces, at centres
-// of curvature and at control points.
+// The promises of closest_point, against a twin that refines by itself: points near, on and far from
+// surfaces, at centres of curvature and at control points.
 //
 //   SNUG_PLACEMENTS=100000 build/release/bin/tests/sound_contact_test --gtest_filter=closest.points_are_the_nearest
 

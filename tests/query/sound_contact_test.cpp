@@ -1,11 +1,11 @@
-// The promises of collide: every verdict and every bound, on placements that graze, nest, share boundaries or lie a hair
-// apart, against what is known of them and against a twin that refines by itself.
+// The promises of collide: every verdict and every bound, on placements that graze, nest, share boundaries or
+// lie a hair apart, against what is known of them and against a twin that refines by itself.
 //
 //   SNUG_PLACEMENTS=1000000 build/release/bin/tests/sound_contact_test --gtest_filter=contact.verdicts_and_bounds_are_true
 //
-// runs a million, in some forty minutes on one core; progress goes to standard error. SNUG_FIRST=N begins with trial N: with
-// SNUG_PLACEMENTS=1 one that failed alone, and SNUG_DUMP=FOLDER writes its meshes there. SNUG_SHOW=1 names what stayed
-// undecided.
+// runs a million, in some forty minutes on one core; progress goes to standard error. SNUG_FIRST=N begins
+// with trial N: with SNUG_PLACEMENTS=1 one that failed alone, and SNUG_DUMP=FOLDER writes its meshes there.
+// SNUG_SHOW=1 names what stayed undecided.
 
 #include <snug/query/pairs.h>
 #include <snug/search/winding.h>
@@ -308,7 +308,8 @@ TEST(contact, verdicts_and_bounds_are_true) {
   EXPECT_LE(100 * checks.crossing_undecided(), std::max<std::size_t>(checks.crossing(), 100));
 }
 
-// A triangle of size 2^a around the origin, another of size 2^b that lies h above it: the distance is h, whatever the sizes.
+// A triangle of size 2^a around the origin, another of size 2^b that lies h above it: the distance is h,
+// whatever the sizes.
 TEST(contact, bounds_hold_for_sizes_from_one_end_of_the_doubles_to_the_other) {
   const auto library = std::make_shared<BoundsCache>();
   const auto surface = [&](int exponent, double height) {
@@ -362,8 +363,8 @@ TEST(contact, bounds_hold_for_sizes_from_one_end_of_the_doubles_to_the_other) {
   EXPECT_GT(near, 100u);
 }
 
-// Shells that are star-shaped around the origin: a point is inside if the segment to the origin misses the surface, outside
-// if a ray away from it does.
+// Shells that are star-shaped around the origin: a point is inside if the segment to the origin misses the
+// surface, outside if a ray away from it does.
 TEST(contact, winding_numbers_tell_inside_from_outside) {
   testing::Trials trials;
   std::size_t inside = 0, outside = 0, untold = 0;

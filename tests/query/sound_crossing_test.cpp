@@ -1,6 +1,6 @@
-// The prism that a proof of contact rests on, for every sort of kind in every disguise, by rows and by tables: no border point
-// of the piece is inside of the strips, no point of it above or below the planes, and what is inside of the strips is, seen
-// along the normal, inside of the triangle of the limit corners.
+// The prism that a proof of contact rests on, for every sort of kind in every disguise, by rows and by
+// tables: no border point of the piece is inside of the strips, no point of it above or below the planes, and
+// what is inside of the strips is, seen along the normal, inside of the triangle of the limit corners.
 
 #include <snug/search/crossing.h>
 

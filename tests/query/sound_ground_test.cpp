@@ -1,11 +1,11 @@
-// The promises of collide, distance and closest for every scheme, tag and rule, each with each other one: boundary rules,
-// holes, edges and vertices that are not manifold, creases, Chaikin, darts, corners, smooth triangles, valences above 200,
-// rows and tables; against a twin that refines by itself.
+// The promises of collide, distance and closest for every scheme, tag and rule, each with each other one:
+// boundary rules, holes, edges and vertices that are not manifold, creases, Chaikin, darts, corners, smooth
+// triangles, valences above 200, rows and tables; against a twin that refines by itself.
 //
 //   SNUG_PLACEMENTS=20000 build/release/bin/tests/sound_ground_test --gtest_filter=ground.answers_are_true
 //
-// runs so many placements; progress goes to standard error. SNUG_FIRST=N begins with placement N: with SNUG_PLACEMENTS=1 one
-// that failed alone, and SNUG_DUMP=FOLDER writes its meshes there.
+// runs so many placements; progress goes to standard error. SNUG_FIRST=N begins with placement N: with
+// SNUG_PLACEMENTS=1 one that failed alone, and SNUG_DUMP=FOLDER writes its meshes there.
 
 #include <snug/base/error.h>
 #include <snug/query/closest.h>
@@ -393,8 +393,8 @@ void expect_limit_points(const oracle::TaggedMesh& mesh, const oracle::Rules& ru
   }
 }
 
-// With Chaikin an edge of sharpness 0.5 stays sharp beside sharper ones at both of its ends: faces that touch one end
-// alone have to know of the other.
+// With Chaikin an edge of sharpness 0.5 stays sharp beside sharper ones at both of its ends: faces that touch
+// one end alone have to know of the other.
 TEST(ground, chaikin_looks_beyond_the_faces_around) {
   std::mt19937_64 random(5);
   for (const oracle::PrimalScheme scheme :

@@ -1,5 +1,5 @@
-// Needles, flat and nearly flat surfaces a hair apart or through each other, in exact arithmetic: rows and tables of both
-// layouts, all schemes, moved and not.
+// Needles, flat and nearly flat surfaces a hair apart or through each other, in exact arithmetic: rows and
+// tables of both layouts, all schemes, moved and not.
 //
 //   SNUG_PLACEMENTS=40000 build/release/bin/tests/sound_needles_test
 //
@@ -32,8 +32,9 @@ std::size_t trial_count(std::size_t usual) {
   return text != nullptr ? static_cast<std::size_t>(std::strtoull(text, nullptr, 10) / 10) : usual;
 }
 
-// Columns of a whole-numbered matrix of determinant 1, by random steps; the longer they are, the thinner the needles. The
-// first row of the inverse is a plane that columns 1 and 2 lie in and column 0 is one step away from.
+// Columns of a whole-numbered matrix of determinant 1, by random steps; the longer they are, the thinner the
+// needles. The first row of the inverse is a plane that columns 1 and 2 lie in and column 0 is one step away
+// from.
 struct Lattice {
   std::array<Whole, 3> column{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
@@ -113,7 +114,8 @@ struct Setting {
 
   Setting(std::mt19937_64& random, std::size_t trial, const std::vector<Scheme>& schemes)
       : scheme(schemes[random() % schemes.size()]), lattice(random, std::int64_t{1} << (2 + random() % 24)) {
-    // Half of them so thin, and layers so near to each other, that they are a hair beside the rounding of base triangles.
+    // Half of them so thin, and layers so near to each other, that they are a hair beside the rounding of
+    // base triangles.
     for (int attempt = 0; trial % 2 == 0 && attempt < 40; ++attempt) {
       const std::int64_t most = std::int64_t{1} << (20 + random() % 7);
       lattice = Lattice(random, most);
@@ -191,7 +193,8 @@ TEST(needles, in_layers_apart_are_never_called_intersecting) {
   EXPECT_GT(separated, count / 3);
 }
 
-// A flat surface in layer 0 whose sharp border is wide around the other one, which goes from below layer 0 to above it.
+// A flat surface in layer 0 whose sharp border is wide around the other one, which goes from below layer 0 to
+// above it.
 TEST(needles, through_each_other_are_never_called_apart) {
   std::mt19937_64 random(72);
   const auto library = std::make_shared<BoundsCache>();

@@ -1,5 +1,6 @@
-// Penetration depths against brute force: supports of convex solids along dense directions; for others, translations that an
-// independent search proves to separate them, which none may be shorter than the lower bound.
+// Penetration depths against brute force: supports of convex solids along dense directions; for others,
+// translations that an independent search proves to separate them, which none may be shorter than the lower
+// bound.
 
 #include <snug/query/pairs.h>
 

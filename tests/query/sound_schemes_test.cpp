@@ -1,5 +1,5 @@
-// The promise for Catmull-Clark, creases, boundaries, non-manifold places and the dual schemes: no limit point of the
-// twins outside its enclosures, and evaluation within its error.
+// The promise for Catmull-Clark, creases, boundaries, non-manifold places and the dual schemes: no limit
+// point of the twins outside its enclosures, and evaluation within its error.
 
 #include <snug/query/bound.h>
 #include <snug/surface/evaluate.h>
@@ -80,7 +80,8 @@ struct Counted {
   double worst_error = 0;  // of evaluation, over the size of the mesh
 };
 
-// Each sample on each patch that it is on: inside the piece that holds its parameter, and where evaluation says.
+// Each sample on each patch that it is on: inside the piece that holds its parameter, and where evaluation
+// says.
 void check_primal(const testing::TaggedCase& c, int levels, const std::shared_ptr<BoundsCache>& library,
                   Counted& counted) {
   const std::string name = c.name + ", " + testing::text_of(c.rules);
@@ -156,7 +157,8 @@ TEST(loop_with_tags, limit_points_lie_inside_their_enclosures) {
   EXPECT_GT(counted.samples, 100'000u);
 }
 
-// Scales to the ends of the doubles, offsets that leave few digits, flat and needle shapes, for the same kinds.
+// Scales to the ends of the doubles, offsets that leave few digits, flat and needle shapes, for the same
+// kinds.
 TEST(catmark, limit_points_of_disguised_meshes_lie_inside_their_enclosures) {
   const std::vector<testing::Disguise> disguises =
       testing::disguises({"tiny", "huge", "far", "flat and tilted", "needle", "line", "spiked"});
@@ -206,8 +208,8 @@ TEST(crowded_corners, limit_points_lie_inside_their_enclosures) {
   print("crowded corners", counted);
 }
 
-// Samples of a dual scheme name their patch, no parameter: each lies in one of the pieces; and the grid of parameters meets
-// the samples of the patch, all of them.
+// Samples of a dual scheme name their patch, no parameter: each lies in one of the pieces; and the grid of
+// parameters meets the samples of the patch, all of them.
 void check_dual(const std::string& name, const oracle::TaggedMesh& mesh, Scheme scheme, int levels,
                 const std::shared_ptr<BoundsCache>& library, Counted& counted) {
   const LimitSurface surface(testing::control_mesh(mesh), {scheme}, library, 1);

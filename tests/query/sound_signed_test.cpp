@@ -1,5 +1,5 @@
-// Signed distances: of random solids of every scheme against refined meshes, and of polyhedra with sharp edges, whose limit
-// surface is the polyhedron itself, against exact rational arithmetic.
+// Signed distances: of random solids of every scheme against refined meshes, and of polyhedra with sharp
+// edges, whose limit surface is the polyhedron itself, against exact rational arithmetic.
 //
 //   SNUG_PLACEMENTS=1000000 build/release/bin/tests/sound_solids_test --gtest_filter='signed_distance.*'
 //
@@ -113,8 +113,8 @@ TEST(signed_distance, agrees_with_refined_meshes) {
   EXPECT_LE(unreached * 1000, told);
 }
 
-// Every edge infinitely sharp: the limit surface of a triangle is the triangle, as the flat and the bilinear scheme have it
-// by themselves.
+// Every edge infinitely sharp: the limit surface of a triangle is the triangle, as the flat and the bilinear
+// scheme have it by themselves.
 ControlMesh sharp_mesh(const oracle::TaggedMesh& shape) {
   oracle::TaggedMesh sharp = shape;
   for (const auto& polygon : shape.polygons) {

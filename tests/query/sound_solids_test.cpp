@@ -1,5 +1,6 @@
-// Inside and outside of random solids whose meshes mix triangles, quads and polygons, against winding numbers of refined
-// meshes. A third of the points look along a ray at an edge that the first split of one side alone cuts in two.
+// Inside and outside of random solids whose meshes mix triangles, quads and polygons, against winding numbers
+// of refined meshes. A third of the points look along a ray at an edge that the first split of one side alone
+// cuts in two.
 //
 //   SNUG_PLACEMENTS=100000 build/release/bin/tests/sound_solids_test
 //

@@ -91,7 +91,8 @@ Pieces pieces_of(const LimitSurface& surface, unsigned level) {
   return pieces;
 }
 
-// As they are; far away and tiny; flat; snapped to a grid, so that much is exactly on the sides of boxes; spiked.
+// As they are; far away and tiny; flat; snapped to a grid, so that much is exactly on the sides of boxes;
+// spiked.
 std::vector<testing::Disguise> disguises() {
   return testing::disguises(
       {"plain", "tiny and far", "flat and tilted", "snapped to a coarse grid", "huge and spiked"});

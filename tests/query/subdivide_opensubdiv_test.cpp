@@ -1,4 +1,5 @@
-// Refined meshes and limit positions against OpenSubdiv's uniform refinement and Limit, face by face and corner by corner.
+// Refined meshes and limit positions against OpenSubdiv's uniform refinement and Limit, face by face and
+// corner by corner.
 
 #include <gtest/gtest.h>
 #include <oracle/obj_reader.h>

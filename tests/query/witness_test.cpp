@@ -1,5 +1,5 @@
-// Where witnesses lie, and their normals: against the twins' dense samples, the general evaluation, and tangents of nets that
-// are refined in 113-bit arithmetic.
+// Where witnesses lie, and their normals: against the twins' dense samples, the general evaluation, and
+// tangents of nets that are refined in 113-bit arithmetic.
 
 #include <gtest/gtest.h>
 #include <oracle/polygon_net.h>
@@ -105,8 +105,8 @@ TEST(witnesses, lie_between_the_samples_of_the_twin) {
         const Point3 to = Point3{} + testing::random_vector(random, 2 * surface.size());
         const ClosestPoint near = closest_point(scratch, to, {1e-3 * surface.size(), 0});
         const auto& around = samples.at({near.at.owner, near.at.corner});
-        // The samples around the place, those of split polygons twice as far apart: their box, made half as large again,
-        // holds the point.
+        // The samples around the place, those of split polygons twice as far apart: their box, made half as
+        // large again, holds the point.
         const double h = 1.5 / (1 << (level - 1));
         Box3 box;
         for (const oracle::FaceSample& s : around) {

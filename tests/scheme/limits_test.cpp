@@ -17,8 +17,8 @@ std::vector<double> dense(const Stencils::Row& row, std::size_t count) {
   return all;
 }
 
-// The limit stays what it is under a step: row = next row * step, up to the errors that the rows own up to. Those of a
-// dart come from an iteration and are never 0.
+// The limit stays what it is under a step: row = next row * step, up to the errors that the rows own up to.
+// Those of a dart come from an iteration and are never 0.
 TEST(limit_stencils, of_darts_stay_under_a_step_within_their_errors) {
   for (const std::uint32_t n : {3u, 4u, 7u, 30u}) {
     for (const Scheme scheme : {Scheme::catmark, Scheme::loop}) {

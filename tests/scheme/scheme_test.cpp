@@ -65,8 +65,8 @@ TEST(require_surface, refuses_faces_that_name_a_vertex_twice) {
   EXPECT_NE(refusal(mesh, {Scheme::doo_sabin}), "");
 }
 
-// Two triangles with the same corners share two edges, and their children all of what lies between these: no edge of three
-// faces, but two edges.
+// Two triangles with the same corners share two edges, and their children all of what lies between these: no
+// edge of three faces, but two edges.
 TEST(require_subdividable, refuses_duplicate_faces_of_loop_and_dual_schemes) {
   for (const bool turned : {false, true}) {
     ControlMesh mesh = testing::control_mesh(oracle::meshes::octahedron());

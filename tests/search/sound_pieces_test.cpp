@@ -1,5 +1,6 @@
-// What queries know of a piece, in pairs of cases that other tests draw apart: every sort of kind in every disguise (scales
-// to the ends of the doubles, far away, flat, needles, lines, points), by rows and by tables of both layouts, some levels down.
+// What queries know of a piece, in pairs of cases that other tests draw apart: every sort of kind in every
+// disguise (scales to the ends of the doubles, far away, flat, needles, lines, points), by rows and by tables
+// of both layouts, some levels down.
 //
 //   SNUG_PLACEMENTS=100000 build/release/bin/tests/sound_pieces_test
 //

@@ -1,4 +1,5 @@
-// A program of its own, since it counts every allocation; not under sanitizers, which have allocators of their own.
+// A program of its own, since it counts every allocation; not under sanitizers, which have allocators of
+// their own.
 #include <gtest/gtest.h>
 #include <snug/surface/batch_bounds.h>
 #include <testing/patches.h>

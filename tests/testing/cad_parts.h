@@ -21,7 +21,8 @@ inline void add_face(ControlMesh& mesh, const Ids& ids) {
   mesh.add_face(corners);
 }
 
-/// Two faces that close a prism over a counter-clockwise outline: as polygons, or as fans around corner `centre`.
+/// Two faces that close a prism over a counter-clockwise outline: as polygons, or as fans around corner
+/// `centre`.
 inline void add_caps(ControlMesh& mesh, const Ids& low, const Ids& high, bool triangles, std::size_t centre) {
   const std::size_t n = low.size();
   if (!triangles) {
@@ -90,7 +91,8 @@ inline ControlMesh pin(double radius, double low, double high, std::size_t sides
   return prism(circle(0, 0, radius, sides), low, high, triangles);
 }
 
-/// A plate of columns x rows squares of side `cell`, each with a round hole of `sides` sides (a multiple of 4), in long triangles.
+/// A plate of columns x rows squares of side `cell`, each with a round hole of `sides` sides (a multiple of
+/// 4), in long triangles.
 inline ControlMesh perforated_plate(std::size_t columns, std::size_t rows, double cell, double radius,
                                     double thickness, std::size_t sides) {
   ControlMesh mesh;

@@ -164,7 +164,8 @@ TwinMesh degenerate_mesh(Dice& dice) {
   }
 }
 
-/// Points (i, j, 0) over 0..n, with heights. Without a boundary rule it is the graph of a spline over [1, n - 1]^2.
+/// Points (i, j, 0) over 0..n, with heights. Without a boundary rule it is the graph of a spline over [1, n -
+/// 1]^2.
 template <class Height>
 TwinMesh graph(std::uint32_t n, Boundary rule, Height height) {
   TwinMesh mesh = meshes::grid(n, n, rule);
@@ -298,7 +299,8 @@ struct Trials::Pool {
     trial.a = trial.b = random_motion(dice, t);
   }
 
-  /// Along z only, where the placement leaves z alone; exact in real arithmetic as a difference of two doubles.
+  /// Along z only, where the placement leaves z alone; exact in real arithmetic as a difference of two
+  /// doubles.
   static double hair(Dice& dice) {
     if (dice.one_in(4)) return 0;
     return (dice.one_in(2) ? -1 : 1) *
@@ -376,8 +378,8 @@ struct Trials::Pool {
     place_together(trial, dice);
   }
 
-  /// The second graph is the first plus q(x - c, y - c) + h, q(x, y) = x^2 - x y + y^2: they touch, cross or miss at one
-  /// place. The net of q lies 1/2 below its limit.
+  /// The second graph is the first plus q(x - c, y - c) + h, q(x, y) = x^2 - x y + y^2: they touch, cross or
+  /// miss at one place. The net of q lies 1/2 below its limit.
   void grazing(Trial& trial, Dice& dice) {
     trial.family = "grazing";
     const int n = 4, c = 2;
@@ -543,8 +545,9 @@ struct Trials::Pool {
     trial.hair = !trial.truth.crossing;
   }
 
-  /// Extraordinary vertices whose limit points are known, against each other or against a plane: an octahedron with corners
-  /// at 55 / 64 has its tips at 24 / 64, two pyramids over a triangle with apexes at 5 / 8 at 2 / 8.
+  /// Extraordinary vertices whose limit points are known, against each other or against a plane: an
+  /// octahedron with corners at 55 / 64 has its tips at 24 / 64, two pyramids over a triangle with apexes at
+  /// 5 / 8 at 2 / 8.
   void tips(Trial& trial, Dice& dice) {
     trial.family = "tips";
     const double h = hair(dice);
@@ -673,8 +676,8 @@ struct Trials::Pool {
     }
   }
 
-  /// Closed, star-shaped shells brought so near that they often cross; which they do where the twin finds points of one
-  /// inside and outside of the other.
+  /// Closed, star-shaped shells brought so near that they often cross; which they do where the twin finds
+  /// points of one inside and outside of the other.
   void shells_near(Trial& trial, Dice& dice) {
     trial.family = "shells";
     trial.pair = shells[dice.below(static_cast<std::uint32_t>(shells.size()))].get();

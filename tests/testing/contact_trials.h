@@ -16,7 +16,8 @@
 /// Placed pairs of Loop surfaces on which the queries are tried, with what is known about them beforehand.
 namespace snug::testing {
 
-/// Two surfaces as the library and as the twin see them. The library's coordinates are the twin's times 2^exponent.
+/// Two surfaces as the library and as the twin see them. The library's coordinates are the twin's times
+/// 2^exponent.
 class Contestants {
  public:
   Contestants(oracle::TwinMesh a, oracle::TwinMesh b, int exponent, const SurfaceBvhOptions& options = {});
@@ -83,9 +84,10 @@ struct Trial {
 
 /// The trials: the same number, the same trial, whichever were made before.
 ///
-/// Families of which the truth is known: parallel sheets, graphs over a square and the same graphs lifted, graphs that touch
-/// in one point, shells in shells, seams, a surface and itself, planes that cross, borders of half planes, tips at
-/// extraordinary vertices, mirror images, single triangles with whole-numbered corners. Of the others the twin finds it: random surfaces, the same moved together until they are between
+/// Families of which the truth is known: parallel sheets, graphs over a square and the same graphs lifted,
+/// graphs that touch in one point, shells in shells, seams, a surface and itself, planes that cross, borders
+/// of half planes, tips at extraordinary vertices, mirror images, single triangles with whole-numbered
+/// corners. Of the others the twin finds it: random surfaces, the same moved together until they are between
 /// half and twice the tolerance apart, closed shells that cross, needles and flat meshes, several components.
 class Trials {
  public:
@@ -102,8 +104,8 @@ class Trials {
 [[nodiscard]] std::uint64_t trial_count(std::uint64_t usual);
 [[nodiscard]] std::uint64_t first_trial();
 
-/// The trial in words, with placements that read back exactly. Writes its meshes to a.obj and b.obj in the folder that
-/// SNUG_DUMP names, if it does.
+/// The trial in words, with placements that read back exactly. Writes its meshes to a.obj and b.obj in the
+/// folder that SNUG_DUMP names, if it does.
 [[nodiscard]] std::string describe(const Trial& trial);
 
 }  // namespace snug::testing

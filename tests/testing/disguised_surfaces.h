@@ -8,8 +8,9 @@
 
 namespace snug::testing {
 
-/// Calls visit(surface, name, random) for surfaces of every sort of kind in every disguise, until a test fails; with other
-/// meshes once more for every 5000 placements that the environment's SNUG_PLACEMENTS asks for.
+/// Calls visit(surface, name, random) for surfaces of every sort of kind in every disguise, until a test
+/// fails; with other meshes once more for every 5000 placements that the environment's SNUG_PLACEMENTS asks
+/// for.
 template <class Visit>
 void for_each_disguised_surface(std::uint64_t seed, const Visit& visit) {
   const char* const text = std::getenv("SNUG_PLACEMENTS");

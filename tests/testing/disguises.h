@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-/// What a mesh may look like to arithmetic: scales to the ends of the doubles, offsets that leave few digits, flat and
-/// needle shapes, points that coincide.
+/// What a mesh may look like to arithmetic: scales to the ends of the doubles, offsets that leave few digits,
+/// flat and needle shapes, points that coincide.
 namespace snug::testing {
 
 struct Disguise {

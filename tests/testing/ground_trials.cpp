@@ -657,7 +657,8 @@ GroundTrial GroundTrials::make(std::uint64_t number) {
     return contact_bounds(*sides_[0].twin, trial.places[0], *sides_[1].twin, trial.places[1], goal);
   };
   if (family < 4) {
-    // Together, or apart, until they are as far from each other as the tolerance, or a third or three times that.
+    // Together, or apart, until they are as far from each other as the tolerance, or a third or three times
+    // that.
     const double target = std::max(trial.tolerance, 1e-5 * size) * dice.size(0.3, 3);
     for (int step = 0; step < 6; ++step) {
       oracle::ContactGoal rough = goal;

@@ -29,7 +29,8 @@ enum class Tags : std::uint8_t { none, sharp, semi_sharp, chaikin, dart, corner 
 
 [[nodiscard]] std::size_t value_count(std::size_t factor);
 [[nodiscard]] std::string name_of_value(std::size_t factor, std::size_t value);
-/// Is there such a surface? Dual schemes take manifolds alone, and triangles are smoothed by Catmull-Clark alone.
+/// Is there such a surface? Dual schemes take manifolds alone, and triangles are smoothed by Catmull-Clark
+/// alone.
 [[nodiscard]] bool is_possible(const Choices& choices);
 
 /// Choices for A and for B, as one row; and the pairs of values that go together somewhere in a row.
@@ -83,7 +84,8 @@ struct GroundTrial {
   [[nodiscard]] PlacedBvh placed(std::size_t side) const { return placed(side, *(*sides)[side].scratch); }
 };
 
-/// The same number, the same trial. The first trials go through row_count() rows, so many of each; then rows are random.
+/// The same number, the same trial. The first trials go through row_count() rows, so many of each; then rows
+/// are random.
 class GroundTrials {
  public:
   explicit GroundTrials(std::uint64_t of_each_row);
@@ -102,8 +104,8 @@ class GroundTrials {
   std::unique_ptr<Shared> shared_;
 };
 
-/// In words, with placements that read back exactly. Writes its meshes to a.obj and b.obj in the folder that SNUG_DUMP names,
-/// if it does.
+/// In words, with placements that read back exactly. Writes its meshes to a.obj and b.obj in the folder that
+/// SNUG_DUMP names, if it does.
 [[nodiscard]] std::string describe(const GroundTrial& trial);
 
 }  // namespace snug::testing

@@ -6,7 +6,8 @@
 
 namespace snug::testing {
 
-/// Runs work under every instruction set that was compiled and that this processor has; puts back what was chosen.
+/// Runs work under every instruction set that was compiled and that this processor has; puts back what was
+/// chosen.
 class EachInstructionSet {
  public:
   EachInstructionSet() = default;

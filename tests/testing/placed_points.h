@@ -53,7 +53,8 @@ inline Extended image(const PlacedFrame& frame, const Point3& p) {
   return q;
 }
 
-// Distance of two hulls from above: a few steps from the nearest pair of points towards combinations of others.
+// Distance of two hulls from above: a few steps from the nearest pair of points towards combinations of
+// others.
 inline long double distance_from_above(const std::vector<Extended>& a, const std::vector<Extended>& b,
                                        std::mt19937_64& random) {
   std::uniform_real_distribution<double> unit(0, 1);

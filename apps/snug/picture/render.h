@@ -41,8 +41,8 @@ struct RenderOptions {
 /// Requires:  finite numbers, coordinates of about unit size; colours, opacity and gloss in [0, 1]; materials
 /// that exist;
 ///            line widths > 0; a camera as camera.h asks for; width, height >= 1.
-/// Errors:    InputError (value) on what is required. What `progress` throws stops the rows still to come and is
-/// thrown again
+/// Errors:    InputError (value) on what is required. What `progress` throws stops the rows still to come and
+///            is thrown again
 ///            here, on the calling thread, whatever `parallel_for` does with exceptions.
 /// Cost:      about 2 s of one core for 1000 x 1000 pixels, 3 x 3 rays each, of a surface of 100 000
 /// triangles that fills

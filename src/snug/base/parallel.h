@@ -28,8 +28,7 @@ class SharedRanges {
   std::atomic<bool> ended_{false};
 };
 
-/// Calls work(ranges) on at most `threads` threads (0: all cores), this one among them; each takes all it can
-/// get.
+/// Calls work(ranges) on at most `threads` threads (0: all cores), this one among them; each takes its share.
 ///
 /// Guarantee: returns when all calls have. An exception of one ends the handing out, and is thrown again
 ///            here. Where the system refuses a thread (limits of processes or memory) the others do its

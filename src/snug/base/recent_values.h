@@ -13,8 +13,7 @@ namespace snug {
 template <class Key, class Value, std::size_t n>
 class RecentValues {
  public:
-  /// The value of `key`, made where it is not here; stays until n others are. If `make` throws, nothing
-  /// changes.
+  /// The value of `key`, made where it is not here; stays until n others are. If `make` throws: no change.
   template <class Make>
   [[nodiscard]] const Value& get(const Key& key, Make&& make) {
     const auto found = std::find_if(entries_.begin(), entries_.end(),

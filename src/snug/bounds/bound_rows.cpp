@@ -156,8 +156,8 @@ class Collector {
   std::array<DenseRows, deepest_tip + 2> nets_;  // of the piece at work, a depth each
 };
 
-// Kinds of the first pieces at a corner, one a level. All others are as the last one: their other corners are regular, and
-// vertices of the ring that are the same by accident of few faces have come apart. None: they have not.
+// Kinds of the first pieces at a corner, one a level. All others are as the last one: their other corners are
+// regular, and vertices of the ring that are the same by accident of few faces have come apart. None if not.
 using TipKinds = std::array<const Kind*, 3>;
 std::optional<TipKinds> tip_kinds(const KindChild& child, std::size_t corner) {
   TipKinds kinds;

@@ -26,8 +26,8 @@ class BoundRows {
   [[nodiscard]] double abs_sum() const { return abs_sum_; }
   [[nodiscard]] std::size_t bytes() const { return weights_.size() * sizeof(double); }
 
-  /// The control net of the piece at an extraordinary corner, some levels down: the last rows are those of the
-  /// tips, in the order of their kinds' control points.
+  /// The control net of the piece at an extraordinary corner, some levels down: the last rows are those of
+  /// the tips, in the order of their kinds' control points.
   struct Tip {
     const Kind* kind = nullptr;  ///< none: no tip
     std::size_t begin = 0;       ///< first row
@@ -52,16 +52,17 @@ class BoundRows {
 /// Levels at an extraordinary corner after which rows end at the latest.
 inline constexpr unsigned deepest_tip = 24;
 
-/// The rows of a kind: Bezier points of the polynomial pieces after one split; at an extraordinary corner of the rings of
-/// pieces around it down to tip_depth() levels, and the control net of the last tip. Tips end at `most_levels` if that is
-/// less. Where sharpness decays, or polygons are about, control nets of pieces a few levels down end it.
+/// The rows of a kind: Bezier points of the polynomial pieces after one split; at an extraordinary corner of
+/// the rings of pieces around it down to tip_depth() levels, and the control net of the last tip. Tips end at
+/// `most_levels` if that is less. Where sharpness decays, or polygons are about, control nets of pieces a few
+/// levels down end it.
 ///
 /// Requires:  a patch, no polygon.
 /// Cost:      up to valence 12 well below a millisecond; for valence n about 20 n^2 multiply-adds a level.
 [[nodiscard]] BoundRows make_bound_rows(const Kind& kind, unsigned most_levels = deepest_tip);
 
-/// Is the quarter at each extraordinary corner, after a few levels, of a kind that comes again at every level? Only such
-/// tips are kept apart.
+/// Is the quarter at each extraordinary corner, after a few levels, of a kind that comes again at every
+/// level? Only such tips are kept apart.
 /// Requires:  a kind that is no polynomial.
 [[nodiscard]] bool has_lasting_tips(const Kind& kind);
 

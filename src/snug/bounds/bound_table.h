@@ -21,7 +21,8 @@ namespace snug {
 ///            linear l is; by rings the one through the first three control points, whose terms vanish.
 /// Source:    [Wu05, sec. 4.3 to 4.5]; differs: planes are fitted to hull rows instead of a net after seven
 ///            subdivisions in floating point, and the triangle is widened until the domain is proved to lie
-///            inside; several extraordinary corners and boundaries are bounded directly. derivations/tables.md.
+///            inside; several extraordinary corners and boundaries are bounded directly.
+///            derivations/tables.md.
 struct BoundTable {
   /// Affine coordinates: weights of corners 1 and 2 of the patch; corner 0 has the rest.
   using Planar = LayoutPoint;
@@ -41,8 +42,8 @@ struct BoundTable {
   }
 };
 
-/// The table of a kind from its rows: each plane is the one of least volume over the triangle above (below) the hull points of
-/// its function, up to about 1e-12.
+/// The table of a kind from its rows: each plane is the one of least volume over the triangle above (below)
+/// the hull points of its function, up to about 1e-12.
 ///
 /// Requires:  rows of this kind.
 /// Cost:      two linear programmes a control point, linear in the number of rows.

@@ -10,9 +10,9 @@ namespace snug {
 
 /// Rows and tables of kinds, made on first use; then immutable. Thread-safe; looking up costs two loads.
 ///
-/// Memory: kinds and their tables take a few times what the connectivity of the surfaces takes that they are for. Rows grow with
-/// the square of a valence; those that would go beyond a limit are made when they are needed, and a thread keeps its last
-/// eight. No result depends on it.
+/// Memory: kinds and their tables take a few times what the connectivity of the surfaces takes that they are
+///         for. Rows grow with the square of a valence; those that would go beyond a limit are made when they
+///         are needed, and a thread keeps its last eight. No result depends on it.
 class BoundsCache {
  public:
   explicit BoundsCache(std::size_t most_bytes_of_rows = std::size_t{256} << 20) : rows_(most_bytes_of_rows) {}
@@ -20,8 +20,8 @@ class BoundsCache {
   [[nodiscard]] KindCache& kinds() { return kinds_; }
   [[nodiscard]] const KindCache& kinds() const { return kinds_; }
 
-  /// The rows of a kind of kinds(). With several extraordinary corners they go down one level only: the tips there are of
-  /// kinds that have rows of their own, and there are far fewer of these. They stay as KindSlots says.
+  /// The rows of a kind of kinds(). With several extraordinary corners they go down one level only: the tips
+  /// there are of kinds that have rows of their own, and there are far fewer of these. KindSlots keeps them.
   [[nodiscard]] const BoundRows& rows(const Kind& kind);
   /// The table of a kind, made from rows that go down to tip_depth().
   [[nodiscard]] const BoundTable& table(const Kind& kind);

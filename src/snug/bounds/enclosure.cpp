@@ -132,8 +132,8 @@ std::array<kernels::Reach, 2> farthest(const HullPoints& points, std::size_t beg
   return {farthest_by_feet(points, begin, split, corner), farthest_by_feet(points, split, end, corner)};
 }
 
-// Refines the tips whose nets stick out of the rest of the hull, which is within `rest` of the base. Nets that stick out
-// along the normal have moved the base towards them: then both sides are about as far.
+// Refines the tips whose nets stick out of the rest of the hull, which is within `rest` of the base. Nets
+// that stick out along the normal have moved the base towards them: then both sides are about as far.
 bool refine_what_sticks_out(BoundsCache& library, const Base<3>& base, double rest, HullPoints& points) {
   const double most = (base.tips_stick_out ? 1 - notable_excess : 1 + notable_excess) * rest;
   std::array<bool, 3> which{};

@@ -5,26 +5,28 @@
 
 /// Enclosures of a piece of a limit surface (N = 3) or of a limit curve (N = 2), fitted to its hull points.
 ///
-/// Both are made from the triangle, or segment, of the piece's limit corners, moved to the middle of the hull points: a
-/// triangle along its normal, if it has one; a segment by the middle of the two rests, point minus foot, that are farthest
-/// apart.
+/// Both are made from the triangle, or segment, of the piece's limit corners, moved to the middle of the hull
+/// points: a triangle along its normal, if it has one; a segment by the middle of the two rests, point minus
+/// foot, that are farthest apart.
 namespace snug {
 
 /// The radius at which the moved segment covers the piece.
 ///
-/// Guarantee: every limit point of the piece is within `radius` of `base`, these very doubles, rounding included. Infinite
-///            radius if anything is not finite.
+/// Guarantee: every limit point of the piece is within `radius` of `base`, these very doubles, rounding
+///            included. Infinite radius if anything is not finite.
 /// Requires:  ends: limit positions of the piece's ends, relative to points.origin.
-/// Source:    [Wu05, eq. 5.1, 5.2]; differs: fitted to hull points instead of corner boxes, derivations/curves.md.
+/// Source:    [Wu05, eq. 5.1, 5.2]; differs: fitted to hull points instead of corner boxes,
+///            derivations/curves.md.
 [[nodiscard]] OffsetSegment offset_segment(const HullPoints& points, const std::array<Vector3, 2>& ends);
 
-/// The same for a triangle, derivations/hull_rows.md. Where the net of a tip makes the radius larger than the patch needs,
-/// the tip is refined first, and `points` with it.
+/// The same for a triangle, derivations/hull_rows.md. Where the net of a tip makes the radius larger than the
+/// patch needs, the tip is refined first, and `points` with it.
 ///
-/// Tightness: the radius is at most 1.08 times the least possible for the same base in the median, 1.02 on gently
-///            bent nets (docs/convergence.md).
+/// Tightness: the radius is at most 1.08 times the least possible for the same base in the median, 1.02 on
+///            gently bent nets (docs/convergence.md).
 /// Requires:  points of hull_points() with rows of this library.
-/// Cost:      about 15 ns a hull point, and one more fit with about 200 points a refinement, of which there are at most three.
+/// Cost:      about 15 ns a hull point, and one more fit with about 200 points a refinement, of which there
+///            are at most three.
 [[nodiscard]] OffsetTriangle offset_triangle(BoundsCache& library, HullPoints& points,
                                              const std::array<Vector3, 3>& corners);
 

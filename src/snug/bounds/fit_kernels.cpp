@@ -24,8 +24,8 @@ HWY_INLINE V max3(V a, V b, V c) {
   return hn::Max(a, hn::Max(b, c));
 }
 
-// A triangle in a frame (t1, t2, n) of its own: corners (0, 0), (l0, 0), (xc, yc), counter-clockwise. Names and the
-// error terms are those of derivations/rounding.md, "Distance in the triangle's plane".
+// A triangle in a frame (t1, t2, n) of its own: corners (0, 0), (l0, 0), (xc, yc), counter-clockwise. Names
+// and the error terms are those of derivations/rounding.md, "Distance in the triangle's plane".
 template <class V>
 struct PlanarTriangle {
   Vec3<V> a, t1, t2, n;
@@ -71,8 +71,8 @@ HWY_INLINE PlanarTriangle<V> planar_triangle(D d, const Vec3<V>& a, const Vec3<V
   return t;
 }
 
-// False for needles and whatever is not finite. Of a needle in a coordinate plane rounding may turn the normal round:
-// then the third corner's yc, and with it `amplify`, is negative.
+// False for needles and whatever is not finite. Of a needle in a coordinate plane rounding may turn the
+// normal round: then the third corner's yc, and with it `amplify`, is negative.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Mask<D> well_shaped(D d, const PlanarTriangle<V>& t) {
   const V zero = hn::Zero(d);
@@ -81,7 +81,7 @@ HWY_INLINE hn::Mask<D> well_shaped(D d, const PlanarTriangle<V>& t) {
   return hn::And(round, hn::Le(t.stretch, hn::Set(d, 0x1p-40)));
 }
 
-// A point in the triangle's frame, and the signed distances of its foot from the edges' lines, positive outside.
+// A point in the triangle's frame, and the signed distances of its foot from the edges, positive outside.
 template <class V>
 struct Foot {
   V x, y, height_sq;
@@ -169,8 +169,8 @@ HWY_INLINE void unrolled(const Work& work) {
   }
 }
 
-// `blocks` vectors of rows from row r on: each point is loaded once for all of them, and their sums do not wait for
-// each other.
+// `blocks` vectors of rows from row r on: each point is loaded once for all of them, and their sums do not
+// wait for each other.
 template <std::size_t blocks, class D>
 HWY_INLINE void apply_block(D d, const double* weights, std::size_t rows, std::span<const Vector3> points,
                             std::size_t r, double* x, double* y, double* z) {
@@ -340,9 +340,9 @@ struct Pyramid {
   }
 };
 
-// The 45 different Bezier points of the four quarters, as blossoms f(...) of the edges' midpoints and the corners:
-// corner children f(mid^i, other mid^j, corner^(4-i-j)), then three inner ones of the middle child. First come, for
-// edges 01, 12, 20 in turn, its first corner and the points inside it.
+// The 45 different Bezier points of the four quarters, as blossoms f(...) of the edges' midpoints and the
+// corners: corner children f(mid^i, other mid^j, corner^(4-i-j)), then three inner ones of the middle child.
+// First come, for edges 01, 12, 20 in turn, its first corner and the points inside it.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void split_once(D d, const V* b, V* out) {
   const V half = hn::Set(d, 0.5);
@@ -396,8 +396,8 @@ HWY_INLINE void split_once(D d, const V* b, V* out) {
       mean(half, blossom2(once[0][1], once[1][1], once[2][1]), blossom2(once[1][0], once[2][0], once[3][0]));
 }
 
-// A regular Loop patch inside the surface. First come, for edges 01, 12, 20 in turn, the first corner and the points
-// inside the edge.
+// A regular Loop patch inside the surface. First come, for edges 01, 12, 20 in turn, the first corner and the
+// points inside the edge.
 struct LoopShape {
   static constexpr std::size_t controls = 12, hull_count = 45, of_edge = 8;
   template <class D, class V = hn::Vec<D>>
@@ -513,7 +513,7 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, std::span<Of
   }
   const auto at = [&](std::size_t i) HWY_ATTR { return Vec3<V>{hull[0][i], hull[1][i], hull[2][i]}; };
 
-  // The corners are points of the hull, at height 0. The frame is theirs before they are shifted along its normal.
+  // The corners are points of the hull, at height 0. The frame is theirs before they are shifted.
   Vec3<V> corner[3] = {at(0), at(of_edge), at(2 * of_edge)};
   PlanarTriangle<V> t = planar_triangle(d, corner[0], corner[1], corner[2]);
   V lower = hn::Zero(d), upper = lower;

@@ -12,7 +12,7 @@ namespace snug {
 struct BoundTable;
 }
 
-/// The loops that bounds spend their time in, on the widest vectors that the processor has; chosen at run time.
+/// The loops that bounds spend their time in, on the widest vectors of the processor, chosen at run time.
 ///
 /// Guarantee: every lane does the same operations in the same order on every instruction set, none of them
 ///            fused, and lanes meet only in minima and maxima: results are the same everywhere, bit by bit.
@@ -48,9 +48,9 @@ struct Reach {
   double rounding;  ///< the part of it that accounts for rounding
 };
 
-/// Largest distance to the triangle of the first `split` points and of the others, 0 for none; nothing for a triangle that
-/// is too flat for its own plane: the sine of its sharpest angle below 1/32, without area, not finite, or of a size whose
-/// fourth power leaves the range of doubles.
+/// Largest distance to the triangle of the first `split` points and of the others, 0 for none; nothing for a
+/// triangle that is too flat for its own plane: the sine of its sharpest angle below 1/32, without area, not
+/// finite, or of a size whose fourth power leaves the range of doubles.
 ///
 /// Guarantee: largest distance <= distance, for the triangle of these very doubles; distance <= largest
 ///            distance + 3 rounding, times 1 + 2^-39 where its longest edge is below 1e-70;
@@ -65,23 +65,24 @@ struct Reach {
 /// one split of de Casteljau's, fit; a patch a lane. A negative radius is no answer: take the general way.
 ///
 /// Guarantee: as offset_triangle() on the patch's hull points; marked where farthest() has no answer.
-/// Requires:  control: twelve vertices of `points` a patch, in the kind's order; out.size() patches; points as
-///            in farthest().
+/// Requires:  control: twelve vertices of `points` a patch, in the kind's order; out.size() patches; points
+///            as in farthest().
 /// Cost:      about 0.15 to 0.2 microseconds a patch with four lanes.
 void fit_regular(std::span<const Point3> points, std::span<const VertexId> control,
                  std::span<OffsetTriangle> out);
 
-/// The same of regular Catmull-Clark patches inside the surface, halves of bicubic quads: their Bezier points without a
-/// split, sixteen control points a patch.
+/// The same of regular Catmull-Clark patches inside the surface, halves of bicubic quads: their Bezier points
+/// without a split, sixteen control points a patch.
 ///
-/// Guarantee: the patch lies in the offset triangle; its radius is at least that of fits to points after a split.
+/// Guarantee: the patch lies in the offset triangle; its radius is at least that of fits to points after a
+///            split.
 void fit_bicubic(std::span<const Point3> points, std::span<const VertexId> control,
                  std::span<OffsetTriangle> out);
 
 /// Offset triangles of many patches of one kind from its table.
 ///
-/// Guarantee: as offset_triangle(table_triangle()); base in the kind's order of corners. Infinite radius where a point is
-///            not finite.
+/// Guarantee: as offset_triangle(table_triangle()); base in the kind's order of corners. Infinite radius
+///            where a point is not finite.
 /// Requires:  table.first_bounded() == 3; control: table.control_count() vertices of `points` a patch, in the
 ///            kind's order; out.size() patches; coordinates of at most about 2 (geometry/scaling.h).
 /// Cost:      about 20 operations a control point and coordinate, four to eight patches at once.

@@ -99,10 +99,11 @@ void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out) {
 
 namespace {
 
-// Levels that a patch is split, before the nets of its pieces do: one of a passing kind, and at a crowded corner.
+// Levels that a patch is split, before the nets of its pieces do: one of a passing kind, and at a crowded
+// corner.
 constexpr unsigned passing_levels = 5, crowded_levels = 12;
 
-// The points of the parts of a patch of a kind that few share; `scratch` has a patch for each of the next levels.
+// The points of the parts of a patch of a kind that few share; `scratch` has a patch a level below.
 void add_parts(BoundsCache& library, const Patch& patch, unsigned level, std::span<Patch> scratch,
                HullPoints& out) {
   const Kind& kind = *patch.kind;
@@ -171,7 +172,7 @@ void refine_tips(BoundsCache& library, const std::array<bool, 3>& which, HullPoi
   for (; tips < 3 && points.tips[tips].kind; ++tips) {
     take_net(points, *points.tips[tips].kind, points.tips[tips].begin, nets[tips]);
   }
-  // What is no tip is written one after the other; the new net behind it is taken out before the next one comes.
+  // What is no tip is written one after the other; the new net behind it is taken out first.
   std::size_t count = points.tips_begin();
   for (std::size_t i = 0; i < tips; ++i) {
     if (!which[i]) continue;

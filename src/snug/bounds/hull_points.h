@@ -11,7 +11,7 @@
 
 namespace snug {
 
-/// Points whose convex hull contains a piece of a surface or a curve, relative to its origin; one array a coordinate.
+/// Points whose convex hull contains a piece of a surface or a curve, relative to its origin; arrays by axis.
 class HullPoints {
  public:
   Point3 origin;
@@ -59,9 +59,9 @@ inline constexpr std::size_t max_tip_refinements = 3;
 /// Cost:      3 rows.count() rows.control_count() multiply-adds; no allocation once `out` has been as large.
 void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out);
 
-/// The same from the rows that a library keeps; the tips of a kind with several are refined, its own rows being for one
-/// level only. Takes memory for all refinements to come. Passing and crowded kinds, which few patches share, have no rows:
-/// the patch is split, and its pieces have theirs.
+/// The same from the rows that a library keeps; the tips of a kind with several are refined, its own rows
+/// being for one level only. Takes memory for all refinements to come. Passing and crowded kinds, which few
+/// patches share, have no rows: the patch is split, and its pieces have theirs.
 void hull_points(BoundsCache& library, const Patch& patch, HullPoints& out);
 /// Makes the rows that the call above will need for patches of this kind.
 void prepare_hull_points(BoundsCache& library, const Kind& kind);
@@ -69,11 +69,11 @@ void prepare_hull_points(BoundsCache& library, const Kind& kind);
 /// The same of a curve: the Bezier points of its four quarters.
 void hull_points(const CurvePiece& piece, HullPoints& out);
 
-/// Few points whose hull holds the patch closely: the Bezier points of a polynomial one, for others those above.
+/// Few points whose hull holds the patch closely: the Bezier points of a polynomial one, else those above.
 void close_points(BoundsCache& library, const Patch& patch, HullPoints& out);
 
-/// Replaces the control nets of some tips by the points that the rows of their own kinds make of them: the hull
-/// shrinks to the pieces around these corners, and nets some levels farther down.
+/// Replaces the control nets of some tips by the points that the rows of their own kinds make of them: the
+/// hull shrinks to the pieces around these corners, and nets some levels farther down.
 void refine_tips(BoundsCache& library, const std::array<bool, 3>& which, HullPoints& points);
 
 /// The set lower <= dot(normal, p) <= upper.
@@ -82,8 +82,8 @@ struct Slab {
   double lower, upper;
 };
 
-/// Slab along `normal`, which need not be of length 1, that contains the patch, rounding included; infinite where a point is
-/// not finite. Bounds belong to points relative to points.origin.
+/// Slab along `normal`, which need not be of length 1, that contains the patch, rounding included; infinite
+/// where a point is not finite. Bounds belong to points relative to points.origin.
 [[nodiscard]] Slab outer_slab(const HullPoints& points, const Vector3& normal);
 
 }  // namespace snug

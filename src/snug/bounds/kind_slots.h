@@ -22,7 +22,7 @@ namespace snug {
 template <class T>
 class KindSlots {
  public:
-  /// Keeps so many bytes of values, and the value that goes beyond them; others are made when they are needed.
+  /// Keeps so many bytes of values, and the value that goes beyond them; others are made where needed.
   explicit KindSlots(std::size_t most_bytes = SIZE_MAX) : most_bytes_(most_bytes) {}
   KindSlots(const KindSlots&) = delete;
   KindSlots& operator=(const KindSlots&) = delete;
@@ -34,8 +34,8 @@ class KindSlots {
     }
   }
 
-  /// The value of kind `id`; `make()` makes it where there is none. It stays as long as this, or beyond the limit until this
-  /// thread has made eight others.
+  /// The value of kind `id`; `make()` makes it where there is none. It stays as long as this, or beyond the
+  /// limit until this thread has made eight others.
   template <class Make>
   [[nodiscard]] const T& get(KindId id, Make&& make) {
     std::atomic<const T*>& place = slot(id.index());

@@ -10,8 +10,8 @@
 namespace snug::kernels {
 
 /// Control points [from, to) of the next `lanes` patches, for vectors with a patch a lane: coordinate a of
-/// control point i of patch l at out[(3 (i - from) + a) lanes + l]. Lanes beyond the `here` patches that are left
-/// repeat the last one.
+/// control point i of patch l at out[(3 (i - from) + a) lanes + l]. Lanes beyond the `here` patches that are
+/// left repeat the last one.
 ///
 /// Requires:  control: `count` vertices a patch, from the first of these patches on; 0 < here <= lanes.
 inline void gather_lanes(std::span<const Point3> points, const VertexId* control, std::size_t count,
@@ -29,7 +29,7 @@ inline void gather_lanes(std::span<const Point3> points, const VertexId* control
   }
 }
 
-/// Answers from lanes: coordinate a of corner k of patch l at lane[(3 k + a) lanes + l], then radii, then roundings.
+/// Answers from lanes: coordinate a of corner k of patch l at lane[(3 k + a) lanes + l], radii, roundings.
 inline void scatter_lanes(const double* lane, std::size_t lanes, std::span<OffsetTriangle> out) {
   for (std::size_t l = 0; l < out.size(); ++l) {
     const double* from = lane + l;

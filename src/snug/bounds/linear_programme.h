@@ -16,9 +16,9 @@ struct Plane {
 /// The plane that passes above all points (x_j, y_j, z_j) and is least at (centre_x, centre_y). With the
 /// centroid of a triangle as centre it has the least volume below it over that triangle.
 ///
-/// Guarantee: none: up to rounding it is above the points and the least that is. Who needs a proof moves it up by the
-///            largest violation. Always a finite plane, whatever duplicates, points on a line and ties there are; slopes
-///            are at most 2^12 in size. The same input gives the same plane.
+/// Guarantee: none: up to rounding it is above the points and the least that is. Who needs a proof moves it
+///            up by the largest violation. Always a finite plane, whatever duplicates, points on a line and
+///            ties there are; slopes are at most 2^12 in size. The same input gives the same plane.
 /// Requires:  spans of equal size, at least 1; finite numbers, of about 1.
 /// Cost:      linear in the number of points, expected.
 /// Source:    [Seidel91]; differs: one fixed pseudo-random order, slopes held in a box instead of a check for

@@ -18,8 +18,8 @@
 namespace snug::kernels {
 namespace {
 
-// A control point beyond the third in a table: its place, and the planes around its function at the table's corners as
-// middle and half width.
+// A control point beyond the third in a table: its place, and the planes around its function at the table's
+// corners as middle and half width.
 struct TableColumn {
   double u, v;
   std::array<double, 3> middle, half;
@@ -34,8 +34,8 @@ struct FlatTable {
 
 double reach(const LayoutPoint& u) { return 1 + std::fabs(u[0]) + std::fabs(u[1]); }
 
-// The half width covers the rounding of both. The error bounds that of centre and half width together: control points
-// relative to the first, the linear function, the sums; derivations/rounding.md, "Batches".
+// The half width covers the rounding of both. The error bounds that of centre and half width together:
+// control points relative to the first, the linear function, the sums; derivations/rounding.md, "Batches".
 FlatTable flatten(const BoundTable& table, std::vector<TableColumn>& memory) {
   const std::size_t count = table.control_count();
   memory.clear();

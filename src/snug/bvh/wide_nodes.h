@@ -65,8 +65,7 @@ class WideNodes {
   /// units; zero or negative where no gap shows, the more negative the deeper they overlap. Wider gaps than
   /// `prune_distance` are not looked for where one is found. Returns the boxes with at most that, one bit
   /// each, and the least gap of the others.
-  /// Guarantee: at most the exact distance less `slack` where positive; minus infinity if anything is not
-  ///            finite.
+  /// Guarantee: at most the exact distance less `slack` where positive; -infinity if one is not finite.
   /// Source:    derivations/boxes.md; [Gottschalk96] for the axes.
   Near distances(std::uint32_t node, const PlacedBox& other, double slack, float prune_distance,
                  Distances& out) const;

@@ -10,7 +10,8 @@
 
 namespace snug {
 
-/// What a Workspace holds: pieces of each surface that a query met, twice where a surface is asked about against itself.
+/// What a Workspace holds: pieces of each surface that a query met, twice where a surface is asked about
+/// against itself.
 class Workspace::Pieces {
  public:
   /// For a query about one surface.

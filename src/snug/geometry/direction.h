@@ -4,8 +4,7 @@
 
 namespace snug {
 
-/// The direction of a vector of any length, 1 long up to 5 roundings; zero for one that is zero or not
-/// finite.
+/// The direction of a vector of any length, 1 long up to 5 roundings; zero for zero or one not finite.
 inline Vector3 normalized(const Vector3& v) {
   if (const double size = length(v); size >= 0x1p-400 && size <= 0x1p400) return (1 / size) * v;
   if (!is_finite(v) || v == Vector3{}) return {};

@@ -13,13 +13,15 @@ namespace snug {
 ///     file.write(bytes);
 ///     file.commit();
 ///
-/// Guarantee: until commit() returns, the target is as it was; afterwards it holds all bytes, on the disk, with the
-///            permissions it had or those of a new file. If commit() is not reached, the destructor removes the
-///            temporary file, and remove_unfinished_files() does where nothing unwinds. A symbolic link to a file
-///            stays one: the file behind it is replaced. Targets that cannot be replaced, "-" (standard output),
-///            devices, pipes and sockets, receive the bytes as they come, without a promise of all or nothing.
-/// Errors:    InputError (unreadable) that names the target and the system's reason, from every member but the
-///            destructor; a file is then as it was. InputError (value) if it is used after commit() or a failure.
+/// Guarantee: until commit() returns, the target is as it was; afterwards it holds all bytes, on the disk,
+///            with the permissions it had or those of a new file. If commit() is not reached, the destructor
+///            removes the temporary file, and remove_unfinished_files() does where nothing unwinds. A
+///            symbolic link to a file stays one: the file behind it is replaced. Targets that cannot be
+///            replaced, "-" (standard output), devices, pipes and sockets, receive the bytes as they come,
+///            without a promise of all or nothing.
+/// Errors:    InputError (unreadable) that names the target and the system's reason, from every member but
+///            the destructor; a file is then as it was. InputError (value) if it is used after commit() or a
+///            failure.
 class AtomicFile {
  public:
   /// Creates the temporary file; fails early if the target is a directory or write protected.

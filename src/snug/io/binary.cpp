@@ -16,7 +16,8 @@ std::vector<std::array<float, 3>> in_single_precision(std::span<const Point3> po
     require_value(is_finite(point), "a coordinate to write is not finite");
     std::array<float, 3>& own = result.emplace_back();
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      // Beyond the largest float the conversion is not defined, although half a step farther would round to it.
+      // Beyond the largest float the conversion is not defined, although half a step farther would round to
+      // it.
       if (std::fabs(point[axis]) > double{std::numeric_limits<float>::max()}) {
         throw InputError(InputProblem::refused,
                          name + ": vertex " + std::to_string(result.size() - 1) +

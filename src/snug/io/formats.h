@@ -10,10 +10,10 @@
 ///
 /// Guarantee: whatever a parser reads costs time linear in the bytes, whatever a header promises. Faces with
 ///            repeated corners, or with one or two, are kept: see mesh/validate.h.
-/// Errors:    parsers throw InputError (unreadable) naming the line, element or facet, at least for coordinates
-///            that are not finite, indices that name no vertex, faces without corners, and files without
-///            vertices or faces. Writers throw InputError (value) on coordinates that are not finite and on
-///            faces or polylines without corners.
+/// Errors:    parsers throw InputError (unreadable) naming the line, element or facet, at least for
+///            coordinates that are not finite, indices that name no vertex, faces without corners, and files
+///            without vertices or faces. Writers throw InputError (value) on coordinates that are not finite
+///            and on faces or polylines without corners.
 namespace snug {
 
 /// The control mesh that an OBJ text describes.
@@ -27,8 +27,8 @@ namespace snug {
 ///            number them from 0, as everywhere in snug.
 /// Notes:     one line for each sort of tag that is left out although it changes the surface, hierarchical
 ///            edits among them: the surface is the one without them.
-/// Errors:    also polylines without corners, tags with bad values, statements of the SMF format that would move
-///            or renumber vertices, a file that is no text.
+/// Errors:    also polylines without corners, tags with bad values, statements of the SMF format that would
+///            move or renumber vertices, a file that is no text.
 [[nodiscard]] ControlMesh parse_obj(std::string_view text, const std::string& name, const Notes& notes = {});
 
 /// The mesh as OBJ text that parse_obj reads back as the same mesh, tags included and bit by bit.
@@ -40,14 +40,15 @@ namespace snug {
 /// The control mesh that an OFF text describes.
 ///
 /// Reads:     the header word OFF with any of the prefixes ST, C, N (texture coordinates, colours and normals
-///            after the coordinates are ignored), or none; the counts on its line or the next, with or without a
-///            number of edges; face colours are ignored. Comments and blank lines may stand anywhere. An element
-///            begins a new line and ends with it. Over several lines it may go on only if the file has more
-///            lines than elements; vertices may share lines only if a plain OFF file has fewer, and its first
-///            vertex does. So words cannot slip from one element to the next and still fit the end of the file.
+///            after the coordinates are ignored), or none; the counts on its line or the next, with or
+///            without a number of edges; face colours are ignored. Comments and blank lines may stand
+///            anywhere. An element begins a new line and ends with it. Over several lines it may go on only
+///            if the file has more lines than elements; vertices may share lines only if a plain OFF file has
+///            fewer, and its first vertex does. So words cannot slip from one element to the next and still
+///            fit the end of the file.
 /// Guarantee: as parse_obj; OFF has no tags.
-/// Errors:    also more or fewer elements than the header promises, 4OFF, nOFF and OFF BINARY, a file that is no
-///            text.
+/// Errors:    also more or fewer elements than the header promises, 4OFF, nOFF and OFF BINARY, a file that is
+///            no text.
 [[nodiscard]] ControlMesh parse_off(std::string_view text, const std::string& name);
 
 /// The mesh as OFF text that parse_off reads back bit by bit, without its tags: OFF has none.
@@ -58,16 +59,16 @@ namespace snug {
 
 /// The control mesh that a PLY file describes.
 ///
-/// Reads:     version 1.0 of all three formats; `vertex` with the scalars x, y, z of any type, and `face` with
-/// the list `vertex_index` or `vertex_indices` of any integer type. Elements stand in any order. Other elements
-/// and properties, lists too, are passed over, and so are `comment` and `obj_info` lines. Types have their old
-/// names (char to double) or the new ones (int8 to float64). Header lines end with LF, CR LF or CR, as the
-/// first one does. In ascii files an element stands on a line of its own, in words as in text_cursor.h; blank
-/// lines may stand between them.
-/// Guarantee: coordinates are exactly the numbers of a binary file; in ascii files they are the doubles nearest
-///            to the decimals, whatever type the header names. Vertices and faces keep their order.
-/// Errors:    also a header that is not as above, `tristrips` that are not empty, values that do not fit their
-///            type, more or fewer elements than the header promises.
+/// Reads:     version 1.0 of all three formats; `vertex` with the scalars x, y, z of any type, and `face`
+///            with the list `vertex_index` or `vertex_indices` of any integer type. Elements stand in any
+///            order. Other elements and properties, lists too, are passed over, and so are `comment` and
+///            `obj_info` lines. Types have their old names (char to double) or the new ones (int8 to
+///            float64). Header lines end with LF, CR LF or CR, as the first one does. In ascii files an
+///            element stands on a line of its own, in words as in text_cursor.h; blank lines may follow.
+/// Guarantee: coordinates are exactly the numbers of a binary file; in ascii files they are the doubles
+///            nearest to the decimals, whatever type the header names. Vertices and faces keep their order.
+/// Errors:    also a header that is not as above, `tristrips` that are not empty, values that do not fit
+///            their type, more or fewer elements than the header promises.
 /// Source:    Greg Turk's PLY files; differs: nothing may follow the last element but blanks and line ends.
 [[nodiscard]] ControlMesh parse_ply(std::string_view bytes, const std::string& name);
 
@@ -88,12 +89,12 @@ namespace snug {
 ///            that is neither.
 [[nodiscard]] ControlMesh parse_stl(std::string_view bytes, const std::string& name);
 
-/// The mesh as a binary STL file with normals, without its tags. Coordinates are rounded to the nearest float;
-/// vertices that no face uses are left out, and vertices in one place become one when it is read.
+/// The mesh as a binary STL file with normals, without its tags. Coordinates are rounded to the nearest
+/// float; vertices that no face uses are left out, and vertices in one place become one when it is read.
 ///
 /// Notes:     one line if coordinates were rounded.
-/// Errors:    InputError (refused) naming the face if one is no triangle, and the vertex if its coordinates do
-///            not fit a float; for more than 2^32 - 1 facets.
+/// Errors:    InputError (refused) naming the face if one is no triangle, and the vertex if its coordinates
+///            do not fit a float; for more than 2^32 - 1 facets.
 [[nodiscard]] std::string format_stl(const ControlMesh& mesh, const std::string& name,
                                      const Notes& notes = {});
 
@@ -101,7 +102,7 @@ namespace snug {
 /// floats, indices of 32 bits, no normals, no materials. Its tags are left out.
 ///
 /// Guarantee: a face of n corners becomes the n - 2 triangles of the fan at its first corner; vertices keep
-///            their numbers. Coordinates are the nearest floats, and `min` and `max` of the positions are exact.
+///            their numbers. Coordinates are the nearest floats, `min` and `max` are exact.
 /// Notes:     one line if coordinates were rounded; one if faces were split into triangles.
 /// Errors:    InputError (refused) naming a face of one or two corners, or a vertex that does not fit floats;
 ///            for files beyond 4 GiB, which the format cannot hold, and meshes without triangles.

@@ -14,10 +14,10 @@ class AtomicFile;
 void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& path, const Notes& notes,
                 const WorkMonitor& monitor);
 
-/// Before work whose result write_mesh will write: throws InputError (unreadable) if there is no writer for this name.
+/// Before work whose result write_mesh will write: throws InputError (unreadable) for names without a writer.
 void require_writable_ending(const std::string& path);
 
-/// Does the format that write_mesh takes for this name hold faces of more than three corners? Throws likewise.
+/// Does the format that write_mesh takes for this name hold faces other than triangles? Throws likewise.
 [[nodiscard]] bool writes_polygons(const std::string& path);
 
 }  // namespace snug

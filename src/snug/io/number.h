@@ -24,11 +24,9 @@ struct ParsedReal {
 /// Reads a whole word as a decimal number, whatever the locale.
 ///
 /// Guarantee: the value is the double nearest to the decimal number, ties to even, also among subnormals. A
-///            number nearer to zero than to the least subnormal becomes a zero of its sign: it is not a
-///            fault.
+///            number nearer to zero than to the least subnormal becomes a zero of its sign: no fault.
 /// Errors:    none thrown. Faults: "nan" and "inf" in any spelling, numbers that round beyond the largest
 ///            double, "1,5", "0x1p3", anything else that is not a number. A leading '+' is accepted.
-/// Cost:      linear in the word, no allocation.
 [[nodiscard]] ParsedReal parse_real(std::string_view word);
 
 /// Reads a whole word as a decimal integer; a leading '+' is accepted. Numbers beyond 64 bits become the

@@ -26,7 +26,6 @@ void refuse_other_formats(std::string_view bytes, const std::string& name);
 ///
 /// Errors:    as refuse_other_formats; InputError (unreadable) for text that is UTF-16 without a mark or
 ///            holds NUL bytes; control characters are looked for in the first 4 KiB.
-/// Cost:      one pass that looks for NUL bytes.
 [[nodiscard]] std::string_view plain_text(std::string_view bytes, const std::string& name);
 
 }  // namespace snug

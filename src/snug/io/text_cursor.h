@@ -15,7 +15,6 @@ namespace snug {
 /// continued, so a comment that ends in "C:\" does not swallow a vertex.
 ///
 /// Requires:  the text outlives the cursor and the words.
-/// Cost:      one pass, no allocation except for messages.
 class TextCursor {
  public:
   /// For the rest of a text: stands at the beginning of the line of this number.

@@ -9,7 +9,8 @@ namespace snug {
 
 /// The numbers below a count, each in a set of its own until sets are joined.
 ///
-/// Source:    union-find with path halving; the least number of a set stands for it, whatever the order of joining.
+/// Source:    union-find with path halving; the least number of a set stands for it, whatever the order of
+///            joining.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }

@@ -12,10 +12,9 @@ namespace snug {
 using HalfEdge = std::uint32_t;
 inline constexpr HalfEdge no_half_edge = UINT32_MAX;
 
-/// The half-edges of any mesh, grouped by the undirected edge they lie on; non-manifold edges hold more than two.
+/// The half-edges of any mesh, grouped by the undirected edge they lie on; non-manifold edges have more.
 ///
 /// Requires:  vertex ids below vertex_count.
-/// Cost:      linear in half-edges, times the logarithm of the largest valence.
 class HalfEdgeGroups {
  public:
   HalfEdgeGroups(std::span<const std::uint32_t> face_offsets, std::span<const VertexId> face_vertices,

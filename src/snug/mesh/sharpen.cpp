@@ -217,7 +217,7 @@ class Sharpener {
     find_fixed_regions(curved);
   }
 
-  // Regions without a vertex that subdivision could move: between corners, smooth edges would only make them uneven.
+  // Regions without a vertex that subdivision could move: between corners, smooth edges make them uneven.
   void find_fixed_regions(const std::vector<std::vector<FaceId>>& regions) {
     const std::vector<SharpEnds> at = sharp_ends();
     std::vector<bool> fixed(at.size());

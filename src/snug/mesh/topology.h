@@ -11,11 +11,11 @@ namespace snug {
 
 /// Neighbour relations of a mesh, closed or with boundary. Knows no positions.
 ///
-/// Half-edges are twins where an edge has two faces that run along it in opposite directions. All other edges end
-/// the fans of faces at both of their vertices: those of the boundary, and non-manifold ones, which have three
-/// faces or more, or two that run along them in the same direction. Where a face runs along an edge again, and where
-/// it names a vertex twice in a row, that is an edge of its own, with one face, and non-manifold; and so is the edge
-/// that it runs along again. A vertex has one fan if it is manifold.
+/// Half-edges are twins where an edge has two faces that run along it in opposite directions. All other edges
+/// end the fans of faces at both of their vertices: those of the boundary, and non-manifold ones, which have
+/// three faces or more, or two that run along them in the same direction. Where a face runs along an edge
+/// again, and where it names a vertex twice in a row, that is an edge of its own, with one face, and
+/// non-manifold; and so is the edge that it runs along again. A vertex has one fan if it is manifold.
 ///
 /// Around vertex v, counter-clockwise:
 ///

@@ -148,7 +148,7 @@ class Inspector {
     }
   }
 
-  // The corners of faces around a vertex, linked where two faces share an edge at it, must form one chain or cycle.
+  // The corners of faces around a vertex, linked where two faces share an edge at it, are one chain or cycle.
   void check_edges_and_fans() {
     const HalfEdgeGroups groups(mesh_.face_offsets, mesh_.face_vertices, mesh_.vertex_count());
     std::vector<std::size_t> fans(mesh_.vertex_count(), 0);

@@ -33,7 +33,8 @@ struct Defect {
 [[nodiscard]] constexpr bool is_legal(DefectKind kind) {
   return kind == DefectKind::isolated_vertex || kind == DefectKind::zero_area_face;
 }
-/// Defects that Catmull-Clark answers all the same, the elements infinitely sharp; and Loop, but for duplicate faces.
+/// Defects that Catmull-Clark answers all the same, the elements infinitely sharp; and Loop, but for
+/// duplicate faces.
 [[nodiscard]] constexpr bool is_non_manifold(DefectKind kind) {
   return kind == DefectKind::repeated_vertex || kind == DefectKind::duplicate_face ||
          kind == DefectKind::edge_of_many_faces || kind == DefectKind::inconsistent_orientation ||
@@ -46,7 +47,6 @@ struct Defect {
 ///            finite coordinates. zero_area_face is found in double precision.
 /// Requires:  well-formed arrays; else nothing. Indices out of range hide the defects that depend on
 ///            neighbours.
-/// Cost:      linear, times the logarithm of the largest valence.
 [[nodiscard]] std::vector<Defect> defects(const ControlMesh& mesh);
 
 /// Those of them that show without looking at neighbours: of faces each on its own, of duplicate faces,

@@ -157,7 +157,7 @@ class Welder {
     mesh_.points.resize(kept);
   }
 
-  // The corners of a face after welding, equal neighbours as one; none if fewer than three different ones are left.
+  // The corners of a face after welding, equal neighbours as one; none if fewer than three are left.
   std::vector<VertexId> moved_face(std::span<const VertexId> face) const {
     std::vector<VertexId> corners;
     for (const VertexId v : face) {
@@ -190,7 +190,8 @@ class Welder {
     mesh_.face_vertices = std::move(moved.face_vertices);
   }
 
-  // Of the tags of one element the last counts; of elements that become one the sharpest, where the first stood.
+  // Of the tags of one element the last counts; of elements that become one the sharpest, where the first
+  // stood.
   template <class Tag, class KeyOf, class Move>
   static void move_each(std::vector<Tag>& tags, const KeyOf& key_of, const Move& move) {
     std::map<decltype(key_of(tags[0])), Tag> last, merged;

@@ -11,8 +11,7 @@
 namespace snug {
 namespace {
 
-// PieceParameter coordinates on a piece, in its kind's order of corners. `off` bounds the sum of their
-// errors.
+// PieceParameter coordinates on a piece, in its kind's order of corners. `off` bounds their errors' sum.
 struct PieceParameter {
   std::array<double, 3> at;
   double off;

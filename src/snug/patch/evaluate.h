@@ -23,7 +23,8 @@ struct LimitPoint {
 /// A limit point with what the surface does there.
 struct LimitFrame {
   LimitPoint point;
-  /// Derivatives along u and v where they exist; elsewhere two limit tangents, counter-clockwise, of any length.
+  /// Derivatives along u and v where they exist; elsewhere two limit tangents, counter-clockwise, of any
+  /// length.
   std::array<Vector3, 2> tangents;
   bool differentiable;            ///< tangents are derivatives in (u, v)
   std::optional<Vector3> normal;  ///< of length 1; absent where the tangents are parallel or vanish
@@ -31,7 +32,8 @@ struct LimitFrame {
   std::optional<double> tangent_error{};
 };
 
-/// A parameter on a quad (0,0), (1,0), (1,1), (0,1), of which a patch is half: part 0 where v <= u, 1 where v >= u.
+/// A parameter on a quad (0,0), (1,0), (1,1), (0,1), of which a patch is half: part 0 where v <= u, 1 where v
+/// >= u.
 struct QuadParameter {
   double u = 0, v = 0;
 };

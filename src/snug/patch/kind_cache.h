@@ -60,8 +60,7 @@ class Kind {
   /// Is a corner one of very many faces between creases or boundaries? All its patches are of kinds of their
   /// own, and the matrix of points that bound one would be as large as the fan for each of many levels.
   [[nodiscard]] bool crowded() const;
-  /// Do many patches share such kinds, so that rows are kept for them? Others are split where they are
-  /// bounded.
+  /// Do many patches share such kinds, so that rows are kept for them? Others are split first.
   [[nodiscard]] bool shared() const { return !passing() && !crowded(); }
 
   /// Is the patch polynomial, or made of two polynomials (Midedge)? Only then it has a form.

@@ -9,8 +9,7 @@
 
 namespace snug {
 
-/// Which piece of a control face's patch: one digit a level, 0 to 2 the quarter at that corner, 3 the middle
-/// one.
+/// Which piece of a control face's patch: one digit a level, 0 to 2 the quarter at that corner, 3 the middle.
 class PiecePath {
  public:
   static constexpr unsigned max_level = 60;

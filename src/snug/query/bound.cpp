@@ -144,7 +144,8 @@ BoundSummary bound_all(const Pieces& wholes, std::size_t all, const BoundOptions
   require_value(!options.tolerance || (*options.tolerance > 0 && std::isfinite(*options.tolerance)),
                 "bound: the tolerance must be finite and positive; leave it out to bound whole patches");
   require_value(options.level <= PiecePath::max_level, "bound: the level is too high; give at most 60");
-  // Patches or edges worked on at once: as many as their pieces are few, so that memory stays small and threads are busy.
+  // Patches or edges worked on at once: as many as their pieces are few, so that memory stays small and
+  // threads are busy.
   constexpr std::size_t most_wholes = 1024, most_pieces = 1 << 16;
   std::size_t chunk = 1;
   BoundSummary summary;

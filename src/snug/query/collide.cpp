@@ -20,7 +20,8 @@ constexpr auto verdict_names = std::to_array<Named<Verdict>>({{"separated", Verd
                                                               {"intersecting", Verdict::intersecting},
                                                               {"undecided", Verdict::undecided}});
 
-// Attempts to prove that surfaces intersect: of surfaces that nearly lie in each other every pair looks like a crossing.
+// Attempts to prove that surfaces intersect: of surfaces that nearly lie in each other every pair looks like
+// a crossing.
 constexpr int max_attempts = 2000, max_attempts_within = 64;
 
 class Query {
@@ -144,8 +145,8 @@ class Query {
   bool found_ = false, crossing_ = false, incomplete_ = false;
 };
 
-// Makes of an answer about two closed surfaces that for the solids that they bound. A point of one surface in the other solid
-// is a common point of both solids, whatever is known of the surfaces.
+// Makes of an answer about two closed surfaces that for the solids that they bound. A point of one surface in
+// the other solid is a common point of both solids, whatever is known of the surfaces.
 void make_solid(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor, Collision& answer) {
   const bool separated = answer.verdict == Verdict::separated;
   const Nesting found = separated ? nesting(a, b, monitor) : common_point(a, b, monitor);

@@ -13,7 +13,7 @@ void require_solids(const PlacedBvh& a, const PlacedBvh& b);
 
 /// Whether a component of one closed surface lies in the solid that another one bounds.
 struct Nesting {
-  /// 0: a component of A has a point in the solid of B; 1: the other way round. Nothing where none has been found.
+  /// 0: a component of A has a point in the solid of B; 1: the other way round. Nothing where none is found.
   std::optional<std::size_t> inner;
   /// Is it certain that there is none else? Not where a point is too near to the other surface to tell.
   bool certain = true;
@@ -35,15 +35,14 @@ struct Nesting {
 
 /// Asks one limit point of each component of two placed surfaces whether it lies in the other solid.
 ///
-/// Guarantee: a point that is named lies on one surface and in the solid of the other one. Surfaces that do not meet bound
-///            solids that do not meet if `certain` and there is no `inner`.
-/// Cost:      a walk along a ray for each component.
+/// Guarantee: a point that is named lies on one surface and in the solid of the other one. Surfaces that do
+///            not meet bound solids that do not meet if `certain` and there is no `inner`.
 /// Source:    derivations/contact.md, "Two solids".
 [[nodiscard]] Nesting nesting(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor = {});
 
-/// Looks for a point of one surface in the other solid where the surfaces may meet: also in the middles of some patches,
-/// those deepest in the box around the other one. Where faces of two parts lie in each other no crossing proves contact; a
-/// point of this sort does.
+/// Looks for a point of one surface in the other solid where the surfaces may meet: also in the middles of
+/// some patches, those deepest in the box around the other one. Where faces of two parts lie in each other no
+/// crossing proves contact; a point of this sort does.
 ///
 /// Guarantee: as nesting(); nothing follows where none is found.
 [[nodiscard]] Nesting common_point(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor = {});

@@ -79,7 +79,7 @@ class Query {
     follow(best);
   }
 
-  // From two pieces on to smaller ones, until limit points there are as near as the surfaces come around them.
+  // From two pieces on to smaller ones, until limit points there are as near as the surfaces come there.
   void follow(NodePair pair) {
     while (pieces_.radii(pair) > bounds_.precision() / 8) {
       const PairWalk::Opening opening = walk_.opening(pair, PairWalk::Bounding::eager);
@@ -155,7 +155,7 @@ class Query {
     }
   }
 
-  // What is known of a direction is kept until a better one shows more than the precision: the square of the angle.
+  // What is known of a direction is kept until a better one shows more than the precision (angle squared).
   void look_along_witness() {
     const Vector3 direction = normalized(witness_.points[1] - witness_.points[0]);
     if (direction == Vector3{}) return;

@@ -11,15 +11,16 @@
 /// The questions of collide.h and distance.h about surfaces whose trees and workspaces are at hand.
 namespace snug {
 
-/// Both trees are opened from their roots on, deepest overlap first. A pair of pieces is (a) dropped once sets around them
-/// are farther apart than the margin; (b) a witness if the limit points at the nearest parameters of its base triangles are
-/// near enough, or a proof that one crosses the other; (c) else its larger piece is split, below half the tolerance too.
+/// Both trees are opened from their roots on, deepest overlap first. A pair of pieces is (a) dropped once
+/// sets around them are farther apart than the margin; (b) a witness if the limit points at the nearest
+/// parameters of its base triangles are near enough, or a proof that one crosses the other; (c) else its
+/// larger piece is split, below half the tolerance too.
 [[nodiscard]] Collision collide(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
                                 const WorkMonitor& monitor = {});
 
-/// Pairs of nodes are opened, the nearest first. Limit points at the nearest parameters of base triangles bound the
-/// distance from above; planes across the direction of the nearest ones, which hold pieces' hulls apart, from below. Where
-/// pieces cut each other, contact is proved as in collide().
+/// Pairs of nodes are opened, the nearest first. Limit points at the nearest parameters of base triangles
+/// bound the distance from above; planes across the direction of the nearest ones, which hold pieces' hulls
+/// apart, from below. Where pieces cut each other, contact is proved as in collide().
 [[nodiscard]] Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options,
                                 const WorkMonitor& monitor = {});
 
@@ -28,15 +29,16 @@ namespace snug {
                                       const PenetrationOptions& options = {},
                                       const WorkMonitor& monitor = {});
 
-/// Workspaces of two models for many poses, one pair a thread: what a thread has found out about pieces is of use for its
-/// next pose.
+/// Workspaces of two models for many poses, one pair a thread: what a thread has found out about pieces is of
+/// use for its next pose.
 class PairWorkspaces {
  public:
   /// `threads`: 0 for all cores.
   /// Requires:  the models outlive it.
   PairWorkspaces(const SurfaceBvh& a, const SurfaceBvh& b, int threads = 0);
 
-  /// Calls ask(a, b, pose) for each pose in [0, count), on the threads, no two at once with the same pair of workspaces.
+  /// Calls ask(a, b, pose) for each pose in [0, count), on the threads, no two at once with the same pair of
+  /// workspaces.
   /// Errors:    what `ask` throws ends the loop and is thrown again, of several one.
   using Ask = std::function<void(SurfaceWorkspace& a, SurfaceWorkspace& b, std::size_t pose)>;
   void for_each(std::size_t count, const Ask& ask, const WorkMonitor& monitor = {});

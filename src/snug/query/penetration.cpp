@@ -110,7 +110,7 @@ class Search {
     return 1.01 * (between + ball_a.radius + ball_b.radius);
   }
 
-  // The first of some lengths along w that separates, made shorter. Nothing that is longer than the best is looked at.
+  // The first of some lengths along w that separates, made shorter. Nothing longer than the best is tried.
   std::optional<double> shortest_along(const Vector3& w, double reach) {
     double blocked = 0;
     for (int k = doublings; k >= 0; --k) {
@@ -130,8 +130,8 @@ class Search {
     return std::nullopt;
   }
 
-  // Along the normal of the contact that a translation leaves, the shortest one that stays on its side of the plane; where
-  // that is blocked, straight back.
+  // Along the normal of the contact that a translation leaves, the shortest one that stays on its side of the
+  // plane; where that is blocked, straight back.
   void descend(Candidate at) {
     for (int i = 0; i < max_descents; ++i) {
       const Distance gap = gap_after(at, 1e-3, 0.05);
@@ -210,8 +210,8 @@ class Search {
     return best;
   }
 
-  // Points of A's frame that may lie in both: where the surfaces touch once they are separated, half the way back, and the
-  // middles of both.
+  // Points of A's frame that may lie in both: where the surfaces touch once they are separated, half the way
+  // back, and the middles of both.
   std::vector<Point3> starts() {
     const Distance gap = gap_after(best_, 1e-2, 0.1);
     const Motion back = a_.pose.inverse();
@@ -223,8 +223,8 @@ class Search {
   const PenetrationOptions& options_;
   const WorkMonitor& monitor_;
   Candidate best_{{}, INFINITY};
-  // Of the last point that depth_at() looked at: how deep it is in the shallower solid, negative outside; from it to the
-  // surface of A, and to it from that of B.
+  // Of the last point that depth_at() looked at: how deep it is in the shallower solid, negative outside;
+  // from it to the surface of A, and to it from that of B.
   double guide_ = 0;
   std::array<Vector3, 2> ways_out_;
   std::vector<Vector3> outward_;  // directions of the same, of the deepest point

@@ -10,9 +10,9 @@ namespace snug {
 [[nodiscard]] ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned level,
                                     bool limit, const WorkMonitor& monitor = {});
 
-/// The polylines of a mesh after `level` steps of subdivision, or the limit positions of their vertices: every polyline with
-/// vertices of its own, order and ends as in scheme/curve_masks.h. InputError (refused) from require_curves, and for more
-/// than 2^31 vertices.
+/// The polylines of a mesh after `level` steps of subdivision, or the limit positions of their vertices:
+/// every polyline with vertices of its own, order and ends as in scheme/curve_masks.h. InputError (refused)
+/// from require_curves, and for more than 2^31 vertices.
 [[nodiscard]] ControlMesh subdivide_curves(const ControlMesh& mesh, CurveDegree degree, unsigned level,
                                            bool limit, const WorkMonitor& monitor = {});
 

@@ -99,8 +99,7 @@ class Rows {
 };
 
 // Where a face runs along an edge twice, or along one from a vertex to itself, pieces of what ended the fans
-// may be twins after a step: they are kept infinitely sharp. The middle of the latter stays where the vertex
-// is.
+// may be twins after a step: they are kept infinitely sharp. The middle of the latter is the vertex.
 void keep_closed_edges_sharp(const Topology& topology, std::size_t corners, const Topology& refined,
                              Sharpness& result) {
   for (std::size_t e = 0; e < topology.edge_count(); ++e) {

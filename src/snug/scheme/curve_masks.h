@@ -59,8 +59,7 @@ struct ControlPolygon {
 [[nodiscard]] ControlPolygon limit_positions(const ControlPolygon& polygon, CurveDegree degree);
 
 /// Throws InputError (refused), naming elements, unless every polyline has a limit curve: at least one
-/// polyline, two vertices each (twice the same is legal), all of them there and finite, none tagged as a
-/// corner.
+/// polyline, two vertices each (twice the same is legal), all of them there and finite, no corners.
 void require_curves(const ControlMesh& mesh);
 
 }  // namespace snug

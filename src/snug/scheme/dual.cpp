@@ -5,8 +5,7 @@
 #include <snug/base/contract.h>
 #include <snug/scheme/rules.h>
 
-// Doo-Sabin and Midedge: each corner of a face makes a vertex, quads are regular, a patch lies around a
-// vertex.
+// Doo-Sabin and Midedge: each corner of a face makes a vertex, quads are regular, a patch is a vertex's.
 namespace snug {
 namespace {
 

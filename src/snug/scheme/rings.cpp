@@ -60,8 +60,7 @@ class FaceRing {
     }
   }
 
-  // The faces of corner i that are not across an edge of the patch. A quad has a vertex more, diagonally
-  // across.
+  // The faces of corner i that are not across an edge of the patch. A quad has one more, across.
   void add_fan(std::size_t i) {
     const CornerFan& fan = fans_[i];
     std::size_t last = far_[(i + size_ - 1) % size_];

@@ -30,7 +30,7 @@ PlacedFrame frame_of(const PlacedBvh& placed, PowerOfTwo world) {
           .defect = pose.defect()};
 }
 
-// A placed surface as a k-DOP, in units of which one mesh unit is `world` many; `scale` leads there from its own.
+// A placed surface as a k-DOP, in units of which one mesh unit is `world` many; `scale` leads there.
 struct Outline {
   const Dop26& dop;
   std::array<Vector3, 3> rows;

@@ -13,7 +13,6 @@ namespace snug {
 ///
 /// Requires:  fewer than 2^32 points. Those that are not finite may come anywhere.
 /// Errors:    what `ask` throws ends the loop and is thrown again, of several one; Interrupted.
-/// Cost:      that of sorting the points beside that of `ask`.
 void for_each_point(const SurfaceBvh& model, std::span<const Point3> points, int threads,
                     const WorkMonitor& monitor,
                     const std::function<void(SurfaceWorkspace&, std::size_t)>& ask);

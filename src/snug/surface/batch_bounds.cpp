@@ -39,7 +39,7 @@ OffsetTriangle turned(const OffsetTriangle& fit, std::uint8_t first) {
   return result;
 }
 
-// unscaled(turned()) at a moderate power of two, straight to where it belongs: copies would cost as much as the fit.
+// unscaled(turned()) at a moderate power of two, straight to where it belongs: copies cost as much as fits.
 void turn_and_scale(const OffsetTriangle& fit, std::uint8_t first, double factor, OffsetTriangle& out) {
   std::size_t from = (3 - first) % 3;
   for (Point3& corner : out.base) {

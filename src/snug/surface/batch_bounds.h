@@ -24,8 +24,8 @@ class BatchBounds {
   void update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads = 1);
 
  private:
-  // Patches of one kind, in the order of patches_. A polygon's are apart, part by part: their control points are
-  // those of the polygon.
+  // Patches of one kind, in the order of patches_. A polygon's are apart, part by part: their control points
+  // are those of the polygon.
   struct Group {
     const Kind* kind;
     const Kind* polygon;  // none: from control points

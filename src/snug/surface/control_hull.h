@@ -9,9 +9,9 @@
 
 namespace snug {
 
-/// Some patches, known by their control points alone: a set that contains them and costs no rows. For each patch it is
-/// (1 - w) times the hull of its face's corners plus w times the hull of all control points, w being outer_weight() of its
-/// kind.
+/// Some patches, known by their control points alone: a set that contains them and costs no rows. For each
+/// patch it is (1 - w) times the hull of its face's corners plus w times the hull of all control points, w
+/// being outer_weight() of its kind.
 ///
 /// Guarantee: contains the patches, rounding included.
 /// Source:    derivations/boxes.md.
@@ -29,7 +29,7 @@ class ControlHull {
   std::vector<VertexId> corners_;
   std::vector<Point3> points_;  // corners first
   std::size_t inner_count_ = 0;
-  // Indices into points_ and where each list ends: of the faces around each corner, of the corners of each patch.
+  // Indices into points_ and where each list ends: of faces a corner, of corners a patch.
   std::vector<std::uint32_t> ring_, ring_ends_, patch_, patch_ends_;
   std::vector<double> weights_;  // of each patch
   double largest_ = 0;

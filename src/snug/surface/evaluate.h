@@ -13,8 +13,8 @@ namespace snug {
 
 /// The place of a parameter of a patch.
 ///
-/// Guarantee: u and v are within 2^-51 of the exact ones; patch_at() finds a patch there, for the other half of the quad where
-///            rounding crosses its diagonal.
+/// Guarantee: u and v are within 2^-51 of the exact ones; patch_at() finds a patch there, for the other half
+///            of the quad where rounding crosses its diagonal.
 /// Requires:  surface.has_patch(patch); u, v >= 0 and u + v <= 1, up to a rounding.
 [[nodiscard]] SurfaceParameter place_of(const LimitSurface& surface, PatchId patch, TriangleParameter at);
 
@@ -30,8 +30,8 @@ namespace snug {
 [[nodiscard]] std::optional<SurfaceNormal> normal_at(const LimitSurface& surface, const SurfaceParameter& at,
                                                      const Motion& pose = {});
 
-/// Evaluates many points of one patch with a single set-up. InputError (value) for a patch that is not there and a parameter
-/// that is not on it, NaN included.
+/// Evaluates many points of one patch with a single set-up. InputError (value) for a patch that is not there
+/// and a parameter that is not on it, NaN included.
 class PatchEvaluator {
  public:
   PatchEvaluator(const LimitSurface& surface, PatchId p);
@@ -53,8 +53,8 @@ struct CurveSetPoint : BoundedPoint {
   Vector3 tangent;  ///< in double precision without a bound; 0 where the curve has none
 };
 
-/// The limit point of an edge at exactly this t: 0 at the limit of its first vertex, 1 at that of the second. InputError
-/// (value) unless edge < curves.edge_count() and 0 <= t <= 1.
+/// The limit point of an edge at exactly this t: 0 at the limit of its first vertex, 1 at that of the second.
+/// InputError (value) unless edge < curves.edge_count() and 0 <= t <= 1.
 [[nodiscard]] CurveSetPoint evaluate(const CurveSet& curves, EdgeId edge, double t);
 
 }  // namespace snug

@@ -21,21 +21,22 @@ using PatchId = Id<struct PatchTag>;
 
 /// The limit surface of a control mesh, in triangular patches. Immutable; may be read by many threads.
 ///
-/// A patch belongs to an owner: a face, or with a dual scheme a vertex. Triangular schemes, as Loop: one a face. Other primal
-/// ones, as Catmull-Clark: two a quad with corners c0 to c3, part 0 from c0 by c1 to c2 and part 1 from c2 by c3 to c0; of
-/// another face with n corners 2 n after its first split: parts 2 k and 2 k + 1 those of the quad at corner k, from that
-/// corner and from the face's centre.
-/// Dual schemes likewise, with the faces around the vertex, from topology().leaving() on, as corners.
+/// A patch belongs to an owner: a face, or with a dual scheme a vertex. Triangular schemes, as Loop: one a
+/// face. Other primal ones, as Catmull-Clark: two a quad with corners c0 to c3, part 0 from c0 by c1 to c2
+/// and part 1 from c2 by c3 to c0; of another face with n corners 2 n after its first split: parts 2 k and 2
+/// k + 1 those of the quad at corner k, from that corner and from the face's centre. Dual schemes likewise,
+/// with the faces around the vertex, from topology().leaving() on, as corners.
 ///
-/// Inside, coordinates are scaled by a power of two so that the largest lies in [1, 2); `scale()` leads there from mesh
-/// units. Everything below surface/ works in scaled units, all answers are in mesh units.
+/// Inside, coordinates are scaled by a power of two so that the largest lies in [1, 2); `scale()` leads there
+/// from mesh units. Everything below surface/ works in scaled units, all answers are in mesh units.
 ///
 /// Errors:    InputError (refused) from require_subdividable, and (value) for a library that is null.
-/// Cost:      linear; 9 bytes a patch beside mesh and topology. Rows of kinds are made when a patch is first bounded.
+/// Cost:      linear; 9 bytes a patch beside mesh and topology. Rows of kinds are made when a patch is first
+///            bounded.
 class LimitSurface {
  public:
-  /// The mesh's tags name creases, corners, holes, the crease method and how triangles are treated; options.boundary
-  /// alone counts for the boundary.
+  /// The mesh's tags name creases, corners, holes, the crease method and how triangles are treated;
+  /// options.boundary alone counts for the boundary.
   LimitSurface(ControlMesh mesh, const SchemeOptions& options, std::shared_ptr<BoundsCache> library,
                int threads = 0, const WorkMonitor& monitor = {});
 
@@ -66,8 +67,8 @@ class LimitSurface {
   /// Is the patch half a quad that the first split of its owner made? Then it lies one level down.
   [[nodiscard]] bool after_first_split(PatchId p) const { return polygon_of(p) != nullptr; }
 
-  /// Is there a limit patch? Not in a hole, not at a boundary with BoundaryRule::none, and with a dual scheme not of a
-  /// boundary vertex.
+  /// Is there a limit patch? Not in a hole, not at a boundary with BoundaryRule::none, and with a dual scheme
+  /// not of a boundary vertex.
   [[nodiscard]] bool has_patch(PatchId p) const { return kinds_[p.index()] != nullptr; }
   /// Requires:  has_patch(p).
   [[nodiscard]] const Kind& kind(PatchId p) const { return *kinds_[p.index()]; }
@@ -78,7 +79,7 @@ class LimitSurface {
   }
   /// The kind of the polygon that a patch is made of in a first split; none for others.
   [[nodiscard]] const Kind* polygon_of(PatchId p) const;
-  /// The control vertices of a patch, or of its polygon, in the order of its kind. InputError (value) unless has_patch(p).
+  /// The control vertices of a patch, or of its polygon, in the order of its kind. Requires has_patch(p).
   void control_vertices(PatchId p, std::vector<VertexId>& out) const;
   [[nodiscard]] const Point3& scaled_point(VertexId v) const { return scaled_[v.index()]; }
   /// The middle of its owner's corners, in scaled units.
