@@ -161,13 +161,13 @@ void make_solid(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monit
 
 Collision ask(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
               const WorkMonitor& monitor) {
+  Collision answer;
   if (const double gap = outer_gap(a, b); gap > options.margin) {
-    Collision answer;
     answer.verdict = Verdict::separated;
     answer.distance.lower = gap;
     return answer;
   }
-  Collision answer = Query(a, b, options, monitor).run();
+  answer = Query(a, b, options, monitor).run();
   const bool proved = answer.verdict == Verdict::intersecting ||
                       (answer.verdict == Verdict::within && !options.prove_contact);
   if (options.solid && !proved) make_solid(a, b, monitor, answer);
