@@ -2,7 +2,10 @@
 // bilinear quads against sampling and against Catmull-Clark with everything infinitely sharp.
 
 #include <gtest/gtest.h>
+#include <oracle/dual_twin.h>
+#include <oracle/polygon_twin.h>
 #include <oracle/polyhedron_twin.h>
+#include <oracle/tagged_shapes.h>
 #include <snug/base/error.h>
 #include <snug/query/bound.h>
 #include <snug/query/closest.h>
@@ -300,6 +303,181 @@ TEST(bilinear, distances_are_those_of_catmark_with_sharp_edges) {
   }
   EXPECT_GT(meet, 20u);
   EXPECT_LT(meet, 130u);
+}
+
+// A surface whose limit the twin samples, and how far off a sample may be.
+struct Sampled {
+  std::string name;
+  oracle::TaggedMesh mesh;
+  Scheme scheme;
+  std::vector<oracle::Point> samples;
+  double error = 0;
+};
+
+double length_of(const oracle::Point& a, const oracle::Point& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+std::vector<Sampled> sampled_surfaces(std::mt19937_64& random) {
+  namespace meshes = oracle::meshes;
+  constexpr int levels = 4;
+  std::vector<Sampled> list;
+  for (const auto& [name, shape] :
+       std::vector<std::pair<std::string, oracle::TaggedMesh>>{{"cube", meshes::cube()},
+                                                               {"prism 5", meshes::prism(5)},
+                                                               {"pyramid 7", meshes::pyramid(7)},
+                                                               {"open strip", meshes::mixed_strip()}}) {
+    for (const Scheme scheme : {Scheme::loop, Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
+      Sampled s{name + ", " + name_of(scheme), meshes::shaken(shape, 0.3, random), scheme, {}};
+      if (scheme == Scheme::loop) s.mesh = meshes::triangulated(s.mesh);
+      for (oracle::Point& p : s.mesh.points) {
+        for (double& x : p) x *= 30;
+      }
+      const bool primal = scheme == Scheme::loop || scheme == Scheme::catmark;
+      if (primal) s.mesh.creases = {{s.mesh.polygons[0][0], s.mesh.polygons[0][1], 2.5}};
+      const auto add = [&](const auto& samples) {
+        for (const auto& sample : samples) {
+          s.samples.push_back(sample.position);
+          s.error = std::max(s.error, 2 * sample.error);
+        }
+      };
+      if (primal) {
+        oracle::Rules rules;
+        rules.scheme =
+            scheme == Scheme::loop ? oracle::PrimalScheme::loop : oracle::PrimalScheme::catmull_clark;
+        add(oracle::sample_faces(s.mesh, rules, levels));
+      } else {
+        add(oracle::sample_dual(
+            s.mesh, scheme == Scheme::midedge ? oracle::DualScheme::midedge : oracle::DualScheme::doo_sabin,
+            levels));
+      }
+      if (!s.samples.empty()) list.push_back(std::move(s));
+    }
+  }
+  return list;
+}
+
+ControlMesh scaled(ControlMesh mesh, double factor) {
+  for (Point3& p : mesh.points) p = {factor * p.x, factor * p.y, factor * p.z};
+  return mesh;
+}
+
+// The same limit surface by another scheme: every edge and corner infinitely sharp.
+ControlMesh with_sharp_edges(ControlMesh mesh) {
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(FaceId(f));
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      mesh.tags.creases.push_back({face[k], face[(k + 1) % face.size()], 10});
+      mesh.tags.corners.push_back({face[k], 10});
+    }
+  }
+  return mesh;
+}
+
+// Plain meshes, whose pieces are never split, beside surfaces of every scheme and beside each other.
+TEST(plain_meshes, are_as_far_from_surfaces_of_every_scheme_as_their_samples_say) {
+  std::mt19937_64 random(16);
+  const std::vector<Sampled> others = sampled_surfaces(random);
+  std::size_t apart = 0, meet = 0;
+  for (int trial = 0; trial < 256 && !HasFailure(); ++trial) {
+    const Sampled& other = others[static_cast<std::size_t>(trial) % others.size()];
+    const Scheme plain = trial / others.size() % 2 == 0 ? Scheme::flat : Scheme::bilinear;
+    const double factor = std::array{1.0, 0x1p-400, 0x1p300}[random() % 3];
+    ControlMesh faces;
+    std::vector<oracle::Point> points;
+    const std::size_t corners = plain == Scheme::flat ? 3 : 4;
+    const ExactPoint centre = random_point(random, 45);
+    for (std::uint32_t k = 0; k < 3 * corners; ++k) {
+      ExactPoint p = random_point(random, 25);
+      for (std::size_t x = 0; x < 3; ++x) p[x] += centre[x];
+      points.push_back({static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])});
+      faces.points.push_back({points.back()[0], points.back()[1], points.back()[2]});
+    }
+    for (std::uint32_t f = 0; f < 3; ++f) {
+      std::vector<VertexId> face;
+      for (std::uint32_t k = 0; k < corners; ++k) face.emplace_back(f * corners + k);
+      faces.add_face(face);
+    }
+    const std::string where = other.name + ", " + name_of(plain) + ", trial " + std::to_string(trial);
+    Body a(scaled(faces, factor), {plain}),
+        sharp(scaled(with_sharp_edges(faces), factor),
+              {plain == Scheme::flat ? Scheme::loop : Scheme::catmark}),
+        b(scaled(testing::control_mesh(other.mesh), factor), {other.scheme});
+    const DistanceOptions precision{.absolute = 1e-4 * factor};
+    const Distance found = distance(a.at(), b.at(), precision),
+                   same = distance(sharp.at(), b.at(), precision);
+    EXPECT_TRUE(found.reached) << where;
+    EXPECT_LE(found.distance.lower, same.distance.upper * (1 + 1e-12)) << where;
+    EXPECT_LE(same.distance.lower, found.distance.upper * (1 + 1e-12)) << where;
+    const Verdict verdict = collide(a.at(), b.at(), testing::verdict_only()).verdict;
+    (verdict == Verdict::separated ? apart : meet) += 1;
+    EXPECT_EQ(verdict == Verdict::separated, found.distance.lower > 0) << where;
+    // Against samples: those of the other surface, and triangles or a lattice on the bilinear patches.
+    std::vector<oracle::Point> lattice;
+    if (plain == Scheme::bilinear) {
+      for (std::size_t f = 0; f < 3; ++f) {
+        for (int i = 0; i <= 8; ++i) {
+          for (int j = 0; j <= 8; ++j) {
+            const double u = i / 8.0, v = j / 8.0;
+            oracle::Point p;
+            for (std::size_t x = 0; x < 3; ++x) {
+              p[x] = (1 - v) * ((1 - u) * points[4 * f][x] + u * points[4 * f + 1][x]) +
+                     v * ((1 - u) * points[4 * f + 3][x] + u * points[4 * f + 2][x]);
+            }
+            lattice.push_back(p);
+          }
+        }
+      }
+    }
+    const oracle::PolyhedronTwin triangles(
+        points, plain == Scheme::flat ? std::vector<oracle::Triangle>{{0, 1, 2}, {3, 4, 5}, {6, 7, 8}}
+                                      : std::vector<oracle::Triangle>{});
+    double least = INFINITY;
+    const std::size_t step = 1 + other.samples.size() / 200;
+    for (std::size_t i = random() % step; i < other.samples.size(); i += step) {
+      const oracle::Point& q = other.samples[i];
+      if (plain == Scheme::flat) {
+        least = std::min(least, std::sqrt(triangles.squared_distance(q).get_d()));
+      } else {
+        for (const oracle::Point& p : lattice) least = std::min(least, length_of(p, q));
+      }
+    }
+    EXPECT_LE(found.distance.lower / factor, least * (1 + 1e-14) + other.error + 1e-12) << where;
+  }
+  std::cout << "  " << apart << " apart, " << meet << " not\n";
+  EXPECT_GT(apart, 50u);
+  EXPECT_GT(meet, 25u);
+}
+
+// The two plain schemes beside each other, against Loop and Catmull-Clark with everything sharp.
+TEST(plain_meshes, of_both_schemes_are_as_far_apart_as_their_sharp_twins) {
+  std::mt19937_64 random(17);
+  std::size_t apart = 0, meet = 0;
+  for (int trial = 0; trial < 200 && !HasFailure(); ++trial) {
+    ControlMesh triangle, quad;
+    const auto point = [&](double by) {
+      const auto [x, y, z] = random_point(random);
+      return Point3{static_cast<double>(x) + by, static_cast<double>(y), static_cast<double>(z)};
+    };
+    for (int k = 0; k < 3; ++k) triangle.points.push_back(point(0));
+    for (int k = 0; k < 4; ++k) quad.points.push_back(point(trial % 90));
+    triangle.add_face(std::array{VertexId(0), VertexId(1), VertexId(2)});
+    quad.add_face(std::array{VertexId(0), VertexId(1), VertexId(2), VertexId(3)});
+    Body a(triangle, {Scheme::flat}), b(quad, {Scheme::bilinear});
+    Body sharp_a(with_sharp_edges(triangle), {Scheme::loop}),
+        sharp_b(with_sharp_edges(quad), {Scheme::catmark});
+    const DistanceOptions precision{.absolute = 1e-6};
+    const Distance found = distance(a.at(), b.at(), precision),
+                   same = distance(sharp_a.at(), sharp_b.at(), precision);
+    EXPECT_TRUE(found.reached);
+    EXPECT_LE(found.distance.lower, same.distance.upper * (1 + 1e-12)) << trial;
+    EXPECT_LE(same.distance.lower, found.distance.upper * (1 + 1e-12)) << trial;
+    const bool separated = collide(a.at(), b.at(), testing::verdict_only()).verdict == Verdict::separated;
+    EXPECT_EQ(separated, found.distance.lower > 0) << trial;
+    (separated ? apart : meet) += 1;
+  }
+  EXPECT_GT(apart, 50u);
+  EXPECT_GT(meet, 20u);
 }
 
 }  // namespace
