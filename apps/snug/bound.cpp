@@ -123,11 +123,12 @@ void write_bound_summary(Report& report, const BoundSummary& summary, const Boun
   }
   report.text(found + ", largest radius " + text_at_most(summary.max_radius, true));
   if (summary.reached) return;
-  report.text(fmt::format("{} was not reached everywhere: {}; what is printed is still proved",
-                          how.tolerance ? "the tolerance" : "the level",
-                          summary.splits >= how.budget
-                              ? "the budget was spent, in the order of the mesh; give a larger --budget"
-                              : "rounding stands in the way; give a larger --tolerance"));
+  report.text(
+      fmt::format("{} was not reached everywhere: {}; what is printed is still proved",
+                  how.tolerance ? "the tolerance" : "the level",
+                  summary.splits >= how.budget
+                      ? "the budget was spent, in the order of the mesh; give a larger --budget"
+                      : "60 levels or the precision of doubles stand in the way; give a larger --tolerance"));
 }
 
 ExitStatus run(const Options& options) {

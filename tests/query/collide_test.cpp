@@ -302,6 +302,25 @@ TEST(collide, takes_closed_surfaces_for_solids_if_asked) {
 }
 
 // Boxes that overlap, with faces in common planes: no crossing is proved, but faces of one lie in the other.
+// From sizes 2^20 apart on, frames of one surface say nothing in the other's; points of the smaller one still do.
+TEST(collide, finds_a_solid_inside_another_however_small) {
+  for (int smaller = 0; smaller <= 900; smaller += smaller < 60 ? 4 : 60) {
+    oracle::TwinMesh inner = oracle::meshes::icosahedron();
+    for (oracle::Point& p : inner.points) {
+      for (double& x : p) x = std::ldexp(x, -2 - smaller);
+    }
+    const bool swapped = smaller % 8 == 0;
+    const oracle::TwinMesh outer = oracle::meshes::octahedron();
+    Pair pair(swapped ? inner : outer, swapped ? outer : inner);
+    CollideOptions options = testing::verdict_only(0, 0);
+    options.solid = true;
+    for (const Motion& place : {Motion(), moved(0.1, 0.2, 0.05)}) {
+      EXPECT_EQ(pair.ask(place, options).verdict, Verdict::intersecting) << smaller;
+    }
+    EXPECT_EQ(pair.ask(moved(3, 0, 0), options).verdict, Verdict::separated) << smaller;
+  }
+}
+
 TEST(collide, solids_that_share_planes_intersect) {
   for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
     oracle::TaggedMesh shape = oracle::meshes::cube();
