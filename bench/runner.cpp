@@ -64,7 +64,7 @@ Options start(int argc, char** argv, std::size_t files, const char* usage) {
       options.files.push_back(argument);
     }
   }
-  if (!good || options.rounds < 1 || options.files.size() != files) {
+  if (!good || options.rounds < 1 || (files != any_files && options.files.size() != files)) {
     std::fprintf(stderr, "usage: %s [--quick] [--rounds N]%s\n", argv[0], usage);
     std::exit(2);
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -18,6 +20,9 @@ struct Options {
     return quick ? small : full;
   }
 };
+
+/// As a number of files: any.
+inline constexpr std::size_t any_files = SIZE_MAX;
 
 /// Reads the arguments and prints the first lines: the program, and how fast the machine is.
 /// Errors:    prints usage and ends the process with status 2, also unless `files` file names are given.

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include <experiments/control_box.h>
-#include <snug/search/piece_cache.h>
+#include <snug/search/piece.h>
 
 namespace snug::bench {
 

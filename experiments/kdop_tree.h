@@ -8,7 +8,7 @@
 
 #include <snug/bvh/frame.h>
 #include <snug/bvh/obb.h>
-#include <snug/search/piece_cache.h>
+#include <snug/search/piece.h>
 
 namespace snug {
 

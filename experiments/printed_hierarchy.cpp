@@ -9,7 +9,7 @@
 #include <experiments/printed_pair_test.h>
 #include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
-#include <snug/search/piece_cache.h>
+#include <snug/search/piece.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {

@@ -1,4 +1,4 @@
-#include <snug/bvh/wide_nodes.h>
+#include <snug/bvh/wide_node.h>
 
 #include <gtest/gtest.h>
 #include <testing/instruction_sets.h>

@@ -1,7 +1,7 @@
 #include <experiments/tightness.h>
 
 #include <gtest/gtest.h>
-#include <snug/search/piece_cache.h>
+#include <snug/search/piece.h>
 #include <testing/patches.h>
 
 #include <memory>

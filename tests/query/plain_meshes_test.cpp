@@ -10,7 +10,7 @@
 #include <snug/query/bound.h>
 #include <snug/query/closest.h>
 #include <snug/query/pairs.h>
-#include <snug/search/piece_cache.h>
+#include <snug/search/piece.h>
 #include <snug/surface/evaluate.h>
 #include <testing/exact_triangles.h>
 #include <testing/tagged.h>

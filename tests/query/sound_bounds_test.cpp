@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
 #include <snug/bounds/table_triangle.h>
-#include <snug/search/piece_cache.h>
+#include <snug/search/piece.h>
 #include <snug/surface/unscale.h>
 #include <testing/containment.h>
 #include <testing/disguises.h>

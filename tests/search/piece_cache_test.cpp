@@ -1,4 +1,4 @@
-#include <snug/search/piece_cache.h>
+#include <snug/search/piece.h>
 
 #include <gtest/gtest.h>
 #include <snug/bounds/table_triangle.h>

@@ -6,10 +6,10 @@
 //
 // runs it 21 times with other meshes.
 
-#include <snug/search/piece_cache.h>
+#include <snug/search/piece.h>
 #include <snug/surface/control_hull.h>
 
-#include <snug/bvh/wide_nodes.h>
+#include <snug/bvh/wide_node.h>
 #include <snug/patch/evaluate.h>
 #include <testing/disguised_surfaces.h>
 

@@ -5,7 +5,7 @@
 #include <oracle/polygon_twin.h>
 #include <snug/base/error.h>
 #include <snug/bounds/table_triangle.h>
-#include <snug/search/piece_cache.h>
+#include <snug/search/piece.h>
 #include <snug/surface/unscale.h>
 #include <testing/containment.h>
 #include <testing/patches.h>

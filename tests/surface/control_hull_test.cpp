@@ -1,7 +1,7 @@
 #include <snug/surface/control_hull.h>
 
 #include <snug/patch/evaluate.h>
-#include <snug/search/piece_cache.h>
+#include <snug/search/piece.h>
 #include <testing/scheme_surfaces.h>
 
 namespace snug {

@@ -141,11 +141,12 @@ HWY_INLINE V gaps(const float* node, std::size_t at, const Row& other, V all_sla
   return gap;
 }
 
-Near boxes(const float* node, float reach, const OtherBox& other, float slack, float prune_distance,
-           float* out) {
+// `doubt`: more than what roundings do to a gap.
+HWY_INLINE Near compare(const float* node, const OtherBox& other, float doubt, float prune_distance,
+                        float* out) {
   const Tag d;
   Near near{0, INFINITY};
-  const V all_slack = hn::Set(d, roundings * reach + slack);
+  const V all_slack = hn::Set(d, doubt);
   const auto row = [&](std::size_t r) {
     return hn::Set(d, r < 3 ? other.centre[r] : r < 6 ? other.half[r - 3] : other.axes[(r - 6) / 3][r % 3]);
   };
@@ -155,187 +156,37 @@ Near boxes(const float* node, float reach, const OtherBox& other, float slack, f
   return near;
 }
 
-// Centres of a node's boxes in the coordinates of another node.
-HWY_INLINE void place_centres(const BoxNode& node, const SeenNode& seen, float* out) {
-  const Tag d;
-  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
-    const auto row = [&](std::size_t r) { return hn::LoadU(d, node.rows + 8 * r + at); };
-    const V x[3] = {row(0), row(1), row(2)};
-    for (std::size_t i = 0; i < 3; ++i) {
-      hn::Store(hn::Add(dot3(d, x, seen.rows[i]), hn::Set(d, seen.offset[i])), d, out + 8 * i + at);
-    }
+Near boxes(const float* node, float reach, const OtherBox& other, float slack, float prune_distance,
+           float* out) {
+  return compare(node, other, roundings * reach + slack, prune_distance, out);
+}
+
+// The product of the turn with a column of three rows, from row r on, plus `add`.
+HWY_INLINE void turned(const Turn& turn, const float* rows, std::size_t r, float factor, const float* add,
+                       float* out) {
+  const hn::CappedTag<float, 4> d;
+  const auto x = hn::Set(d, rows[8 * r]), y = hn::Set(d, rows[8 * (r + 1)]), z = hn::Set(d, rows[8 * (r + 2)]);
+  for (std::size_t at = 0; at < 4; at += hn::Lanes(d)) {
+    const auto column = [&](std::size_t j) { return hn::Load(d, turn.columns[j] + at); };
+    const auto sum = hn::Add(hn::Add(hn::Mul(column(0), x), hn::Mul(column(1), y)), hn::Mul(column(2), z));
+    hn::Store(hn::Add(hn::Mul(sum, hn::Set(d, factor)), hn::Load(d, add + at)), d, out + at);
   }
 }
 
-// Their half sizes and axes, in the rows after these.
-HWY_INLINE void place_axes(const BoxNode& node, const SeenNode& seen, float* out) {
-  const Tag d;
-  const V scale = hn::Set(d, seen.scale), inverse = hn::Set(d, 1 / seen.scale);
-  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
-    const auto row = [&](std::size_t r) { return hn::LoadU(d, node.rows + 8 * r + at); };
-    for (std::size_t k = 3; k < 6; ++k) hn::Store(hn::Mul(scale, row(k)), d, out + 8 * k + at);
-    for (std::size_t k = 6; k < obb_rows; k += 3) {
-      const V x[3] = {row(k), row(k + 1), row(k + 2)};
-      for (std::size_t i = 0; i < 3; ++i) {
-        hn::Store(hn::Mul(inverse, dot3(d, x, seen.rows[i])), d, out + 8 * (k + i) + at);
-      }
-    }
-  }
-}
-
-// Eight columns of a node's rows in another order.
-HWY_INLINE void pick(const float* rows, const std::int32_t* order, float* out) {
-  const Tag d;
-  const hn::RebindToSigned<Tag> di;
-  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
-    const auto places = hn::LoadU(di, order + at);
-    for (std::size_t r = 0; r < obb_rows; ++r) {
-#if HWY_MAX_BYTES >= 32
-      const V row = hn::TableLookupLanes(hn::LoadU(d, rows + 8 * r), hn::IndicesFromVec(d, places));
-#else
-      const V row = hn::GatherIndex(d, rows + 8 * r, places);
-#endif
-      hn::Store(row, d, out + 8 * r + at);
-    }
-  }
-}
-
-// Half of what boxes extend along a direction.
-HWY_INLINE V half_extents(const BoxNode& node, std::size_t at, const float* direction) {
-  const Tag d;
-  const auto row = [&](std::size_t r) { return hn::LoadU(d, node.rows + 8 * r + at); };
-  V sum = hn::Zero(d);
+Near seen_box(const float* node, float reach, const SeenBox& other, const Turn& turn, float slack,
+              float prune_distance, float* out) {
+  OtherBox box;
+  HWY_ALIGN const float offset[4] = {other.offset[0], other.offset[1], other.offset[2], 0};
+  HWY_ALIGN const float none[4] = {};
+  HWY_ALIGN float placed[4][4];
+  turned(turn, other.rows, 0, 1, offset, placed[3]);
+  for (std::size_t k = 0; k < 3; ++k) turned(turn, other.rows, 6 + 3 * k, 1 / turn.scale, none, placed[k]);
   for (std::size_t k = 0; k < 3; ++k) {
-    const V axis[3] = {row(6 + 3 * k), row(7 + 3 * k), row(8 + 3 * k)};
-    sum = hn::Add(sum, hn::Mul(row(3 + k), hn::Abs(dot3(d, axis, direction))));
+    box.centre[k] = placed[3][k];
+    box.half[k] = turn.scale * other.rows[8 * (3 + k)];
+    for (std::size_t i = 0; i < 3; ++i) box.axes[k][i] = placed[k][i];
   }
-  return sum;
-}
-
-// Extents along the first direction to try: upper ones of the node's boxes, lower ones of the others.
-struct Extents {
-  HWY_ALIGN float own[8];
-  HWY_ALIGN float other[8];
-};
-HWY_INLINE void extents_along(const BoxNode& node, const BoxNode& other, const SeenNode& seen,
-                              const float* placed, Extents& out) {
-  const Tag d;
-  const float* const n = seen.direction;
-  const bool directed = n[0] != 0 || n[1] != 0 || n[2] != 0;
-  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
-    V extent = hn::Set(d, INFINITY), other_extent = hn::Zero(d);
-    if (directed) {
-      const auto row = [&](std::size_t r) { return hn::LoadU(d, node.rows + 8 * r + at); };
-      const auto other_row = [&](std::size_t r) { return hn::Load(d, placed + 8 * r + at); };
-      const V centre[3] = {row(0), row(1), row(2)};
-      const V other_centre[3] = {other_row(0), other_row(1), other_row(2)};
-      extent = hn::Add(dot3(d, centre, n), half_extents(node, at, n));
-      other_extent = hn::Sub(dot3(d, other_centre, n), half_extents(other, at, seen.other_direction));
-    }
-    hn::Store(extent, d, out.own + at);
-    hn::Store(other_extent, d, out.other + at);
-  }
-}
-
-// Pairs of boxes that are left, by their places; eight at a time are read.
-struct Left {
-  std::int32_t own[64 + 8], other[64 + 8];
-  std::size_t count = 0;
-  HWY_ALIGN float gaps[8][8];  // that are known, by place in the other node
-};
-
-// Balls and the first direction: the pairs that they leave, and what they add to the least gap of the others.
-HWY_INLINE void compare_balls(const BoxNode& node, const BoxNode& other, const SeenNode& seen,
-                              const float* placed, V all_slack, V beyond, Left& left, V& others) {
-  const Tag d;
-  Extents extents;
-  extents_along(node, other, seen, placed, extents);
-  for (std::uint32_t j = 0; j < other.count; ++j) {
-    const V radius = hn::Set(d, 0.5F * seen.scale * other.sizes[j]);
-    std::uint32_t near_bits = 0;
-    for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
-      V between_sq = hn::Zero(d);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const V delta = hn::Sub(hn::Set(d, placed[8 * k + j]), hn::LoadU(d, node.rows + 8 * k + at));
-        between_sq = hn::Add(between_sq, hn::Mul(delta, delta));
-      }
-      const V radii = hn::Add(hn::Mul(hn::Set(d, 0.5F), hn::LoadU(d, node.sizes + at)), radius);
-      const V along = hn::Sub(hn::Set(d, extents.other[j]), hn::Load(d, extents.own + at));
-      const V gap = hn::Sub(hn::Max(hn::Sub(hn::Sqrt(between_sq), radii), along), all_slack);
-      const auto apart = hn::Gt(gap, beyond);
-      hn::Store(gap, d, left.gaps[j] + at);
-      others = hn::Min(others, hn::IfThenElse(apart, gap, hn::Set(d, INFINITY)));
-      near_bits |= bits(hn::Not(apart)) << at;
-    }
-    for (near_bits &= (1u << node.count) - 1; near_bits != 0; near_bits &= near_bits - 1) {
-      left.own[left.count] = std::countr_zero(near_bits);
-      left.other[left.count++] = static_cast<std::int32_t>(j);
-    }
-  }
-}
-
-// Axes of eight of these pairs from `begin` on: those that are left go to `out`.
-HWY_INLINE void compare_axes(const float* rows, const float* placed, Left& left, std::size_t begin,
-                             V all_slack, float prune_distance, ChildPair* out, std::size_t& found_count,
-                             V& others) {
-  const Tag d;
-  const std::size_t count = std::min<std::size_t>(8, left.count - begin);
-  std::int32_t* const own = left.own + begin;
-  std::int32_t* const other = left.other + begin;
-  std::fill(own + count, own + 8, own[0]);
-  std::fill(other + count, other + 8, other[0]);
-  HWY_ALIGN float own_rows[obb_rows * 8];
-  HWY_ALIGN float other_rows[obb_rows * 8];
-  HWY_ALIGN float found[8];
-  pick(rows, own, own_rows);
-  pick(placed, other, other_rows);
-  for (std::size_t l = 0; l < 8; ++l) found[l] = left.gaps[other[l]][own[l]];
-  std::uint32_t near_bits = 0;
-  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
-    const auto row = [&](std::size_t r) { return hn::Load(d, other_rows + 8 * r + at); };
-    // How deep balls overlap says little.
-    const V first = hn::Load(d, found + at),
-            by_axes = computed(gaps(own_rows, at, row, all_slack, prune_distance));
-    const V gap = hn::IfThenElse(hn::Gt(first, hn::Zero(d)), hn::Max(by_axes, first), by_axes);
-    const auto apart = hn::Gt(gap, hn::Set(d, prune_distance));
-    hn::Store(gap, d, found + at);
-    others = hn::Min(others, hn::IfThenElse(apart, gap, hn::Set(d, INFINITY)));
-    near_bits |= bits(hn::Not(apart)) << at;
-  }
-  for (near_bits &= (1u << count) - 1; near_bits != 0; near_bits &= near_bits - 1) {
-    const auto l = static_cast<std::size_t>(std::countr_zero(near_bits));
-    out[found_count++] = {static_cast<std::uint8_t>(own[l]), static_cast<std::uint8_t>(other[l]), found[l]};
-  }
-}
-
-void box_pairs(const BoxNode& node, const BoxNode& other, const SeenNode& seen, float slack,
-               float prune_distance, NearPairs& near) {
-  const Tag d;
-  const float offset = std::fabs(seen.offset[0]) + std::fabs(seen.offset[1]) + std::fabs(seen.offset[2]);
-  const float reach = node.reach + 2 * seen.scale * other.reach + offset;
-  near.count = 0;
-  near.others = INFINITY;
-  if (!(reach < 1e18F)) {  // nor a NaN
-    for (std::uint32_t j = 0; j < other.count; ++j) {
-      for (std::uint32_t i = 0; i < node.count; ++i) {
-        near.pairs[near.count++] = {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), -INFINITY};
-      }
-    }
-    return;
-  }
-  const V all_slack = hn::Set(d, pair_roundings * reach + slack);
-  V others = hn::Set(d, INFINITY);
-  HWY_ALIGN float placed[obb_rows * 8];
-  place_centres(other, seen, placed);
-  Left left;
-  compare_balls(node, other, seen, placed, all_slack, hn::Set(d, prune_distance), left, others);
-  if (left.count != 0) place_axes(other, seen, placed);
-  std::size_t count = 0;  // not near.count, which what is written may be for all that a compiler knows
-  for (std::size_t begin = 0; begin < left.count; begin += 8) {
-    compare_axes(node.rows, placed, left, begin, all_slack, prune_distance, near.pairs.data(), count, others);
-  }
-  near.count = count;
-  near.others = hn::GetLane(hn::MinOfLanes(d, others));
+  return compare(node, box, pair_roundings * reach + slack, prune_distance, out);
 }
 
 void boxes_to_point(const float* node, const float* point, float slack, float* out) {
@@ -369,7 +220,7 @@ HWY_AFTER_NAMESPACE();
 namespace snug::kernels {
 
 HWY_EXPORT(boxes);
-HWY_EXPORT(box_pairs);
+HWY_EXPORT(seen_box);
 HWY_EXPORT(boxes_to_point);
 
 Near obb_distances(const float* node, float reach, const OtherBox& other, float slack, float prune_distance,
@@ -383,9 +234,15 @@ Near obb_distances(const float* node, float reach, const OtherBox& other, float 
   return HWY_DYNAMIC_DISPATCH(boxes)(node, reach, other, slack, prune_distance, out);
 }
 
-void obb_pairs(const BoxNode& node, const BoxNode& other, const SeenNode& seen, float slack,
-               float prune_distance, NearPairs& near) {
-  HWY_DYNAMIC_DISPATCH(box_pairs)(node, other, seen, slack, prune_distance, near);
+Near obb_distances(const float* node, float reach, const SeenBox& other, const Turn& turn, float slack,
+                   float prune_distance, float* out) {
+  reach += 2 * turn.scale * other.reach + std::fabs(other.offset[0]) + std::fabs(other.offset[1]) +
+           std::fabs(other.offset[2]);
+  if (!(reach < 1e18F)) {
+    std::fill(out, out + 8, -INFINITY);
+    return {0xff, INFINITY};
+  }
+  return HWY_DYNAMIC_DISPATCH(seen_box)(node, reach, other, turn, slack, prune_distance, out);
 }
 
 void obb_distances(const float* node, const float point[3], float slack, float* out) {

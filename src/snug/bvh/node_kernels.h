@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-/// Eight boxes against one, on the widest vectors that the processor has; others use bvh/wide_nodes.h. Every
+/// Eight boxes against one, on the widest vectors that the processor has; others use bvh/wide_node.h. Every
 /// lane does the same operations in the same order on every instruction set, none of them fused.
 namespace snug::kernels {
 
@@ -33,37 +33,20 @@ Near obb_distances(const float* node, float reach, const OtherBox& other, float 
                    float* out);
 void obb_distances(const float* node, const float point[3], float slack, float* out);
 
-/// A node of boxes and what else is known of it.
-struct BoxNode {
-  const float* rows;
-  const float* sizes;  ///< upper bounds of the boxes' diagonals
-  std::uint32_t count;
-  float reach;
-};
-/// How another node is seen: x -> rows x + offset, which makes lengths `scale`, a power of two, times as
+/// How boxes of another frame are seen: x -> columns x, which makes lengths `scale`, a power of two, times as
 /// large.
-struct SeenNode {
-  float rows[3][3];
-  float offset[3];
+struct Turn {
+  alignas(16) float columns[3][4];
   float scale;
-  /// A direction to try first, from the node's boxes to the other one's: of length at most 1, or zero. The
-  /// same for the other node: its product with `rows`.
-  float direction[3];
-  float other_direction[3];
 };
-/// A box of each of two nodes, and a lower bound of their distance as above.
-struct ChildPair {
-  std::uint8_t own, other;
-  float gap;
+/// A box of another node there.
+struct SeenBox {
+  const float* rows;  ///< its column in the other node's rows
+  float reach;        ///< of the other node
+  float offset[3];    ///< of the other node's origin from this one's, here
 };
-/// The pairs within `prune_distance`, and the least distance of the others; infinite without any.
-struct NearPairs {
-  std::array<ChildPair, node_width * node_width> pairs;
-  std::size_t count = 0;
-  float others = INFINITY;
-};
-/// Compares all boxes of two nodes.
-void obb_pairs(const BoxNode& node, const BoxNode& other, const SeenNode& seen, float slack,
-               float prune_distance, NearPairs& near);
+/// The same for such a box.
+Near obb_distances(const float* node, float reach, const SeenBox& other, const Turn& turn, float slack,
+                   float prune_distance, float* out);
 
 }  // namespace snug::kernels

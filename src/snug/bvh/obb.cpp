@@ -137,4 +137,34 @@ Ball ball_around(const Obb& box) {
   return {box.centre, std::isfinite(reach) ? enlarged(reach) : INFINITY};
 }
 
+Ball ball_around(std::span<const Obb> boxes) {
+  constexpr int steps = 32;
+  Ball best{boxes[0].centre, INFINITY};
+  Point3 centre = merge(boxes).centre;
+  for (int step = 1; step <= steps; ++step) {
+    double farthest_sq = 0;
+    Vector3 to_farthest;
+    for (const Obb& box : boxes) {
+      const Vector3 from = box.centre - centre;
+      Vector3 corner = from;
+      double sq = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double along = dot(box.axes[k], from), reach = std::fabs(along) + box.half[k];
+        sq += reach * reach;
+        corner = corner + (along < 0 ? -box.half[k] : box.half[k]) * box.axes[k];
+      }
+      if (!(sq <= farthest_sq)) {
+        farthest_sq = sq;
+        to_farthest = corner;
+      }
+    }
+    // What axes lack of orthonormality, and roundings of what is about 4 large.
+    const double radius = enlarged(std::sqrt(farthest_sq) * (1 + 64 * unit_roundoff)) +
+                          64 * unit_roundoff * max_abs(centre - Point3{});
+    if (radius < best.radius) best = {centre, radius};
+    centre = centre + (1.0 / (step + 1)) * to_farthest;
+  }
+  return best;
+}
+
 }  // namespace snug

@@ -53,5 +53,8 @@ struct Ball {
   double radius;
 };
 [[nodiscard]] Ball ball_around(const Obb& box);
+/// A ball around one or more boxes, some percent larger than the smallest.
+/// Source:    [Badoiu03].
+[[nodiscard]] Ball ball_around(std::span<const Obb> boxes);
 
 }  // namespace snug

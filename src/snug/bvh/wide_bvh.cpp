@@ -12,7 +12,7 @@ namespace {
 // Leaves under each of the eight children of a node with so many leaves: as even as full subtrees allow.
 std::size_t child_capacity(std::size_t leaves) {
   std::size_t capacity = 1;
-  while (capacity * WideNodes::width < leaves) capacity *= WideNodes::width;
+  while (capacity * WideNode::width < leaves) capacity *= WideNode::width;
   return capacity;
 }
 
@@ -65,8 +65,11 @@ void sort_items(std::span<Item> items, int threads) {
 
 }  // namespace
 
-WideBvh::WideBvh(std::span<const Point3> centres, int threads,
-                 const std::function<Obb(std::span<const std::uint32_t>)>& fit) {
+TreeNode::TreeNode(std::span<const Obb> boxes, std::span<const std::uint32_t> of_boxes) : WideNode(boxes) {
+  std::copy(of_boxes.begin(), of_boxes.end(), names.begin());
+}
+
+WideBvh::WideBvh(std::span<const Point3> centres, int threads, const Fit& fit) {
   SNUG_EXPECT(!centres.empty() && centres.size() < leaf_bit);
   std::vector<Item> items;
   items.reserve(centres.size());
@@ -79,30 +82,50 @@ WideBvh::WideBvh(std::span<const Point3> centres, int threads,
   items_.reserve(items.size());
   for (const Item& item : items) items_.push_back(item.number);
 
-  std::vector<Obb> leaves(leaf_count());
+  // What each leaf is fitted to, then all boxes one after the other.
+  std::vector<std::vector<Obb>> parts(leaf_count());
+  std::vector<Obb> boxes(leaf_count());
   std::vector<std::uint32_t> names(leaf_count());
-  parallel_for(leaves.size(), threads, [&](std::size_t begin, std::size_t end) {
+  parallel_for(boxes.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      leaves[i] = fit(leaf(i));
+      fit(i, leaf(i), parts[i]);
+      boxes[i] = parts[i].size() == 1 ? parts[i][0] : merge(parts[i]);
       names[i] = static_cast<std::uint32_t>(i) | leaf_bit;
     }
   });
+  const std::vector<Obb> leaves = boxes;
+  std::vector<Obb> all;
+  std::vector<std::size_t> ends;  // in `all`, of what lies below each box
+  for (const std::vector<Obb>& part : parts) {
+    all.insert(all.end(), part.begin(), part.end());
+    ends.push_back(all.size());
+  }
   // Level by level: eight neighbours in a row make a node.
-  std::vector<Obb> boxes = leaves;
   while (boxes.size() > 1) {
-    std::vector<Obb> parents;
-    std::vector<std::uint32_t> parent_names;
-    for (std::size_t i = 0; i < boxes.size(); i += WideNodes::width) {
-      const std::size_t n = std::min(WideNodes::width, boxes.size() - i);
-      const std::span<const Obb> children = std::span(boxes).subspan(i, n);
-      parents.push_back(merge(children));
-      parent_names.push_back(nodes_.add(children, std::span(names).subspan(i, n)));
-    }
+    const std::size_t count = (boxes.size() + WideNode::width - 1) / WideNode::width;
+    std::vector<Obb> parents(count);
+    std::vector<std::uint32_t> parent_names(count);
+    std::vector<std::size_t> parent_ends(count);
+    const auto first_name = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.resize(nodes_.size() + count);
+    parallel_for(count, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t first = i * WideNode::width, n = std::min(WideNode::width, boxes.size() - first);
+        const std::size_t from = first == 0 ? 0 : ends[first - 1];
+        parent_ends[i] = ends[first + n - 1];
+        parents[i] = merge(std::span(all).subspan(from, parent_ends[i] - from));
+        parent_names[i] = first_name + static_cast<std::uint32_t>(i);
+        nodes_[parent_names[i]] =
+            TreeNode(std::span(boxes).subspan(first, n), std::span(names).subspan(first, n));
+      }
+    });
     boxes = std::move(parents);
     names = std::move(parent_names);
+    ends = std::move(parent_ends);
   }
-  nodes_.add(boxes, names);
+  nodes_.emplace_back(boxes, names);
   box_ = boxes[0];
+  ball_ = ball_around(leaves);
   dop_ = Dop26(leaves, box_.centre);
 }
 
@@ -111,6 +134,8 @@ std::span<const std::uint32_t> WideBvh::leaf(std::size_t i) const {
   return std::span(items_).subspan(begin, std::min(leaf_size, items_.size() - begin));
 }
 
-std::size_t WideBvh::bytes() const { return nodes_.bytes() + items_.capacity() * sizeof(std::uint32_t); }
+std::size_t WideBvh::bytes() const {
+  return nodes_.capacity() * sizeof(TreeNode) + items_.capacity() * sizeof(std::uint32_t);
+}
 
 }  // namespace snug

@@ -33,6 +33,12 @@ inline constexpr double underflow_error = DBL_MIN;
 [[nodiscard]] inline double rounded_down(double x) { return std::nextafter(x, -INFINITY); }
 [[nodiscard]] inline double rounded_up(double x) { return std::nextafter(x, INFINITY); }
 
+/// The least number of single precision that is not below x.
+[[nodiscard]] inline float float_up(double x) {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) >= x ? f : std::nextafterf(f, INFINITY);
+}
+
 /// Largest distance of two points whose coordinates differ by at most `error` each.
 [[nodiscard]] constexpr double spatial_error(double error) { return error * 1.7320508075688774; }
 

@@ -72,40 +72,39 @@ class Query {
  private:
   // False when the budget ends.
   bool visit(Node node, double gap, NearestFirst<NodeGap>& open) {
-    if (node.piece) {
+    if (node.bounded()) {
       monitor_.checkpoint();
-      gap = std::max(gap, look_at(workspace_.piece(node)));
-      if (gap >= bounds_.prune_distance() || !workspace_.can_open(node)) {
+      gap = std::max(gap, look_at(node));
+      if (gap >= bounds_.prune_distance() || !SurfaceWorkspace::can_open(node)) {
         bounds_.prune(gap);
         return true;
       }
     }
     if (splits_ >= options_.budget || workspace_.full()) return false;
-    splits_ += node.piece;
+    splits_ += node.bounded();
     const SurfaceWorkspace::Opened opened = workspace_.open(node);
-    const WideNodes& nodes = workspace_.nodes(opened.pieces);
-    WideNodes::Distances gaps;
-    nodes.distances(opened.parent, to_, point_error_, gaps);
-    for (std::uint8_t i = 0; i < nodes.count(opened.parent); ++i) {
+    WideNode::Distances gaps;
+    opened.boxes->distances(to_, point_error_, gaps);
+    for (std::size_t i = 0; i < opened.count(); ++i) {
       const float least = std::max({gaps[i], single_down(gap), 0.0F});
       if (static_cast<double>(least) >= bounds_.prune_distance()) {
         bounds_.prune(static_cast<double>(least));
       } else {
-        open.add({{opened.parent, i, opened.pieces}, least});
+        open.add({opened.child(i), least});
       }
     }
     return true;
   }
 
   // A lower bound of the distance of a piece; evaluates the limit point where its base triangle is nearest.
-  double look_at(PieceId id) {
-    const Piece& piece = workspace_.pieces()[id];
-    const NearestTriangles near = nearest({to_, to_, to_}, piece.offset.base);
-    double gap =
-        rounded_down(near.certain_distance - enlarged(piece.offset.radius + spatial_error(point_error_)));
+  double look_at(const Node& node) {
+    const PieceRecord& record = SurfaceWorkspace::record(node);
+    const NearestTriangles near = nearest({to_, to_, to_}, record.base(node.boxes->origin()));
+    double gap = rounded_down(near.certain_distance - enlarged(record.radius() + spatial_error(point_error_)));
     if (near.certain_distance < bounds_.upper()) {
       const TriangleParameter at = clamped(near.on_b);
-      const BoundedPoint found = limit_point(piece.patch, at).from(piece.patch.origin);
+      const Patch& patch = workspace_.patch(node);
+      const BoundedPoint found = limit_point(patch, at).from(patch.origin);
       const Vector3 between = found.position - to_;
       // Not enlarged(): of a point far away that would be more than all else.
       const double upper =
@@ -115,20 +114,23 @@ class Query {
       if (upper < bounds_.upper()) {
         bounds_.reduce_upper(upper);
         closest_ = found;
-        at_ = place_of(surface_, piece.root, to_face(piece.patch.path, at));
+        at_ = place_of(surface_, workspace_.root_of(node), to_face(patch.path, at));
       }
     }
-    // A plane between the point and the piece's hull, across the direction of the closest point so far.
-    if (gap < bounds_.prune_distance()) gap = std::max(gap, plane_gap(id, closest_.position - to_));
+    // A plane between the point and the quadratic, across the direction of the closest point so far.
+    if (gap < bounds_.prune_distance()) gap = std::max(gap, plane_gap(node, closest_.position - to_));
     return gap;
   }
 
-  [[nodiscard]] double plane_gap(PieceId id, const Vector3& direction) {
+  [[nodiscard]] double plane_gap(const Node& node, const Vector3& direction) {
     const Vector3 w = normalized(direction);
     if (w == Vector3{}) return 0;
+    const PieceRecord& record = SurfaceWorkspace::record(node);
+    const Vector3 from = node.boxes->origin() - to_;
+    const double gap = dot(w, from) - record.extent(-w) - enlarged(record.error());
     // |w| is 1 up to 5 roundings.
-    const double gap = extent_of(workspace_.pieces().hull(id), w, to_).lower;
-    return gap * (1 - 16 * unit_roundoff) - spatial_error(point_error_) - 16 * underflow_error;
+    return gap * (1 - 16 * unit_roundoff) - 16 * unit_roundoff * max_abs(from) -
+           spatial_error(point_error_) - 16 * underflow_error;
   }
 
   ClosestPoint result() const {

@@ -39,16 +39,16 @@ class Query {
     const NodePair roots = walk_.roots();
     // Points so near cannot be found sooner than a crossing is proved.
     proving_ = options_.prove_contact ||
-               reach_ <= 0x1p-14 * static_cast<double>(std::max(roots.sizes[0], roots.sizes[1]));
+               reach_ <= 0x1p-14 * static_cast<double>(std::max(walk_.size(roots, 0), walk_.size(roots, 1)));
     stack.push_back(roots);
     while (!stack.empty() && !finished()) {
       const NodePair pair = stack.back();
       stack.pop_back();
-      if (pair.of_pieces() && worth_a_look(pair)) {
+      if (pair.bounded()) {
         monitor_.checkpoint();
         if (!look_at(pair)) continue;
       }
-      const PairWalk::Opening opening = walk_.opening(pair, PairWalk::Bounding::sparing);
+      const PairWalk::Opening opening = walk_.opening(pair);
       if (opening == PairWalk::Opening::none) {
         incomplete_ = true;
         continue;
@@ -70,37 +70,32 @@ class Query {
     return found_ && (!options_.prove_contact || attempts_ >= max_attempts_within);
   }
 
-  // Are the pieces small enough for rules (a) and (b)? Sets of larger ones are compared faster.
-  [[nodiscard]] bool worth_a_look(const NodePair& pair) const {
-    const double radii = pieces_.radii(pair);
-    if (!found_ && radii <= reach_) return true;
-    const double smaller = static_cast<double>(std::min(pair.sizes[0], pair.sizes[1]));
-    // To prove a crossing both must be flat.
-    if (proving_ && attempts_ < max_attempts && radii <= smaller / 16) return true;
-    // Smaller ones gain more from planes between them than from more splitting.
-    return radii <= smaller / 64 ||
-           walk_.opening(pair, PairWalk::Bounding::sparing) == PairWalk::Opening::none;
+  // To prove a crossing both pieces must be flat.
+  [[nodiscard]] bool worth_proving(const NodePair& pair, double radii) const {
+    return proving_ && attempts_ < max_attempts &&
+           radii <= static_cast<double>(std::min(walk_.size(pair, 0), walk_.size(pair, 1))) / 16;
   }
 
   // Rules (a) and (b). False if the pair is done with.
   bool look_at(const NodePair& pair) {
     const PiecePair pieces = pieces_.nearest(pair);
-    double gap = pieces.gap;
-    const double farthest = pieces.near.certain_distance + pieces.radii[0] + pieces.radii[1];
-    const bool likely_witness = !found_ && farthest <= reach_;
-    if (!(gap > margin_) && !likely_witness && pieces.near.certain_distance > margin_) {
-      gap = pieces_.hull_gap(pair, pieces.direction());
-    }
+    const double gap =
+        pieces.gap > margin_ ? pieces.gap : std::max(pieces.gap, pieces_.gap_along(pair.nodes, pieces.between));
     if (gap > margin_) {
       lower_ = std::min(lower_, gap);
       return false;
     }
-    if (!found_ && (pieces.radii[0] + pieces.radii[1] < best_.distance)) {
-      const Witness witness = pieces_.witness(pieces);
-      if (witness.distance < best_.distance) best_ = witness;
-      found_ = best_.distance <= reach_;
+    if (!found_) {
+      if (pieces.near_distance < near_.near_distance) near_ = pieces;
+      found_ = near_.near_distance <= reach_;
+      // Limit points themselves may be near enough where quadratics are not known to be.
+      if (!found_ && length(pieces.between) <= reach_) {
+        const Witness witness = pieces_.witness(pieces);
+        if (witness.distance < best_.distance) best_ = witness;
+        found_ = best_.distance <= reach_;
+      }
     }
-    if (proving_ && attempts_ < max_attempts) {
+    if (worth_proving(pair, pieces.radii[0] + pieces.radii[1])) {
       if (pieces.near.certain_distance == 0) {
         ++attempts_;
         crossing_ = certainly_cross(frames_, pieces);
@@ -122,6 +117,10 @@ class Query {
     // Pairs that were not looked at, or not resolved, may be as near as 0.
     const bool whole = answer.verdict == Verdict::separated;
     answer.distance.lower = whole ? unscaled_down(std::min(lower_, best_.distance), back) : 0.0;
+    if (!whole && near_.near_distance < best_.distance) {
+      const Witness witness = pieces_.witness(near_);
+      if (witness.distance < best_.distance) best_ = witness;
+    }
     if (best_.distance < INFINITY) {
       answer.distance.upper = require_representable(unscaled_up(best_.distance, back));
       pieces_.tell(best_, answer);
@@ -139,6 +138,7 @@ class Query {
   double margin_ = 0, reach_ = 0;
   double lower_ = INFINITY;
   Witness best_;
+  PiecePair near_{.near_distance = INFINITY};  // the two that came nearest
   int attempts_ = 0;
   bool proving_ = false;
   // `incomplete_`: pairs were not opened, for the budget or because they cannot be.
@@ -162,7 +162,7 @@ void make_solid(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monit
 Collision ask(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
               const WorkMonitor& monitor) {
   Collision answer;
-  if (const double gap = outer_gap(a, b); gap > options.margin) {
+  if (const double gap = root_gap(a, b, options.margin); gap > options.margin) {
     answer.verdict = Verdict::separated;
     answer.distance.lower = gap;
     return answer;

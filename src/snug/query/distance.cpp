@@ -2,7 +2,6 @@
 #include <cmath>
 #include <vector>
 
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/containment.h>
 #include <snug/query/pairs.h>
@@ -53,14 +52,14 @@ class Query {
   // Straight down to pieces that are near each other, so that there is an upper bound from the beginning.
   void dive() {
     std::vector<NodePair> front{walk_.roots()}, next;
-    const auto whole = [&](const NodePair& pair) { return pair.of_pieces(); };
+    const auto whole = [](const NodePair& pair) { return pair.bounded(); };
     while (!std::all_of(front.begin(), front.end(), whole)) {
       next.clear();
       for (const NodePair& pair : front) {
         if (whole(pair)) {
           next.push_back(pair);
         } else {
-          static_cast<void>(walk_.open(pair, walk_.opening(pair, PairWalk::Bounding::eager), INFINITY, next));
+          static_cast<void>(walk_.open(pair, walk_.opening(pair), INFINITY, next));
         }
       }
       const auto end = next.begin() + static_cast<std::ptrdiff_t>(std::min(beam, next.size()));
@@ -70,7 +69,7 @@ class Query {
     double least = INFINITY;
     NodePair best = front[0];
     for (const NodePair& pair : front) {
-      const double distance = pieces_.nearest(pair).near.certain_distance;
+      const double distance = pieces_.nearest(pair).near_distance;
       if (distance < least) {
         least = distance;
         best = pair;
@@ -79,10 +78,10 @@ class Query {
     follow(best);
   }
 
-  // From two pieces on to smaller ones, until limit points there are as near as the surfaces come there.
+  // From two pieces on to smaller ones, until quadratics there are as near as the surfaces come.
   void follow(NodePair pair) {
-    while (pieces_.radii(pair) > bounds_.precision() / 8) {
-      const PairWalk::Opening opening = walk_.opening(pair, PairWalk::Bounding::eager);
+    while (pieces_.errors(pair) > bounds_.precision() / 8) {
+      const PairWalk::Opening opening = walk_.opening(pair);
       if (opening == PairWalk::Opening::none || !walk_.may_open(pair, opening, options_.budget)) break;
       children_.clear();
       static_cast<void>(walk_.open(pair, opening, INFINITY, children_));
@@ -94,12 +93,12 @@ class Query {
   // False when the budget ends.
   bool visit(NodePair pair) {
     double gap = std::max(static_cast<double>(pair.gap), 0.0);
-    if (pair.of_pieces()) {
+    if (pair.bounded()) {
       monitor_.checkpoint();
       gap = std::max(gap, gap_of_pieces(pair));
       pair.gap = single_down(gap);
     }
-    const PairWalk::Opening opening = walk_.opening(pair, PairWalk::Bounding::eager);
+    const PairWalk::Opening opening = walk_.opening(pair);
     if (opening == PairWalk::Opening::none || gap >= bounds_.prune_distance()) {
       bounds_.prune(gap);
       return true;
@@ -107,71 +106,56 @@ class Query {
     if (!walk_.may_open(pair, opening, options_.budget)) return false;
     children_.clear();
     bounds_.prune(static_cast<double>(walk_.open(pair, opening, bounds_.prune_distance(), children_)));
-    for (std::size_t at = 0; at < children_.size();) {
-      NodePair& child = children_[at];
-      if (child.of_pieces()) {
-        const double along = pieces_.gap_along(child);
+    for (NodePair& child : children_) {
+      if (child.bounded()) {
+        const double along = pieces_.gap_along(child.nodes, direction_);
         if (along >= bounds_.prune_distance()) {
           bounds_.prune(along);
-          child = children_.back();
-          children_.pop_back();
           continue;
         }
         child.gap = std::max(child.gap, single_down(along));
       }
       open_.add(child);
-      ++at;
     }
     return true;
   }
 
   // A lower bound of the distance of two pieces; improves the upper one.
   double gap_of_pieces(const NodePair& pair) {
-    const double along = pieces_.gap_along(pair);
+    const double along = pieces_.gap_along(pair.nodes, direction_);
     if (along >= bounds_.prune_distance()) return along;
     const PiecePair pieces = pieces_.nearest(pair);
     improve(pair, pieces);
-    // Base triangles lie in the middle of what pieces may be.
-    const double likely = pieces.near.certain_distance + (pieces.radii[0] + pieces.radii[1]) / 2;
-    if (likely < bounds_.prune_distance()) follow(pair);
-    return std::max({along, pieces.gap, pieces_.hull_gap(pair, pieces.direction())});
+    if (length(pieces.between) < bounds_.prune_distance()) follow(pair);
+    return std::max({along, pieces.gap, pieces_.gap_along(pair.nodes, pieces.between)});
   }
 
-  // The upper bound, by limit points or by a proof of contact.
+  // The upper bound, by points of quadratics or by a proof of contact.
   void improve(const NodePair& pair, const PiecePair& pieces) {
-    if (pieces.near.certain_distance < bounds_.upper()) {
-      const Witness witness = pieces_.witness(pieces);
-      if (witness.distance < witness_.distance) {
-        witness_ = witness;
-        look_along_witness();
-      }
-      bounds_.reduce_upper(witness.distance);
+    if (pieces.near_distance < near_.near_distance) {
+      near_ = pieces;
+      bounds_.reduce_upper(pieces.near_distance);
+      direction_ = pieces.between;
     }
     const double radii = pieces.radii[0] + pieces.radii[1];
-    const bool flat = radii <= static_cast<double>(std::min(pair.sizes[0], pair.sizes[1])) / 16;
+    const bool flat =
+        radii <= static_cast<double>(std::min(walk_.size(pair, 0), walk_.size(pair, 1))) / 16;
     if (pieces.near.certain_distance == 0 && flat && attempts_ < max_attempts) {
       ++attempts_;
       if (certainly_cross(frames_, pieces)) bounds_.reduce_upper(0);
     }
   }
 
-  // What is known of a direction is kept until a better one shows more than the precision (angle squared).
-  void look_along_witness() {
-    const Vector3 direction = normalized(witness_.points[1] - witness_.points[0]);
-    if (direction == Vector3{}) return;
-    if (length_sq(direction - direction_) <= bounds_.precision() / 8) return;
-    direction_ = direction;
-    pieces_.look_along(direction);
-  }
-
   Distance result() {
     Distance answer;
+    const Witness witness = pieces_.witness(near_);
+    bounds_.reduce_upper(witness.distance);
     answer.stats = stats_;
     const PowerOfTwo back = frames_.to_mesh_units();
     answer.distance = {unscaled_down(bounds_.lower(), back),
                        require_representable(unscaled_up(bounds_.upper(), back))};
     answer.reached = near_enough(answer.distance, options_);
-    pieces_.tell(witness_, answer);
+    pieces_.tell(witness, answer);
     return answer;
   }
 
@@ -184,8 +168,8 @@ class Query {
   DistanceBounds bounds_;
   NearestFirst<NodePair> open_;
   std::vector<NodePair> children_;
-  Witness witness_;
-  Vector3 direction_;
+  PiecePair near_{.near_distance = INFINITY};  // the two that came nearest
+  Vector3 direction_;                          // between them
   int attempts_ = 0;
 };
 

@@ -135,11 +135,12 @@ std::optional<TriangleParameter> in_middle_child(TriangleParameter p) {
 // Adds the children whose closed triangles hold the parameter: all have its limit point in common, so
 // together they are connected. False, with the child that descend() names alone, where its parameter there
 // rounds: what holds that need not hold the others'.
-bool add_children(PieceCache& pieces, const Probe& probe, std::vector<Probe>& out) {
+bool add_children(const SurfaceBvh& model, const Probe& probe, std::vector<Probe>& out) {
+  thread_local HullPoints scratch;
   const auto [u, v] = probe.at;
   const Descent certain = descend(probe.at);
   const auto add = [&](unsigned child, TriangleParameter at) {
-    out.push_back({pieces.child_of(probe.piece, child), at});
+    out.push_back({child_of(model.surface().library(), probe.piece, child, scratch, model.method()), at});
   };
   if (certain.child == 3) {
     const bool exact = in_middle_child(probe.at).has_value();
@@ -158,12 +159,12 @@ bool add_children(PieceCache& pieces, const Probe& probe, std::vector<Probe>& ou
   return true;
 }
 
-// Do pieces of `id` around a parameter cross, those that meet there together? Splits some levels down, and
+// Do pieces of `whole` around a parameter cross, those that meet there together? Splits some levels down, and
 // keeps nothing. seen: the pieces' frame as seen from that of the crossed piece.
-bool crosses_near(PieceCache& pieces, PieceId id, TriangleParameter at, const Crossed& crossed,
+bool crosses_near(const SurfaceBvh& model, const Piece& whole, TriangleParameter at, const Crossed& crossed,
                   const RelativeFrame& seen) {
   if (!seen.comparable) return false;
-  std::vector<Probe> probes{{pieces[id], on_triangle(at)}}, children;
+  std::vector<Probe> probes{{whole, on_triangle(at)}}, children;
   for (unsigned level = 0;; ++level) {
     // seen.slack covers the mapping; lengths grow by its scale.
     const double growth = seen.scale * (1 + 0x1p-20);
@@ -188,7 +189,7 @@ bool crosses_near(PieceCache& pieces, PieceId id, TriangleParameter at, const Cr
     if (2 * extent < crossed.thickness() || level == probe_levels || last) return false;
     children.clear();
     for (const Probe& probe : probes) {
-      if (!add_children(pieces, probe, children)) break;
+      if (!add_children(model, probe, children)) break;
     }
     probes.swap(children);
   }
@@ -200,11 +201,19 @@ bool certainly_cross(PairFrames& frames, const PiecePair& pieces) {
   const std::optional<PairOfPoints> middle = middle_of_contact(pieces.base[0], pieces.base[1]);
   if (!middle) return false;
   const std::array<Barycentric, 2> at{middle->on_a, middle->on_b};
+  std::array<Piece, 2> whole;
+  std::array<Heights, 2> heights;
   for (std::size_t s = 0; s < 2; ++s) {
-    PieceCache &own = frames.workspace(s).pieces(), &others = frames.workspace(1 - s).pieces();
-    const Crossed crossed(own[pieces.ids[s]], own.heights(pieces.ids[s]));
-    if (crossed.possible() &&
-        crosses_near(others, pieces.ids[1 - s], clamped(at[1 - s]), crossed, frames.view(s).frame)) {
+    thread_local HullPoints points;
+    SurfaceWorkspace& workspace = frames.workspace(s);
+    whole[s] = workspace.piece(pieces.nodes[s], points);
+    heights[s] = workspace.model().method() == BoundMethod::table ? heights_of(whole[s].offset)
+                                                                  : heights_of(whole[s], points);
+  }
+  for (std::size_t s = 0; s < 2; ++s) {
+    const Crossed crossed(whole[s], heights[s]);
+    if (crossed.possible() && crosses_near(frames.workspace(1 - s).model(), whole[1 - s], clamped(at[1 - s]),
+                                           crossed, frames.view(s).frame)) {
       return true;
     }
   }

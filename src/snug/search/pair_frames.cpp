@@ -64,7 +64,76 @@ double gap_between(const Outline& one, const Outline& other) {
   return gap - 32 * unit_roundoff * (apart + one.size + other.size);
 }
 
+// What both boxes need along the line of their centres and along their axes, in mesh units.
+struct PlacedRoot {
+  std::array<Vector3, 3> axes;
+  Vector3 half;
+  Vector3 centre;
+  double size;  // of what was summed up for the centre, and of the box
+
+  explicit PlacedRoot(const PlacedBvh& placed) {
+    const Obb& box = placed.model.box();
+    for (std::size_t k = 0; k < 3; ++k) axes[k] = placed.pose.rotate(box.axes[k]);
+    half = box.half;
+    centre = placed.pose.rotate(box.centre - Point3{}) + placed.pose.offset();
+    size = 4 * max_abs(box.centre - Point3{}) + max_abs(placed.pose.offset()) + half.x + half.y + half.z;
+  }
+};
+
+// Fifteen axes; ends once one shows more than `enough`.
+double gap_of_boxes(const PlacedRoot& a, const PlacedRoot& b, double defects, double enough) {
+  const Vector3 between = b.centre - a.centre;
+  const double doubt =
+      enlarged((128 * unit_roundoff + 32 * defects) * (max_abs(between) + a.size + b.size)) + 16 * underflow_error;
+  double along_a[3], along_b[3], cosine[3][3], size[3][3], widest = -INFINITY;
+  const auto shows_enough = [&](double along, double far) {
+    widest = std::max(widest, std::fabs(along) - far - doubt);
+    return widest > enough;
+  };
+  for (std::size_t i = 0; i < 3; ++i) {
+    along_a[i] = dot(a.axes[i], between);
+    double far = a.half[i];
+    for (std::size_t j = 0; j < 3; ++j) {
+      cosine[i][j] = dot(a.axes[i], b.axes[j]);
+      size[i][j] = std::fabs(cosine[i][j]);
+      far += b.half[j] * size[i][j];
+    }
+    if (shows_enough(along_a[i], far)) return widest;
+  }
+  for (std::size_t j = 0; j < 3; ++j) {
+    along_b[j] = dot(b.axes[j], between);
+    const double far = b.half[j] + a.half.x * size[0][j] + a.half.y * size[1][j] + a.half.z * size[2][j];
+    if (shows_enough(along_b[j], far)) return widest;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::size_t j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      const double far = a.half[i1] * size[i2][j] + a.half[i2] * size[i1][j] + b.half[j1] * size[i][j2] +
+                         b.half[j2] * size[i][j1];
+      if (shows_enough(along_a[i2] * cosine[i1][j] - along_a[i1] * cosine[i2][j], far)) return widest;
+    }
+  }
+  return widest;
+}
+
 }  // namespace
+
+double root_gap(const PlacedBvh& a, const PlacedBvh& b, double enough) {
+  const Ball &ball_a = a.model.ball(), &ball_b = b.model.ball();
+  const Vector3 centre_a = a.pose.rotate(ball_a.centre - Point3{}),
+                centre_b = b.pose.rotate(ball_b.centre - Point3{});
+  const Vector3 between = (b.pose.offset() - a.pose.offset()) + (centre_b - centre_a);
+  const double apart = length(between), radii = ball_a.radius + ball_b.radius;
+  const double defects = a.pose.defect() + b.pose.defect();
+  const double sizes = max_abs(centre_a) + max_abs(centre_b) + max_abs(a.pose.offset()) + max_abs(b.pose.offset());
+  const double doubt = enlarged((64 * unit_roundoff + 8 * defects) * (apart + radii + sizes));
+  const double gap = apart - radii - doubt;
+  // Neither infinite nor not a number.
+  if (gap > enough || !(apart < 0x1p500 && radii < 0x1p500)) return apart < 0x1p500 && radii < 0x1p500 ? gap : -INFINITY;
+  const double boxes = gap_of_boxes(PlacedRoot(a), PlacedRoot(b), defects, enough);
+  return std::isfinite(boxes) ? boxes : -INFINITY;
+}
 
 PairFrames::PairFrames(const PlacedBvh& a, const PlacedBvh& b)
     : workspace_{&a.scratch, &b.scratch},
@@ -82,11 +151,6 @@ double PairFrames::length_down(double mesh_units) const {
 double PairFrames::length_up(double mesh_units) const {
   const double x = world_.apply(mesh_units);
   return world_.exact(mesh_units) ? x : x * (1 + 2 * unit_roundoff) + underflow_error;
-}
-
-void PairFrames::look_along(const Vector3& direction) {
-  static_cast<void>(view(0));
-  view_[0]->look_along(transposed_times(frame_[0].rows, direction));
 }
 
 double outer_gap(const PlacedBvh& a, const PlacedBvh& b) {

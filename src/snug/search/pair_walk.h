@@ -12,12 +12,12 @@ namespace snug {
 /// Two nodes, of A and of B.
 struct NodePair {
   std::array<Node, 2> nodes;
-  std::array<float, 2> sizes;  ///< upper bounds of the nodes' sizes, placed
   /// Lower bound of their distance where positive, in the query's units, and not below that of what they are
   /// parts of; else the more negative the deeper they overlap.
   float gap;
 
-  [[nodiscard]] bool of_pieces() const { return nodes[0].piece && nodes[1].piece; }
+  /// Are both patches, or pieces of patches?
+  [[nodiscard]] bool bounded() const { return nodes[0].bounded() && nodes[1].bounded(); }
 };
 
 /// Of the pairs from the place `from` on, brings the one with the smallest gap to the end.
@@ -30,29 +30,28 @@ class PairWalk {
 
   /// The whole surfaces, which are not compared.
   [[nodiscard]] NodePair roots() const;
-
-  /// Which nodes of a pair are to be opened next: the larger one, or both if they are about as large.
-  enum class Opening : std::uint8_t { none, a, b, both };
-  /// sparing: a node that opens to pieces, which may have to be bounded first, is opened alone.
-  enum class Bounding : std::uint8_t { sparing, eager };
-  /// none: neither can be opened.
-  [[nodiscard]] Opening opening(const NodePair& pair, Bounding bounding) const;
-  /// May a query with this budget of pieces open these nodes? Not if its memory is full, either.
-  [[nodiscard]] bool may_open(const NodePair& pair, Opening opening, std::uint64_t budget) const {
-    const std::uint64_t pieces = (opening != Opening::b && pair.nodes[0].piece ? 1u : 0u) +
-                                 (opening != Opening::a && pair.nodes[1].piece ? 1u : 0u);
-    return stats_.splits + pieces <= budget && !frames_.workspace(0).full() && !frames_.workspace(1).full();
+  /// Upper bound of the size of a node, placed.
+  [[nodiscard]] float size(const NodePair& pair, std::size_t side) const {
+    return scale_[side] * pair.nodes[side].size();
   }
-  /// What nodes open to, against each other: pairs with a gap of at most `prune_distance` are added to `out`.
-  /// Returns the smallest gap of the others; infinite if there are none.
+
+  /// The side to be opened next: a tree before patches and pieces, which may have to be split first, then the
+  /// larger one.
+  enum class Opening : std::uint8_t { none, a, b };
+  /// none: neither can be opened.
+  [[nodiscard]] Opening opening(const NodePair& pair) const;
+  /// May a query with this budget of splits open this node? Not if its memory is full, either.
+  [[nodiscard]] bool may_open(const NodePair& pair, Opening opening, std::uint64_t budget) const {
+    const Node& node = pair.nodes[opening == Opening::a ? 0 : 1];
+    return !node.bounded() ||
+           (stats_.splits < budget && !frames_.workspace(0).full() && !frames_.workspace(1).full());
+  }
+  /// What a node opens to, against the other one: pairs with a gap of at most `prune_distance` are added to
+  /// `out`. Returns the smallest gap of the others; infinite if there are none.
   /// Requires:  an opening that is not none.
   float open(const NodePair& pair, Opening opening, double prune_distance, std::vector<NodePair>& out);
 
  private:
-  SurfaceWorkspace::Opened open_node(const NodePair& pair, std::size_t side);
-  float open_both(const NodePair& pair, double prune_distance, std::vector<NodePair>& out);
-  float open_one(const NodePair& pair, std::size_t side, double prune_distance, std::vector<NodePair>& out);
-
   PairFrames& frames_;
   SearchStats& stats_;
   std::array<float, 2> scale_;

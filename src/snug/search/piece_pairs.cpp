@@ -8,26 +8,19 @@
 #include <snug/patch/evaluate.h>
 
 namespace snug {
-namespace {
-
-// The gap between a lower bound in B and an upper one in A; zero where there is none.
-double gap_between(double upper_of_a, double lower_of_b) {
-  return std::max(0.0, (lower_of_b - upper_of_a) * (1 - 16 * unit_roundoff));
-}
-
-}  // namespace
-
-Vector3 PiecePair::direction() const {
-  const auto at = [](const Triangle& t, Barycentric p) {
-    return t[0] + (p.b * (t[1] - t[0]) + p.c * (t[2] - t[0]));
-  };
-  return at(base[1], near.on_b) - at(base[0], near.on_a);
-}
 
 double PiecePairs::radii(const NodePair& pair) const {
   double sum = 0;
   for (std::size_t s = 0; s < 2; ++s) {
-    sum += frames_.frame(s).growth() * static_cast<double>(frames_.workspace(s).radius(pair.nodes[s]));
+    sum += frames_.frame(s).growth() * SurfaceWorkspace::record(pair.nodes[s]).radius();
+  }
+  return sum;
+}
+
+double PiecePairs::errors(const NodePair& pair) const {
+  double sum = 0;
+  for (std::size_t s = 0; s < 2; ++s) {
+    sum += frames_.frame(s).growth() * SurfaceWorkspace::record(pair.nodes[s]).error();
   }
   return sum;
 }
@@ -35,60 +28,60 @@ double PiecePairs::radii(const NodePair& pair) const {
 PiecePair PiecePairs::nearest(const NodePair& pair) {
   ++stats_.triangle_tests;
   PiecePair pieces;
+  pieces.nodes = pair.nodes;
   for (std::size_t s = 0; s < 2; ++s) {
-    pieces.ids[s] = piece(pair, s);
     const PlacedFrame& frame = frames_.frame(s);
-    const OffsetTriangle& offset = frames_.workspace(s).pieces()[pieces.ids[s]].offset;
+    const PieceRecord& record = SurfaceWorkspace::record(pair.nodes[s]);
+    const Triangle base = record.base(pair.nodes[s].boxes->origin());
     double error = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      pieces.base[s][k] = frame.apply(offset.base[k]);
-      error = std::max(error, frame.apply_error(offset.base[k]));
+      pieces.base[s][k] = frame.apply(base[k]);
+      error = std::max(error, frame.apply_error(base[k]));
     }
-    pieces.radii[s] = enlarged(offset.radius * frame.growth() + spatial_error(error));
+    pieces.radii[s] = enlarged(record.radius() * frame.growth() + spatial_error(error));
   }
   pieces.near = snug::nearest(pieces.base[0], pieces.base[1]);
   const double gap = rounded_down(pieces.near.certain_distance - enlarged(pieces.radii[0] + pieces.radii[1]));
   pieces.gap = std::max({gap, static_cast<double>(pair.gap), 0.0});
+
+  const std::array<Barycentric, 2> at{pieces.near.on_a, pieces.near.on_b};
+  std::array<Point3, 2> points;
+  double error = 0;
+  for (std::size_t s = 0; s < 2; ++s) {
+    const PlacedFrame& frame = frames_.frame(s);
+    const PieceRecord& record = SurfaceWorkspace::record(pair.nodes[s]);
+    // Rounding of the sum errs by as much as that of the placement at most.
+    const Point3 own = pair.nodes[s].boxes->origin() + record.at(clamped(at[s]));
+    points[s] = frame.apply(own);
+    error += frame.growth() * record.error() + 2 * spatial_error(frame.apply_error(own));
+  }
+  pieces.between = points[1] - points[0];
+  pieces.near_distance =
+      (std::sqrt(length_sq(pieces.between) + 8 * underflow_error) + 8 * unit_roundoff * max_abs(pieces.between)) *
+          (1 + 16 * unit_roundoff) +
+      enlarged(error);
   return pieces;
 }
 
-double PiecePairs::placed_extent(std::size_t side, PieceId piece, const Vector3& w) {
+double PiecePairs::placed_extent(std::size_t side, const Node& node, const Vector3& w) const {
   const PlacedFrame& frame = frames_.frame(side);
-  const HullPoints& hull = frames_.workspace(side).pieces().hull(piece);
-  // w . (scale R x + t) = scale (R' w) . x + w . t
-  const Extent own = extent_of(hull, transposed_times(frame.rows, w));
-  const double moved = dot(w, frame.translation);
-  const double reach =
-      frame.scale * (max_abs(hull.origin - Point3{}) + hull.largest) + max_abs(frame.translation);
-  // |w| <= 1 + 4 u; R' w is off by 4 roundings of its rows' sums, which multiply coordinates.
-  const double error = 40 * unit_roundoff * reach + 8 * underflow_error;
-  return side == 0 ? frame.scale * own.upper + moved + error : frame.scale * own.lower + moved - error;
+  const PieceRecord& record = SurfaceWorkspace::record(node);
+  const Point3 origin = frame.apply(node.boxes->origin());
+  // w . (scale R x) = scale (R' w) . x
+  const double own = frame.scale * record.extent(transposed_times(frame.rows, w));
+  const double placed = dot(w, origin - Point3{});
+  const double error = enlarged(frame.growth() * record.error()) +
+                       4 * frame.apply_error(node.boxes->origin()) +
+                       40 * unit_roundoff * (std::fabs(own) + max_abs(origin - Point3{})) +
+                       8 * underflow_error;
+  return placed + own + error;
 }
 
-double PiecePairs::hull_gap(const NodePair& pair, const Vector3& direction) {
+double PiecePairs::gap_along(const std::array<Node, 2>& nodes, const Vector3& direction) const {
   const Vector3 w = normalized(direction);
   if (w == Vector3{}) return 0;
-  return gap_between(placed_extent(0, piece(pair, 0), w), placed_extent(1, piece(pair, 1), w));
-}
-
-void PiecePairs::look_along(const Vector3& direction) {
-  const Vector3 w = normalized(direction);
-  if (w == Vector3{}) return;
-  along_ = w;
-  for (std::size_t s = 0; s < 2; ++s) frames_.workspace(s).forget_extents();
-  frames_.look_along(w);
-}
-
-double PiecePairs::gap_along(const NodePair& pair) {
-  if (along_ == Vector3{}) return 0;
-  std::array<double, 2> extents;
-  for (std::size_t s = 0; s < 2; ++s) {
-    const PieceId id = piece(pair, s);
-    double& known = frames_.workspace(s).extent(id);
-    if (std::isnan(known)) known = placed_extent(s, id, along_);
-    extents[s] = known;
-  }
-  return gap_between(extents[0], extents[1]);
+  const double gap = -placed_extent(1, nodes[1], -w) - placed_extent(0, nodes[0], w);
+  return std::max(0.0, gap * (1 - 16 * unit_roundoff));
 }
 
 Witness PiecePairs::witness(const PiecePair& pieces) {
@@ -96,8 +89,8 @@ Witness PiecePairs::witness(const PiecePair& pieces) {
   Witness found;
   const std::array<Barycentric, 2> at{pieces.near.on_a, pieces.near.on_b};
   for (std::size_t s = 0; s < 2; ++s) {
-    const Patch& patch = frames_.workspace(s).pieces()[pieces.ids[s]].patch;
-    found.pieces[s] = pieces.ids[s];
+    const Patch& patch = frames_.workspace(s).patch(pieces.nodes[s]);
+    found.nodes[s] = pieces.nodes[s];
     found.at[s] = clamped(at[s]);
     const BoundedPoint point = frames_.frame(s).apply(limit_point(patch, found.at[s]).from(patch.origin));
     found.points[s] = point.position;
@@ -115,8 +108,9 @@ WitnessPlaces PiecePairs::places(const Witness& witness) const {
   WitnessPlaces places;
   for (std::size_t s = 0; s < 2; ++s) {
     SurfaceWorkspace& workspace = frames_.workspace(s);
-    const Piece& piece = workspace.pieces()[witness.pieces[s]];
-    places[s] = place_of(workspace.model().surface(), piece.root, to_face(piece.patch.path, witness.at[s]));
+    const Patch& patch = workspace.patch(witness.nodes[s]);
+    places[s] = place_of(workspace.model().surface(), workspace.root_of(witness.nodes[s]),
+                         to_face(patch.path, witness.at[s]));
   }
   return places;
 }

@@ -12,13 +12,14 @@ namespace snug {
 
 /// Two pieces, of A and of B, and their base triangles as placed.
 struct PiecePair {
-  std::array<PieceId, 2> ids;
+  std::array<Node, 2> nodes;
   std::array<Triangle, 2> base;
   std::array<double, 2> radii;
   NearestTriangles near;
   double gap;  ///< lower bound of their distance, zero if none shows
-  /// From the nearest point of A's base triangle to that of B's.
-  [[nodiscard]] Vector3 direction() const;
+  /// Between the points of the quadratics where the base triangles are nearest, from A to B.
+  Vector3 between;
+  double near_distance;  ///< upper bound of the distance of the limit points there
 };
 
 /// Limit points of A and of B, placed, and an upper bound of the distance of the exact ones.
@@ -26,27 +27,27 @@ struct Witness {
   std::array<Point3, 2> points;
   double error = 0;  ///< upper bound, a coordinate, of |point - exact point|
   double distance = INFINITY;
-  std::array<PieceId, 2> pieces;        ///< that they lie on
+  std::array<Node, 2> nodes;            ///< that they lie on
   std::array<TriangleParameter, 2> at;  ///< and where there
 };
 
-/// Pieces of two placed surfaces against each other: their base triangles, their hulls, their limit points.
+/// Pieces of two placed surfaces against each other: their base triangles, their quadratics, their limit
+/// points.
 class PiecePairs {
  public:
   PiecePairs(PairFrames& frames, SearchStats& stats) : frames_(frames), stats_(stats) {}
 
   /// Sum of the two radii, placed.
-  /// Requires:  pair.of_pieces(), here and below.
+  /// Requires:  pair.bounded(), here and below.
   [[nodiscard]] double radii(const NodePair& pair) const;
   [[nodiscard]] PiecePair nearest(const NodePair& pair);
+  /// Sum of the errors of the two quadratics, placed.
+  [[nodiscard]] double errors(const NodePair& pair) const;
 
-  /// Lower bound of the distance of two pieces: that of the planes across `direction` that hold their hulls
-  /// apart. The best direction is that from the nearest point of A to that of B.
-  [[nodiscard]] double hull_gap(const NodePair& pair, const Vector3& direction);
-  /// A direction from A to B, that both the walk and gap_along() look along from now on.
-  void look_along(const Vector3& direction);
-  /// hull_gap() along the direction of look_along(), where the extents of hulls are kept; zero without one.
-  [[nodiscard]] double gap_along(const NodePair& pair);
+  /// Lower bound of the distance of two pieces: that of the planes across `direction` that hold their
+  /// quadratics apart, less what these err. The best direction is that from the nearest point of A to that of
+  /// B.
+  [[nodiscard]] double gap_along(const std::array<Node, 2>& nodes, const Vector3& direction) const;
 
   /// At the parameters where the base triangles are nearest.
   [[nodiscard]] Witness witness(const PiecePair& pieces);
@@ -63,15 +64,11 @@ class PiecePairs {
  private:
   // Where its points lie.
   [[nodiscard]] WitnessPlaces places(const Witness& witness) const;
-  [[nodiscard]] PieceId piece(const NodePair& pair, std::size_t side) const {
-    return frames_.workspace(side).piece(pair.nodes[side]);
-  }
-  // An upper bound of w . x in a piece of A, a lower bound in one of B, placed.
-  [[nodiscard]] double placed_extent(std::size_t side, PieceId piece, const Vector3& w);
+  // An upper bound of w . x in a piece, placed, for |w| <= 1 up to a few roundings.
+  [[nodiscard]] double placed_extent(std::size_t side, const Node& node, const Vector3& w) const;
 
   PairFrames& frames_;
   SearchStats& stats_;
-  Vector3 along_;
 };
 
 }  // namespace snug

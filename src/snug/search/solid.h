@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <snug/bvh/wide_bvh.h>
-#include <snug/search/piece_cache.h>
+#include <snug/search/piece.h>
 
 namespace snug {
 

@@ -12,23 +12,6 @@
 namespace snug {
 namespace {
 
-Obb tight_box(const LimitSurface& surface, std::span<const PatchId> patches, BoundMethod method) {
-  // For their memory.
-  thread_local HullPoints scratch;
-  thread_local std::array<HullPoints, WideBvh::leaf_size> hulls;
-  std::vector<OffsetTriangle> triangles;
-  std::vector<Point3> spread;
-  for (std::size_t i = 0; i < patches.size(); ++i) {
-    const Piece piece = make_piece(surface.library(), patches[i], surface.patch(patches[i]), scratch, method);
-    triangles.push_back(piece.offset);
-    spread.insert(spread.end(), piece.offset.base.begin(), piece.offset.base.end());
-    if (method == BoundMethod::rows) close_points(surface.library(), piece.patch, hulls[i]);
-  }
-  const std::array<Vector3, 3> axes = principal_axes(spread);
-  return method == BoundMethod::table ? box_around(axes, triangles)
-                                      : box_around(axes, std::span(hulls).first(patches.size()));
-}
-
 std::vector<PatchId> existing_patches(const LimitSurface& surface) {
   std::vector<PatchId> patches;
   patches.reserve(surface.patch_count());
@@ -46,31 +29,57 @@ std::vector<PatchId> existing_patches(const LimitSurface& surface) {
   return patches;
 }
 
-WideBvh make_tree(const LimitSurface& surface, std::span<const PatchId> patches,
-                  const SurfaceBvhOptions& options, const WorkMonitor& monitor) {
-  std::vector<Point3> centres;
-  centres.reserve(patches.size());
-  for (const PatchId p : patches) centres.push_back(surface.middle(p));
-  return {centres, options.threads, [&](std::span<const std::uint32_t> items) {
-            monitor.checkpoint();
-            thread_local ControlHull hull;
-            std::array<PatchId, WideBvh::leaf_size> members;
-            for (std::size_t i = 0; i < items.size(); ++i) members[i] = patches[items[i]];
-            const std::span<const PatchId> here = std::span(members).first(items.size());
-            if (options.tight) return tight_box(surface, here, options.method);
-            hull.assign(surface, here);
-            return hull.box();
-          }};
+}  // namespace
+
+std::vector<PieceSketch> SurfaceBvh::sketches(std::span<const std::uint32_t> items) const {
+  std::vector<PieceSketch> pieces;
+  pieces.reserve(items.size());
+  for (const std::uint32_t item : items) {
+    const PatchId p = patches_[item];
+    pieces.push_back(sketch(surface_->library(), p, surface_->patch(p), method_));
+  }
+  return pieces;
 }
 
-}  // namespace
+const LeafNode& SurfaceBvh::keep_leaf(std::uint32_t i, std::span<const PieceSketch> pieces) const {
+  auto made = std::make_unique<const LeafNode>(pieces);
+  const LeafNode* there = nullptr;
+  // Another thread may have been quicker: both are the same.
+  if (!leaves_->nodes[i].compare_exchange_strong(there, made.get(), std::memory_order_acq_rel)) return *there;
+  leaves_->made.fetch_add(1, std::memory_order_relaxed);
+  return *made.release();
+}
+
+const LeafNode& SurfaceBvh::make_leaf(std::uint32_t i) const { return keep_leaf(i, sketches(tree_.leaf(i))); }
+
+WideBvh SurfaceBvh::make_tree(const SurfaceBvhOptions& options, const WorkMonitor& monitor) {
+  std::vector<Point3> centres;
+  centres.reserve(patches_.size());
+  for (const PatchId p : patches_) centres.push_back(surface_->middle(p));
+  return {centres, options.threads,
+          [&](std::size_t leaf, std::span<const std::uint32_t> items, std::vector<Obb>& boxes) {
+            monitor.checkpoint();
+            if (options.tight) {
+              const std::vector<PieceSketch> pieces = sketches(items);
+              for (const PieceSketch& piece : pieces) boxes.push_back(piece.box);
+              keep_leaf(static_cast<std::uint32_t>(leaf), pieces);
+              return;
+            }
+            thread_local ControlHull hull;
+            std::array<PatchId, WideBvh::leaf_size> members;
+            for (std::size_t i = 0; i < items.size(); ++i) members[i] = patches_[items[i]];
+            hull.assign(*surface_, std::span(members).first(items.size()));
+            boxes.push_back(hull.box());
+          }};
+}
 
 SurfaceBvh::SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& options,
                        const WorkMonitor& monitor)
     : surface_(&surface),
       method_(options.method),
       patches_(existing_patches(surface)),
-      tree_(make_tree(surface, patches_, options, monitor)),
+      leaves_(std::make_unique<Leaves>((patches_.size() + WideBvh::leaf_size - 1) / WideBvh::leaf_size)),
+      tree_(make_tree(options, monitor)),
       solid_(std::make_unique<Lazy<Solid>>()) {
   const PowerOfTwo back = surface.scale().inverse();
   const Ball scaled = tree_.ball();
@@ -78,13 +87,25 @@ SurfaceBvh::SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& opt
   // Beyond these sizes products lose digits to the ends of the range.
   if (!is_finite(ball_.centre) || !(ball_.radius < 0x1p500) || std::abs(back.exponent()) > 500) {
     ball_ = {Point3{}, INFINITY};
+    box_.half = {INFINITY, INFINITY, INFINITY};
+    return;
   }
+  box_ = tree_.box();
+  box_.centre = back.apply(box_.centre);
+  for (std::size_t k = 0; k < 3; ++k) box_.half[k] = enlarged(back.apply(box_.half[k]));
+}
+
+SurfaceBvh::Leaves::~Leaves() {
+  for (const auto& node : nodes) delete node.load(std::memory_order_relaxed);
 }
 
 const Solid& SurfaceBvh::solid() const {
   return solid_->get([&] { return Solid(*surface_); });
 }
 
-std::size_t SurfaceBvh::bytes() const { return patches_.capacity() * sizeof(PatchId) + tree_.bytes(); }
+std::size_t SurfaceBvh::bytes() const {
+  return patches_.capacity() * sizeof(PatchId) + tree_.bytes() + leaves_->nodes.size() * sizeof(void*) +
+         leaves_->made.load(std::memory_order_relaxed) * sizeof(LeafNode);
+}
 
 }  // namespace snug

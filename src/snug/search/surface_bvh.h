@@ -1,11 +1,14 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include <snug/base/lazy.h>
+#include <snug/bvh/wide_bvh.h>
 #include <snug/monitor.h>
+#include <snug/search/piece_node.h>
 #include <snug/search/solid.h>
 
 namespace snug {
@@ -13,14 +16,16 @@ namespace snug {
 struct SurfaceBvhOptions {
   BoundMethod method = BoundMethod::rows;  ///< of pieces
   /// Bound all patches when the model is made, some microseconds each: a tighter tree, for models that are
-  /// asked thousands of times. Otherwise the tree is over the control net alone.
+  /// asked thousands of times. Otherwise the tree is over the control net, and patches are bounded where
+  /// queries come.
   bool tight = false;
   int threads = 0;  ///< that make it
 };
 
-/// A surface made ready for queries: a tree over its control net. Patches are bounded, and split, where and
-/// when a query comes near them (SurfaceWorkspace). Immutable; may be read by many threads.
-/// Cost:      about 0.3 microseconds and 15 bytes a patch; see bench/results/collide.txt.
+/// A surface made ready for queries: a tree down to its patches, leaves of which are made where they are not
+/// yet. Nothing else ever changes; may be read by many threads.
+/// Cost:      about 0.3 microseconds and 15 bytes a patch, and 170 bytes a patch that a query came near; see
+///            bench/results/collide.txt.
 class SurfaceBvh {
  public:
   /// Requires:  the surface outlives the model.
@@ -31,10 +36,19 @@ class SurfaceBvh {
   [[nodiscard]] const LimitSurface& surface() const { return *surface_; }
   [[nodiscard]] BoundMethod method() const { return method_; }
   [[nodiscard]] const WideBvh& tree() const { return tree_; }
-  /// The patch that the tree calls item i.
-  [[nodiscard]] PatchId patch(std::uint32_t item) const { return patches_[item]; }
+  /// What is known of the patches of a leaf.
+  [[nodiscard]] const LeafNode& leaf(std::uint32_t i) const {
+    const LeafNode* const ready = leaves_->nodes[i].load(std::memory_order_acquire);
+    return ready != nullptr ? *ready : make_leaf(i);
+  }
+  /// The patch at a place in a leaf.
+  [[nodiscard]] PatchId patch(std::uint32_t leaf, std::size_t place) const {
+    return patches_[tree_.leaf(leaf)[place]];
+  }
   /// Around the surface, in mesh units; infinite where that does not fit a double.
   [[nodiscard]] const Ball& ball() const { return ball_; }
+  /// A box around it, likewise.
+  [[nodiscard]] const Obb& box() const { return box_; }
   /// The solid that the surface bounds, made on first use.
   /// Errors:    InputError (refused) for a surface that is not closed.
   [[nodiscard]] const Solid& solid() const;
@@ -42,11 +56,25 @@ class SurfaceBvh {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
+  // A node for each leaf of the tree, null where not made.
+  struct Leaves {
+    explicit Leaves(std::size_t leaf_count) : nodes(leaf_count) {}
+    ~Leaves();
+    std::vector<std::atomic<const LeafNode*>> nodes;
+    std::atomic<std::size_t> made{0};
+  };
+  [[nodiscard]] std::vector<PieceSketch> sketches(std::span<const std::uint32_t> items) const;
+  [[nodiscard]] WideBvh make_tree(const SurfaceBvhOptions& options, const WorkMonitor& monitor);
+  const LeafNode& make_leaf(std::uint32_t i) const;
+  const LeafNode& keep_leaf(std::uint32_t i, std::span<const PieceSketch> pieces) const;
+
   const LimitSurface* surface_;
   BoundMethod method_;
   std::vector<PatchId> patches_;
+  std::unique_ptr<Leaves> leaves_;
   WideBvh tree_;
   Ball ball_;
+  Obb box_;
   std::unique_ptr<Lazy<Solid>> solid_;
 };
 

@@ -92,24 +92,25 @@ class Winding {
     while (!stack_.empty()) {
       const Node node = stack_.back();
       stack_.pop_back();
-      if (node.piece) {
+      if (node.bounded()) {
         monitor_.checkpoint();
-        const bool last = !workspace_.can_open(node);
-        on_surface_ = last ? !(gap_of(workspace_.piece(node)) > 0) : ++splits > max_splits;
+        const bool last = !SurfaceWorkspace::can_open(node);
+        on_surface_ = last ? !(gap_of(node) > 0) : ++splits > max_splits;
         if (on_surface_) return std::nullopt;
-        const bool added = last ? ray.add(corners(workspace_.piece(node))) : add_fillers(node, ray);
+        const bool added = last ? ray.add(corners(node)) : add_fillers(node, ray);
         if (!added) return std::nullopt;
         if (last) continue;
       }
       const SurfaceWorkspace::Opened opened = workspace_.open(node);
-      WideNodes::Distances to_segment, to_point;
-      opened.nodes.distances(opened.parent, segment_, error_, 0, to_segment);
-      opened.nodes.distances(opened.parent, point_, error_, to_point);
+      WideNode::Distances to_segment, to_point;
+      opened.boxes->distances(segment_, error_, 0, to_segment);
+      opened.boxes->distances(point_, error_, to_point);
       for (std::size_t i = 0; i < opened.count(); ++i) {
         if (to_segment[i] > 0) continue;
-        if (!opened.pieces || !(to_point[i] > 0)) {
-          stack_.push_back(opened.child(i));
-        } else if (!ray.add(corners(workspace_.piece(opened.child(i))))) {
+        const Node child = opened.child(i);
+        if (!child.bounded() || !(to_point[i] > 0)) {
+          stack_.push_back(child);
+        } else if (!ray.add(corners(child))) {
           return std::nullopt;
         }
       }
@@ -128,17 +129,17 @@ class Winding {
     std::uint64_t splits = 0;
     while (!open.empty()) {
       const auto [node, gap] = open.take();
-      if (node.piece && gap > 0) return static_cast<double>(gap);
-      if (node.piece && !workspace_.can_open(node)) {
-        const float nearer = single_down(gap_of(workspace_.piece(node)));
+      if (node.bounded() && gap > 0) return static_cast<double>(gap);
+      if (node.bounded() && !SurfaceWorkspace::can_open(node)) {
+        const float nearer = single_down(gap_of(node));
         if (!(nearer > 0)) return 0;
         open.add({node, nearer});
         continue;
       }
-      if (node.piece && ++splits > max_splits) return 0;
+      if (node.bounded() && ++splits > max_splits) return 0;
       const SurfaceWorkspace::Opened opened = workspace_.open(node);
-      WideNodes::Distances gaps;
-      opened.nodes.distances(opened.parent, point_, error_, gaps);
+      WideNode::Distances gaps;
+      opened.boxes->distances(point_, error_, gaps);
       for (std::size_t i = 0; i < opened.count(); ++i) open.add({opened.child(i), gaps[i]});
     }
     return 0;
@@ -147,10 +148,11 @@ class Winding {
  private:
   // Lower bound of the distance of a piece, by its offset triangle: of one that cannot be split this is much
   // nearer to it than the set around it.
-  [[nodiscard]] double gap_of(PieceId id) const {
-    const OffsetTriangle& offset = workspace_.pieces()[id].offset;
-    const double apart = nearest({point_, point_, point_}, offset.base).certain_distance;
-    return rounded_down(apart - enlarged(offset.radius + spatial_error(error_)));
+  [[nodiscard]] double gap_of(const Node& node) const {
+    const PieceRecord& record = SurfaceWorkspace::record(node);
+    const Triangle base = record.base(node.boxes->origin());
+    const double apart = nearest({point_, point_, point_}, base).certain_distance;
+    return rounded_down(apart - enlarged(record.radius() + spatial_error(error_)));
   }
 
   // The part of the ray that matters, as a set.
@@ -162,16 +164,14 @@ class Winding {
     for (std::size_t k = 0; k < 3; ++k) segment_.box.axes[0][k] = static_cast<float>(unit[k]);
   }
 
-  [[nodiscard]] LimitTriangle corners(PieceId id) const {
-    return limit_triangle(workspace_.pieces()[id].patch);
-  }
+  [[nodiscard]] LimitTriangle corners(const Node& node) const { return limit_triangle(workspace_.patch(node)); }
 
   // A split piece: its children's triangles and these have the same border as its own one.
-  [[nodiscard]] bool add_fillers(Node node, Ray& ray) const {
-    const PieceId id = workspace_.piece(node), first = workspace_.pieces().split(id);
-    const LimitTriangle whole = corners(id);
+  [[nodiscard]] bool add_fillers(const Node& node, Ray& ray) const {
+    const SurfaceWorkspace::Opened split = workspace_.open(node);
+    const LimitTriangle whole = corners(node);
     for (std::size_t k = 0, next = 1; k < 3; ++k, next = (k + 1) % 3) {
-      const LimitTriangle child = corners(PieceId(first.index() + k));
+      const LimitTriangle child = corners(split.child(k));
       const Triangle filler{whole.corners[k], whole.corners[next], child.corners[next]};
       if (!ray.add({filler, std::max(whole.error, child.error)})) return false;
     }
@@ -183,18 +183,17 @@ class Winding {
     const Solid& solid = workspace_.model().solid();
     const WideBvh* const tree = solid.filler_tree();
     if (tree == nullptr) return true;
-    const WideNodes& nodes = tree->nodes();
-    std::vector<std::uint32_t> open{tree->root().parent};
+    std::vector<const TreeNode*> open{&tree->root()};
     while (!open.empty()) {
-      const std::uint32_t node = open.back();
+      const TreeNode& node = *open.back();
       open.pop_back();
-      WideNodes::Distances gaps;
-      nodes.distances(node, segment_, error_, 0, gaps);
-      for (std::uint32_t i = 0; i < nodes.count(node); ++i) {
+      WideNode::Distances gaps;
+      node.distances(segment_, error_, 0, gaps);
+      for (std::size_t i = 0; i < node.count(); ++i) {
         if (gaps[i] > 0) continue;
-        const std::uint32_t name = nodes.name({node, i});
+        const std::uint32_t name = node.names[i];
         if ((name & WideBvh::leaf_bit) == 0) {
-          open.push_back(name);
+          open.push_back(&tree->node(name));
           continue;
         }
         for (const std::uint32_t item : tree->leaf(name & ~WideBvh::leaf_bit)) {

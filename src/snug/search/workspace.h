@@ -1,103 +1,104 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <span>
+#include <deque>
+#include <unordered_map>
 #include <vector>
 
 #include <snug/geometry/motion.h>
-#include <snug/search/piece_cache.h>
 #include <snug/search/surface_bvh.h>
 
 namespace snug {
 
-/// A box in a surface's tree: of the tree itself, or around a piece that queries made.
+/// A box in a surface's tree: of the tree itself, of a leaf, which is a whole patch, or of pieces that a patch
+/// was split into.
 struct Node {
-  std::uint32_t parent;
+  enum class Kind : std::uint8_t { tree, patch, piece };
+  const WideNode* boxes;
   std::uint8_t place;
-  bool piece;
-  [[nodiscard]] Child child() const { return {parent, place}; }
+  Kind kind;
+  std::uint32_t owner;  ///< of patches the leaf, of pieces the split that made them
+
+  [[nodiscard]] bool bounded() const { return kind != Kind::tree; }
+  [[nodiscard]] float size() const { return boxes->size_of(place); }
 };
 
-/// What queries have touched of one surface: its pieces, and their boxes in nodes. One a thread. Dropped
-/// between two queries when it has grown beyond 256 MiB.
+/// What queries have split of one surface. One a thread. Dropped between two queries when it has grown beyond
+/// 256 MiB.
 /// Guarantee: a node opens to the same boxes whatever came before: no answer depends on earlier queries.
 class SurfaceWorkspace {
  public:
-  explicit SurfaceWorkspace(const SurfaceBvh& model);
+  explicit SurfaceWorkspace(const SurfaceBvh& model) : model_(&model) {}
 
   [[nodiscard]] const SurfaceBvh& model() const { return *model_; }
   [[nodiscard]] std::size_t bytes() const;
 
   /// For queries: to be called first.
   void begin();
-  [[nodiscard]] Node root() const { return {model_->tree().root().parent, 0, false}; }
-  [[nodiscard]] const WideNodes& nodes(bool of_pieces) const {
-    return of_pieces ? piece_nodes_ : model_->tree().nodes();
+  [[nodiscard]] Node root() const { return {&model_->tree().root(), 0, Node::Kind::tree, 0}; }
+  /// What is known of a patch or a piece.
+  /// Requires:  node.bounded(), here and below.
+  [[nodiscard]] static const PieceRecord& record(const Node& node) {
+    return node.kind == Node::Kind::patch ? static_cast<const LeafNode*>(node.boxes)->records[node.place]
+                                          : static_cast<const SplitNode*>(node.boxes)->records[node.place];
   }
-  [[nodiscard]] PieceId piece(Node node) const { return PieceId(piece_nodes_.name(node.child())); }
-  [[nodiscard]] PieceCache& pieces() { return pieces_; }
+  /// Its control points, which stay where they are until begin().
+  [[nodiscard]] const Patch& patch(const Node& node);
+  /// The whole patch that it belongs to.
+  [[nodiscard]] PatchId root_of(const Node& node) const {
+    return node.kind == Node::Kind::patch ? model_->patch(node.owner, node.place)
+                                          : splits_[node.owner].root;
+  }
+  /// The piece with its offset triangle, made anew.
+  [[nodiscard]] Piece piece(const Node& node, HullPoints& scratch);
   /// False for a piece that cannot be split.
-  [[nodiscard]] bool can_open(Node node) const {
-    return !node.piece || (facts_[node.parent].can_split >> node.place & 1u) != 0;
+  [[nodiscard]] static bool can_open(const Node& node) {
+    if (node.kind == Node::Kind::tree) return true;
+    const std::uint8_t can_split = node.kind == Node::Kind::patch
+                                       ? static_cast<const LeafNode*>(node.boxes)->can_split
+                                       : static_cast<const SplitNode*>(node.boxes)->can_split;
+    return (can_split >> node.place & 1u) != 0;
   }
-  /// Does a node open to pieces?
-  [[nodiscard]] bool opens_to_pieces(Node node) const {
-    return node.piece || (model_->tree().nodes().name(node.child()) & WideBvh::leaf_bit) != 0;
-  }
-  /// Upper bound of the radius of a piece's offset triangle.
-  [[nodiscard]] float radius(Node node) const { return facts_[node.parent].radii[node.place]; }
-  /// What a node opens to, made if need be: the children of a node of pieces or of the tree.
+
+  /// What a node opens to, made if need be.
   struct Opened {
-    const WideNodes& nodes;
-    std::uint32_t parent;
-    bool pieces;
-    [[nodiscard]] std::size_t count() const { return nodes.count(parent); }
+    const WideNode* boxes;
+    Node::Kind kind;
+    std::uint32_t owner;
+    [[nodiscard]] std::size_t count() const { return boxes->count(); }
     [[nodiscard]] Node child(std::size_t place) const {
-      return {parent, static_cast<std::uint8_t>(place), pieces};
+      return {boxes, static_cast<std::uint8_t>(place), kind, owner};
     }
   };
   /// Requires:  can_open(node).
-  [[nodiscard]] Opened open(Node node);
+  [[nodiscard]] Opened open(const Node& node);
 
-  /// How far a piece reaches along the direction that a query looks along; NaN where that is not yet known.
-  [[nodiscard]] double& extent(PieceId id) {
-    if (id.index() >= extents_.size()) extents_.resize(id.index() + 1, {0, 0});
-    KnownExtent& known = extents_[id.index()];
-    if (known.direction != direction_) known = {NAN, direction_};
-    return known.extent;
-  }
-  /// The query looks along another direction: no extent is known.
-  void forget_extents() { ++direction_; }
-
-  /// Has the query opened as many different nodes of pieces as one may? Bounds its memory.
+  /// Has the query split as many different pieces as one may? Bounds its memory.
   [[nodiscard]] bool full() const { return touched_ >= 50'000; }
 
  private:
-  // What is asked for most of the pieces in a node.
-  struct Facts {
-    std::array<float, WideNodes::width> radii;
-    std::uint8_t can_split;
+  static constexpr std::uint32_t none = UINT32_MAX;
+  // The pieces of a patch or a piece.
+  struct Split {
+    SplitNode pieces;
+    PatchId root;
+    std::array<std::uint32_t, 4> splits{none, none, none, none};   // of these pieces
+    std::array<std::uint32_t, 4> patches{none, none, none, none};  // in patches_
+    std::uint32_t query = 0;                                       // that opened it last
+    std::uint32_t parent;                                          // in patches_
   };
-
-  struct KnownExtent {
-    double extent;
-    std::uint64_t direction;
+  struct Root {
+    std::uint32_t split = none, patch = none;
   };
-
-  std::uint32_t add_node(std::span<const PieceId> pieces);
-  Opened opened(std::uint32_t node);
+  [[nodiscard]] std::uint32_t patch_place(const Node& node);
+  [[nodiscard]] std::uint32_t& split_place(const Node& node);
 
   const SurfaceBvh* model_;
-  PieceCache pieces_;
-  WideNodes piece_nodes_;
-  std::vector<Facts> facts_;          // of piece_nodes_
-  std::vector<KnownExtent> extents_;  // of pieces
-  std::uint64_t direction_ = 1;
-  // The nodes that leaves and pieces open to; `none` where not opened.
-  std::vector<std::uint32_t> of_leaf_, of_piece_;
-  std::vector<std::uint32_t> stamps_;  // of piece_nodes_: the query that opened them last
+  std::unordered_map<std::uint32_t, Root> roots_;  // of whole patches
+  std::deque<Split> splits_;
+  std::deque<Patch> patches_;
+  std::size_t bytes_of_points_ = 0;
   std::uint32_t query_ = 0;
   std::size_t touched_ = 0;
 };

@@ -1,10 +1,9 @@
-#include <snug/search/piece_cache.h>
+#include <snug/search/piece.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include <snug/base/contract.h>
 #include <snug/bounds/table_triangle.h>
 #include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
@@ -23,6 +22,11 @@ Piece make_piece(BoundsCache& library, PatchId root, Patch patch, HullPoints& sc
   }
   piece.patch = std::move(patch);
   return piece;
+}
+
+Piece child_of(BoundsCache& library, const Piece& piece, unsigned child, HullPoints& scratch,
+               BoundMethod method) {
+  return make_piece(library, piece.root, split(piece.patch, child), scratch, method);
 }
 
 LimitTriangle limit_triangle(const Patch& patch) {
@@ -70,9 +74,6 @@ Extent extent_of(const OffsetTriangle& triangle, const Vector3& direction) {
   return {extent.lower - reach, extent.upper + reach};
 }
 
-namespace {
-
-// Of the points that the piece was fitted to.
 Heights heights_of(const Piece& piece, const HullPoints& points) {
   const Vector3 normal = unit_normal(piece.offset.base);
   const Vector3 from = piece.offset.base[0] - points.origin;
@@ -81,7 +82,9 @@ Heights heights_of(const Piece& piece, const HullPoints& points) {
   const double error =
       enlarged(2 * spatial_error(points.error) + gamma_bound(8) * 2 * (points.largest + max_abs(from))) +
       8 * underflow_error;
-  return {rounded_down(range.lower - error), rounded_up(range.upper + error)};
+  const Heights heights{rounded_down(range.lower - error), rounded_up(range.upper + error)};
+  if (!std::isfinite(heights.lower) || !std::isfinite(heights.upper)) return {-INFINITY, INFINITY};
+  return heights;
 }
 
 // Of all that the offset triangle holds. On needles the computed normal is off by far more than a rounding,
@@ -99,8 +102,12 @@ Heights heights_of(const OffsetTriangle& offset) {
   // The normal's length is 1 up to 8 roundings; differences and products of the corners', gamma(8).
   const double reach =
       enlarged(offset.radius * (1 + 16 * unit_roundoff) + gamma_bound(8) * 2 * largest) + 8 * underflow_error;
-  return {rounded_down(heights.lower - reach), rounded_up(heights.upper + reach)};
+  heights = {rounded_down(heights.lower - reach), rounded_up(heights.upper + reach)};
+  if (!std::isfinite(heights.lower) || !std::isfinite(heights.upper)) return {-INFINITY, INFINITY};
+  return heights;
 }
+
+namespace {
 
 // Along the longest edge, across it in the triangle's plane, and along the normal.
 std::array<Vector3, 3> box_axes(const Triangle& base) {
@@ -118,71 +125,10 @@ std::array<Vector3, 3> box_axes(const Triangle& base) {
 
 }  // namespace
 
-PieceCache::PieceCache(const LimitSurface& surface, BoundMethod method)
-    : surface_(surface), method_(method), roots_(surface.patch_count()) {}
-
-PieceId PieceCache::add(PatchId root, Patch patch) {
-  Piece piece = make_piece(surface_.library(), root, std::move(patch), scratch_, method_);
-  const bool by_table = method_ == BoundMethod::table;
-  Heights heights = by_table ? heights_of(piece.offset) : heights_of(piece, scratch_);
-  if (!std::isfinite(heights.lower) || !std::isfinite(heights.upper)) heights = {-INFINITY, INFINITY};
-  const Obb box = fit_box(box_axes(piece.offset.base), [&](const Vector3& d) {
-    return by_table ? extent_of(piece.offset, d) : extent_of(scratch_, d);
+Obb box_around(const Piece& piece, const HullPoints& points, BoundMethod method) {
+  return fit_box(box_axes(piece.offset.base), [&](const Vector3& d) {
+    return method == BoundMethod::table ? extent_of(piece.offset, d) : extent_of(points, d);
   });
-  bytes_ += sizeof(Piece) + sizeof(Around) + piece.patch.points.capacity() * sizeof(Vector3);
-  pieces_.push_back(std::move(piece));
-  around_.push_back({heights, box});
-  return PieceId(pieces_.size() - 1);
-}
-
-void PieceCache::clear() {
-  std::fill(roots_.begin(), roots_.end(), PieceId());
-  pieces_.clear();
-  hulls_.clear();
-  around_.clear();
-  hull_places_.clear();
-  bytes_ = 0;
-}
-
-const HullPoints& PieceCache::hull(PieceId id) {
-  if (id.index() >= hull_places_.size()) hull_places_.resize(pieces_.size(), 0);
-  std::uint32_t& place = hull_places_[id.index()];
-  if (place == 0) {
-    // Scratch memory is several times as large as what it is needed for.
-    close_points(surface_.library(), pieces_[id.index()].patch, scratch_);
-    HullPoints& points = hulls_.emplace_back();
-    points.assign(scratch_);
-    place = static_cast<std::uint32_t>(hulls_.size());
-    bytes_ += sizeof(HullPoints) + 3 * points.size() * sizeof(double);
-  }
-  return hulls_[place - 1];
-}
-
-PieceId PieceCache::root(PatchId patch) {
-  PieceId& id = roots_[patch.index()];
-  if (!id.valid()) id = add(patch, surface_.patch(patch));
-  return id;
-}
-
-Piece PieceCache::child_of(const Piece& piece, unsigned child) {
-  return make_piece(surface_.library(), piece.root, snug::split(piece.patch, child), scratch_, method_);
-}
-
-bool PieceCache::can_split(PieceId id) const {
-  const Piece& piece = (*this)[id];
-  return piece.patch.path.level() < PiecePath::max_level && piece.offset.radius > 2 * piece.offset.rounding;
-}
-
-PieceId PieceCache::split(PieceId id) {
-  Piece& parent = pieces_[id.index()];  // stays where it is while others are added
-  if (parent.first_child.valid()) return parent.first_child;
-  SNUG_EXPECT(parent.patch.path.level() < PiecePath::max_level);
-  const PieceId first(pieces_.size());
-  for (unsigned child = 0; child < 4; ++child) {
-    static_cast<void>(add(parent.root, snug::split(parent.patch, child)));
-  }
-  parent.first_child = first;
-  return first;
 }
 
 }  // namespace snug

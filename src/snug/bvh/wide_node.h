@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include <snug/bvh/frame.h>
+#include <snug/bvh/node_kernels.h>
+#include <snug/bvh/obb.h>
+
+namespace snug {
+
+/// How boxes are seen from another frame.
+struct View {
+  RelativeFrame frame;
+  kernels::Turn turn{};  ///< frame.rows in single precision
+
+  View() = default;
+  View(const PlacedFrame& target, const PlacedFrame& source);
+};
+
+/// A box in the frame of the nodes that it is compared with.
+struct PlacedBox {
+  Point3 centre;
+  kernels::OtherBox box;  // but for its centre
+};
+
+/// Up to eight boxes, in single precision relative to an origin of their own, so that all eight are compared
+/// with another box at once and small ones lose nothing far from the coordinates' origin.
+/// Guarantee: rounding to single precision never makes boxes smaller. The same bits on every instruction set.
+class alignas(32) WideNode {
+ public:
+  static constexpr std::size_t width = kernels::node_width;
+  using Distances = std::array<float, width>;
+  using Near = kernels::Near;
+
+  /// No boxes.
+  WideNode() = default;
+  /// Requires:  1 to 8 boxes, coordinates at most about 4, sizes that are not finite allowed.
+  explicit WideNode(std::span<const Obb> boxes);
+
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] const Point3& origin() const { return origin_; }
+  /// Upper bound of the distance of two points of a box, for choosing which one to open.
+  [[nodiscard]] float size_of(std::size_t place) const { return sizes_[place]; }
+
+  /// Lower bounds of the distances from the boxes to one of another node, which is seen through `view`, in
+  /// units of the target; zero or negative where no gap shows, the more negative the deeper they overlap.
+  /// Wider gaps than `prune_distance` are not looked for where one is found. Returns the boxes with at most
+  /// that, one bit each, and the least gap of the others.
+  /// Guarantee: at most the exact distance of what is placed, as RelativeFrame says; -infinity if one is not
+  ///            finite.
+  /// Requires:  view.frame.comparable.
+  /// Source:    derivations/boxes.md; [Gottschalk96] for the axes.
+  Near distances(const WideNode& other, std::size_t place, const View& view, float prune_distance,
+                 Distances& out) const;
+  /// The same to a box in this node's frame, less `slack`.
+  Near distances(const PlacedBox& other, double slack, float prune_distance, Distances& out) const;
+  /// The same to a point.
+  void distances(const Point3& point, double slack, Distances& out) const;
+
+ private:
+  alignas(32) std::array<float, kernels::obb_rows * width> rows_{};
+  std::array<float, width> sizes_{};
+  Point3 origin_;
+  float reach_ = 0;  // of the largest, see kernels
+  std::uint32_t count_ = 0;
+};
+
+}  // namespace snug

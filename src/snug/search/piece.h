@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <ranges>
+
+#include <snug/bounds/enclosure.h>
+#include <snug/bvh/obb.h>
+#include <snug/surface.h>
+#include <snug/surface/limit_surface.h>
+
+namespace snug {
+
+/// A piece of a limit surface with its offset triangle, in scaled units.
+struct Piece {
+  PatchId root;
+  Patch patch;
+  OffsetTriangle offset;
+
+  /// False at the last level, and where rounding alone makes up the radius: children would be no smaller.
+  [[nodiscard]] bool can_split() const {
+    return patch.path.level() < PiecePath::max_level && offset.radius > 2 * offset.rounding;
+  }
+};
+
+/// A piece made from a patch: its offset triangle is fitted to hull rows, in `scratch`, or comes from tables.
+[[nodiscard]] Piece make_piece(BoundsCache& library, PatchId root, Patch patch, HullPoints& scratch,
+                               BoundMethod method = BoundMethod::rows);
+/// One of the four children of a piece.
+/// Requires:  below the last level, PiecePath::max_level.
+[[nodiscard]] Piece child_of(BoundsCache& library, const Piece& piece, unsigned child, HullPoints& scratch,
+                             BoundMethod method = BoundMethod::rows);
+
+/// Limit points, as a triangle: exact ones are within `error`, a length, of its corners.
+struct LimitTriangle {
+  Triangle corners;
+  double error;
+};
+/// The corners of a patch.
+[[nodiscard]] LimitTriangle limit_triangle(const Patch& patch);
+
+/// The normal of a triangle, of length 1 up to a few roundings; zero if it has none.
+[[nodiscard]] Vector3 unit_normal(const Triangle& triangle);
+
+/// Bounds of dot(unit_normal(piece.offset.base), x - piece.offset.base[0]) over the piece, rounding included:
+/// narrower than its radius, which must cover what bulges sideways too.
+struct Heights {
+  double lower, upper;
+};
+/// From the points that the piece was fitted to; infinite where they are not finite.
+[[nodiscard]] Heights heights_of(const Piece& piece, const HullPoints& points);
+/// From the offset triangle alone.
+[[nodiscard]] Heights heights_of(const OffsetTriangle& offset);
+
+/// Bounds of dot(direction, x - from) over a patch known by points whose hull holds it.
+[[nodiscard]] Extent extent_of(const HullPoints& hull, const Vector3& direction, const Point3& from = {});
+/// Bounds of dot(direction, x) over an offset triangle.
+[[nodiscard]] Extent extent_of(const OffsetTriangle& triangle, const Vector3& direction);
+
+/// A box with given axes around hulls, or around offset triangles.
+template <std::ranges::range Sets>
+[[nodiscard]] Obb box_around(const std::array<Vector3, 3>& axes, const Sets& sets) {
+  return fit_box(axes, [&](const Vector3& axis) {
+    Extent all;
+    for (const auto& set : sets) all.add(extent_of(set, axis));
+    return all;
+  });
+}
+/// A box around a piece, along its base triangle and normal, or the coordinate axes where it has none; by the
+/// points that it was fitted to, or from tables by its offset triangle.
+[[nodiscard]] Obb box_around(const Piece& piece, const HullPoints& points, BoundMethod method);
+
+}  // namespace snug

@@ -1,0 +1,79 @@
+#include <snug/search/piece_node.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <snug/geometry/rounding.h>
+
+namespace snug {
+
+PieceRecord::PieceRecord(const OffsetTriangle& offset, const QuadraticTriangle& quadratic,
+                         const Point3& origin) {
+  const auto single = [](const Vector3& v) {
+    return Single3{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+  };
+  double largest = 0, moved = 0;
+  for (std::size_t k = 0; k < 6; ++k) {
+    const Vector3 exact = (k < 3 ? quadratic.corners[k] : quadratic.middles[k - 3]) - origin;
+    net_[k] = single(exact);
+    largest = std::max(largest, max_abs(exact));
+    moved = std::max(moved, max_abs(wide(net_[k]) - exact));
+  }
+  Vector3 shift;
+  for (std::size_t k = 0; k < 3; ++k) shift = shift + (offset.base[k] - quadratic.corners[k]);
+  shift_ = single((1.0 / 3) * shift);
+  double base_moved = 0;
+  const Triangle recorded = base(origin);
+  for (std::size_t k = 0; k < 3; ++k) {
+    base_moved = std::max(base_moved, max_abs(recorded[k] - offset.base[k]));
+  }
+  // Differences to the origin, evaluations of a sum of six products, and directions that were turned.
+  const double rounding = 128 * unit_roundoff * largest + 8 * underflow_error;
+  radius_ = float_up(enlarged(offset.radius + spatial_error(base_moved + rounding)));
+  error_ = float_up(enlarged(quadratic.error + spatial_error(moved + rounding)));
+  // Not a number is not less.
+  if (radius_ < INFINITY && error_ < INFINITY && is_finite(shift)) return;
+  *this = {};
+  radius_ = error_ = INFINITY;
+}
+
+Triangle PieceRecord::base(const Point3& origin) const {
+  const Vector3 shift = wide(shift_);
+  return {origin + (wide(net_[0]) + shift), origin + (wide(net_[1]) + shift),
+          origin + (wide(net_[2]) + shift)};
+}
+
+Vector3 PieceRecord::at(TriangleParameter at) const {
+  const double r = 1 - at.u - at.v, u = at.u, v = at.v;
+  return (r * r) * wide(net_[0]) + (u * u) * wide(net_[1]) + (v * v) * wide(net_[2]) +
+         (2 * r * u) * wide(net_[3]) + (2 * u * v) * wide(net_[4]) + (2 * r * v) * wide(net_[5]);
+}
+
+double PieceRecord::extent(const Vector3& w) const {
+  double most = -INFINITY;
+  for (const Single3& p : net_) most = std::max(most, dot(w, wide(p)));
+  return most;
+}
+
+PieceSketch sketch(BoundsCache& library, PatchId root, const Patch& patch, BoundMethod method) {
+  thread_local HullPoints points;
+  const Piece piece = make_piece(library, root, patch, points, method);
+  return {box_around(piece, points, method), piece.offset, quadratic_triangle(library, patch),
+          piece.can_split()};
+}
+
+template <std::size_t N>
+PieceNode<N>::PieceNode(std::span<const PieceSketch> pieces) {
+  std::array<Obb, N> boxes;
+  for (std::size_t i = 0; i < pieces.size(); ++i) boxes[i] = pieces[i].box;
+  static_cast<WideNode&>(*this) = WideNode(std::span(boxes).first(pieces.size()));
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    records[i] = PieceRecord(pieces[i].offset, pieces[i].quadratic, origin());
+    if (pieces[i].can_split) can_split |= static_cast<std::uint8_t>(1u << i);
+  }
+}
+
+template struct PieceNode<WideNode::width>;
+template struct PieceNode<4>;
+
+}  // namespace snug

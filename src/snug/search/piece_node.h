@@ -1,0 +1,67 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include <snug/bounds/quadratic.h>
+#include <snug/bvh/wide_node.h>
+#include <snug/search/piece.h>
+
+namespace snug {
+
+/// What a query knows of a piece without its control points: its offset triangle, and a quadratic Bezier
+/// triangle near it. Numbers of single precision relative to an origin, which is its node's, read in double.
+/// Guarantee: the radius and the error cover what rounding to single precision moved.
+class alignas(32) PieceRecord {
+ public:
+  PieceRecord() = default;
+  /// Radius and error are infinite where a number is not finite.
+  PieceRecord(const OffsetTriangle& offset, const QuadraticTriangle& quadratic, const Point3& origin);
+
+  /// The base triangle of the offset triangle.
+  [[nodiscard]] Triangle base(const Point3& origin) const;
+  /// Of the offset triangle.
+  [[nodiscard]] double radius() const { return static_cast<double>(radius_); }
+
+  /// The quadratic at a parameter, relative to the origin.
+  /// Guarantee: the piece's point there is within error(), a length; rounding included.
+  [[nodiscard]] Vector3 at(TriangleParameter at) const;
+  /// Upper bound of dot(w, x) over the piece, x relative to the origin, but for |w| error().
+  [[nodiscard]] double extent(const Vector3& w) const;
+  [[nodiscard]] double error() const { return static_cast<double>(error_); }
+
+ private:
+  using Single3 = std::array<float, 3>;
+  [[nodiscard]] static Vector3 wide(const Single3& v) {
+    return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+  }
+
+  std::array<Single3, 6> net_{};  // of the quadratic: corners, then middles of the edges 01, 12, 20
+  Single3 shift_{};               // from its corners to the base triangle
+  float radius_ = 0, error_ = 0;
+};
+
+/// What a node is made of: a piece, before there is an origin to be relative to.
+struct PieceSketch {
+  Obb box;
+  OffsetTriangle offset;
+  QuadraticTriangle quadratic;
+  bool can_split;
+};
+[[nodiscard]] PieceSketch sketch(BoundsCache& library, PatchId root, const Patch& patch, BoundMethod method);
+
+/// A node of pieces: boxes around up to N of them, and their records.
+template <std::size_t N>
+struct PieceNode : WideNode {
+  /// Requires:  1 to N pieces.
+  explicit PieceNode(std::span<const PieceSketch> pieces);
+  std::array<PieceRecord, N> records;
+  std::uint8_t can_split = 0;  ///< a bit each
+};
+/// The patches of a leaf of a tree.
+using LeafNode = PieceNode<WideNode::width>;
+/// The pieces that a piece is split into.
+using SplitNode = PieceNode<4>;
+
+}  // namespace snug
