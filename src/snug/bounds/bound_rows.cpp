@@ -96,7 +96,8 @@ class Collector {
   }
 
   // Rows of one piece; `covered` counts corners as the kind does.
-  void collect(const Kind& kind, const DenseRows& net, unsigned depth, const CoveredEdges& covered) {
+  void collect(const Kind& kind, const DenseRows& net, unsigned depth, const CoveredEdges& covered,
+               const ParameterTriangle& place) {
     // A split brings Bezier points nearer, but for a plane.
     if (kind.polynomial() && (depth > 0 || kind.form().degree == 1)) {
       const PolynomialForm& form = kind.form();
@@ -106,6 +107,7 @@ class Collector {
             if (form.parts == 1 && on_covered_edge(form.degree, i, j, covered)) continue;
             const std::size_t row = part * bezier_count(form.degree) + bezier_index(form.degree, i, j);
             append_product(form.rows, row, net, rows_);
+            add_quadratic(form.parts == 1 ? place : part_of(place, part), form.degree, i, j);
           }
         }
       }
@@ -126,12 +128,15 @@ class Collector {
         for (std::size_t k = 0; k < 3; ++k) own[k] = inherited[(k + child.first) % 3];
         DenseRows& child_net = nets_[depth];
         multiply(child.stencils, net, child_net);
-        collect(*child.kind, child_net, depth + 1, own);
+        collect(*child.kind, child_net, depth + 1, own, turned(child_of(place, c), child.first));
       }
     }
   }
 
-  // Tips last.
+  // Of all rows but those of nets.
+  [[nodiscard]] const std::vector<QuadraticWeights>& quadratic() const { return quadratic_; }
+
+  // Nets last.
   [[nodiscard]] DenseRows take() {
     append_all(tips_, rows_);
     return std::move(rows_);
@@ -151,8 +156,14 @@ class Collector {
     return limit > 0 ? limit : depth + 1;
   }
 
+  // A plane's points are no Bezier points of a higher degree.
+  void add_quadratic(const ParameterTriangle& piece, std::size_t degree, std::size_t i, std::size_t j) {
+    quadratic_.push_back(degree < 2 ? QuadraticWeights{} : raised_quadratic(piece, degree, i, j));
+  }
+
   unsigned most_levels_;
   DenseRows rows_, tips_;
+  std::vector<QuadraticWeights> quadratic_;
   std::array<DenseRows, deepest_tip + 2> nets_;  // of the piece at work, a depth each
 };
 
@@ -226,7 +237,7 @@ std::array<BoundRows::Tip, 3> tips_of(const Kind& kind, unsigned levels, std::si
 BoundRows make_bound_rows(const Kind& kind, unsigned most_levels) {
   SNUG_EXPECT(!kind.key().polygon);
   Collector collector(kind, most_levels);
-  collector.collect(kind, identity(kind.control_count()), 0, {});
+  collector.collect(kind, identity(kind.control_count()), 0, {}, whole_patch);
   const DenseRows rows = collector.take();
   BoundRows result;
   result.count_ = rows.count();
@@ -237,6 +248,11 @@ BoundRows make_bound_rows(const Kind& kind, unsigned most_levels) {
       result.weights_[c * rows.count() + r] = rows.entries[r * rows.width + c];
     result.entry_error_ = std::max(result.entry_error_, rows.errors[r]);
     result.abs_sum_ = std::max(result.abs_sum_, rows.abs_sums[r]);
+  }
+  const std::vector<QuadraticWeights>& quadratic = collector.quadratic();
+  result.bezier_count_ = quadratic.size();
+  for (std::size_t k = 0; k < 6; ++k) {
+    for (const QuadraticWeights& row : quadratic) result.quadratic_.push_back(row[k]);
   }
   result.tips_ = tips_of(kind, most_levels, result.count_);
   return result;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include <snug/bounds/parameter_triangle.h>
 #include <snug/patch/kind_cache.h>
 
 namespace snug {
@@ -24,7 +25,14 @@ class BoundRows {
   [[nodiscard]] double entry_error() const { return entry_error_; }
   /// Upper bound of a row's sum of absolute values: 1 but for ghost points.
   [[nodiscard]] double abs_sum() const { return abs_sum_; }
-  [[nodiscard]] std::size_t bytes() const { return weights_.size() * sizeof(double); }
+  [[nodiscard]] std::size_t bytes() const { return (weights_.size() + quadratic_.size()) * sizeof(double); }
+
+  /// Number of rows of Bezier points: the first ones. Nets of pieces that are no polynomials follow.
+  [[nodiscard]] std::size_t bezier_count() const { return bezier_count_; }
+  /// In all these points the weights of Bezier point k of a quadratic over the patch: its own Bezier points
+  /// over the pieces, raised to their degree. Point for point, patch minus quadratic lies in the hull of the
+  /// differences. Zeros for a kind of degree 1.
+  [[nodiscard]] const double* quadratic(std::size_t k) const { return quadratic_.data() + k * bezier_count_; }
 
   /// The control net of the piece at an extraordinary corner, some levels down: the last rows are those of
   /// the tips, in the order of their kinds' control points.
@@ -43,8 +51,8 @@ class BoundRows {
 
  private:
   friend BoundRows make_bound_rows(const Kind& kind, unsigned most_levels);
-  std::size_t count_ = 0, control_count_ = 0;
-  std::vector<double> weights_;
+  std::size_t count_ = 0, control_count_ = 0, bezier_count_ = 0;
+  std::vector<double> weights_, quadratic_;
   std::array<Tip, 3> tips_;
   double entry_error_ = 0, abs_sum_ = 0;
 };

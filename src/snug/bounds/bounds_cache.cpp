@@ -24,4 +24,8 @@ const BoundTable& BoundsCache::table(const Kind& kind) {
   });
 }
 
+const QuadraticRows& BoundsCache::quadratic_rows(const Kind& kind) {
+  return quadratics_.get(kind.id(), [&] { return make_quadratic_rows(kind); });
+}
+
 }  // namespace snug

@@ -5,6 +5,7 @@
 #include <snug/bounds/bound_rows.h>
 #include <snug/bounds/bound_table.h>
 #include <snug/bounds/kind_slots.h>
+#include <snug/bounds/quadratic.h>
 
 namespace snug {
 
@@ -15,7 +16,8 @@ namespace snug {
 ///         are needed, and a thread keeps its last eight. No result depends on it.
 class BoundsCache {
  public:
-  explicit BoundsCache(std::size_t most_bytes_of_rows = std::size_t{256} << 20) : rows_(most_bytes_of_rows) {}
+  explicit BoundsCache(std::size_t most_bytes_of_rows = std::size_t{256} << 20)
+      : rows_(most_bytes_of_rows), quadratics_(most_bytes_of_rows) {}
 
   [[nodiscard]] KindCache& kinds() { return kinds_; }
   [[nodiscard]] const KindCache& kinds() const { return kinds_; }
@@ -25,15 +27,18 @@ class BoundsCache {
   [[nodiscard]] const BoundRows& rows(const Kind& kind);
   /// The table of a kind, made from rows that go down to tip_depth().
   [[nodiscard]] const BoundTable& table(const Kind& kind);
+  /// What the quadratic triangles of a kind share.
+  [[nodiscard]] const QuadraticRows& quadratic_rows(const Kind& kind);
 
   /// Kinds whose rows are kept, and the memory of all rows and tables that are.
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
-  [[nodiscard]] std::size_t bytes() const { return rows_.bytes() + tables_.bytes(); }
+  [[nodiscard]] std::size_t bytes() const { return rows_.bytes() + tables_.bytes() + quadratics_.bytes(); }
 
  private:
   KindCache kinds_;
   KindSlots<BoundRows> rows_;
   KindSlots<BoundTable> tables_;
+  KindSlots<QuadraticRows> quadratics_;
 };
 
 }  // namespace snug

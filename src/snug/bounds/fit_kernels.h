@@ -61,6 +61,11 @@ struct Reach {
                                                            const Vector3& a, const Vector3& b,
                                                            const Vector3& c);
 
+/// Largest distance of point r from the sum of weights[k points.count + r] quadratic[k], as computed: each
+/// difference has six products and six subtractions a coordinate. Infinite where one is not finite.
+[[nodiscard]] double farthest_from_quadratic(const Coordinates& points, const double* weights,
+                                             const std::array<Vector3, 6>& quadratic);
+
 /// Offset triangles of regular patches inside the surface, straight from their control points: Bezier points,
 /// one split of de Casteljau's, fit; a patch a lane. A negative radius is no answer: take the general way.
 ///

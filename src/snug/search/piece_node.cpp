@@ -12,35 +12,33 @@ PieceRecord::PieceRecord(const OffsetTriangle& offset, const QuadraticTriangle& 
   const auto single = [](const Vector3& v) {
     return Single3{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
   };
-  double largest = 0, moved = 0;
+  double largest = 0, moved = 0, base_moved = 0;
   for (std::size_t k = 0; k < 6; ++k) {
     const Vector3 exact = (k < 3 ? quadratic.corners[k] : quadratic.middles[k - 3]) - origin;
     net_[k] = single(exact);
     largest = std::max(largest, max_abs(exact));
     moved = std::max(moved, max_abs(wide(net_[k]) - exact));
   }
-  Vector3 shift;
-  for (std::size_t k = 0; k < 3; ++k) shift = shift + (offset.base[k] - quadratic.corners[k]);
-  shift_ = single((1.0 / 3) * shift);
-  double base_moved = 0;
-  const Triangle recorded = base(origin);
   for (std::size_t k = 0; k < 3; ++k) {
-    base_moved = std::max(base_moved, max_abs(recorded[k] - offset.base[k]));
+    const Vector3 exact = offset.base[k] - origin;
+    base_[k] = single(exact);
+    largest = std::max(largest, max_abs(exact));
+    base_moved = std::max(base_moved, max_abs(wide(base_[k]) - exact));
   }
   // Differences to the origin, evaluations of a sum of six products, and directions that were turned.
   const double rounding = 128 * unit_roundoff * largest + 8 * underflow_error;
+  // base() rounds a sum.
+  base_moved += 2 * unit_roundoff * (max_abs(origin - Point3{}) + largest);
   radius_ = float_up(enlarged(offset.radius + spatial_error(base_moved + rounding)));
   error_ = float_up(enlarged(quadratic.error + spatial_error(moved + rounding)));
   // Not a number is not less.
-  if (radius_ < INFINITY && error_ < INFINITY && is_finite(shift)) return;
+  if (radius_ < INFINITY && error_ < INFINITY) return;
   *this = {};
   radius_ = error_ = INFINITY;
 }
 
 Triangle PieceRecord::base(const Point3& origin) const {
-  const Vector3 shift = wide(shift_);
-  return {origin + (wide(net_[0]) + shift), origin + (wide(net_[1]) + shift),
-          origin + (wide(net_[2]) + shift)};
+  return {origin + wide(base_[0]), origin + wide(base_[1]), origin + wide(base_[2])};
 }
 
 Vector3 PieceRecord::at(TriangleParameter at) const {

@@ -13,7 +13,7 @@ namespace snug {
 /// What a query knows of a piece without its control points: its offset triangle, and a quadratic Bezier
 /// triangle near it. Numbers of single precision relative to an origin, which is its node's, read in double.
 /// Guarantee: the radius and the error cover what rounding to single precision moved.
-class alignas(32) PieceRecord {
+class PieceRecord {
  public:
   PieceRecord() = default;
   /// Radius and error are infinite where a number is not finite.
@@ -37,8 +37,8 @@ class alignas(32) PieceRecord {
     return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
   }
 
+  std::array<Single3, 3> base_{};
   std::array<Single3, 6> net_{};  // of the quadratic: corners, then middles of the edges 01, 12, 20
-  Single3 shift_{};               // from its corners to the base triangle
   float radius_ = 0, error_ = 0;
 };
 

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace snug {
+
+/// Corners of a piece in the parameters of the patch it is of, as weights of the patch's corners: halves of
+/// halves, without rounding for the first 24 levels.
+using ParameterTriangle = std::array<std::array<double, 3>, 3>;
+
+inline constexpr ParameterTriangle whole_patch{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+
+/// Child 0 to 2 keeps that corner, in its place; 3 is the middle one, its corner k facing corner k.
+[[nodiscard]] ParameterTriangle child_of(const ParameterTriangle& triangle, std::size_t child);
+/// The same with corner `first` as corner 0.
+[[nodiscard]] ParameterTriangle turned(const ParameterTriangle& triangle, std::size_t first);
+/// Part 0 or 1 of those that the line from corner 1 to the middle of the edge 02 makes (scheme/bezier.h).
+[[nodiscard]] ParameterTriangle part_of(const ParameterTriangle& triangle, std::size_t part);
+
+/// Weights of the six Bezier points of a quadratic triangle over the patch, corners and then middles of the
+/// edges 01, 12, 20.
+using QuadraticWeights = std::array<double, 6>;
+
+/// Of these the Bezier point u^i v^j of the quadratic over a piece, raised to `degree`.
+/// Guarantee: not negative; each is off by at most 16 roundoffs of itself.
+/// Requires:  degree at least 2, i + j at most as much.
+[[nodiscard]] QuadraticWeights raised_quadratic(const ParameterTriangle& piece, std::size_t degree,
+                                                std::size_t i, std::size_t j);
+
+}  // namespace snug

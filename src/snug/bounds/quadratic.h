@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include <snug/bounds/bound_rows.h>
+#include <snug/bounds/layout.h>
+#include <snug/patch/patch.h>
+
+namespace snug {
+
+class BoundsCache;
+
+/// A quadratic Bezier triangle near a patch, parameter by parameter.
+struct QuadraticTriangle {
+  std::array<Point3, 3> corners;  ///< near the patch's limit corners, in the patch's order
+  std::array<Point3, 3> middles;  ///< Bezier points of the edges from corner 0 to 1, 1 to 2, 2 to 0
+  double error;                   ///< |patch(t) - quadratic(t)| <= error for all t; infinite if not finite
+};
+
+/// What the quadratic triangles of a kind share. Immutable.
+///
+/// Guarantee: whatever the fit is, errors are proved for the quadratics that came out.
+/// Source:    derivations/quadratics.md.
+class QuadraticRows {
+ public:
+  /// A piece that is no polynomial, after one split.
+  struct Net {
+    const Kind* kind;
+    std::size_t begin;                         ///< first of its control points in rows()
+    std::array<QuadraticWeights, 6> restrict;  ///< of a quadratic to the piece, in its kind's order
+  };
+
+  /// One level of them: Bezier points, then the nets().
+  [[nodiscard]] const BoundRows& rows() const { return rows_; }
+  [[nodiscard]] const std::vector<Net>& nets() const { return nets_; }
+  /// Weights of one control point in the six points of the quadratic.
+  [[nodiscard]] const double* fit() const { return fit_.data(); }
+  [[nodiscard]] std::size_t bytes() const;
+
+  /// Upper bound of |patch(t) - quadratic(t)| for one in the kind's order; infinite unless the kind comes
+  /// again at a corner.
+  [[nodiscard]] double distance(const Kind& kind, const Patch& patch,
+                                const std::array<Vector3, 6>& quadratic) const;
+
+ private:
+  friend QuadraticRows make_quadratic_rows(const Kind& kind);
+  void make_fit(const BoundRows& deep);
+  void make_frame(const Kind& kind, const BoundRows& deep);
+
+  BoundRows rows_;
+  std::vector<Net> nets_;
+  std::vector<double> fit_;  // 6 x controls, column by column
+  // Of a kind that comes again at a corner: places of control points, such that the corners' limits are at
+  // (0, 0), (1, 0), (0, 1); corners of a polygon that holds, up to an error a coordinate, where its limit
+  // points are less their parameters; largest |basis function|.
+  std::vector<LayoutPoint> layout_, offsets_;
+  double offset_error_ = 0;
+  std::vector<double> largest_;
+};
+
+/// Requires:  a patch, no polygon, that is shared().
+/// Cost:      0.1 to 1 ms up to valence 12.
+[[nodiscard]] QuadraticRows make_quadratic_rows(const Kind& kind);
+
+/// The quadratic triangle of a patch, least squares over Bezier points, with its error.
+///
+/// Guarantee: QuadraticTriangle::error, rounding and the patch's own error included.
+/// Tightness: in the median 1.3 times the largest distance over all parameters.
+/// Cost:      one product a level, of which there are one to about five.
+[[nodiscard]] QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch);
+
+}  // namespace snug

@@ -1,0 +1,249 @@
+// Quadratic triangles are as near their patches as they say, parameter by parameter.
+
+#include <snug/bounds/quadratic.h>
+
+#include <gtest/gtest.h>
+#include <oracle/loop_twin.h>
+#include <oracle/polygon_twin.h>
+#include <snug/geometry/scaling.h>
+#include <testing/containment.h>
+#include <testing/disguises.h>
+#include <testing/patches.h>
+#include <testing/scheme_surfaces.h>
+
+#include <algorithm>
+#include <map>
+
+namespace snug {
+namespace {
+
+using testing::Extended;
+
+Extended point_of(const QuadraticTriangle& q, long double u, long double v) {
+  const long double w = 1 - u - v;
+  const std::array<long double, 6> weights{w * w, u * u, v * v, 2 * w * u, 2 * u * v, 2 * v * w};
+  Extended sum{};
+  for (std::size_t k = 0; k < 6; ++k) {
+    const Point3& p = k < 3 ? q.corners[k] : q.middles[k - 3];
+    for (std::size_t a = 0; a < 3; ++a) sum[a] += weights[k] * p[a];
+  }
+  return sum;
+}
+
+// Between a limit point that is known to `known`, a coordinate, and the quadratic at its parameter.
+bool within_error(const QuadraticTriangle& q, long double u, long double v, const Point3& limit,
+                  double known) {
+  const Extended at = point_of(q, u, v);
+  long double sq = 0, size = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    sq += (at[a] - limit[a]) * (at[a] - limit[a]);
+    size += std::fabs(at[a]);
+  }
+  return std::sqrt(sq) <= q.error + 1.8L * known + 1e-18L * size + 1e-160L;
+}
+
+class Quadratics {
+ public:
+  explicit Quadratics(const LimitSurface& surface) : surface_(surface) {}
+  const QuadraticTriangle& operator[](PatchId p) {
+    const auto [it, fresh] = made_.try_emplace(p.index());
+    if (fresh) it->second = quadratic_triangle(surface_.library(), surface_.patch(p));
+    return it->second;
+  }
+  // A sample in mesh units.
+  bool near(PatchId p, TriangleParameter at, const oracle::Point& limit, double known) {
+    const PowerOfTwo scale = surface_.scale();
+    return within_error((*this)[p], at.u, at.v, scale.apply(Point3{limit[0], limit[1], limit[2]}),
+                        scale.apply(known) + 0x1p-1000);
+  }
+
+ private:
+  const LimitSurface& surface_;
+  std::map<std::size_t, QuadraticTriangle> made_;
+};
+
+std::size_t check(const testing::TaggedCase& c, int levels, const std::shared_ptr<BoundsCache>& library) {
+  const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), library,
+                             1);
+  Quadratics quadratics(surface);
+  const bool loop = surface.options().scheme == Scheme::loop;
+  const std::vector<oracle::FaceSample> samples = oracle::sample_faces(c.mesh, c.rules, levels);
+  for (const oracle::FaceSample& s : samples) {
+    for (unsigned half = 0; half < (loop ? 1u : 2u); ++half) {
+      if (!loop && (half == 0 ? s.v > s.u : s.u > s.v)) continue;
+      const TriangleParameter at = loop        ? TriangleParameter{s.u, s.v}
+                                   : half == 0 ? TriangleParameter{s.u - s.v, s.v}
+                                               : TriangleParameter{s.v - s.u, 1 - s.v};
+      const PatchId patch(surface.patches_of(s.face).begin + (loop ? 0 : 2 * s.part + half));
+      EXPECT_TRUE(quadratics.near(patch, at, s.position, s.error))
+          << c.name << ", " << testing::text_of(c.rules) << ", face " << s.face << "." << s.part << " at "
+          << s.u << ", " << s.v;
+    }
+    if (::testing::Test::HasFailure()) break;
+  }
+  return samples.size();
+}
+
+TEST(quadratic_triangle, is_as_near_as_it_says_to_limit_points_of_every_kind) {
+  std::size_t samples = 0;
+  for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
+    const auto library = std::make_shared<BoundsCache>();
+    for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 81)) {
+      samples += check(c, 3, library);
+      if (HasFailure()) return;
+    }
+  }
+  EXPECT_GT(samples, 50'000u);
+}
+
+TEST(quadratic_triangle, is_as_near_as_it_says_for_disguised_meshes) {
+  for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
+    const auto library = std::make_shared<BoundsCache>();
+    const std::vector<testing::TaggedCase> cases = testing::tagged_cases(scheme, 82);
+    const std::vector<testing::Disguise> disguises = testing::disguises();
+    for (std::size_t i = 0; i < 3 * disguises.size(); ++i) {
+      testing::TaggedCase c = cases[(7 * i) % cases.size()];
+      const testing::Disguise& disguise = disguises[i % disguises.size()];
+      c.name += ", " + disguise.name;
+      for (oracle::Point& p : c.mesh.points) p = disguise.change(p);
+      check(c, 2, library);
+      if (HasFailure()) return;
+    }
+  }
+}
+
+// Limit points ever closer to a corner, and pieces there: levels of nets are left at a tip.
+TEST(quadratic_triangle, is_as_near_as_it_says_down_to_extraordinary_corners) {
+  for (const std::uint32_t n : {3u, 4u, 5u, 7u, 8u, 12u, 50u, 200u}) {
+    std::mt19937_64 random(n);
+    const oracle::TwinMesh twin = oracle::meshes::disturbed(oracle::meshes::bipyramid(n), 2, 0.2, random);
+    const LimitSurface surface = testing::surface_of(twin);
+    Quadratics quadratics(surface);
+    for (std::uint32_t corner = 0; corner < 3; ++corner) {
+      for (const oracle::LimitSample& s : oracle::sample_near_corner(twin, 0, corner, 50)) {
+        EXPECT_TRUE(quadratics.near(PatchId(s.face), {s.u, s.v}, s.position, s.error))
+            << n << ", " << s.u << ", " << s.v;
+      }
+    }
+  }
+}
+
+struct Compared {
+  double error, sampled;
+};
+
+Compared compare(BoundsCache& library, const Patch& patch, int steps) {
+  const QuadraticTriangle q = quadratic_triangle(library, patch);
+  Compared result{q.error, 0};
+  for (int j = 0; j <= steps; ++j) {
+    for (int i = 0; i + j <= steps; ++i) {
+      const double u = static_cast<double>(i) / steps, v = static_cast<double>(j) / steps;
+      const BoundedPoint limit = limit_point(patch, {u, v}).from(patch.origin);
+      EXPECT_TRUE(within_error(q, u, v, limit.position, limit.error)) << u << ", " << v;
+      const Extended at = point_of(q, u, v);
+      const Vector3 apart = limit.position - Point3{static_cast<double>(at[0]), static_cast<double>(at[1]),
+                                                    static_cast<double>(at[2])};
+      result.sampled = std::max(result.sampled, length(apart));
+    }
+  }
+  return result;
+}
+
+// Pieces have their corners turned, and kinds that whole patches may not have.
+TEST(quadratic_triangle, of_pieces_is_as_near_as_it_says) {
+  std::mt19937_64 random(83);
+  testing::for_each_surface(83, [&](const testing::NamedSurface& named) {
+    for (int trial = 0; trial < 6; ++trial) {
+      const PatchId p(random() % named.surface.patch_count());
+      if (!named.surface.has_patch(p)) continue;
+      Patch patch = named.surface.patch(p);
+      for (int level = 0; level < 3; ++level) {
+        compare(named.surface.library(), patch, 8);
+        patch = split(patch, static_cast<unsigned>(random() % 4));
+      }
+    }
+  });
+}
+
+TEST(quadratic_triangle, has_an_error_of_the_size_of_the_distance) {
+  for (const oracle::TwinMesh& twin : testing::assorted_meshes(84)) {
+    const LimitSurface surface = testing::surface_of(twin);
+    std::vector<double> ratios;
+    for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+      if (!surface.has_patch(PatchId(p))) continue;
+      const Compared c = compare(surface.library(), surface.patch(PatchId(p)), 16);
+      ratios.push_back(c.error / c.sampled);
+    }
+    std::nth_element(ratios.begin(), ratios.begin() + ratios.size() / 2, ratios.end());
+    EXPECT_LT(ratios[ratios.size() / 2], 1.5);
+  }
+}
+
+// Next to a corner that comes again the layout is all there is: patches less their linear interpolation.
+TEST(quadratic_rows, bound_a_piece_at_a_corner_by_its_layout_closely) {
+  std::mt19937_64 random(86);
+  std::size_t compared = 0;
+  testing::for_each_surface(86, [&](const testing::NamedSurface& named) {
+    BoundsCache& library = named.surface.library();
+    for (int trial = 0; trial < 4; ++trial) {
+      const PatchId p(random() % named.surface.patch_count());
+      if (!named.surface.has_patch(p)) continue;
+      for (unsigned corner = 0; corner < 3; ++corner) {
+        Patch patch = named.surface.patch(p);
+        for (int level = 0; level < 12; ++level) patch = split(patch, corner);
+        const Kind& kind = *patch.kind;
+        if (!kind.shared() || kind.polynomial()) continue;
+        patch.first = 0;
+        const auto limits = limit_corners(patch);
+        std::array<Vector3, 6> linear{limits[0], limits[1], limits[2]};
+        for (std::size_t k = 0; k < 3; ++k) linear[3 + k] = 0.5 * (linear[k] + linear[(k + 1) % 3]);
+        const double distance = library.quadratic_rows(kind).distance(kind, patch, linear);
+        double sampled = 0;
+        for (int j = 0; j <= 16; ++j) {
+          for (int i = 0; i + j <= 16; ++i) {
+            const LimitPoint at = limit_point(patch, {i / 16.0, j / 16.0});
+            const Vector3 on_plane =
+                ((16 - i - j) / 16.0) * linear[0] + (i / 16.0) * linear[1] + (j / 16.0) * linear[2];
+            sampled = std::max(sampled, length(at.relative - on_plane));
+          }
+        }
+        EXPECT_LE(sampled, distance * (1 + 1e-9) + 1e-15) << named.name << ", " << corner;
+        bool smooth = kind.key().plain();
+        for (std::size_t k = 0; k < 3; ++k) smooth = smooth && kind.corner(k).closed && !kind.corner(k).sharp;
+        if (!smooth || sampled < 1e-13) continue;
+        ++compared;
+        EXPECT_LT(distance, 3 * sampled) << named.name << ", " << corner;
+      }
+    }
+  });
+  EXPECT_GT(compared, 300u);
+}
+
+TEST(quadratic_triangle, is_exact_for_bilinear_faces) {
+  std::mt19937_64 random(85);
+  for (const auto& mesh : {oracle::meshes::quad_grid(3, 2), oracle::meshes::mixed_strip()}) {
+    const LimitSurface surface(testing::control_mesh(oracle::meshes::shaken(mesh, 0.3, random)),
+                               {Scheme::bilinear}, std::make_shared<BoundsCache>(), 1);
+    for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+      if (!surface.has_patch(PatchId(p))) continue;
+      EXPECT_LT(compare(surface.library(), surface.patch(PatchId(p)), 8).error, 1e-13);
+    }
+  }
+}
+
+TEST(quadratic_triangle, of_points_that_are_not_finite_has_an_infinite_error) {
+  for (const std::uint32_t n : {5u, 6u}) {
+    const LimitSurface surface = testing::surface_of(oracle::meshes::bipyramid(n));
+    for (const double bad : {double{NAN}, double{INFINITY}}) {
+      Patch patch = surface.patch(PatchId(0));
+      for (std::size_t i = 0; i < patch.points.size(); ++i) {
+        Patch broken = patch;
+        broken.points[i].y = bad;
+        EXPECT_EQ(quadratic_triangle(surface.library(), broken).error, INFINITY);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace snug
