@@ -14,7 +14,8 @@ class Queries {
  public:
   Queries(const LimitSurface& a, const LimitSurface& b, const SurfaceBvhOptions& options = {});
 
-  [[nodiscard]] Collision collide(const PosePair& at, double tolerance, double margin = 0);
+  [[nodiscard]] Collision collide(const PosePair& at, double tolerance, double margin = 0,
+                                  WitnessKind witness = WitnessKind::exact);
   /// Do the limit surfaces meet? Nothing where neither is certain.
   [[nodiscard]] std::optional<bool> meet(const PosePair& at);
   /// With upper - lower at most `precision`.

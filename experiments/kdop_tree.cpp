@@ -211,7 +211,7 @@ double gap(Volume volume, const BoundingVolume& set, const BoundingVolume& other
 }
 
 KdopTree::KdopTree(const LimitSurface& surface, Volume volume)
-    : surface_(surface), volume_(volume), pieces_(surface) {
+    : surface_(surface), volume_(volume) {
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
     if (surface.has_patch(PatchId(p))) patches_.emplace_back(p);
   }
@@ -273,28 +273,32 @@ void KdopTree::build(std::size_t node, std::size_t begin, std::size_t end) {
   nodes_[node].count = static_cast<std::uint32_t>(count);
 }
 
-void KdopTree::add_piece(PieceId piece) {
+// Fitted in scratch_.
+void KdopTree::add_piece(Piece piece) {
+  pieces_.push_back(std::move(piece));
   BoundingVolume set;
-  set.box = pieces_.box(piece);
-  const OffsetTriangle& offset = pieces_[piece].offset;
+  set.box = box_around(pieces_.back(), scratch_, BoundMethod::rows);
+  const OffsetTriangle& offset = pieces_.back().offset;
   if (volume_ != Volume::obb) {
     set = fit(volume_, offset.base, [&](const Vector3& d) { return extent_of(offset, d); });
   }
   Node node = make_node(set);
   node.opened = false;
-  node.piece = piece;
+  node.piece = &pieces_.back();
   nodes_.push_back(node);
 }
 
 void KdopTree::open(std::size_t node) {
   if (nodes_[node].opened) return;
   const auto first = static_cast<std::uint32_t>(nodes_.size());
-  if (nodes_[node].piece.valid()) {
-    const PieceId child = pieces_.split(nodes_[node].piece);
-    for (std::size_t i = 0; i < 4; ++i) add_piece(PieceId(child.index() + i));
+  BoundsCache& library = surface_.library();
+  if (const Piece* const piece = nodes_[node].piece) {
+    for (unsigned child = 0; child < 4; ++child) add_piece(child_of(library, *piece, child, scratch_));
   } else {
     const std::size_t begin = nodes_[node].first, end = begin + nodes_[node].count;
-    for (std::size_t i = begin; i < end; ++i) add_piece(pieces_.root(patches_[i]));
+    for (std::size_t i = begin; i < end; ++i) 
+      add_piece(make_piece(library, patches_[i], surface_.patch(patches_[i]), scratch_));
+
   }
   nodes_[node].first = first;
   nodes_[node].count = static_cast<std::uint32_t>(nodes_.size() - first);
@@ -317,9 +321,9 @@ class KdopWalk {
       const Pair pair = stack_.back();
       stack_.pop_back();
       const Nodes nodes{&tree_[0]->nodes_[pair.nodes[0]], &tree_[1]->nodes_[pair.nodes[1]]};
-      if (nodes[0]->piece.valid() && nodes[1]->piece.valid() && apart_or_within(nodes)) continue;
+      if (nodes[0]->piece != nullptr && nodes[1]->piece != nullptr && apart_or_within(nodes)) continue;
       const auto can_open = [&](std::size_t s) {
-        return !nodes[s]->piece.valid() || tree_[s]->pieces_.can_split(nodes[s]->piece);
+        return nodes[s]->piece == nullptr || nodes[s]->piece->can_split();
       };
       std::size_t side = frame_[1].scale * nodes[1]->size > frame_[0].scale * nodes[0]->size ? 1 : 0;
       if (!can_open(side)) side = 1 - side;
@@ -369,7 +373,7 @@ class KdopWalk {
     std::array<Triangle, 2> base;
     double radii = 0;
     for (std::size_t s = 0; s < 2; ++s) {
-      const OffsetTriangle& offset = tree_[s]->pieces_[nodes[s]->piece].offset;
+      const OffsetTriangle& offset = nodes[s]->piece->offset;
       double error = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         base[s][k] = frame_[s].apply(offset.base[k]);
@@ -384,7 +388,7 @@ class KdopWalk {
     std::array<Point3, 2> points;
     double error = 0;
     for (std::size_t s = 0; s < 2; ++s) {
-      const Patch& patch = tree_[s]->pieces_[nodes[s]->piece].patch;
+      const Patch& patch = nodes[s]->piece->patch;
       const LimitPoint limit = limit_point(patch, clamped(at[s]));
       points[s] = frame_[s].apply(patch.origin + limit.relative);
       error += 2 * frame_[s].growth() * limit.error + rounding(1);

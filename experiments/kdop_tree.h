@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <span>
 #include <vector>
@@ -82,16 +83,17 @@ class KdopTree {
     double size;
     std::uint32_t first = 0, count = 0;  // of its children in nodes_, or patches of a leaf that is not opened
     bool opened = true;
-    PieceId piece{};
+    const Piece* piece = nullptr;  // none in the tree itself
   };
   [[nodiscard]] Node make_node(const BoundingVolume& set) const;
   void build(std::size_t node, std::size_t begin, std::size_t end);
   void open(std::size_t node);
-  void add_piece(PieceId piece);
+  void add_piece(Piece piece);
 
   const LimitSurface& surface_;
   Volume volume_;
-  PieceCache pieces_;
+  std::deque<Piece> pieces_;
+  HullPoints scratch_;
   std::vector<PatchId> patches_;
   std::vector<Node> nodes_;
 };

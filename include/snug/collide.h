@@ -18,12 +18,20 @@ enum class Verdict : std::uint8_t {
 };
 [[nodiscard]] SNUG_API const char* name_of(Verdict verdict);
 
+/// The points that an answer comes with.
+enum class WitnessKind : std::uint8_t {
+  none,         ///< none, the quickest
+  approximate,  ///< near the surfaces: witness_error tells how near
+  exact,        ///< on the surfaces, up to rounding
+};
+
 struct CollideOptions {
   /// >= 0, mesh units. With 0 only proofs of contact or separation count. Default: 0.1 % of the larger
   /// surface's size.
   std::optional<double> tolerance{};
   double margin = 0;                 ///< >= 0, mesh units
   std::uint64_t budget = 1'000'000;  ///< most splits
+  WitnessKind witness = WitnessKind::exact;  ///< no verdict depends on it
   bool prove_contact = true;         ///< before returning `within`, try to prove `intersecting`
   bool solid = false;  ///< compare the solids that closed surfaces bound: one inside the other intersects it
   /// For separated surfaces, refine `distance` until its lower end is at least half its upper end, and give
@@ -47,7 +55,7 @@ using WitnessPlaces = std::array<std::optional<SurfaceParameter>, 2>;
 /// The answer to "do these surfaces touch?", in mesh units and world coordinates.
 struct Collision {
   Verdict verdict = Verdict::undecided;
-  /// Contains the distance. The upper end is infinite if no pair of points was evaluated.
+  /// Contains the distance. The upper end is infinite if no pair of points was near enough to matter.
   Interval distance{0, std::numeric_limits<double>::infinity()};
   std::optional<std::array<Point3, 2>> witness;  ///< the two closest points found, on A and on B
   /// Upper bound, per coordinate, of the distance between a witness and the limit point it stands for.

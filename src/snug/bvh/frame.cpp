@@ -6,11 +6,19 @@
 
 namespace snug {
 
-double PlacedFrame::apply_error(const Point3& p) const {
-  // Rows of R have length at most 1 + defect, so their absolute sums are below 2.
-  const double size = 2 * scale * max_abs(p - Point3{}) + max_abs(translation);
+namespace {
+
+// Of a point with coordinates of at most `largest`. Rows of R have length at most 1 + defect, so their absolute
+// sums are below 2.
+double error_of(const PlacedFrame& frame, double largest) {
+  const double size = 2 * frame.scale * largest + max_abs(frame.translation);
   return enlarged(8 * unit_roundoff * size) + 8 * underflow_error;
 }
+
+}  // namespace
+
+double PlacedFrame::apply_error(const Point3& p) const { return error_of(*this, max_abs(p - Point3{})); }
+double PlacedFrame::largest_apply_error() const { return error_of(*this, 4); }
 
 BoundedPoint PlacedFrame::apply(const BoundedPoint& p) const {
   return {apply(p.position), enlarged(growth() * spatial_error(p.error)) + apply_error(p.position)};

@@ -18,6 +18,8 @@ struct PlacedFrame {
   }
   /// Upper bound, a coordinate, of |apply(p) - exact image|.
   [[nodiscard]] double apply_error(const Point3& p) const;
+  /// The same for any point with coordinates of at most 4.
+  [[nodiscard]] double largest_apply_error() const;
   /// The exact point's image is within the error of the result.
   [[nodiscard]] BoundedPoint apply(const BoundedPoint& p) const;
   /// Upper bound of scale times the spectral norm of R: how much radii grow.

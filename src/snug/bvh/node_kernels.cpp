@@ -73,7 +73,7 @@ HWY_INLINE void store(V gap, float prune_distance, std::size_t at, float* out, N
 }
 
 // Gaps of the lanes from `at` on. `other`: a row of the other boxes, as in a node.
-template <class Row>
+template <bool euclidean, class Row>
 HWY_INLINE V gaps(const float* node, std::size_t at, const Row& other, V all_slack, float prune_distance) {
   const Tag d;
   const V zero = hn::Zero(d);
@@ -103,21 +103,25 @@ HWY_INLINE V gaps(const float* node, std::size_t at, const Row& other, V all_sla
     }
     own[i] = hn::Sub(hn::Sub(hn::Abs(t[i]), far), all_slack);
   }
-  // Along the line of the centres: what both boxes take of it, times its length.
-  const V between_sq =
-      sum3(hn::Mul(delta[0], delta[0]), hn::Mul(delta[1], delta[1]), hn::Mul(delta[2], delta[2]));
-  V taken =
-      sum3(hn::Mul(half[0], hn::Abs(t[0])), hn::Mul(half[1], hn::Abs(t[1])), hn::Mul(half[2], hn::Abs(t[2])));
+  V along_other[3];
   for (std::size_t j = 0; j < 3; ++j) {
-    const V along = hn::Abs(along_axis(delta, j));
-    taken = hn::Add(taken, hn::Mul(other(3 + j), along));
-    others[j] = hn::Sub(hn::Sub(along, others[j]), all_slack);
+    along_other[j] = hn::Abs(along_axis(delta, j));
+    others[j] = hn::Sub(hn::Sub(along_other[j], others[j]), all_slack);
   }
-  V gap = outside(own, others);
-  const V central = hn::Sub(hn::Div(hn::Sub(between_sq, taken), hn::Sqrt(between_sq)), all_slack);
-  const auto apart =
-      hn::And(hn::Gt(central, zero), hn::Gt(between_sq, hn::Set(d, least_squared * least_squared)));
-  gap = hn::IfThenElse(apart, hn::Max(gap, central), gap);
+  V gap = hn::Max(max3(own[0], own[1], own[2]), max3(others[0], others[1], others[2]));
+  if constexpr (euclidean) {
+    // Along the line of the centres: what both boxes take of it, times its length.
+    const V between_sq =
+        sum3(hn::Mul(delta[0], delta[0]), hn::Mul(delta[1], delta[1]), hn::Mul(delta[2], delta[2]));
+    V taken = sum3(hn::Mul(half[0], hn::Abs(t[0])), hn::Mul(half[1], hn::Abs(t[1])),
+                   hn::Mul(half[2], hn::Abs(t[2])));
+    for (std::size_t j = 0; j < 3; ++j) taken = hn::Add(taken, hn::Mul(other(3 + j), along_other[j]));
+    gap = outside(own, others);
+    const V central = hn::Sub(hn::Div(hn::Sub(between_sq, taken), hn::Sqrt(between_sq)), all_slack);
+    const auto apart =
+        hn::And(hn::Gt(central, zero), hn::Gt(between_sq, hn::Set(d, least_squared * least_squared)));
+    gap = hn::IfThenElse(apart, hn::Max(gap, central), gap);
+  }
   // Lane by lane, so that it makes no difference how many a vector has.
   const auto settled = hn::Gt(gap, hn::Set(d, prune_distance));
   if (!hn::AllTrue(d, settled)) {
@@ -142,6 +146,7 @@ HWY_INLINE V gaps(const float* node, std::size_t at, const Row& other, V all_sla
 }
 
 // `doubt`: more than what roundings do to a gap.
+template <bool euclidean>
 HWY_INLINE Near compare(const float* node, const OtherBox& other, float doubt, float prune_distance,
                         float* out) {
   const Tag d;
@@ -151,14 +156,14 @@ HWY_INLINE Near compare(const float* node, const OtherBox& other, float doubt, f
     return hn::Set(d, r < 3 ? other.centre[r] : r < 6 ? other.half[r - 3] : other.axes[(r - 6) / 3][r % 3]);
   };
   for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
-    store(gaps(node, at, row, all_slack, prune_distance), prune_distance, at, out, near);
+    store(gaps<euclidean>(node, at, row, all_slack, prune_distance), prune_distance, at, out, near);
   }
   return near;
 }
 
 Near boxes(const float* node, float reach, const OtherBox& other, float slack, float prune_distance,
            float* out) {
-  return compare(node, other, roundings * reach + slack, prune_distance, out);
+  return compare<true>(node, other, roundings * reach + slack, prune_distance, out);
 }
 
 // The product of the turn with a column of three rows, from row r on, plus `add`.
@@ -173,20 +178,77 @@ HWY_INLINE void turned(const Turn& turn, const float* rows, std::size_t r, float
   }
 }
 
-Near seen_box(const float* node, float reach, const SeenBox& other, const Turn& turn, float slack,
-              float prune_distance, float* out) {
-  OtherBox box;
+// Places another node's box; false where nothing can be said. `doubt` becomes what roundings do to a gap.
+HWY_INLINE bool place(float reach, const SeenBox& other, const Turn& turn, OtherBox& box, float& doubt) {
+  reach += 2 * turn.scale * other.reach + std::fabs(other.offset[0]) + std::fabs(other.offset[1]) +
+           std::fabs(other.offset[2]);
+  doubt = pair_roundings * reach;
+  if (!(reach < 1e18F)) return false;
   HWY_ALIGN const float offset[4] = {other.offset[0], other.offset[1], other.offset[2], 0};
   HWY_ALIGN const float none[4] = {};
   HWY_ALIGN float placed[4][4];
   turned(turn, other.rows, 0, 1, offset, placed[3]);
-  for (std::size_t k = 0; k < 3; ++k) turned(turn, other.rows, 6 + 3 * k, 1 / turn.scale, none, placed[k]);
+  for (std::size_t k = 0; k < 3; ++k) turned(turn, other.rows, 6 + 3 * k, turn.inverse_scale, none, placed[k]);
   for (std::size_t k = 0; k < 3; ++k) {
     box.centre[k] = placed[3][k];
     box.half[k] = turn.scale * other.rows[8 * (3 + k)];
     for (std::size_t i = 0; i < 3; ++i) box.axes[k][i] = placed[k][i];
   }
-  return compare(node, box, pair_roundings * reach + slack, prune_distance, out);
+  return true;
+}
+
+Near nothing_known(float* out) {
+  std::fill(out, out + 8, -INFINITY);
+  return {0xff, INFINITY};
+}
+
+Near seen_box(const float* node, float reach, const SeenBox& other, const Turn& turn, float slack,
+              float prune_distance, float* out) {
+  OtherBox box;
+  float doubt;
+  if (!place(reach, other, turn, box, doubt)) return nothing_known(out);
+  return compare<false>(node, box, doubt + slack, prune_distance, out);
+}
+
+// Along the line of the centres and along the direction. Overlaps are told by the former.
+Near seen_along(const float* node, float reach, const SeenBox& other, const Turn& turn, float slack,
+                float prune_distance, float* out) {
+  OtherBox box;
+  float doubt;
+  if (!place(reach, other, turn, box, doubt)) return nothing_known(out);
+  const Tag d;
+  Near near{0, INFINITY};
+  const V all_slack = hn::Set(d, doubt + slack);
+  const float* const n = turn.direction;
+  float other_extent = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const float* const axis = other.rows + 8 * (6 + 3 * k);
+    const float* const m = turn.other_direction;
+    other_extent += box.half[k] * std::fabs(axis[0] * m[0] + axis[8] * m[1] + axis[16] * m[2]);
+  }
+  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+    const auto row = [&](std::size_t r) { return hn::LoadU(d, node + 8 * r + at); };
+    V delta[3];
+    for (std::size_t k = 0; k < 3; ++k) delta[k] = hn::Sub(hn::Set(d, box.centre[k]), row(k));
+    const V between_sq =
+        sum3(hn::Mul(delta[0], delta[0]), hn::Mul(delta[1], delta[1]), hn::Mul(delta[2], delta[2]));
+    V taken = hn::Zero(d), extent = hn::Set(d, other_extent);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const V axis[3] = {row(6 + 3 * k), row(7 + 3 * k), row(8 + 3 * k)}, half = row(3 + k);
+      const V own = hn::Abs(sum3(hn::Mul(axis[0], delta[0]), hn::Mul(axis[1], delta[1]), hn::Mul(axis[2], delta[2])));
+      const V others = hn::Abs(dot3(d, delta, box.axes[k]));
+      taken = hn::Add(taken, hn::Add(hn::Mul(half, own), hn::Mul(hn::Set(d, box.half[k]), others)));
+      extent = hn::Add(extent, hn::Mul(half, hn::Abs(dot3(d, axis, n))));
+    }
+    const V between = hn::Sqrt(between_sq);
+    const V central = hn::Div(hn::Sub(between_sq, taken), between);
+    // Of centres that coincide nothing is known, but for the direction.
+    const V known = hn::IfThenElse(hn::Gt(between_sq, hn::Set(d, least_squared * least_squared)), central,
+                                   hn::Neg(taken));
+    const V along = hn::Sub(dot3(d, delta, n), extent);
+    store(hn::Sub(hn::Max(known, along), all_slack), prune_distance, at, out, near);
+  }
+  return near;
 }
 
 void boxes_to_point(const float* node, const float* point, float slack, float* out) {
@@ -212,6 +274,21 @@ void boxes_to_point(const float* node, const float* point, float slack, float* o
   }
 }
 
+void extents(const float* node, float reach, const float* direction, float* out) {
+  const Tag d;
+  const V doubt = hn::Set(d, roundings * reach);
+  for (std::size_t at = 0; at < 8; at += hn::Lanes(d)) {
+    const auto row = [&](std::size_t r) { return hn::LoadU(d, node + 8 * r + at); };
+    const V centre[3] = {row(0), row(1), row(2)};
+    V extent = hn::Add(dot3(d, centre, direction), doubt);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const V axis[3] = {row(6 + 3 * k), row(7 + 3 * k), row(8 + 3 * k)};
+      extent = hn::Add(extent, hn::Mul(row(3 + k), hn::Abs(dot3(d, axis, direction))));
+    }
+    hn::StoreU(extent, d, out + at);
+  }
+}
+
 }  // namespace
 }  // namespace snug::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -221,7 +298,9 @@ namespace snug::kernels {
 
 HWY_EXPORT(boxes);
 HWY_EXPORT(seen_box);
+HWY_EXPORT(seen_along);
 HWY_EXPORT(boxes_to_point);
+HWY_EXPORT(extents);
 
 Near obb_distances(const float* node, float reach, const OtherBox& other, float slack, float prune_distance,
                    float* out) {
@@ -235,18 +314,23 @@ Near obb_distances(const float* node, float reach, const OtherBox& other, float 
 }
 
 Near obb_distances(const float* node, float reach, const SeenBox& other, const Turn& turn, float slack,
-                   float prune_distance, float* out) {
-  reach += 2 * turn.scale * other.reach + std::fabs(other.offset[0]) + std::fabs(other.offset[1]) +
-           std::fabs(other.offset[2]);
-  if (!(reach < 1e18F)) {
-    std::fill(out, out + 8, -INFINITY);
-    return {0xff, INFINITY};
+                   float prune_distance, Gaps sort, float* out) {
+  if (sort == Gaps::lines) {
+    return HWY_DYNAMIC_DISPATCH(seen_along)(node, reach, other, turn, slack, prune_distance, out);
   }
   return HWY_DYNAMIC_DISPATCH(seen_box)(node, reach, other, turn, slack, prune_distance, out);
 }
 
 void obb_distances(const float* node, const float point[3], float slack, float* out) {
   HWY_DYNAMIC_DISPATCH(boxes_to_point)(node, point, slack, out);
+}
+
+void obb_extents(const float* node, float reach, const float direction[3], float* out) {
+  if (!(reach < 1e18F)) {
+    std::fill(out, out + 8, INFINITY);
+    return;
+  }
+  HWY_DYNAMIC_DISPATCH(extents)(node, reach, direction, out);
 }
 
 }  // namespace snug::kernels

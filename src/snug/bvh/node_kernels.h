@@ -32,12 +32,17 @@ struct Near {
 Near obb_distances(const float* node, float reach, const OtherBox& other, float slack, float prune_distance,
                    float* out);
 void obb_distances(const float* node, const float point[3], float slack, float* out);
+/// How far the boxes reach along a direction.
+void obb_extents(const float* node, float reach, const float direction[3], float* out);
 
 /// How boxes of another frame are seen: x -> columns x, which makes lengths `scale`, a power of two, times as
 /// large.
 struct Turn {
   alignas(16) float columns[3][4];
-  float scale;
+  float scale, inverse_scale;
+  /// A direction from the node's boxes to the other one, of length at most 1, or zero: the node's and the
+  /// other's coordinates of it.
+  float direction[3], other_direction[3];
 };
 /// A box of another node there.
 struct SeenBox {
@@ -45,8 +50,11 @@ struct SeenBox {
   float reach;        ///< of the other node
   float offset[3];    ///< of the other node's origin from this one's, here
 };
+/// Which gaps are looked for: across fifteen axes, or along the line of the centres and Turn::direction,
+/// which tell more of boxes that are far apart.
+enum class Gaps : std::uint8_t { axes, lines };
 /// The same for such a box.
 Near obb_distances(const float* node, float reach, const SeenBox& other, const Turn& turn, float slack,
-                   float prune_distance, float* out);
+                   float prune_distance, Gaps sort, float* out);
 
 }  // namespace snug::kernels

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <snug/base/contract.h>
 #include <snug/geometry/rounding.h>
@@ -83,6 +84,85 @@ Extent extent_of(std::span<const Obb> boxes, const Vector3& direction) {
 
 }  // namespace
 
+namespace {
+
+// A box as seen along two axes that turn in their plane: its centre, and its half edges.
+struct Flat {
+  float centre[2], edges[3][2];
+};
+
+// Half the sum of the sides around boxes, seen in the plane of two axes after a turn; not exact.
+std::array<float, 2> sides_after(std::span<const Flat> boxes, float cosine, float sine) {
+  float lower[2] = {INFINITY, INFINITY}, upper[2] = {-INFINITY, -INFINITY};
+  for (const Flat& box : boxes) {
+    const float centre[2] = {cosine * box.centre[0] + sine * box.centre[1],
+                             cosine * box.centre[1] - sine * box.centre[0]};
+    float reach[2] = {0, 0};
+    for (const auto& edge : box.edges) {
+      reach[0] += std::fabs(cosine * edge[0] + sine * edge[1]);
+      reach[1] += std::fabs(cosine * edge[1] - sine * edge[0]);
+    }
+    for (std::size_t i = 0; i < 2; ++i) {
+      lower[i] = std::min(lower[i], centre[i] - reach[i]);
+      upper[i] = std::max(upper[i], centre[i] + reach[i]);
+    }
+  }
+  return {upper[0] - lower[0], upper[1] - lower[1]};
+}
+
+// Axes turned about the one of the least extent, then about that of the largest, so that a box around boxes
+// has less surface. Any axes will do, so single precision is enough, and so are some of many boxes.
+std::array<Vector3, 3> turned_to_fit(std::array<Vector3, 3> axes, std::span<const Obb> boxes) {
+  constexpr std::size_t most_boxes = 64;
+  constexpr int steps = 8;  // a right angle
+  const std::size_t stride = (boxes.size() + most_boxes - 1) / most_boxes;
+  std::array<Flat, most_boxes> flat;
+  std::array<float, 3> sides;
+  const auto flatten = [&](std::size_t i, std::size_t j) {
+    std::size_t count = 0;
+    for (std::size_t b = 0; b < boxes.size(); b += stride) {
+      const Vector3 from = boxes[b].centre - boxes[0].centre;
+      Flat& out = flat[count++];
+      out.centre[0] = static_cast<float>(dot(axes[i], from));
+      out.centre[1] = static_cast<float>(dot(axes[j], from));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vector3 edge = boxes[b].half[k] * boxes[b].axes[k];
+        out.edges[k][0] = static_cast<float>(dot(axes[i], edge));
+        out.edges[k][1] = static_cast<float>(dot(axes[j], edge));
+      }
+    }
+    return std::span<const Flat>(flat.data(), count);
+  };
+  sides[0] = sides_after(flatten(0, 1), 1, 0)[0];
+  const std::array<float, 2> others = sides_after(flatten(1, 2), 1, 0);
+  sides = {sides[0], others[0], others[1]};
+  for (const bool least : {true, false}) {
+    const auto about = static_cast<std::size_t>(
+        (least ? std::min_element(sides.begin(), sides.end()) : std::max_element(sides.begin(), sides.end())) -
+        sides.begin());
+    const std::size_t i = (about + 1) % 3, j = (about + 2) % 3;
+    const std::span<const Flat> seen = flatten(i, j);
+    float best = INFINITY;
+    std::array<double, 2> turn{1, 0};
+    for (int step = 0; step < steps; ++step) {
+      const double angle = step * std::numbers::pi / (2 * steps), cosine = std::cos(angle), sine = std::sin(angle);
+      const auto [x, y] = sides_after(seen, static_cast<float>(cosine), static_cast<float>(sine));
+      const float area = x * y + (x + y) * sides[about];
+      if (!(area < best)) continue;
+      best = area;
+      turn = {cosine, sine};
+      sides[i] = x;
+      sides[j] = y;
+    }
+    const Vector3 first = axes[i], second = axes[j];
+    axes[i] = turn[0] * first + turn[1] * second;
+    axes[j] = turn[0] * second - turn[1] * first;
+  }
+  return axes;
+}
+
+}  // namespace
+
 std::array<Vector3, 3> principal_axes(std::span<const Point3> points) {
   Vector3 sum;
   for (const Point3& p : points) sum = sum + (p - Point3{});
@@ -129,7 +209,8 @@ Obb merge(std::span<const Obb> boxes) {
       add_outer(covariance, box.axes[k], box.half[k] * box.half[k] / 3);
     }
   }
-  return fit_box(axes_of(covariance), [&](const Vector3& axis) { return extent_of(boxes, axis); });
+  const std::array<Vector3, 3> axes = turned_to_fit(axes_of(covariance), boxes);
+  return fit_box(axes, [&](const Vector3& axis) { return extent_of(boxes, axis); });
 }
 
 Ball ball_around(const Obb& box) {

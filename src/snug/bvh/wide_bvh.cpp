@@ -82,7 +82,7 @@ WideBvh::WideBvh(std::span<const Point3> centres, int threads, const Fit& fit) {
   items_.reserve(items.size());
   for (const Item& item : items) items_.push_back(item.number);
 
-  // What each leaf is fitted to, then all boxes one after the other.
+  // What each leaf is fitted to.
   std::vector<std::vector<Obb>> parts(leaf_count());
   std::vector<Obb> boxes(leaf_count());
   std::vector<std::uint32_t> names(leaf_count());
@@ -94,11 +94,11 @@ WideBvh::WideBvh(std::span<const Point3> centres, int threads, const Fit& fit) {
     }
   });
   const std::vector<Obb> leaves = boxes;
-  std::vector<Obb> all;
-  std::vector<std::size_t> ends;  // in `all`, of what lies below each box
+  std::vector<Obb> below;         // of all leaves
+  std::vector<std::size_t> ends;  // there, of each box
   for (const std::vector<Obb>& part : parts) {
-    all.insert(all.end(), part.begin(), part.end());
-    ends.push_back(all.size());
+    below.insert(below.end(), part.begin(), part.end());
+    ends.push_back(below.size());
   }
   // Level by level: eight neighbours in a row make a node.
   while (boxes.size() > 1) {
@@ -112,9 +112,9 @@ WideBvh::WideBvh(std::span<const Point3> centres, int threads, const Fit& fit) {
       for (std::size_t i = begin; i < end; ++i) {
         const std::size_t first = i * WideNode::width, n = std::min(WideNode::width, boxes.size() - first);
         const std::size_t from = first == 0 ? 0 : ends[first - 1];
-        parent_ends[i] = ends[first + n - 1];
-        parents[i] = merge(std::span(all).subspan(from, parent_ends[i] - from));
+        parents[i] = merge(std::span(below).subspan(from, ends[first + n - 1] - from));
         parent_names[i] = first_name + static_cast<std::uint32_t>(i);
+        parent_ends[i] = ends[first + n - 1];
         nodes_[parent_names[i]] =
             TreeNode(std::span(boxes).subspan(first, n), std::span(names).subspan(first, n));
       }

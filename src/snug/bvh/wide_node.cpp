@@ -22,6 +22,21 @@ View::View(const PlacedFrame& target, const PlacedFrame& source) : frame(target,
     for (std::size_t i = 0; i < 3; ++i) turn.columns[j][i] = static_cast<float>(frame.rows[i][j]);
   }
   turn.scale = static_cast<float>(frame.scale);
+  turn.inverse_scale = 1 / turn.scale;
+  slack = float_up(frame.slack);
+  to_world = static_cast<float>(frame.to_world);
+}
+
+void View::look_along(const Vector3& direction) {
+  const double size = length(direction);
+  if (!frame.comparable || !(size > 0) || !std::isfinite(1 / size)) return;
+  const Vector3 n = ((1 - 0x1p-20) / size) * direction;
+  // Without the scale, which the half sizes have already.
+  const Vector3 other = (1 / frame.scale) * transposed_times(frame.rows, n);
+  for (std::size_t j = 0; j < 3; ++j) {
+    turn.direction[j] = static_cast<float>(n[j]);
+    turn.other_direction[j] = static_cast<float>(other[j]);
+  }
 }
 
 WideNode::WideNode(std::span<const Obb> boxes) {
@@ -60,13 +75,13 @@ WideNode::WideNode(std::span<const Obb> boxes) {
 }
 
 WideNode::Near WideNode::distances(const WideNode& other, std::size_t place, const View& view,
-                                   float prune_distance, Distances& out) const {
+                                   float prune_distance, Gaps sort, Distances& out) const {
   const Vector3 offset = view.frame.apply(other.origin_) - origin_;
   const kernels::SeenBox seen{other.rows_.data() + place,
                               other.reach_,
                               {static_cast<float>(offset.x), static_cast<float>(offset.y), static_cast<float>(offset.z)}};
-  const Near near = kernels::obb_distances(rows_.data(), reach_, seen, view.turn,
-                                           static_cast<float>(view.frame.slack), prune_distance, out.data());
+  const Near near = kernels::obb_distances(rows_.data(), reach_, seen, view.turn, view.slack,
+                                           prune_distance, sort, out.data());
   return {near.places & ((1u << count_) - 1), near.others};
 }
 
@@ -85,6 +100,12 @@ void WideNode::distances(const Point3& point, double slack, Distances& out) cons
   const float centre[3] = {static_cast<float>(offset.x), static_cast<float>(offset.y),
                            static_cast<float>(offset.z)};
   kernels::obb_distances(rows_.data(), centre, float_up(slack + single_underflow), out.data());
+}
+
+void WideNode::extents(const Vector3& direction, Distances& out) const {
+  const float along[3] = {static_cast<float>(direction.x), static_cast<float>(direction.y),
+                          static_cast<float>(direction.z)};
+  kernels::obb_extents(rows_.data(), reach_, along, out.data());
 }
 
 }  // namespace snug

@@ -14,9 +14,12 @@ namespace snug {
 struct View {
   RelativeFrame frame;
   kernels::Turn turn{};  ///< frame.rows in single precision
+  float slack = 0, to_world = 1;  ///< those of the frame
 
   View() = default;
   View(const PlacedFrame& target, const PlacedFrame& source);
+  /// Gaps are looked for along this direction of the target, from the target to the source.
+  void look_along(const Vector3& direction);
 };
 
 /// A box in the frame of the nodes that it is compared with.
@@ -33,6 +36,7 @@ class alignas(32) WideNode {
   static constexpr std::size_t width = kernels::node_width;
   using Distances = std::array<float, width>;
   using Near = kernels::Near;
+  using Gaps = kernels::Gaps;
 
   /// No boxes.
   WideNode() = default;
@@ -53,11 +57,14 @@ class alignas(32) WideNode {
   /// Requires:  view.frame.comparable.
   /// Source:    derivations/boxes.md; [Gottschalk96] for the axes.
   Near distances(const WideNode& other, std::size_t place, const View& view, float prune_distance,
-                 Distances& out) const;
+                 Gaps sort, Distances& out) const;
   /// The same to a box in this node's frame, less `slack`.
   Near distances(const PlacedBox& other, double slack, float prune_distance, Distances& out) const;
   /// The same to a point.
   void distances(const Point3& point, double slack, Distances& out) const;
+  /// Upper bounds of dot(direction, x - origin()) over the boxes.
+  /// Requires:  |direction| about 1.
+  void extents(const Vector3& direction, Distances& out) const;
 
  private:
   alignas(32) std::array<float, kernels::obb_rows * width> rows_{};

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include <snug/base/error.h>
@@ -57,9 +58,7 @@ class Query {
         incomplete_ = true;
         break;
       }
-      const std::size_t before = stack.size();
       lower_ = std::min(lower_, static_cast<double>(walk_.open(pair, opening, margin_, stack)));
-      nearest_last(stack, before);
     }
     return result();
   }
@@ -86,8 +85,8 @@ class Query {
       return false;
     }
     if (!found_) {
-      if (pieces.near_distance < near_.near_distance) near_ = pieces;
-      found_ = near_.near_distance <= reach_;
+      if (!near_ || pieces.near_distance < near_->near_distance) near_ = pieces;
+      found_ = near_->near_distance <= reach_;
       // Limit points themselves may be near enough where quadratics are not known to be.
       if (!found_ && length(pieces.between) <= reach_) {
         const Witness witness = pieces_.witness(pieces);
@@ -114,16 +113,17 @@ class Query {
                      : incomplete_ ? Verdict::undecided
                                    : Verdict::separated;
     const PowerOfTwo back = frames_.to_mesh_units();
+    if (near_ && near_->near_distance < best_.distance) {
+      const bool exact = options_.witness == WitnessKind::exact;
+      const Witness witness = exact ? pieces_.witness(*near_) : PiecePairs::approximate_witness(*near_);
+      if (witness.distance < best_.distance) best_ = witness;
+    }
     // Pairs that were not looked at, or not resolved, may be as near as 0.
     const bool whole = answer.verdict == Verdict::separated;
     answer.distance.lower = whole ? unscaled_down(std::min(lower_, best_.distance), back) : 0.0;
-    if (!whole && near_.near_distance < best_.distance) {
-      const Witness witness = pieces_.witness(near_);
-      if (witness.distance < best_.distance) best_ = witness;
-    }
     if (best_.distance < INFINITY) {
       answer.distance.upper = require_representable(unscaled_up(best_.distance, back));
-      pieces_.tell(best_, answer);
+      if (options_.witness != WitnessKind::none) pieces_.tell(best_, answer);
     }
     if (crossing_) answer.distance.upper = 0;
     return answer;
@@ -131,14 +131,14 @@ class Query {
 
   PairFrames frames_;
   SearchStats stats_;
-  PairWalk walk_{frames_, stats_};
+  PairWalk walk_{frames_, stats_, WideNode::Gaps::axes};
   PiecePairs pieces_{frames_, stats_};
   const CollideOptions& options_;
   const WorkMonitor& monitor_;
   double margin_ = 0, reach_ = 0;
   double lower_ = INFINITY;
   Witness best_;
-  PiecePair near_{.near_distance = INFINITY};  // the two that came nearest
+  std::optional<PiecePair> near_;  // the two that came nearest
   int attempts_ = 0;
   bool proving_ = false;
   // `incomplete_`: pairs were not opened, for the budget or because they cannot be.

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/containment.h>
 #include <snug/query/pairs.h>
@@ -16,10 +17,15 @@ namespace {
 constexpr int max_attempts = 64;
 // Pairs that are followed down at the same time for a first upper bound.
 constexpr std::size_t beam = 4;
+// Pieces beyond a plane that are searched instead of whole surfaces.
+constexpr std::size_t max_beyond = 32;
+// Limit points are evaluated where they may be nearer by so much of the precision.
+constexpr double least_gain = 0.125;
 // Bounds of gaps err by some hundred roundings of what is about 4 large.
 constexpr double noise = 0x1p-43;
 
 bool nearer(const NodePair& x, const NodePair& y) { return x.gap < y.gap; }
+bool farther(const NodePair& x, const NodePair& y) { return x.gap > y.gap; }
 
 class Query {
  public:
@@ -31,24 +37,50 @@ class Query {
     bounds_.raise_lower(frames_.length_down(outer_gap(a, b)));
   }
 
-  // Best first.
+  // Depth first, the nearest first, from an upper bound on.
   Distance run() {
     dive();
-    open_.start(walk_.roots());
-    while (!open_.empty() && !bounds_.done()) {
-      const NodePair pair = open_.take();
-      // All others are as far or farther.
+    thread_local std::vector<NodePair> stack;
+    stack.clear();
+    if (!cut_by_plane(stack)) stack.assign(1, walk_.roots());
+    bool exhausted = false;
+    while (!stack.empty() && !bounds_.done()) {
+      const NodePair pair = stack.back();
+      stack.pop_back();
       const double gap = std::max(static_cast<double>(pair.gap), 0.0);
-      if (gap >= bounds_.prune_distance() || !visit(pair)) {
+      if (gap >= bounds_.prune_distance()) {
         bounds_.prune(gap);
+      } else if (!visit(pair, stack)) {
+        exhausted = true;
         break;
       }
     }
-    if (!open_.empty()) bounds_.prune(std::max(static_cast<double>(open_.nearest().gap), 0.0));
+    if (exhausted) bounds_.prune(0);
     return result();
   }
 
  private:
+  // Two planes across the way between the witnesses, nearly as far apart as these. What lies beyond neither is
+  // farther apart than the planes are: pairs are left with a piece beyond one of them. False if these are many.
+  bool cut_by_plane(std::vector<NodePair>& stack) {
+    const Vector3 w = normalized(witness_.points[1] - witness_.points[0]);
+    const double room = 0.49 * bounds_.precision();
+    if (w == Vector3{} || !(bounds_.upper() > 4 * room)) return false;
+    const double height_a = dot(w, witness_.points[0] - Point3{}) + room,
+                 height_b = dot(w, witness_.points[1] - Point3{}) - room;
+    std::array<std::vector<Node>, 2> beyond;
+    if (!pieces_.beyond(0, w, height_a, room / 4, max_beyond, options_.budget, beyond[0]) ||
+        !pieces_.beyond(1, -w, -height_b, room / 4, max_beyond, options_.budget, beyond[1])) {
+      return false;
+    }
+    const NodePair roots = walk_.roots();
+    for (const Node& node : beyond[0]) stack.push_back({{node, roots.nodes[1]}, roots.gap});
+    for (const Node& node : beyond[1]) stack.push_back({{roots.nodes[0], node}, roots.gap});
+    // |w| <= 1 + 5 u.
+    bounds_.prune(std::max(0.0, rounded_down((height_b - height_a) * (1 - 16 * unit_roundoff))));
+    return true;
+  }
+
   // Straight down to pieces that are near each other, so that there is an upper bound from the beginning.
   void dive() {
     std::vector<NodePair> front{walk_.roots()}, next;
@@ -66,37 +98,15 @@ class Query {
       std::partial_sort(next.begin(), end, next.end(), nearer);
       front.assign(next.begin(), end);
     }
-    double least = INFINITY;
-    NodePair best = front[0];
-    for (const NodePair& pair : front) {
-      const double distance = pieces_.nearest(pair).near_distance;
-      if (distance < least) {
-        least = distance;
-        best = pair;
-      }
-    }
-    follow(best);
-  }
-
-  // From two pieces on to smaller ones, until quadratics there are as near as the surfaces come.
-  void follow(NodePair pair) {
-    while (pieces_.errors(pair) > bounds_.precision() / 8) {
-      const PairWalk::Opening opening = walk_.opening(pair);
-      if (opening == PairWalk::Opening::none || !walk_.may_open(pair, opening, options_.budget)) break;
-      children_.clear();
-      static_cast<void>(walk_.open(pair, opening, INFINITY, children_));
-      pair = *std::min_element(children_.begin(), children_.end(), nearer);
-    }
-    improve(pair, pieces_.nearest(pair));
+    for (const NodePair& pair : front) improve(pair, pieces_.nearest(pair));
   }
 
   // False when the budget ends.
-  bool visit(NodePair pair) {
+  bool visit(const NodePair& pair, std::vector<NodePair>& stack) {
     double gap = std::max(static_cast<double>(pair.gap), 0.0);
     if (pair.bounded()) {
       monitor_.checkpoint();
       gap = std::max(gap, gap_of_pieces(pair));
-      pair.gap = single_down(gap);
     }
     const PairWalk::Opening opening = walk_.opening(pair);
     if (opening == PairWalk::Opening::none || gap >= bounds_.prune_distance()) {
@@ -104,38 +114,33 @@ class Query {
       return true;
     }
     if (!walk_.may_open(pair, opening, options_.budget)) return false;
-    children_.clear();
-    bounds_.prune(static_cast<double>(walk_.open(pair, opening, bounds_.prune_distance(), children_)));
-    for (NodePair& child : children_) {
-      if (child.bounded()) {
-        const double along = pieces_.gap_along(child.nodes, direction_);
-        if (along >= bounds_.prune_distance()) {
-          bounds_.prune(along);
-          continue;
-        }
-        child.gap = std::max(child.gap, single_down(along));
-      }
-      open_.add(child);
-    }
+    const std::size_t first = stack.size();
+    bounds_.prune(static_cast<double>(walk_.open(pair, opening, bounds_.prune_distance(), stack)));
+    std::sort(stack.begin() + static_cast<std::ptrdiff_t>(first), stack.end(), farther);
     return true;
   }
 
   // A lower bound of the distance of two pieces; improves the upper one.
   double gap_of_pieces(const NodePair& pair) {
-    const double along = pieces_.gap_along(pair.nodes, direction_);
+    const double along = pieces_.gap_along(pair.nodes);
     if (along >= bounds_.prune_distance()) return along;
     const PiecePair pieces = pieces_.nearest(pair);
     improve(pair, pieces);
-    if (length(pieces.between) < bounds_.prune_distance()) follow(pair);
     return std::max({along, pieces.gap, pieces_.gap_along(pair.nodes, pieces.between)});
   }
 
-  // The upper bound, by points of quadratics or by a proof of contact.
-  void improve(const NodePair& pair, const PiecePair& pieces) {
-    if (pieces.near_distance < near_.near_distance) {
-      near_ = pieces;
-      bounds_.reduce_upper(pieces.near_distance);
-      direction_ = pieces.between;
+  // The upper bound, by limit points near each other or by a proof of contact.
+  void improve(const NodePair& pair, PiecePair pieces) {
+    if (length(pieces.between) < bounds_.upper() + pieces.error) {
+      pieces_.approach(pieces);
+      if (length(pieces.between) < bounds_.upper() - least_gain * bounds_.precision()) {
+        const Witness witness = pieces_.witness(pieces);
+        if (witness.distance < bounds_.upper()) {
+          witness_ = witness;
+          bounds_.reduce_upper(witness.distance);
+          pieces_.look_along(witness.points[1] - witness.points[0]);
+        }
+      }
     }
     const double radii = pieces.radii[0] + pieces.radii[1];
     const bool flat =
@@ -148,28 +153,24 @@ class Query {
 
   Distance result() {
     Distance answer;
-    const Witness witness = pieces_.witness(near_);
-    bounds_.reduce_upper(witness.distance);
     answer.stats = stats_;
     const PowerOfTwo back = frames_.to_mesh_units();
     answer.distance = {unscaled_down(bounds_.lower(), back),
                        require_representable(unscaled_up(bounds_.upper(), back))};
     answer.reached = near_enough(answer.distance, options_);
-    pieces_.tell(witness, answer);
+    pieces_.tell(witness_, answer);
     return answer;
   }
 
   PairFrames frames_;
   SearchStats stats_;
-  PairWalk walk_{frames_, stats_};
+  PairWalk walk_{frames_, stats_, WideNode::Gaps::lines};
   PiecePairs pieces_{frames_, stats_};
   const DistanceOptions& options_;
   const WorkMonitor& monitor_;
   DistanceBounds bounds_;
-  NearestFirst<NodePair> open_;
   std::vector<NodePair> children_;
-  PiecePair near_{.near_distance = INFINITY};  // the two that came nearest
-  Vector3 direction_;                          // between them
+  Witness witness_;
   int attempts_ = 0;
 };
 

@@ -153,6 +153,13 @@ double PairFrames::length_up(double mesh_units) const {
   return world_.exact(mesh_units) ? x : x * (1 + 2 * unit_roundoff) + underflow_error;
 }
 
+void PairFrames::look_along(const Vector3& direction) {
+  for (std::size_t s = 0; s < 2; ++s) {
+    static_cast<void>(view(s));
+    view_[s]->look_along(transposed_times(frame_[s].rows, s == 0 ? direction : -direction));
+  }
+}
+
 double outer_gap(const PlacedBvh& a, const PlacedBvh& b) {
   const PowerOfTwo scale_a = a.model.surface().scale(), scale_b = b.model.surface().scale();
   if (scale_a.moderate() && scale_b.moderate()) {

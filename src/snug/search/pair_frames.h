@@ -26,6 +26,8 @@ class PairFrames {
     if (!view_[side]) view_[side].emplace(frame_[side], frame_[1 - side]);
     return *view_[side];
   }
+  /// Gaps::lines looks along this direction, from A to B.
+  void look_along(const Vector3& direction);
 
  private:
   std::array<SurfaceWorkspace*, 2> workspace_;

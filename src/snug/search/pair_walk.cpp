@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace snug {
 namespace {
@@ -12,16 +13,10 @@ constexpr float most_often = 1024;
 
 }  // namespace
 
-void nearest_last(std::vector<NodePair>& pairs, std::size_t from) {
-  if (from == pairs.size()) return;
-  const auto nearer = [](const NodePair& x, const NodePair& y) { return x.gap < y.gap; };
-  std::iter_swap(std::min_element(pairs.begin() + static_cast<std::ptrdiff_t>(from), pairs.end(), nearer),
-                 pairs.end() - 1);
-}
-
-PairWalk::PairWalk(PairFrames& frames, SearchStats& stats)
+PairWalk::PairWalk(PairFrames& frames, SearchStats& stats, WideNode::Gaps gaps)
     : frames_(frames),
       stats_(stats),
+      gaps_(gaps),
       scale_{static_cast<float>(frames.frame(0).scale), static_cast<float>(frames.frame(1).scale)} {}
 
 NodePair PairWalk::roots() const {
@@ -42,31 +37,37 @@ PairWalk::Opening PairWalk::opening(const NodePair& pair) const {
 float PairWalk::open(const NodePair& pair, Opening opening, double prune_distance,
                      std::vector<NodePair>& out) {
   const std::size_t side = opening == Opening::b ? 1 : 0;
-  const Node &node = pair.nodes[side], &other = pair.nodes[1 - side];
+  const Node &node = pair.nodes[side], other = pair.nodes[1 - side];
   stats_.splits += node.bounded();
   const SurfaceWorkspace::Opened opened = frames_.workspace(side).open(node);
   stats_.box_tests += opened.count();
   const View& view = frames_.view(side);
-  const float to_world = static_cast<float>(view.frame.to_world),
-              parent_gap = pair.gap > 0 ? pair.gap : -INFINITY;
+  const float parent_gap = pair.gap > 0 ? pair.gap : -INFINITY;
   // In the query's units. Rounded down: by one rounding of the factor, two of products, and what they lose
   // where they underflow.
   const auto gap_of = [&](float gap) {
-    return std::max(gap > 0 ? gap * to_world * (1 - 4 * 0x1p-24F) - 0x1p-125F : gap * to_world, parent_gap);
+    return std::max(gap > 0 ? gap * view.to_world * (1 - 4 * 0x1p-24F) - 0x1p-125F : gap * view.to_world, parent_gap);
   };
   WideNode::Distances gaps;
   WideNode::Near near{(1u << opened.count()) - 1, INFINITY};
   if (view.frame.comparable) {
     near = opened.boxes->distances(*other.boxes, other.place, view,
-                                   static_cast<float>(prune_distance * view.frame.from_world), gaps);
+                                   static_cast<float>(prune_distance * view.frame.from_world), gaps_, gaps);
   } else {
     gaps.fill(-INFINITY);
   }
-  for (std::uint32_t rest = near.places; rest != 0; rest &= rest - 1) {
-    const auto place = static_cast<std::size_t>(std::countr_zero(rest));
-    NodePair& next = out.emplace_back(pair);
-    next.nodes[side] = opened.child(place);
-    next.gap = gap_of(gaps[place]);
+  const auto add = [&](std::size_t place) {
+    out.push_back({side == 0 ? std::array{opened.child(place), other} : std::array{other, opened.child(place)},
+                   gap_of(gaps[place])});
+  };
+  if (near.places != 0) {
+    auto nearest = static_cast<std::size_t>(std::countr_zero(near.places));
+    for (std::uint32_t rest = near.places & (near.places - 1); rest != 0; rest &= rest - 1) {
+      auto place = static_cast<std::size_t>(std::countr_zero(rest));
+      if (gaps[place] < gaps[nearest]) std::swap(place, nearest);
+      add(place);
+    }
+    add(nearest);
   }
   return gap_of(near.others);
 }

@@ -20,13 +20,10 @@ struct NodePair {
   [[nodiscard]] bool bounded() const { return nodes[0].bounded() && nodes[1].bounded(); }
 };
 
-/// Of the pairs from the place `from` on, brings the one with the smallest gap to the end.
-void nearest_last(std::vector<NodePair>& pairs, std::size_t from);
-
 /// The way down the trees of two placed surfaces: which node of a pair is opened, and what it opens to.
 class PairWalk {
  public:
-  PairWalk(PairFrames& frames, SearchStats& stats);
+  PairWalk(PairFrames& frames, SearchStats& stats, WideNode::Gaps gaps);
 
   /// The whole surfaces, which are not compared.
   [[nodiscard]] NodePair roots() const;
@@ -47,13 +44,14 @@ class PairWalk {
            (stats_.splits < budget && !frames_.workspace(0).full() && !frames_.workspace(1).full());
   }
   /// What a node opens to, against the other one: pairs with a gap of at most `prune_distance` are added to
-  /// `out`. Returns the smallest gap of the others; infinite if there are none.
+  /// `out`, the one with the smallest gap last. Returns the smallest gap of the others; infinite if there are none.
   /// Requires:  an opening that is not none.
   float open(const NodePair& pair, Opening opening, double prune_distance, std::vector<NodePair>& out);
 
  private:
   PairFrames& frames_;
   SearchStats& stats_;
+  WideNode::Gaps gaps_;
   std::array<float, 2> scale_;
 };
 

@@ -47,9 +47,16 @@ Vector3 PieceRecord::at(TriangleParameter at) const {
          (2 * r * u) * wide(net_[3]) + (2 * u * v) * wide(net_[4]) + (2 * r * v) * wide(net_[5]);
 }
 
+// Over the Bezier points of the four parts after a split, those that are no means of others.
 double PieceRecord::extent(const Vector3& w) const {
-  double most = -INFINITY;
-  for (const Single3& p : net_) most = std::max(most, dot(w, wide(p)));
+  std::array<double, 6> f;
+  for (std::size_t k = 0; k < 6; ++k) f[k] = dot(w, wide(net_[k]));
+  double most = std::max({f[0], f[1], f[2]});
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
+    const double corner = f[k] + f[3 + k] + f[3 + last] + f[3 + next];
+    most = std::max({most, (std::max(f[k], f[next]) + f[3 + k]) / 2, corner / 4});
+  }
   return most;
 }
 

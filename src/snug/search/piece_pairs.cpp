@@ -33,34 +33,61 @@ PiecePair PiecePairs::nearest(const NodePair& pair) {
     const PlacedFrame& frame = frames_.frame(s);
     const PieceRecord& record = SurfaceWorkspace::record(pair.nodes[s]);
     const Triangle base = record.base(pair.nodes[s].boxes->origin());
-    double error = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      pieces.base[s][k] = frame.apply(base[k]);
-      error = std::max(error, frame.apply_error(base[k]));
-    }
-    pieces.radii[s] = enlarged(record.radius() * frame.growth() + spatial_error(error));
+    for (std::size_t k = 0; k < 3; ++k) pieces.base[s][k] = frame.apply(base[k]);
+    pieces.radii[s] = enlarged(record.radius() * frame.growth() + spatial_error(frame.largest_apply_error()));
   }
   pieces.near = snug::nearest(pieces.base[0], pieces.base[1]);
   const double gap = rounded_down(pieces.near.certain_distance - enlarged(pieces.radii[0] + pieces.radii[1]));
   pieces.gap = std::max({gap, static_cast<double>(pair.gap), 0.0});
 
-  const std::array<Barycentric, 2> at{pieces.near.on_a, pieces.near.on_b};
-  std::array<Point3, 2> points;
-  double error = 0;
+  pieces.at = {clamped(pieces.near.on_a), clamped(pieces.near.on_b)};
+  set_points(pieces);
+  return pieces;
+}
+
+Point3 PiecePairs::quadratic_point(const PiecePair& pieces, std::size_t side, TriangleParameter at) const {
+  const Node& node = pieces.nodes[side];
+  return frames_.frame(side).apply(node.boxes->origin() + SurfaceWorkspace::record(node).at(at));
+}
+
+void PiecePairs::set_points(PiecePair& pieces) const {
+  double errors = 0;
+  pieces.error = 0;
   for (std::size_t s = 0; s < 2; ++s) {
     const PlacedFrame& frame = frames_.frame(s);
-    const PieceRecord& record = SurfaceWorkspace::record(pair.nodes[s]);
-    // Rounding of the sum errs by as much as that of the placement at most.
-    const Point3 own = pair.nodes[s].boxes->origin() + record.at(clamped(at[s]));
-    points[s] = frame.apply(own);
-    error += frame.growth() * record.error() + 2 * spatial_error(frame.apply_error(own));
+    pieces.points[s] = quadratic_point(pieces, s, pieces.at[s]);
+    // The sum with the origin is rounded once, too.
+    const double error = enlarged(frame.growth() * SurfaceWorkspace::record(pieces.nodes[s]).error() +
+                                  2 * spatial_error(frame.largest_apply_error()));
+    pieces.error = std::max(pieces.error, error);
+    errors += error;
   }
-  pieces.between = points[1] - points[0];
-  pieces.near_distance =
-      (std::sqrt(length_sq(pieces.between) + 8 * underflow_error) + 8 * unit_roundoff * max_abs(pieces.between)) *
-          (1 + 16 * unit_roundoff) +
-      enlarged(error);
-  return pieces;
+  pieces.between = pieces.points[1] - pieces.points[0];
+  pieces.near_distance = enlarged(errors) + (std::sqrt(length_sq(pieces.between) + 8 * underflow_error) +
+                                             8 * unit_roundoff * max_abs(pieces.between)) *
+                                                (1 + 16 * unit_roundoff);
+}
+
+void PiecePairs::approach(PiecePair& pieces) const {
+  // Triangles between points of the quadratics, smaller each time, around what was nearest.
+  for (const double part : {0.25, 0.0625}) {
+    std::array<Triangle, 2> around;
+    const auto inwards = [part](TriangleParameter middle, double u, double v) {
+      return TriangleParameter{middle.u + part * (u - middle.u), middle.v + part * (v - middle.v)};
+    };
+    for (std::size_t s = 0; s < 2; ++s) {
+      around[s] = {quadratic_point(pieces, s, inwards(pieces.at[s], 0, 0)),
+                   quadratic_point(pieces, s, inwards(pieces.at[s], 1, 0)),
+                   quadratic_point(pieces, s, inwards(pieces.at[s], 0, 1))};
+    }
+    const NearestTriangles near = snug::nearest(around[0], around[1]);
+    const std::array<Barycentric, 2> found{near.on_a, near.on_b};
+    for (std::size_t s = 0; s < 2; ++s) {
+      const TriangleParameter at = inwards(pieces.at[s], found[s].b, found[s].c);
+      pieces.at[s] = clamped({at.u, at.v});
+    }
+  }
+  set_points(pieces);
 }
 
 double PiecePairs::placed_extent(std::size_t side, const Node& node, const Vector3& w) const {
@@ -71,7 +98,7 @@ double PiecePairs::placed_extent(std::size_t side, const Node& node, const Vecto
   const double own = frame.scale * record.extent(transposed_times(frame.rows, w));
   const double placed = dot(w, origin - Point3{});
   const double error = enlarged(frame.growth() * record.error()) +
-                       4 * frame.apply_error(node.boxes->origin()) +
+                       4 * frame.largest_apply_error() +
                        40 * unit_roundoff * (std::fabs(own) + max_abs(origin - Point3{})) +
                        8 * underflow_error;
   return placed + own + error;
@@ -80,18 +107,89 @@ double PiecePairs::placed_extent(std::size_t side, const Node& node, const Vecto
 double PiecePairs::gap_along(const std::array<Node, 2>& nodes, const Vector3& direction) const {
   const Vector3 w = normalized(direction);
   if (w == Vector3{}) return 0;
-  const double gap = -placed_extent(1, nodes[1], -w) - placed_extent(0, nodes[0], w);
-  return std::max(0.0, gap * (1 - 16 * unit_roundoff));
+  const double taken = placed_extent(0, nodes[0], w) + placed_extent(1, nodes[1], -w);
+  return std::max(0.0, -taken * (1 - 16 * unit_roundoff));
+}
+
+namespace {
+
+// Extents of the pieces asked about last, by side and by a hash of the piece, each along a direction that has
+// a number of its own: none of an earlier query is ever met.
+struct KnownExtent {
+  const WideNode* boxes = nullptr;
+  std::uint32_t place = 0;
+  std::uint64_t direction = 0;
+  double extent = 0;
+};
+constexpr std::size_t kept_extents = 128;
+thread_local std::array<std::array<KnownExtent, kept_extents>, 2> known_extents;
+thread_local std::uint64_t last_direction = 0;
+
+}  // namespace
+
+void PiecePairs::look_along(const Vector3& direction) {
+  along_ = normalized(direction);
+  direction_ = ++last_direction;
+  frames_.look_along(along_);
+}
+
+double PiecePairs::gap_along(const std::array<Node, 2>& nodes) {
+  if (along_ == Vector3{}) return 0;
+  double taken = 0;
+  for (std::size_t s = 0; s < 2; ++s) {
+    const Node& node = nodes[s];
+    const auto hash = (reinterpret_cast<std::uintptr_t>(node.boxes) >> 6) * 5 + node.place;
+    KnownExtent& known = known_extents[s][hash % kept_extents];
+    if (known.boxes != node.boxes || known.place != node.place || known.direction != direction_) {
+      known = {node.boxes, node.place, direction_, placed_extent(s, node, s == 0 ? along_ : -along_)};
+    }
+    taken += known.extent;
+  }
+  return std::max(0.0, -taken * (1 - 16 * unit_roundoff));
+}
+
+bool PiecePairs::beyond(std::size_t side, const Vector3& w, double height, double error, std::size_t most,
+                        std::uint64_t budget, std::vector<Node>& out) {
+  thread_local std::vector<Node> open;
+  SurfaceWorkspace& workspace = frames_.workspace(side);
+  const PlacedFrame& frame = frames_.frame(side);
+  const Vector3 own = transposed_times(frame.rows, w);
+  open.assign(1, workspace.root());
+  while (!open.empty()) {
+    const Node node = open.back();
+    open.pop_back();
+    if (node.bounded()) {
+      if (placed_extent(side, node, w) <= height) continue;
+      const bool fine = frame.growth() * SurfaceWorkspace::record(node).error() <= error;
+      if (fine || !SurfaceWorkspace::can_open(node) || stats_.splits >= budget || workspace.full()) {
+        if (out.size() == most) return false;
+        out.push_back(node);
+        continue;
+      }
+      ++stats_.splits;
+    }
+    const SurfaceWorkspace::Opened opened = workspace.open(node);
+    stats_.box_tests += opened.count();
+    WideNode::Distances extents;
+    opened.boxes->extents(own, extents);
+    const Point3 origin = frame.apply(opened.boxes->origin());
+    const double placed = dot(w, origin - Point3{}) + 4 * frame.largest_apply_error() +
+                          40 * unit_roundoff * max_abs(origin - Point3{});
+    for (std::size_t i = 0; i < opened.count(); ++i) {
+      const double extent = frame.scale * static_cast<double>(extents[i]);
+      if (!(placed + extent + 8 * unit_roundoff * std::fabs(extent) <= height)) open.push_back(opened.child(i));
+    }
+  }
+  return true;
 }
 
 Witness PiecePairs::witness(const PiecePair& pieces) {
   ++stats_.evaluations;
   Witness found;
-  const std::array<Barycentric, 2> at{pieces.near.on_a, pieces.near.on_b};
+  found.at = pieces.at;
   for (std::size_t s = 0; s < 2; ++s) {
     const Patch& patch = frames_.workspace(s).patch(pieces.nodes[s]);
     found.nodes[s] = pieces.nodes[s];
-    found.at[s] = clamped(at[s]);
     const BoundedPoint point = frames_.frame(s).apply(limit_point(patch, found.at[s]).from(patch.origin));
     found.points[s] = point.position;
     found.error = std::max(found.error, point.error);
@@ -102,6 +200,14 @@ Witness PiecePairs::witness(const PiecePair& pieces) {
                     8 * unit_roundoff * max_abs(between)) *
                    (1 + 16 * unit_roundoff);
   return found;
+}
+
+Witness PiecePairs::approximate_witness(const PiecePair& pieces) {
+  return {.points = pieces.points,
+          .error = pieces.error,
+          .distance = pieces.near_distance,
+          .nodes = pieces.nodes,
+          .at = pieces.at};
 }
 
 WitnessPlaces PiecePairs::places(const Witness& witness) const {

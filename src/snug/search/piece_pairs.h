@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <vector>
 
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
@@ -17,9 +19,13 @@ struct PiecePair {
   std::array<double, 2> radii;
   NearestTriangles near;
   double gap;  ///< lower bound of their distance, zero if none shows
-  /// Between the points of the quadratics where the base triangles are nearest, from A to B.
+  /// Points of the quadratics, at first where the base triangles are nearest, and the way from A's to B's.
+  std::array<TriangleParameter, 2> at;
+  std::array<Point3, 2> points;
   Vector3 between;
-  double near_distance;  ///< upper bound of the distance of the limit points there
+  /// Upper bounds of the distance of a point from the limit point it stands for, and of the distance of the
+  /// limit points.
+  double error = 0, near_distance = INFINITY;
 };
 
 /// Limit points of A and of B, placed, and an upper bound of the distance of the exact ones.
@@ -41,6 +47,8 @@ class PiecePairs {
   /// Requires:  pair.bounded(), here and below.
   [[nodiscard]] double radii(const NodePair& pair) const;
   [[nodiscard]] PiecePair nearest(const NodePair& pair);
+  /// Moves the points on the quadratics to where these are about nearest.
+  void approach(PiecePair& pieces) const;
   /// Sum of the errors of the two quadratics, placed.
   [[nodiscard]] double errors(const NodePair& pair) const;
 
@@ -48,9 +56,20 @@ class PiecePairs {
   /// quadratics apart, less what these err. The best direction is that from the nearest point of A to that of
   /// B.
   [[nodiscard]] double gap_along(const std::array<Node, 2>& nodes, const Vector3& direction) const;
+  /// The same along a direction that many pairs are asked about, where what is known of pieces is kept; zero
+  /// before there is one. The walk looks along it, too.
+  void look_along(const Vector3& direction);
+  [[nodiscard]] double gap_along(const std::array<Node, 2>& nodes);
+  /// What reaches beyond `height` along a direction: pieces, split while their quadratics err by more than
+  /// `error`, as far as `budget` allows. False, with some of them, where that is more than `most`.
+  /// Guarantee: dot(w, x) <= height for all other points of the placed surface.
+  /// Requires:  |w| at most 1 up to a few roundings.
+  [[nodiscard]] bool beyond(std::size_t side, const Vector3& w, double height, double error, std::size_t most,
+                            std::uint64_t budget, std::vector<Node>& out);
 
-  /// At the parameters where the base triangles are nearest.
+  /// The limit points at the pair's parameters, or the quadratics' own.
   [[nodiscard]] Witness witness(const PiecePair& pieces);
+  [[nodiscard]] static Witness approximate_witness(const PiecePair& pieces);
   /// What a Collision or a Distance says of a witness of this query, in mesh units.
   template <class Answer>
   void tell(const Witness& witness, Answer& answer) const {
@@ -62,6 +81,9 @@ class PiecePairs {
   }
 
  private:
+  [[nodiscard]] Point3 quadratic_point(const PiecePair& pieces, std::size_t side, TriangleParameter at) const;
+  // Takes points of the quadratics at pieces.at.
+  void set_points(PiecePair& pieces) const;
   // Where its points lie.
   [[nodiscard]] WitnessPlaces places(const Witness& witness) const;
   // An upper bound of w . x in a piece, placed, for |w| <= 1 up to a few roundings.
@@ -69,6 +91,8 @@ class PiecePairs {
 
   PairFrames& frames_;
   SearchStats& stats_;
+  Vector3 along_;  // of length 1, or zero
+  std::uint64_t direction_ = 0;
 };
 
 }  // namespace snug
