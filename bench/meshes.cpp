@@ -182,6 +182,35 @@ ControlMesh quad_torus(std::size_t faces) {
   return mesh;
 }
 
+// Two quads side by side are a hexagon; its middle edge is turned to the next two corners.
+ControlMesh irregular_quads(std::size_t faces, const Irregularity& options) {
+  QuadTorus torus = torus_of(faces);
+  torus.columns += torus.columns % 2;
+  std::mt19937_64 random(options.seed);
+  ControlMesh mesh;
+  mesh.points =
+      torus.points(options.jitter * 2 * std::numbers::pi / static_cast<double>(torus.rows), options.seed);
+  std::vector<std::size_t> valence(mesh.points.size(), 4);
+  for (std::size_t r = 0; r < torus.rows; ++r) {
+    for (std::size_t c = r % 2; c < torus.columns + r % 2; c += 2) {
+      const auto p = torus.quad(c, r), q = torus.quad(c + 1, r);
+      // Of two quads one edge in four is inside such a hexagon.
+      const bool turn =
+          unit(random) < 8 * options.flips - 1 && valence[p[1].index()] > 3 && valence[p[2].index()] > 3;
+      if (!turn) {
+        mesh.add_face(p);
+        mesh.add_face(q);
+        continue;
+      }
+      mesh.add_face(std::array{p[0], p[1], q[1], p[3]});
+      mesh.add_face(std::array{q[1], q[2], p[2], p[3]});
+      for (const VertexId v : {p[1], p[2]}) --valence[v.index()];
+      for (const VertexId v : {q[1], p[3]}) ++valence[v.index()];
+    }
+  }
+  return mesh;
+}
+
 ControlMesh character_mesh(std::size_t faces, std::size_t creases) {
   const QuadTorus torus = torus_of(faces);
   std::mt19937_64 random(7);
@@ -228,18 +257,17 @@ ControlMesh many_sharpnesses(std::size_t count) {
 
 std::size_t extraordinary_corners(const Kind& kind) {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < 3; ++i) count += !kind.regular_corner(i);
+  for (std::size_t i = 0; i < kind.rules().corners; ++i) count += !kind.regular_corner(i);
   return count;
 }
 
 std::vector<PatchId> faces_with(const LimitSurface& surface, std::size_t corners) {
-  std::vector<PatchId> faces;
+  std::vector<PatchId> patches;
   for (std::size_t f = 0; f < surface.face_count(); ++f) {
-    if (surface.has_patch(PatchId(f)) && extraordinary_corners(surface.kind(PatchId(f))) == corners) {
-      faces.push_back(PatchId(f));
-    }
+    const PatchId p(surface.patches_of(f).begin);
+    if (surface.has_patch(p) && extraordinary_corners(surface.kind(p)) == corners) patches.push_back(p);
   }
-  return faces;
+  return patches;
 }
 
 void print_statistics(const char* name, const LimitSurface& surface) {

@@ -39,9 +39,12 @@ struct Irregularity {
 /// Guarantee: closed, manifold, no edge twice; the same mesh for the same arguments on every machine.
 [[nodiscard]] ControlMesh irregular_mesh(std::size_t faces, const Irregularity& options = {});
 
-/// Corners of a face's patch that are not regular.
+/// The same with quads: `flips` of the edges turned in the hexagons of the two quads at them; valences 3 to 8.
+[[nodiscard]] ControlMesh irregular_quads(std::size_t faces, const Irregularity& options = {});
+
+/// Corners of a face that are not regular.
 [[nodiscard]] std::size_t extraordinary_corners(const Kind& kind);
-/// Faces with `corners` extraordinary corners.
+/// First patches of the faces with `corners` extraordinary corners.
 [[nodiscard]] std::vector<PatchId> faces_with(const LimitSurface& surface, std::size_t corners);
 
 /// Prints sizes, the histogram of valences, the number of kinds, the shares of faces by extraordinary

@@ -7,9 +7,9 @@
 
 namespace snug::bench {
 
-Subject::Subject(ControlMesh mesh, std::shared_ptr<BoundsCache> library)
+Subject::Subject(ControlMesh mesh, const SchemeOptions& options, std::shared_ptr<BoundsCache> library)
     : library_(std::move(library)),
-      surface_(std::make_unique<LimitSurface>(std::move(mesh), SchemeOptions{}, library_, 1)) {}
+      surface_(std::make_unique<LimitSurface>(std::move(mesh), options, library_, 1)) {}
 
 double Subject::enclose(std::span<const PatchId> faces, std::vector<OffsetTriangle>& out) {
   out.resize(faces.size());
@@ -47,24 +47,6 @@ double Subject::box(std::span<const PatchId> faces, std::vector<Box3>& out) {
     sum += longest_side(out[i]);
   }
   return sum;
-}
-
-double Subject::evaluate(PatchId face, std::span<const TriangleParameter> at, std::span<Point3> out) {
-  evaluator_.reset(surface_->patch(face));
-  return evaluate(evaluator_, at, out);
-}
-
-double Subject::evaluate(LimitEvaluator& face, std::span<const TriangleParameter> at,
-                         std::span<Point3> out) const {
-  const PowerOfTwo back = surface_->scale().inverse();
-  const Point3 origin = face.patch().origin;
-  double errors = 0;
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    const LimitPoint point = face(at[i]);
-    out[i] = back.apply(origin + point.relative);
-    errors += back.apply(point.error);
-  }
-  return errors;
 }
 
 double update(BatchBounds& bounds, std::span<const Point3> points, std::vector<OffsetTriangle>& out) {

@@ -2,9 +2,9 @@
 
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include <experiments/limit_evaluator.h>
 #include <snug/bounds/enclosure.h>
 #include <snug/bounds/hull_points.h>
 #include <snug/surface/batch_bounds.h>
@@ -17,7 +17,10 @@ namespace snug::bench {
 class Subject {
  public:
   /// Everything before the first bound, with a library of kinds of its own.
-  explicit Subject(ControlMesh mesh, std::shared_ptr<BoundsCache> library = std::make_shared<BoundsCache>());
+  explicit Subject(ControlMesh mesh, std::shared_ptr<BoundsCache> library = std::make_shared<BoundsCache>())
+      : Subject(std::move(mesh), SchemeOptions{}, std::move(library)) {}
+  Subject(ControlMesh mesh, const SchemeOptions& options,
+          std::shared_ptr<BoundsCache> library = std::make_shared<BoundsCache>());
 
   [[nodiscard]] const LimitSurface& surface() const { return *surface_; }
 
@@ -36,16 +39,10 @@ class Subject {
   /// Returns:   the sum of their longest sides.
   double box(std::span<const PatchId> faces, std::vector<Box3>& out);
 
-  /// Limit points of one face, in mesh units, with the sum of their error bounds.
-  double evaluate(PatchId face, std::span<const TriangleParameter> at, std::span<Point3> out);
-  /// The same for a face whose evaluator keeps the pieces it met before.
-  double evaluate(LimitEvaluator& face, std::span<const TriangleParameter> at, std::span<Point3> out) const;
-
  private:
   std::shared_ptr<BoundsCache> library_;
   std::unique_ptr<LimitSurface> surface_;
   HullPoints scratch_;
-  LimitEvaluator evaluator_;
 };
 
 /// Offset triangles for these control points, in mesh units, on one thread.

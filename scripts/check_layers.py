@@ -22,6 +22,7 @@ EXCEPTIONS = {
 # What a layer may include besides the C++ standard library and snug; all others: nothing.
 LIBRARIES = {
     "geometry": ("hwy/",),
+    "patch": ("hwy/",),
     "bounds": ("hwy/",),
     "bvh": ("hwy/",),
 }

@@ -111,15 +111,11 @@ void for_each_place(const LimitSurface& surface, std::uint32_t owner, unsigned s
 
 // Writes the points of a lattice on an owner; returns how many.
 std::size_t write_lattice(Report& report, const LimitSurface& surface, std::uint32_t owner, unsigned steps) {
-  std::optional<PatchEvaluator> evaluator;
-  std::optional<PatchId> last;
+  SurfaceEvaluator evaluator(surface);
   std::size_t count = 0;
   for_each_place(surface, owner, steps, [&](const SurfaceParameter& at) {
-    const std::optional<PatchId> patch = patch_at(surface, at);
-    if (!patch) return;
-    if (patch != last) evaluator.emplace(surface, *patch);
-    last = patch;
-    write_point(report, surface, at, (*evaluator)(at));
+    if (!patch_at(surface, at)) return;
+    write_point(report, surface, at, evaluator(at));
     ++count;
   });
   return count;

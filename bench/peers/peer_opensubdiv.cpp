@@ -43,7 +43,10 @@ std::vector<Primvar> primvars(std::span<const Point3> points) {
 }
 
 std::unique_ptr<Far::TopologyRefiner> make_refiner(const ControlMesh& mesh) {
-  std::vector<int> sizes(mesh.face_count(), 3), indices;
+  std::vector<int> sizes, indices;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f)
+    sizes.push_back(static_cast<int>(mesh.face(FaceId(f)).size()));
+  const bool triangles = std::all_of(sizes.begin(), sizes.end(), [](int size) { return size == 3; });
   indices.reserve(mesh.face_vertices.size());
   for (const VertexId v : mesh.face_vertices) indices.push_back(static_cast<int>(v.value()));
   Far::TopologyDescriptor description;
@@ -54,8 +57,8 @@ std::unique_ptr<Far::TopologyRefiner> make_refiner(const ControlMesh& mesh) {
   Sdc::Options options;
   options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
   using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;
-  std::unique_ptr<Far::TopologyRefiner> refiner(
-      Factory::Create(description, Factory::Options(Sdc::SCHEME_LOOP, options)));
+  std::unique_ptr<Far::TopologyRefiner> refiner(Factory::Create(
+      description, Factory::Options(triangles ? Sdc::SCHEME_LOOP : Sdc::SCHEME_CATMARK, options)));
   if (!refiner) throw std::runtime_error("OpenSubdiv refuses the mesh");
   return refiner;
 }
@@ -135,6 +138,17 @@ struct OsdStencils::Impl {
   std::vector<Primvar> values;
   std::vector<float> weights, points, results;
 };
+
+void OsdSurfaces::evaluate(std::size_t i, std::span<const TriangleParameter> at, std::span<Point3> out,
+                           std::span<std::array<Vector3, 2>> derivatives) {
+  const Impl::Surface& surface = impl_->surfaces[i];
+  impl_->prepare(surface);
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    const double uv[2] = {at[k].u, at[k].v};
+    surface.Evaluate(uv, impl_->scratch.data(), Impl::Points(3), &out[k].x, &derivatives[k][0].x,
+                     &derivatives[k][1].x);
+  }
+}
 
 OsdStencils::OsdStencils() : impl_(new Impl) {}
 OsdStencils::~OsdStencils() = default;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -13,10 +14,10 @@
 
 namespace snug::bench {
 
-/// A mesh as OpenSubdiv's Far::TopologyRefiner: Loop, boundary edge and corner. One thread.
+/// A mesh as OpenSubdiv's Far::TopologyRefiner: Loop if all faces are triangles, else Catmull-Clark; boundary
+/// edge and corner, no tags. One thread.
 class OsdMesh {
  public:
-  /// Requires:  triangles.
   explicit OsdMesh(const ControlMesh& mesh);
   ~OsdMesh();
   OsdMesh(const OsdMesh&) = delete;
@@ -48,6 +49,9 @@ class OsdSurfaces {
   [[nodiscard]] double box_all() const;
   /// Points of the i-th surface: its patch points, then one evaluation a parameter, in double precision.
   void evaluate(std::size_t i, std::span<const TriangleParameter> at, std::span<Point3> out);
+  /// The same with derivatives along u and v.
+  void evaluate(std::size_t i, std::span<const TriangleParameter> at, std::span<Point3> out,
+                std::span<std::array<Vector3, 2>> derivatives);
 
  private:
   struct Impl;

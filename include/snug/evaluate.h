@@ -24,12 +24,28 @@ struct SurfacePoint : BoundedPoint {
 /// Guarantee: `error` and `normal_error` are upper bounds. Tangents are in double precision, without a bound.
 /// Errors:    InputError: (value) if the surface has no such owner, corner or parameter, NaN included;
 ///            (unrepresentable) if a coordinate does not fit a double.
-/// Cost:      about a microsecond.
+/// Cost:      half a microsecond; about 2 near extraordinary corners.
 [[nodiscard]] SNUG_API SurfacePoint evaluate(const Surface& surface, const SurfaceParameter& at);
 /// The same for many points, in the same order; results do not depend on threads.
+/// Cost:      0.1 to 0.3 microseconds a point where a face has many, in any order.
 [[nodiscard]] SNUG_API std::vector<SurfacePoint> evaluate(const Surface& surface,
                                                           std::span<const SurfaceParameter> at,
                                                           int threads = 0);
+
+/// Where evaluate() writes in single precision: three floats x, y, z a point.
+struct FloatPoints {
+  std::span<float> positions;
+  std::span<float> normals{};  ///< of length 1, 0 0 0 where there is none; an empty span: they are not wanted
+};
+/// The same points in single precision, without allocations where the points of a face come together.
+///
+/// Returns:   an upper bound of the errors of all coordinates of positions, rounding to float included.
+/// Guarantee: a normal is that of the double-precision answer, and at most 2^-24 farther from the exact one.
+/// Errors:    likewise; (value) unless `out` has room for three floats a point; (unrepresentable) also if a
+///            coordinate does not fit a float. `out` is partly written then.
+/// Cost:      positions 30 ns a point where a face has many, with normals 100 ns.
+SNUG_API double evaluate(const Surface& surface, std::span<const SurfaceParameter> at, const FloatPoints& out,
+                         int threads = 0);
 
 /// A unit normal and its error.
 struct SurfaceNormal {

@@ -1,8 +1,8 @@
 #include <snug/patch/evaluate.h>
 
-#include <experiments/limit_evaluator.h>
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
+#include <snug/patch/limit_evaluator.h>
 #include <testing/twins.h>
 
 #include <cmath>
@@ -29,16 +29,30 @@ class Patches {
   SchemeOptions options_;
 };
 
+BoundedPoint evaluated(LimitEvaluator& evaluator, double u, double v) {
+  std::array<BoundedPoint, 1> point;
+  evaluator.points(std::array{SurfaceParameter{0, 0, u, v}}, point);
+  return point[0];
+}
+
 void expect_sample(const Patch& patch, const oracle::LimitSample& s) {
   const double coordinate_rounding = 1.2e-16 * (max_abs(patch.origin - Point3{}) + patch.largest);
-  for (const LimitPoint& point : {limit_point(patch, {s.u, s.v}), LimitEvaluator(patch)({s.u, s.v})}) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_NEAR(patch.origin[k] + point.relative[k], s.position[k],
-                  point.error + s.error + coordinate_rounding)
-          << "face " << s.face << " at " << s.u << ", " << s.v;
+  const std::string where =
+      "face " + std::to_string(s.face) + " at " + std::to_string(s.u) + ", " + std::to_string(s.v);
+  const LimitPoint point = limit_point(patch, {s.u, s.v});
+  LimitEvaluator evaluator(patch);
+  const BoundedPoint kept = evaluated(evaluator, s.u, s.v);
+  const LimitFrame frame = evaluator.frame({0, 0, s.u, s.v});
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (const LimitPoint& relative : {point, frame.point}) {
+      EXPECT_NEAR(patch.origin[k] + relative.relative[k], s.position[k],
+                  relative.error + s.error + coordinate_rounding)
+          << where;
     }
-    EXPECT_LT(point.error, 1e-11 * patch.largest) << "face " << s.face << " at " << s.u << ", " << s.v;
+    EXPECT_LE(std::fabs(kept.position[k] - s.position[k]), kept.error + s.error) << where;
   }
+  for (const double error : {point.error, frame.point.error})
+    EXPECT_LT(error, 1e-11 * patch.largest) << where;
 }
 
 TEST(limit_point, agrees_with_the_twin_within_its_own_error) {
@@ -85,23 +99,32 @@ TEST(limit_evaluator, answers_alike_whatever_it_met_before) {
     Patches patches(twin);
     const Patch patch = patches[random() % twin.triangles.size()];
     reused.reset(patch);
-    const Patch* const kept = &reused.patch();
-    std::vector<TriangleParameter> at{{0, 0}, {1, 0}, {0, 1}, {0.5, 0.5}, {0x1p-70, 0}, {0, 0x1p-30}};
-    for (int i = 0; i < 60; ++i) {
-      const double u = std::ldexp(unit(), -static_cast<int>(random() % 8));
-      at.push_back({u, unit() * (1 - u)});
+    std::vector<SurfaceParameter> at;
+    const auto add = [&](double u, double v) { at.push_back({0, 0, u, v}); };
+    for (const auto& [u, v] :
+         {std::pair{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {0.5, 0.5}, {0x1p-70, 0.0}, {0.0, 0x1p-30}}) {
+      add(u, v);
     }
-    std::vector<LimitPoint> points(at.size());
-    reused(at, points);
+    for (int i = 0; i < 150; ++i) {
+      const double u = std::ldexp(unit(), -static_cast<int>(random() % 8));
+      add(u, unit() * (1 - u));
+    }
+    std::vector<BoundedPoint> points(at.size());
+    reused.points(at, points);
     for (std::size_t i = at.size(); i-- > 0;) {
-      const LimitPoint again = reused(at[i]), fresh = LimitEvaluator(patch)(at[i]);
-      EXPECT_EQ(points[i].relative, fresh.relative);
-      EXPECT_EQ(points[i].error, fresh.error);
-      EXPECT_EQ(again.relative, fresh.relative);
+      LimitEvaluator other(patch);
+      const LimitFrame frame = reused.frame(at[i]), fresh_frame = LimitEvaluator(patch).frame(at[i]);
+      for (const BoundedPoint& same :
+           {evaluated(reused, at[i].u, at[i].v), evaluated(other, at[i].u, at[i].v)}) {
+        EXPECT_EQ(points[i].position, same.position);
+        EXPECT_EQ(points[i].error, same.error);
+      }
+      EXPECT_EQ(points[i].position, patch.origin + frame.point.relative);
+      EXPECT_EQ(frame.tangents, fresh_frame.tangents);
+      EXPECT_EQ(frame.tangent_error, fresh_frame.tangent_error);
+      EXPECT_EQ(frame.normal, fresh_frame.normal);
     }
     EXPECT_LT(reused.bytes(), 2'000'000u);
-    EXPECT_EQ(kept, &reused.patch());
-    EXPECT_EQ(kept->points, patch.points);
   }
 }
 

@@ -9,7 +9,6 @@
 
 #include <experiments/convergence.h>
 #include <experiments/corner_nets.h>
-#include <experiments/limit_evaluator.h>
 #include <experiments/rooms.h>
 #include <experiments/tightness.h>
 #include <snug/patch/evaluate.h>
@@ -79,32 +78,33 @@ TEST(callers_mistakes, bound_needs_a_positive_tolerance_and_a_level_that_there_i
 TEST(callers_mistakes, points_of_a_surface_have_parameters_on_it) {
   const LimitSurface quad = surface_of(square(), Scheme::catmark),
                      loop = surface_of(triangle(), Scheme::loop);
-  const PatchEvaluator of_quad(quad, PatchId(0)), of_loop(loop, PatchId(0));
+  const PatchEvaluator of_loop(loop, PatchId(0));
   LimitEvaluator kept(loop.patch(PatchId(0)));
+  std::vector<BoundedPoint> points(1);
   const std::vector<double> outside{NAN, INFINITY, -INFINITY, -1e-300, 1 + 0x1p-52};
   for (const double x : outside) {
     expect_refused("quad u", [&] { static_cast<void>(evaluate(quad, {0, 0, x, 0})); });
     expect_refused("quad v", [&] { static_cast<void>(evaluate(quad, {0, 0, 0, x})); });
     expect_refused("loop u", [&] { static_cast<void>(evaluate(loop, {0, 0, x, 0})); });
-    expect_refused("evaluator of a quad", [&] { static_cast<void>(of_quad(SurfaceParameter{0, 0, x, 0})); });
+    expect_refused("positions on a quad", [&] {
+      SurfaceEvaluator(quad).positions(std::array{SurfaceParameter{0, 0, 0, x}}, points);
+    });
     expect_refused("evaluator of a triangle", [&] { static_cast<void>(of_loop(TriangleParameter{0, x})); });
-    expect_refused("kept pieces", [&] { static_cast<void>(kept({x, 0})); });
+    expect_refused("kept pieces", [&] { kept.points(std::array{SurfaceParameter{0, 0, x, 0}}, points); });
     expect_refused("patch", [&] {
       static_cast<void>(limit_point(loop.patch(PatchId(0)), TriangleParameter{x, 0}));
     });
-    expect_refused("half", [&] {
-      static_cast<void>(limit_frame(quad.patch(PatchId(0)), QuadParameter{x, 0}));
-    });
+    expect_refused("frame", [&] { static_cast<void>(kept.frame({0, 0, 0, x})); });
   }
   expect_refused("sum", [&] { static_cast<void>(evaluate(loop, {0, 0, 0.5, 0.5 + 0x1p-52})); });
   expect_refused("owner", [&] { static_cast<void>(evaluate(quad, {1, 0, 0, 0})); });
   expect_refused("corner", [&] { static_cast<void>(evaluate(quad, {0, 1, 0, 0})); });
   expect_refused("no such patch", [&] { PatchEvaluator(quad, PatchId(7)); });
-  LimitEvaluator empty;
-  expect_refused("no patch", [&] { static_cast<void>(empty({0, 0})); });
-  std::vector<LimitPoint> one(1);
-  const std::vector<TriangleParameter> two(2);
-  expect_refused("room", [&] { kept(two, one); });
+  std::array<float, 3> one{};
+  std::array<float, 6> two{};
+  const std::array<SurfaceParameter, 2> places{};
+  expect_refused("room for positions", [&] { evaluate(quad, places, {one}, 1); });
+  expect_refused("room for normals", [&] { evaluate(quad, places, {two, one}, 1); });
 }
 
 TEST(callers_mistakes, curves_have_edges_and_parameters) {

@@ -3,7 +3,6 @@
 
 #include <snug/surface/evaluate.h>
 
-#include <experiments/limit_evaluator.h>
 #include <gtest/gtest.h>
 #include <oracle/polygon_twin.h>
 #include <snug/surface/unscale.h>
@@ -32,7 +31,19 @@ TEST(patch_evaluator, positions_agree_with_the_twin) {
       const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules),
                                  library, 1);
       std::map<std::size_t, PatchEvaluator> evaluators;
+      SurfaceEvaluator whole(surface);
       for (const oracle::FaceSample& s : oracle::sample_faces(c.mesh, c.rules, 3)) {
+        const SurfaceParameter place{s.face, s.part, s.u, s.v};
+        std::array<BoundedPoint, 1> alone;
+        whole.positions(std::array{place}, alone);
+        for (const BoundedPoint& point : {alone[0], BoundedPoint(whole(place))}) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            ASSERT_LE(std::fabs(point.position[k] - s.position[k]), point.error + s.error)
+                << c.name << ", " << testing::text_of(c.rules) << ", face " << s.face << "." << s.part
+                << " at " << s.u << ", " << s.v;
+          }
+          ASSERT_LE(point.error, 1e-12 * surface.size()) << c.name;
+        }
         for (unsigned half = 0; half < (loop ? 1u : 2u); ++half) {
           if (!loop && (half == 0 ? s.v > s.u : s.u > s.v)) continue;
           const TriangleParameter at = loop        ? TriangleParameter{s.u, s.v}
@@ -56,29 +67,86 @@ TEST(patch_evaluator, positions_agree_with_the_twin) {
   EXPECT_GT(count, 100'000u);
 }
 
+// Derivatives of a half along its own parameters by those of its quad, and the other way round.
+std::array<Vector3, 2> along_half(const std::array<Vector3, 2>& of_quad, bool triangular) {
+  return {of_quad[0], triangular ? of_quad[1] : of_quad[0] + of_quad[1]};
+}
+
+void expect_same_frame(const LimitFrame& a, const LimitFrame& b, bool triangular, const std::string& where) {
+  ASSERT_LE(max_abs(a.point.relative - b.point.relative), a.point.error + b.point.error) << where;
+  ASSERT_EQ(a.differentiable, b.differentiable) << where;
+  if (!a.differentiable || !b.tangent_error) return;
+  ASSERT_TRUE(a.tangent_error) << where;
+  const auto tangents = along_half(a.tangents, triangular);
+  for (std::size_t t = 0; t < 2; ++t) {
+    ASSERT_LE(max_abs(tangents[t] - b.tangents[t]), 2 * *a.tangent_error + *b.tangent_error) << where;
+  }
+}
+
+// Steps of whole quads against steps of halves; parameters are multiples of 2^-50, so that those of halves are
+// exact.
 TEST(limit_evaluator, agrees_with_the_general_evaluation) {
   std::mt19937_64 random(92);
+  std::size_t count = 0;
   for_each_surface(92, [&](const NamedSurface& s) {
+    const bool triangular = s.surface.rules().triangular();
     for_each_patch(s.surface, [&](PatchId p) {
-      const PatchEvaluator evaluator(s.surface, p);
-      LimitEvaluator kept(s.surface.patch(p));
-      for (int trial = 0; trial < 12; ++trial) {
+      const Patch patch = s.surface.patch(p);
+      LimitEvaluator kept(patch);
+      for (int trial = 0; trial < 16; ++trial) {
         TriangleParameter at = random_parameter(random);
         // Some near a corner, some on an edge.
-        if (trial >= 6) at = {std::ldexp(at.u, -static_cast<int>(random() % 50)), at.v * (1 - at.u)};
+        if (trial >= 6) at = {std::ldexp(at.u, -static_cast<int>(random() % 48)), at.v * (1 - at.u)};
         if (trial % 4 == 3) at.v = 0;
+        const auto rounded = [](double x) { return std::floor(x * 0x1p50) * 0x1p-50; };
+        at = {rounded(at.u), rounded(at.v)};
+        if (trial % 8 == 7) at = {at.v, 1 - at.v};
         if (!(at.u + at.v <= 1)) continue;
-        const BoundedPoint alone = unscaled(kept(at).from(kept.patch().origin), s.surface.scale().inverse());
-        const SurfacePoint general = evaluator(at);
-        for (std::size_t k = 0; k < 3; ++k) {
-          ASSERT_LE(std::fabs(alone.position[k] - general.position[k]), alone.error + general.error)
-              << s.name << ", patch " << p.index() << " at " << at.u << ", " << at.v;
-        }
-        ASSERT_LE(general.error, 1e-12 * s.surface.size()) << s.name;
-        ASSERT_LE(alone.error, 1e-12 * s.surface.size()) << s.name;
+        const std::string where = s.name + ", patch " + std::to_string(p.index()) + " at " +
+                                  std::to_string(at.u) + ", " + std::to_string(at.v);
+        const LimitFrame frame = kept.frame({0, 0, triangular ? at.u : at.u + at.v, at.v});
+        expect_same_frame(frame, limit_frame(patch, at), triangular, where);
+        ASSERT_LE(frame.point.error, 1e-12 * s.surface.scale().apply(s.surface.size())) << s.name;
+        ++count;
+        if (triangular) continue;
+        // The other half is turned by half a turn, and may have another origin.
+        const Patch other = s.surface.patch(PatchId(p.index() ^ 1));
+        LimitFrame turned = kept.frame({0, 0, 1 - (at.u + at.v), 1 - at.v});
+        turned.point.relative = turned.point.relative + (patch.origin - other.origin);
+        turned.point.error += 4 * unit_roundoff;
+        for (Vector3& t : turned.tangents) t = -1.0 * t;
+        expect_same_frame(turned, limit_frame(other, at), false, where + ", other half");
       }
     });
   });
+  EXPECT_GT(count, 50'000u);
+}
+
+// The quad's fourth corner, which neither half counts among its first three, by each of its other corners.
+TEST(limit_evaluator, agrees_with_the_other_half_at_the_fourth_corner) {
+  std::size_t count = 0;
+  for_each_surface(97, [&](const NamedSurface& s) {
+    // Two sheets that lie on each other have no common normal.
+    if (s.surface.rules().triangular() || s.name.starts_with("same ways")) return;
+    for (std::size_t p = 0; p < s.surface.patch_count(); p += 2) {
+      if (!s.surface.has_patch(PatchId(p)) || !s.surface.has_patch(PatchId(p + 1))) continue;
+      const std::string where = s.name + ", patch " + std::to_string(p);
+      LimitEvaluator first(s.surface.patch(PatchId(p))), second(s.surface.patch(PatchId(p + 1)));
+      for (const double far : {0.0, 0x1p-20, 0x1p-40, 0x1p-53}) {
+        std::array<BoundedPoint, 1> a, b;
+        first.points(std::array{SurfaceParameter{0, 0, far, 1 - far}}, a);
+        second.points(std::array{SurfaceParameter{0, 0, 1 - far, far}}, b);
+        ASSERT_LE(max_abs(a[0].position - b[0].position), a[0].error + b[0].error) << where;
+        ++count;
+      }
+      const auto n = first.frame({0, 0, 0, 1}).normal, m = second.frame({0, 0, 1, 0}).normal;
+      ASSERT_EQ(n.has_value(), m.has_value()) << where;
+      if (n) {
+        ASSERT_LT(length(*n - *m), 1e-8) << where;
+      }
+    }
+  });
+  EXPECT_GT(count, 5'000u);
 }
 
 Vector3 difference(const SurfacePoint& a, const SurfacePoint& b, double h) {

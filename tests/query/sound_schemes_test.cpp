@@ -99,15 +99,13 @@ void check_primal(const testing::TaggedCase& c, int levels, const std::shared_pt
   if (::testing::Test::HasFailure()) return;
   std::vector<std::vector<Pieces>> pieces;
   for (const BoundOptions& options : bound_options(surface)) pieces.push_back(pieces_of(surface, options));
-  std::map<std::size_t, PatchEvaluator> evaluators;
+  SurfaceEvaluator evaluator(surface);
   for (const oracle::FaceSample& s : samples) {
     ++counted.samples;
     const std::string where = name + ", face " + std::to_string(s.face) + "." + std::to_string(s.part) +
                               " at " + std::to_string(s.u) + ", " + std::to_string(s.v);
     const SurfaceParameter at{s.face, s.part, s.u, s.v};
-    const auto found = patch_at(surface, at);
-    ASSERT_TRUE(found) << where;
-    const PatchEvaluator& evaluator = evaluators.try_emplace(found->index(), surface, *found).first->second;
+    ASSERT_TRUE(patch_at(surface, at)) << where;
     const SurfacePoint point = evaluator(at);
     for (std::size_t k = 0; k < 3; ++k) {
       EXPECT_LE(std::fabs(point.position[k] - s.position[k]), point.error + s.error) << where;

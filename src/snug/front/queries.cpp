@@ -1,7 +1,6 @@
 #include <utility>
 
 #include <snug/base/error.h>
-#include <snug/base/parallel.h>
 #include <snug/evaluate.h>
 #include <snug/front/workspace.h>
 #include <snug/query/bound.h>
@@ -89,11 +88,12 @@ SurfacePoint evaluate(const Surface& surface, const SurfaceParameter& at) {
 
 std::vector<SurfacePoint> evaluate(const Surface& surface, std::span<const SurfaceParameter> at,
                                    int threads) {
-  std::vector<SurfacePoint> points(at.size());
-  parallel_for(at.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) points[i] = evaluate(limit(surface), at[i]);
-  });
-  return points;
+  return evaluate(limit(surface), at, threads);
+}
+
+double evaluate(const Surface& surface, std::span<const SurfaceParameter> at, const FloatPoints& out,
+                int threads) {
+  return evaluate(limit(surface), at, out, threads);
 }
 
 std::optional<SurfaceNormal> normal_at(const PlacedSurface& surface, const SurfaceParameter& at) {

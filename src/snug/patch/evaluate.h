@@ -32,13 +32,6 @@ struct LimitFrame {
   std::optional<double> tangent_error{};
 };
 
-/// A parameter on a quad (0,0), (1,0), (1,1), (0,1), of which a patch is half: part 0 where v <= u, 1 where v
-/// >= u.
-struct QuadParameter {
-  double u = 0, v = 0;
-};
-[[nodiscard]] constexpr unsigned part_of(QuadParameter p) { return p.v <= p.u ? 0 : 1; }
-
 /// Limit point at any parameter, extraordinary corners included.
 /// Guarantee: |relative - exact| <= error a coordinate, at exactly these doubles.
 /// Errors:    InputError (value) unless u >= 0, v >= 0, u + v <= 1 in doubles. Where the exact sum is above 1
@@ -49,17 +42,14 @@ struct QuadParameter {
 
 /// The same with tangents and normal, in double precision without a bound for the normal: see normal_error().
 [[nodiscard]] LimitFrame limit_frame(const Patch& patch, TriangleParameter at);
-/// The same on a quad, in corners too where a triangle's own parameters are coarser, with derivatives along
-/// its u and v.
-/// Requires:  patch: half part_of(at), whole.
-/// Errors:    InputError (value) unless 0 <= u, v <= 1.
-[[nodiscard]] LimitFrame limit_frame(const Patch& patch, QuadParameter at);
-
 /// Upper bound of the length of normal - exact normal for tangents that are off by `tangent_error` a
 /// coordinate; nothing where they are too small, or too nearly parallel, for one.
 /// Source:    derivations/rounding.md, "Normals".
 [[nodiscard]] std::optional<double> normal_error(const std::array<Vector3, 2>& tangents,
                                                  double tangent_error);
+
+/// Their cross product at length 1; nothing where they are parallel or vanish.
+[[nodiscard]] std::optional<Vector3> unit_normal(const std::array<Vector3, 2>& tangents);
 
 /// Limit position of corner 0, 1 or 2 of the patch: one row.
 [[nodiscard]] LimitPoint corner_point(const Patch& patch, std::size_t corner);

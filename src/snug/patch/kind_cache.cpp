@@ -1,6 +1,7 @@
 #include <snug/patch/kind_cache.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include <snug/base/contract.h>
@@ -60,6 +61,89 @@ std::vector<KindChild> make_children(KindCache& library, const KindKey& key) {
     for (const VertexId v : control) children[k].stencils.append(refined.stencils.row(v.index()));
   }
   return children;
+}
+
+// Combinations of control points as rows of new points; those that are no control points are ghosts.
+class NewPoints {
+ public:
+  NewPoints(const Stencils& refined, KindStep& out) : refined_(refined), out_(out) {}
+
+  // The number of a control point of the refined mesh.
+  std::uint32_t control(VertexId v) {
+    const auto [it, added] =
+        numbers_.try_emplace(v.value(), static_cast<std::uint32_t>(out_.stencils.row_count()));
+    if (added) out_.stencils.append(refined_.row(v.index()));
+    return it->second;
+  }
+  // The number, among ghosts, of a combination of such points. Pieces beside each other share them.
+  std::uint32_t ghost(const Combination& weights, std::span<const VertexId> of) {
+    std::vector<std::pair<std::uint32_t, int>> name;
+    for (std::size_t c = 0; c < weights.size(); ++c) {
+      if (weights[c] != 0) name.emplace_back(of[c].value(), weights[c]);
+    }
+    std::sort(name.begin(), name.end());
+    const auto [it, added] = ghosts_.try_emplace(name, static_cast<std::uint32_t>(out_.ghosts.row_count()));
+    if (added) {
+      RowBuilder row;
+      for (const auto& [v, weight] : name) row.add(Interval(weight), refined_.row(v));
+      row.end_row(out_.ghosts);
+    }
+    return it->second;
+  }
+
+ private:
+  const Stencils& refined_;
+  KindStep& out_;
+  std::map<std::uint32_t, std::uint32_t> numbers_;
+  std::map<std::vector<std::pair<std::uint32_t, int>>, std::uint32_t> ghosts_;
+};
+
+// Is the combination one of the points itself?
+bool is_unit(const Combination& weights, std::size_t& which) {
+  const auto it = std::find_if(weights.begin(), weights.end(), [](int w) { return w != 0; });
+  which = static_cast<std::size_t>(it - weights.begin());
+  return *it == 1 && std::all_of(it + 1, weights.end(), [](int w) { return w == 0; });
+}
+
+Lattice lattice_of(const KindKey& key) {
+  const SchemeRules& rules = rules_of(key.scheme);
+  const std::span<const CornerFan> fans(key.corners.data(), rules.corners);
+  return rules.lattice(rules.ring(key.corners), fans);
+}
+
+KindStep make_step(KindCache& library, const KindKey& key) {
+  const Neighbourhood around = neighbourhood(key);
+  const RefinedTopology refined = refine(around.topology, around.options, around.sharpness);
+  const SchemeRules& rules = rules_of(key.scheme);
+  KindStep step;
+  NewPoints points(refined.stencils, step);
+  std::array<std::vector<VertexId>, 4> control;
+  for (std::size_t k = 0; k < 4; ++k) {
+    HalfEdge start = static_cast<HalfEdge>(3 * k);
+    TurnedKey name;
+    if (rules.triangular()) {
+      name = kind_key(refined.topology, FaceId(k), around.options, refined.sharpness);
+    } else {
+      start = rules.quarter_start(around.topology, refined.topology, k);
+      name.key = kind_key_from(refined.topology, start, around.options, refined.sharpness);
+    }
+    KindStep::Piece& piece = step.pieces[k];
+    piece.kind = &library.find(name.key);
+    piece.first = name.first;
+    piece.kind->control_vertices(refined.topology, start + name.first, control[k]);
+    for (const VertexId v : control[k]) piece.control.push_back(points.control(v));
+  }
+  const auto count = static_cast<std::uint32_t>(step.stencils.row_count());
+  for (std::size_t k = 0; k < 4; ++k) {
+    KindStep::Piece& piece = step.pieces[k];
+    if (!piece.kind->polynomial()) continue;
+    for (const Combination& weights : lattice_of(piece.kind->key())) {
+      std::size_t which = 0;
+      piece.lattice.push_back(is_unit(weights, which) ? piece.control[which]
+                                                      : count + points.ghost(weights, control[k]));
+    }
+  }
+  return step;
 }
 
 bool is_passing(const Neighbourhood& around, const KindKey& key) {
@@ -165,6 +249,44 @@ const Stencils& Kind::corner_tangents() const {
     }
   });
   return corner_tangents_;
+}
+
+const KindLattice& Kind::lattice() const {
+  SNUG_EXPECT(polynomial());
+  std::call_once(lattice_made_, [&] {
+    for (const Combination& weights : lattice_of(key_)) {
+      std::size_t which = 0;
+      if (!is_unit(weights, which)) {
+        which = control_count_ + lattice_.ghosts.row_count();
+        add_fractions(weights, 1, lattice_.ghosts, 0);
+      }
+      lattice_.places.push_back(static_cast<std::uint32_t>(which));
+    }
+  });
+  return lattice_;
+}
+
+const KindStep& Kind::step() const {
+  SNUG_EXPECT(!key_.polygon && !polynomial());
+  std::call_once(step_made_, [&] { step_ = make_step(library_, key_); });
+  return step_;
+}
+
+const Kind::FarCorner& Kind::far_corner() const {
+  SNUG_EXPECT(!key_.polygon && !rules().triangular());
+  std::call_once(far_corner_made_, [&] {
+    const Neighbourhood around = neighbourhood(key_);
+    const HalfEdge corner = rules().corner_of(around.topology, 3);
+    rules().add_corner_tangents(around.ruled(), corner, far_corner_.tangents);
+    if (rules().add_corner_limit(around.ruled(), corner, far_corner_.limit)) return;
+    if (!passing_)
+      return rules().add_limit_row(around.ruled(), around.topology.from(corner), far_corner_.limit);
+    const KindStep::Piece& piece = step().pieces[3];
+    Stencils inner;
+    for (const std::uint32_t p : piece.control) inner.append(step().stencils.row(p));
+    add_product(piece.kind->far_corner().limit.row(0), inner, {}, far_corner_.limit);
+  });
+  return far_corner_;
 }
 
 const std::vector<KindChild>& Kind::children() const {

@@ -35,6 +35,26 @@ struct KindChild {
   Stencils stencils;  ///< its control points from the parent's
 };
 
+/// One step of subdivision of a whole patch, or of the whole quad that it is half of: each new point once.
+struct KindStep {
+  struct Piece {
+    const Kind* kind;
+    std::uint8_t first;                  ///< as in KindChild
+    std::vector<std::uint32_t> control;  ///< its control points among the new ones
+    std::vector<std::uint32_t> lattice;  ///< if it is polynomial, its lattice likewise
+  };
+  Stencils stencils;  ///< new control points from those of the patch
+  Stencils ghosts;    ///< likewise: points of lattices that are no control points, numbered after these
+  /// Of triangles the four children; of quads the quarters at the corners, all corners in their places.
+  std::array<Piece, 4> pieces;
+};
+
+/// The lattice of a polynomial kind, in the order of its scheme's basis.
+struct KindLattice {
+  std::vector<std::uint32_t> places;  ///< among the control points and, after them, the ghosts
+  Stencils ghosts;                    ///< points beyond boundaries and creases, from control points
+};
+
 /// What all patches with equal connectivity share. Immutable; parts that cost much are made on first use.
 /// Thread-safe.
 class Kind {
@@ -78,6 +98,17 @@ class Kind {
   /// times the hull of all.
   [[nodiscard]] double outer_weight() const;
 
+  /// The points that the basis functions of a polynomial kind weight.
+  [[nodiscard]] const KindLattice& lattice() const;
+  /// The step that evaluation descends by.
+  /// Requires:  no polygon; not polynomial.
+  [[nodiscard]] const KindStep& step() const;
+  /// Of halves of quads: the limit row and the two tangent rows at the quad's fourth corner.
+  struct FarCorner {
+    Stencils limit, tangents;
+  };
+  [[nodiscard]] const FarCorner& far_corner() const;
+
   /// The four children of a patch; 0 to 2 keep that corner, 3 is the middle one. Of a polygon with n corners
   /// 2 n: at corner k the half of its quad that begins there, then the other one, which begins at the centre.
   [[nodiscard]] const std::vector<KindChild>& children() const;
@@ -93,9 +124,13 @@ class Kind {
   bool passing_ = false;
   std::size_t control_count_ = 0;
   std::optional<PolynomialForm> form_;
-  mutable std::once_flag limits_made_, tangents_made_, children_made_, outer_weight_made_;
+  mutable std::once_flag limits_made_, tangents_made_, children_made_, outer_weight_made_, lattice_made_,
+      step_made_, far_corner_made_;
   mutable double outer_weight_ = 1;
   mutable Stencils corner_limits_, corner_tangents_;
+  mutable KindLattice lattice_;
+  mutable KindStep step_;
+  mutable FarCorner far_corner_;
   mutable std::vector<KindChild> children_;
 };
 

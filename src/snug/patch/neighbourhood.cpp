@@ -343,16 +343,27 @@ void ControlOrder::operator()(const Topology& topology, HalfEdge start, std::vec
     vertices_of(topology, faces_around(topology, start, scheme_, wide_), out);
     return;
   }
-  thread_local std::vector<HalfEdge> entries;
-  const auto at = [&](Step step) {
-    HalfEdge h = entries[step.face];
-    for (; step.edges > 0; --step.edges) h = topology.next(h);
-    return h;
+  // A face that was entered: its half-edges, and which of them was met.
+  struct Entry {
+    HalfEdge first, size, met;
   };
-  entries.assign(1, start);
-  for (const Step step : faces_) entries.push_back(topology.twin(at(step)));
-  out.clear();
-  for (const Step step : vertices_) out.push_back(topology.from(at(step)));
+  thread_local std::vector<Entry> kept;
+  kept.resize(faces_.size() + 1);
+  Entry* const entries = kept.data();
+  const auto enter = [&](HalfEdge h) -> Entry {
+    const FaceId f = topology.face_of(h);
+    const HalfEdge first = topology.first_of(f);
+    return {first, static_cast<HalfEdge>(topology.face(f).size()), h - first};
+  };
+  const auto at = [&](Step step) {
+    const Entry& entry = entries[step.face];
+    const HalfEdge i = entry.met + step.edges;
+    return entry.first + (i < entry.size ? i : i - entry.size);
+  };
+  entries[0] = enter(start);
+  for (std::size_t f = 0; f < faces_.size(); ++f) entries[f + 1] = enter(topology.twin(at(faces_[f])));
+  out.resize(vertices_.size());
+  for (std::size_t i = 0; i < vertices_.size(); ++i) out[i] = topology.from(at(vertices_[i]));
 }
 
 }  // namespace snug

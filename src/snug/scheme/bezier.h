@@ -75,8 +75,8 @@ void add_fractions(const std::vector<Number>& numerators, double divisor, Stenci
   out.end_row();
 }
 
-/// Control points of a B-spline patch of degree d in both directions, place (x, y) at x + (d + 1) y; its
-/// corner 0 is at (0, 0), its corner 1 at (1, 0) of the parameters.
+/// The points of a regular patch (basis.h). Of a B-spline patch of degree d in both directions place (x, y)
+/// stands at x + (d + 1) y; its corner 0 is at (0, 0), its corner 1 at (1, 0) of the parameters.
 using Lattice = std::vector<Combination>;
 
 /// Bezier points on the triangle (0,0), (1,0), (1,1) of a tensor product of uniform B-splines of degree d, 1

@@ -75,11 +75,15 @@ class BilinearRules : public LocalRules {
                     .min_valence = 1,
                     .max_valence = SIZE_MAX,
                     .creases = false,
-                    .local = true}) {}
-  [[nodiscard]] BezierRows bezier(const Topology&, std::span<const CornerFan>) const override {
+                    .local = true,
+                    .basis = RegularBasis::bilinear}) {}
+  [[nodiscard]] BezierRows bezier(const Topology& ring, std::span<const CornerFan> fans) const override {
+    return tensor_bezier(1, lattice(ring, fans));
+  }
+  [[nodiscard]] Lattice lattice(const Topology&, std::span<const CornerFan>) const override {
     Lattice lattice;
     for (const std::size_t corner : {0, 1, 3, 2}) lattice.push_back(unit_combination(corner, 4));
-    return tensor_bezier(1, lattice);
+    return lattice;
   }
 };
 
@@ -102,6 +106,9 @@ class FlatRules : public LocalRules {
     BezierRows form{1, 1, {}};
     for (const std::uint32_t corner : {0u, 1u, 2u}) form.rows.add_unit_row(corner);
     return form;
+  }
+  [[nodiscard]] Lattice lattice(const Topology&, std::span<const CornerFan>) const override {
+    return {unit_combination(0, 3), unit_combination(1, 3), unit_combination(2, 3)};
   }
 };
 

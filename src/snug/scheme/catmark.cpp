@@ -111,7 +111,8 @@ class CatmarkRules : public CreasedRules {
                       .name = "catmark",
                       .other_names = catmark_names,
                       .min_valence = 2,
-                      .kernel = RegularKernel::bicubic}) {}
+                      .kernel = RegularKernel::bicubic,
+                      .basis = RegularBasis::bicubic}) {}
 
   void add_smooth_vertex(const Topology& topology, VertexId v, const Star& star, const Interval& share,
                          RowBuilder& row) const override {
@@ -195,7 +196,10 @@ class CatmarkRules : public CreasedRules {
 
   [[nodiscard]] bool regular(const CornerFan& fan) const override { return regular_among_quads(fan); }
   [[nodiscard]] BezierRows bezier(const Topology& ring, std::span<const CornerFan> fans) const override {
-    return tensor_bezier(3, bicubic_lattice(ring, fans));
+    return tensor_bezier(3, lattice(ring, fans));
+  }
+  [[nodiscard]] Lattice lattice(const Topology& ring, std::span<const CornerFan> fans) const override {
+    return bicubic_lattice(ring, fans);
   }
   [[nodiscard]] double shrink_factor(const CornerFan& fan) const override {
     return subdominant(fan.closed ? fan.faces() : 2 * fan.faces());

@@ -95,19 +95,18 @@ class DualRules : public SchemeRules {
   // edge between k and k + 1, the patch's own, the one of the edge before.
   [[nodiscard]] std::vector<HalfEdge> child_starts(const Topology& ring,
                                                    const Topology& refined) const override {
-    const auto around = [&](std::size_t k, std::size_t step) {
-      HalfEdge h = refined.first_of(FaceId(k));
-      SNUG_EXPECT(refined.from(h).index() == ring.first_of(FaceId(k)));
-      for (; step > 0; --step) h = refined.ccw(h);
-      return h;
-    };
-    if (ring.face_count() == 4) return {around(0, 0), around(1, 3), around(2, 2), around(1, 1)};
+    const auto at = [&](std::size_t k, std::size_t step) { return around(ring, refined, k, step); };
+    if (ring.face_count() == 4) return {at(0, 0), at(1, 3), at(2, 2), at(1, 1)};
     std::vector<HalfEdge> starts;
     for (std::size_t k = 0; k < ring.face_count(); ++k) {
-      starts.push_back(around(k, 0));
-      starts.push_back(around(k, 2));
+      starts.push_back(at(k, 0));
+      starts.push_back(at(k, 2));
     }
     return starts;
+  }
+  [[nodiscard]] HalfEdge quarter_start(const Topology& ring, const Topology& refined,
+                                       std::size_t corner) const override {
+    return around(ring, refined, corner, (4 - corner) % 4);
   }
   // The mean of the face there.
   [[nodiscard]] bool add_corner_limit(const RuledMesh& mesh, HalfEdge corner, Stencils& out) const override {
@@ -124,8 +123,26 @@ class DualRules : public SchemeRules {
   }
 
   [[nodiscard]] bool regular(const CornerFan& fan) const override { return regular_among_quads(fan); }
+  // As biquadratic B-splines count nine places; the corners are faces, face 0 at the lower left. Vertices as
+  // rings of vertices number them: the middle one, the ends of its edges (left, below, right, above), the far
+  // ones of the faces.
+  [[nodiscard]] Lattice lattice(const Topology&, std::span<const CornerFan>) const override {
+    constexpr std::array<std::size_t, 9> by_rows{5, 2, 6, 1, 0, 3, 8, 4, 7};
+    Lattice lattice;
+    for (std::size_t i = 0; i < 9; ++i) {
+      lattice.push_back(unit_combination(basis == RegularBasis::biquadratic ? by_rows[i] : i, 9));
+    }
+    return lattice;
+  }
 
  private:
+  // The half-edge of the new vertex in face k that leaves it, so many faces counter-clockwise after that in k.
+  static HalfEdge around(const Topology& ring, const Topology& refined, std::size_t k, std::size_t step) {
+    HalfEdge h = refined.first_of(FaceId(k));
+    SNUG_EXPECT(refined.from(h).index() == ring.first_of(FaceId(k)));
+    for (; step > 0; --step) h = refined.ccw(h);
+    return h;
+  }
   // The vertex that half-edge h makes.
   static void add_new_vertex(const Topology& topology, HalfEdge h, const std::vector<Interval>& mask,
                              Stencils& out) {
@@ -139,19 +156,17 @@ class DualRules : public SchemeRules {
   Mask mask_;
 };
 
-// Nine places; the corners are faces, face 0 at the lower left. Vertices as dual neighbourhoods number them:
-// the middle one, the ends of its edges (left, below, right, above), the far ones of the faces.
-constexpr std::array<std::size_t, 9> biquadratic_places{5, 2, 6, 1, 0, 3, 8, 4, 7};
-
 class DooSabinRules : public DualRules {
  public:
   DooSabinRules()
-      : DualRules({.scheme = Scheme::doo_sabin, .name = "doo-sabin", .primal = false, .creases = false},
+      : DualRules({.scheme = Scheme::doo_sabin,
+                   .name = "doo-sabin",
+                   .primal = false,
+                   .creases = false,
+                   .basis = RegularBasis::biquadratic},
                   doo_sabin_mask) {}
-  [[nodiscard]] BezierRows bezier(const Topology&, std::span<const CornerFan>) const override {
-    Lattice lattice;
-    for (const std::size_t v : biquadratic_places) lattice.push_back(unit_combination(v, 9));
-    return tensor_bezier(2, lattice);
+  [[nodiscard]] BezierRows bezier(const Topology& ring, std::span<const CornerFan> fans) const override {
+    return tensor_bezier(2, lattice(ring, fans));
   }
   // The first Fourier mode has 1/4 + 2 / (4n) n/2 for every n.
   [[nodiscard]] double shrink_factor(const CornerFan&) const override { return 0.5; }
@@ -173,7 +188,8 @@ class MidedgeRules : public DualRules {
                    .name = "midedge",
                    .other_names = midedge_names,
                    .primal = false,
-                   .creases = false},
+                   .creases = false,
+                   .basis = RegularBasis::zwart_powell},
                   midedge_mask) {}
   [[nodiscard]] BezierRows bezier(const Topology&, std::span<const CornerFan>) const override {
     BezierRows out{2, 2, {}};

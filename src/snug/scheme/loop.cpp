@@ -80,9 +80,9 @@ Combination ghost(std::size_t p, std::size_t q, std::size_t r, std::size_t count
 
 // The twelve places of the full lattice, ghosts filled in. A regular boundary corner has three faces; its
 // ring of six is the four vertices of its fan and two ghosts.
-std::array<Combination, full_count> complete(const Topology& topology, std::span<const CornerFan> fans) {
+Lattice complete(const Topology& topology, std::span<const CornerFan> fans) {
   const std::size_t count = topology.vertex_count();
-  std::array<Combination, full_count> places;
+  Lattice places(full_count);
   Star star;
   for (std::size_t i = 0; i < 3; ++i) {
     places[i] = unit_combination(i, count);
@@ -120,7 +120,8 @@ class LoopRules : public CreasedRules {
                       .regular_valence = 6,
                       .wants_triangles = "Loop subdivision needs triangles: triangulate the mesh",
                       .laid_by_rings = true,
-                      .kernel = RegularKernel::box_spline}) {}
+                      .kernel = RegularKernel::box_spline,
+                      .basis = RegularBasis::box_spline}) {}
 
   // One step makes two edges between the same two vertices of duplicate faces, which are not one.
   [[nodiscard]] bool answers(DefectKind kind) const override {
@@ -165,7 +166,7 @@ class LoopRules : public CreasedRules {
     return !fan.odd && !fan.sharp && (fan.closed ? fan.after == 5 : fan.faces() == 3);
   }
   [[nodiscard]] BezierRows bezier(const Topology& ring, std::span<const CornerFan> fans) const override {
-    const std::array<Combination, full_count> places = complete(ring, fans);
+    const Lattice places = lattice(ring, fans);
     BezierRows out{4, 1, {}};
     for (const auto& row : full_rows) {
       Combination sum(ring.vertex_count(), 0);
@@ -175,6 +176,9 @@ class LoopRules : public CreasedRules {
       add_fractions(sum, 24, out.rows);
     }
     return out;
+  }
+  [[nodiscard]] Lattice lattice(const Topology& ring, std::span<const CornerFan> fans) const override {
+    return complete(ring, fans);
   }
   [[nodiscard]] double shrink_factor(const CornerFan& fan) const override {
     return fan.closed ? subdominant(fan.faces()) : std::max(0.5, subdominant(2 * fan.faces()));

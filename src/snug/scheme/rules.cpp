@@ -45,6 +45,10 @@ std::vector<HalfEdge> SchemeRules::child_starts(const Topology& ring, const Topo
   return starts;
 }
 
+HalfEdge SchemeRules::quarter_start(const Topology&, const Topology&, std::size_t corner) const {
+  return static_cast<HalfEdge>(4 * corner);
+}
+
 bool regular_among_quads(const CornerFan& fan) {
   if (fan.odd) return false;
   return fan.closed ? !fan.sharp && fan.after == 3 : fan.faces() == (fan.sharp ? 1u : 2u);

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include <snug/scheme/basis.h>
 #include <snug/scheme/bezier.h>
 #include <snug/scheme/refine.h>
 #include <snug/scheme/rings.h>
@@ -33,6 +34,7 @@ struct SchemeFacts {
   /// Are tables laid out by the rings of the corners (bounds/layout.h)?
   bool laid_by_rings = false;
   RegularKernel kernel = RegularKernel::none;
+  RegularBasis basis = RegularBasis::linear;  ///< of regular patches
 };
 
 /// All that snug knows of one scheme. Each has a file; other files ask for its properties, not for its name.
@@ -62,7 +64,11 @@ class SchemeRules : public SchemeFacts {
   /// Half-edges of the refined ring that the children of a patch, or of a polygon, begin at (Kind::children).
   [[nodiscard]] virtual std::vector<HalfEdge> child_starts(const Topology& ring,
                                                            const Topology& refined) const;
-  /// The half-edge of a ring that tells corner 0, 1 or 2 of its patch.
+  /// Where patches are halves of quads: the half-edge of the refined ring that the quarter at corner 0, 1, 2
+  /// or 3 begins at, all corners of the quarter in their places.
+  [[nodiscard]] virtual HalfEdge quarter_start(const Topology& ring, const Topology& refined,
+                                               std::size_t corner) const;
+  /// The half-edge of a ring that tells a corner of its patch, or of the quad that it is half of.
   [[nodiscard]] HalfEdge corner_of(const Topology& ring, std::size_t corner) const {
     return primal ? static_cast<HalfEdge>(corner) : ring.first_of(FaceId(corner));
   }
@@ -81,6 +87,9 @@ class SchemeRules : public SchemeFacts {
   [[nodiscard]] virtual bool regular(const CornerFan& fan) const = 0;
   /// A patch all of whose corners are regular, as polynomials.
   [[nodiscard]] virtual BezierRows bezier(const Topology& ring, std::span<const CornerFan> fans) const = 0;
+  /// Of such a patch the points that its basis functions weight: control points, and ghosts beyond boundaries
+  /// and creases. In the order of the basis.
+  [[nodiscard]] virtual Lattice lattice(const Topology& ring, std::span<const CornerFan> fans) const = 0;
   /// About the factor by which what surrounds an irregular corner, not sharp and no dart, shrinks a level.
   [[nodiscard]] virtual double shrink_factor(const CornerFan& fan) const = 0;
 

@@ -1,8 +1,11 @@
 #include <snug/surface/evaluate.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 
 #include <snug/base/error.h>
+#include <snug/base/parallel.h>
 #include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
@@ -10,28 +13,171 @@
 
 namespace snug {
 
-PatchEvaluator::PatchEvaluator(const LimitSurface& surface, PatchId p)
-    : patch_(surface.patch(p)), back_(surface.scale().inverse()), triangular_(surface.rules().triangular()) {}
+namespace {
 
-SurfacePoint PatchEvaluator::operator()(TriangleParameter at) const {
-  return placed_frame(limit_frame(patch_, at));
-}
-
-SurfacePoint PatchEvaluator::operator()(const SurfaceParameter& at) const {
-  return placed_frame(triangular_ ? limit_frame(patch_, TriangleParameter{at.u, at.v})
-                                  : limit_frame(patch_, QuadParameter{at.u, at.v}));
-}
-
-SurfacePoint PatchEvaluator::placed_frame(const LimitFrame& frame) const {
-  SurfacePoint result{
-      unscaled(frame.point.from(patch_.origin), back_), {}, frame.differentiable, frame.normal, {}};
+SurfacePoint in_mesh_units(const LimitFrame& frame, const Point3& origin, PowerOfTwo back) {
+  SurfacePoint result{unscaled(frame.point.from(origin), back), {}, frame.differentiable, frame.normal, {}};
   for (std::size_t t = 0; t < 2; ++t) {
-    result.tangents[t] = require_representable(back_.apply(frame.tangents[t]));
+    result.tangents[t] = require_representable(back.apply(frame.tangents[t]));
   }
   if (frame.normal && frame.tangent_error) {
     result.normal_error = normal_error(frame.tangents, *frame.tangent_error);
   }
   return result;
+}
+
+// The patch, or the first half of the quad, that a place lies on; checks all but u and v.
+PatchId first_patch(const LimitSurface& surface, const SurfaceParameter& at) {
+  const bool triangular = surface.rules().triangular();
+  bool there = at.owner < surface.owner_count() && (!triangular || at.corner == 0);
+  std::size_t patch = 0;
+  if (there) {
+    const LimitSurface::PatchRange range = surface.patches_of(at.owner);
+    patch = range.begin + 2 * std::size_t{at.corner};
+    there = patch < range.end && surface.has_patch(PatchId(patch));
+  }
+  require_value(there, "evaluate: the surface has no such face or corner; give one that it has");
+  return PatchId(patch);
+}
+
+bool on_one_patch(const SurfaceParameter& a, const SurfaceParameter& b) {
+  return a.owner == b.owner && a.corner == b.corner;
+}
+
+// Numbers of points such that those of one face, or quad, follow each other. Empty where most do already, or
+// where there are so few that hardly two lie on one face.
+std::vector<std::size_t> grouped_by_patch(const LimitSurface& surface, std::span<const SurfaceParameter> at) {
+  std::size_t changes = 0;
+  for (std::size_t i = 1; i < at.size(); ++i) {
+    changes += !on_one_patch(at[i], at[i - 1]);
+  }
+  if (changes < at.size() / 8 || at.size() < surface.patch_count() / 8) return {};
+  std::vector<std::size_t> begins(surface.patch_count() + 1, 0), order(at.size());
+  for (const SurfaceParameter& a : at) ++begins[first_patch(surface, a).index() + 1];
+  for (std::size_t p = 1; p < begins.size(); ++p) begins[p] += begins[p - 1];
+  for (std::size_t i = 0; i < at.size(); ++i) order[begins[first_patch(surface, at[i]).index()]++] = i;
+  return order;
+}
+
+// Writes a position in single precision; returns its error.
+double write_rounded(const BoundedPoint& point, float* out) {
+  double rounding = 0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    out[a] = static_cast<float>(point.position[a]);
+    if (!std::isfinite(out[a])) {
+      throw InputError(InputProblem::unrepresentable,
+                       "a result does not fit a float: the coordinates are too large; scale the mesh down");
+    }
+    rounding = std::max(rounding, std::fabs(static_cast<double>(out[a]) - point.position[a]));
+  }
+  return enlarged(point.error + rounding);
+}
+
+using Places = std::span<const SurfaceParameter>;
+using Numbers = std::span<const std::size_t>;
+
+constexpr std::size_t most_together = 64;
+
+// Calls visit(evaluator, places, numbers) for at most so many points of one face, or quad, after the other, on each thread
+// with an evaluator of its own.
+template <class Visit>
+void evaluate_all(const LimitSurface& surface, std::span<const SurfaceParameter> at, int threads,
+                  const Visit& visit) {
+  constexpr std::size_t worth_a_thread = 2048;
+  const std::vector<std::size_t> order = grouped_by_patch(surface, at);
+  parallel_for_with(
+      at.size(), at.size() < worth_a_thread ? 1 : threads, [&] { return SurfaceEvaluator(surface); },
+      [&](SurfaceEvaluator& evaluator, std::size_t begin, std::size_t end) {
+        std::array<SurfaceParameter, most_together> places;
+        std::array<std::size_t, most_together> numbers;
+        std::size_t count = 0;
+        for (std::size_t i = begin; i < end; ++i) {
+          const std::size_t number = order.empty() ? i : order[i];
+          if (count == most_together || (count > 0 && !on_one_patch(places[0], at[number]))) {
+            visit(evaluator, Places(places.data(), count), Numbers(numbers.data(), count));
+            count = 0;
+          }
+          numbers[count] = number;
+          places[count++] = at[number];
+        }
+        visit(evaluator, Places(places.data(), count), Numbers(numbers.data(), count));
+      });
+}
+
+}  // namespace
+
+void SurfaceEvaluator::turn_to(const SurfaceParameter& at) {
+  if (last_ && owner_ == at.owner && corner_ == at.corner) return;
+  last_.reset();
+  const PatchId patch = first_patch(*surface_, at);
+  surface_->patch(patch, patch_);
+  evaluator_.reset(patch_);
+  last_ = patch;
+  owner_ = at.owner;
+  corner_ = at.corner;
+}
+
+SurfacePoint SurfaceEvaluator::operator()(const SurfaceParameter& at) {
+  turn_to(at);
+  return in_mesh_units(evaluator_.frame(at), evaluator_.origin(), back_);
+}
+
+void SurfaceEvaluator::positions(std::span<const SurfaceParameter> at, std::span<BoundedPoint> out) {
+  if (at.empty()) return;
+  turn_to(at.front());
+  evaluator_.points(at, out);
+  for (BoundedPoint& point : out) point = unscaled(point, back_);
+}
+
+SurfacePoint evaluate(const LimitSurface& surface, const SurfaceParameter& at) {
+  return SurfaceEvaluator(surface)(at);
+}
+
+std::vector<SurfacePoint> evaluate(const LimitSurface& surface, std::span<const SurfaceParameter> at,
+                                   int threads) {
+  std::vector<SurfacePoint> points(at.size());
+  evaluate_all(surface, at, threads, [&](SurfaceEvaluator& evaluator, Places places, Numbers numbers) {
+    for (std::size_t k = 0; k < places.size(); ++k) points[numbers[k]] = evaluator(places[k]);
+  });
+  return points;
+}
+
+double evaluate(const LimitSurface& surface, std::span<const SurfaceParameter> at, const FloatPoints& out,
+                int threads) {
+  const bool normals = !out.normals.empty();
+  require_value(out.positions.size() == 3 * at.size() && (!normals || out.normals.size() == 3 * at.size()),
+                "evaluate: there must be room for three floats a point");
+  std::atomic<double> largest = 0;
+  evaluate_all(surface, at, threads, [&](SurfaceEvaluator& evaluator, Places places, Numbers numbers) {
+    double error = 0;
+    if (normals) {
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        const SurfacePoint point = evaluator(places[k]);
+        error = std::max(error, write_rounded(point, out.positions.data() + 3 * numbers[k]));
+        const Vector3 normal = point.normal.value_or(Vector3{});
+        for (std::size_t a = 0; a < 3; ++a) {
+          out.normals[3 * numbers[k] + a] = static_cast<float>(normal[a]);
+        }
+      }
+    } else {
+      std::array<BoundedPoint, most_together> points;
+      evaluator.positions(places, {points.data(), places.size()});
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        error = std::max(error, write_rounded(points[k], out.positions.data() + 3 * numbers[k]));
+      }
+    }
+    double met = largest.load(std::memory_order_relaxed);
+    while (error > met && !largest.compare_exchange_weak(met, error, std::memory_order_relaxed)) {
+    }
+  });
+  return largest;
+}
+
+PatchEvaluator::PatchEvaluator(const LimitSurface& surface, PatchId p)
+    : patch_(surface.patch(p)), back_(surface.scale().inverse()) {}
+
+SurfacePoint PatchEvaluator::operator()(TriangleParameter at) const {
+  return in_mesh_units(limit_frame(patch_, at), patch_.origin, back_);
 }
 
 SurfaceParameter place_of(const LimitSurface& surface, PatchId patch, TriangleParameter at) {
@@ -46,14 +192,14 @@ SurfaceParameter place_of(const LimitSurface& surface, PatchId patch, TrianglePa
 }
 
 std::optional<PatchId> patch_at(const LimitSurface& surface, const SurfaceParameter& at) {
-  const auto [u, v] = QuadParameter{at.u, at.v};
+  const double u = at.u, v = at.v;
   if (at.owner >= surface.owner_count() || !(u >= 0 && v >= 0 && u <= 1 && v <= 1)) return {};
   const LimitSurface::PatchRange range = surface.patches_of(at.owner);
   std::size_t patch = range.begin;
   if (surface.rules().triangular()) {
     if (!(u + v <= 1) || at.corner != 0) return {};
   } else {
-    patch += 2 * std::size_t{at.corner} + part_of(QuadParameter{u, v});
+    patch += 2 * std::size_t{at.corner} + (v <= u ? 0 : 1);
   }
   if (patch >= range.end || !surface.has_patch(PatchId(patch))) return {};
   return PatchId(patch);
@@ -70,13 +216,6 @@ std::optional<SurfaceNormal> normal_at(const LimitSurface& surface, const Surfac
     result.error = enlarged((1 + 2 * defect) * *point.normal_error + 8 * defect + 32 * unit_roundoff);
   }
   return result;
-}
-
-SurfacePoint evaluate(const LimitSurface& surface, const SurfaceParameter& at) {
-  const std::optional<PatchId> patch = patch_at(surface, at);
-  require_value(patch.has_value(),
-                "evaluate: the surface has no such face, corner or parameter; give one that it has");
-  return PatchEvaluator(surface, *patch)(at);
 }
 
 CurveSetPoint evaluate(const CurveSet& curves, EdgeId edge, double t) {

@@ -2,9 +2,12 @@
 
 #include <array>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include <snug/evaluate.h>
 #include <snug/geometry/motion.h>
+#include <snug/patch/limit_evaluator.h>
 #include <snug/patch/patch.h>
 #include <snug/surface/curve_set.h>
 #include <snug/surface/limit_surface.h>
@@ -30,22 +33,49 @@ namespace snug {
 [[nodiscard]] std::optional<SurfaceNormal> normal_at(const LimitSurface& surface, const SurfaceParameter& at,
                                                      const Motion& pose = {});
 
-/// Evaluates many points of one patch with a single set-up. InputError (value) for a patch that is not there
-/// and a parameter that is not on it, NaN included.
+/// Evaluates points of a surface. What was refined for a point is kept for those that follow on the same face,
+/// or the same quad of its first split: fast where these come together.
+///
+/// Guarantee: a result does not depend on earlier ones.
+/// Requires:  the surface outlives it.
+/// Errors:    those of evaluate().
+/// Cost:      that of LimitEvaluator, and 200 ns for each face that is turned to.
+class SurfaceEvaluator {
+ public:
+  explicit SurfaceEvaluator(const LimitSurface& surface)
+      : surface_(&surface), back_(surface.scale().inverse()) {}
+  [[nodiscard]] SurfacePoint operator()(const SurfaceParameter& at);
+  /// Positions of points that lie on one face, or quad of its first split.
+  /// Requires:  out.size() == at.size().
+  void positions(std::span<const SurfaceParameter> at, std::span<BoundedPoint> out);
+
+ private:
+  void turn_to(const SurfaceParameter& at);
+
+  const LimitSurface* surface_;
+  PowerOfTwo back_;
+  std::optional<PatchId> last_;  // of which patch, or the quad that begins with it, the evaluator is
+  std::uint32_t owner_ = 0, corner_ = 0;
+  Patch patch_;
+  LimitEvaluator evaluator_;
+};
+
+/// evaluate() of evaluate.h, for many points.
+[[nodiscard]] std::vector<SurfacePoint> evaluate(const LimitSurface& surface,
+                                                 std::span<const SurfaceParameter> at, int threads);
+double evaluate(const LimitSurface& surface, std::span<const SurfaceParameter> at, const FloatPoints& out,
+                int threads);
+
+/// Evaluates points of one patch at its own parameters, with derivatives along its u and v; u, v >= 0 and u + v
+/// <= 1. InputError (value) for a patch that is not there and a parameter that is not on it, NaN included.
 class PatchEvaluator {
  public:
   PatchEvaluator(const LimitSurface& surface, PatchId p);
-  /// The point at a place of its owner that lies on this patch.
-  [[nodiscard]] SurfacePoint operator()(const SurfaceParameter& at) const;
-  /// The point at a parameter of the patch, with derivatives along its own u and v; u, v >= 0 and u + v <= 1.
   [[nodiscard]] SurfacePoint operator()(TriangleParameter at) const;
 
  private:
-  [[nodiscard]] SurfacePoint placed_frame(const LimitFrame& frame) const;
-
   Patch patch_;
   PowerOfTwo back_;
-  bool triangular_;
 };
 
 /// A limit point of a curve in mesh units, and the derivative there along t.

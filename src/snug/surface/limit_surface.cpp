@@ -132,12 +132,19 @@ Point3 LimitSurface::middle(PatchId p) const {
 }
 
 Patch LimitSurface::patch(PatchId p) const {
+  Patch result;
+  patch(p, result);
+  return result;
+}
+
+void LimitSurface::patch(PatchId p, Patch& out) const {
   thread_local std::vector<VertexId> control;
   control_vertices(p, control);
   if (const Kind* polygon = polygon_of(p)) {
-    return split(make_patch(*polygon, 0, scaled_, control), place(p).part);
+    split(make_patch(*polygon, 0, scaled_, control), place(p).part, out);
+  } else {
+    make_patch(kind(p), first(p), scaled_, control, out);
   }
-  return make_patch(kind(p), first(p), scaled_, control);
 }
 
 std::size_t LimitSurface::corner_name_count() const {

@@ -86,6 +86,8 @@ class LimitSurface {
   [[nodiscard]] Point3 middle(PatchId p) const;
   /// The whole patch, in scaled units. InputError (value) unless has_patch(p).
   [[nodiscard]] Patch patch(PatchId p) const;
+  /// The same, written over `out`, which keeps its memory.
+  void patch(PatchId p, Patch& out) const;
   /// Names of the patch's three corners: equal names, equal limit points. Below corner_name_count().
   [[nodiscard]] std::array<std::uint32_t, 3> corner_names(PatchId p) const;
   [[nodiscard]] std::size_t corner_name_count() const;

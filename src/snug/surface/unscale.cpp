@@ -26,7 +26,7 @@ Box3 unscaled(const Box3& box, PowerOfTwo back) {
   return result;
 }
 
-BoundedPoint unscaled(const BoundedPoint& point, PowerOfTwo back) {
+BoundedPoint unscaled_exactly(const BoundedPoint& point, PowerOfTwo back) {
   return {require_representable(back.apply(point.position)),
           unscaled_up(enlarged(point.error), back) + underflow_error};
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <snug/bounds/enclosure.h>
+#include <snug/geometry/rounding.h>
 #include <snug/geometry/scaling.h>
 
 namespace snug {
@@ -16,7 +17,12 @@ template <std::size_t N>
 
 /// A point, its error enlarged where scaling is not exact.
 /// Errors:    likewise.
-[[nodiscard]] BoundedPoint unscaled(const BoundedPoint& point, PowerOfTwo back);
+[[nodiscard]] BoundedPoint unscaled_exactly(const BoundedPoint& point, PowerOfTwo back);
+[[nodiscard]] inline BoundedPoint unscaled(const BoundedPoint& point, PowerOfTwo back) {
+  if (!back.moderate()) return unscaled_exactly(point, back);
+  // Nothing overflows, and each product loses less than underflow_error.
+  return {back.apply(point.position), back.apply(enlarged(point.error)) + 2 * underflow_error};
+}
 
 /// A lower bound, an upper bound of a distance, back in mesh units. Upper ones may be infinite.
 [[nodiscard]] double unscaled_down(double x, PowerOfTwo back);
