@@ -5,9 +5,24 @@
 
 namespace snug {
 
+namespace {
+
+HalfEdge uniform_size_of(const std::vector<std::uint32_t>& face_offsets) {
+  if (face_offsets.size() < 2) return 0;
+  const HalfEdge size = face_offsets[1];
+  for (std::size_t f = 2; f < face_offsets.size(); ++f) {
+    if (face_offsets[f] - face_offsets[f - 1] != size) return 0;
+  }
+  return size;
+}
+
+}  // namespace
+
 Topology::Topology(std::vector<std::uint32_t> face_offsets, std::vector<VertexId> face_vertices,
                    std::size_t vertex_count)
-    : face_offsets_(std::move(face_offsets)), face_vertices_(std::move(face_vertices)) {
+    : face_offsets_(std::move(face_offsets)),
+      uniform_size_(uniform_size_of(face_offsets_)),
+      face_vertices_(std::move(face_vertices)) {
   HalfEdgeGroups groups(face_offsets_, face_vertices_, vertex_count);
   twins_.assign(face_vertices_.size(), no_half_edge);
   edges_.resize(face_vertices_.size());

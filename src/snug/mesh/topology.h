@@ -44,6 +44,8 @@ class Topology {
     return {face_vertices_.data() + face_offsets_[f.index()],
             face_vertices_.data() + face_offsets_[f.index() + 1]};
   }
+  /// If all faces have the same number n of corners, n, else 0: face f has the half-edges n f to n f + n - 1.
+  [[nodiscard]] HalfEdge uniform_size() const { return uniform_size_; }
   /// First half-edge of a face: from its corner 0 to its corner 1.
   [[nodiscard]] HalfEdge first_of(FaceId f) const { return face_offsets_[f.index()]; }
   [[nodiscard]] FaceId face_of(HalfEdge h) const { return faces_[h]; }
@@ -115,6 +117,7 @@ class Topology {
   void find_fans();
 
   std::vector<std::uint32_t> face_offsets_{0};
+  HalfEdge uniform_size_ = 0;
   std::vector<VertexId> face_vertices_;
   std::vector<FaceId> faces_;
   std::vector<HalfEdge> twins_;

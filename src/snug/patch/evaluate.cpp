@@ -144,33 +144,29 @@ LimitFrame corner_frame(const Patch& patch, std::size_t corner) {
   for (std::size_t t = 0; t < 2; ++t) {
     frame.tangents[t] = patch.kind->corner_tangents().apply<Vector3>(2 * k + t, patch.points);
   }
-  frame.normal = unit_normal(frame.tangents);
+  add_normal(frame);
   return frame;
 }
 
 }  // namespace
 
-std::optional<Vector3> unit_normal(const std::array<Vector3, 2>& tangents) {
-  const double a = max_abs(tangents[0]), b = max_abs(tangents[1]);
-  if (!(a > 0) || !(b > 0)) return std::nullopt;
-  const Vector3 normal = cross((1 / a) * tangents[0], (1 / b) * tangents[1]);
-  const double size = length(normal);
+void add_normal(LimitFrame& frame) {
+  const double a = max_abs(frame.tangents[0]), b = max_abs(frame.tangents[1]);
+  frame.normal.reset();
+  frame.normal_error.reset();
+  if (!(a > 0) || !(b > 0)) return;
+  const double by_a = 1 / a, by_b = 1 / b;
+  const Vector3 product = cross(by_a * frame.tangents[0], by_b * frame.tangents[1]);
+  const double size = length(product);
   // Below this the direction is rounding noise.
-  if (!(size > 1e-13)) return std::nullopt;
-  return (1 / size) * normal;
-}
-
-std::optional<double> normal_error(const std::array<Vector3, 2>& tangents, double tangent_error) {
-  const double a = max_abs(tangents[0]), b = max_abs(tangents[1]);
-  // As in unit_normal(): of about length 1.
-  if (!(a > 0x1p-900) || !(b > 0x1p-900)) return std::nullopt;
-  const Vector3 s = (1 / a) * tangents[0], t = (1 / b) * tangents[1];
-  const double s_error = spatial_error(tangent_error / a + 2 * unit_roundoff),
-               t_error = spatial_error(tangent_error / b + 2 * unit_roundoff);
-  const double size = length(cross(s, t));
-  const double error = 2 * (s_error + t_error) + s_error * t_error + 32 * unit_roundoff;
-  if (!(size > 4 * error)) return std::nullopt;
-  return enlarged(2 * error / size + 16 * unit_roundoff);
+  if (!(size > 1e-13)) return;
+  const double by_size = 1 / size;
+  frame.normal = by_size * product;
+  if (!frame.tangent_error || !(a > 0x1p-900) || !(b > 0x1p-900)) return;
+  const double a_error = spatial_error(*frame.tangent_error * by_a + 4 * unit_roundoff),
+               b_error = spatial_error(*frame.tangent_error * by_b + 4 * unit_roundoff);
+  const double error = 2 * (a_error + b_error) + a_error * b_error + 32 * unit_roundoff;
+  if (size > 4 * error) frame.normal_error = enlarged(2 * error * by_size + 16 * unit_roundoff);
 }
 
 LimitPoint corner_point(const Patch& patch, std::size_t corner) {
@@ -219,8 +215,8 @@ LimitFrame limit_frame(const Patch& patch, TriangleParameter parameter) {
   frame.tangents = {here.turned * (corner_at_plane(1) - corner_at_plane(0)),
                     here.turned * (corner_at_plane(2) - corner_at_plane(0))};
   frame.differentiable = true;
-  frame.normal = unit_normal(frame.tangents);
   frame.tangent_error = enlarged(std::fabs(here.turned) * 3 * derivatives.error);
+  add_normal(frame);
   return frame;
 }
 

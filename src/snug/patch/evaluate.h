@@ -30,6 +30,8 @@ struct LimitFrame {
   std::optional<Vector3> normal;  ///< of length 1; absent where the tangents are parallel or vanish
   /// Upper bound, a coordinate, of |tangent - exact derivative|, where derivatives are those of a polynomial.
   std::optional<double> tangent_error{};
+  /// Upper bound of |normal - exact normal|, where tangents have one that is small enough.
+  std::optional<double> normal_error{};
 };
 
 /// Limit point at any parameter, extraordinary corners included.
@@ -40,16 +42,11 @@ struct LimitFrame {
 ///            about 90 ns (Catmull-Clark: 28); near an extraordinary corner a split a level, at most 60.
 [[nodiscard]] LimitPoint limit_point(const Patch& patch, TriangleParameter at);
 
-/// The same with tangents and normal, in double precision without a bound for the normal: see normal_error().
+/// The same with tangents and normal.
 [[nodiscard]] LimitFrame limit_frame(const Patch& patch, TriangleParameter at);
-/// Upper bound of the length of normal - exact normal for tangents that are off by `tangent_error` a
-/// coordinate; nothing where they are too small, or too nearly parallel, for one.
+/// Sets normal and normal_error from the tangents and their error.
 /// Source:    derivations/rounding.md, "Normals".
-[[nodiscard]] std::optional<double> normal_error(const std::array<Vector3, 2>& tangents,
-                                                 double tangent_error);
-
-/// Their cross product at length 1; nothing where they are parallel or vanish.
-[[nodiscard]] std::optional<Vector3> unit_normal(const std::array<Vector3, 2>& tangents);
+void add_normal(LimitFrame& frame);
 
 /// Limit position of corner 0, 1 or 2 of the patch: one row.
 [[nodiscard]] LimitPoint corner_point(const Patch& patch, std::size_t corner);

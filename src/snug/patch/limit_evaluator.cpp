@@ -205,7 +205,7 @@ LimitFrame LimitEvaluator::corner_frame(const Place& place) const {
     const Stencils::Row row = rows.row(2 * (place.corner % 3) + t);
     frame.tangents[t] = applied(row, points_.data() + piece.control.first);
   }
-  frame.normal = unit_normal(frame.tangents);
+  add_normal(frame);
   return frame;
 }
 
@@ -276,8 +276,8 @@ LimitFrame LimitEvaluator::regular_frame(const Place& place) const {
   }
   frame.tangents = {place.turned * along[0], place.turned * along[1]};
   frame.differentiable = true;
-  frame.normal = unit_normal(frame.tangents);
   frame.tangent_error = enlarged(std::fabs(place.turned) * (error + 0x1p20 * underflow_error));
+  add_normal(frame);
   return frame;
 }
 

@@ -350,7 +350,9 @@ void ControlOrder::operator()(const Topology& topology, HalfEdge start, std::vec
   thread_local std::vector<Entry> kept;
   kept.resize(faces_.size() + 1);
   Entry* const entries = kept.data();
+  const HalfEdge uniform = topology.uniform_size();
   const auto enter = [&](HalfEdge h) -> Entry {
+    if (uniform != 0) return {h - h % uniform, uniform, h % uniform};  // no look at memory
     const FaceId f = topology.face_of(h);
     const HalfEdge first = topology.first_of(f);
     return {first, static_cast<HalfEdge>(topology.face(f).size()), h - first};

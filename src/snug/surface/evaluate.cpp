@@ -16,12 +16,12 @@ namespace snug {
 namespace {
 
 SurfacePoint in_mesh_units(const LimitFrame& frame, const Point3& origin, PowerOfTwo back) {
-  SurfacePoint result{unscaled(frame.point.from(origin), back), {}, frame.differentiable, frame.normal, {}};
+  SurfacePoint result{
+      unscaled(frame.point.from(origin), back), {}, frame.differentiable, frame.normal, frame.normal_error};
   for (std::size_t t = 0; t < 2; ++t) {
-    result.tangents[t] = require_representable(back.apply(frame.tangents[t]));
-  }
-  if (frame.normal && frame.tangent_error) {
-    result.normal_error = normal_error(frame.tangents, *frame.tangent_error);
+    const Vector3 tangent = back.apply(frame.tangents[t]);
+    // At most 2^66 before.
+    result.tangents[t] = back.moderate() ? tangent : require_representable(tangent);
   }
   return result;
 }
