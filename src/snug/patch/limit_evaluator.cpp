@@ -64,11 +64,14 @@ void LimitEvaluator::reset(const Patch& patch) {
   SNUG_EXPECT(!kind.key().polygon);
   triangular_ = kind.rules().triangular();
   basis_ = kind.rules().basis;
-  points_.clear();
   pieces_.clear();
   lattice_ = nullptr;
   origin_ = patch.origin;
-  for (const Vector3& p : patch.points) points_.push_back({p.x, p.y, p.z, 0});
+  points_.resize(patch.points.size());
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Vector3& p = patch.points[i];
+    points_[i] = {p.x, p.y, p.z, 0};
+  }
   Piece& whole =
       pieces_.emplace_back(Piece{&kind, patch.path.level(), patch.first, {0, patch.largest, patch.error}});
   if (!kind.polynomial()) return;

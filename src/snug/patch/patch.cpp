@@ -9,15 +9,19 @@
 namespace snug {
 namespace {
 
-void measure(Patch& patch) {
-  double x = 0, y = 0, z = 0;  // three chains of maxima, not one
-  for (const Vector3& p : patch.points) {
-    x = std::max(x, std::fabs(p.x));
-    y = std::max(y, std::fabs(p.y));
-    z = std::max(z, std::fabs(p.z));
+// The largest coordinate of points that are met one by one.
+class Largest {
+ public:
+  void add(const Vector3& p) {
+    x_ = std::max(x_, std::fabs(p.x));
+    y_ = std::max(y_, std::fabs(p.y));
+    z_ = std::max(z_, std::fabs(p.z));
   }
-  patch.largest = std::max({x, y, z});
-}
+  [[nodiscard]] double get() const { return std::max({x_, y_, z_}); }
+
+ private:
+  double x_ = 0, y_ = 0, z_ = 0;  // three chains of maxima, not one
+};
 
 }  // namespace
 
@@ -36,8 +40,12 @@ void make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> al
   out.path = {};
   out.origin = all[which[0].index()];
   out.points.resize(which.size());
-  for (std::size_t i = 0; i < which.size(); ++i) out.points[i] = all[which[i].index()] - out.origin;
-  measure(out);
+  Largest largest;
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    out.points[i] = all[which[i].index()] - out.origin;
+    largest.add(out.points[i]);
+  }
+  out.largest = largest.get();
   out.error = enlarged(unit_roundoff * out.largest + 4 * underflow_error);
 }
 
@@ -58,10 +66,12 @@ void split(const Patch& patch, unsigned child, Patch& piece) {
   piece.path = polygon ? patch.path : patch.path.child(child);
   piece.origin = patch.origin;
   piece.points.resize(step.stencils.row_count());
+  Largest largest;
   for (std::size_t r = 0; r < piece.points.size(); ++r) {
     piece.points[r] = step.stencils.apply<Vector3>(r, patch.points);
+    largest.add(piece.points[r]);
   }
-  measure(piece);
+  piece.largest = largest.get();
   piece.error = step.stencils.result_error(patch.largest, patch.error);
 }
 
