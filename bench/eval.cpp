@@ -45,6 +45,11 @@ std::vector<SurfaceParameter> on_faces(const LimitSurface& surface, std::span<co
   return places;
 }
 
+std::vector<SurfaceParameter> shuffled(std::vector<SurfaceParameter> places) {
+  std::shuffle(places.begin(), places.end(), std::mt19937_64(6));
+  return places;
+}
+
 struct Faces {
   const LimitSurface& surface;
   std::vector<PatchId> patches;
@@ -74,6 +79,15 @@ void add_snug(const Faces& faces, Group& group) {
               }
               return sum;
             });
+}
+
+void add_snug_shuffled(const Faces& faces, Group& group) {
+  group.add(
+      "snug: in single precision, shuffled", static_cast<double>(faces.places.size()),
+      [&faces, places = shuffled(faces.places), out = std::vector<float>(3 * faces.places.size())]() mutable {
+        evaluate(faces.surface, places, {out}, 1);
+        return static_cast<double>(out[0]);
+      });
 }
 
 void add_snug_frames(const Faces& faces, Group& group) {
@@ -120,6 +134,7 @@ void bench_faces(const ControlMesh& mesh, const Subject& subject, std::size_t co
   static_cast<void>(mesh);
 #endif
   add_snug_frames(faces, group);
+  add_snug_shuffled(faces, group);
 #ifdef SNUG_BENCH_OPENSUBDIV
   group.add("Bfr: with derivatives", points, [&] {
     double sum = 0;

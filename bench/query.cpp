@@ -15,8 +15,7 @@ SurfaceBvhOptions one_thread(SurfaceBvhOptions options) {
 Queries::Queries(const LimitSurface& a, const LimitSurface& b, const SurfaceBvhOptions& options)
     : a_(a, one_thread(options)), b_(b, one_thread(options)), scratch_a_(a_), scratch_b_(b_) {}
 
-Collision Queries::collide(const PosePair& at, double tolerance, double margin,
-                           WitnessKind witness) {
+Collision Queries::collide(const PosePair& at, double tolerance, double margin, WitnessKind witness) {
   CollideOptions options{.tolerance = 0, .prove_contact = false, .measure = false};
   options.tolerance = tolerance;
   options.margin = margin;

@@ -210,8 +210,7 @@ double gap(Volume volume, const BoundingVolume& set, const BoundingVolume& other
   return volume == Volume::obb ? box_gap(set.box, other.box, view.frame) : kdop_gap(volume, set, other, view);
 }
 
-KdopTree::KdopTree(const LimitSurface& surface, Volume volume)
-    : surface_(surface), volume_(volume) {
+KdopTree::KdopTree(const LimitSurface& surface, Volume volume) : surface_(surface), volume_(volume) {
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
     if (surface.has_patch(PatchId(p))) patches_.emplace_back(p);
   }
@@ -296,9 +295,8 @@ void KdopTree::open(std::size_t node) {
     for (unsigned child = 0; child < 4; ++child) add_piece(child_of(library, *piece, child, scratch_));
   } else {
     const std::size_t begin = nodes_[node].first, end = begin + nodes_[node].count;
-    for (std::size_t i = begin; i < end; ++i) 
+    for (std::size_t i = begin; i < end; ++i)
       add_piece(make_piece(library, patches_[i], surface_.patch(patches_[i]), scratch_));
-
   }
   nodes_[node].first = first;
   nodes_[node].count = static_cast<std::uint32_t>(nodes_.size() - first);

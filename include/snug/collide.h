@@ -29,10 +29,10 @@ struct CollideOptions {
   /// >= 0, mesh units. With 0 only proofs of contact or separation count. Default: 0.1 % of the larger
   /// surface's size.
   std::optional<double> tolerance{};
-  double margin = 0;                 ///< >= 0, mesh units
-  std::uint64_t budget = 1'000'000;  ///< most splits
+  double margin = 0;                         ///< >= 0, mesh units
+  std::uint64_t budget = 1'000'000;          ///< most splits
   WitnessKind witness = WitnessKind::exact;  ///< no verdict depends on it
-  bool prove_contact = true;         ///< before returning `within`, try to prove `intersecting`
+  bool prove_contact = true;                 ///< before returning `within`, try to prove `intersecting`
   bool solid = false;  ///< compare the solids that closed surfaces bound: one inside the other intersects it
   /// For separated surfaces, refine `distance` until its lower end is at least half its upper end, and give
   /// witnesses: about ten microseconds more. Without it the lower end is a by-product of the search: half the

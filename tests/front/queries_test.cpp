@@ -134,6 +134,12 @@ TEST(handles, evaluate_refine_and_measure) {
   const SurfaceParameter at{3, 0, 0.25, 0.5};
   const SurfacePoint point = evaluate(a, at);
   EXPECT_EQ(evaluate(a, std::vector{at, at})[1].position, point.position);
+  std::array<float, 6> positions{}, normals{};
+  const double error = evaluate(a, std::vector{at, at}, {positions, normals});
+  for (std::size_t x = 0; x < 3; ++x) {
+    EXPECT_NEAR(positions[3 + x], point.position[x], error);
+    EXPECT_NEAR(normals[3 + x], point.normal.value()[x], 0x1p-24);
+  }
   EXPECT_LE(closest_point(a, point.position, {.absolute = 1e-9}).distance.lower, point.error * 2);
   const std::optional<SurfaceNormal> normal =
       normal_at(a.at(Motion::rotation({0, 0, 1}, std::numbers::pi / 2)), at);

@@ -13,7 +13,7 @@ namespace snug {
 /// How boxes are seen from another frame.
 struct View {
   RelativeFrame frame;
-  kernels::Turn turn{};  ///< frame.rows in single precision
+  kernels::Turn turn{};           ///< frame.rows in single precision
   float slack = 0, to_world = 1;  ///< those of the frame
 
   View() = default;
@@ -56,8 +56,8 @@ class alignas(32) WideNode {
   ///            finite.
   /// Requires:  view.frame.comparable.
   /// Source:    derivations/boxes.md; [Gottschalk96] for the axes.
-  Near distances(const WideNode& other, std::size_t place, const View& view, float prune_distance,
-                 Gaps sort, Distances& out) const;
+  Near distances(const WideNode& other, std::size_t place, const View& view, float prune_distance, Gaps sort,
+                 Distances& out) const;
   /// The same to a box in this node's frame, less `slack`.
   Near distances(const PlacedBox& other, double slack, float prune_distance, Distances& out) const;
   /// The same to a point.

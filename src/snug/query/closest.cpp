@@ -100,7 +100,8 @@ class Query {
   double look_at(const Node& node) {
     const PieceRecord& record = SurfaceWorkspace::record(node);
     const NearestTriangles near = nearest({to_, to_, to_}, record.base(node.boxes->origin()));
-    double gap = rounded_down(near.certain_distance - enlarged(record.radius() + spatial_error(point_error_)));
+    double gap =
+        rounded_down(near.certain_distance - enlarged(record.radius() + spatial_error(point_error_)));
     if (near.certain_distance < bounds_.upper()) {
       const TriangleParameter at = clamped(near.on_b);
       const Patch& patch = workspace_.patch(node);
@@ -129,8 +130,8 @@ class Query {
     const Vector3 from = node.boxes->origin() - to_;
     const double gap = dot(w, from) - record.extent(-w) - enlarged(record.error());
     // |w| is 1 up to 5 roundings.
-    return gap * (1 - 16 * unit_roundoff) - 16 * unit_roundoff * max_abs(from) -
-           spatial_error(point_error_) - 16 * underflow_error;
+    return gap * (1 - 16 * unit_roundoff) - 16 * unit_roundoff * max_abs(from) - spatial_error(point_error_) -
+           16 * underflow_error;
   }
 
   ClosestPoint result() const {

@@ -78,8 +78,9 @@ class Query {
   // Rules (a) and (b). False if the pair is done with.
   bool look_at(const NodePair& pair) {
     const PiecePair pieces = pieces_.nearest(pair);
-    const double gap =
-        pieces.gap > margin_ ? pieces.gap : std::max(pieces.gap, pieces_.gap_along(pair.nodes, pieces.between));
+    const double gap = pieces.gap > margin_
+                           ? pieces.gap
+                           : std::max(pieces.gap, pieces_.gap_along(pair.nodes, pieces.between));
     if (gap > margin_) {
       lower_ = std::min(lower_, gap);
       return false;

@@ -83,8 +83,8 @@ struct PlacedRoot {
 // Fifteen axes; ends once one shows more than `enough`.
 double gap_of_boxes(const PlacedRoot& a, const PlacedRoot& b, double defects, double enough) {
   const Vector3 between = b.centre - a.centre;
-  const double doubt =
-      enlarged((128 * unit_roundoff + 32 * defects) * (max_abs(between) + a.size + b.size)) + 16 * underflow_error;
+  const double doubt = enlarged((128 * unit_roundoff + 32 * defects) * (max_abs(between) + a.size + b.size)) +
+                       16 * underflow_error;
   double along_a[3], along_b[3], cosine[3][3], size[3][3], widest = -INFINITY;
   const auto shows_enough = [&](double along, double far) {
     widest = std::max(widest, std::fabs(along) - far - doubt);
@@ -126,11 +126,13 @@ double root_gap(const PlacedBvh& a, const PlacedBvh& b, double enough) {
   const Vector3 between = (b.pose.offset() - a.pose.offset()) + (centre_b - centre_a);
   const double apart = length(between), radii = ball_a.radius + ball_b.radius;
   const double defects = a.pose.defect() + b.pose.defect();
-  const double sizes = max_abs(centre_a) + max_abs(centre_b) + max_abs(a.pose.offset()) + max_abs(b.pose.offset());
+  const double sizes =
+      max_abs(centre_a) + max_abs(centre_b) + max_abs(a.pose.offset()) + max_abs(b.pose.offset());
   const double doubt = enlarged((64 * unit_roundoff + 8 * defects) * (apart + radii + sizes));
   const double gap = apart - radii - doubt;
   // Neither infinite nor not a number.
-  if (gap > enough || !(apart < 0x1p500 && radii < 0x1p500)) return apart < 0x1p500 && radii < 0x1p500 ? gap : -INFINITY;
+  if (gap > enough || !(apart < 0x1p500 && radii < 0x1p500))
+    return apart < 0x1p500 && radii < 0x1p500 ? gap : -INFINITY;
   const double boxes = gap_of_boxes(PlacedRoot(a), PlacedRoot(b), defects, enough);
   return std::isfinite(boxes) ? boxes : -INFINITY;
 }

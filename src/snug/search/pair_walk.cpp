@@ -46,7 +46,8 @@ float PairWalk::open(const NodePair& pair, Opening opening, double prune_distanc
   // In the query's units. Rounded down: by one rounding of the factor, two of products, and what they lose
   // where they underflow.
   const auto gap_of = [&](float gap) {
-    return std::max(gap > 0 ? gap * view.to_world * (1 - 4 * 0x1p-24F) - 0x1p-125F : gap * view.to_world, parent_gap);
+    return std::max(gap > 0 ? gap * view.to_world * (1 - 4 * 0x1p-24F) - 0x1p-125F : gap * view.to_world,
+                    parent_gap);
   };
   WideNode::Distances gaps;
   WideNode::Near near{(1u << opened.count()) - 1, INFINITY};

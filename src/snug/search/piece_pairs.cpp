@@ -97,8 +97,7 @@ double PiecePairs::placed_extent(std::size_t side, const Node& node, const Vecto
   // w . (scale R x) = scale (R' w) . x
   const double own = frame.scale * record.extent(transposed_times(frame.rows, w));
   const double placed = dot(w, origin - Point3{});
-  const double error = enlarged(frame.growth() * record.error()) +
-                       4 * frame.largest_apply_error() +
+  const double error = enlarged(frame.growth() * record.error()) + 4 * frame.largest_apply_error() +
                        40 * unit_roundoff * (std::fabs(own) + max_abs(origin - Point3{})) +
                        8 * underflow_error;
   return placed + own + error;

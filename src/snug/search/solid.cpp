@@ -93,15 +93,16 @@ Solid::Solid(const LimitSurface& surface) {
   std::vector<Point3> centres;
   centres.reserve(fillers_.size());
   for (const LimitTriangle& filler : fillers_) centres.push_back(filler.corners[2]);
-  tree_ = std::make_unique<WideBvh>(centres, 1, [&](std::size_t, std::span<const std::uint32_t> items, std::vector<Obb>& boxes) {
-    std::vector<OffsetTriangle> triangles;
-    std::vector<Point3> spread;
-    for (const std::uint32_t i : items) {
-      triangles.push_back({fillers_[i].corners, fillers_[i].error});
-      spread.insert(spread.end(), fillers_[i].corners.begin(), fillers_[i].corners.end());
-    }
-    boxes.push_back(box_around(principal_axes(spread), triangles));
-  });
+  tree_ = std::make_unique<WideBvh>(
+      centres, 1, [&](std::size_t, std::span<const std::uint32_t> items, std::vector<Obb>& boxes) {
+        std::vector<OffsetTriangle> triangles;
+        std::vector<Point3> spread;
+        for (const std::uint32_t i : items) {
+          triangles.push_back({fillers_[i].corners, fillers_[i].error});
+          spread.insert(spread.end(), fillers_[i].corners.begin(), fillers_[i].corners.end());
+        }
+        boxes.push_back(box_around(principal_axes(spread), triangles));
+      });
 }
 
 }  // namespace snug

@@ -164,7 +164,9 @@ class Winding {
     for (std::size_t k = 0; k < 3; ++k) segment_.box.axes[0][k] = static_cast<float>(unit[k]);
   }
 
-  [[nodiscard]] LimitTriangle corners(const Node& node) const { return limit_triangle(workspace_.patch(node)); }
+  [[nodiscard]] LimitTriangle corners(const Node& node) const {
+    return limit_triangle(workspace_.patch(node));
+  }
 
   // A split piece: its children's triangles and these have the same border as its own one.
   [[nodiscard]] bool add_fillers(const Node& node, Ray& ray) const {

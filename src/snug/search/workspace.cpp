@@ -37,7 +37,8 @@ void SurfaceWorkspace::begin() {
 
 std::uint32_t SurfaceWorkspace::patch_place(const Node& node) {
   const bool whole = node.kind == Node::Kind::patch;
-  std::uint32_t& place = whole ? roots_[root_of(node).value()].patch : splits_[node.owner].patches[node.place];
+  std::uint32_t& place =
+      whole ? roots_[root_of(node).value()].patch : splits_[node.owner].patches[node.place];
   if (place == none) {
     place = static_cast<std::uint32_t>(patches_.size());
     patches_.push_back(whole ? model_->surface().patch(root_of(node))
@@ -70,7 +71,12 @@ SurfaceWorkspace::Opened SurfaceWorkspace::open(const Node& node) {
     const std::uint32_t parent = patch_place(node);
     const PatchId root = root_of(node);
     place = static_cast<std::uint32_t>(splits_.size());
-    splits_.push_back({split_node(*model_, root, patches_[parent]), root, {none, none, none, none}, {none, none, none, none}, 0, parent});
+    splits_.push_back({split_node(*model_, root, patches_[parent]),
+                       root,
+                       {none, none, none, none},
+                       {none, none, none, none},
+                       0,
+                       parent});
     split_place(node) = place;
   }
   Split& split = splits_[place];

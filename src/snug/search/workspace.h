@@ -47,8 +47,7 @@ class SurfaceWorkspace {
   [[nodiscard]] const Patch& patch(const Node& node);
   /// The whole patch that it belongs to.
   [[nodiscard]] PatchId root_of(const Node& node) const {
-    return node.kind == Node::Kind::patch ? model_->patch(node.owner, node.place)
-                                          : splits_[node.owner].root;
+    return node.kind == Node::Kind::patch ? model_->patch(node.owner, node.place) : splits_[node.owner].root;
   }
   /// The piece with its offset triangle, made anew.
   [[nodiscard]] Piece piece(const Node& node, HullPoints& scratch);

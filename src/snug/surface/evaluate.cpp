@@ -73,35 +73,63 @@ double write_rounded(const BoundedPoint& point, float* out) {
   return enlarged(point.error + rounding);
 }
 
-using Places = std::span<const SurfaceParameter>;
-using Numbers = std::span<const std::size_t>;
+// What a thread evaluates with: some points of one face, or quad, and their numbers.
+struct Worker {
+  explicit Worker(const LimitSurface& surface) : evaluator(surface) {}
+  [[nodiscard]] std::span<const SurfaceParameter> places() const { return {at.data(), count}; }
 
-constexpr std::size_t most_together = 64;
+  static constexpr std::size_t most = 64;
+  SurfaceEvaluator evaluator;
+  std::size_t count = 0;
+  std::array<SurfaceParameter, most> at;
+  std::array<std::size_t, most> numbers;
+  std::array<BoundedPoint, most> points;  // room for answers
+};
 
-// Calls visit(evaluator, places, numbers) for at most so many points of one face, or quad, after the other, on each thread
-// with an evaluator of its own.
+// Calls visit(worker) with some points until all have had their turn.
 template <class Visit>
 void evaluate_all(const LimitSurface& surface, std::span<const SurfaceParameter> at, int threads,
                   const Visit& visit) {
   constexpr std::size_t worth_a_thread = 2048;
   const std::vector<std::size_t> order = grouped_by_patch(surface, at);
   parallel_for_with(
-      at.size(), at.size() < worth_a_thread ? 1 : threads, [&] { return SurfaceEvaluator(surface); },
-      [&](SurfaceEvaluator& evaluator, std::size_t begin, std::size_t end) {
-        std::array<SurfaceParameter, most_together> places;
-        std::array<std::size_t, most_together> numbers;
-        std::size_t count = 0;
+      at.size(), at.size() < worth_a_thread ? 1 : threads, [&] { return Worker(surface); },
+      [&](Worker& worker, std::size_t begin, std::size_t end) {
+        worker.count = 0;
         for (std::size_t i = begin; i < end; ++i) {
           const std::size_t number = order.empty() ? i : order[i];
-          if (count == most_together || (count > 0 && !on_one_patch(places[0], at[number]))) {
-            visit(evaluator, Places(places.data(), count), Numbers(numbers.data(), count));
-            count = 0;
+          if (worker.count == Worker::most || (worker.count > 0 && !on_one_patch(worker.at[0], at[number]))) {
+            visit(worker);
+            worker.count = 0;
           }
-          numbers[count] = number;
-          places[count++] = at[number];
+          worker.numbers[worker.count] = number;
+          worker.at[worker.count++] = at[number];
         }
-        visit(evaluator, Places(places.data(), count), Numbers(numbers.data(), count));
+        visit(worker);
       });
+}
+
+// Both return the largest error of a position.
+double write_positions(Worker& worker, const FloatPoints& out) {
+  const std::span<BoundedPoint> points(worker.points.data(), worker.count);
+  worker.evaluator.positions(worker.places(), points);
+  double largest = 0;
+  for (std::size_t k = 0; k < worker.count; ++k) {
+    largest = std::max(largest, write_rounded(points[k], out.positions.data() + 3 * worker.numbers[k]));
+  }
+  return largest;
+}
+
+double write_with_normals(Worker& worker, const FloatPoints& out) {
+  double largest = 0;
+  for (std::size_t k = 0; k < worker.count; ++k) {
+    const std::size_t first = 3 * worker.numbers[k];
+    const SurfacePoint point = worker.evaluator(worker.at[k]);
+    largest = std::max(largest, write_rounded(point, out.positions.data() + first));
+    const Vector3 normal = point.normal.value_or(Vector3{});
+    for (std::size_t a = 0; a < 3; ++a) out.normals[first + a] = static_cast<float>(normal[a]);
+  }
+  return largest;
 }
 
 }  // namespace
@@ -136,8 +164,8 @@ SurfacePoint evaluate(const LimitSurface& surface, const SurfaceParameter& at) {
 std::vector<SurfacePoint> evaluate(const LimitSurface& surface, std::span<const SurfaceParameter> at,
                                    int threads) {
   std::vector<SurfacePoint> points(at.size());
-  evaluate_all(surface, at, threads, [&](SurfaceEvaluator& evaluator, Places places, Numbers numbers) {
-    for (std::size_t k = 0; k < places.size(); ++k) points[numbers[k]] = evaluator(places[k]);
+  evaluate_all(surface, at, threads, [&](Worker& worker) {
+    for (std::size_t k = 0; k < worker.count; ++k) points[worker.numbers[k]] = worker.evaluator(worker.at[k]);
   });
   return points;
 }
@@ -148,24 +176,8 @@ double evaluate(const LimitSurface& surface, std::span<const SurfaceParameter> a
   require_value(out.positions.size() == 3 * at.size() && (!normals || out.normals.size() == 3 * at.size()),
                 "evaluate: there must be room for three floats a point");
   std::atomic<double> largest = 0;
-  evaluate_all(surface, at, threads, [&](SurfaceEvaluator& evaluator, Places places, Numbers numbers) {
-    double error = 0;
-    if (normals) {
-      for (std::size_t k = 0; k < places.size(); ++k) {
-        const SurfacePoint point = evaluator(places[k]);
-        error = std::max(error, write_rounded(point, out.positions.data() + 3 * numbers[k]));
-        const Vector3 normal = point.normal.value_or(Vector3{});
-        for (std::size_t a = 0; a < 3; ++a) {
-          out.normals[3 * numbers[k] + a] = static_cast<float>(normal[a]);
-        }
-      }
-    } else {
-      std::array<BoundedPoint, most_together> points;
-      evaluator.positions(places, {points.data(), places.size()});
-      for (std::size_t k = 0; k < places.size(); ++k) {
-        error = std::max(error, write_rounded(points[k], out.positions.data() + 3 * numbers[k]));
-      }
-    }
+  evaluate_all(surface, at, threads, [&](Worker& worker) {
+    const double error = normals ? write_with_normals(worker, out) : write_positions(worker, out);
     double met = largest.load(std::memory_order_relaxed);
     while (error > met && !largest.compare_exchange_weak(met, error, std::memory_order_relaxed)) {
     }
