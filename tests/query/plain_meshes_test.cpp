@@ -10,9 +10,9 @@
 #include <snug/query/bound.h>
 #include <snug/query/closest.h>
 #include <snug/query/pairs.h>
-#include <snug/search/piece.h>
 #include <snug/surface/evaluate.h>
 #include <testing/exact_triangles.h>
+#include <testing/pieces.h>
 #include <testing/tagged.h>
 
 #include <iostream>
@@ -181,15 +181,15 @@ TEST(flat, has_one_kind_whose_bounds_are_rounding_alone) {
     const LimitSurface surface(testing::control_mesh(mesh), {Scheme::flat}, std::make_shared<BoundsCache>());
     EXPECT_EQ(surface.kind_count(), 1u) << name;
     EXPECT_EQ(limit_to_faces(surface), 0.0) << name;
-    PieceCache pieces(surface);
+    testing::Pieces pieces(surface);
     for (std::size_t f = 0; f < surface.patch_count(); ++f) {
-      const PieceId id = pieces.root(PatchId(f));
-      EXPECT_LE(pieces[id].offset.radius, 0x1p-40) << name;
-      EXPECT_LE(pieces.heights(id).upper - pieces.heights(id).lower, 0x1p-40) << name;
-      EXPECT_FALSE(pieces.can_split(id)) << name;
+      const testing::KnownPiece known = pieces.root(PatchId(f));
+      EXPECT_LE(known.piece.offset.radius, 0x1p-40) << name;
+      EXPECT_LE(known.heights.upper - known.heights.lower, 0x1p-40) << name;
+      EXPECT_FALSE(known.piece.can_split()) << name;
       const auto face = surface.topology().face(FaceId(f));
       for (std::size_t k = 0; k < 3; ++k) {
-        EXPECT_LE(distance(surface.scale().inverse().apply(pieces[id].offset.base[k]),
+        EXPECT_LE(distance(surface.scale().inverse().apply(known.piece.offset.base[k]),
                            surface.mesh().points[face[k].index()]),
                   1e-14);
       }

@@ -6,6 +6,7 @@
 
 #include <snug/patch/evaluate.h>
 #include <testing/disguised_surfaces.h>
+#include <testing/pieces.h>
 
 namespace snug {
 namespace {
@@ -27,10 +28,10 @@ long double area(const Vector3& n, const Point3& p, const Point3& q, const Point
          part(n.z, p.x, p.y, q.x, q.y, r.x, r.y);
 }
 
-void expect_sound(PieceCache& refinement, PieceId id, std::mt19937_64& random, const std::string& name,
+void expect_sound(const testing::KnownPiece& known, std::mt19937_64& random, const std::string& name,
                   Counts& counts) {
-  const Piece& piece = refinement[id];
-  const Crossed crossed(piece, refinement.heights(id));
+  const Piece& piece = known.piece;
+  const Crossed crossed(piece, known.heights);
   ++counts.pieces;
   if (!crossed.possible()) return;
   ++counts.possible;
@@ -69,15 +70,11 @@ TEST(crossing, prisms_of_all_kinds_in_all_disguises_are_what_the_proof_needs) {
   Counts counts;
   testing::for_each_disguised_surface(
       91, [&](const LimitSurface& surface, const std::string& name, std::mt19937_64& random) {
-        PieceCache rows(surface), tables(surface, BoundMethod::table);
+        testing::Pieces rows(surface), tables(surface, BoundMethod::table);
         testing::for_each_patch(surface, [&](PatchId p) {
           if (random() % 6 != 0) return;
-          for (PieceCache* const refinement : {&rows, &tables}) {
-            PieceId id = refinement->root(p);
-            for (std::size_t level = random() % 6; level > 0 && refinement->can_split(id); --level) {
-              id = PieceId(refinement->split(id).index() + random() % 4);
-            }
-            expect_sound(*refinement, id, random, name, counts);
+          for (testing::Pieces* const pieces : {&rows, &tables}) {
+            expect_sound(pieces->below(p, random() % 6, random), random, name, counts);
           }
         });
       });

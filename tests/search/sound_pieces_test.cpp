@@ -6,12 +6,12 @@
 //
 // runs it 21 times with other meshes.
 
-#include <snug/search/piece.h>
 #include <snug/surface/control_hull.h>
 
 #include <snug/bvh/wide_node.h>
 #include <snug/patch/evaluate.h>
 #include <testing/disguised_surfaces.h>
+#include <testing/pieces.h>
 
 namespace snug {
 namespace {
@@ -51,13 +51,10 @@ std::vector<Sample> samples_of(const Patch& patch, std::mt19937_64& random) {
   return samples;
 }
 
-void expect_holds(PieceCache& refinement, PieceId id, const Vector3& direction,
+void expect_holds(const testing::KnownPiece& known, const HullPoints& hull, const Vector3& direction,
                   const std::vector<Sample>& samples, const std::string& name) {
-  const Piece& piece = refinement[id];
-  const Obb& box = refinement.box(id);
-  const Heights& heights = refinement.heights(id);
+  const auto& [piece, heights, box] = known;
   const Vector3 normal = unit_normal(piece.offset.base);
-  const HullPoints& hull = refinement.hull(id);
   const std::array<Extent, 2> extents{extent_of(hull, direction), extent_of(piece.offset, direction)};
   for (const Sample& sample : samples) {
     const Extended from_box = minus(sample.x, box.centre);
@@ -76,22 +73,19 @@ void expect_holds(PieceCache& refinement, PieceId id, const Vector3& direction,
 
 // The set in single precision is not apart from any of the points.
 void expect_near(const Obb& box, const std::vector<Sample>& samples, const std::string& name) {
-  WideNodes nodes;
-  const std::uint32_t number = 0;
-  nodes.add({&box, 1}, {&number, 1});
+  const WideNode node({&box, 1});
   for (const Sample& sample : samples) {
-    WideNodes::Distances gaps;
-    nodes.distances(0,
-                    Point3{static_cast<double>(sample.x[0]), static_cast<double>(sample.x[1]),
-                           static_cast<double>(sample.x[2])},
-                    static_cast<double>(2 * sample.error), gaps);
+    WideNode::Distances gaps;
+    node.distances(Point3{static_cast<double>(sample.x[0]), static_cast<double>(sample.x[1]),
+                          static_cast<double>(sample.x[2])},
+                   static_cast<double>(2 * sample.error), gaps);
     ASSERT_LE(gaps[0], 0) << name;
   }
 }
 
 void expect_sound(const LimitSurface& surface, std::mt19937_64& random, const std::string& name,
                   std::size_t& pieces) {
-  PieceCache rows(surface), tables(surface, BoundMethod::table);
+  testing::Pieces rows(surface), tables(surface, BoundMethod::table);
   ControlHull hull;
   testing::for_each_patch(surface, [&](PatchId p) {
     if (random() % 6 != 0) return;
@@ -105,15 +99,12 @@ void expect_sound(const LimitSurface& surface, std::mt19937_64& random, const st
       ASSERT_GE(extent.upper, dot(direction, sample.x) - 2 * sample.error) << name;
     }
     expect_near(hull.box(), whole, name);
-    for (PieceCache* const refinement : {&rows, &tables}) {
-      PieceId id = refinement->root(p);
-      for (std::size_t level = random() % 5; level > 0 && refinement->can_split(id); --level) {
-        id = PieceId(refinement->split(id).index() + random() % 4);
-      }
-      const std::vector<Sample> samples = samples_of((*refinement)[id].patch, random);
-      expect_holds(*refinement, id, direction, samples, name);
-      expect_near(refinement->box(id), samples, name);
-      const OffsetTriangle& offset = (*refinement)[id].offset;
+    for (testing::Pieces* const maker : {&rows, &tables}) {
+      const testing::KnownPiece known = maker->below(p, random() % 5, random);
+      const std::vector<Sample> samples = samples_of(known.piece.patch, random);
+      expect_holds(known, maker->hull(known), direction, samples, name);
+      expect_near(known.box, samples, name);
+      const OffsetTriangle& offset = known.piece.offset;
       expect_near(box_around(principal_axes(offset.base), std::span(&offset, 1)), samples, name);
       ++pieces;
     }

@@ -1,7 +1,7 @@
 #include <snug/surface/control_hull.h>
 
 #include <snug/patch/evaluate.h>
-#include <snug/search/piece.h>
+#include <testing/pieces.h>
 #include <testing/scheme_surfaces.h>
 
 namespace snug {
@@ -73,23 +73,23 @@ TEST(kind, outer_weight_is_that_of_the_ring_at_a_corner) {
   });
 }
 
-TEST(refinement, heights_hold_the_piece) {
+TEST(piece, heights_hold_the_piece) {
   std::mt19937_64 random(63);
   testing::for_each_surface(63, [&](const NamedSurface& named) {
-    PieceCache refinement(named.surface);
+    testing::Pieces pieces(named.surface);
     testing::for_each_patch(named.surface, [&](PatchId p) {
-      PieceId id = refinement.root(p);
+      testing::KnownPiece known = pieces.root(p);
       for (int level = 0; level < 2; ++level) {
-        const Piece& piece = refinement[id];
+        const Piece& piece = known.piece;
         const Vector3 normal = unit_normal(piece.offset.base);
         for (int i = 0; i < 10; ++i) {
           const LimitPoint point = limit_point(piece.patch, testing::random_parameter(random));
           const double height = dot(normal, piece.patch.origin + point.relative - piece.offset.base[0]);
-          ASSERT_LE(refinement.heights(id).lower, height + 2 * point.error + 1e-15) << named.name;
-          ASSERT_GE(refinement.heights(id).upper, height - 2 * point.error - 1e-15) << named.name;
+          ASSERT_LE(known.heights.lower, height + 2 * point.error + 1e-15) << named.name;
+          ASSERT_GE(known.heights.upper, height - 2 * point.error - 1e-15) << named.name;
         }
-        if (!refinement.can_split(id)) break;
-        id = PieceId(refinement.split(id).index() + random() % 4);
+        if (!piece.can_split()) break;
+        known = pieces.child(known, static_cast<unsigned>(random() % 4));
       }
     });
   });

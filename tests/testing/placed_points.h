@@ -4,6 +4,7 @@
 
 #include <snug/bvh/frame.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -53,12 +54,12 @@ inline Extended image(const PlacedFrame& frame, const Point3& p) {
   return q;
 }
 
-// Distance of two hulls from above: a few steps from the nearest pair of points towards combinations of
-// others.
+// Distance of two hulls from above: the nearest of some random combinations of their points, then steps from
+// there towards the points that are farthest along the way [Frank and Wolfe].
 inline long double distance_from_above(const std::vector<Extended>& a, const std::vector<Extended>& b,
                                        std::mt19937_64& random) {
   std::uniform_real_distribution<double> unit(0, 1);
-  long double best = INFINITY;
+  Extended best{INFINITY, 0, 0};
   const auto mix = [&](const std::vector<Extended>& points) {
     Extended p{};
     long double sum = 0;
@@ -75,9 +76,22 @@ inline long double distance_from_above(const std::vector<Extended>& a, const std
   };
   for (int trial = 0; trial < 60; ++trial) {
     const Extended d = minus(mix(a), mix(b));
-    best = std::min(best, std::sqrt(inner(d, d)));
+    if (!(inner(d, d) >= inner(best, best))) best = d;
   }
-  return best;
+  const auto farthest = [](const std::vector<Extended>& points, const Extended& along, long double sign) {
+    const Extended* most = &points[0];
+    for (const Extended& p : points) {
+      if (sign * inner(p, along) > sign * inner(*most, along)) most = &p;
+    }
+    return *most;
+  };
+  for (int step = 0; step < 60; ++step) {
+    const Extended to = minus(farthest(a, best, -1), farthest(b, best, 1)), way = minus(to, best);
+    const long double t = -inner(best, way) / inner(way, way);
+    if (!(t > 0)) break;
+    for (std::size_t k = 0; k < 3; ++k) best[k] += std::min(t, 1.0L) * way[k];
+  }
+  return std::sqrt(inner(best, best));
 }
 
 }  // namespace snug::testing

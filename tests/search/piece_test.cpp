@@ -1,21 +1,22 @@
-#include <snug/search/piece.h>
+#include <snug/search/workspace.h>
 
 #include <gtest/gtest.h>
 #include <snug/bounds/table_triangle.h>
 #include <snug/patch/evaluate.h>
 #include <testing/containment.h>
 #include <testing/patches.h>
+#include <testing/pieces.h>
 #include <testing/scheme_surfaces.h>
 
 namespace snug {
 namespace {
 
-TEST(refinement, by_tables_has_the_offset_triangles_of_the_tables) {
+TEST(piece, by_tables_has_the_offset_triangles_of_the_tables) {
   const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
-  PieceCache refinement(surface, BoundMethod::table);
-  const PieceId first = refinement.split(refinement.root(PatchId(0)));
+  testing::Pieces pieces(surface, BoundMethod::table);
+  const testing::KnownPiece root = pieces.root(PatchId(0));
   for (unsigned child = 0; child < 4; ++child) {
-    const Piece& piece = refinement[PieceId(first.index() + child)];
+    const Piece piece = pieces.child(root, child).piece;
     const BoundTable& table = surface.library().table(*piece.patch.kind);
     const OffsetTriangle expected = offset_triangle(table_triangle(table, piece.patch));
     EXPECT_EQ(piece.offset.base, expected.base);
@@ -23,32 +24,51 @@ TEST(refinement, by_tables_has_the_offset_triangles_of_the_tables) {
   }
 }
 
-TEST(refinement, does_not_depend_on_the_order_of_calls) {
-  const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
-  PieceCache first(surface), second(surface);
-  static_cast<void>(first.split(first.root(PatchId(3))));
-  const PieceId a = first.split(first.root(PatchId(0)));
-  const PieceId b = second.split(second.root(PatchId(0)));
-  for (unsigned child = 0; child < 4; ++child) {
-    const Piece& x = first[PieceId(a.index() + child)];
-    const Piece& y = second[PieceId(b.index() + child)];
-    EXPECT_EQ(x.patch.path, y.patch.path);
-    EXPECT_EQ(x.offset.radius, y.offset.radius);
-    EXPECT_EQ(x.offset.base[1], y.offset.base[1]);
+// The box of a patch, from the root of the tree down.
+Node node_of(SurfaceWorkspace& workspace, PatchId patch) {
+  std::vector<Node> nodes{workspace.root()};
+  while (!nodes.empty()) {
+    const Node node = nodes.back();
+    nodes.pop_back();
+    if (node.bounded() && workspace.root_of(node) == patch) return node;
+    if (node.bounded()) continue;
+    const SurfaceWorkspace::Opened opened = workspace.open(node);
+    for (std::size_t i = 0; i < opened.count(); ++i) nodes.push_back(opened.child(i));
   }
-  EXPECT_EQ(first.split(first.root(PatchId(0))), a);  // made once
+  throw std::logic_error("no such patch");
 }
 
-TEST(refinement, shrinks_radii_until_rounding_stops_it) {
+TEST(workspace, opens_to_the_same_pieces_in_any_order) {
   const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
-  PieceCache refinement(surface);
-  PieceId id = refinement.root(PatchId(0));
-  double before = refinement[id].offset.radius;
+  const SurfaceBvh model(surface);
+  SurfaceWorkspace first(model), second(model);
+  static_cast<void>(first.open(node_of(first, PatchId(3))));
+  const Node root = node_of(first, PatchId(0));
+  const auto a = first.open(root), b = second.open(node_of(second, PatchId(0)));
+  ASSERT_EQ(a.count(), 4u);
+  ASSERT_EQ(b.count(), 4u);
+  for (unsigned child = 0; child < 4; ++child) {
+    const Node x = a.child(child), y = b.child(child);
+    EXPECT_EQ(first.patch(x).path, second.patch(y).path);
+    EXPECT_EQ(x.boxes->origin(), y.boxes->origin());
+    const PieceRecord &of_x = SurfaceWorkspace::record(x), &of_y = SurfaceWorkspace::record(y);
+    EXPECT_EQ(of_x.radius(), of_y.radius());
+    EXPECT_EQ(of_x.error(), of_y.error());
+    EXPECT_EQ(of_x.base(x.boxes->origin()), of_y.base(y.boxes->origin()));
+  }
+  EXPECT_EQ(first.open(root).boxes, a.boxes);  // made once
+}
+
+TEST(piece, shrinks_until_rounding_stops_it) {
+  const LimitSurface surface = testing::surface_of(oracle::meshes::icosahedron());
+  testing::Pieces pieces(surface);
+  testing::KnownPiece known = pieces.root(PatchId(0));
+  double before = known.piece.offset.radius;
   unsigned levels = 0;
-  while (refinement.can_split(id)) {
-    id = PieceId(refinement.split(id).index() + 3);
-    ASSERT_LE(refinement[id].offset.radius, before);
-    before = refinement[id].offset.radius;
+  while (known.piece.can_split()) {
+    known = pieces.child(known, 3);
+    ASSERT_LE(known.piece.offset.radius, before);
+    before = known.piece.offset.radius;
     ++levels;
   }
   EXPECT_GE(levels, 15u);
@@ -57,24 +77,20 @@ TEST(refinement, shrinks_radii_until_rounding_stops_it) {
 }
 
 // Limit points, corners and edges among them, against all that is fitted around pieces of any level.
-TEST(refinement, boxes_and_extents_hold_the_pieces) {
+TEST(piece, boxes_and_extents_hold_it) {
   std::mt19937_64 random(63);
   std::size_t samples = 0;
   testing::for_each_surface(63, [&](const testing::NamedSurface& named) {
     const LimitSurface& surface = named.surface;
-    PieceCache rows(surface), tables(surface, BoundMethod::table);
+    testing::Pieces rows(surface), tables(surface, BoundMethod::table);
     testing::for_each_patch(surface, [&](PatchId p) {
       if (random() % 4 != 0) return;
-      for (PieceCache* refinement : {&rows, &tables}) {
-        PieceId id = refinement->root(p);
-        for (std::size_t level = random() % 4; level > 0 && refinement->can_split(id); --level) {
-          id = PieceId(refinement->split(id).index() + random() % 4);
-        }
-        const Obb& box = refinement->box(id);
+      for (testing::Pieces* const maker : {&rows, &tables}) {
+        const testing::KnownPiece known = maker->below(p, random() % 4, random);
+        const auto& [piece, heights, box] = known;
         const Vector3 direction{testing::unit(random) - 0.5, testing::unit(random) - 0.5,
                                 testing::unit(random) - 0.5};
-        const HullPoints& hull = refinement->hull(id);
-        const Piece& piece = (*refinement)[id];
+        const HullPoints& hull = maker->hull(known);
         const std::array<Extent, 2> extents{extent_of(hull, direction), extent_of(piece.offset, direction)};
         for (int i = 0; i < 12; ++i) {
           TriangleParameter at = testing::random_parameter(random);
@@ -100,7 +116,7 @@ TEST(refinement, boxes_and_extents_hold_the_pieces) {
 }
 
 // On needles the computed normal is far off, and the corners of the base triangle have heights of their own.
-TEST(refinement, heights_hold_pieces_of_needles) {
+TEST(piece, heights_hold_those_of_needles) {
   std::mt19937_64 random(65);
   double largest = 0;
   for (int trial = 0; trial < 60; ++trial) {
@@ -115,16 +131,11 @@ TEST(refinement, heights_hold_pieces_of_needles) {
       p = {x.x, x.y, x.z};
     }
     const LimitSurface surface = testing::surface_of(mesh);
-    PieceCache rows(surface), tables(surface, BoundMethod::table);
-    for (PieceCache* const refinement : {&rows, &tables}) {
+    testing::Pieces rows(surface), tables(surface, BoundMethod::table);
+    for (testing::Pieces* const maker : {&rows, &tables}) {
       for (std::size_t f = 0; f < surface.face_count(); ++f) {
-        PieceId id = refinement->root(PatchId(f));
-        for (std::size_t level = random() % 3; level > 0; --level) {
-          id = PieceId(refinement->split(id).index() + random() % 4);
-        }
-        const Piece& piece = (*refinement)[id];
+        const auto [piece, heights, box] = maker->below(PatchId(f), random() % 3, random);
         const Vector3 normal = unit_normal(piece.offset.base);
-        const Heights& heights = refinement->heights(id);
         for (int i = 0; i < 12; ++i) {
           const LimitPoint point = limit_point(piece.patch, testing::random_parameter(random));
           const auto extended = [&](std::size_t x) {
