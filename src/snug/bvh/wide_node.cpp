@@ -13,17 +13,24 @@ constexpr double single_roundoff = 0x1p-24;
 // More than what some hundred operations in single precision lose where they underflow, be it by flushing.
 // Gaps are lowered by it, as by a slack.
 constexpr double single_underflow = 0x1p-118;
+// Scales below leave the range of single precision, or what is placed with them does.
+constexpr double least_scale = 0x1p-96;
 
 }  // namespace
 
 View::View(const PlacedFrame& target, const PlacedFrame& source) : frame(target, source) {
   if (!frame.comparable) return;
+  // All of a source that is smaller lies within 8 of these scales of its origin's image, as does what another
+  // turn of that scale makes of it.
+  const bool point = frame.scale < least_scale;
   for (std::size_t j = 0; j < 3; ++j) {
-    for (std::size_t i = 0; i < 3; ++i) turn.columns[j][i] = static_cast<float>(frame.rows[i][j]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      turn.columns[j][i] = static_cast<float>(point ? (i == j ? least_scale : 0) : frame.rows[i][j]);
+    }
   }
-  turn.scale = static_cast<float>(frame.scale);
+  turn.scale = static_cast<float>(point ? least_scale : frame.scale);
   turn.inverse_scale = 1 / turn.scale;
-  slack = float_up(frame.slack);
+  slack = float_up(frame.slack + (point ? 16 * least_scale : 0));
   to_world = static_cast<float>(frame.to_world);
 }
 

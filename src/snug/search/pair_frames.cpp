@@ -126,13 +126,14 @@ double root_gap(const PlacedBvh& a, const PlacedBvh& b, double enough) {
   const Vector3 between = (b.pose.offset() - a.pose.offset()) + (centre_b - centre_a);
   const double apart = length(between), radii = ball_a.radius + ball_b.radius;
   const double defects = a.pose.defect() + b.pose.defect();
-  const double sizes =
-      max_abs(centre_a) + max_abs(centre_b) + max_abs(a.pose.offset()) + max_abs(b.pose.offset());
-  const double doubt = enlarged((64 * unit_roundoff + 8 * defects) * (apart + radii + sizes));
+  // Beyond, there are no balls, or squares leave the range.
+  if (!(apart < 0x1p500 && radii < 0x1p500)) return outer_gap(a, b);
+  const double placed = apart + max_abs(a.pose.offset()) + max_abs(b.pose.offset());
+  const double own = radii + max_abs(centre_a) + max_abs(centre_b);
+  // Centres go where these doubles bring them; only radii grow by what motions lack of rigidity.
+  const double doubt = enlarged(16 * unit_roundoff * placed + 64 * unit_roundoff * own + 8 * defects * radii);
   const double gap = apart - radii - doubt;
-  // Neither infinite nor not a number.
-  if (gap > enough || !(apart < 0x1p500 && radii < 0x1p500))
-    return apart < 0x1p500 && radii < 0x1p500 ? gap : -INFINITY;
+  if (gap > enough) return gap;
   const double boxes = gap_of_boxes(PlacedRoot(a), PlacedRoot(b), defects, enough);
   return std::isfinite(boxes) ? boxes : -INFINITY;
 }
