@@ -110,7 +110,7 @@ struct TwoNodes {
     }
     // From inside of each other to well apart.
     const double apart =
-        std::array{0.5, 4.0, 4.0, 1000.0}[random() % 4] * (placed_sizes[0] + placed_sizes[1]);
+        std::array{0.1, 0.5, 2.0, 1000.0}[random() % 4] * (placed_sizes[0] + placed_sizes[1]);
     std::uniform_real_distribution<double> unit(-apart, apart);
     const Extended at_a = image(frames[0], centres[0]), at_b = image(frames[1], centres[1]);
     for (std::size_t k = 0; k < 3; ++k) {

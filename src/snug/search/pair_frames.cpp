@@ -131,7 +131,9 @@ double root_gap(const PlacedBvh& a, const PlacedBvh& b, double enough) {
   const double placed = apart + max_abs(a.pose.offset()) + max_abs(b.pose.offset());
   const double own = radii + max_abs(centre_a) + max_abs(centre_b);
   // Centres go where these doubles bring them; only radii grow by what motions lack of rigidity.
-  const double doubt = enlarged(16 * unit_roundoff * placed + 64 * unit_roundoff * own + 8 * defects * radii);
+  // The last term: squares of what is shorter lose digits to the end of the range.
+  const double doubt =
+      enlarged(16 * unit_roundoff * placed + 64 * unit_roundoff * own + 8 * defects * radii) + 0x1p-500;
   const double gap = apart - radii - doubt;
   if (gap > enough) return gap;
   const double boxes = gap_of_boxes(PlacedRoot(a), PlacedRoot(b), defects, enough);
