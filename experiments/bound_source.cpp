@@ -55,7 +55,7 @@ const BoundTable& LayoutTables::get(const Kind& kind, BoundSource source) {
   SNUG_EXPECT(source != BoundSource::rows);
   if (source == BoundSource::ngon || !lone_centre(kind)) return library_.table(kind);
   return characteristic_.get(
-      kind.id(), [&] { return make_bound_table(kind, library_.rows(kind), characteristic_layout(kind)); });
+      kind.id(), [&] { return make_bound_table(kind, make_bound_rows(kind), characteristic_layout(kind)); });
 }
 
 OffsetTriangle LayoutTables::offset(const Patch& patch, BoundSource source, HullPoints& scratch) {

@@ -46,15 +46,19 @@ TEST(bound_rows, end_with_the_control_nets_of_the_tips) {
       std::vector<Point3> points(kind.control_count());
       for (Point3& p : points) p = {unit(), unit(), unit()};
       const Patch patch = testing::patch_of(kind, points);
-      std::size_t row = rows.tips_begin(), tip = 0;
+      std::size_t row = rows.bezier_count(), tip = 0;
+      EXPECT_EQ(rows.lasting(), has_lasting_tips(kind) && !kind.polynomial());
       for (unsigned corner = 0; corner < 3; ++corner) {
         if (kind.regular_corner(corner)) continue;
         Patch piece = patch;
+        ParameterTriangle place = whole_patch;
         for (unsigned level = 0; level < std::min(most, tip_depth(kind.corner(corner), Scheme::loop));
              ++level)
-          piece = split(piece, corner);
-        ASSERT_EQ(rows.tips()[tip].kind, piece.kind);
-        ASSERT_EQ(rows.tips()[tip].begin, row);
+          piece = split(piece, corner), place = child_of(place, corner);
+        ASSERT_LT(tip, rows.nets().size());
+        ASSERT_EQ(rows.nets()[tip].kind, piece.kind);
+        ASSERT_EQ(rows.nets()[tip].begin, row);
+        EXPECT_EQ(rows.nets()[tip].place, turned(place, piece.first));
         for (std::size_t i = 0; i < piece.points.size(); ++i, ++row) {
           double x = 0;
           for (std::size_t c = 0; c < points.size(); ++c) x += rows.weight(row, c) * patch.points[c].x;
@@ -64,9 +68,7 @@ TEST(bound_rows, end_with_the_control_nets_of_the_tips) {
         ++tips;
       }
       EXPECT_EQ(row, rows.count());
-      if (tip < 3) {
-        EXPECT_EQ(rows.tips()[tip].kind, nullptr);
-      }
+      EXPECT_EQ(tip, rows.nets().size());
     }
   }
   EXPECT_GT(tips, 20u);

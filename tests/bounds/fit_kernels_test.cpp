@@ -42,8 +42,8 @@ using Corners = std::array<Vector3, 3>;
 Triangle placed(const Corners& c) { return {Point3{} + c[0], Point3{} + c[1], Point3{} + c[2]}; }
 
 std::optional<kernels::Reach> farthest(const Cloud& cloud, const Corners& c) {
-  const auto both = kernels::farthest(cloud.coordinates(), cloud.x.size(), c[0], c[1], c[2]);
-  return both ? std::optional((*both)[0]) : std::nullopt;
+  const auto parts = kernels::farthest(cloud.coordinates(), {}, c[0], c[1], c[2]);
+  return parts ? std::optional((*parts)[3]) : std::nullopt;
 }
 
 // ---- the twin: exact enough, and written without a plane's frame ----
@@ -303,22 +303,24 @@ TEST(farthest, is_infinite_where_a_point_is_not_finite) {
   }
 }
 
-TEST(farthest, of_two_parts_is_that_of_each) {
+TEST(farthest, of_parts_is_that_of_each) {
   Random random(45);
   for (std::size_t count = 0; count < 24; ++count) {
     const Corners c{Vector3{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     Cloud cloud;
     for (std::size_t i = 0; i < count; ++i) cloud.add(any_point(random, c));
-    for (std::size_t split = 0; split <= count; ++split) {
-      const auto both = kernels::farthest(cloud.coordinates(), split, c[0], c[1], c[2]);
-      ASSERT_TRUE(both);
-      for (const std::size_t part : {0, 1}) {
+    for (int trial = 0; trial < 24; ++trial) {
+      std::array<std::size_t, 3> splits;
+      for (std::size_t& split : splits) split = random() % (count + 1);
+      std::sort(splits.begin(), splits.end());
+      const auto parts = kernels::farthest(cloud.coordinates(), splits, c[0], c[1], c[2]);
+      ASSERT_TRUE(parts);
+      for (std::size_t i = 0; i < 4; ++i) {
         const kernels::Coordinates points =
-            part == 0 ? cloud.coordinates().first(split) : cloud.coordinates().from(split);
-        const kernels::Reach& found = (*both)[part];
-        const auto alone = kernels::farthest(points, points.count, c[0], c[1], c[2]);
-        EXPECT_EQ(found.distance, points.count ? (*alone)[0].distance : 0);
-        EXPECT_EQ(found.rounding, points.count ? (*alone)[0].rounding : 0);
+            cloud.coordinates().first(i < 3 ? splits[i] : count).from(i > 0 ? splits[i - 1] : 0);
+        const auto alone = kernels::farthest(points, {}, c[0], c[1], c[2]);
+        EXPECT_EQ((*parts)[i].distance, points.count ? (*alone)[3].distance : 0);
+        EXPECT_EQ((*parts)[i].rounding, points.count ? (*alone)[3].rounding : 0);
       }
     }
   }

@@ -32,7 +32,25 @@ double distance_behind(const std::array<Vector3, 3>& corners, const HullPoints& 
   return most;
 }
 
-// Samples of a patch lie in the box of its hull points and in its slab along any direction, for rows.
+void expect_inside(const Patch& patch, const HullPoints& points, const Vector3& direction) {
+  const Box3 box = box_around(points);
+  const Slab slab = outer_slab(points, direction);
+  for (int i = 0; i <= 8; ++i) {
+    for (int j = 0; i + j <= 8; ++j) {
+      const LimitPoint at = limit_point(patch, {i / 8.0, j / 8.0});
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_GE(at.relative[k], box.lower[k] - at.error);
+        EXPECT_LE(at.relative[k], box.upper[k] + at.error);
+      }
+      const double height = dot(slab.normal, at.relative), slack = 8 * at.error + 1e-15;
+      EXPECT_GE(height, slab.lower - slack);
+      EXPECT_LE(height, slab.upper + slack);
+    }
+  }
+}
+
+// Samples of a patch lie in the box of its hull points and in its slab along any direction, for rows that end
+// in nets and with tips.
 TEST(hull_points, and_their_slab_contain_the_limit_patch) {
   std::mt19937_64 random(18);
   std::normal_distribution<double> normal;
@@ -42,58 +60,43 @@ TEST(hull_points, and_their_slab_contain_the_limit_patch) {
     for (std::size_t f = 0; f < surface.face_count(); ++f) {
       if (!surface.has_patch(PatchId(f))) continue;
       const Patch patch = surface.patch(PatchId(f));
-      hull_points(surface.library().rows(*patch.kind), patch, points);
-      const Box3 box = box_around(points);
-      const Slab slab = outer_slab(points, {normal(random), normal(random), normal(random)});
-      for (int i = 0; i <= 8; ++i) {
-        for (int j = 0; i + j <= 8; ++j) {
-          const LimitPoint at = limit_point(patch, {i / 8.0, j / 8.0});
-          for (std::size_t k = 0; k < 3; ++k) {
-            EXPECT_GE(at.relative[k], box.lower[k] - at.error);
-            EXPECT_LE(at.relative[k], box.upper[k] + at.error);
-          }
-          const double height = dot(slab.normal, at.relative), slack = 8 * at.error + 1e-15;
-          EXPECT_GE(height, slab.lower - slack);
-          EXPECT_LE(height, slab.upper + slack);
+      for (const bool with_tips : {false, true}) {
+        if (with_tips) {
+          hull_points(surface.library(), patch, points);
+        } else {
+          hull_points(surface.library().rows(*patch.kind), patch, points);
         }
+        expect_inside(patch, points, {normal(random), normal(random), normal(random)});
       }
     }
   }
 }
 
-// Seen from the limit, a patch fills a sector at its extraordinary corner, but the net of the tip all around
-// it.
-TEST(refine_tips, leaves_the_patch_inside_and_cuts_what_lies_behind_its_corner) {
+// The boxes of a tip reach beyond its corner, less and less.
+TEST(refine_tip, leaves_the_patch_inside_and_cuts_what_lies_behind_its_corner) {
   for (const std::uint32_t n : {3u, 5u, 7u, 9u, 30u}) {
     const LimitSurface surface = testing::surface_of(oracle::meshes::bipyramid(n));
     BoundsCache& library = surface.library();
     const Patch patch = surface.patch(PatchId(0));
     HullPoints points;
-    hull_points(library.rows(*patch.kind), patch, points);
-    std::size_t tips = 0;
-    while (tips < 3 && points.tips[tips].kind) ++tips;
-    for (std::size_t i = 0; i < 2 * tips; ++i) {
-      const Box3 before = box_around(points);
-      refine_tips(library, {i % tips == 0, i % tips == 1, i % tips == 2}, points);
-      const Box3 after = box_around(points);
-      for (std::size_t a = 0; a < 3; ++a) {
-        EXPECT_GE(after.lower[a], before.lower[a] - 2 * points.error);
-        EXPECT_LE(after.upper[a], before.upper[a] + 2 * points.error);
-      }
-    }
-    const Box3 box = box_around(points);
-    for (int i = 0; i <= 16; ++i) {
-      for (int j = 0; i + j <= 16; ++j) {
-        const LimitPoint at = limit_point(patch, {i / 16.0, j / 16.0});
-        for (std::size_t a = 0; a < 3; ++a) {
-          EXPECT_GE(at.relative[a], box.lower[a] - at.error) << n;
-          EXPECT_LE(at.relative[a], box.upper[a] + at.error) << n;
+    hull_points(library, patch, points);
+    const std::size_t tips = points.tips().size();
+    EXPECT_GT(tips, 0u);
+    const std::array<Vector3, 3> corners = limit_corners(patch);
+    for (std::size_t round = 0; round < 10 * tips; ++round) {
+      points.refine_tip(library, round % tips);
+      const Box3 box = box_around(points);
+      for (int i = 0; i <= 16; ++i) {
+        for (int j = 0; i + j <= 16; ++j) {
+          const LimitPoint at = limit_point(patch, {i / 16.0, j / 16.0});
+          for (std::size_t a = 0; a < 3; ++a) {
+            EXPECT_GE(at.relative[a], box.lower[a] - at.error) << n;
+            EXPECT_LE(at.relative[a], box.upper[a] + at.error) << n;
+          }
         }
       }
     }
-    const std::array<Vector3, 3> corners = limit_corners(patch);
-    const double left = distance_behind(corners, points);
-    EXPECT_LT(left, 1e-4) << n;
+    EXPECT_LT(distance_behind(corners, points), 1e-4) << n;
   }
 }
 

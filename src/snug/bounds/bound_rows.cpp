@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 #include <snug/base/contract.h>
 #include <snug/geometry/rounding.h>
@@ -113,7 +112,10 @@ class Collector {
       }
       return;
     }
-    if (depth >= depth_limit(kind, depth)) return append_all(net, tips_);
+    if (depth >= depth_limit(kind, depth)) {
+      nets_found_.push_back({&kind, tips_.count(), place});
+      return append_all(net, tips_);
+    }
     const auto& children = kind.children();
     const bool middle_polynomial = children[3].kind->polynomial();
     for (const bool polynomial : {true, false}) {
@@ -135,6 +137,13 @@ class Collector {
 
   // Of all rows but those of nets.
   [[nodiscard]] const std::vector<QuadraticWeights>& quadratic() const { return quadratic_; }
+
+  // Where they are among all rows.
+  [[nodiscard]] std::vector<BoundRows::Net> nets() const {
+    std::vector<BoundRows::Net> nets = nets_found_;
+    for (BoundRows::Net& net : nets) net.begin += quadratic_.size();
+    return nets;
+  }
 
   // Nets last.
   [[nodiscard]] DenseRows take() {
@@ -164,23 +173,22 @@ class Collector {
   unsigned most_levels_;
   DenseRows rows_, tips_;
   std::vector<QuadraticWeights> quadratic_;
+  std::vector<BoundRows::Net> nets_found_;
   std::array<DenseRows, deepest_tip + 2> nets_;  // of the piece at work, a depth each
 };
 
-// Kinds of the first pieces at a corner, one a level. All others are as the last one: their other corners are
-// regular, and vertices of the ring that are the same by accident of few faces have come apart. None if not.
-using TipKinds = std::array<const Kind*, 3>;
-std::optional<TipKinds> tip_kinds(const KindChild& child, std::size_t corner) {
-  TipKinds kinds;
+// Is the piece at a corner, from the third level on, of a kind that comes again? Its other corners are
+// regular then, and vertices of the ring that are the same by accident of few faces have come apart.
+bool lasts(const KindChild& child, std::size_t corner) {
   const KindChild* piece = &child;
+  const Kind* last = nullptr;
   std::size_t own = corner;
-  for (const Kind*& kind : kinds) {
-    kind = piece->kind;
+  for (int level = 0; level < 3; ++level) {
+    last = piece->kind;
     own = (3 + own - piece->first) % 3;
-    piece = &kind->children()[own];
+    piece = &last->children()[own];
   }
-  if (piece->kind != kinds.back()) return {};
-  return kinds;
+  return piece->kind == last;
 }
 
 }  // namespace
@@ -195,7 +203,7 @@ bool has_lasting_tips(const Kind& kind) {
   if (!kind.shared()) return false;
   for (std::size_t corner = 0; corner < 3; ++corner) {
     const KindChild& child = kind.children()[corner];
-    if (!child.kind->polynomial() && !tip_kinds(child, corner)) return false;
+    if (!child.kind->polynomial() && !lasts(child, corner)) return false;
   }
   return true;
 }
@@ -212,27 +220,6 @@ unsigned tip_depth(const CornerFan& fan, Scheme scheme) {
   const double levels = std::log(0.01 * width) / std::log(shrink);
   return std::clamp(static_cast<unsigned>(std::ceil(levels)), 3u, deepest_tip);
 }
-
-namespace {
-
-// Where the nets of the tips are among `count` rows.
-std::array<BoundRows::Tip, 3> tips_of(const Kind& kind, unsigned levels, std::size_t count) {
-  std::array<BoundRows::Tip, 3> tips;
-  if (kind.polynomial() || !has_lasting_tips(kind)) return tips;
-  std::size_t found = 0, end = 0;
-  for (std::size_t corner = 0; corner < 3; ++corner) {
-    const KindChild& child = kind.children()[corner];
-    if (child.kind->polynomial()) continue;
-    const Kind* const there =
-        (*tip_kinds(child, corner))[std::clamp(levels, 1u, unsigned{TipKinds{}.size()}) - 1];
-    tips[found++] = {there, end};
-    end += there->control_count();
-  }
-  for (std::size_t i = 0; i < found; ++i) tips[i].begin += count - end;
-  return tips;
-}
-
-}  // namespace
 
 BoundRows make_bound_rows(const Kind& kind, unsigned most_levels) {
   SNUG_EXPECT(!kind.key().polygon);
@@ -254,7 +241,8 @@ BoundRows make_bound_rows(const Kind& kind, unsigned most_levels) {
   for (std::size_t k = 0; k < 6; ++k) {
     for (const QuadraticWeights& row : quadratic) result.quadratic_.push_back(row[k]);
   }
-  result.tips_ = tips_of(kind, most_levels, result.count_);
+  result.nets_ = collector.nets();
+  result.lasting_ = !kind.polynomial() && has_lasting_tips(kind);
   return result;
 }
 

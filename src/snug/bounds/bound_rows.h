@@ -27,23 +27,24 @@ class BoundRows {
   [[nodiscard]] double abs_sum() const { return abs_sum_; }
   [[nodiscard]] std::size_t bytes() const { return (weights_.size() + quadratic_.size()) * sizeof(double); }
 
-  /// Number of rows of Bezier points: the first ones. Nets of pieces that are no polynomials follow.
+  /// Number of rows of Bezier points: the first ones.
   [[nodiscard]] std::size_t bezier_count() const { return bezier_count_; }
   /// In all these points the weights of Bezier point k of a quadratic over the patch: its own Bezier points
   /// over the pieces, raised to their degree. Point for point, patch minus quadratic lies in the hull of the
   /// differences. Zeros for a kind of degree 1.
   [[nodiscard]] const double* quadratic(std::size_t k) const { return quadratic_.data() + k * bezier_count_; }
 
-  /// The control net of the piece at an extraordinary corner, some levels down: the last rows are those of
-  /// the tips, in the order of their kinds' control points.
-  struct Tip {
-    const Kind* kind = nullptr;  ///< none: no tip
-    std::size_t begin = 0;       ///< first row
+  /// The control net of a piece that is no polynomial, some levels down, in the order of its kind's control
+  /// points.
+  struct Net {
+    const Kind* kind;
+    std::size_t begin;        ///< first row
+    ParameterTriangle place;  ///< corners of the piece, in its kind's order
   };
-  /// Tips in the order of the kind's corners; those without one are left out.
-  [[nodiscard]] const std::array<Tip, 3>& tips() const { return tips_; }
-  /// Number of rows before the first tip's.
-  [[nodiscard]] std::size_t tips_begin() const { return tips_[0].kind ? tips_[0].begin : count_; }
+  /// The last rows are those of the nets, one after the other.
+  [[nodiscard]] const std::vector<Net>& nets() const { return nets_; }
+  /// Do the nets belong to tips, one at each extraordinary corner in turn (has_lasting_tips())?
+  [[nodiscard]] bool lasting() const { return lasting_; }
 
   /// Upper bound, a coordinate, of |M c computed - M c exact| for points of at most `largest`, off by at most
   /// `error`.
@@ -53,7 +54,8 @@ class BoundRows {
   friend BoundRows make_bound_rows(const Kind& kind, unsigned most_levels);
   std::size_t count_ = 0, control_count_ = 0, bezier_count_ = 0;
   std::vector<double> weights_, quadratic_;
-  std::array<Tip, 3> tips_;
+  std::vector<Net> nets_;
+  bool lasting_ = false;
   double entry_error_ = 0, abs_sum_ = 0;
 };
 
@@ -61,16 +63,16 @@ class BoundRows {
 inline constexpr unsigned deepest_tip = 24;
 
 /// The rows of a kind: Bezier points of the polynomial pieces after one split; at an extraordinary corner of
-/// the rings of pieces around it down to tip_depth() levels, and the control net of the last tip. Tips end at
-/// `most_levels` if that is less. Where sharpness decays, or polygons are about, control nets of pieces a few
-/// levels down end it.
+/// the rings of pieces around it down to tip_depth() levels, and the control net of the last piece there, the
+/// tip. Tips end at `most_levels` if that is less. Where sharpness decays, or polygons are about, control
+/// nets of pieces a few levels down end it.
 ///
 /// Requires:  a patch, no polygon.
 /// Cost:      up to valence 12 well below a millisecond; for valence n about 20 n^2 multiply-adds a level.
 [[nodiscard]] BoundRows make_bound_rows(const Kind& kind, unsigned most_levels = deepest_tip);
 
 /// Is the quarter at each extraordinary corner, after a few levels, of a kind that comes again at every
-/// level? Only such tips are kept apart.
+/// level? Only such tips can be bounded by tables of their own.
 /// Requires:  a kind that is no polynomial.
 [[nodiscard]] bool has_lasting_tips(const Kind& kind);
 

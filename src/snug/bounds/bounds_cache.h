@@ -6,8 +6,12 @@
 #include <snug/bounds/bound_table.h>
 #include <snug/bounds/kind_slots.h>
 #include <snug/bounds/quadratic.h>
+#include <snug/bounds/tip_table.h>
 
 namespace snug {
+
+/// Levels of rows around extraordinary corners before the tips.
+inline constexpr unsigned levels_before_tips = 2;
 
 /// Rows and tables of kinds, made on first use; then immutable. Thread-safe; looking up costs two loads.
 ///
@@ -17,27 +21,37 @@ namespace snug {
 class BoundsCache {
  public:
   explicit BoundsCache(std::size_t most_bytes_of_rows = std::size_t{256} << 20)
-      : rows_(most_bytes_of_rows), quadratics_(most_bytes_of_rows) {}
+      : rows_(most_bytes_of_rows),
+        level_rows_(most_bytes_of_rows),
+        tip_tables_(most_bytes_of_rows),
+        quadratics_(most_bytes_of_rows) {}
 
   [[nodiscard]] KindCache& kinds() { return kinds_; }
   [[nodiscard]] const KindCache& kinds() const { return kinds_; }
 
-  /// The rows of a kind of kinds(). With several extraordinary corners they go down one level only: the tips
-  /// there are of kinds that have rows of their own, and there are far fewer of these. KindSlots keeps them.
+  /// The rows of a kind of kinds(), levels_before_tips levels of them: tips are bounded by the tables of
+  /// their own kinds, of which there are far fewer. KindSlots keeps them.
   [[nodiscard]] const BoundRows& rows(const Kind& kind);
-  /// The table of a kind, made from rows that go down to tip_depth().
+  /// One level of them.
+  [[nodiscard]] const BoundRows& level_rows(const Kind& kind);
+  /// The table of a kind, made from rows that go down to tip_depth(). It stays as long as this.
   [[nodiscard]] const BoundTable& table(const Kind& kind);
+  /// The same for the boxes of tips of this kind.
+  [[nodiscard]] const TipTable& tip_table(const Kind& kind);
   /// What the quadratic triangles of a kind share.
   [[nodiscard]] const QuadraticRows& quadratic_rows(const Kind& kind);
 
   /// Kinds whose rows are kept, and the memory of all rows and tables that are.
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
-  [[nodiscard]] std::size_t bytes() const { return rows_.bytes() + tables_.bytes() + quadratics_.bytes(); }
+  [[nodiscard]] std::size_t bytes() const {
+    return rows_.bytes() + level_rows_.bytes() + tables_.bytes() + tip_tables_.bytes() + quadratics_.bytes();
+  }
 
  private:
   KindCache kinds_;
-  KindSlots<BoundRows> rows_;
+  KindSlots<BoundRows> rows_, level_rows_;
   KindSlots<BoundTable> tables_;
+  KindSlots<TipTable> tip_tables_;
   KindSlots<QuadraticRows> quadratics_;
 };
 

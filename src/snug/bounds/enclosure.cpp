@@ -8,8 +8,8 @@
 namespace snug {
 namespace {
 
-// How much the nets of tips may add to a hull before it is worth refining them.
-constexpr double notable_excess = 0.01;
+// How much the boxes of tips may add to a hull before it is worth refining them.
+constexpr double notable_excess = 0.03;
 
 // Relative to the hull points' origin.
 using Ends = std::array<Vector3, 2>;
@@ -25,10 +25,10 @@ Shift to_middle(const HullPoints& points, const Corners& corners) {
   const Vector3 normal = normalized(cross(corners[1] - corners[0], corners[2] - corners[0]));
   if (normal == Vector3{}) return {};
   const kernels::Coordinates all = points.coordinates();
-  auto [lower, upper] = kernels::heights(all.first(points.tips_begin()), corners[0], normal);
+  auto [lower, upper] = kernels::heights(all.from(points.tips_end()), corners[0], normal);
   bool stick_out = false;
-  if (points.tips[0].kind) {
-    const kernels::Range tips = kernels::heights(all.from(points.tips_begin()), corners[0], normal);
+  if (!points.tips().empty()) {
+    const kernels::Range tips = kernels::heights(all.first(points.tips_end()), corners[0], normal);
     stick_out = std::max(lower - tips.lower, tips.upper - upper) > notable_excess * (upper - lower);
     lower = std::min(lower, tips.lower);
     upper = std::max(upper, tips.upper);
@@ -122,28 +122,34 @@ kernels::Reach farthest_by_feet(const HullPoints& points, std::size_t begin, std
   return {rests.farthest + rounding, rounding};
 }
 
-// Of the points `begin` to `split` - 1, and of those up to `end` - 1: in the triangle's plane, if it has one.
-std::array<kernels::Reach, 2> farthest(const HullPoints& points, std::size_t begin, std::size_t split,
-                                       std::size_t end, const Corners& corner) {
-  const kernels::Coordinates all = points.coordinates().first(end).from(begin);
-  if (const auto in_plane = kernels::farthest(all, split - begin, corner[0], corner[1], corner[2])) {
-    return *in_plane;
+// Of the three tips' points, 0 for none, and of all others: in the triangle's plane, if it has one.
+std::array<kernels::Reach, 4> farthest(const HullPoints& points, const Corners& corner) {
+  std::array<std::size_t, 3> splits;
+  for (std::size_t i = 0; i < 3; ++i) splits[i] = std::min((i + 1) * HullPoints::tip_size, points.tips_end());
+  const auto in_plane = kernels::farthest(points.coordinates(), splits, corner[0], corner[1], corner[2]);
+  if (in_plane) return *in_plane;
+  std::array<kernels::Reach, 4> reach{};
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t end = i < 3 ? splits[i] : points.size();
+    if (begin < end) reach[i] = farthest_by_feet(points, begin, end, corner);
+    begin = end;
   }
-  return {farthest_by_feet(points, begin, split, corner), farthest_by_feet(points, split, end, corner)};
+  return reach;
 }
 
-// Refines the tips whose nets stick out of the rest of the hull, which is within `rest` of the base. Nets
-// that stick out along the normal have moved the base towards them: then both sides are about as far.
-bool refine_what_sticks_out(BoundsCache& library, const Base<3>& base, double rest, HullPoints& points) {
-  const double most = (base.tips_stick_out ? 1 - notable_excess : 1 + notable_excess) * rest;
-  std::array<bool, 3> which{};
-  for (std::size_t i = 0; i < 3 && points.tips[i].kind; ++i) {
-    const std::size_t begin = points.tips[i].begin, count = points.tips[i].kind->control_count();
-    which[i] = farthest(points, begin, begin + count, begin + count, base.relative)[0].distance > most;
+// Refines the tips that stick out of the rest of the hull. Those that stick out along the normal have moved
+// the base towards them: then both sides are about as far.
+bool refine_what_sticks_out(BoundsCache& library, bool along_normal,
+                            const std::array<kernels::Reach, 4>& reach, HullPoints& points) {
+  const double most = (along_normal ? 1 - notable_excess : 1 + notable_excess) * reach[3].distance;
+  bool refined = false;
+  for (std::size_t tip = 0; tip < points.tips().size(); ++tip) {
+    if (!(reach[tip].distance > most)) continue;
+    points.refine_tip(library, tip);
+    refined = true;
   }
-  if (which == std::array<bool, 3>{}) return false;
-  refine_tips(library, which, points);
-  return true;
+  return refined;
 }
 
 }  // namespace
@@ -159,13 +165,14 @@ OffsetTriangle offset_triangle(BoundsCache& library, HullPoints& points,
                                const std::array<Vector3, 3>& corners) {
   for (std::size_t round = 0;; ++round) {
     const Base<3> base = moved_base(points, corners);
-    const auto [rest, tips] = farthest(points, 0, points.tips_begin(), points.size(), base.relative);
-    const bool tight = !base.tips_stick_out && tips.distance <= (1 + notable_excess) * rest.distance;
-    if (!tight && round < max_tip_refinements &&
-        refine_what_sticks_out(library, base, rest.distance, points)) {
+    const std::array<kernels::Reach, 4> parts = farthest(points, base.relative);
+    if (round < max_tip_refinements && refine_what_sticks_out(library, base.tips_stick_out, parts, points)) {
       continue;
     }
-    const kernels::Reach& reach = rest.distance >= tips.distance ? rest : tips;
+    const auto farther = [](const kernels::Reach& a, const kernels::Reach& b) {
+      return a.distance < b.distance;
+    };
+    const kernels::Reach& reach = *std::max_element(parts.begin(), parts.end(), farther);
     const double given = spatial_error(enlarged(points.error + base.placing_error));
     const double radius = reach.distance + given;
     return {base.placed, std::isfinite(radius) ? enlarged(radius) : INFINITY,

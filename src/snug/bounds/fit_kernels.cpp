@@ -261,19 +261,23 @@ HWY_INLINE double farthest_sq_with(D d, const Coordinates& points, const PlanarT
   return hn::AllTrue(d, finite) ? hn::GetLane(hn::MaxOfLanes(d, farthest)) : INFINITY;
 }
 
-bool Farthest(const Coordinates& points, std::size_t split, const Vector3& a, const Vector3& b,
-              const Vector3& c, std::array<Reach, 2>& out) {
+bool Farthest(const Coordinates& points, const std::array<std::size_t, 3>& splits, const Vector3& a,
+              const Vector3& b, const Vector3& c, std::array<Reach, 4>& out) {
   const hn::CappedTag<double, 1> d1;
   const auto t = planar_triangle(d1, single(a), single(b), single(c));
   if (!hn::AllTrue(d1, well_shaped(d1, t))) return false;
   const hn::ScalableTag<double> wide;
-  const std::array<Coordinates, 2> parts{points.first(split), points.from(split)};
-  for (std::size_t i = 0; i < 2; ++i) {
-    const double farthest_sq = parts[i].count >= hn::Lanes(wide) ? farthest_sq_with(wide, parts[i], t)
-                                                                 : farthest_sq_with(d1, parts[i], t);
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::size_t end = i < 3 ? splits[i] : points.count;
+    out[i] = {0, 0};
+    if (begin == end) continue;
+    const Coordinates part = points.first(end).from(begin);
+    const double farthest_sq =
+        part.count >= hn::Lanes(wide) ? farthest_sq_with(wide, part, t) : farthest_sq_with(d1, part, t);
     const auto reach = reach_of(d1, t, hn::Set(d1, farthest_sq));
     out[i] = {hn::GetLane(reach.distance), hn::GetLane(reach.rounding)};
-    if (parts[i].count == 0) out[i] = {0, 0};
+    begin = end;
   }
   return true;
 }
@@ -622,10 +626,11 @@ Range heights(const Coordinates& points, const Vector3& from, const Vector3& nor
   return HWY_DYNAMIC_DISPATCH(Heights)(points, from, normal);
 }
 
-std::optional<std::array<Reach, 2>> farthest(const Coordinates& points, std::size_t split, const Vector3& a,
+std::optional<std::array<Reach, 4>> farthest(const Coordinates& points,
+                                             const std::array<std::size_t, 3>& splits, const Vector3& a,
                                              const Vector3& b, const Vector3& c) {
-  std::array<Reach, 2> reach;
-  if (!HWY_DYNAMIC_DISPATCH(Farthest)(points, split, a, b, c, reach)) return std::nullopt;
+  std::array<Reach, 4> reach;
+  if (!HWY_DYNAMIC_DISPATCH(Farthest)(points, splits, a, b, c, reach)) return std::nullopt;
   return reach;
 }
 

@@ -48,16 +48,19 @@ struct Reach {
   double rounding;  ///< the part of it that accounts for rounding
 };
 
-/// Largest distance to the triangle of the first `split` points and of the others, 0 for none; nothing for a
-/// triangle that is too flat for its own plane: the sine of its sharpest angle below 1/32, without area, not
-/// finite, or of a size whose fourth power leaves the range of doubles.
+/// Largest distance to the triangle of the points before each of three places, from the one before it on, and
+/// of those after them, 0 for none; nothing for a triangle that is too flat for its own plane: the sine of
+/// its sharpest angle below 1/32, without area, not finite, or of a size whose fourth power leaves the range
+/// of doubles.
 ///
 /// Guarantee: largest distance <= distance, for the triangle of these very doubles; distance <= largest
 ///            distance + 3 rounding, times 1 + 2^-39 where its longest edge is below 1e-70;
 ///            rounding <= (16 + 112 / sine) u (distance + 2 longest edge).
-/// Requires:  points in scaled coordinates (geometry/scaling.h), or not finite; split <= points.count.
+/// Requires:  points in scaled coordinates (geometry/scaling.h), or not finite; splits not decreasing, at
+///            most points.count.
 /// Source:    derivations/rounding.md, "Distance in the triangle's plane".
-[[nodiscard]] std::optional<std::array<Reach, 2>> farthest(const Coordinates& points, std::size_t split,
+[[nodiscard]] std::optional<std::array<Reach, 4>> farthest(const Coordinates& points,
+                                                           const std::array<std::size_t, 3>& splits,
                                                            const Vector3& a, const Vector3& b,
                                                            const Vector3& c);
 

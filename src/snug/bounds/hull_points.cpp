@@ -4,35 +4,13 @@
 #include <cmath>
 
 #include <snug/base/contract.h>
-#include <snug/bounds/fit_kernels.h>
 #include <snug/geometry/rounding.h>
 
 namespace snug {
-namespace {
-
-// The net of a tip that begins at point `begin`, as a patch.
-void take_net(const HullPoints& points, const Kind& kind, std::size_t begin, Patch& net) {
-  net.kind = &kind;
-  net.origin = points.origin;
-  net.points.resize(kind.control_count());
-  double x = 0, y = 0, z = 0;  // three chains of maxima, not one
-  for (std::size_t i = 0; i < net.points.size(); ++i) {
-    const Vector3 p = net.points[i] = points.at(begin + i);
-    x = std::max(x, std::fabs(p.x));
-    y = std::max(y, std::fabs(p.y));
-    z = std::max(z, std::fabs(p.z));
-  }
-  net.largest = std::max({x, y, z});
-  net.error = points.error;
-}
-
-}  // namespace
-
 void HullPoints::restart(const Point3& new_origin) {
   origin = new_origin;
   error = largest = 0;
-  tips = {};
-  count_ = 0;
+  count_ = tip_count_ = 0;
 }
 
 void HullPoints::reserve(std::size_t count) {
@@ -44,8 +22,8 @@ void HullPoints::assign(const HullPoints& other) {
   origin = other.origin;
   error = other.error;
   largest = other.largest;
-  tips = other.tips;
   count_ = other.count_;
+  tip_count_ = 0;
   for (const auto axis : {&HullPoints::x_, &HullPoints::y_, &HullPoints::z_}) {
     const double* const from = (other.*axis).data();
     (this->*axis).assign(from, from + count_);
@@ -85,16 +63,78 @@ void HullPoints::add(const BoundRows& rows, const Patch& patch) {
         enlarged((rows.abs_sum() + rows.entry_error()) * patch.largest));
 }
 
+void HullPoints::add(const HullPoints& others) {
+  const std::size_t at = extend(others.count_);
+  for (const auto axis : {&HullPoints::x_, &HullPoints::y_, &HullPoints::z_}) {
+    std::copy_n((others.*axis).begin(), others.count_, (this->*axis).begin() + at);
+  }
+  widen(others.error, others.largest);
+}
+
 void HullPoints::add(const Stencils& rows, const Patch& patch) {
   std::size_t at = extend(rows.row_count());
   for (std::size_t r = 0; r < rows.row_count(); ++r) set(at++, rows.apply<Vector3>(r, patch.points));
   widen(rows.result_error(patch.largest, patch.error), enlarged(rows.max_abs_sum() * patch.largest));
 }
 
+// The net that begins at point `begin`, as a patch.
+void HullPoints::take_net(const BoundRows::Net& net, std::size_t begin, Patch& out) const {
+  out.kind = net.kind;
+  out.origin = origin;
+  out.points.resize(net.kind->control_count());
+  double x = 0, y = 0, z = 0;  // three chains of maxima, not one
+  for (std::size_t i = 0; i < out.points.size(); ++i) {
+    const Vector3 p = out.points[i] = at(begin + i);
+    x = std::max(x, std::fabs(p.x));
+    y = std::max(y, std::fabs(p.y));
+    z = std::max(z, std::fabs(p.z));
+  }
+  out.largest = std::max({x, y, z});
+  out.error = error;
+}
+
+void HullPoints::set_boxes(BoundsCache& library, std::size_t tip) {
+  const TipBoxes boxes = library.tip_table(*tips_[tip].kind).boxes(tips_[tip]);
+  std::size_t i = tip_size * tip;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3 &low = boxes.lower[k], &high = boxes.upper[k];
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      set(i++, {corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z});
+    }
+    widen(0, std::max(max_abs(low), max_abs(high)));
+  }
+}
+
+void HullPoints::add_with_tips(BoundsCache& library, const Patch& patch) {
+  SNUG_EXPECT(count_ == 0);
+  const BoundRows& rows = library.rows(*patch.kind);
+  if (!rows.lasting()) return add(rows, patch);
+  tip_count_ = rows.nets().size();
+  SNUG_EXPECT(tip_count_ <= tips_.size());
+  const std::size_t begin = tips_end();
+  extend(begin);
+  add(rows, patch);
+  for (std::size_t i = 0; i < tip_count_; ++i) {
+    take_net(rows.nets()[i], begin + rows.nets()[i].begin, tips_[i]);
+    set_boxes(library, i);
+  }
+  cut(begin + rows.bezier_count());
+}
+
+void HullPoints::refine_tip(BoundsCache& library, std::size_t tip) {
+  Patch& net = tips_[tip];
+  const BoundRows& rows = library.level_rows(*net.kind);
+  SNUG_EXPECT(rows.lasting() && rows.nets().size() == 1);
+  const std::size_t begin = count_;
+  add(rows, net);
+  take_net(rows.nets()[0], begin + rows.bezier_count(), net);
+  set_boxes(library, tip);
+  cut(begin + rows.bezier_count());
+}
+
 void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out) {
   out.restart(patch.origin);
   out.add(rows, patch);
-  out.tips = rows.tips();
 }
 
 namespace {
@@ -108,7 +148,12 @@ void add_parts(BoundsCache& library, const Patch& patch, unsigned level, std::sp
                HullPoints& out) {
   const Kind& kind = *patch.kind;
   if (kind.polynomial()) return out.add(kind.bezier(), patch);
-  if (kind.shared()) return out.add(library.rows(kind), patch);
+  if (kind.shared()) {
+    thread_local HullPoints part;
+    part.restart(patch.origin);
+    part.add_with_tips(library, patch);
+    return out.add(part);
+  }
   if (level >= (kind.passing() ? passing_levels : crowded_levels)) {
     return out.add(patch.points, patch.error, patch.largest);
   }
@@ -126,13 +171,13 @@ void hull_points(BoundsCache& library, const Patch& patch, HullPoints& out) {
     out.restart(patch.origin);
     return add_parts(library, patch, 0, scratch, out);
   }
-  hull_points(library.rows(*patch.kind), patch, out);
+  out.restart(patch.origin);
+  out.add_with_tips(library, patch);
   std::size_t count = out.size();
-  for (std::size_t i = 0; i < 3 && out.tips[i].kind; ++i) {
-    count += (max_tip_refinements + 1) * library.rows(*out.tips[i].kind).count();
+  for (const Patch& tip : out.tips()) {
+    count += max_tip_refinements * library.level_rows(*tip.kind).count();
   }
   out.reserve(count);
-  if (out.tips[1].kind) refine_tips(library, {true, true, true}, out);
 }
 
 void hull_points(const CurvePiece& piece, HullPoints& out) {
@@ -161,33 +206,8 @@ void prepare_hull_points(BoundsCache& library, const Kind& kind) {
   patch.points.resize(kind.control_count());
   HullPoints points;
   hull_points(library, patch, points);
-  for (std::size_t i = 0; i < max_tip_refinements && points.tips[0].kind; ++i) {
-    refine_tips(library, {true, true, true}, points);
-  }
-}
-
-void refine_tips(BoundsCache& library, const std::array<bool, 3>& which, HullPoints& points) {
-  thread_local std::array<Patch, 3> nets;
-  std::size_t tips = 0;
-  for (; tips < 3 && points.tips[tips].kind; ++tips) {
-    take_net(points, *points.tips[tips].kind, points.tips[tips].begin, nets[tips]);
-  }
-  // What is no tip is written one after the other; the new net behind it is taken out first.
-  std::size_t count = points.tips_begin();
-  for (std::size_t i = 0; i < tips; ++i) {
-    if (!which[i]) continue;
-    const BoundRows& rows = library.rows(*nets[i].kind);
-    const Kind* const deeper = rows.tips()[0].kind;
-    SNUG_EXPECT(deeper && !rows.tips()[1].kind);
-    points.cut(count);
-    points.add(rows, nets[i]);
-    count += rows.tips_begin();
-    take_net(points, *deeper, count, nets[i]);
-  }
-  points.cut(count);
-  for (std::size_t i = 0; i < tips; ++i) {
-    points.tips[i] = {nets[i].kind, points.size()};
-    points.add(nets[i].points, nets[i].error, nets[i].largest);
+  for (std::size_t round = 0; round < max_tip_refinements; ++round) {
+    for (std::size_t tip = 0; tip < points.tips().size(); ++tip) points.refine_tip(library, tip);
   }
 }
 

@@ -17,11 +17,14 @@ class HullPoints {
   Point3 origin;
   double error = 0;    ///< upper bound, a coordinate, of |point - exact point|
   double largest = 0;  ///< upper bound of every |coordinate|
-  /// The last points, if they are the control nets of tips (see BoundRows).
-  std::array<BoundRows::Tip, 3> tips;
+
+  /// Control nets of tips, the pieces at extraordinary corners some levels down. The first points are, for
+  /// each of them tip_size, the corners of the boxes that the table of its kind gives (tip_table.h).
+  [[nodiscard]] std::span<const Patch> tips() const { return {tips_.data(), tip_count_}; }
+  static constexpr std::size_t tip_size = 24;
+  [[nodiscard]] std::size_t tips_end() const { return tip_size * tip_count_; }
 
   [[nodiscard]] std::size_t size() const { return count_; }
-  [[nodiscard]] std::size_t tips_begin() const { return tips[0].kind ? tips[0].begin : count_; }
   [[nodiscard]] kernels::Coordinates coordinates() const { return {x_.data(), y_.data(), z_.data(), count_}; }
   [[nodiscard]] Vector3 at(std::size_t i) const { return {x_[i], y_[i], z_[i]}; }
 
@@ -31,26 +34,37 @@ class HullPoints {
   void cut(std::size_t count) { count_ = count; }
   /// Memory for so many.
   void reserve(std::size_t count);
-  /// A copy with no more memory than it needs.
+  /// A copy of the points with no more memory than they need.
   void assign(const HullPoints& other);
   /// Adds points of at most `of_largest` that are off by at most `of_error`.
   void add(std::span<const Vector3> points, double of_error, double of_largest);
   /// Adds rows times the points of a patch.
   void add(const BoundRows& rows, const Patch& patch);
   void add(const Stencils& rows, const Patch& patch);
+  /// Adds all points of others.
+  void add(const HullPoints& others);
+  /// Adds the points of the rows that a library keeps for a patch, to none, with tips for their nets.
+  void add_with_tips(BoundsCache& library, const Patch& patch);
+  /// Replaces a tip by the points that a level of rows of its kind makes of its net: the hull
+  /// shrinks to the pieces around this corner, and a tip a level farther down.
+  void refine_tip(BoundsCache& library, std::size_t tip);
 
  private:
   // Makes room for so many more; where the first of them is.
   std::size_t extend(std::size_t by);
   void set(std::size_t i, const Vector3& p);
   void widen(double of_error, double of_largest);
+  void take_net(const BoundRows::Net& net, std::size_t begin, Patch& out) const;
+  // The points that come first of tip i.
+  void set_boxes(BoundsCache& library, std::size_t i);
 
-  std::size_t count_ = 0;
+  std::size_t count_ = 0, tip_count_ = 0;
   std::vector<double> x_, y_, z_;  // as large as they ever were
+  std::array<Patch, 3> tips_;
 };
 
 /// How often offset_triangle() refines tips.
-inline constexpr std::size_t max_tip_refinements = 3;
+inline constexpr std::size_t max_tip_refinements = 20;
 
 /// The points M c of a patch, written over `out`, which keeps its memory.
 ///
@@ -59,11 +73,11 @@ inline constexpr std::size_t max_tip_refinements = 3;
 /// Cost:      3 rows.count() rows.control_count() multiply-adds; no allocation once `out` has been as large.
 void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out);
 
-/// The same from the rows that a library keeps; the tips of a kind with several are refined, its own rows
-/// being for one level only. Takes memory for all refinements to come. Passing and crowded kinds, which few
-/// patches share, have no rows: the patch is split, and its pieces have theirs.
+/// The same from the rows and tables that a library keeps, with tips. Takes memory for all refinements to
+/// come. Passing and crowded kinds, which few patches share, have no rows: the patch is split, and its pieces
+/// have theirs.
 void hull_points(BoundsCache& library, const Patch& patch, HullPoints& out);
-/// Makes the rows that the call above will need for patches of this kind.
+/// Makes the rows and tables that the call above and refinements will need for patches of this kind.
 void prepare_hull_points(BoundsCache& library, const Kind& kind);
 
 /// The same of a curve: the Bezier points of its four quarters.
@@ -71,10 +85,6 @@ void hull_points(const CurvePiece& piece, HullPoints& out);
 
 /// Few points whose hull holds the patch closely: the Bezier points of a polynomial one, else those above.
 void close_points(BoundsCache& library, const Patch& patch, HullPoints& out);
-
-/// Replaces the control nets of some tips by the points that the rows of their own kinds make of them: the
-/// hull shrinks to the pieces around these corners, and nets some levels farther down.
-void refine_tips(BoundsCache& library, const std::array<bool, 3>& which, HullPoints& points);
 
 /// The set lower <= dot(normal, p) <= upper.
 struct Slab {

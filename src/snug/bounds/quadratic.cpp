@@ -7,6 +7,7 @@
 #include <snug/base/contract.h>
 #include <snug/bounds/bounds_cache.h>
 #include <snug/bounds/hull_points.h>
+#include <snug/bounds/lasting_layout.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 
@@ -74,65 +75,6 @@ constexpr unsigned passing_levels = 5, crowded_levels = 12;
 // Rows of one level end in a net only at irregular corners (bound_rows.h).
 bool has_irregular_corner(const Kind& kind) {
   return !kind.regular_corner(0) || !kind.regular_corner(1) || !kind.regular_corner(2);
-}
-
-// A corner's quarter of a kind that comes again there.
-const KindChild* again_at_a_corner(const Kind& kind) {
-  const KindChild* found = nullptr;
-  for (const KindChild& child : kind.children()) {
-    if (!has_irregular_corner(*child.kind)) continue;
-    if (found || child.kind != &kind) return nullptr;
-    found = &child;
-  }
-  return found;
-}
-
-std::array<LayoutPoint, 3> limits_of(const Kind& kind, const std::vector<LayoutPoint>& layout) {
-  std::array<LayoutPoint, 3> limits{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Stencils::Row row = kind.corner_limits().row(k);
-    for (std::size_t i = 0; i < row.sources.size(); ++i) {
-      for (std::size_t a = 0; a < 2; ++a) limits[k][a] += row.weights[i] * layout[row.sources[i]][a];
-    }
-  }
-  return limits;
-}
-
-// The affine map that takes the limits of the corners to (0, 0), (1, 0), (0, 1). None: they are on a line.
-bool normalise(const Kind& kind, std::vector<LayoutPoint>& layout) {
-  const auto [o, p, q] = limits_of(kind, layout);
-  const double a = p[0] - o[0], b = q[0] - o[0], c = p[1] - o[1], d = q[1] - o[1], det = a * d - b * c;
-  if (!(std::fabs(det) > 1e-9 * (std::fabs(a * d) + std::fabs(b * c)))) return false;
-  for (LayoutPoint& at : layout) {
-    const double x = at[0] - o[0], y = at[1] - o[1];
-    at = {(d * x - b * y) / det, (a * y - c * x) / det};
-  }
-  return true;
-}
-
-// Right eigenvectors of the step to the piece at the corner, by iteration: what surrounds the corner has the
-// shape of the weights of tangents from the start, its vertex in the middle. Any layout is sound.
-std::vector<LayoutPoint> lasting_layout(const Kind& kind, const KindChild& again) {
-  std::size_t corner = 0;
-  while (kind.regular_corner(corner)) ++corner;
-  std::vector<LayoutPoint> layout(kind.control_count(), LayoutPoint{0, 0}), next(layout);
-  for (std::size_t a = 0; a < 2; ++a) {
-    const Stencils::Row row = kind.corner_tangents().row(2 * corner + a);
-    for (std::size_t i = 0; i < row.sources.size(); ++i) layout[row.sources[i]][a] += row.weights[i];
-  }
-  if (kind.rules().primal) layout[corner] = {0, 0};
-  for (int step = 0; step < 60; ++step) {
-    for (std::size_t r = 0; r < layout.size(); ++r) {
-      const Stencils::Row row = again.stencils.row(r);
-      next[r] = {0, 0};
-      for (std::size_t i = 0; i < row.sources.size(); ++i) {
-        for (std::size_t a = 0; a < 2; ++a) next[r][a] += row.weights[i] * layout[row.sources[i]][a];
-      }
-    }
-    layout.swap(next);
-    if (step > 2 && !normalise(kind, layout)) return {};
-  }
-  return layout;
 }
 
 // Corners of the convex hull, up to rounding.
@@ -207,9 +149,8 @@ void QuadraticRows::make_fit(const BoundRows& deep) {
 }
 
 void QuadraticRows::make_frame(const Kind& kind, const BoundRows& deep) {
-  const KindChild* const again = again_at_a_corner(kind);
-  if (!again) return;
-  layout_ = lasting_layout(kind, *again);
+  layout_ = lasting_layout(kind);
+  if (layout_.empty()) return;
   double size = 0;
   for (const LayoutPoint& at : layout_) size = std::max({size, std::fabs(at[0]), std::fabs(at[1])});
   // Each point that convex_hull() leaves out moves what is left by less than eight roundoffs.
