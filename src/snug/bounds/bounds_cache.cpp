@@ -23,7 +23,7 @@ const TipTable& BoundsCache::tip_table(const Kind& kind) {
 }
 
 const QuadraticRows& BoundsCache::quadratic_rows(const Kind& kind) {
-  return quadratics_.get(kind.id(), [&] { return make_quadratic_rows(kind); });
+  return quadratics_.get(kind.id(), [&] { return make_quadratic_rows(*this, kind); });
 }
 
 }  // namespace snug

@@ -77,9 +77,9 @@ void HullPoints::add(const Stencils& rows, const Patch& patch) {
   widen(rows.result_error(patch.largest, patch.error), enlarged(rows.max_abs_sum() * patch.largest));
 }
 
-// The net that begins at point `begin`, as a patch.
 void HullPoints::take_net(const BoundRows::Net& net, std::size_t begin, Patch& out) const {
   out.kind = net.kind;
+  out.first = 0;
   out.origin = origin;
   out.points.resize(net.kind->control_count());
   double x = 0, y = 0, z = 0;  // three chains of maxima, not one

@@ -41,6 +41,8 @@ class HullPoints {
   /// Adds rows times the points of a patch.
   void add(const BoundRows& rows, const Patch& patch);
   void add(const Stencils& rows, const Patch& patch);
+  /// The net whose points begin at `begin`, as a patch in its kind's order.
+  void take_net(const BoundRows::Net& net, std::size_t begin, Patch& out) const;
   /// Adds all points of others.
   void add(const HullPoints& others);
   /// Adds the points of the rows that a library keeps for a patch, to none, with tips for their nets.
@@ -54,7 +56,6 @@ class HullPoints {
   std::size_t extend(std::size_t by);
   void set(std::size_t i, const Vector3& p);
   void widen(double of_error, double of_largest);
-  void take_net(const BoundRows::Net& net, std::size_t begin, Patch& out) const;
   // The points that come first of tip i.
   void set_boxes(BoundsCache& library, std::size_t i);
 

@@ -16,7 +16,7 @@ namespace {
 
 // Corners and then middles of the edges 01, 12, 20, relative to a patch's origin.
 using Quadratic = std::array<Vector3, 6>;
-using Restriction = std::array<QuadraticWeights, 6>;
+using Restriction = QuadraticRows::Restriction;
 
 // What squares, products and sums lose by underflow is less.
 constexpr double tiny = 0x1p-500;
@@ -67,15 +67,10 @@ constexpr unsigned frame_levels = 8;
 // How often the net of a piece that is no polynomial is split before what is left of it ends it.
 constexpr unsigned most_levels = 16;
 // How much nets may add before they are split.
-constexpr double notable_excess = 0.02;
+constexpr double notable_excess = 0.05;
 constexpr double corner_weight = 3;
 // The same for kinds that few share: one of a passing kind, and at a crowded corner.
 constexpr unsigned passing_levels = 5, crowded_levels = 12;
-
-// Rows of one level end in a net only at irregular corners (bound_rows.h).
-bool has_irregular_corner(const Kind& kind) {
-  return !kind.regular_corner(0) || !kind.regular_corner(1) || !kind.regular_corner(2);
-}
 
 // Corners of the convex hull, up to rounding.
 std::vector<LayoutPoint> convex_hull(std::vector<LayoutPoint> points) {
@@ -116,7 +111,8 @@ void solve(std::array<std::array<double, 6>, 6> a, std::array<double, 6>& b) {
 }  // namespace
 
 std::size_t QuadraticRows::bytes() const {
-  return rows_.bytes() + nets_.size() * sizeof(Net) + (fit_.size() + largest_.size()) * sizeof(double) +
+  return (to_nets_.size() + to_level_nets_.size()) * sizeof(Restriction) +
+         (fit_.size() + largest_.size()) * sizeof(double) +
          (layout_.size() + offsets_.size()) * sizeof(LayoutPoint);
 }
 
@@ -199,44 +195,42 @@ double QuadraticRows::distance(const Kind& kind, const Patch& patch, const Quadr
   const Vector3 along_u = corner[1] - corner[0], along_v = corner[2] - corner[0];
   double size = std::max(patch.largest, largest_of(q));
   for (const Vector3& c : corner) size = std::max(size, max_abs(c));
-  double by_functions = 0;
+  Vector3 by_functions;
+  double reach = 0;
   for (std::size_t i = 0; i < layout_.size(); ++i) {
     const auto [u, v] = layout_[i];
     const Vector3 off = patch.points[i] - (corner[0] + u * along_u + v * along_v);
-    const double roundings = 16 * unit_roundoff * (1 + std::fabs(u) + std::fabs(v)) * size;
-    by_functions += largest_[i] * (length(off) + spatial_error(patch.error + roundings) + tiny);
+    for (std::size_t a = 0; a < 3; ++a) by_functions[a] += largest_[i] * std::fabs(off[a]);
+    reach += largest_[i] * (1 + std::fabs(u) + std::fabs(v));
   }
-  double by_layout_sq = 0;
-  for (const auto& [u, v] : offsets_) {
-    by_layout_sq = std::max(by_layout_sq, length_sq(u * along_u + v * along_v));
-  }
-  double linear_sq = 0;
+  const double off_error = reach * (patch.error + 16 * unit_roundoff * size);
+  Quadratic linear;  // less q
   for (std::size_t k = 0; k < 3; ++k) {
-    linear_sq = std::max({linear_sq, length_sq(corner[k] - q[k]),
-                          length_sq(0.5 * (corner[k] + corner[(k + 1) % 3]) - q[3 + k])});
+    linear[k] = corner[k] - q[k];
+    linear[3 + k] = 0.5 * (corner[k] + corner[(k + 1) % 3]) - q[3 + k];
+  }
+  double rest_sq = 0;
+  for (const auto& [u, v] : offsets_) {
+    const Vector3 by_layout = u * along_u + v * along_v;
+    for (const Vector3& b : linear) rest_sq = std::max(rest_sq, length_sq(by_layout + b));
   }
   const double roundings = 8 * (offset_error_ + 64 * unit_roundoff) * size;
-  return enlarged(by_functions + std::sqrt(by_layout_sq) + std::sqrt(linear_sq) + roundings + tiny);
+  return enlarged(length(by_functions) + std::sqrt(rest_sq) + spatial_error(off_error) + roundings + tiny);
 }
 
-QuadraticRows make_quadratic_rows(const Kind& kind) {
+QuadraticRows make_quadratic_rows(BoundsCache& library, const Kind& kind) {
   SNUG_EXPECT(kind.shared());
   QuadraticRows result;
   if (kind.polynomial()) {
-    result.rows_ = make_bound_rows(kind);
-    result.make_fit(result.rows_);
+    result.make_fit(library.rows(kind));
     return result;
   }
-  result.rows_ = make_bound_rows(kind, 1);
-  std::size_t begin = result.rows_.bezier_count();
-  for (const std::size_t c : {std::size_t{3}, std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
-    const KindChild& child = kind.children()[c];
-    if (!has_irregular_corner(*child.kind)) continue;
-    result.nets_.push_back(
-        {child.kind, begin, restriction_to(turned(child_of(whole_patch, c), child.first))});
-    begin += child.kind->control_count();
+  for (const BoundRows::Net& net : library.rows(kind).nets()) {
+    result.to_nets_.push_back(restriction_to(net.place));
   }
-  SNUG_EXPECT(begin == result.rows_.count());
+  for (const BoundRows::Net& net : library.level_rows(kind).nets()) {
+    result.to_level_nets_.push_back(restriction_to(net.place));
+  }
   const BoundRows deep = make_bound_rows(kind, frame_levels);
   result.make_fit(deep);
   result.make_frame(kind, deep);
@@ -248,32 +242,60 @@ namespace {
 // Bounds |patch - quadratic|: Bezier points of pieces, and nets that are split while they add notably.
 class Comparison {
  public:
-  // Of a patch in its kind's order.
-  [[nodiscard]] double distance(BoundsCache& library, const Patch& patch, const Quadratic& q) {
+  // Of a patch in its kind's order, and its hull points.
+  [[nodiscard]] double distance(BoundsCache& library, const Patch& patch, const Quadratic& q,
+                                const HullPoints& hull) {
     library_ = &library;
     opened_ = 0;
     farthest_ = 0;
-    add(patch, q, 0, 0);
+    const Kind& kind = *patch.kind;
+    if (!kind.shared() || (kind.polynomial() && kind.form().degree == 1)) {
+      add(patch, q, 0, 0);
+      return settle();
+    }
+    const BoundRows& rows = library.rows(kind);
+    const std::size_t tips = hull.tips().size();
+    SNUG_EXPECT(hull.size() == hull.tips_end() + (tips > 0 ? rows.bezier_count() : rows.count()));
+    const double size = std::max(hull.largest, largest_of(q));
+    compare(hull.coordinates().from(hull.tips_end()), hull.error, rows, q, size, 0);
+    const std::vector<Restriction>& to_nets = library.quadratic_rows(kind).to_nets();
+    for (std::size_t i = 0; i < to_nets.size(); ++i) {
+      Open& open = next_open();
+      if (tips > 0) {
+        open.piece = hull.tips()[i];
+      } else {
+        hull.take_net(rows.nets()[i], rows.nets()[i].begin, open.piece);
+      }
+      open.quadratic = restricted(q, to_nets[i]);
+      measure(open, gamma_bound(16) * size, 1);
+    }
     return settle();
   }
 
  private:
-  // A piece in its kind's order, whose quadratic is off by at most `given`, a coordinate.
+  // Bezier points of a patch and of a quadratic that is off by at most `given`, a coordinate; none of them larger
+  // than `size`.
+  void compare(const kernels::Coordinates& points, double error, const BoundRows& rows, const Quadratic& q,
+               double size, double given) {
+    take(kernels::farthest_from_quadratic(points.first(rows.bezier_count()), rows.quadratic(0), q),
+         error + given + gamma_bound(32) * size);
+  }
+
+  // A piece in its kind's order.
   void add(const Patch& piece, const Quadratic& q, double given, unsigned level) {
     const Kind& kind = *piece.kind;
     if (!kind.shared()) return add_parts(piece, q, given, level);
     if (kind.polynomial() && kind.form().degree == 1) return add_plane(piece, q, given);
-    const QuadraticRows& rows = library_->quadratic_rows(kind);
-    points_.restart(piece.origin);
-    points_.add(rows.rows(), piece);
-    const kernels::Coordinates bezier = points_.coordinates().first(rows.rows().bezier_count());
+    const BoundRows& rows = library_->level_rows(kind);
+    hull_points(rows, piece, points_);
     const double size = std::max(points_.largest, largest_of(q));
-    take(kernels::farthest_from_quadratic(bezier, rows.rows().quadratic(0), q),
-         points_.error + given + gamma_bound(32) * size);
-    for (const QuadraticRows::Net& net : rows.nets()) {
+    compare(points_.coordinates(), points_.error, rows, q, size, given);
+    if (rows.nets().empty()) return;
+    const std::vector<Restriction>& to_nets = library_->quadratic_rows(kind).to_level_nets();
+    for (std::size_t i = 0; i < to_nets.size(); ++i) {
       Open& open = next_open();
-      take_net(net, piece.origin, open.piece);
-      open.quadratic = restricted(q, net.restrict);
+      points_.take_net(rows.nets()[i], rows.nets()[i].begin, open.piece);
+      open.quadratic = restricted(q, to_nets[i]);
       measure(open, given + gamma_bound(16) * size, level + 1);
     }
   }
@@ -307,28 +329,14 @@ class Comparison {
     const Kind& kind = *open.piece.kind;
     open.given = given;
     open.level = level;
-    open.distance = by_hulls(open.piece, open.quadratic);
-    if (kind.shared()) {
-      open.distance =
-          std::min(open.distance, library_->quadratic_rows(kind).distance(kind, open.piece, open.quadratic));
-    }
+    open.distance =
+        kind.shared() ? library_->quadratic_rows(kind).distance(kind, open.piece, open.quadratic) : INFINITY;
+    if (open.distance == INFINITY) open.distance = by_hulls(open.piece, open.quadratic);
     open.distance = enlarged(open.distance + spatial_error(given) + tiny);
   }
   void take(double distance, double error) {
     const double most = enlarged(distance + spatial_error(error) + tiny);
     farthest_ = std::isfinite(most) ? std::max(farthest_, most) : INFINITY;
-  }
-  void take_net(const QuadraticRows::Net& net, const Point3& origin, Patch& piece) const {
-    piece.kind = net.kind;
-    piece.first = 0;
-    piece.origin = origin;
-    piece.points.resize(net.kind->control_count());
-    piece.largest = 0;
-    for (std::size_t i = 0; i < piece.points.size(); ++i) {
-      piece.points[i] = points_.at(net.begin + i);
-      piece.largest = std::max(piece.largest, max_abs(piece.points[i]));
-    }
-    piece.error = points_.error;
   }
   // Points of degree 1, raised.
   void add_plane(const Patch& piece, const Quadratic& q, double given) {
@@ -390,7 +398,7 @@ struct Fit {
   double error;
 };
 
-Fit fit_of(BoundsCache& library, const Patch& patch) {
+Fit fit_of(BoundsCache& library, const Patch& patch, const HullPoints& hull) {
   thread_local Comparison comparison;
   Patch whole = patch;
   whole.first = 0;
@@ -407,14 +415,14 @@ Fit fit_of(BoundsCache& library, const Patch& patch) {
   } else {
     fit.quadratic = fitted(library.quadratic_rows(kind), patch);
   }
-  fit.error = comparison.distance(library, whole, fit.quadratic);
+  fit.error = comparison.distance(library, whole, fit.quadratic, hull);
   return fit;
 }
 
 }  // namespace
 
-QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch) {
-  const auto [quadratic, distance] = fit_of(library, patch);
+QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch, const HullPoints& hull) {
+  const auto [quadratic, distance] = fit_of(library, patch, hull);
   QuadraticTriangle result;
   double largest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -429,6 +437,12 @@ QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch) {
       largest < INFINITY && distance < INFINITY;
   result.error = finite ? enlarged(distance + spatial_error(2 * unit_roundoff * largest)) : double{INFINITY};
   return result;
+}
+
+QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch) {
+  thread_local HullPoints hull;
+  if (patch.kind->shared()) hull_points(library, patch, hull);
+  return quadratic_triangle(library, patch, hull);
 }
 
 }  // namespace snug
