@@ -383,18 +383,26 @@ oracle::TwinMesh regular_net() {
   return mesh;
 }
 
-// Bent, sheared, noisy, flat and tiny ones, near the origin and far from it.
+// Bent, sheared, noisy, flat and tiny ones, some with edges that bulge in the plane; near the origin and far
+// from it.
 oracle::TwinMesh any_regular_net(Random& random) {
   oracle::TwinMesh mesh = regular_net();
   const double size = random() % 2 ? 0.3 : std::pow(10.0, uniform(random, -8, -0.6));
   const double noise = random() % 4 == 0 ? 0 : std::pow(10.0, uniform(random, -4, -0.7));
   const double bend = random() % 2 ? uniform(random, -0.5, 0.5) : 0;
   const double shear = uniform(random, -1, 1);
+  std::array<double, 6> bulge{};
+  if (random() % 2) {
+    for (double& b : bulge) b = uniform(random, -1.5, 1.5);
+  }
   std::array<Vector3, 3> frame = any_frame(random);
   Vector3 at = any_vector(random, random() % 2 ? 1 : size);
   if (random() % 8 == 0) frame = {Vector3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, at.z = 0;
   for (oracle::Point& p : mesh.points) {
-    const double x = p[0] + shear * p[1], y = p[1], z = bend * (x * x + 0.5 * y * y - 0.3 * x * y);
+    const double xx = p[0] * p[0], xy = p[0] * p[1], yy = p[1] * p[1];
+    const double x = p[0] + shear * p[1] + bulge[0] * xx + bulge[1] * xy + bulge[2] * yy;
+    const double y = p[1] + bulge[3] * xx + bulge[4] * xy + bulge[5] * yy;
+    const double z = bend * (x * x + 0.5 * y * y - 0.3 * x * y);
     const Vector3 v = at + size * (x * frame[0] + y * frame[1] + z * frame[2] + any_vector(random, noise));
     p = {v.x, v.y, v.z};
   }

@@ -11,6 +11,15 @@
 #include <snug/bounds/lanes.h>
 #include <snug/geometry/rounding.h>
 
+// Arrays of vectors stay in registers only where everything is inlined. Sanitizers' checks take minutes to
+// compile then.
+#undef SNUG_FLAT
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define SNUG_FLAT
+#else
+#define SNUG_FLAT HWY_FLATTEN
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {
 namespace {
@@ -29,7 +38,8 @@ HWY_INLINE V max3(V a, V b, V c) {
 template <class V>
 struct PlanarTriangle {
   Vec3<V> a, t1, t2, n;
-  V l0, l1, l2;          // lengths of the edges ab, bc, ca
+  V l0, l1, l2;  // lengths of the edges ab, bc, ca
+  V xc, yc;
   V d1x, d1y, d2x, d2y;  // directions of bc and of ac
   V longest;
   V deviation;  // of the true corners from those in the plane
@@ -48,7 +58,7 @@ HWY_INLINE PlanarTriangle<V> planar_triangle(D d, const Vec3<V>& a, const Vec3<V
   t.t1 = scaled(hn::Div(one, hn::Sqrt(dot(eb, eb))), eb);
   t.t2 = cross(t.n, t.t1);
   t.l0 = dot(t.t1, eb);
-  const V xc = dot(t.t1, ec), yc = dot(t.t2, ec);
+  const V xc = t.xc = dot(t.t1, ec), yc = t.yc = dot(t.t2, ec);
   const V bx = hn::Sub(xc, t.l0);
   t.l1 = hn::Sqrt(hypotenuse_sq(bx, yc));
   t.l2 = hn::Sqrt(hypotenuse_sq(xc, yc));
@@ -88,16 +98,21 @@ struct Foot {
   V s0, s1, s2;
 };
 
+// Of a point with coordinates x, y, h in the frame.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE Foot<V> foot(D d, const PlanarTriangle<V>& t, const Vec3<V>& p) {
-  const Vec3<V> r = sub(p, t.a);
-  const V x = dot(t.t1, r), y = dot(t.t2, r), h = dot(t.n, r);
+HWY_INLINE Foot<V> foot_of(D d, const PlanarTriangle<V>& t, V x, V y, V h) {
   return {x,
           y,
           hn::Mul(h, h),
           hn::Sub(hn::Zero(d), y),
           hn::Sub(hn::Mul(hn::Sub(x, t.l0), t.d1y), hn::Mul(y, t.d1x)),
           hn::Sub(hn::Mul(y, t.d2x), hn::Mul(x, t.d2y))};
+}
+
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Foot<V> foot(D d, const PlanarTriangle<V>& t, const Vec3<V>& p) {
+  const Vec3<V> r = sub(p, t.a);
+  return foot_of(d, t, dot(t.t1, r), dot(t.t2, r), dot(t.n, r));
 }
 
 // Squared distance in the plane from edge 0, 1 or 2.
@@ -115,20 +130,22 @@ HWY_INLINE V aside_sq(D d, const PlanarTriangle<V>& t, const Foot<V>& f) {
 }
 
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE V distance_sq(D d, const PlanarTriangle<V>& t, const Vec3<V>& p) {
-  const Foot<V> f = foot(d, t, p);
+HWY_INLINE V distance_sq(D d, const PlanarTriangle<V>& t, const Foot<V>& f) {
   const auto outside = hn::Gt(max3(f.s0, f.s1, f.s2), hn::Zero(d));
   if (hn::AllFalse(d, outside)) return f.height_sq;
   const V nearest = hn::Min(aside_sq<0>(d, t, f), hn::Min(aside_sq<1>(d, t, f), aside_sq<2>(d, t, f)));
   return hn::Add(f.height_sq, hn::IfThenElseZero(outside, nearest));
 }
 
-// The same, but outside only from one edge: for points that lie near it.
+// The same sooner for points that are rarely outside of other edges than one.
 template <std::size_t edge, class D, class V = hn::Vec<D>>
-HWY_INLINE V distance_sq_by_edge(D d, const PlanarTriangle<V>& t, const Vec3<V>& p) {
-  const Foot<V> f = foot(d, t, p);
-  const auto outside = hn::Gt(max3(f.s0, f.s1, f.s2), hn::Zero(d));
-  return hn::Add(f.height_sq, hn::IfThenElseZero(outside, aside_sq<edge>(d, t, f)));
+HWY_INLINE V distance_sq_by_edge(D d, const PlanarTriangle<V>& t, const Foot<V>& f) {
+  const V zero = hn::Zero(d);
+  const V own = edge == 0 ? f.s0 : edge == 1 ? f.s1 : f.s2;
+  const auto others = hn::Gt(hn::Max(edge == 0 ? f.s1 : f.s0, edge == 2 ? f.s1 : f.s2), zero);
+  const V by_edge = hn::Add(f.height_sq, hn::IfThenElseZero(hn::Gt(own, zero), aside_sq<edge>(d, t, f)));
+  if (hn::AllFalse(d, others)) return by_edge;
+  return hn::IfThenElse(others, distance_sq(d, t, f), by_edge);
 }
 
 template <class V>
@@ -136,12 +153,14 @@ struct ReachV {
   V distance, rounding;
 };
 
+// `more`: what points and triangle are off by in the frame beside the roundings of the distance itself.
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE ReachV<V> reach_of(D d, const PlanarTriangle<V>& t, V farthest_sq) {
+HWY_INLINE ReachV<V> reach_of(D d, const PlanarTriangle<V>& t, V farthest_sq, V more) {
   const V far = hn::Sqrt(hn::Add(farthest_sq, hn::Set(d, 8 * underflow_error)));
   const V size = hn::Add(far, hn::Add(t.longest, t.longest));
   const V factor = hn::Add(hn::Set(d, 8.0), hn::Mul(hn::Set(d, 48.0), t.amplify));
-  const V rounding = hn::Add(t.deviation, hn::Mul(hn::Mul(hn::Set(d, unit_roundoff), factor), size));
+  const V measuring = hn::Mul(hn::Mul(hn::Set(d, unit_roundoff), factor), size);
+  const V rounding = hn::Add(hn::Add(t.deviation, more), measuring);
   const V one = hn::Set(d, 1.0);
   return {hn::Mul(hn::Add(far, rounding), hn::Add(one, t.stretch)), rounding};
 }
@@ -246,15 +265,15 @@ HWY_INLINE double farthest_sq_with(D d, const Coordinates& points, const PlanarT
   using V = hn::Vec<D>;
   const auto all = [&](const V1& v) HWY_ATTR { return hn::Set(d, hn::GetLane(v)); };
   const auto all3 = [&](const Vec3<V1>& v) HWY_ATTR { return Vec3<V>{all(v.x), all(v.y), all(v.z)}; };
-  const PlanarTriangle<V> t{all3(one.a),        all3(one.t1),     all3(one.t2),    all3(one.n),
-                            all(one.l0),        all(one.l1),      all(one.l2),     all(one.d1x),
-                            all(one.d1y),       all(one.d2x),     all(one.d2y),    all(one.longest),
-                            all(one.deviation), all(one.amplify), all(one.stretch)};
+  const PlanarTriangle<V> t{
+      all3(one.a),  all3(one.t1),     all3(one.t2),       all3(one.n),      all(one.l0),     all(one.l1),
+      all(one.l2),  all(one.xc),      all(one.yc),        all(one.d1x),     all(one.d1y),    all(one.d2x),
+      all(one.d2y), all(one.longest), all(one.deviation), all(one.amplify), all(one.stretch)};
   V farthest = hn::Zero(d);
   auto finite = hn::Le(farthest, farthest);
   each_vector(d, points.count, [&](std::size_t i) HWY_ATTR {
     const Vec3<V> p{hn::LoadU(d, points.x + i), hn::LoadU(d, points.y + i), hn::LoadU(d, points.z + i)};
-    const V dist_sq = distance_sq(d, t, p);
+    const V dist_sq = distance_sq(d, t, foot(d, t, p));
     finite = hn::And(finite, hn::Lt(dist_sq, hn::Set(d, INFINITY)));
     farthest = hn::Max(farthest, dist_sq);
   });
@@ -275,7 +294,7 @@ bool Farthest(const Coordinates& points, const std::array<std::size_t, 3>& split
     const Coordinates part = points.first(end).from(begin);
     const double farthest_sq =
         part.count >= hn::Lanes(wide) ? farthest_sq_with(wide, part, t) : farthest_sq_with(d1, part, t);
-    const auto reach = reach_of(d1, t, hn::Set(d1, farthest_sq));
+    const auto reach = reach_of(d1, t, hn::Set(d1, farthest_sq), hn::Zero(d1));
     out[i] = {hn::GetLane(reach.distance), hn::GetLane(reach.rounding)};
     begin = end;
   }
@@ -286,15 +305,10 @@ bool Farthest(const Coordinates& points, const std::array<std::size_t, 3>& split
 
 constexpr std::size_t bezier_count = 15;
 
-template <class V>
-HWY_INLINE V mean(V half, V a, V b) {
-  return hn::Mul(half, hn::Add(a, b));
-}
-
 // Bezier points of one coordinate from the twelve control points; 24 times these are the integer sums of
 // patch/polynomial.cpp. A term meets at most six roundings (derivations/rounding.md, "Batches").
 template <class D, class V = hn::Vec<D>>
-HWY_INLINE void bezier(D d, const V* c, V* b) {
+HWY_INLINE void bezier_points(D d, const V* c, V* b) {
   const auto times = [&](double k, V v) HWY_ATTR { return hn::Mul(hn::Set(d, k), v); };
   const V part = hn::Set(d, 1.0 / 24);
   const V s01 = hn::Add(c[0], c[1]), s12 = hn::Add(c[1], c[2]), s20 = hn::Add(c[2], c[0]);
@@ -330,32 +344,40 @@ HWY_INLINE void bezier(D d, const V* c, V* b) {
   b[10] = inner(2, s01, hn::Add(c[4], c[5]));
 }
 
-// De Casteljau's scheme at 1/2: step i has the points at[i][0], ..., at[i][n - 1 - i].
+// De Casteljau's scheme at 1/2, without its halvings: step i has the points at[i][0], ..., at[i][n - 1 - i],
+// 2^i times as large.
 template <class V, std::size_t n>
 struct Pyramid {
   V at[n][n];
   // From the points take(0), take(1), ...
   template <class Take>
-  HWY_INLINE Pyramid(V half, const Take& take) {
+  HWY_INLINE explicit Pyramid(const Take& take) {
     unrolled<n>([&](auto k) HWY_ATTR { at[0][k] = take(k); });
     unrolled<n - 1>([&](auto i) HWY_ATTR {
-      unrolled<n - 1 - i>([&](auto k) HWY_ATTR { at[i + 1][k] = mean(half, at[i][k], at[i][k + 1]); });
+      unrolled<n - 1 - i>([&](auto k) HWY_ATTR { at[i + 1][k] = hn::Add(at[i][k], at[i][k + 1]); });
     });
   }
 };
 
+template <std::size_t times, class D, class V = hn::Vec<D>>
+HWY_INLINE V halved(D d, V v) {
+  if constexpr (times == 0) return v;
+  return hn::Mul(hn::Set(d, 1.0 / (1 << times)), v);
+}
+
+// Places of the Bezier points u^i v^j: j outermost, row j from here on.
+constexpr std::array<std::size_t, 5> row_start{0, 5, 9, 12, 14};
+
 // The 45 different Bezier points of the four quarters, as blossoms f(...) of the edges' midpoints and the
 // corners: corner children f(mid^i, other mid^j, corner^(4-i-j)), then three inner ones of the middle child.
-// First come, for edges 01, 12, 20 in turn, its first corner and the points inside it.
+// First come, for edges 01, 12, 20 in turn, its first corner and the points inside it from there.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void split_once(D d, const V* b, V* out) {
-  const V half = hn::Set(d, 0.5);
-  V left[5][5], right[5][5];  // f(m01^i, v0 or v1^(4-i-j), v2^j) at [i][j]
+  V left[5][5], right[5][5];  // f(m01^i, v0 or v1^(4-i-j), v2^j) at [i][j], 2^i times
   V once[4][4], twice[3][3];  // f(m01, ...) and f(m01, m01, ...) in full, at [j][k]: k of v1, j of v2
   V upper[5][5];              // f(m20^i, v1^j, v2^(4-i-j)) at [i][j]
-  constexpr std::array<std::size_t, 5> row_start{0, 5, 9, 12, 14};
   unrolled<5>([&](auto j) HWY_ATTR {
-    const Pyramid<V, 5 - j> p(half, [&](auto k) HWY_ATTR { return b[row_start[j] + k]; });
+    const Pyramid<V, 5 - j> p([&](auto k) HWY_ATTR { return b[row_start[j] + k]; });
     unrolled<5 - j>([&](auto i) HWY_ATTR {
       left[i][j] = p.at[i][0];
       right[i][j] = p.at[i][4 - j - i];
@@ -364,57 +386,125 @@ HWY_INLINE void split_once(D d, const V* b, V* out) {
     if constexpr (j < 3) unrolled<3 - j>([&](auto k) HWY_ATTR { twice[j][k] = p.at[2][k]; });
   });
   unrolled<5>([&](auto k) HWY_ATTR {
-    const Pyramid<V, 5 - k> p(half, [&](auto j) HWY_ATTR { return b[row_start[j] + k]; });
+    const Pyramid<V, 5 - k> p([&](auto j) HWY_ATTR { return b[row_start[j] + k]; });
     unrolled<5 - k>([&](auto i) HWY_ATTR { upper[i][k] = p.at[i][4 - k - i]; });
   });
   constexpr std::size_t of_edge = 8;
-  std::array<V*, 3> next{out + 1, out + of_edge + 1, out + 2 * of_edge + 1};
   V* inner = out + 3 * of_edge;
   unrolled<3>([&](auto child) HWY_ATTR {
     const auto& along = child == 0 ? left : child == 1 ? right : upper;
-    // Edges of the patch that i alone and j alone walk along.
-    constexpr std::size_t edge_i = child == 2 ? 2 : 0, edge_j = child == 0 ? 2 : 1;
+    // Places of points on the edges of the patch that i alone and j alone walk along.
+    constexpr std::array<int, 3> begin_i{0, 8, 16}, step_i{1, -1, 1}, begin_j{24, 8, 16}, step_j{-1, 1, -1};
     unrolled<5>([&](auto i) HWY_ATTR {
-      const Pyramid<V, 5 - i> p(half, [&](auto k) HWY_ATTR { return along[i][k]; });
+      const Pyramid<V, 5 - i> p([&](auto k) HWY_ATTR { return along[i][k]; });
       unrolled<5 - i>([&](auto j) HWY_ATTR {
+        const V point = halved<i + j>(d, p.at[j][0]);
         if constexpr (i == 0 && j == 0) {
-          out[child * of_edge] = p.at[0][0];
+          out[child * of_edge] = point;
         } else if constexpr ((child == 1 ? i : j) == 4) {
           // The midpoint of this edge is another child's.
         } else if constexpr (j == 0) {
-          *next[edge_i]++ = p.at[j][0];
+          out[begin_i[child] + step_i[child] * int{i()}] = point;
         } else if constexpr (i == 0) {
-          *next[edge_j]++ = p.at[j][0];
+          out[begin_j[child] + step_j[child] * int{j}] = point;
         } else {
-          *inner++ = p.at[j][0];
+          *inner++ = point;
         }
       });
     });
   });
-  const auto blossom2 = [&](V aa, V ab, V bb)
-                            HWY_ATTR { return mean(half, mean(half, aa, ab), mean(half, ab, bb)); };
-  *inner++ = mean(half, mean(half, twice[0][1], twice[1][0]), mean(half, twice[1][1], twice[2][0]));
-  *inner++ =
-      mean(half, blossom2(once[0][2], once[1][1], once[2][0]), blossom2(once[1][2], once[2][1], once[3][0]));
-  *inner++ =
-      mean(half, blossom2(once[0][1], once[1][1], once[2][1]), blossom2(once[1][0], once[2][0], once[3][0]));
+  const auto blossom2 = [](V aa, V ab, V bb) HWY_ATTR { return hn::Add(hn::Add(aa, ab), hn::Add(ab, bb)); };
+  const V crossed = hn::Add(hn::Add(twice[0][1], twice[1][0]), hn::Add(twice[1][1], twice[2][0]));
+  const V at_two =
+      hn::Add(blossom2(once[0][2], once[1][1], once[2][0]), blossom2(once[1][2], once[2][1], once[3][0]));
+  const V at_zero =
+      hn::Add(blossom2(once[0][1], once[1][1], once[2][1]), blossom2(once[1][0], once[2][0], once[3][0]));
+  *inner++ = halved<4>(d, crossed);
+  *inner++ = halved<4>(d, at_two);
+  *inner++ = halved<4>(d, at_zero);
+}
+
+// Points of a patch in the frame of its corners, those of the triangle first: these are P's own.
+template <class V, std::size_t count>
+struct Framed {
+  V x[count], y[count], h[count];
+};
+
+// The squared distance in the plane of each of seven points inside an edge of a quartic, split once, from
+// distances aside and along of its points from the edge's start, is handed to meet(k, squared).
+template <class D, class Meet, class V = hn::Vec<D>>
+HWY_INLINE void each_of_edge(D d, V length, const V* aside, const V* along, const Meet& meet) {
+  const V zero = hn::Zero(d);
+  const Pyramid<V, 5> s([&](auto k) HWY_ATTR { return k == 0 || k == 4 ? zero : aside[k - 1]; });
+  const Pyramid<V, 5> a([&](auto k) HWY_ATTR { return k == 0 ? zero : k == 4 ? length : along[k - 1]; });
+  unrolled<7>([&](auto i) HWY_ATTR {
+    constexpr std::size_t step = i < 4 ? i + 1 : 7 - i, place = i < 4 ? 0 : i - 3;
+    const V side = halved<step>(d, s.at[step][place]), far = halved<step>(d, a.at[step][place]);
+    meet(i + 1, hypotenuse_sq(hn::Max(zero, side), max3(zero, hn::Sub(far, length), hn::Sub(zero, far))));
+  });
 }
 
 // A regular Loop patch inside the surface. First come, for edges 01, 12, 20 in turn, the first corner and the
 // points inside the edge.
 struct LoopShape {
-  static constexpr std::size_t controls = 12, hull_count = 45, of_edge = 8;
+  static constexpr std::size_t controls = 12, bezier = bezier_count, hull_count = 45, of_edge = 8;
+  static constexpr std::array<std::size_t, 3> corners{0, 4, 14};
   template <class D, class V = hn::Vec<D>>
-  static HWY_INLINE void hull(D d, const V* c, V* out) {
-    V b[bezier_count];
-    bezier(d, c, b);
+  static HWY_INLINE void points(D d, const V* c, V* b) {
+    bezier_points(d, c, b);
+  }
+  template <class D, class V = hn::Vec<D>>
+  static HWY_INLINE void hull(D d, const V* b, V* out) {
     split_once(d, b, out);
+  }
+
+  // Every hull point but those of an edge is a sum of Bezier points with at most half of the weight on that
+  // edge. So none is outside if all others lie as deep inside each edge's line as its own stick out: then
+  // `farthest` meets those of the edges. The lanes of which that is true; derivations/rounding.md, "Batches".
+  template <class D, class V = hn::Vec<D>>
+  static HWY_INLINE hn::Mask<D> measure_edges(D d, const PlanarTriangle<V>& t, const Framed<V, bezier>& b,
+                                              const V* height, V middle, V& farthest) {
+    const V zero = hn::Zero(d);
+    constexpr std::size_t inside[12] = {1, 2, 3, 8, 11, 13, 5, 9, 12, 6, 7, 10};  // edge by edge
+    V aside[3][12];
+    unrolled<12>([&](auto i) HWY_ATTR {
+      const Foot<V> f = foot_of(d, t, b.x[inside[i]], b.y[inside[i]], zero);
+      aside[0][i] = f.s0, aside[1][i] = f.s1, aside[2][i] = f.s2;
+    });
+    auto within = hn::Eq(zero, zero);
+    unrolled<3>([&](auto edge) HWY_ATTR {
+      constexpr std::size_t opposite = corners[(edge + 2) % 3];
+      const Foot<V> f = foot_of(d, t, b.x[opposite], b.y[opposite], zero);
+      V own = zero, others = edge == 0 ? f.s0 : edge == 1 ? f.s1 : f.s2;
+      unrolled<12>([&](auto i) HWY_ATTR {
+        V& most = i / 3 == edge ? own : others;
+        most = hn::Max(most, aside[edge][i]);
+      });
+      within = hn::And(within, hn::Le(hn::Add(own, others), zero));
+    });
+    V along[3][3];
+    unrolled<3>([&](auto i) HWY_ATTR {
+      const V x1 = hn::Sub(b.x[inside[3 + i]], t.l0), y1 = b.y[inside[3 + i]];
+      const V x2 = b.x[inside[6 + i]], y2 = b.y[inside[6 + i]];
+      along[0][i] = b.x[inside[i]];
+      along[1][i] = hn::Add(hn::Mul(x1, t.d1x), hn::Mul(y1, t.d1y));
+      along[2][i] = hn::Add(hn::Mul(x2, t.d2x), hn::Mul(y2, t.d2y));
+    });
+    unrolled<3>([&](auto edge) HWY_ATTR {
+      const V length = edge == 0 ? t.l0 : edge == 1 ? t.l1 : t.l2;
+      each_of_edge(d, length, aside[edge] + 3 * edge, along[edge], [&](std::size_t k, V in_plane) HWY_ATTR {
+        const V h = hn::Sub(height[edge == 2 ? 24 - k : 8 * edge + k], middle);
+        farthest = hn::Max(farthest, hn::Add(hn::Mul(h, h), in_plane));
+      });
+    });
+    return within;
   }
 };
 
 // Half a bicubic quad: its 28 Bezier points as a triangle of degree 6, derivations/tensor_bezier.md.
 struct BicubicShape {
-  static constexpr std::size_t controls = 16, hull_count = 28, of_edge = 6;
+  static constexpr std::size_t controls = 16, bezier = 16, hull_count = 28, of_edge = 6;
+  static constexpr std::array<std::size_t, 3> corners{0, 3, 15};
 
   // Place of each control point in the lattice of 4 x 4, as patch/neighbourhood.h draws it.
   static constexpr std::array<std::size_t, 16> place{5, 6, 10, 9, 1, 2, 7, 11, 14, 13, 8, 4, 0, 3, 15, 12};
@@ -469,17 +559,21 @@ struct BicubicShape {
   }
 
   template <class D, class V = hn::Vec<D>>
-  static HWY_INLINE void hull(D d, const V* control, V* out) {
-    static constexpr Sums sums = make_sums();
+  static HWY_INLINE void points(D d, const V* control, V* b) {
     const V four = hn::Set(d, 4.0), two = hn::Set(d, 2.0), part = hn::Set(d, 1.0 / 36);
-    V c[16], along[16], b[16];
+    V c[16], along[16];
     for (std::size_t k = 0; k < 16; ++k) c[place[k]] = control[k];
     for (std::size_t y = 0; y < 16; y += 4)
       segment(four, two, c[y], c[y + 1], c[y + 2], c[y + 3], along + y, 1);
     for (std::size_t x = 0; x < 4; ++x) {
       segment(four, two, along[x], along[4 + x], along[8 + x], along[12 + x], b + x, 4);
     }
-    for (V& point : b) point = hn::Mul(part, point);
+    for (std::size_t k = 0; k < 16; ++k) b[k] = hn::Mul(part, b[k]);
+  }
+
+  template <class D, class V = hn::Vec<D>>
+  static HWY_INLINE void hull(D d, const V* b, V* out) {
+    static constexpr Sums sums = make_sums();
 #ifndef __SANITIZE_ADDRESS__  // whose checks take minutes to compile then
 #pragma GCC unroll 28
 #endif
@@ -494,90 +588,155 @@ struct BicubicShape {
       out[p] = sum;
     }
   }
+
+  template <class D, class V = hn::Vec<D>>
+  static HWY_INLINE hn::Mask<D> measure_edges(D d, const PlanarTriangle<V>&, const Framed<V, bezier>&,
+                                              const V*, V, V&) {
+    return hn::Lt(hn::Zero(d), hn::Zero(d));
+  }
 };
 
+// Every point by itself.
 template <class Shape, class D, class V = hn::Vec<D>>
-HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, std::span<OffsetTriangle> out) {
-  constexpr std::size_t controls = Shape::controls, hull_count = Shape::hull_count, of_edge = Shape::of_edge;
-  const std::size_t lanes = hn::Lanes(d);
-  V hull[3][hull_count];
-  Vec3<V> origin;
-  V* const origins[3] = {&origin.x, &origin.y, &origin.z};
-  V largest = hn::Zero(d);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    V c[controls];
-    const double* from = gathered + axis * lanes;
-    const V o = hn::Load(d, from);
-    *origins[axis] = o;
-    for (std::size_t k = 0; k < controls; ++k) {
-      c[k] = hn::Sub(hn::Load(d, from + 3 * k * lanes), o);
-      largest = hn::Max(largest, hn::Abs(c[k]));
-    }
-    Shape::hull(d, c, hull[axis]);
-  }
-  const auto at = [&](std::size_t i) HWY_ATTR { return Vec3<V>{hull[0][i], hull[1][i], hull[2][i]}; };
-
-  // The corners are points of the hull, at height 0. The frame is theirs before they are shifted.
-  Vec3<V> corner[3] = {at(0), at(of_edge), at(2 * of_edge)};
-  PlanarTriangle<V> t = planar_triangle(d, corner[0], corner[1], corner[2]);
-  V lower = hn::Zero(d), upper = lower;
-  const V from = dot(t.n, corner[0]);
-  for (std::size_t i = 1; i < hull_count; ++i) {
-    const V height = hn::Sub(dot(t.n, at(i)), from);
-    lower = hn::Min(lower, height);
-    upper = hn::Max(upper, height);
-  }
-  // No -0, as in heights_with().
-  const V both = hn::Add(hn::Add(lower, upper), hn::Zero(d));
-  const Vec3<V> shift = scaled(hn::Mul(hn::Set(d, 0.5), both), t.n);
-  for (auto& c : corner) c = add(c, shift);
-  t.a = corner[0];
-
-  V farthest = hn::Zero(d);
-  auto good = well_shaped(d, t);
-  const auto meet = [&](V dist_sq) HWY_ATTR {
-    good = hn::And(good, hn::Lt(dist_sq, hn::Set(d, INFINITY)));
-    farthest = hn::Max(farthest, dist_sq);
-  };
-  meet(dot(shift, shift));  // the corners
+HWY_INLINE V measure_all(D d, const PlanarTriangle<V>& t, const Framed<V, Shape::bezier>& b, const V* height,
+                         V middle, V farthest) {
+  V x[Shape::hull_count], y[Shape::hull_count];
+  Shape::hull(d, b.x, x);
+  Shape::hull(d, b.y, y);
+  const auto at = [&](std::size_t i)
+                      HWY_ATTR { return foot_of(d, t, x[i], y[i], hn::Sub(height[i], middle)); };
+  const auto meet = [&](V dist_sq) HWY_ATTR { farthest = hn::Max(farthest, dist_sq); };
+  constexpr std::size_t of_edge = Shape::of_edge;
   for (std::size_t i = 1; i < of_edge; ++i) {
     meet(distance_sq_by_edge<0>(d, t, at(i)));
     meet(distance_sq_by_edge<1>(d, t, at(of_edge + i)));
     meet(distance_sq_by_edge<2>(d, t, at(2 * of_edge + i)));
   }
-  for (std::size_t i = 3 * of_edge; i < hull_count; ++i) meet(distance_sq(d, t, at(i)));
-  const ReachV<V> reach = reach_of(d, t, farthest);
+  for (std::size_t i = 3 * of_edge; i < Shape::hull_count; ++i) meet(distance_sq(d, t, at(i)));
+  return farthest;
+}
 
-  // What control points, hull points and the placed base are off by, a coordinate.
-  V placed = hn::Zero(d);
-  for (auto& c : corner) {
-    c = add(origin, c);
-    placed = hn::Max(placed, max3(hn::Abs(c.x), hn::Abs(c.y), hn::Abs(c.z)));
-  }
-  constexpr double hull_error = unit_roundoff + gamma_bound(24);
-  const V error = hn::Add(hn::Add(hn::Mul(hn::Set(d, hull_error * (1 + 0x1p-42)), largest),
-                                  hn::Mul(hn::Set(d, unit_roundoff * (1 + 0x1p-42)), placed)),
-                          hn::Set(d, 64 * underflow_error));
-  const V given = hn::Mul(hn::Set(d, spatial_error(1)), error);
-  const V rounding = hn::Add(reach.rounding, given), radius = hn::Add(reach.distance, given);
-  const V widened = hn::Add(hn::Mul(radius, hn::Set(d, 1 + 0x1p-42)), hn::Set(d, underflow_error));
-  const V answer =
-      hn::IfThenElse(hn::And(good, hn::Lt(widened, hn::Set(d, INFINITY))), widened, hn::Set(d, -1.0));
-
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void hand_out(D d, const Vec3<V>* corner, V radius, V rounding, std::span<OffsetTriangle> out) {
+  const std::size_t lanes = hn::Lanes(d);
   HWY_ALIGN double lane[11 * HWY_MAX_BYTES / sizeof(double)];
   for (std::size_t k = 0; k < 3; ++k) {
     hn::Store(corner[k].x, d, lane + 3 * k * lanes);
     hn::Store(corner[k].y, d, lane + (3 * k + 1) * lanes);
     hn::Store(corner[k].z, d, lane + (3 * k + 2) * lanes);
   }
-  hn::Store(answer, d, lane + 9 * lanes);
+  hn::Store(radius, d, lane + 9 * lanes);
   hn::Store(rounding, d, lane + 10 * lanes);
   scatter_lanes(lane, lanes, out);
 }
 
+// Bezier points in the frame; `probe` is finite only where they are.
+template <class Shape, class D, class V = hn::Vec<D>>
+HWY_INLINE Framed<V, Shape::bezier> framed_points(D d, const PlanarTriangle<V>& t,
+                                                  const V (&bezier)[3][Shape::bezier], V& probe) {
+  Framed<V, Shape::bezier> framed;
+  probe = hn::Zero(d);
+  for (std::size_t i = 0; i < Shape::bezier; ++i) {
+    const Vec3<V> r = sub(Vec3<V>{bezier[0][i], bezier[1][i], bezier[2][i]}, t.a);
+    framed.x[i] = dot(t.t1, r);
+    framed.y[i] = dot(t.t2, r);
+    framed.h[i] = dot(t.n, r);
+    probe = hn::Add(probe, framed.h[i]);
+  }
+  const V zero = hn::Zero(d), corner_x[3] = {zero, t.l0, t.xc}, corner_y[3] = {zero, zero, t.yc};
+  for (std::size_t k = 0; k < 3; ++k) {
+    framed.x[Shape::corners[k]] = corner_x[k];
+    framed.y[Shape::corners[k]] = corner_y[k];
+    framed.h[Shape::corners[k]] = zero;
+  }
+  return framed;
+}
+
+// The middle of the heights of the hull points, and their largest squared distance from P moved there.
+template <class V>
+struct Measured {
+  V middle, farthest_sq;
+};
+
+template <class Shape, class D, class V = hn::Vec<D>>
+HWY_INLINE Measured<V> measure(D d, const PlanarTriangle<V>& t, const Framed<V, Shape::bezier>& framed) {
+  const V zero = hn::Zero(d);
+  V height[Shape::hull_count];
+  Shape::hull(d, framed.h, height);
+  // Several chains of extremes: one would wait for itself.
+  V lows[4] = {zero, zero, zero, zero}, highs[4] = {zero, zero, zero, zero};
+  unrolled<Shape::hull_count>([&](auto i) HWY_ATTR {
+    lows[i % 4] = hn::Min(lows[i % 4], height[i]);
+    highs[i % 4] = hn::Max(highs[i % 4], height[i]);
+  });
+  const V lower = hn::Min(hn::Min(lows[0], lows[1]), hn::Min(lows[2], lows[3]));
+  const V upper = hn::Max(hn::Max(highs[0], highs[1]), hn::Max(highs[2], highs[3]));
+  // No -0, as in heights_with().
+  const V middle = hn::Mul(hn::Set(d, 0.5), hn::Add(hn::Add(lower, upper), zero));
+  const V highest = hn::Max(hn::Sub(upper, middle), hn::Sub(middle, lower));
+  const V by_height = hn::Mul(highest, highest);
+  V farthest = by_height;
+  const auto measured = Shape::measure_edges(d, t, framed, height, middle, farthest);
+  if (!hn::AllTrue(d, measured)) {
+    farthest =
+        hn::IfThenElse(measured, farthest, measure_all<Shape>(d, t, framed, height, middle, by_height));
+  }
+  return {middle, farthest};
+}
+
+template <class Shape, class D, class V = hn::Vec<D>>
+HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, std::span<OffsetTriangle> out) {
+  const std::size_t lanes = hn::Lanes(d);
+  V bezier[3][Shape::bezier], origin[3], largest = hn::Zero(d), probe;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    V c[Shape::controls];
+    const double* from = gathered + axis * lanes;
+    origin[axis] = hn::Load(d, from);
+    c[0] = hn::Zero(d);
+    for (std::size_t k = 1; k < Shape::controls; ++k) {
+      c[k] = hn::Sub(hn::Load(d, from + 3 * k * lanes), origin[axis]);
+      largest = hn::Max(largest, hn::Abs(c[k]));
+    }
+    Shape::points(d, c, bezier[axis]);
+  }
+  Vec3<V> corner[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t at = Shape::corners[k];
+    corner[k] = {bezier[0][at], bezier[1][at], bezier[2][at]};
+  }
+  const PlanarTriangle<V> t = planar_triangle(d, corner[0], corner[1], corner[2]);
+  const Framed<V, Shape::bezier> framed = framed_points<Shape>(d, t, bezier, probe);
+  const auto [middle, farthest] = measure<Shape>(d, t, framed);
+  const V infinite = hn::Set(d, INFINITY);
+  const auto finite = hn::And(hn::Lt(hn::Abs(probe), infinite), hn::Lt(farthest, infinite));
+
+  // The corners count as P's, the frame's defect tilts the shift, and what is counted inside is so up to the
+  // rounding of Bezier points: derivations/rounding.md, "Batches".
+  const V tilt = hn::Mul(t.stretch, hn::Abs(middle));
+  const V inside = hn::Mul(hn::Mul(hn::Set(d, 48 * unit_roundoff), t.amplify), largest);
+  const ReachV<V> reach = reach_of(d, t, farthest, hn::Add(t.deviation, hn::Add(tilt, inside)));
+
+  // What control points, hull points and the placed base are off by, a coordinate.
+  const Vec3<V> shift = scaled(middle, t.n);
+  V placed = hn::Zero(d);
+  for (auto& c : corner) {
+    c = add(Vec3<V>{origin[0], origin[1], origin[2]}, add(c, shift));
+    placed = hn::Max(placed, max3(hn::Abs(c.x), hn::Abs(c.y), hn::Abs(c.z)));
+  }
+  constexpr double hull_error = unit_roundoff + gamma_bound(72);
+  const V error = hn::Add(hn::Add(hn::Mul(hn::Set(d, hull_error * (1 + 0x1p-42)), largest),
+                                  hn::Mul(hn::Set(d, unit_roundoff * (1 + 0x1p-42)), placed)),
+                          hn::Set(d, 64 * underflow_error));
+  const V given = hn::Mul(hn::Set(d, spatial_error(1)), error);
+  const V rounding = hn::Add(reach.rounding, given), radius = hn::Add(reach.distance, given);
+  const V widened = hn::Add(hn::Mul(radius, hn::Set(d, 1 + 0x1p-42)), hn::Set(d, underflow_error));
+  const auto good = hn::And(hn::And(well_shaped(d, t), finite), hn::Lt(widened, infinite));
+  hand_out(d, corner, hn::IfThenElse(good, widened, hn::Set(d, -1.0)), rounding, out);
+}
+
 template <class Shape>
-void FitAll(std::span<const Point3> points, std::span<const VertexId> control,
-            std::span<OffsetTriangle> out) {
+SNUG_FLAT void FitAll(std::span<const Point3> points, std::span<const VertexId> control,
+                      std::span<OffsetTriangle> out) {
   constexpr std::size_t controls = Shape::controls;
   const hn::ScalableTag<double> d;
   const std::size_t lanes = hn::Lanes(d);

@@ -75,7 +75,7 @@ struct Reach {
 /// Guarantee: as offset_triangle() on the patch's hull points; marked where farthest() has no answer.
 /// Requires:  control: twelve vertices of `points` a patch, in the kind's order; out.size() patches; points
 ///            as in farthest().
-/// Cost:      about 0.15 to 0.2 microseconds a patch with four lanes.
+/// Cost:      about 0.07 microseconds a patch with eight lanes, 0.08 with four.
 void fit_regular(std::span<const Point3> points, std::span<const VertexId> control,
                  std::span<OffsetTriangle> out);
 
