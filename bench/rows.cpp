@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include <snug/query/subdivide.h>
 
 #include "meshes.h"
 #include "runner.h"
@@ -31,6 +34,29 @@ void bench_faces(const std::string& title, Subject& subject, const std::vector<P
   group.run();
 }
 
+// Both ways of Catmull-Clark patches, by the corners of theirs that are not regular.
+void bench_quads(const std::string& title, const ControlMesh& mesh, const Options& options) {
+  const SchemeOptions scheme{Scheme::catmark, BoundaryRule::edge_and_corner};
+  const LimitSurface surface(mesh, scheme, std::make_shared<BoundsCache>(), 1);
+  std::vector<std::vector<PatchId>> patches(4);
+  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+    patches[extraordinary_corners(surface.kind(PatchId(p)))].push_back(PatchId(p));
+  }
+  for (std::size_t corners = 0; corners <= 3; ++corners) {
+    const std::vector<PatchId>& some = patches[corners];
+    if (some.empty()) continue;
+    const auto count = static_cast<double>(some.size());
+    Group group(title + ", " + std::to_string(corners) + " extraordinary corners, " +
+                    std::to_string(some.size()) + " patches",
+                "patch", options);
+    std::vector<OffsetTriangle> triangles;
+    BatchBounds rows(surface, some, BoundMethod::rows, 1), tables(surface, some, BoundMethod::table, 1);
+    group.add("offset triangle from hull rows", count, [&] { return update(rows, mesh.points, triangles); });
+    group.add("offset triangle from tables", count, [&] { return update(tables, mesh.points, triangles); });
+    group.run();
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -45,5 +71,8 @@ int main(int argc, char** argv) {
     bench_faces(std::to_string(corners) + " extraordinary corners", irregular,
                 faces_with(irregular.surface(), corners), options);
   }
+  bench_quads("regular quads", quad_torus(options.size(200'000, 2'000)), options);
+  bench_quads("irregular quads",
+              subdivide(irregular_mesh(options.size(30'000, 1'000)), {Scheme::catmark}, 1, false), options);
   return 0;
 }

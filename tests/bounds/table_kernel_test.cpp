@@ -4,6 +4,7 @@
 #include <snug/bounds/table_triangle.h>
 #include <testing/kinds.h>
 #include <testing/patches.h>
+#include <testing/scheme_surfaces.h>
 
 #include <hwy/targets.h>
 
@@ -53,48 +54,81 @@ Batch batch(const Kind& kind, std::size_t count, Random& random, double size, co
   return result;
 }
 
+void expect_the_tables_offset_triangle(const Kind& kind, const BoundTable& table, std::size_t count,
+                                       Random& random) {
+  Batch b = batch(kind, count, random, 0.5, {});
+  const std::size_t broken = random.below(count + 1);
+  const std::size_t which = std::min<std::size_t>(5, kind.control_count() - 1);
+  if (broken < count) b.points[broken * kind.control_count() + which].x = count % 2 ? NAN : INFINITY;
+  std::vector<OffsetTriangle> out(count);
+  kernels::fit_table(table, kind, b.points, b.control, out);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i == broken) {
+      EXPECT_EQ(out[i].radius, INFINITY);
+      continue;
+    }
+    const OffsetTriangle expected = offset_triangle(table_triangle(table, b.patches[i]));
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(max_abs(out[i].base[k] - expected.base[k]), 1e-12);
+    EXPECT_NEAR(out[i].radius, expected.radius, 1e-12 * (1 + expected.radius));
+    EXPECT_GT(out[i].rounding, 0);
+    EXPECT_LT(out[i].rounding, 2e-11);
+  }
+}
+
 TEST(fit_table, is_the_tables_offset_triangle) {
   BoundsCache library;
   Random random(6);
   for (const std::size_t valence : {6u, 5u, 9u, 40u}) {
     const CornerFan fan{0, static_cast<std::uint16_t>(valence - 1), true, false};
     const Kind& kind = library.kinds().find({Scheme::loop, {CornerFan{}, CornerFan{}, fan}});
-    const BoundTable& table = library.table(kind);
     for (std::size_t count = 1; count < 10; ++count) {
-      Batch b = batch(kind, count, random, 0.5, {});
-      const std::size_t broken = random.below(count + 1);
-      if (broken < count) {
-        b.points[broken * kind.control_count() + 5].x = count % 2 ? NAN : INFINITY;
-      }
-      std::vector<OffsetTriangle> out(count);
-      kernels::fit_table(table, b.points, b.control, out);
-      for (std::size_t i = 0; i < count; ++i) {
-        if (i == broken) {
-          EXPECT_EQ(out[i].radius, INFINITY);
-          continue;
-        }
-        const OffsetTriangle expected = offset_triangle(table_triangle(table, b.patches[i]));
-        for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(max_abs(out[i].base[k] - expected.base[k]), 1e-12);
-        EXPECT_NEAR(out[i].radius, expected.radius, 1e-12);
-        EXPECT_GT(out[i].rounding, 0);
-        EXPECT_LT(out[i].rounding, 1e-11);
-      }
+      expect_the_tables_offset_triangle(kind, library.table(kind), count, random);
     }
   }
 }
 
+// Kinds of all schemes, of 4 to more control points than are gathered at once.
+TEST(fit_table, is_the_tables_offset_triangle_where_all_functions_are_bounded) {
+  Random random(8);
+  std::set<const Kind*> seen;
+  std::size_t most = 0;
+  const auto check = [&](const LimitSurface& surface) {
+    testing::for_each_patch(surface, [&](PatchId p) {
+      const Kind& kind = surface.kind(p);
+      if (laid_by_rings(kind.key()) || seen.size() > 500 || !seen.insert(&kind).second) return;
+      const BoundTable& table = surface.library().table(kind);
+      EXPECT_EQ(table.first_bounded(), 0u);
+      expect_the_tables_offset_triangle(kind, table, 1 + random.below(10), random);
+      most = std::max(most, kind.control_count());
+    });
+  };
+  const LimitSurface many(testing::control_mesh(oracle::meshes::pole(20, false)), {Scheme::catmark},
+                          std::make_shared<BoundsCache>(), 1);
+  check(many);
+  testing::for_each_surface(9, [&](const testing::NamedSurface& named) { check(named.surface); });
+  EXPECT_GT(seen.size(), 100u);
+  EXPECT_GT(most, 32u);
+}
+
 TEST(fit_table, has_the_same_bits_on_every_instruction_set) {
   BoundsCache library;
-  const Kind& kind = library.kinds().find({});
+  const KindKey keys[] = {
+      {}, {Scheme::catmark, {CornerFan{0, 3, true}, CornerFan{0, 3, true}, CornerFan{0, 3, true}}}};
   Random random(7);
-  const Batch b = batch(kind, 7, random, 1, {0.1, 0.2, 0.3});
+  std::vector<Batch> batches;
+  for (const KindKey& key : keys) {
+    batches.push_back(batch(library.kinds().find(key), 7, random, 1, {0.1, 0.2, 0.3}));
+  }
   const auto everything = [&] {
     std::vector<double> all;
     std::vector<OffsetTriangle> out(7);
-    kernels::fit_table(library.table(kind), b.points, b.control, out);
-    for (const OffsetTriangle& fit : out) {
-      for (const Point3& p : fit.base) all.insert(all.end(), {p.x, p.y, p.z});
-      all.insert(all.end(), {fit.radius, fit.rounding});
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Kind& kind = library.kinds().find(keys[i]);
+      kernels::fit_table(library.table(kind), kind, batches[i].points, batches[i].control, out);
+      for (const OffsetTriangle& fit : out) {
+        for (const Point3& p : fit.base) all.insert(all.end(), {p.x, p.y, p.z});
+        all.insert(all.end(), {fit.radius, fit.rounding});
+      }
     }
     return all;
   };

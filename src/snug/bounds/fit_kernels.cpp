@@ -1,6 +1,8 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "snug/bounds/fit_kernels.cpp"
 #include <snug/geometry/vector_code-inl.h>
+// After it.
+#include <snug/bounds/lanes-inl.h>
 
 #include <algorithm>
 #include <array>
@@ -8,7 +10,6 @@
 #include <type_traits>
 
 #include <snug/bounds/fit_kernels.h>
-#include <snug/bounds/lanes.h>
 #include <snug/geometry/rounding.h>
 
 // Arrays of vectors stay in registers only where everything is inlined. Sanitizers' checks take minutes to

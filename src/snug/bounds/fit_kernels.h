@@ -10,7 +10,8 @@
 
 namespace snug {
 struct BoundTable;
-}
+class Kind;
+}  // namespace snug
 
 /// The loops that bounds spend their time in, on the widest vectors of the processor, chosen at run time.
 ///
@@ -91,10 +92,10 @@ void fit_bicubic(std::span<const Point3> points, std::span<const VertexId> contr
 ///
 /// Guarantee: as offset_triangle(table_triangle()); base in the kind's order of corners. Infinite radius
 ///            where a point is not finite.
-/// Requires:  table.first_bounded() == 3; control: table.control_count() vertices of `points` a patch, in the
+/// Requires:  the table of this kind; control: table.control_count() vertices of `points` a patch, in the
 ///            kind's order; out.size() patches; coordinates of at most about 2 (geometry/scaling.h).
 /// Cost:      about 20 operations a control point and coordinate, four to eight patches at once.
-void fit_table(const BoundTable& table, std::span<const Point3> points, std::span<const VertexId> control,
-               std::span<OffsetTriangle> out);
+void fit_table(const BoundTable& table, const Kind& kind, std::span<const Point3> points,
+               std::span<const VertexId> control, std::span<OffsetTriangle> out);
 
 }  // namespace snug::kernels

@@ -187,8 +187,8 @@ void BatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
       control_.data() + group.first_control + (chunk.begin - group.first_place) * controls, count * controls);
   const std::span<OffsetTriangle> answers(scratch.answers.data(), count);
   const bool by_rows = !group.table && !group.polygon && regular_inside(kind);
-  if (group.table && !group.polygon && group.table->first_bounded() == 3) {
-    kernels::fit_table(*group.table, scaled_, control, answers);
+  if (group.table && !group.polygon) {
+    kernels::fit_table(*group.table, kind, scaled_, control, answers);
   } else if (by_rows && kind.rules().kernel == RegularKernel::box_spline) {
     kernels::fit_regular(scaled_, control, answers);
   } else if (by_rows && kind.rules().kernel == RegularKernel::bicubic) {

@@ -1,0 +1,74 @@
+// Included after geometry/vector_code-inl.h: no #pragma once, since each instruction set reads it again.
+#include <algorithm>
+#include <cstddef>
+#include <span>
+
+#include <snug/geometry.h>
+#include <snug/mesh.h>
+
+#if defined(SNUG_BOUNDS_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SNUG_BOUNDS_LANES_INL_H
+#undef SNUG_BOUNDS_LANES_INL_H
+#else
+#define SNUG_BOUNDS_LANES_INL_H
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace snug::kernels::HWY_NAMESPACE {
+
+/// Control points [from, to) of the next `lanes` patches, for vectors with a patch a lane: coordinate a of
+/// control point i of patch l at out[(3 (i - from) + a) lanes + l]. Lanes beyond the `here` patches that are
+/// left repeat the last one.
+///
+/// Requires:  control: `count` vertices a patch, from the first of these patches on; 0 < here <= lanes.
+HWY_INLINE void gather_lanes(std::span<const Point3> points, const VertexId* control, std::size_t count,
+                             std::size_t from, std::size_t to, std::size_t here, std::size_t lanes,
+                             double* HWY_RESTRICT out) {
+  const auto of_lane = [&](std::size_t l) { return control + count * std::min(l, here - 1); };
+#if HWY_TARGET == HWY_SCALAR
+  for (std::size_t l = 0; l < lanes; ++l) {
+    const VertexId* const index = of_lane(l);
+    double* at = out + l;
+    for (std::size_t i = from; i < to; ++i) {
+      const Point3& p = points[index[i].index()];
+      at[0] = p.x;
+      at[lanes] = p.y;
+      at[2 * lanes] = p.z;
+      at += 3 * lanes;
+    }
+  }
+#else
+  const hn::FixedTag<double, 2> d;
+  for (std::size_t l = 0; l < lanes; l += 2) {
+    const VertexId *const even = of_lane(l), *const odd = of_lane(l + 1);
+    double* at = out + l;
+    for (std::size_t i = from; i < to; ++i) {
+      const double* const p = &points[even[i].index()].x;
+      const double* const q = &points[odd[i].index()].x;
+      const auto xy = hn::LoadU(d, p), other_xy = hn::LoadU(d, q);
+      hn::Store(hn::InterleaveLower(d, xy, other_xy), d, at);
+      hn::Store(hn::InterleaveUpper(d, xy, other_xy), d, at + lanes);
+      hn::Store(hn::InterleaveLower(d, hn::Set(d, p[2]), hn::Set(d, q[2])), d, at + 2 * lanes);
+      at += 3 * lanes;
+    }
+  }
+#endif
+}
+
+/// Answers from lanes: coordinate a of corner k of patch l at lane[(3 k + a) lanes + l], radii, roundings.
+HWY_INLINE void scatter_lanes(const double* lane, std::size_t lanes, std::span<OffsetTriangle> out) {
+  for (std::size_t l = 0; l < out.size(); ++l) {
+    const double* from = lane + l;
+    for (Point3& corner : out[l].base) {
+      corner = {from[0], from[lanes], from[2 * lanes]};
+      from += 3 * lanes;
+    }
+    out[l].radius = from[0];
+    out[l].rounding = from[lanes];
+  }
+}
+
+}  // namespace snug::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
