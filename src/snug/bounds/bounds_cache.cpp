@@ -9,6 +9,11 @@ const BoundRows& BoundsCache::rows(const Kind& kind) {
   });
 }
 
+const Stencils* BoundsCache::crease_rows(const Kind& kind) {
+  const CreaseRows& made = crease_rows_.get(kind.id(), [&] { return make_crease_rows(kind); });
+  return made.rows ? &*made.rows : nullptr;
+}
+
 const BoundRows& BoundsCache::level_rows(const Kind& kind) {
   return level_rows_.get(kind.id(), [&] { return make_bound_rows(kind, 1); });
 }

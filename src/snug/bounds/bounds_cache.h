@@ -4,6 +4,7 @@
 
 #include <snug/bounds/bound_rows.h>
 #include <snug/bounds/bound_table.h>
+#include <snug/bounds/crease_rows.h>
 #include <snug/bounds/kind_slots.h>
 #include <snug/bounds/quadratic.h>
 #include <snug/bounds/tip_table.h>
@@ -35,6 +36,8 @@ class BoundsCache {
   /// One level of them.
   [[nodiscard]] const BoundRows& level_rows(const Kind& kind);
   /// The table of a kind, made from rows that go down to tip_depth(). It stays as long as this.
+  /// See make_crease_rows(); null where there are none.
+  [[nodiscard]] const Stencils* crease_rows(const Kind& kind);
   [[nodiscard]] const BoundTable& table(const Kind& kind);
   /// The same for the boxes of tips of this kind.
   [[nodiscard]] const TipTable& tip_table(const Kind& kind);
@@ -44,12 +47,13 @@ class BoundsCache {
   /// Kinds whose rows are kept, and the memory of all rows and tables that are.
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
   [[nodiscard]] std::size_t bytes() const {
-    return rows_.bytes() + level_rows_.bytes() + tables_.bytes() + tip_tables_.bytes() + quadratics_.bytes();
+    return rows_.bytes() + crease_rows_.bytes() + level_rows_.bytes() + tables_.bytes() + tip_tables_.bytes() + quadratics_.bytes();
   }
 
  private:
   KindCache kinds_;
   KindSlots<BoundRows> rows_, level_rows_;
+  KindSlots<CreaseRows> crease_rows_;
   KindSlots<BoundTable> tables_;
   KindSlots<TipTable> tip_tables_;
   KindSlots<QuadraticRows> quadratics_;

@@ -154,6 +154,9 @@ void add_parts(BoundsCache& library, const Patch& patch, unsigned level, std::sp
     part.add_with_tips(library, patch);
     return out.add(part);
   }
+  // A split brings Bezier points nearer.
+  const Stencils* const creased = level > 0 ? library.crease_rows(kind) : nullptr;
+  if (creased) return out.add(*creased, patch);
   if (level >= (kind.passing() ? passing_levels : crowded_levels)) {
     return out.add(patch.points, patch.error, patch.largest);
   }

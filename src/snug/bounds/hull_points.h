@@ -76,7 +76,7 @@ void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out);
 
 /// The same from the rows and tables that a library keeps, with tips. Takes memory for all refinements to
 /// come. Passing and crowded kinds, which few patches share, have no rows: the patch is split, and its pieces
-/// have theirs.
+/// have theirs, see also make_crease_rows().
 void hull_points(BoundsCache& library, const Patch& patch, HullPoints& out);
 /// Makes the rows and tables that the call above and refinements will need for patches of this kind.
 void prepare_hull_points(BoundsCache& library, const Kind& kind);
