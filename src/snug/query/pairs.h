@@ -11,16 +11,16 @@
 /// The questions of collide.h and distance.h about surfaces whose trees and workspaces are at hand.
 namespace snug {
 
-/// Both trees are opened from their roots on, deepest overlap first. A pair of pieces is (a) dropped once
-/// sets around them are farther apart than the margin; (b) a witness if the limit points at the nearest
-/// parameters of its base triangles are near enough, or a proof that one crosses the other; (c) else its
-/// larger piece is split, below half the tolerance too.
+/// Both trees are opened from their roots on, deepest overlap first. A pair of patches or pieces is (a)
+/// dropped once sets around them are farther apart than the margin; (b) a witness if their quadratics at the
+/// nearest parameters of their base triangles, or the limit points there, are near enough, or a proof that
+/// one crosses the other; (c) else its larger one is split, below half the tolerance too.
 [[nodiscard]] Collision collide(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
                                 const WorkMonitor& monitor = {});
 
-/// Pairs of nodes are opened, the nearest first. Limit points at the nearest parameters of base triangles
-/// bound the distance from above; planes across the direction of the nearest ones, which hold pieces' hulls
-/// apart, from below. Where pieces cut each other, contact is proved as in collide().
+/// Limit points where quadratics are nearest bound the distance from above; two planes across the direction of
+/// the nearest ones, and where pieces lie beyond these, pairs of nodes, the nearest first, from below. Where
+/// pieces cut each other, contact is proved as in collide().
 [[nodiscard]] Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options,
                                 const WorkMonitor& monitor = {});
 
