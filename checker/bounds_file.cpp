@@ -111,8 +111,10 @@ StoredKind read_kind(Reader& reader) {
   kind.weights.resize(count);
   for (double& weight : kind.weights) weight = reader.real();
   const std::uint64_t tables = reader.whole(8);
-  require(tables <= 1, "more than one table of a kind");
-  if (tables == 1) kind.table = read_table(reader, kind.scheme, kind.controls);
+  require(tables <= 2, "more than two tables of a kind");
+  for (std::uint64_t i = 0; i < tables; ++i) {
+    kind.tables.push_back(read_table(reader, kind.scheme, kind.controls));
+  }
   require(reader.place() - begin == size, "a record is not as long as it says");
   return kind;
 }
@@ -156,12 +158,12 @@ void write_kind(const StoredKind& kind, Writer& out) {
   out.real(kind.entry_error);
   out.real(kind.abs_sum);
   for (const double weight : kind.weights) out.real(weight);
-  out.whole(kind.table ? 1 : 0, 8);
-  if (kind.table) {
-    out.table_of_reals(kind.table->layout);
-    out.table_of_reals(kind.table->triangle);
-    out.table_of_reals(kind.table->lower);
-    out.table_of_reals(kind.table->upper);
+  out.whole(kind.tables.size(), 8);
+  for (const StoredTable& table : kind.tables) {
+    out.table_of_reals(table.layout);
+    out.table_of_reals(table.triangle);
+    out.table_of_reals(table.lower);
+    out.table_of_reals(table.upper);
   }
   put(out.bytes(), begin, out.bytes().size() - begin);
 }
@@ -212,7 +214,7 @@ BoundsFile parse(std::span<const std::byte> bytes) {
   require(bytes.size() >= sizeof magic && std::memcmp(bytes.data(), magic, sizeof magic) == 0,
           "not a file of bounds: the first bytes are others");
   static_cast<void>(reader.whole(8));
-  require(reader.whole(4) == 3, "another version of the format");
+  require(reader.whole(4) == 4, "another version of the format");
   const std::uint64_t kinds = reader.whole(4);
   require(reader.whole(8) == bytes.size() && bytes.size() % 8 == 0, "the file is not as long as it says");
   const std::uint64_t hash = reader.whole(8);
@@ -230,7 +232,7 @@ BoundsFile parse(std::span<const std::byte> bytes) {
 std::vector<std::byte> to_bytes(const BoundsFile& file) {
   Writer out;
   for (const char c : magic) out.whole(static_cast<unsigned char>(c), 1);
-  out.whole(3, 4);
+  out.whole(4, 4);
   out.whole(file.kinds.size(), 4);
   out.whole(0, 8);
   out.whole(0, 8);

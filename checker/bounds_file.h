@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,7 +47,7 @@ struct StoredKind {
   std::uint32_t rows = 0, controls = 0;
   double entry_error = 0, abs_sum = 0;
   std::vector<double> weights;  // [control][row]
-  std::optional<StoredTable> table;
+  std::vector<StoredTable> tables;
   [[nodiscard]] double& weight(std::size_t row, std::size_t control) { return weights[control * rows + row]; }
   [[nodiscard]] double weight(std::size_t row, std::size_t control) const {
     return weights[control * rows + row];
@@ -60,7 +59,7 @@ struct BoundsFile {
   std::vector<StoredKind> kinds;
 };
 
-/// Reads a file of the format in tablegen/file_writer.h, version 3. Any bytes may come.
+/// Reads a file of the format in tablegen/file_writer.h, version 4. Any bytes may come.
 /// Errors:    Rejected if it is not one: magic, version, sizes, hash, flags that are neither 0 nor 1, padding
 ///            that is not zero, numbers that are not finite.
 [[nodiscard]] BoundsFile parse(std::span<const std::byte> bytes);

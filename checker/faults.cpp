@@ -69,15 +69,31 @@ void remove(StoredKind& kind, std::size_t row) {
 
 Scheme another(Scheme scheme) { return schemes[(static_cast<std::size_t>(scheme) + 1) % schemes.size()]; }
 
-StoredTable& first_table(BoundsFile& file) {
+// Table `i` of the first kind that has one.
+StoredTable& table_of(BoundsFile& file, std::size_t i) {
   for (StoredKind& kind : file.kinds) {
-    if (kind.table) return *kind.table;
+    if (i < kind.tables.size()) return kind.tables[i];
   }
   throw Rejected("no table to spoil");
 }
 
 void shift(StoredTable::Plane& plane, double by) {
   for (double& value : plane) value += by;
+}
+
+void add_faults_of_table(Scheme scheme, std::size_t i, std::vector<Fault>& all) {
+  const std::string of = " of table " + std::to_string(i);
+  const auto add = [&](const std::string& name, const std::function<void(StoredTable&)>& spoil) {
+    all.push_back(of_contents(name + of, [i, spoil](BoundsFile& f) { spoil(table_of(f, i)); }));
+  };
+  add("an upper plane lowered by 1e-10", [](StoredTable& t) { shift(t.upper[0], -1e-10); });
+  add("a lower plane raised by 1e-10", [](StoredTable& t) { shift(t.lower[0], 1e-10); });
+  add("a corner of the triangle drawn in", [](StoredTable& t) { t.triangle[1][0] -= 1e-6; });
+  add("the triangle turned over", [](StoredTable& t) { std::swap(t.triangle[1], t.triangle[2]); });
+  add("a place of the layout moved", [](StoredTable& t) { t.layout[4][0] += 1e-6; });
+  if (scheme == Scheme::loop) {
+    add("a corner of the layout moved", [](StoredTable& t) { t.layout[1][0] += 1e-15; });
+  }
 }
 
 }  // namespace
@@ -130,27 +146,9 @@ std::vector<Fault> faults(const BoundsFile& file) {
   if (file.kinds[0].scheme != Scheme::midedge) {  // whose masks are multiples of 1/8: rows are exact
     all.push_back(of_contents("entry_error too small", [](BoundsFile& f) { f.kinds[0].entry_error = 0; }));
   }
-  const bool tables = std::any_of(file.kinds.begin(), file.kinds.end(),
-                                  [](const StoredKind& k) { return k.table.has_value(); });
-  if (!tables) return all;
-  all.insert(all.end(), {
-                            of_contents("an upper plane lowered by 1e-10",
-                                        [](BoundsFile& f) { shift(first_table(f).upper[0], -1e-10); }),
-                            of_contents("a lower plane raised by 1e-10",
-                                        [](BoundsFile& f) { shift(first_table(f).lower[0], 1e-10); }),
-                            of_contents("a corner of the triangle drawn in",
-                                        [](BoundsFile& f) { first_table(f).triangle[1][0] -= 1e-6; }),
-                            of_contents("the triangle turned over",
-                                        [](BoundsFile& f) {
-                                          std::swap(first_table(f).triangle[1], first_table(f).triangle[2]);
-                                        }),
-                            of_contents("a place of the layout moved",
-                                        [](BoundsFile& f) { first_table(f).layout[4][0] += 1e-6; }),
-                        });
-  if (file.kinds[0].scheme == Scheme::loop) {
-    all.push_back(of_contents("a corner of the layout moved",
-                              [](BoundsFile& f) { first_table(f).layout[1][0] += 1e-15; }));
-  }
+  std::size_t tables = 0;
+  for (const StoredKind& kind : file.kinds) tables = std::max(tables, kind.tables.size());
+  for (std::size_t i = 0; i < tables; ++i) add_faults_of_table(file.kinds[0].scheme, i, all);
   return all;
 }
 

@@ -277,7 +277,7 @@ FileProof prove_file(std::span<const std::byte> bytes) {
       const StoredKind& kind = file.kinds[i];
       try {
         outcomes[i].rows = prove_rows(kind);
-        if (kind.table) prove_table(*kind.table, kind.scheme, outcomes[i].rows);
+        for (const StoredTable& table : kind.tables) prove_table(table, kind.scheme, outcomes[i].rows);
         outcomes[i].rows.hull.clear();
       } catch (const Rejected& rejected) {
         outcomes[i].failure =
@@ -296,7 +296,7 @@ FileProof prove_file(std::span<const std::byte> bytes) {
         throw Rejected("a key that comes twice: " + to_text(file.kinds[i].scheme, file.kinds[i].key));
     }
     ++proof.kinds;
-    proof.tables += file.kinds[i].table.has_value();
+    proof.tables += file.kinds[i].tables.size();
     proof.stored_rows += file.kinds[i].rows;
     proof.pieces += outcome.rows.pieces;
     proof.covered += outcome.rows.covered;

@@ -8,6 +8,7 @@
 
 #include <snug/bounds/bound_rows.h>
 #include <snug/bounds/bound_table.h>
+#include <snug/bounds/lasting_layout.h>
 
 namespace tablegen {
 namespace {
@@ -46,9 +47,15 @@ class Bytes {
   std::vector<std::byte> bytes_;
 };
 
+void add_table(const snug::BoundTable& table, Bytes& out) {
+  out.add(table.layout.data(), table.layout.size());
+  out.add(table.triangle);
+  out.add(table.lower.data(), table.lower.size());
+  out.add(table.upper.data(), table.upper.size());
+}
+
 void add_kind(const snug::Kind& kind, Bytes& out) {
   const snug::BoundRows rows = snug::make_bound_rows(kind);
-  const snug::BoundTable table = snug::make_bound_table(kind, rows);
   const std::size_t begin = out.size();
   out.add(std::uint64_t{0});
   out.add(static_cast<std::uint64_t>(kind.key().scheme));
@@ -64,11 +71,9 @@ void add_kind(const snug::Kind& kind, Bytes& out) {
   out.add(rows.entry_error());
   out.add(rows.abs_sum());
   for (std::size_t c = 0; c < rows.control_count(); ++c) out.add(rows.column(c), rows.count());
-  out.add(std::uint64_t{1});
-  out.add(table.layout.data(), table.layout.size());
-  out.add(table.triangle);
-  out.add(table.lower.data(), table.lower.size());
-  out.add(table.upper.data(), table.upper.size());
+  out.add(std::uint64_t{2});
+  add_table(snug::make_bound_table(kind, rows), out);
+  add_table(snug::make_bound_table(kind, rows, snug::tip_layout(kind)), out);
   out.put(begin, out.size() - begin);
 }
 
@@ -82,7 +87,7 @@ std::vector<std::byte> file_of(std::span<const snug::KindKey> keys) {
   constexpr std::size_t size_place = 16, hash_place = 24, hashed = 32;
   Bytes out;
   out.add(magic, 8);
-  out.add(std::uint32_t{3});
+  out.add(std::uint32_t{4});
   out.add(static_cast<std::uint32_t>(keys.size()));
   out.add(std::uint64_t{0});
   out.add(std::uint64_t{0});

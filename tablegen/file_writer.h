@@ -8,9 +8,10 @@
 
 namespace tablegen {
 
-/// The rows and the table of each kind, as make_bound_rows and make_bound_table give them.
+/// The rows of each kind down to tip_depth(), its table, and the one for tips of this kind (tip_layout()), as
+/// make_bound_rows and make_bound_table give them.
 ///
-/// The file, version 3: little-endian, every field at a multiple of its size, every part at a multiple of 8.
+/// The file, version 4: little-endian, every field at a multiple of its size, every part at a multiple of 8.
 ///
 ///     header   char[8] "snugbnd" and a zero     u32 version     u32 kinds
 ///              u64 bytes of the whole file      u64 hash of all that follows this field
@@ -21,7 +22,7 @@ namespace tablegen {
 ///              u32 rows                         u32 control points
 ///              f64 entry_error                  f64 abs_sum
 ///              f64 weights[control point][row]
-///              u64 tables: 1, or 0
+///              u64 tables: 2, or fewer
 ///     a table  f64 layout[control point][2]     f64 triangle[3][2]
 ///              f64 lower[control point - first_bounded][3], the same of upper; first_bounded is 3 for Loop,
 ///              else 0

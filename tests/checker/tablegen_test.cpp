@@ -1,6 +1,7 @@
 #include <checker/bounds_file.h>
 #include <gtest/gtest.h>
 #include <snug/bounds/bounds_cache.h>
+#include <snug/bounds/lasting_layout.h>
 #include <tablegen/file_writer.h>
 #include <tablegen/kinds.h>
 
@@ -30,6 +31,14 @@ void expect_same(const checker::StoredKind& made, const snug::BoundRows& on_dema
                         std::span(on_demand.column(0), on_demand.count() * on_demand.control_count())));
 }
 
+// Bezier points of the rows that patches are bounded with are the first of those that are proved.
+void expect_first(const checker::StoredKind& made, const snug::BoundRows& kept) {
+  ASSERT_LE(kept.bezier_count(), made.rows);
+  for (std::size_t c = 0; c < made.controls; ++c) {
+    for (std::size_t r = 0; r < kept.bezier_count(); ++r) ASSERT_EQ(made.weight(r, c), kept.weight(r, c));
+  }
+}
+
 void expect_same(const checker::StoredTable& made, const snug::BoundTable& on_demand) {
   EXPECT_TRUE(same_bits(made.layout, on_demand.layout));
   EXPECT_TRUE(same_bits(made.triangle, on_demand.triangle));
@@ -46,11 +55,14 @@ TEST(tablegen, makes_bit_by_bit_the_rows_and_tables_made_on_demand) {
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const checker::StoredKind& made = file.kinds[i];
     SCOPED_TRACE(checker::to_text(made.scheme, made.key));
-    ASSERT_TRUE(made.table);
-    expect_same(*made.table, tables_first.table(tables_first.kinds().find(keys[i])));
+    ASSERT_EQ(made.tables.size(), 2u);
+    expect_same(made.tables[0], tables_first.table(tables_first.kinds().find(keys[i])));
     const snug::Kind& kind = rows_first.kinds().find(keys[i]);
     expect_same(made, snug::make_bound_rows(kind));
-    expect_same(*made.table, rows_first.table(kind));
+    expect_same(made.tables[0], rows_first.table(kind));
+    expect_same(made.tables[1],
+                snug::make_bound_table(kind, snug::make_bound_rows(kind), snug::tip_layout(kind)));
+    expect_first(made, rows_first.rows(kind));
   }
 }
 

@@ -109,7 +109,8 @@ Motion any_pose(std::mt19937_64& random, double far) {
 ControlMesh any_corners(std::mt19937_64& random, double scale) {
   std::uniform_real_distribution<double> unit(-1, 1);
   const double size = scale * std::ldexp(1.0, static_cast<int>(random() % 8) - 6);
-  const std::array<double, 3> shape{size, size * (random() % 2 == 0 ? 1 : 1e-3), random() % 8 == 0 ? 0 : size};
+  const std::array<double, 3> shape{size, size * (random() % 2 == 0 ? 1 : 1e-3),
+                                    random() % 8 == 0 ? 0 : size};
   const bool cuboid = random() % 2 == 0, off = random() % 2 == 0;
   ControlMesh mesh;
   for (int v = 0; v < 9; ++v) {
@@ -157,7 +158,8 @@ TEST(root_gap, is_at_most_the_distance_of_the_hulls_whatever_is_enough) {
     const auto [least, largest] = hull_distance(a, b, random);
     const double apart = static_cast<double>(least);
     double best = -INFINITY;
-    for (const double enough : std::array<double, 6>{-INFINITY, 0.0, 0.5 * apart, 0.999 * apart, 2 * apart, INFINITY}) {
+    for (const double enough :
+         std::array<double, 6>{-INFINITY, 0.0, 0.5 * apart, 0.999 * apart, 2 * apart, INFINITY}) {
       const double gap = root_gap(a.at(), b.at(), enough);
       EXPECT_LE(static_cast<long double>(gap), least + 1e-17L * largest) << trial << ", scale " << scale;
       best = std::max(best, gap);
@@ -199,11 +201,13 @@ TEST(root_gap, of_cuboids_that_nearly_touch_is_at_most_their_distance) {
       }
       return Motion::from_3x4(numbers);
     };
-    const Vector3 by = random() % 2 == 0 ? Vector3{step * half.x, 0, 0} : Vector3{step * half.x, -step * half.y, step * half.z};
+    const Vector3 by = random() % 2 == 0 ? Vector3{step * half.x, 0, 0}
+                                         : Vector3{step * half.x, -step * half.y, step * half.z};
     Body a(mesh, pose({})), b(mesh, pose(random() % 2 == 0 ? by : -by));
     long double least_sq = 0, largest = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      std::array<std::pair<long double, long double>, 2> sides{{{INFINITY, -INFINITY}, {INFINITY, -INFINITY}}};
+      std::array<std::pair<long double, long double>, 2> sides{
+          {{INFINITY, -INFINITY}, {INFINITY, -INFINITY}}};
       for (std::size_t v = 0; v < 8; ++v) {
         for (const std::size_t s : {0u, 1u}) {
           const long double x = (s == 0 ? a : b).corner(v)[k];
@@ -218,7 +222,8 @@ TEST(root_gap, of_cuboids_that_nearly_touch_is_at_most_their_distance) {
     double best = -INFINITY;
     for (const double enough : std::array<double, 3>{-INFINITY, 0.0, INFINITY}) {
       const double gap = root_gap(a.at(), b.at(), enough);
-      EXPECT_LE(static_cast<long double>(gap), std::sqrt(least_sq) + 1e-18L * largest) << trial << ", size " << size;
+      EXPECT_LE(static_cast<long double>(gap), std::sqrt(least_sq) + 1e-18L * largest)
+          << trial << ", size " << size;
       best = std::max(best, gap);
     }
     positive += best > 0;
@@ -233,13 +238,16 @@ TEST(root_gap, of_points_is_at_most_their_distance) {
   ControlMesh mesh;
   for (int v = 0; v < 9; ++v) mesh.points.emplace_back();
   mesh.add_face(std::array{VertexId(0), VertexId(1), VertexId(2)});
-  for (int exponent = -1070; exponent < 1000; exponent += exponent > -560 && exponent < -480 ? 1 : 10) {
+  for (int exponent = -1070; exponent<1000; exponent += exponent> - 560 && exponent < -480 ? 1 : 10) {
     for (int trial = 0; trial < 4; ++trial) {
       const double far = std::ldexp(1.0, exponent);
-      Body a(mesh, Motion::translation({far * unit(random), far * unit(random), far * unit(random)})), b(mesh, {});
+      Body a(mesh, Motion::translation({far * unit(random), far * unit(random), far * unit(random)})),
+          b(mesh, {});
       const auto [least, largest] = hull_distance(a, b, random);
-      for (const double enough : std::array<double, 4>{-INFINITY, 0.0, static_cast<double>(least), INFINITY}) {
-        EXPECT_LE(static_cast<long double>(root_gap(a.at(), b.at(), enough)), least + 1e-17L * largest) << exponent;
+      for (const double enough :
+           std::array<double, 4>{-INFINITY, 0.0, static_cast<double>(least), INFINITY}) {
+        EXPECT_LE(static_cast<long double>(root_gap(a.at(), b.at(), enough)), least + 1e-17L * largest)
+            << exponent;
       }
     }
   }

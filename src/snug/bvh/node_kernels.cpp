@@ -170,7 +170,8 @@ Near boxes(const float* node, float reach, const OtherBox& other, float slack, f
 HWY_INLINE void turned(const Turn& turn, const float* rows, std::size_t r, float factor, const float* add,
                        float* out) {
   const hn::CappedTag<float, 4> d;
-  const auto x = hn::Set(d, rows[8 * r]), y = hn::Set(d, rows[8 * (r + 1)]), z = hn::Set(d, rows[8 * (r + 2)]);
+  const auto x = hn::Set(d, rows[8 * r]), y = hn::Set(d, rows[8 * (r + 1)]),
+             z = hn::Set(d, rows[8 * (r + 2)]);
   for (std::size_t at = 0; at < 4; at += hn::Lanes(d)) {
     const auto column = [&](std::size_t j) { return hn::Load(d, turn.columns[j] + at); };
     const auto sum = hn::Add(hn::Add(hn::Mul(column(0), x), hn::Mul(column(1), y)), hn::Mul(column(2), z));
@@ -188,7 +189,8 @@ HWY_INLINE bool place(float reach, const SeenBox& other, const Turn& turn, Other
   HWY_ALIGN const float none[4] = {};
   HWY_ALIGN float placed[4][4];
   turned(turn, other.rows, 0, 1, offset, placed[3]);
-  for (std::size_t k = 0; k < 3; ++k) turned(turn, other.rows, 6 + 3 * k, turn.inverse_scale, none, placed[k]);
+  for (std::size_t k = 0; k < 3; ++k)
+    turned(turn, other.rows, 6 + 3 * k, turn.inverse_scale, none, placed[k]);
   for (std::size_t k = 0; k < 3; ++k) {
     box.centre[k] = placed[3][k];
     box.half[k] = turn.scale * other.rows[8 * (3 + k)];
@@ -235,7 +237,8 @@ Near seen_along(const float* node, float reach, const SeenBox& other, const Turn
     V taken = hn::Zero(d), extent = hn::Set(d, other_extent);
     for (std::size_t k = 0; k < 3; ++k) {
       const V axis[3] = {row(6 + 3 * k), row(7 + 3 * k), row(8 + 3 * k)}, half = row(3 + k);
-      const V own = hn::Abs(sum3(hn::Mul(axis[0], delta[0]), hn::Mul(axis[1], delta[1]), hn::Mul(axis[2], delta[2])));
+      const V own =
+          hn::Abs(sum3(hn::Mul(axis[0], delta[0]), hn::Mul(axis[1], delta[1]), hn::Mul(axis[2], delta[2])));
       const V others = hn::Abs(dot3(d, delta, box.axes[k]));
       taken = hn::Add(taken, hn::Add(hn::Mul(half, own), hn::Mul(hn::Set(d, box.half[k]), others)));
       extent = hn::Add(extent, hn::Mul(half, hn::Abs(dot3(d, axis, n))));

@@ -137,15 +137,16 @@ std::array<Vector3, 3> turned_to_fit(std::array<Vector3, 3> axes, std::span<cons
   const std::array<float, 2> others = sides_after(flatten(1, 2), 1, 0);
   sides = {sides[0], others[0], others[1]};
   for (const bool least : {true, false}) {
-    const auto about = static_cast<std::size_t>(
-        (least ? std::min_element(sides.begin(), sides.end()) : std::max_element(sides.begin(), sides.end())) -
-        sides.begin());
+    const auto about = static_cast<std::size_t>((least ? std::min_element(sides.begin(), sides.end())
+                                                       : std::max_element(sides.begin(), sides.end())) -
+                                                sides.begin());
     const std::size_t i = (about + 1) % 3, j = (about + 2) % 3;
     const std::span<const Flat> seen = flatten(i, j);
     float best = INFINITY;
     std::array<double, 2> turn{1, 0};
     for (int step = 0; step < steps; ++step) {
-      const double angle = step * std::numbers::pi / (2 * steps), cosine = std::cos(angle), sine = std::sin(angle);
+      const double angle = step * std::numbers::pi / (2 * steps), cosine = std::cos(angle),
+                   sine = std::sin(angle);
       const auto [x, y] = sides_after(seen, static_cast<float>(cosine), static_cast<float>(sine));
       const float area = x * y + (x + y) * sides[about];
       if (!(area < best)) continue;

@@ -143,8 +143,7 @@ class Query {
       }
     }
     const double radii = pieces.radii[0] + pieces.radii[1];
-    const bool flat =
-        radii <= static_cast<double>(std::min(walk_.size(pair, 0), walk_.size(pair, 1))) / 16;
+    const bool flat = radii <= static_cast<double>(std::min(walk_.size(pair, 0), walk_.size(pair, 1))) / 16;
     if (pieces.near.certain_distance == 0 && flat && attempts_ < max_attempts) {
       ++attempts_;
       if (certainly_cross(frames_, pieces)) bounds_.reduce_upper(0);

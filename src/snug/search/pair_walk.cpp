@@ -58,8 +58,9 @@ float PairWalk::open(const NodePair& pair, Opening opening, double prune_distanc
     gaps.fill(-INFINITY);
   }
   const auto add = [&](std::size_t place) {
-    out.push_back({side == 0 ? std::array{opened.child(place), other} : std::array{other, opened.child(place)},
-                   gap_of(gaps[place])});
+    out.push_back(
+        {side == 0 ? std::array{opened.child(place), other} : std::array{other, opened.child(place)},
+         gap_of(gaps[place])});
   };
   if (near.places != 0) {
     auto nearest = static_cast<std::size_t>(std::countr_zero(near.places));

@@ -176,7 +176,8 @@ bool PiecePairs::beyond(std::size_t side, const Vector3& w, double height, doubl
                           40 * unit_roundoff * max_abs(origin - Point3{});
     for (std::size_t i = 0; i < opened.count(); ++i) {
       const double extent = frame.scale * static_cast<double>(extents[i]);
-      if (!(placed + extent + 8 * unit_roundoff * std::fabs(extent) <= height)) open.push_back(opened.child(i));
+      if (!(placed + extent + 8 * unit_roundoff * std::fabs(extent) <= height))
+        open.push_back(opened.child(i));
     }
   }
   return true;
