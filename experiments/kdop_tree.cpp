@@ -276,7 +276,7 @@ void KdopTree::build(std::size_t node, std::size_t begin, std::size_t end) {
 void KdopTree::add_piece(Piece piece) {
   pieces_.push_back(std::move(piece));
   BoundingVolume set;
-  set.box = box_around(pieces_.back(), scratch_, BoundMethod::rows);
+  set.box = box_around(pieces_.back().offset, scratch_, BoundMethod::rows);
   const OffsetTriangle& offset = pieces_.back().offset;
   if (volume_ != Volume::obb) {
     set = fit(volume_, offset.base, [&](const Vector3& d) { return extent_of(offset, d); });

@@ -46,7 +46,7 @@ class Pieces {
   [[nodiscard]] KnownPiece known(Piece piece) const {
     const Heights heights =
         method_ == BoundMethod::table ? heights_of(piece.offset) : heights_of(piece, scratch_);
-    const Obb box = box_around(piece, scratch_, method_);
+    const Obb box = box_around(piece.offset, scratch_, method_);
     return {std::move(piece), heights, box};
   }
 

@@ -125,9 +125,9 @@ std::array<Vector3, 3> box_axes(const Triangle& base) {
 
 }  // namespace
 
-Obb box_around(const Piece& piece, const HullPoints& points, BoundMethod method) {
-  return fit_box(box_axes(piece.offset.base), [&](const Vector3& d) {
-    return method == BoundMethod::table ? extent_of(piece.offset, d) : extent_of(points, d);
+Obb box_around(const OffsetTriangle& offset, const HullPoints& points, BoundMethod method) {
+  return fit_box(box_axes(offset.base), [&](const Vector3& d) {
+    return method == BoundMethod::table ? extent_of(offset, d) : extent_of(points, d);
   });
 }
 

@@ -10,16 +10,18 @@
 
 namespace snug {
 
+/// False at the last level, and where rounding alone makes up the radius: pieces would be no smaller.
+[[nodiscard]] inline bool can_split(const Patch& patch, const OffsetTriangle& offset) {
+  return patch.path.level() < PiecePath::max_level && offset.radius > 2 * offset.rounding;
+}
+
 /// A piece of a limit surface with its offset triangle, in scaled units.
 struct Piece {
   PatchId root;
   Patch patch;
   OffsetTriangle offset;
 
-  /// False at the last level, and where rounding alone makes up the radius: children would be no smaller.
-  [[nodiscard]] bool can_split() const {
-    return patch.path.level() < PiecePath::max_level && offset.radius > 2 * offset.rounding;
-  }
+  [[nodiscard]] bool can_split() const { return snug::can_split(patch, offset); }
 };
 
 /// A piece made from a patch: its offset triangle is fitted to hull rows, in `scratch`, or comes from tables.
@@ -66,7 +68,7 @@ template <std::ranges::range Sets>
   });
 }
 /// A box around a piece, along its base triangle and normal, or the coordinate axes where it has none; by the
-/// points that it was fitted to, or from tables by its offset triangle.
-[[nodiscard]] Obb box_around(const Piece& piece, const HullPoints& points, BoundMethod method);
+/// points that the offset triangle was fitted to, or from tables by itself.
+[[nodiscard]] Obb box_around(const OffsetTriangle& offset, const HullPoints& points, BoundMethod method);
 
 }  // namespace snug

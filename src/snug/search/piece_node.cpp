@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <snug/bounds/table_triangle.h>
 #include <snug/geometry/rounding.h>
+#include <snug/patch/evaluate.h>
 
 namespace snug {
 
@@ -60,11 +62,21 @@ double PieceRecord::extent(const Vector3& w) const {
   return most;
 }
 
-PieceSketch sketch(BoundsCache& library, PatchId root, const Patch& patch, BoundMethod method) {
+PieceSketch sketch(BoundsCache& library, const Patch& patch, BoundMethod method) {
   thread_local HullPoints points;
-  const Piece piece = make_piece(library, root, patch, points, method);
-  return {box_around(piece, points, method), piece.offset, quadratic_triangle(library, patch),
-          piece.can_split()};
+  PieceSketch result;
+  if (method == BoundMethod::table) {
+    result.quadratic = quadratic_triangle(library, patch);
+    result.offset = offset_triangle(table_triangle(library.table(*patch.kind), patch));
+  } else {
+    hull_points(library, patch, points);
+    result.quadratic = quadratic_triangle(library, patch, points);
+    // Refines tips, which the box profits from.
+    result.offset = offset_triangle(library, points, limit_corners(patch));
+  }
+  result.box = box_around(result.offset, points, method);
+  result.can_split = can_split(patch, result.offset);
+  return result;
 }
 
 template <std::size_t N>

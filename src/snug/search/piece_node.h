@@ -49,7 +49,7 @@ struct PieceSketch {
   QuadraticTriangle quadratic;
   bool can_split;
 };
-[[nodiscard]] PieceSketch sketch(BoundsCache& library, PatchId root, const Patch& patch, BoundMethod method);
+[[nodiscard]] PieceSketch sketch(BoundsCache& library, const Patch& patch, BoundMethod method);
 
 /// A node of pieces: boxes around up to N of them, and their records.
 template <std::size_t N>

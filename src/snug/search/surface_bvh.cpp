@@ -36,7 +36,7 @@ std::vector<PieceSketch> SurfaceBvh::sketches(std::span<const std::uint32_t> ite
   pieces.reserve(items.size());
   for (const std::uint32_t item : items) {
     const PatchId p = patches_[item];
-    pieces.push_back(sketch(surface_->library(), p, surface_->patch(p), method_));
+    pieces.push_back(sketch(surface_->library(), surface_->patch(p), method_));
   }
   return pieces;
 }

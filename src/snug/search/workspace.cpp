@@ -7,12 +7,12 @@ namespace {
 
 constexpr std::size_t max_bytes = std::size_t{256} << 20;
 
-SplitNode split_node(const SurfaceBvh& model, PatchId root, const Patch& parent) {
+SplitNode split_node(const SurfaceBvh& model, const Patch& parent) {
   thread_local Patch child;
   std::array<PieceSketch, 4> pieces;
   for (unsigned i = 0; i < 4; ++i) {
     split(parent, i, child);
-    pieces[i] = sketch(model.surface().library(), root, child, model.method());
+    pieces[i] = sketch(model.surface().library(), child, model.method());
   }
   return SplitNode(pieces);
 }
@@ -71,7 +71,7 @@ SurfaceWorkspace::Opened SurfaceWorkspace::open(const Node& node) {
     const std::uint32_t parent = patch_place(node);
     const PatchId root = root_of(node);
     place = static_cast<std::uint32_t>(splits_.size());
-    splits_.push_back({split_node(*model_, root, patches_[parent]),
+    splits_.push_back({split_node(*model_, patches_[parent]),
                        root,
                        {none, none, none, none},
                        {none, none, none, none},
