@@ -99,7 +99,7 @@ class Collector {
                const ParameterTriangle& place) {
     // A split brings Bezier points nearer, but for a plane.
     if (kind.polynomial() && (depth > 0 || kind.form().degree == 1)) {
-      const PolynomialForm& form = kind.form();
+      const BezierRows& form = kind.form();
       for (std::size_t part = 0; part < form.parts; ++part) {
         for (std::size_t j = 0; j <= form.degree; ++j) {
           for (std::size_t i = 0; i + j <= form.degree; ++i) {

@@ -7,6 +7,7 @@
 #include <snug/base/contract.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/descent.h>
+#include <snug/patch/net_kernels.h>
 
 namespace snug {
 namespace {
@@ -25,87 +26,64 @@ PieceParameter to_kind(const Patch& patch, TriangleParameter p, double drift) {
   return result;
 }
 
-// The part of form() that holds a parameter, and where it does: a triangle split at the middle m of its edge
-// 02 has w c0 + u c1 + v c2 = (w - v) c0 + u c1 + 2 v m = 2 w m + u c1 + (v - w) c2.
-struct InPart {
-  std::size_t part;
-  PieceParameter p;
+// The lattice of a polynomial piece, and a parameter on it.
+struct OnLattice {
+  std::array<kernels::NetPoint, max_basis_count> points;
+  std::array<kernels::LatticePlace, 1> at;
+  double largest, error;
 };
 
-InPart to_part(const PolynomialForm& form, const PieceParameter& p) {
-  if (form.parts == 1) return {0, p};
-  const auto [w, u, v] = p.at;
-  const double off = 3 * p.off + unit_roundoff;
-  if (v <= w) return {0, {{w - v, u, 2 * v}, off}};
-  return {1, {{2 * w, u, v - w}, off}};
-}
-
-// Limit point in a polynomial piece: first the weights of the control points, then their sum.
-LimitPoint polynomial_point(const Patch& piece, const PieceParameter& parameter) {
-  const PolynomialForm& form = piece.kind->form();
-  const auto [part, p] = to_part(form, parameter);
-  const std::size_t count = bezier_count(form.degree), controls = piece.points.size();
-  std::array<double, bezier_count(max_degree)> powers;
-  const auto [w, u, v] = p.at;
-  with_degree(form.degree,
-              [&, w = w, u = u, v = v](auto degree) { monomials<degree>(w, u, v, powers.data()); });
-  const double* row = form.weights.data() + part * (form.weights.size() / form.parts);
-  Vector3 point;
-  for (std::size_t c = 0; c < controls; c += 4) {
-    std::array<double, 4> weights{};
-    for (std::size_t r = 0; r < count; ++r, row += 4) {
-      for (std::size_t a = 0; a < 4; ++a) weights[a] += powers[r] * row[a];
-    }
-    for (std::size_t a = 0; a < std::min<std::size_t>(4, controls - c); ++a) {
-      point = point + weights[a] * piece.points[c + a];
-    }
+void put_on_lattice(const Patch& piece, const PieceParameter& p, OnLattice& out) {
+  static constexpr std::array<std::uint32_t, max_basis_count> in_order{0, 1, 2,  3,  4,  5,  6,  7,
+                                                                       8, 9, 10, 11, 12, 13, 14, 15};
+  const KindLattice& lattice = piece.kind->lattice();
+  out.largest = piece.largest;
+  out.error = piece.error;
+  if (lattice.ghosts.row_count() > 0) {
+    out.error = std::max(out.error, lattice.ghosts.result_error(piece.largest, piece.error));
   }
-  // derivations/rounding.md
-  const std::size_t roundings = form.degree + count + controls + 4;
-  const double off = gamma_bound(roundings) + static_cast<double>(form.degree) * p.off;
-  const double sum = form.rows.max_abs_sum(), row_error = form.rows.max_error();
-  const double error = (off * sum + row_error) * piece.largest + (sum + row_error) * piece.error;
-  return {point, enlarged(error) + 0x1p20 * underflow_error};
+  for (std::size_t i = 0; i < lattice.places.size(); ++i) {
+    const std::size_t place = lattice.places[i], count = piece.points.size();
+    Vector3 point;
+    if (place < count) {
+      point = piece.points[place];
+    } else {
+      point = lattice.ghosts.apply<Vector3>(place - count, piece.points);
+      out.largest = std::max(out.largest, max_abs(point));
+    }
+    out.points[i] = {point.x, point.y, point.z, 0};
+  }
+  const auto [w, u, v] = p.at;
+  // Halves of quads run from (0,0) by (1,0) to (1,1).
+  const bool half = !piece.kind->rules().triangular();
+  out.at[0] = {w, half ? u + v : u, v, 0, in_order.data()};
 }
 
-// Derivatives along the kind's u and v in a polynomial piece: de Casteljau on a triangle down to degree 1.
+LimitPoint polynomial_point(const Patch& piece, const PieceParameter& p) {
+  OnLattice here;
+  put_on_lattice(piece, p, here);
+  kernels::NetPoint sum;
+  kernels::sum_values(piece.kind->rules().basis, here.points.data(), here.at, &sum);
+  return {{sum[0], sum[1], sum[2]}, BasisBounds::value_error(here.largest, here.error, p.off)};
+}
+
+// The point, and derivatives along the kind's u and v with the error of each coordinate.
 struct Derivatives {
+  LimitPoint point;
   std::array<Vector3, 2> along;
-  double error;  // upper bound, a coordinate
+  double error;
 };
-Derivatives polynomial_derivatives(const Patch& piece, const PieceParameter& parameter) {
-  const PolynomialForm& form = piece.kind->form();
-  const auto [part, p] = to_part(form, parameter);
-  const auto [w, u, v] = p.at;
-  std::array<Vector3, bezier_count(max_degree)> b;
-  const std::size_t count = bezier_count(form.degree);
-  double largest = 0;
-  for (std::size_t r = 0; r < count; ++r) {
-    b[r] = form.rows.apply<Vector3>(part * count + r, piece.points);
-    largest = std::max(largest, max_abs(b[r]));
-  }
-  // derivations/rounding.md, "Normals".
-  const double row_error = form.rows.result_error(piece.largest, piece.error),
-               d_max = static_cast<double>(form.degree);
-  const double error =
-      4 * d_max * (2 * row_error + 2 * d_max * (8 * unit_roundoff + p.off) * (largest + row_error)) +
-      0x1p20 * underflow_error;
-  for (std::size_t degree = form.degree; degree > 1; --degree) {
-    std::size_t to = 0, row = 0;
-    for (std::size_t j = 0; j < degree; ++j) {
-      const std::size_t length = degree + 1 - j;
-      for (std::size_t i = 0; i + 1 < length; ++i) {
-        b[to++] = w * b[row + i] + u * b[row + i + 1] + v * b[row + length + i];
-      }
-      row += length;
-    }
-  }
-  const auto degree = static_cast<double>(form.degree);
-  const Vector3 along_u = degree * (b[1] - b[0]), along_v = degree * (b[2] - b[0]);
-  if (form.parts == 1) return {{along_u, along_v}, enlarged(error)};
-  if (part == 0) return {{along_u, 2.0 * along_v}, enlarged(2 * error)};  // (u, 2 v)
-  // (u, v - w), w = 1 - u - v:  (u, u + 2 v - 1)
-  return {{along_u + along_v, 2.0 * along_v}, enlarged(3 * error)};
+Derivatives polynomial_derivatives(const Patch& piece, const PieceParameter& p) {
+  OnLattice here;
+  put_on_lattice(piece, p, here);
+  kernels::BasisSums sums;
+  kernels::sum_derivatives(piece.kind->rules().basis, here.points.data(), here.at, &sums);
+  const auto spatial = [](const kernels::NetPoint& sum) { return Vector3{sum[0], sum[1], sum[2]}; };
+  const Vector3 along_u = spatial(sums.along_u), along_v = spatial(sums.along_v);
+  const bool half = !piece.kind->rules().triangular();
+  return {{spatial(sums.value), BasisBounds::value_error(here.largest, here.error, p.off)},
+          {along_u, half ? along_u + along_v : along_v},
+          BasisBounds::derivative_error(here.largest, here.error, p.off)};
 }
 
 struct Located {
@@ -208,7 +186,7 @@ LimitFrame limit_frame(const Patch& patch, TriangleParameter parameter) {
   const PieceParameter p = to_kind(piece, here.at, here.drift);
   const Derivatives derivatives = polynomial_derivatives(piece, p);
   LimitFrame frame;
-  frame.point = polynomial_point(piece, p);
+  frame.point = derivatives.point;
   // Derivatives along the kind's edges 01 and 02; those along the patch's are differences of these.
   const std::array<Vector3, 3> towards{Vector3{}, derivatives.along[0], derivatives.along[1]};
   const auto corner_at_plane = [&](std::size_t corner) { return towards[piece.to_kind(corner)]; };

@@ -38,8 +38,7 @@ struct LimitFrame {
 /// Guarantee: |relative - exact| <= error a coordinate, at exactly these doubles.
 /// Errors:    InputError (value) unless u >= 0, v >= 0, u + v <= 1 in doubles. Where the exact sum is above 1
 ///            all the same, the smaller of the two is lowered to the far edge: that point is meant.
-/// Cost:      regular: a product of 15 monomials with a matrix of the kind, then with the control points,
-///            about 90 ns (Catmull-Clark: 28); near an extraordinary corner a split a level, at most 60.
+/// Cost:      regular: 45 ns; near an extraordinary corner a split a level, at most 60.
 [[nodiscard]] LimitPoint limit_point(const Patch& patch, TriangleParameter at);
 
 /// The same with tangents and normal.

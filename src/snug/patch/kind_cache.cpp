@@ -13,31 +13,16 @@ namespace {
 // The polynomial form of a kind, if every corner is regular: degree 4 for Loop and Doo-Sabin, 6 for the half
 // of a bicubic Catmull-Clark quad, two quadratic parts for Midedge. Smooth boundaries and sharp corners of
 // the regular sort are completed by ghost points, which reproduce them exactly.
-// Guarantee: entries of rows are small fractions, each rounded once; those of weights are these, times a
-//            whole number and rounded again.
 // Source:    derivations/loop_bezier.md, tensor_bezier.md, midedge_bezier.md; [Stam98] gives the same basis
 //            for Loop.
-std::optional<PolynomialForm> polynomial_form(const KindKey& key) {
+std::optional<BezierRows> polynomial_form(const KindKey& key) {
   const SchemeRules& rules = rules_of(key.scheme);
   const std::span<const CornerFan> fans(key.corners.data(), rules.corners);
   if (!key.plain() || key.polygon ||
       !std::all_of(fans.begin(), fans.end(), [&](const CornerFan& fan) { return rules.regular(fan); })) {
     return {};
   }
-  const Topology ring = rules.ring(key.corners);
-  PolynomialForm form{rules.bezier(ring, fans), {}};
-  const std::size_t count = bezier_count(form.degree), blocks = (ring.vertex_count() + 3) / 4;
-  form.weights.resize(form.parts * blocks * count * 4);
-  for (std::size_t r = 0; r < form.parts * count; ++r) {
-    const std::size_t part = r / count, place = r % count;
-    const Stencils::Row row = form.rows.row(r);
-    for (std::size_t i = 0; i < row.sources.size(); ++i) {
-      const std::size_t block = part * blocks + row.sources[i] / 4;
-      form.weights[(block * count + place) * 4 + row.sources[i] % 4] =
-          multinomial(form.degree, place) * row.weights[i];
-    }
-  }
-  return form;
+  return rules.bezier(rules.ring(key.corners), fans);
 }
 
 std::vector<KindChild> make_children(KindCache& library, const KindKey& key) {

@@ -18,15 +18,6 @@ class KindCache;
 /// A patch kind in a KindCache.
 using KindId = Id<struct KindTag>;
 
-/// A patch as one polynomial or two, and what evaluates it.
-/// Guarantee: entries of rows are small fractions, each rounded once.
-struct PolynomialForm : BezierRows {
-  /// The rows, each times its multinomial coefficient, rounded again: of w^k u^i v^j from control points. A
-  /// part after the other, in it four control points after the other (zeros where there are none), in these
-  /// four doubles a row.
-  std::vector<double> weights;
-};
-
 /// A quarter of a patch after one step of subdivision; of a polygon half a quad.
 struct KindChild {
   const Kind* kind;
@@ -84,8 +75,9 @@ class Kind {
   [[nodiscard]] bool shared() const { return !passing() && !crowded(); }
 
   /// Is the patch polynomial, or made of two polynomials (Midedge)? Only then it has a form.
+  /// Guarantee: entries of its rows are small fractions, each rounded once.
   [[nodiscard]] bool polynomial() const { return form_.has_value(); }
-  [[nodiscard]] const PolynomialForm& form() const { return *form_; }
+  [[nodiscard]] const BezierRows& form() const { return *form_; }
   [[nodiscard]] const Stencils& bezier() const { return form_->rows; }
 
   // Requires, of the next three: a patch, no polygon.
@@ -123,7 +115,7 @@ class Kind {
   ControlOrder order_;
   bool passing_ = false;
   std::size_t control_count_ = 0;
-  std::optional<PolynomialForm> form_;
+  std::optional<BezierRows> form_;
   mutable std::once_flag limits_made_, tangents_made_, children_made_, outer_weight_made_, lattice_made_,
       step_made_, far_corner_made_;
   mutable double outer_weight_ = 1;

@@ -36,16 +36,6 @@ std::size_t quad_corner(double u, double v) {
   return v == 0 ? (u == 0 ? 0 : 1) : (u == 0 ? 3 : 2);
 }
 
-// Of a point in a regular piece whose parameter no rounding has moved before.
-double value_error(double largest, double net_error) {
-  const double off = 2 * unit_roundoff;
-  return enlarged(
-             (gamma_bound(max_basis_count + BasisBounds::value_roundings) + BasisBounds::value_change * off) *
-                 largest +
-             net_error) +
-         0x1p20 * underflow_error;
-}
-
 }  // namespace
 
 struct LimitEvaluator::Place {
@@ -78,7 +68,7 @@ void LimitEvaluator::reset(const Patch& patch) {
   lattice_ = kind.lattice().places.data();
   whole.refined = whole.control;
   add_ghosts(kind.lattice().ghosts, whole.control, whole.refined);
-  whole.value_error = value_error(whole.refined.largest, whole.refined.error);
+  whole.value_error = BasisBounds::value_error(whole.refined.largest, whole.refined.error, 0);
 }
 
 LimitEvaluator::Net LimitEvaluator::add_rows(const Stencils& stencils, const Net& from) {
@@ -101,7 +91,7 @@ void LimitEvaluator::refine(Piece& piece) {
   piece.refined = add_rows(piece.step->stencils, piece.control);
   piece.plain_error = piece.refined.error;
   add_ghosts(piece.step->ghosts, piece.control, piece.refined);
-  piece.value_error = value_error(piece.refined.largest, piece.refined.error);
+  piece.value_error = BasisBounds::value_error(piece.refined.largest, piece.refined.error, 0);
 }
 
 std::uint32_t LimitEvaluator::make_child(std::uint32_t piece, unsigned child) {
@@ -212,11 +202,10 @@ LimitFrame LimitEvaluator::corner_frame(const Place& place) const {
   return frame;
 }
 
-// u and v are off by up to `drift`, w = 1 - u - v by twice that.
 double LimitEvaluator::regular_error(const Place& place) const {
   const Piece& piece = pieces_[place.piece];
   if (place.drift == 0) return piece.value_error;
-  return enlarged(piece.value_error + BasisBounds::value_change * (4 * place.drift * piece.refined.largest));
+  return BasisBounds::value_error(piece.refined.largest, piece.refined.error, 4 * place.drift);
 }
 
 void LimitEvaluator::put_on_lattice(const Place& place, kernels::LatticePlace& out) const {
@@ -262,14 +251,10 @@ LimitFrame LimitEvaluator::regular_frame(const Place& place) const {
   put_on_lattice(place, at[0]);
   kernels::BasisSums sums;
   kernels::sum_derivatives(basis_, points_.data(), at, &sums);
-  const double off = (4 * place.drift + 2 * unit_roundoff) * net.largest;
   LimitFrame frame;
   frame.point = {spatial(sums.value), regular_error(place)};
   std::array<Vector3, 2> along{spatial(sums.along_u), spatial(sums.along_v)};
-  double error = (gamma_bound(max_basis_count + 2) * BasisBounds::derivative_sum +
-                  gamma_bound(BasisBounds::derivative_roundings)) *
-                     net.largest +
-                 BasisBounds::derivative_change * off + BasisBounds::derivative_sum * net.error;
+  double error = BasisBounds::derivative_error(net.largest, net.error, 4 * place.drift);
   if (triangular_) {
     // Derivatives along the kind's edges 01 and 02; those along the patch's are differences of these.
     const std::array<Vector3, 3> towards{Vector3{}, along[0], along[1]};
@@ -279,7 +264,7 @@ LimitFrame LimitEvaluator::regular_frame(const Place& place) const {
   }
   frame.tangents = {place.turned * along[0], place.turned * along[1]};
   frame.differentiable = true;
-  frame.tangent_error = enlarged(std::fabs(place.turned) * (error + 0x1p20 * underflow_error));
+  frame.tangent_error = enlarged(std::fabs(place.turned) * error);
   add_normal(frame);
   return frame;
 }

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 #include <vector>
 
 #include <snug/geometry/rounding.h>
@@ -23,33 +22,6 @@ inline constexpr std::size_t max_degree = 6;
 
 /// degree! / (i! j! k!) of the Bezier point at a place, k = degree - i - j.
 [[nodiscard]] double multinomial(std::size_t degree, std::size_t place);
-
-/// Monomials w^k u^i v^j of barycentric coordinates, k = degree - i - j, in the order of bezier_index(). At
-/// most degree - 1 roundings each.
-template <std::size_t degree>
-void monomials(double w, double u, double v, double* out) {
-  std::array<double, degree + 1> us{1}, vs{1}, ws{1};
-  for (std::size_t k = 1; k <= degree; ++k)
-    us[k] = us[k - 1] * u, vs[k] = vs[k - 1] * v, ws[k] = ws[k - 1] * w;
-  for (std::size_t j = 0; j <= degree; ++j) {
-    for (std::size_t i = 0; i + j <= degree; ++i) *out++ = ws[degree - i - j] * us[i] * vs[j];
-  }
-}
-
-/// visit(degree) with one of the degrees that patches have as a constant.
-template <class Visit>
-auto with_degree(std::size_t degree, const Visit& visit) {
-  switch (degree) {
-    case 1:
-      return visit(std::integral_constant<std::size_t, 1>{});
-    case 2:
-      return visit(std::integral_constant<std::size_t, 2>{});
-    case 4:
-      return visit(std::integral_constant<std::size_t, 4>{});
-    default:
-      return visit(std::integral_constant<std::size_t, 6>{});
-  }
-}
 
 /// A patch as one polynomial on its triangle, or as two: of the corners 0, 1 and m, and of m, 1 and 2, m
 /// being the middle of the edge 02.

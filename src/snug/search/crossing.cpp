@@ -24,7 +24,7 @@ constexpr double least_sine = 0.5;
 // Bezier points of the polynomial `part` whose hull holds its edge from corner k to k + 1.
 template <class Visit>
 void visit_bezier_edge(const Patch& patch, std::size_t part, std::size_t edge, const Visit& visit) {
-  const PolynomialForm& form = patch.kind->form();
+  const BezierRows& form = patch.kind->form();
   const std::size_t degree = form.degree, first = part * bezier_count(degree);
   const double error = form.rows.result_error(patch.largest, patch.error);
   for (std::size_t t = 0; t <= degree; ++t) {
