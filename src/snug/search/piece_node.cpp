@@ -15,15 +15,18 @@ PieceRecord::PieceRecord(const OffsetTriangle& offset, const QuadraticTriangle& 
     return Single3{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
   };
   double largest = 0, moved = 0, base_moved = 0;
+  bool finite = true;  // maxima pass over what is not a number
   for (std::size_t k = 0; k < 6; ++k) {
     const Vector3 exact = (k < 3 ? quadratic.corners[k] : quadratic.middles[k - 3]) - origin;
     net_[k] = single(exact);
+    finite = finite && is_finite(exact);
     largest = std::max(largest, max_abs(exact));
     moved = std::max(moved, max_abs(wide(net_[k]) - exact));
   }
   for (std::size_t k = 0; k < 3; ++k) {
     const Vector3 exact = offset.base[k] - origin;
     base_[k] = single(exact);
+    finite = finite && is_finite(exact);
     largest = std::max(largest, max_abs(exact));
     base_moved = std::max(base_moved, max_abs(wide(base_[k]) - exact));
   }
@@ -34,7 +37,7 @@ PieceRecord::PieceRecord(const OffsetTriangle& offset, const QuadraticTriangle& 
   radius_ = float_up(enlarged(offset.radius + spatial_error(base_moved + rounding)));
   error_ = float_up(enlarged(quadratic.error + spatial_error(moved + rounding)));
   // Not a number is not less.
-  if (radius_ < INFINITY && error_ < INFINITY) return;
+  if (finite && radius_ < INFINITY && error_ < INFINITY) return;
   *this = {};
   radius_ = error_ = INFINITY;
 }
