@@ -35,8 +35,8 @@ struct CollideOptions {
   bool prove_contact = true;                 ///< before returning `within`, try to prove `intersecting`
   bool solid = false;  ///< compare the solids that closed surfaces bound: one inside the other intersects it
   /// For separated surfaces, refine `distance` until its lower end is at least half its upper end, and give
-  /// witnesses: about ten microseconds more. Without it the lower end is a by-product of the search: half the
-  /// distance in the median for surfaces far apart, a hundredth of it for close ones.
+  /// witnesses if any are asked for: about ten microseconds more. Without it the lower end is a by-product of
+  /// the search: half the distance in the median for surfaces far apart, a hundredth of it for close ones.
   bool measure = true;
 };
 

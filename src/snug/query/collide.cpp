@@ -213,6 +213,11 @@ Collision collide(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& 
   if (options.measure && answer.verdict == Verdict::separated && !measured) {
     measure(a, b, options.budget, monitor, answer);
   }
+  if (options.witness == WitnessKind::none) {
+    answer.witness.reset();
+    answer.witness_error = 0;
+    answer.at = {};
+  }
   return answer;
 }
 

@@ -1,0 +1,159 @@
+// What comes with a verdict is a matter of taste, the verdict is not: the same for exact, approximate and no
+// witnesses. Approximate ones are as near their limit points as they say.
+
+#include <gtest/gtest.h>
+#include <snug/query/pairs.h>
+#include <snug/surface/evaluate.h>
+#include <testing/placements.h>
+#include <testing/scheme_surfaces.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+namespace snug {
+namespace {
+
+using testing::NamedSurface;
+
+// The limit point at the place that a witness is said to have, by the general evaluation.
+void expect_near_limit(const LimitSurface& surface, const Motion& pose,
+                       const std::optional<SurfaceParameter>& at, const Point3& witness, double error,
+                       const std::string& where) {
+  ASSERT_TRUE(at && patch_at(surface, *at)) << where;
+  const SurfacePoint point = evaluate(surface, *at);
+  const Point3 placed = pose.apply(point.position);
+  // Parameters are rounded to 2^-51; around many faces points move by more than parameters do.
+  const double rounding = 1e-11 * (surface.size() + max_abs(pose.offset()));
+  for (std::size_t k = 0; k < 3; ++k) {
+    ASSERT_NEAR(placed[k], witness[k], error + 2 * point.error + rounding)
+        << where << " face " << at->owner << " corner " << at->corner << " u " << at->u << " v " << at->v;
+  }
+}
+
+struct Counts {
+  std::map<Verdict, std::size_t> verdicts;
+  std::size_t witnesses = 0, close = 0, inner = 0;
+};
+
+// One question by workspaces of its own, so that nothing is left of the one before.
+Collision ask(const SurfaceBvh& a, const SurfaceBvh& b, const std::array<Motion, 2>& poses,
+              CollideOptions options, WitnessKind kind) {
+  SurfaceWorkspace one(a), other(b);
+  options.witness = kind;
+  return collide({a, one, poses[0]}, {b, other, poses[1]}, options);
+}
+
+void expect_one_verdict(const SurfaceBvh& a, const SurfaceBvh& b, const std::array<Motion, 2>& poses,
+                        const CollideOptions& options, const std::string& where, Counts& counts) {
+  const Collision exact = ask(a, b, poses, options, WitnessKind::exact),
+                  near = ask(a, b, poses, options, WitnessKind::approximate),
+                  none = ask(a, b, poses, options, WitnessKind::none);
+  ++counts.verdicts[exact.verdict];
+  counts.inner += exact.inner.has_value();
+  for (const Collision* const other : {&near, &none}) {
+    EXPECT_EQ(other->verdict, exact.verdict) << where;
+    EXPECT_EQ(other->inner, exact.inner) << where;
+    EXPECT_EQ(other->distance.lower, exact.distance.lower) << where;
+    EXPECT_EQ(other->stats.splits, exact.stats.splits) << where;
+    EXPECT_EQ(other->stats.box_tests, exact.stats.box_tests) << where;
+    EXPECT_EQ(other->stats.triangle_tests, exact.stats.triangle_tests) << where;
+    // Bounds of one distance.
+    EXPECT_LE(other->distance.lower, exact.distance.upper) << where;
+    EXPECT_LE(exact.distance.lower, other->distance.upper) << where;
+    EXPECT_EQ(std::isfinite(other->distance.upper), std::isfinite(exact.distance.upper)) << where;
+    if (exact.verdict == Verdict::within) {
+      EXPECT_LE(other->distance.upper, (options.margin + *options.tolerance) * (1 + 1e-12)) << where;
+    }
+  }
+  EXPECT_EQ(near.distance.upper, none.distance.upper) << where;
+  EXPECT_LE(none.stats.evaluations, near.stats.evaluations) << where;
+  EXPECT_LE(near.stats.evaluations, exact.stats.evaluations) << where;
+  EXPECT_FALSE(none.witness || none.at[0] || none.at[1] || none.witness_error != 0) << where;
+  EXPECT_EQ(near.witness.has_value(), exact.witness.has_value()) << where;
+  if (!near.witness || !exact.witness || near.inner) return;
+  ++counts.witnesses;
+  counts.close += near.witness_error < 1e-3 * a.surface().size();
+  for (std::size_t s = 0; s < 2; ++s) {
+    const LimitSurface& surface = (s == 0 ? a : b).surface();
+    expect_near_limit(surface, poses[s], near.at[s], (*near.witness)[s], near.witness_error,
+                      where + ", near");
+    expect_near_limit(surface, poses[s], exact.at[s], (*exact.witness)[s], exact.witness_error, where);
+  }
+  // The limit points that they stand for are no farther apart than the upper bound.
+  if (near.verdict != Verdict::intersecting) {
+    const Point3 p = poses[0].apply(evaluate(a.surface(), *near.at[0]).position),
+                 q = poses[1].apply(evaluate(b.surface(), *near.at[1]).position);
+    EXPECT_LE(distance(p, q), near.distance.upper + 1e-10 * (a.surface().size() + b.surface().size()))
+        << where;
+  }
+}
+
+TEST(witness_kinds, leave_the_verdict_as_it_is) {
+  std::mt19937_64 random(91);
+  Counts counts;
+  testing::for_each_surface(91, [&](const NamedSurface& s) {
+    std::size_t patches = 0;
+    for (std::size_t p = 0; p < s.surface.patch_count(); ++p) patches += s.surface.has_patch(PatchId(p));
+    if (patches == 0) return;
+    const BoundMethod method = random() % 4 == 0 ? BoundMethod::table : BoundMethod::rows;
+    const SurfaceBvh a(s.surface, {.method = method, .threads = 1}),
+        b(s.surface, {.tight = true, .threads = 1});
+    for (int trial = 0; trial < 5; ++trial) {
+      const double size = s.surface.size(), far = size * std::array{0.05, 0.4, 1.0}[random() % 3];
+      std::array<Motion, 2> poses;
+      for (Motion& pose : poses) {
+        pose = testing::random_placement(random, testing::random_vector(random, far));
+      }
+      CollideOptions options;
+      options.tolerance = size * std::array{0.0, 1e-9, 1e-3, 0.05}[random() % 4];
+      options.margin = size * (random() % 2 == 0 ? 0 : 0.1 * testing::unit(random));
+      options.budget = std::array{3u, 300u, 3000u}[random() % 3];
+      options.prove_contact = random() % 2 == 0;
+      options.measure = random() % 2 == 0;
+      expect_one_verdict(a, b, poses, options, s.name + ", trial " + std::to_string(trial), counts);
+    }
+  });
+  std::printf("  %zu separated, %zu within, %zu intersecting, %zu undecided; %zu witnesses, %zu close\n",
+              counts.verdicts[Verdict::separated], counts.verdicts[Verdict::within],
+              counts.verdicts[Verdict::intersecting], counts.verdicts[Verdict::undecided], counts.witnesses,
+              counts.close);
+  for (const auto verdict :
+       {Verdict::separated, Verdict::within, Verdict::intersecting, Verdict::undecided}) {
+    EXPECT_GT(counts.verdicts[verdict], 50u) << name_of(verdict);
+  }
+  EXPECT_GT(counts.witnesses, 300u);
+  EXPECT_GT(counts.close, counts.witnesses / 8);
+}
+
+// Solids, one in the other or not: a common point of both is a witness, too.
+TEST(witness_kinds, leave_the_verdict_about_solids_as_it_is) {
+  std::mt19937_64 random(92);
+  Counts counts;
+  for (const Scheme scheme : {Scheme::loop, Scheme::catmark, Scheme::flat}) {
+    const oracle::TaggedMesh shape = oracle::meshes::triangulated(oracle::meshes::cube());
+    ControlMesh small = testing::control_mesh(shape);
+    for (Point3& p : small.points) p = {0.2 * p.x, 0.2 * p.y, 0.2 * p.z};
+    const LimitSurface outer(testing::control_mesh(shape), {scheme}, std::make_shared<BoundsCache>(), 1),
+        inner(small, {scheme}, std::make_shared<BoundsCache>(), 1);
+    const SurfaceBvh a(outer, {.threads = 1}), b(inner, {.threads = 1});
+    for (int trial = 0; trial < 200; ++trial) {
+      std::array<Motion, 2> poses;
+      for (Motion& pose : poses)
+        pose = testing::random_placement(random, testing::random_vector(random, 0.8));
+      CollideOptions options{.tolerance = 1e-6, .margin = 0};
+      options.solid = true;
+      options.measure = trial % 2 == 0;
+      options.prove_contact = trial % 4 < 2;
+      expect_one_verdict(a, b, poses, options, std::string(name_of(scheme)) + " " + std::to_string(trial),
+                         counts);
+    }
+  }
+  EXPECT_GT(counts.inner, 10u);
+  EXPECT_GT(counts.verdicts[Verdict::separated], 50u);
+  EXPECT_GT(counts.verdicts[Verdict::intersecting], 50u);
+}
+
+}  // namespace
+}  // namespace snug
