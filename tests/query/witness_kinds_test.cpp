@@ -55,7 +55,10 @@ void expect_one_verdict(const SurfaceBvh& a, const SurfaceBvh& b, const std::arr
   for (const Collision* const other : {&near, &none}) {
     EXPECT_EQ(other->verdict, exact.verdict) << where;
     EXPECT_EQ(other->inner, exact.inner) << where;
-    EXPECT_EQ(other->distance.lower, exact.distance.lower) << where;
+    // Whether there is more to measure depends on the upper end, which depends on the witness.
+    if (!options.measure) {
+      EXPECT_EQ(other->distance.lower, exact.distance.lower) << where;
+    }
     EXPECT_EQ(other->stats.splits, exact.stats.splits) << where;
     EXPECT_EQ(other->stats.box_tests, exact.stats.box_tests) << where;
     EXPECT_EQ(other->stats.triangle_tests, exact.stats.triangle_tests) << where;
@@ -109,7 +112,7 @@ TEST(witness_kinds, leave_the_verdict_as_it_is) {
       CollideOptions options;
       options.tolerance = size * std::array{0.0, 1e-9, 1e-3, 0.05}[random() % 4];
       options.margin = size * (random() % 2 == 0 ? 0 : 0.1 * testing::unit(random));
-      options.budget = std::array{3u, 300u, 3000u}[random() % 3];
+      options.budget = std::array{3u, 30u, 3000u}[random() % 3];
       options.prove_contact = random() % 2 == 0;
       options.measure = random() % 2 == 0;
       expect_one_verdict(a, b, poses, options, s.name + ", trial " + std::to_string(trial), counts);
