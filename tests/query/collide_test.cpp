@@ -230,7 +230,7 @@ TEST(collide, planes_between_quadratics_hold_for_directions_of_any_length) {
   const PlacedBvh a{pair.model_a, pair.scratch_a, {}}, b{pair.model_b, pair.scratch_b, moved(3, 0.2, 0.1)};
   PairFrames frames(a, b);
   SearchStats stats;
-  PairWalk walk(frames, stats, WideNode::Gaps::wide);
+  PairWalk walk(frames, stats, WideNode::Gaps::lines);
   PiecePairs pieces(frames, stats);
   std::vector<NodePair> pairs{walk.roots()};
   while (!pairs.back().bounded()) {
