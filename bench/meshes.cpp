@@ -1,5 +1,7 @@
 #include "meshes.h"
 
+#include <snug/query/subdivide.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -242,6 +244,20 @@ ControlMesh character_mesh(std::size_t faces, std::size_t creases) {
     }
   }
   return mesh;
+}
+
+ControlMesh panelled_mesh(std::size_t faces) {
+  constexpr unsigned levels = 2;
+  ControlMesh mesh = irregular_mesh(faces / 12);
+  std::mt19937_64 random(9);
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto corners = mesh.face(FaceId(f));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const VertexId a = corners[k], b = corners[(k + 1) % 3];
+      if (a < b && random() % 10 == 0) mesh.tags.creases.push_back({a, b, 6.0 + levels});
+    }
+  }
+  return subdivide(std::move(mesh), {Scheme::catmark}, levels, false);
 }
 
 ControlMesh many_sharpnesses(std::size_t count) {

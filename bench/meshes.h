@@ -24,6 +24,11 @@ namespace snug::bench {
 /// Guarantee: the same mesh for the same arguments on every machine.
 [[nodiscard]] ControlMesh character_mesh(std::size_t faces, std::size_t creases);
 
+/// A torus of about `faces` quads with panels as of a car: extraordinary vertices, a tenth of whose network of
+/// edges is creased, of sharpness 6, with ends and crossings there.
+/// Guarantee: the same mesh for the same arguments on every machine.
+[[nodiscard]] ControlMesh panelled_mesh(std::size_t faces);
+
 /// A torus of quads with `count` creased edges, no two of the same sharpness, from 0 to 4.
 [[nodiscard]] ControlMesh many_sharpnesses(std::size_t count);
 

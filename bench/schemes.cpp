@@ -14,6 +14,9 @@
 #include "meshes.h"
 #include "runner.h"
 #include "subject.h"
+#ifdef SNUG_BENCH_OPENSUBDIV
+#include "peer_opensubdiv.h"
+#endif
 
 namespace {
 
@@ -51,6 +54,28 @@ void bench_cold(const std::string& title, const ControlMesh& mesh, const Options
   group.run();
 }
 
+// Beside Bfr, which approximates what is irregular; its set-up kept, and with it.
+void bench_creases(const std::string& title, const ControlMesh& mesh, const Options& options) {
+  const auto count = static_cast<double>(mesh.face_count());
+  Group group(title + ", " + std::to_string(mesh.face_count()) + " faces", "face", options);
+  const LimitSurface surface(mesh, catmark(), std::make_shared<BoundsCache>(), 1);
+  BatchBounds bounds(surface, {}, 1);
+  std::vector<OffsetTriangle> out;
+#ifdef SNUG_BENCH_OPENSUBDIV
+  const std::vector<PatchId> faces = all_faces(mesh.face_count());
+  const OsdMesh osd(mesh);
+  const OsdSurfaces kept(osd, faces, true);
+  group.add("Bfr: surfaces and boxes (no proof)", count, [&] {
+    const OsdMesh fresh(mesh);
+    return OsdSurfaces(fresh, faces, true).box_all();
+  });
+  group.add("Bfr: boxes alone", count, [&] { return kept.box_all(); });
+#endif
+  group.add("snug: kinds, rows and bounds, cold", count, [&] { return cold(mesh); });
+  group.add("snug: bounds alone", count, [&] { return update(bounds, mesh.points, out); });
+  group.run();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -65,6 +90,8 @@ int main(int argc, char** argv) {
               [&] { return update(bounds, mesh.points, out); });
     group.run();
   }
+  bench_creases("panels", panelled_mesh(options.size(10'000, 1'000)), options);
+  bench_creases("character", character_mesh(options.size(10'000, 1'000), options.size(7'000, 700)), options);
   bench_cold("character", character_mesh(options.size(10'000, 1'000), 7'000), options);
   bench_cold("all sharpnesses different", many_sharpnesses(options.size(10'000, 300)), options);
   return 0;

@@ -43,17 +43,25 @@ std::vector<Primvar> primvars(std::span<const Point3> points) {
 }
 
 std::unique_ptr<Far::TopologyRefiner> make_refiner(const ControlMesh& mesh) {
-  std::vector<int> sizes, indices;
+  std::vector<int> sizes, indices, creased;
+  std::vector<float> sharpness;
   for (std::size_t f = 0; f < mesh.face_count(); ++f)
     sizes.push_back(static_cast<int>(mesh.face(FaceId(f)).size()));
   const bool triangles = std::all_of(sizes.begin(), sizes.end(), [](int size) { return size == 3; });
   indices.reserve(mesh.face_vertices.size());
   for (const VertexId v : mesh.face_vertices) indices.push_back(static_cast<int>(v.value()));
+  for (const CreaseTag& crease : mesh.tags.creases) {
+    creased.insert(creased.end(), {static_cast<int>(crease.a.value()), static_cast<int>(crease.b.value())});
+    sharpness.push_back(static_cast<float>(crease.sharpness));
+  }
   Far::TopologyDescriptor description;
   description.numVertices = static_cast<int>(mesh.vertex_count());
   description.numFaces = static_cast<int>(mesh.face_count());
   description.numVertsPerFace = sizes.data();
   description.vertIndicesPerFace = indices.data();
+  description.numCreases = static_cast<int>(sharpness.size());
+  description.creaseVertexIndexPairs = creased.data();
+  description.creaseWeights = sharpness.data();
   Sdc::Options options;
   options.SetVtxBoundaryInterpolation(Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
   using Factory = Far::TopologyRefinerFactory<Far::TopologyDescriptor>;

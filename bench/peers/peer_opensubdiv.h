@@ -14,8 +14,8 @@
 
 namespace snug::bench {
 
-/// A mesh as OpenSubdiv's Far::TopologyRefiner: Loop if all faces are triangles, else Catmull-Clark; boundary
-/// edge and corner, no tags. One thread.
+/// A mesh as OpenSubdiv's Far::TopologyRefiner, with its creases: Loop if all faces are triangles, else
+/// Catmull-Clark; boundary edge and corner. One thread.
 class OsdMesh {
  public:
   explicit OsdMesh(const ControlMesh& mesh);
