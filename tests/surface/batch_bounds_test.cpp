@@ -51,6 +51,38 @@ TEST(batch_bounds, are_those_of_single_patches) {
   }
 }
 
+// Patches with extraordinary corners whose kind many share come in batches, too, with boxes around their tips
+// in the frame of the patch, where single ones are refined.
+TEST(batch_bounds, of_irregular_patches_are_at_most_a_little_wider_than_of_single_ones) {
+  std::mt19937_64 random(7);
+  const oracle::TwinMesh twin = oracle::meshes::disturbed(oracle::meshes::grid(60, 60), 300, 0.2, random);
+  const LimitSurface surface = testing::surface_of(twin);
+  BatchBounds bounds(surface);
+  std::vector<OffsetTriangle> out(bounds.patches().size());
+  bounds.update(surface.mesh().points, out);
+  std::vector<const OffsetTriangle*> of(surface.face_count(), nullptr);
+  HullPoints scratch;
+  std::size_t irregular = 0, same = 0;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const PatchId f = bounds.patches()[i];
+    of[f.index()] = &out[i];
+    if (surface.kind(f).polynomial()) continue;
+    const OffsetTriangle single = unscaled(make_piece(surface.library(), f, surface.patch(f), scratch).offset,
+                                           surface.scale().inverse());
+    EXPECT_LE(out[i].radius, 1.07 * single.radius + 1e-13 * surface.size());
+    EXPECT_GE(out[i].radius, 0.9 * single.radius - 1e-13 * surface.size());
+    same += out[i].radius == single.radius;
+    ++irregular;
+  }
+  EXPECT_GT(irregular, 1000u);
+  EXPECT_LT(same, irregular / 2);  // the batch was there
+  for (const oracle::LimitSample& s : oracle::sample_uniform(twin, 3)) {
+    if (!of[s.face]) continue;
+    const testing::Extended p{s.position[0], s.position[1], s.position[2]};
+    ASSERT_TRUE(testing::within_radius(p, of[s.face]->base, of[s.face]->radius + 2 * s.error)) << s.face;
+  }
+}
+
 TEST(batch_bounds, cover_the_limit_points_at_every_scale_and_place) {
   for (const double size : {1e-300, 1e-290, 1e-5, 1.0, 1e290}) {
     std::size_t count = 0;

@@ -68,6 +68,21 @@ HWY_INLINE void scatter_lanes(const double* lane, std::size_t lanes, std::span<O
   }
 }
 
+/// The same from vectors: three corners, radii, roundings.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void hand_out(D d, const Vec3<V>* corner, V radius, V rounding, std::span<OffsetTriangle> out) {
+  const std::size_t lanes = hn::Lanes(d);
+  HWY_ALIGN double lane[11 * HWY_MAX_BYTES / sizeof(double)];
+  for (std::size_t k = 0; k < 3; ++k) {
+    hn::Store(corner[k].x, d, lane + 3 * k * lanes);
+    hn::Store(corner[k].y, d, lane + (3 * k + 1) * lanes);
+    hn::Store(corner[k].z, d, lane + (3 * k + 2) * lanes);
+  }
+  hn::Store(radius, d, lane + 9 * lanes);
+  hn::Store(rounding, d, lane + 10 * lanes);
+  scatter_lanes(lane, lanes, out);
+}
+
 }  // namespace snug::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -29,12 +29,20 @@ class TipTable {
   [[nodiscard]] TipBoxes boxes(const Patch& patch) const;
   [[nodiscard]] std::size_t bytes() const { return sizeof(*this) + columns_.size() * sizeof(Column); }
 
- private:
-  // A bounded function: the place of its control point, and the planes at the corners; the fourth is nothing.
+  /// A bounded function: the place of its control point, and the planes at the corners; the fourth is nothing.
   struct Column {
     double u, v;
     std::array<double, 4> middle, half;
   };
+  [[nodiscard]] const std::array<LayoutPoint, 3>& triangle() const { return triangle_; }
+  [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
+  [[nodiscard]] std::size_t first_bounded() const { return first_bounded_; }
+  /// What boxes are off by: times the error of control points, times the largest coordinate, and beside it.
+  [[nodiscard]] double error_of_points() const { return error_of_points_; }
+  [[nodiscard]] double error_of_largest() const { return error_of_largest_; }
+  [[nodiscard]] double error_at_least() const { return error_at_least_; }
+
+ private:
   std::array<LayoutPoint, 3> triangle_;
   std::vector<Column> columns_;
   std::size_t first_bounded_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <snug/bounds/enclosure.h>
+#include <snug/bounds/rows_kernel.h>
 #include <snug/surface.h>
 #include <snug/surface/limit_surface.h>
 
@@ -30,8 +31,9 @@ class BatchBounds {
     const Kind* kind;
     const Kind* polygon;  // none: from control points
     std::uint32_t part;
-    const BoundTable* table;                 // none: from rows
-    std::size_t first_place, first_control;  // in places_ and control_
+    const BoundTable* table;                  // none: from rows
+    std::size_t first_place, first_control;   // in places_ and control_
+    std::vector<kernels::RowsWithTips> rows;  // of few levels, then of more; none: another way
   };
   // Patches [begin, end) of places_, all of one group: what one thread does at once.
   struct Chunk {
@@ -45,6 +47,8 @@ class BatchBounds {
   [[nodiscard]] static std::size_t control_count(const Group& group);
   void sort_by_kind(const LimitSurface& surface);
   void collect_control(const LimitSurface& surface);
+  void fit_by_rows(const Group& group, std::span<const VertexId> control,
+                   std::span<OffsetTriangle> answers) const;
   void fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTriangle> out) const;
 
   BoundsCache* library_;
