@@ -74,8 +74,15 @@ class Query {
   bool visit(Node node, double gap, NearestFirst<NodeGap>& open) {
     if (node.bounded()) {
       monitor_.checkpoint();
-      gap = std::max(gap, look_at(node));
-      if (gap >= bounds_.prune_distance() || !SurfaceWorkspace::can_open(node)) {
+      const PieceRecord& record = SurfaceWorkspace::record(node);
+      gap = std::max(gap, look_at(node, {record.base(node.boxes->origin()), record.radius()}));
+      const bool last = !SurfaceWorkspace::can_open(node);
+      if (last && gap < bounds_.prune_distance()) {
+        // Single precision is what is left of it.
+        thread_local HullPoints scratch;
+        gap = std::max(gap, look_at(node, workspace_.piece(node, scratch).offset));
+      }
+      if (gap >= bounds_.prune_distance() || last) {
         bounds_.prune(gap);
         return true;
       }
@@ -97,11 +104,9 @@ class Query {
   }
 
   // A lower bound of the distance of a piece; evaluates the limit point where its base triangle is nearest.
-  double look_at(const Node& node) {
-    const PieceRecord& record = SurfaceWorkspace::record(node);
-    const NearestTriangles near = nearest({to_, to_, to_}, record.base(node.boxes->origin()));
-    double gap =
-        rounded_down(near.certain_distance - enlarged(record.radius() + spatial_error(point_error_)));
+  double look_at(const Node& node, const OffsetTriangle& offset) {
+    const NearestTriangles near = nearest({to_, to_, to_}, offset.base);
+    double gap = rounded_down(near.certain_distance - enlarged(offset.radius + spatial_error(point_error_)));
     if (near.certain_distance < bounds_.upper()) {
       const TriangleParameter at = clamped(near.on_b);
       const Patch& patch = workspace_.patch(node);

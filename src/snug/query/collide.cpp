@@ -47,7 +47,8 @@ class Query {
       stack.pop_back();
       if (pair.bounded()) {
         monitor_.checkpoint();
-        if (!look_at(pair)) continue;
+        if (!look_at(pair, pieces_.nearest(pair))) continue;
+        if (PiecePairs::at_single_precision(pair) && !look_at(pair, pieces_.nearest_in_double(pair))) continue;
       }
       const PairWalk::Opening opening = walk_.opening(pair);
       if (opening == PairWalk::Opening::none) {
@@ -76,8 +77,7 @@ class Query {
   }
 
   // Rules (a) and (b). False if the pair is done with.
-  bool look_at(const NodePair& pair) {
-    const PiecePair pieces = pieces_.nearest(pair);
+  bool look_at(const NodePair& pair, const PiecePair& pieces) {
     const double gap = pieces.gap > margin_
                            ? pieces.gap
                            : std::max(pieces.gap, pieces_.gap_along(pair.nodes, pieces.between));

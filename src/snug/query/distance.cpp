@@ -43,7 +43,6 @@ class Query {
     thread_local std::vector<NodePair> stack;
     stack.clear();
     if (!cut_by_plane(stack)) stack.assign(1, walk_.roots());
-    bool exhausted = false;
     while (!stack.empty() && !bounds_.done()) {
       const NodePair pair = stack.back();
       stack.pop_back();
@@ -51,11 +50,12 @@ class Query {
       if (gap >= bounds_.prune_distance()) {
         bounds_.prune(gap);
       } else if (!visit(pair, stack)) {
-        exhausted = true;
+        bounds_.prune(gap);
         break;
       }
     }
-    if (exhausted) bounds_.prune(0);
+    // What was not looked at, since the bounds are near enough or the budget has ended.
+    for (const NodePair& pair : stack) bounds_.prune(std::max(static_cast<double>(pair.gap), 0.0));
     return result();
   }
 
@@ -109,7 +109,13 @@ class Query {
       gap = std::max(gap, gap_of_pieces(pair));
     }
     const PairWalk::Opening opening = walk_.opening(pair);
-    if (opening == PairWalk::Opening::none || gap >= bounds_.prune_distance()) {
+    if (gap < bounds_.prune_distance() && pair.bounded() && PiecePairs::at_single_precision(pair)) {
+      const PiecePair pieces = pieces_.nearest_in_double(pair);
+      take(PiecePairs::approximate_witness(pieces));
+      try_crossing(pair, pieces);
+      gap = std::max(gap, pieces.gap);
+    }
+    if (gap >= bounds_.prune_distance() || opening == PairWalk::Opening::none) {
       bounds_.prune(gap);
       return true;
     }
@@ -133,15 +139,20 @@ class Query {
   void improve(const NodePair& pair, PiecePair pieces) {
     if (length(pieces.between) < bounds_.upper() + pieces.error) {
       pieces_.approach(pieces);
-      if (length(pieces.between) < bounds_.upper() - least_gain * bounds_.precision()) {
-        const Witness witness = pieces_.witness(pieces);
-        if (witness.distance < bounds_.upper()) {
-          witness_ = witness;
-          bounds_.reduce_upper(witness.distance);
-          pieces_.look_along(witness.points[1] - witness.points[0]);
-        }
-      }
+      const double gain = bounds_.upper() == INFINITY ? 0 : least_gain * bounds_.precision();
+      if (length(pieces.between) < bounds_.upper() - gain) take(pieces_.witness(pieces));
     }
+    try_crossing(pair, pieces);
+  }
+
+  void take(const Witness& witness) {
+    if (!(witness.distance < bounds_.upper())) return;
+    witness_ = witness;
+    bounds_.reduce_upper(witness.distance);
+    pieces_.look_along(witness.points[1] - witness.points[0]);
+  }
+
+  void try_crossing(const NodePair& pair, const PiecePair& pieces) {
     const double radii = pieces.radii[0] + pieces.radii[1];
     const bool flat = radii <= static_cast<double>(std::min(walk_.size(pair, 0), walk_.size(pair, 1))) / 16;
     if (pieces.near.certain_distance == 0 && flat && attempts_ < max_attempts) {

@@ -9,39 +9,56 @@
 
 namespace snug {
 
-double PiecePairs::radii(const NodePair& pair) const {
-  double sum = 0;
-  for (std::size_t s = 0; s < 2; ++s) {
-    sum += frames_.frame(s).growth() * SurfaceWorkspace::record(pair.nodes[s]).radius();
-  }
-  return sum;
-}
-
-double PiecePairs::errors(const NodePair& pair) const {
-  double sum = 0;
-  for (std::size_t s = 0; s < 2; ++s) {
-    sum += frames_.frame(s).growth() * SurfaceWorkspace::record(pair.nodes[s]).error();
-  }
-  return sum;
-}
-
 PiecePair PiecePairs::nearest(const NodePair& pair) {
+  std::array<OffsetTriangle, 2> offsets;
+  for (std::size_t s = 0; s < 2; ++s) {
+    const PieceRecord& record = SurfaceWorkspace::record(pair.nodes[s]);
+    offsets[s] = {record.base(pair.nodes[s].boxes->origin()), record.radius()};
+  }
+  PiecePair pieces = nearest(pair, offsets);
+  set_points(pieces);
+  return pieces;
+}
+
+bool PiecePairs::at_single_precision(const NodePair& pair) {
+  const auto& [a, b] = pair.nodes;
+  const bool can_a = SurfaceWorkspace::can_open(a), can_b = SurfaceWorkspace::can_open(b);
+  if (can_a == can_b) return !can_a;
+  const double fixed = SurfaceWorkspace::record(can_a ? b : a).radius(),
+               other = SurfaceWorkspace::record(can_a ? a : b).radius();
+  return other <= fixed;
+}
+
+PiecePair PiecePairs::nearest_in_double(const NodePair& pair) {
+  thread_local HullPoints scratch;
+  std::array<OffsetTriangle, 2> offsets;
+  for (std::size_t s = 0; s < 2; ++s) {
+    offsets[s] = frames_.workspace(s).piece(pair.nodes[s], scratch).offset;
+  }
+  PiecePair pieces = nearest(pair, offsets);
+  const Witness exact = witness(pieces);
+  pieces.points = exact.points;
+  pieces.between = exact.points[1] - exact.points[0];
+  pieces.error = exact.error;
+  pieces.near_distance = exact.distance;
+  return pieces;
+}
+
+PiecePair PiecePairs::nearest(const NodePair& pair, const std::array<OffsetTriangle, 2>& offsets) {
   ++stats_.triangle_tests;
   PiecePair pieces;
   pieces.nodes = pair.nodes;
   for (std::size_t s = 0; s < 2; ++s) {
     const PlacedFrame& frame = frames_.frame(s);
-    const PieceRecord& record = SurfaceWorkspace::record(pair.nodes[s]);
-    const Triangle base = record.base(pair.nodes[s].boxes->origin());
-    for (std::size_t k = 0; k < 3; ++k) pieces.base[s][k] = frame.apply(base[k]);
-    pieces.radii[s] = enlarged(record.radius() * frame.growth() + spatial_error(frame.largest_apply_error()));
+    for (std::size_t k = 0; k < 3; ++k) pieces.base[s][k] = frame.apply(offsets[s].base[k]);
+    pieces.radii[s] =
+        enlarged(offsets[s].radius * frame.growth() + spatial_error(frame.largest_apply_error()));
   }
   pieces.near = snug::nearest(pieces.base[0], pieces.base[1]);
   const double gap = rounded_down(pieces.near.certain_distance - enlarged(pieces.radii[0] + pieces.radii[1]));
   pieces.gap = std::max({gap, static_cast<double>(pair.gap), 0.0});
 
   pieces.at = {clamped(pieces.near.on_a), clamped(pieces.near.on_b)};
-  set_points(pieces);
   return pieces;
 }
 

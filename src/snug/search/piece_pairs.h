@@ -43,14 +43,16 @@ class PiecePairs {
  public:
   PiecePairs(PairFrames& frames, SearchStats& stats) : frames_(frames), stats_(stats) {}
 
-  /// Sum of the two radii, placed.
+  /// Where the base triangles of two pieces are nearest, with points of their quadratics there.
   /// Requires:  pair.bounded(), here and below.
-  [[nodiscard]] double radii(const NodePair& pair) const;
   [[nodiscard]] PiecePair nearest(const NodePair& pair);
+  /// Is what single precision moved all that is left to gain? One piece then cannot be split, and the other one
+  /// is known as well.
+  [[nodiscard]] static bool at_single_precision(const NodePair& pair);
+  /// The same as nearest() from offset triangles in double precision, which are made anew, with limit points.
+  [[nodiscard]] PiecePair nearest_in_double(const NodePair& pair);
   /// Moves the points on the quadratics to where these are about nearest.
   void approach(PiecePair& pieces) const;
-  /// Sum of the errors of the two quadratics, placed.
-  [[nodiscard]] double errors(const NodePair& pair) const;
 
   /// Lower bound of the distance of two pieces: that of the planes across `direction` that hold their
   /// quadratics apart, less what these err. The best direction is that from the nearest point of A to that of
@@ -81,6 +83,7 @@ class PiecePairs {
   }
 
  private:
+  [[nodiscard]] PiecePair nearest(const NodePair& pair, const std::array<OffsetTriangle, 2>& offsets);
   [[nodiscard]] Point3 quadratic_point(const PiecePair& pieces, std::size_t side, TriangleParameter at) const;
   // Takes points of the quadratics at pieces.at.
   void set_points(PiecePair& pieces) const;

@@ -149,10 +149,10 @@ class Winding {
   // Lower bound of the distance of a piece, by its offset triangle: of one that cannot be split this is much
   // nearer to it than the set around it.
   [[nodiscard]] double gap_of(const Node& node) const {
-    const PieceRecord& record = SurfaceWorkspace::record(node);
-    const Triangle base = record.base(node.boxes->origin());
-    const double apart = nearest({point_, point_, point_}, base).certain_distance;
-    return rounded_down(apart - enlarged(record.radius() + spatial_error(error_)));
+    thread_local HullPoints scratch;
+    const OffsetTriangle offset = workspace_.piece(node, scratch).offset;
+    const double apart = nearest({point_, point_, point_}, offset.base).certain_distance;
+    return rounded_down(apart - enlarged(offset.radius + spatial_error(error_)));
   }
 
   // The part of the ray that matters, as a set.
