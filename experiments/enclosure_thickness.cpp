@@ -47,6 +47,7 @@ struct Measured {
 Measured measure(BoundsCache& library, const Patch& patch, int steps, HullPoints& scratch) {
   const std::array<Vector3, 3> corners = limit_corners(patch);
   hull_points(library, patch, scratch);
+  const OffsetTriangle offset = offset_triangle(library, scratch, corners);  // refines tips
   const Prism prism = kobbelt_prism(scratch, corners);
   const Vector3 across = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const Vector3 normal = (1 / length(across)) * across;
@@ -54,7 +55,6 @@ Measured measure(BoundsCache& library, const Patch& patch, int steps, HullPoints
   for (const Triangle& side : {prism.lower, prism.upper}) {
     for (const Point3& p : side) of_prism.add(p, 0);
   }
-  const OffsetTriangle offset = offset_triangle(library, scratch, corners);
   for (const Point3& p : offset.base) of_offset.add(p, offset.radius);
   for (const Box3& box : interval_simplex<3>(scratch, corners).corner) of_interval.add(box);
   of_box.add(control_box(patch, scratch));
