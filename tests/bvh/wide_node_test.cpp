@@ -1,6 +1,7 @@
 #include <snug/bvh/wide_node.h>
 
 #include <gtest/gtest.h>
+#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <testing/instruction_sets.h>
 #include <testing/placed_points.h>
@@ -236,6 +237,39 @@ TEST(wide_node, distances_to_a_placed_box_never_exceed_those_of_the_contents) {
   EXPECT_GT(gaps, total / 4);
 }
 
+TEST(wide_node, extents_are_at_least_those_of_the_contents) {
+  std::mt19937_64 random(31);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::size_t close = 0, total = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    const TwoNodes two(random);
+    for (std::size_t s = 0; s < 2; ++s) {
+      Vector3 w{unit(random), unit(random), unit(random)};
+      if (random() % 4 == 0) w[random() % 3] *= 1e-30;
+      if (random() % 4 == 0) w = two.boxes[s][0].axes[random() % 3];
+      w = normalized(w);
+      WideNode::Distances found;
+      two.nodes[s].extents(w, found);
+      for (std::size_t i = 0; i < two.clouds[s].size(); ++i) {
+        long double most = -INFINITY, size = 0;
+        for (const Point3& p : two.clouds[s][i]) {
+          long double height = 0;
+          for (std::size_t k = 0; k < 3; ++k) {
+            const long double x = static_cast<long double>(p[k]) - two.nodes[s].origin()[k];
+            height += w[k] * x;
+            size = std::max(size, std::fabs(x));
+          }
+          most = std::max(most, height);
+        }
+        ASSERT_GE(static_cast<long double>(found[i]), most) << trial;
+        ++total;
+        close += found[i] - most < 0.5L * size;
+      }
+    }
+  }
+  EXPECT_GT(close, total / 4);
+}
+
 TEST(wide_node, distances_are_the_same_on_every_instruction_set) {
   std::mt19937_64 random(28);
   const testing::EachInstructionSet sets;
@@ -258,6 +292,8 @@ TEST(wide_node, distances_are_the_same_on_every_instruction_set) {
       }
       add(two.nodes[0].distances(seen, two.view.frame.slack, two.prune_distance, one));
       two.nodes[0].distances(two.clouds[0][0][0] + Vector3{0.1, 0.2, 0.3}, 0, one);
+      all.insert(all.end(), one.begin(), one.end());
+      two.nodes[0].extents({0.6, 0, 0.8}, one);
       all.insert(all.end(), one.begin(), one.end());
       if (!first) first = all;
       EXPECT_EQ(all, *first) << name << ' ' << trial;

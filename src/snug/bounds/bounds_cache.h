@@ -47,7 +47,8 @@ class BoundsCache {
   /// Kinds whose rows are kept, and the memory of all rows and tables that are.
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
   [[nodiscard]] std::size_t bytes() const {
-    return rows_.bytes() + crease_rows_.bytes() + level_rows_.bytes() + tables_.bytes() + tip_tables_.bytes() + quadratics_.bytes();
+    return rows_.bytes() + crease_rows_.bytes() + level_rows_.bytes() + tables_.bytes() +
+           tip_tables_.bytes() + quadratics_.bytes();
   }
 
  private:

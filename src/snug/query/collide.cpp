@@ -48,7 +48,8 @@ class Query {
       if (pair.bounded()) {
         monitor_.checkpoint();
         if (!look_at(pair, pieces_.nearest(pair))) continue;
-        if (PiecePairs::at_single_precision(pair) && !look_at(pair, pieces_.nearest_in_double(pair))) continue;
+        if (PiecePairs::at_single_precision(pair) && !look_at(pair, pieces_.nearest_in_double(pair)))
+          continue;
       }
       const PairWalk::Opening opening = walk_.opening(pair);
       if (opening == PairWalk::Opening::none) {
