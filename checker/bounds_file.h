@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,17 +42,55 @@ struct StoredTable {
 /// The first control point that a table has planes of: Loop's corners need none.
 [[nodiscard]] constexpr std::size_t first_bounded(Scheme scheme) { return scheme == Scheme::loop ? 3 : 0; }
 
-struct StoredKind {
-  Scheme scheme = Scheme::loop;
-  Key key;
+struct StoredRows {
   std::uint32_t rows = 0, controls = 0;
   double entry_error = 0, abs_sum = 0;
   std::vector<double> weights;  // [control][row]
-  std::vector<StoredTable> tables;
   [[nodiscard]] double& weight(std::size_t row, std::size_t control) { return weights[control * rows + row]; }
   [[nodiscard]] double weight(std::size_t row, std::size_t control) const {
     return weights[control * rows + row];
   }
+};
+
+/// Weights of the Bezier points of a quadratic over the patch: corners, then middles of the edges 01, 12, 20.
+using SixWeights = std::array<double, 6>;
+
+/// Rows from `first` on that are the control points of a piece, a patch of kind `key`; and the Bezier points
+/// of the quadratic over that piece.
+struct StoredNet {
+  Key key;
+  std::uint64_t first = 0;
+  std::array<SixWeights, 6> restriction{};
+};
+
+/// Rows by which a patch and a quadratic are compared: the first ones are Bezier points of pieces, of which
+/// the quadratic's are stored, too.
+struct StoredComparison : StoredRows {
+  std::vector<SixWeights> quadratic;
+  std::vector<StoredNet> nets;
+};
+
+/// Places of control points in the plane, upper bounds of basis functions, and corners of a polygon: where
+/// limit points of the places are less their parameters, up to an error a coordinate.
+struct StoredFrame {
+  std::vector<std::array<double, 2>> layout;
+  std::vector<double> largest;
+  double offset_error = 0;
+  std::vector<std::array<double, 2>> offsets;
+};
+
+/// What quadratic triangles near patches rest on.
+struct StoredQuadratics {
+  std::vector<SixWeights> fit;  // of each control point; nothing rests on them
+  std::array<StoredComparison, 2> comparisons;
+  std::optional<StoredFrame> frame;
+};
+
+struct StoredKind : StoredRows {
+  Scheme scheme = Scheme::loop;
+  Key key;
+  std::vector<StoredTable> tables;
+  std::optional<StoredQuadratics> quadratics;
 };
 
 struct BoundsFile {
@@ -59,7 +98,7 @@ struct BoundsFile {
   std::vector<StoredKind> kinds;
 };
 
-/// Reads a file of the format in tablegen/file_writer.h, version 4. Any bytes may come.
+/// Reads a file of the format in tablegen/file_writer.h, version 5. Any bytes may come.
 /// Errors:    Rejected if it is not one: magic, version, sizes, hash, flags that are neither 0 nor 1, padding
 ///            that is not zero, numbers that are not finite.
 [[nodiscard]] BoundsFile parse(std::span<const std::byte> bytes);

@@ -16,13 +16,13 @@ namespace {
 using snug::KindKey;
 using snug::Scheme;
 
-template <class Values>
-bool same_bits(const Values& a, const Values& b) {
+template <class Values, class Others>
+bool same_bits(const Values& a, const Others& b) {
   const auto one = std::as_bytes(std::span(a)), two = std::as_bytes(std::span(b));
   return one.size() == two.size() && std::memcmp(one.data(), two.data(), one.size()) == 0;
 }
 
-void expect_same(const checker::StoredKind& made, const snug::BoundRows& on_demand) {
+void expect_same(const checker::StoredRows& made, const snug::BoundRows& on_demand) {
   ASSERT_EQ(made.rows, on_demand.count());
   ASSERT_EQ(made.controls, on_demand.control_count());
   EXPECT_TRUE(same_bits(std::array{made.entry_error, made.abs_sum},
@@ -46,8 +46,48 @@ void expect_same(const checker::StoredTable& made, const snug::BoundTable& on_de
   EXPECT_TRUE(same_bits(made.upper, on_demand.upper));
 }
 
+checker::Key key_of(const KindKey& key) {
+  checker::Key fans;
+  for (std::size_t i = 0; i < 4; ++i) {
+    fans[i] = {key.corners[i].before, key.corners[i].after, key.corners[i].closed, key.corners[i].sharp};
+  }
+  return fans;
+}
+
+void expect_same(const checker::StoredComparison& made, const snug::BoundRows& on_demand,
+                 const std::vector<snug::QuadraticRows::Restriction>& restrictions) {
+  expect_same(static_cast<const checker::StoredRows&>(made), on_demand);
+  ASSERT_EQ(made.quadratic.size(), on_demand.bezier_count());
+  for (std::size_t k = 0; k < 6; ++k) {
+    for (std::size_t r = 0; r < on_demand.bezier_count(); ++r) {
+      ASSERT_TRUE(same_bits(std::array{made.quadratic[r][k]}, std::array{on_demand.quadratic(k)[r]}));
+    }
+  }
+  ASSERT_EQ(made.nets.size(), on_demand.nets().size());
+  ASSERT_EQ(made.nets.size(), restrictions.size());
+  for (std::size_t i = 0; i < made.nets.size(); ++i) {
+    EXPECT_EQ(made.nets[i].key, key_of(on_demand.nets()[i].kind->key()));
+    EXPECT_EQ(made.nets[i].first, on_demand.nets()[i].begin);
+    EXPECT_TRUE(same_bits(made.nets[i].restriction, restrictions[i]));
+  }
+}
+
+void expect_same(const checker::StoredQuadratics& made, snug::BoundsCache& library, const snug::Kind& kind) {
+  const snug::QuadraticRows& on_demand = library.quadratic_rows(kind);
+  const std::span<const double> fit(on_demand.fit(), 6 * made.fit.size());
+  EXPECT_TRUE(same_bits(made.fit, fit));
+  expect_same(made.comparisons[0], library.rows(kind), on_demand.to_nets());
+  expect_same(made.comparisons[1], library.level_rows(kind), on_demand.to_level_nets());
+  ASSERT_EQ(made.frame.has_value(), !on_demand.layout().empty());
+  if (!made.frame) return;
+  EXPECT_TRUE(same_bits(made.frame->layout, on_demand.layout()));
+  EXPECT_TRUE(same_bits(made.frame->largest, on_demand.largest()));
+  EXPECT_TRUE(same_bits(made.frame->offsets, on_demand.offsets()));
+  EXPECT_TRUE(same_bits(std::array{made.frame->offset_error}, std::array{on_demand.offset_error()}));
+}
+
 // So what the checker proves is what surfaces are bounded with.
-TEST(tablegen, makes_bit_by_bit_the_rows_and_tables_made_on_demand) {
+TEST(tablegen, makes_bit_by_bit_the_rows_tables_and_quadratics_made_on_demand) {
   const std::vector<KindKey> keys = common_kinds();
   const checker::BoundsFile file = checker::parse(file_of(keys));
   ASSERT_EQ(file.kinds.size(), keys.size());
@@ -63,6 +103,8 @@ TEST(tablegen, makes_bit_by_bit_the_rows_and_tables_made_on_demand) {
     expect_same(made.tables[1],
                 snug::make_bound_table(kind, snug::make_bound_rows(kind), snug::tip_layout(kind)));
     expect_first(made, rows_first.rows(kind));
+    ASSERT_TRUE(made.quadratics);
+    expect_same(*made.quadratics, rows_first, kind);
   }
 }
 

@@ -33,6 +33,13 @@ class QuadraticRows {
   [[nodiscard]] const std::vector<Restriction>& to_level_nets() const { return to_level_nets_; }
   /// Weights of one control point in the six points of the quadratic.
   [[nodiscard]] const double* fit() const { return fit_.data(); }
+  /// What distance() rests on: places of control points, none where it is infinite; corners of a polygon that
+  /// holds, up to an error a coordinate, where limit points of the places are less their parameters; upper
+  /// bounds of basis functions' sizes.
+  [[nodiscard]] const std::vector<LayoutPoint>& layout() const { return layout_; }
+  [[nodiscard]] const std::vector<LayoutPoint>& offsets() const { return offsets_; }
+  [[nodiscard]] double offset_error() const { return offset_error_; }
+  [[nodiscard]] const std::vector<double>& largest() const { return largest_; }
   [[nodiscard]] std::size_t bytes() const;
 
   /// Upper bound of |patch(t) - quadratic(t)| for one in the kind's order; infinite unless the kind comes
