@@ -1,5 +1,6 @@
 #include "bezier.h"
 
+#include <map>
 #include <utility>
 
 #include "rejected.h"
@@ -75,6 +76,39 @@ Real bernstein(const Exponents& p, const std::array<Real, 3>& weights) {
     for (unsigned i = 0; i < p[k]; ++i) value = value * weights[k];
   }
   return value;
+}
+
+std::vector<BezierTriangle> bezier_triangles(const Piece& piece) {
+  constexpr unsigned degree = 4;
+  std::map<Place, Row> limits;
+  const auto add = [&](const Piece& p) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!limits.contains(p.places[k])) limits.emplace(p.places[k], limit(p, k));
+    }
+  };
+  add(piece);
+  for (const Piece& half : split(piece)) {
+    add(half);
+    for (const Piece& quarter : split(half)) add(quarter);
+  }
+  const std::vector<Exponents>& lattice = exponents(degree);
+  std::vector<const Row*> values;
+  for (const Exponents& q : lattice) {
+    Place place{0, 0};
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t x = 0; x < 2; ++x) place[x] += q[k] * (piece.places[k][x] / 4);
+    }
+    values.push_back(&limits.at(place));
+  }
+  BezierTriangle triangle{degree, piece.places, std::vector<Row>(lattice.size())};
+  for (std::size_t p = 0; p < lattice.size(); ++p) {
+    triangle.points[p].resize(values[0]->size());
+    for (std::size_t q = 0; q < lattice.size(); ++q) {
+      for (std::size_t c = 0; c < triangle.points[p].size(); ++c)
+        triangle.points[p][c].add_product(bezier_from_values(degree)[p][q], (*values[q])[c]);
+    }
+  }
+  return {std::move(triangle)};
 }
 
 }  // namespace checker

@@ -21,6 +21,10 @@ struct BezierTriangle {
   std::vector<Row> points;
 };
 
+/// The quartic that a piece of Loop's is, from its limits at the 15 points of a lattice of step 1/4.
+/// Requires:  piece.polynomial().
+[[nodiscard]] std::vector<BezierTriangle> bezier_triangles(const Piece& piece);
+
 /// Bezier points from values at the lattice points: weights [Bezier point][lattice point].
 /// Requires:  degree 2, 4 or 6.
 /// Errors:    Rejected if the matrix of Bernstein polynomials could not be inverted.

@@ -518,6 +518,13 @@ std::array<HalfQuad, 4> split(const HalfQuad& piece) {
   return children;
 }
 
+std::vector<const Row*> net_of(const HalfQuad& piece, const Key& key, std::size_t first) {
+  if (first != 0 || piece.shape->key() != key) return {};
+  std::vector<const Row*> rows;
+  for (const auto& row : piece.rows) rows.push_back(row.get());
+  return rows;
+}
+
 std::vector<BezierTriangle> bezier_triangles(const HalfQuad& piece) {
   std::vector<BezierTriangle> triangles;
   for (const Shape::Part& part : piece.shape->parts()) {

@@ -41,6 +41,7 @@ class Shape {
   Shape(Shapes& all, Scheme scheme, const Key& key);
 
   [[nodiscard]] std::size_t control_count() const { return count_; }
+  [[nodiscard]] const Key& key() const { return key_; }
   /// All four corners regular: then the patch is polynomial, with Midedge on each side of its diagonals.
   [[nodiscard]] bool polynomial() const;
   /// Quarters 0 to 3 keep that corner of the quad as their own corner of the same number; 4 is quarter 1
@@ -124,6 +125,8 @@ struct HalfQuad {
 /// middle one.
 /// Errors:    Rejected as Shape::quarters(), or past 28 levels.
 [[nodiscard]] std::array<HalfQuad, 4> split(const HalfQuad& piece);
+/// The control points of a half, as it is in the order of its kind; none for another kind, or turned.
+[[nodiscard]] std::vector<const Row*> net_of(const HalfQuad& piece, const Key& key, std::size_t first);
 /// The polynomials of a half.
 /// Requires:  polynomial().
 [[nodiscard]] std::vector<BezierTriangle> bezier_triangles(const HalfQuad& piece);

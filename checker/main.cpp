@@ -1,4 +1,4 @@
-// Proves every kind and table of a file of bounds again:  checker [--self-test] FILE
+// Proves all of a file of bounds again:  checker [--self-test] FILE
 // Exit status: 0 all proved (with --self-test: and every fault found), 1 rejected, 2 usage, 3 a file not read.
 
 #include <cstdio>
@@ -39,9 +39,10 @@ int self_test(const std::vector<std::byte>& bytes) {
 int prove(const std::vector<std::byte>& bytes, const char* name) {
   const checker::FileProof proof = checker::prove_file(bytes);
   std::printf(
-      "checker: %s: %zu kinds and %zu tables proved; %zu rows stored, %zu covered; %zu pieces, depth at most "
-      "%u\n",
-      name, proof.kinds, proof.tables, proof.stored_rows, proof.covered, proof.pieces, proof.depth);
+      "checker: %s: %zu kinds, %zu tables, %zu comparisons with quadratics and %zu frames proved; %zu rows "
+      "stored, %zu covered; %zu pieces, depth at most %u\n",
+      name, proof.kinds, proof.tables, proof.comparisons, proof.frames, proof.stored_rows, proof.covered,
+      proof.pieces, proof.depth);
   return 0;
 }
 

@@ -313,4 +313,37 @@ Row limit(const Piece& piece, std::size_t k) {
   return ring_sum(piece, v, ring, w, (Real(1) - w) / Real(static_cast<double>(n)));
 }
 
+std::vector<const Row*> net_of(const Piece& piece, const Key& key, std::size_t first) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t own = (k + first) % 3;
+    if (piece.ring(own).fan(piece.sharp[own]) != key[k]) return {};
+  }
+  // Walks the net of the kind and that of the piece side by side.
+  const Piece root = root_piece(key);
+  const auto third = third_vertices(piece.faces);
+  std::vector<std::optional<std::size_t>> image(root.rows.size());
+  for (std::size_t k = 0; k < 3; ++k) image[root.corners[k]] = piece.corners[(k + first) % 3];
+  std::vector<bool> done(root.faces.size(), false);
+  for (std::size_t left = done.size(), before = left + 1; left > 0;) {
+    if (left == before) throw Rejected("a net in several parts");
+    before = left;
+    for (std::size_t f = 0; f < done.size(); ++f) {
+      for (std::size_t i = 0; i < 3 && !done[f]; ++i) {
+        const auto a = image[root.faces[f][i]], b = image[root.faces[f][(i + 1) % 3]];
+        if (!a || !b) continue;
+        const auto there = find(third, *a, *b);
+        auto& seen = image[root.faces[f][(i + 2) % 3]];
+        if (!there || seen.value_or(*there) != *there)
+          throw Rejected("a net whose faces hang together in another way");
+        seen = there;
+        done[f] = true;
+        --left;
+      }
+    }
+  }
+  std::vector<const Row*> rows;
+  for (const auto& v : image) rows.push_back(piece.rows[v.value()].get());
+  return rows;
+}
+
 }  // namespace checker

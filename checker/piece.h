@@ -55,4 +55,8 @@ struct Piece {
 /// Where corner k of the piece goes in the limit.
 [[nodiscard]] Row limit(const Piece& piece, std::size_t k);
 
+/// The control points of a piece in the order of a kind whose corner 0 is corner `first` of the piece. None if
+/// it is not of that kind so.
+[[nodiscard]] std::vector<const Row*> net_of(const Piece& piece, const Key& key, std::size_t first);
+
 }  // namespace checker

@@ -27,13 +27,25 @@ struct RowsProof {
 /// Errors:    Rejected if that could not be proved.
 void prove_table(const StoredTable& table, Scheme scheme, const RowsProof& rows);
 
+/// Proves the rows by which a patch of a kind is compared with a quadratic. At each parameter the point of the
+/// patch and that of any quadratic are together in the hull of pairs: exact Bezier points of both, each of the
+/// patch within entry_error of a stored row, the quadratic's weights there within 16 roundoffs. Or the
+/// parameter is in a piece that a stored net, within entry_error, and the restricted quadratic belong to.
+/// Errors:    Rejected if that could not be proved.
+void prove_comparison(const StoredComparison& comparison, Scheme scheme, const Key& key);
+
+/// Proves that no basis function of a kind is larger than the frame says, and that the layout's limit points
+/// less their parameters are, up to the error, in the hull of its offsets.
+/// Errors:    Rejected if that could not be proved.
+void prove_frame(const StoredFrame& frame, Scheme scheme, const Key& key);
+
 /// What the proof of a whole file found.
 struct FileProof {
-  std::size_t kinds = 0, tables = 0, stored_rows = 0, pieces = 0, covered = 0;
+  std::size_t kinds = 0, tables = 0, comparisons = 0, frames = 0, stored_rows = 0, pieces = 0, covered = 0;
   unsigned depth = 0;
 };
 
-/// Proves every kind and table of a file, on all cores.
+/// Proves all of every kind of a file, on all cores; and that the kinds of nets are in the file.
 /// Errors:    Rejected, naming the first kind in the file that could not be proved.
 [[nodiscard]] FileProof prove_file(std::span<const std::byte> bytes);
 

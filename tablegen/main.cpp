@@ -1,4 +1,4 @@
-// Makes the rows and tables of common kinds, for checker to prove:  tablegen FILE
+// Makes the rows, tables and quadratics of common kinds, for checker to prove:  tablegen FILE
 
 #include <cstdio>
 #include <exception>

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <random>
+#include <span>
 
 namespace checker {
 namespace {
@@ -89,9 +90,46 @@ void expect_every_one_found(const std::vector<Fault>& planted, const BoundsFile&
   }
 }
 
+BoundsFile rows_alone(BoundsFile file) {
+  for (StoredKind& kind : file.kinds) {
+    kind.tables.clear();
+    kind.quadratics.reset();
+  }
+  return file;
+}
+
 BoundsFile without_tables(BoundsFile file) {
   for (StoredKind& kind : file.kinds) kind.tables.clear();
   return file;
+}
+
+// The least rows that a kind can have.
+void make_control_net(StoredKind& kind) {
+  kind.rows = kind.controls;
+  kind.weights.assign(std::size_t{kind.rows} * kind.controls, 0.0);
+  for (std::size_t c = 0; c < kind.controls; ++c) kind.weight(c, c) = 1;
+}
+
+// But those that rows alone have, too.
+std::vector<Fault> more_faults(const BoundsFile& file) {
+  std::vector<Fault> planted = faults(file);
+  for (const Fault& of_rows : faults(rows_alone(file)))
+    std::erase_if(planted, [&](const Fault& fault) { return fault.name == of_rows.name; });
+  return planted;
+}
+
+// All that a file has of these kinds, without asking for the kinds of their nets.
+void prove_quadratics(const BoundsFile& file) {
+  for (const StoredKind& kind : file.kinds) {
+    ASSERT_TRUE(kind.quadratics);
+    for (const StoredComparison& comparison : kind.quadratics->comparisons) {
+      EXPECT_NO_THROW(prove_comparison(comparison, kind.scheme, kind.key)) << to_text(kind.scheme, kind.key);
+    }
+    if (kind.quadratics->frame) {
+      EXPECT_NO_THROW(prove_frame(*kind.quadratics->frame, kind.scheme, kind.key))
+          << to_text(kind.scheme, kind.key);
+    }
+  }
 }
 
 TEST(checker, writes_the_file_of_tablegen_as_it_reads_it) {
@@ -114,7 +152,7 @@ TEST(checker, finds_every_fault_planted_in_rows) {
   const BoundsFile common = parse(common_bytes());
   for (const Scheme scheme : schemes) {
     SCOPED_TRACE(name_of(scheme));
-    const BoundsFile file = without_tables(excerpt(common, scheme));
+    const BoundsFile file = rows_alone(excerpt(common, scheme));
     expect_every_one_found(faults(file), file, 20);
   }
 }
@@ -123,27 +161,38 @@ TEST(checker, finds_every_fault_planted_in_tables) {
   const BoundsFile common = parse(common_bytes());
   for (const Scheme scheme : schemes) {
     SCOPED_TRACE(name_of(scheme));
-    const BoundsFile file = excerpt(common, scheme);
-    std::vector<Fault> planted = faults(file);
-    for (const Fault& of_rows : faults(without_tables(file)))
-      std::erase_if(planted, [&](const Fault& fault) { return fault.name == of_rows.name; });
-    expect_every_one_found(planted, file, 10);
+    BoundsFile file = excerpt(common, scheme);
+    for (StoredKind& kind : file.kinds) kind.quadratics.reset();
+    expect_every_one_found(more_faults(file), file, 10);
   }
 }
 
-TEST(checker, proves_rows_of_kinds_that_tablegen_leaves_out) {
+TEST(checker, finds_every_fault_planted_in_quadratics) {
+  const BoundsFile common = parse(common_bytes());
+  for (const Scheme scheme : schemes) {
+    SCOPED_TRACE(name_of(scheme));
+    BoundsFile file = excerpt(common, scheme);
+    const std::vector<Fault> planted = more_faults(without_tables(file));
+    file.kinds.resize(1);
+    file.kinds[0].tables.clear();
+    make_control_net(file.kinds[0]);  // proved at once
+    expect_every_one_found(planted, file, 50);
+  }
+}
+
+std::vector<snug::KindKey> other_loop_keys() {
   const snug::CornerFan lone{0, 0, false, true};
-  for (const snug::KindKey& key :
-       {loop_key(inside(5), inside(7), inside(9)), loop_key(inside(3), inside(3), inside(3)),
-        loop_key(inside(3), inside(4), inside(5)), loop_key(inside(14), inside(6), inside(6)),
-        loop_key(lone, lone, lone), loop_key(lone, {2, 0, false, false}, {0, 4, false, false}),
-        loop_key({1, 3, false, false}, inside(3), {2, 2, false, false}),
-        loop_key({0, 3, false, false}, {1, 0, false, false}, inside(4))}) {
-    EXPECT_NO_THROW(static_cast<void>(prove_rows(made(key)))) << to_text(Scheme::loop, made(key).key);
-  }
+  return {loop_key(inside(5), inside(7), inside(9)),
+          loop_key(inside(3), inside(3), inside(3)),
+          loop_key(inside(3), inside(4), inside(5)),
+          loop_key(inside(14), inside(6), inside(6)),
+          loop_key(lone, lone, lone),
+          loop_key(lone, {2, 0, false, false}, {0, 4, false, false}),
+          loop_key({1, 3, false, false}, inside(3), {2, 2, false, false}),
+          loop_key({0, 3, false, false}, {1, 0, false, false}, inside(4))};
 }
 
-TEST(checker, proves_rows_of_half_quads_that_tablegen_leaves_out) {
+std::vector<snug::KindKey> other_quad_keys() {
   using enum snug::Scheme;
   const snug::CornerFan lone{0, 0, false, true}, smooth{0, 0, false, false};
   const snug::CornerFan first{0, 1, false, false},
@@ -163,10 +212,35 @@ TEST(checker, proves_rows_of_half_quads_that_tablegen_leaves_out) {
     keys.push_back(quad_key(dual, inside(3), inside(3), inside(3), inside(3)));
     keys.push_back(quad_key(dual, inside(4), inside(7), inside(4), inside(4)));
   }
-  for (const snug::KindKey& key : keys) {
+  return keys;
+}
+
+TEST(checker, proves_rows_of_kinds_that_tablegen_leaves_out) {
+  for (const snug::KindKey& key : other_loop_keys())
+    EXPECT_NO_THROW(static_cast<void>(prove_rows(made(key)))) << to_text(Scheme::loop, made(key).key);
+}
+
+TEST(checker, proves_rows_of_half_quads_that_tablegen_leaves_out) {
+  for (const snug::KindKey& key : other_quad_keys()) {
     const StoredKind kind = made(key);
     EXPECT_NO_THROW(static_cast<void>(prove_rows(kind))) << to_text(kind.scheme, kind.key);
   }
+}
+
+// Several nets a kind, turned against it, some of other kinds.
+TEST(checker, proves_quadratics_of_kinds_that_tablegen_leaves_out) {
+  prove_quadratics(parse(tablegen::file_of(other_loop_keys())));
+  prove_quadratics(parse(tablegen::file_of(other_quad_keys())));
+}
+
+TEST(checker, refuses_nets_of_kinds_that_a_file_does_not_have) {
+  const std::vector<snug::KindKey> keys{loop_key(inside(5), inside(6), inside(7)),
+                                        loop_key(inside(5), inside(6), inside(6)),
+                                        loop_key(inside(6), inside(6), inside(7))};
+  EXPECT_NO_THROW(static_cast<void>(prove_file(tablegen::file_of(keys))));
+  const std::span<const snug::KindKey> some(keys);
+  for (const auto& few : {some.first(1), some.first(2)})
+    EXPECT_THROW(static_cast<void>(prove_file(tablegen::file_of(few))), Rejected);
 }
 
 // A hull needs no certain depth: the control net is one, and so is what lies between.
@@ -174,9 +248,7 @@ TEST(checker, proves_a_control_net_alone_and_together_with_rows) {
   const snug::KindKey key = loop_key(inside(5), inside(6), inside(6));
   StoredKind kind = made(key);
   StoredKind net = kind;
-  net.rows = net.controls;
-  net.weights.assign(std::size_t{net.rows} * net.controls, 0.0);
-  for (std::size_t c = 0; c < net.controls; ++c) net.weight(c, c) = 1;
+  make_control_net(net);
   EXPECT_EQ(prove_rows(net).pieces, 1u);
   EXPECT_GT(prove_rows(kind).pieces, 10u);
   net.weight(4, 4) = 1 + 1e-12;
