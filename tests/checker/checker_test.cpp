@@ -2,6 +2,7 @@
 #include <checker/half_quad.h>
 #include <checker/piece.h>
 #include <checker/prove.h>
+#include <checker/quadratic.h>
 #include <checker/rejected.h>
 #include <gtest/gtest.h>
 #include <snug/bounds/bound_rows.h>
@@ -145,6 +146,65 @@ TEST(checker, proves_tables_in_any_layout_that_hold_and_are_not_tight) {
     BoundsFile file = excerpt(common, scheme);
     for (StoredKind& kind : file.kinds) kind.tables = {crude_table(kind)};
     EXPECT_EQ(prove_file(to_bytes(file)).tables, file.kinds.size()) << name_of(scheme);
+  }
+}
+
+// All of a patch left to its net, and frames with room.
+TEST(checker, proves_quadratics_that_hold_and_are_not_tight) {
+  const BoundsFile common = parse(common_bytes());
+  for (const Scheme scheme : schemes) {
+    BoundsFile file = excerpt(common, scheme);
+    file.kinds.resize(1);
+    StoredKind& kind = file.kinds.front();
+    kind.tables.clear();
+    make_control_net(kind);
+    StoredNet net{kind.key, 0, {}};
+    for (std::size_t k = 0; k < 6; ++k) net.restriction[k][k] = 1;
+    for (StoredComparison& comparison : kind.quadratics->comparisons) {
+      static_cast<StoredRows&>(comparison) = kind;
+      comparison.quadratic.clear();
+      comparison.nets = {net};
+    }
+    StoredFrame& frame = kind.quadratics->frame.value();
+    for (double& largest : frame.largest) largest = 1;
+    frame.offsets = {{-99, -99}, {99, -99}, {99, 99}, {0, 0}, {-99, 99}, {99, 99}};  // in no order
+    frame.offset_error = 0;
+    const FileProof proof = prove_file(to_bytes(file));
+    EXPECT_EQ(proof.comparisons, 2u) << name_of(scheme);
+    EXPECT_EQ(proof.frames, 1u) << name_of(scheme);
+    net.restriction[3][3] = 1 - 0x1p-53;
+    kind.quadratics->comparisons[1].nets = {net};
+    EXPECT_THROW(static_cast<void>(prove_file(to_bytes(file))), Rejected) << name_of(scheme);
+  }
+}
+
+// Of a line, of a point, up to an error: the square around it is what is left.
+TEST(checker, takes_polygons_of_few_corners_with_the_square_around_them) {
+  const BoundsFile common = parse(common_bytes());
+  for (const Scheme scheme : schemes) {
+    const StoredKind kind = excerpt(common, scheme).kinds.front();
+    StoredFrame frame = kind.quadratics->frame.value();
+    double most = 0;
+    for (const auto& at : frame.offsets) most = std::max({most, std::fabs(at[0]), std::fabs(at[1])});
+    for (const auto& offsets : {std::vector<std::array<double, 2>>{{0, 0}},
+                                {{0, 0}, {0, 0}},
+                                {{0, 0}, {most, most}, {most / 2, most / 2}}}) {
+      frame.offsets = offsets;
+      frame.offset_error = most + 1e-9;
+      EXPECT_NO_THROW(prove_frame(frame, kind.scheme, kind.key)) << name_of(scheme);
+      frame.offset_error = 0;
+      EXPECT_THROW(prove_frame(frame, kind.scheme, kind.key), Rejected) << name_of(scheme);
+    }
+    // Beside the offsets, along either axis: what is parallel to the line ends with the square.
+    frame.offset_error = most + 1e-9;
+    for (const std::size_t axis : {0u, 1u}) {
+      for (const double side : {-1.0, 1.0}) {
+        frame.offsets = {{0, 0}, {0, 0}};
+        frame.offsets[0][axis] = side * (most + 1);
+        frame.offsets[1][axis] = side * (most + 2);
+        EXPECT_THROW(prove_frame(frame, kind.scheme, kind.key), Rejected) << name_of(scheme) << axis << side;
+      }
+    }
   }
 }
 
@@ -311,6 +371,45 @@ TEST(checker, has_bezier_points_that_keep_linear_functions_on_the_regular_lattic
             }
             EXPECT_TRUE((seen[a] - expected[a]).may_be(0)) << name_of(scheme) << p;
           }
+        }
+      }
+    }
+  }
+}
+
+// At some places of a piece: the quadratic's six Bernstein polynomials there, and what its points give.
+TEST(checker, raises_and_restricts_quadratics_to_pieces) {
+  constexpr std::int64_t one = std::int64_t{1} << place_bits;
+  const std::array<Place, 3> whole{Place{0, 0}, Place{one, 0}, Place{0, one}};
+  const std::array<Place, 3> piece{Place{one / 2, one / 4}, Place{one / 4, one / 2}, Place{one / 4, one / 4}};
+  const auto six = [](const std::array<Real, 3>& l) {
+    return SixReals{l[0] * l[0],           l[1] * l[1],           l[2] * l[2],
+                    Real(2) * l[0] * l[1], Real(2) * l[1] * l[2], Real(2) * l[2] * l[0]};
+  };
+  for (const auto& places : {whole, piece}) {
+    for (const std::array<double, 3>& l :
+         {std::array{1.0, 0.0, 0.0}, {0.125, 0.5, 0.375}, {0.0, 0.75, 0.25}}) {
+      const std::array<Real, 3> weights{l[0], l[1], l[2]};
+      Parameter t;
+      for (std::size_t x = 0; x < 2; ++x) {
+        for (std::size_t k = 0; k < 3; ++k) t[x] += weights[k] * parameter_of(places[k])[x];
+      }
+      const SixReals expected = six({Real(1) - t[0] - t[1], t[0], t[1]});
+      const SixReals inside = six(weights);
+      const std::array<SixReals, 6> restricted = restricted_quadratic(places);
+      for (std::size_t i = 0; i < 6; ++i) {
+        Real sum;
+        for (std::size_t k = 0; k < 6; ++k) sum += inside[k] * restricted[k][i];
+        EXPECT_TRUE((sum - expected[i]).is_exactly_zero()) << i;
+      }
+      for (const unsigned degree : {2u, 4u, 6u}) {
+        const std::vector<SixReals> raised = raised_quadratic(places, degree);
+        for (std::size_t i = 0; i < 6; ++i) {
+          Real sum;
+          for (std::size_t p = 0; p < raised.size(); ++p)
+            sum += bernstein(exponents(degree)[p], weights) * raised[p][i];
+          EXPECT_TRUE((sum - expected[i]).may_be(0)) << degree << i;
+          EXPECT_TRUE(Real(1e-30).certainly_at_least((sum - expected[i]).magnitude())) << degree << i;
         }
       }
     }
