@@ -23,15 +23,20 @@ struct SnugPair {
 };
 
 #ifdef SNUG_BENCH_FCL
+/// The model as a uniform mesh, refined until the tolerance is met.
+[[nodiscard]] inline TriangleMesh uniform_mesh(const Model& model, double tolerance) {
+  return osd_uniform(model.mesh, osd_uniform_level(model.mesh, tolerance));
+}
+
 /// The same two as uniform meshes in FCL's trees.
 struct FclPair {
   FclModel a, b;
-  FclPair(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, FclBoxes boxes)
-      : a(mesh_a, boxes), b(mesh_b, boxes) {}
+  FclPair(const TriangleMesh& mesh_a, const TriangleMesh& mesh_b, FclBoxes boxes,
+          FclBuild build = FclBuild::packaged)
+      : a(mesh_a, boxes, build), b(mesh_b, boxes, build) {}
   /// Refined until the tolerance is met.
   FclPair(const Model& model_a, const Model& model_b, double tolerance, FclBoxes boxes)
-      : FclPair(osd_uniform(model_a.mesh, osd_uniform_level(model_a.mesh, tolerance)),
-                osd_uniform(model_b.mesh, osd_uniform_level(model_b.mesh, tolerance)), boxes) {}
+      : FclPair(uniform_mesh(model_a, tolerance), uniform_mesh(model_b, tolerance), boxes) {}
 
   [[nodiscard]] bool collide(const PosePair& at) const { return fcl_collide(a, at.a, b, at.b); }
   [[nodiscard]] double distance(const PosePair& at) const { return fcl_distance(a, at.a, b, at.b); }

@@ -49,6 +49,15 @@ std::size_t Queries::bytes() const {
   return a_.bytes() + b_.bytes() + scratch_a_.bytes() + scratch_b_.bytes();
 }
 
+PointQueries::PointQueries(const LimitSurface& surface, const SurfaceBvhOptions& options)
+    : model_(surface, one_thread(options)), scratch_(model_) {}
+
+ClosestPoint PointQueries::closest(const Point3& to, double precision) {
+  ClosestOptions options;
+  options.absolute = precision;
+  return closest_point(scratch_, to, options);
+}
+
 void Work::add(const SearchStats& stats) {
   queries_ += 1;
   box_tests_ += static_cast<double>(stats.box_tests);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include <experiments/rooms.h>
+#include <snug/query/closest.h>
 #include <snug/query/pairs.h>
 #include <snug/search/workspace.h>
 
@@ -22,10 +23,25 @@ class Queries {
   [[nodiscard]] Distance distance(const PosePair& at, double precision);
   /// Models and scratch, without the surfaces.
   [[nodiscard]] std::size_t bytes() const;
+  /// Scratch alone.
+  [[nodiscard]] std::size_t scratch_bytes() const { return scratch_a_.bytes() + scratch_b_.bytes(); }
 
  private:
   SurfaceBvh a_, b_;
   SurfaceWorkspace scratch_a_, scratch_b_;
+};
+
+/// A surface ready for points on one thread.
+class PointQueries {
+ public:
+  explicit PointQueries(const LimitSurface& surface, const SurfaceBvhOptions& options = {});
+
+  /// With upper - lower at most `precision`.
+  [[nodiscard]] ClosestPoint closest(const Point3& to, double precision);
+
+ private:
+  SurfaceBvh model_;
+  SurfaceWorkspace scratch_;
 };
 
 /// What queries did, in all.

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <span>
 
 #include <snug/geometry/motion.h>
 
@@ -13,10 +16,19 @@ namespace snug::bench {
 /// need.
 enum class FclBoxes { obb, obbrss };
 
+/// Whose FCL: the package's, or FCL's sources (SNUG_FCL_SOURCE) compiled as snug is.
+enum class FclBuild : std::uint8_t { packaged, rebuilt };
+/// Those that this program has: the package's first.
+[[nodiscard]] std::span<const FclBuild> fcl_builds();
+[[nodiscard]] const char* name_of(FclBuild build);
+
+class FclTree;
+
 /// A triangle mesh with FCL's tree over it, fcl::BVHModel in double precision with FCL's own settings.
 class FclModel {
  public:
-  FclModel(const TriangleMesh& mesh, FclBoxes boxes);
+  /// Requires:  a build that fcl_builds() has.
+  FclModel(const TriangleMesh& mesh, FclBoxes boxes, FclBuild build = FclBuild::packaged);
   ~FclModel();
   FclModel(FclModel&&) noexcept;
   FclModel& operator=(FclModel&&) noexcept;
@@ -25,21 +37,20 @@ class FclModel {
   /// them.
   [[nodiscard]] std::size_t bytes() const;
 
-  struct Impl;
-  [[nodiscard]] const Impl& impl() const { return *impl_; }
+  [[nodiscard]] const FclTree& tree() const { return *tree_; }
 
  private:
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<FclTree> tree_;
 };
 
 /// Do two triangles meet? One contact, without its details.
-/// Requires:  both models with the same boxes.
+/// Requires:  both models of one build with the same boxes.
 [[nodiscard]] bool fcl_collide(const FclModel& a, const Motion& place_a, const FclModel& b,
                                const Motion& place_b);
 
 /// Distance of two triangle meshes: no error allowed, no nearest points, no signed distance. Negative or 0
 /// for meshes that meet.
-/// Requires:  FclBoxes::obbrss.
+/// Requires:  both models of one build with FclBoxes::obbrss.
 [[nodiscard]] double fcl_distance(const FclModel& a, const Motion& place_a, const FclModel& b,
                                   const Motion& place_b);
 

@@ -1,0 +1,105 @@
+#include "peer_embree.h"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <embree3/rtcore.h>
+
+namespace snug::bench {
+namespace {
+
+struct Vec {
+  float x, y, z;
+};
+Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vec operator*(float s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
+float dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+// [Ericson, Real-Time Collision Detection, 5.1.5]
+Vec closest_on_triangle(const Vec& p, const Vec& a, const Vec& b, const Vec& c) {
+  const Vec ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+  const float d1 = dot(ab, ap), d2 = dot(ac, ap);
+  if (d1 <= 0 && d2 <= 0) return a;
+  const float d3 = dot(ab, bp), d4 = dot(ac, bp);
+  if (d3 >= 0 && d4 <= d3) return b;
+  const float d5 = dot(ab, cp), d6 = dot(ac, cp);
+  if (d6 >= 0 && d5 <= d6) return c;
+  const float vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + d1 / (d1 - d3) * ab;
+  const float vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + d2 / (d2 - d6) * ac;
+  const float va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
+  const float scale = 1 / (va + vb + vc);
+  return a + vb * scale * ab + vc * scale * ac;
+}
+
+struct Buffers {
+  const Vec* points;
+  const unsigned (*triangles)[3];
+};
+
+bool compare(RTCPointQueryFunctionArguments* arguments) {
+  const auto& mesh = *static_cast<const Buffers*>(arguments->userPtr);
+  const unsigned* corners = mesh.triangles[arguments->primID];
+  RTCPointQuery& query = *arguments->query;
+  const Vec to{query.x, query.y, query.z};
+  const Vec off =
+      to - closest_on_triangle(to, mesh.points[corners[0]], mesh.points[corners[1]], mesh.points[corners[2]]);
+  const float distance = std::sqrt(dot(off, off));
+  if (distance >= query.radius) return false;
+  query.radius = distance;
+  return true;
+}
+
+}  // namespace
+
+struct EmbreeMesh::Impl {
+  RTCDevice device = rtcNewDevice("threads=1");
+  RTCScene scene = rtcNewScene(device);
+  Buffers buffers{};
+
+  ~Impl() {
+    rtcReleaseScene(scene);
+    rtcReleaseDevice(device);
+  }
+};
+
+EmbreeMesh::EmbreeMesh(const TriangleMesh& mesh) : impl_(new Impl) {
+  RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* points = static_cast<Vec*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec), mesh.points.size()));
+  auto* triangles = static_cast<unsigned(*)[3]>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(unsigned[3]), mesh.triangles.size()));
+  if (!points || !triangles) throw std::runtime_error("Embree makes no buffers");
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    const Point3& p = mesh.points[i];
+    points[i] = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) triangles[i][k] = mesh.triangles[i][k];
+  }
+  rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_HIGH);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(impl_->scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_HIGH);
+  rtcCommitScene(impl_->scene);
+  impl_->buffers = {points, triangles};
+}
+EmbreeMesh::~EmbreeMesh() = default;
+EmbreeMesh::EmbreeMesh(EmbreeMesh&&) noexcept = default;
+EmbreeMesh& EmbreeMesh::operator=(EmbreeMesh&&) noexcept = default;
+
+double EmbreeMesh::distance(const Point3& to) const {
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  RTCPointQuery query{static_cast<float>(to.x), static_cast<float>(to.y), static_cast<float>(to.z), 0,
+                      std::numeric_limits<float>::infinity()};
+  rtcPointQuery(impl_->scene, &query, &context, compare, &impl_->buffers);
+  return static_cast<double>(query.radius);
+}
+
+}  // namespace snug::bench
