@@ -27,11 +27,6 @@ using Library = std::shared_ptr<BoundsCache>;
 
 constexpr double one_percent = 0.01;
 
-// A ratio of times an item.
-double ratio(const Times& slow, const Times& fast) {
-  return (slow.median / slow.items) / (fast.median / fast.items);
-}
-
 // --- 1. how many triangles ---
 
 void bench_leaves(const std::vector<Model>& models) {

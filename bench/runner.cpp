@@ -77,6 +77,16 @@ Options start(int argc, char** argv, std::size_t files, const char* usage) {
   return options;
 }
 
+double ratio(const Times& slow, const Times& fast) {
+  return (slow.median / slow.items) / (fast.median / fast.items);
+}
+
+const Times& of_name(const std::vector<Times>& times, std::string_view name) {
+  const auto found = std::find_if(times.begin(), times.end(), [&](const Times& t) { return t.name == name; });
+  if (found == times.end()) throw std::logic_error("nobody is called " + std::string(name));
+  return *found;
+}
+
 Group::Group(std::string title, std::string item, const Options& options)
     : title_(std::move(title)), item_(std::move(item)), rounds_(options.rounds) {}
 

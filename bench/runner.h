@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace snug::bench {
@@ -36,6 +37,11 @@ struct Times {
   double checksum = 0;
   double wall = 0;
 };
+
+/// Time an item of one over another's.
+[[nodiscard]] double ratio(const Times& slow, const Times& fast);
+/// Errors:    std::logic_error if nobody has the name.
+[[nodiscard]] const Times& of_name(const std::vector<Times>& times, std::string_view name);
 
 /// Contestants for the same work, timed in turns so that a slow moment hits all of them.
 ///

@@ -1,0 +1,62 @@
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <random>
+
+#include <snug/query/subdivide.h>
+
+#include "bars.h"
+#include "peers.h"
+
+namespace snug::bench {
+namespace {
+
+// Two models of about 3,000 faces, seen from all sides, with trees made where queries come.
+void add_memory(const ModelPair& pair, const Options& options, BarTable& table) {
+  const auto refined = [](const Model& model) {
+    unsigned level = 0;
+    while (model.mesh.face_count() << (2 * level) < 2'000) ++level;
+    return Model{model.name, subdivide(model.mesh, loop_rules(), level, false)};
+  };
+  const Model a = refined(pair.a), b = refined(pair.b);
+  SnugPair models(a, b, std::make_shared<BoundsCache>());
+  std::mt19937_64 random(11);
+  const auto count = options.size<std::size_t>(20'000, 1'000);
+  for (std::size_t i = 0; i < count; ++i) {
+    static_cast<void>(models.queries.collide(place_in_room(3, random), collide_tolerance));
+  }
+  constexpr double megabyte = 1e6;
+  const auto all = static_cast<double>(models.queries.bytes()) / megabyte;
+  const auto scratch = static_cast<double>(models.queries.scratch_bytes()) / megabyte;
+  std::printf("%s, %zu and %zu faces, %zu queries: workspaces %.2f MB, trees and workspaces %.2f MB\n",
+              pair.name().c_str(), a.mesh.face_count(), b.mesh.face_count(), count, scratch, all);
+  table.at_most("memory after 20,000 queries", "MB of both workspaces", 3, pair.name(), scratch);
+  table.at_most("memory after 20,000 queries", "MB of both trees and workspaces", 3, pair.name(), all);
+}
+
+void add_tight(const ModelPair& pair, const Options& options, BarTable& table) {
+  const auto library = std::make_shared<BoundsCache>();
+  for (const Model* model : {&pair.a, &pair.b}) {
+    const LimitSurface surface(model->mesh, loop_rules(), library, 1);
+    SurfaceBvhOptions tight;
+    tight.tight = true;
+    tight.threads = 1;
+    Group group(model->name + ", a tight tree", "face", options);
+    group.add("surface and kinds known", static_cast<double>(surface.face_count()),
+              [&] { return static_cast<double>(SurfaceBvh(surface, tight).bytes()); });
+    const Times times = group.run().front();
+    table.at_most("tight model", "us a face", 2, model->name, 1e6 * times.median / times.items);
+  }
+}
+
+}  // namespace
+
+void model_bars(const std::vector<ModelPair>& pairs, const Options& options, BarTable& table) {
+  // Large enough to be no mesh of some dozen faces refined.
+  for (const ModelPair& pair : pairs) {
+    if (std::min(pair.a.mesh.face_count(), pair.b.mesh.face_count()) >= 600) add_memory(pair, options, table);
+  }
+  for (const ModelPair& pair : pairs) add_tight(pair, options, table);
+}
+
+}  // namespace snug::bench

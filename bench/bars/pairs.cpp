@@ -1,0 +1,68 @@
+#include "pairs.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include <snug/mesh/topology.h>
+
+#include "peers.h"
+
+namespace snug::bench {
+namespace {
+
+constexpr std::size_t own_models = 7, most_others = 10;
+constexpr std::array<std::array<const char*, 2>, 2> more_pairs{{{"bust", "figure"}, {"ring", "head"}}};
+
+// The model of a file if it suits.
+std::optional<Model> suitable(const std::string& file) {
+  try {
+    Model model = std::move(read_models({file}).front());
+    const std::size_t faces = model.mesh.face_count();
+    if (faces < 200 || faces > 10'000 || !model.mesh.tags.creases.empty()) return {};
+    for (std::size_t f = 0; f < faces; ++f) {
+      if (model.mesh.face(FaceId(f)).size() != 3) return {};
+    }
+    const LimitSurface surface(model.mesh, loop_rules(), std::make_shared<BoundsCache>(), 1);
+    for (HalfEdge h = 0; h < 3 * faces; ++h) {
+      if (surface.topology().twin(h) == no_half_edge) return {};
+    }
+#ifdef SNUG_BENCH_FCL
+    if (faces << (2 * osd_uniform_level(model.mesh, 0.01)) > 200'000) return {};
+#endif
+    return model;
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+std::vector<ModelPair> choose_pairs(const std::vector<std::string>& files) {
+  if (files.size() < own_models) throw std::runtime_error("the models of examples/models are missing");
+  const std::vector<Model> own = read_models({files.begin(), files.begin() + own_models});
+  std::vector<ModelPair> pairs;
+  for (const auto& [a, b] : model_pairs) pairs.push_back({named(own, a), named(own, b)});
+  for (const auto& [a, b] : more_pairs) pairs.push_back({named(own, a), named(own, b)});
+  std::vector<Model> others;
+  for (std::size_t i = own_models; i < files.size(); ++i) {
+    if (std::optional<Model> model = suitable(files[i])) others.push_back(std::move(*model));
+  }
+  std::sort(others.begin(), others.end(), [](const Model& a, const Model& b) {
+    return std::pair(a.mesh.face_count(), a.name) < std::pair(b.mesh.face_count(), b.name);
+  });
+  const std::size_t half = std::min(others.size(), most_others) / 2;
+  const auto at = [&](std::size_t i) { return i * others.size() / (2 * half); };
+  for (std::size_t i = 0; i < half; ++i) pairs.push_back({others[at(i)], others[at(i + half)]});
+  for (const ModelPair& pair : pairs) {
+    std::printf("# pair: %s, %zu and %zu faces\n", pair.name().c_str(), pair.a.mesh.face_count(),
+                pair.b.mesh.face_count());
+  }
+  return pairs;
+}
+
+}  // namespace snug::bench

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "placements.h"
+
+namespace snug::bench {
+
+struct ModelPair {
+  Model a, b;
+  [[nodiscard]] std::string name() const { return a.name + " and " + b.name; }
+};
+
+/// The first seven files are those of examples/models: five pairs of them. Of the others those that suit, at
+/// most ten, evenly by their size, in pairs of a smaller and a larger one: closed surfaces of 200 to 10,000
+/// triangles whose uniform mesh of 1 % has at most 200,000.
+/// Errors:    as read_mesh for the first seven; others that cannot be read do not suit.
+[[nodiscard]] std::vector<ModelPair> choose_pairs(const std::vector<std::string>& files);
+
+}  // namespace snug::bench
