@@ -80,13 +80,13 @@ void add_points(const Model& model, const char* where, double bar, PointQueries&
 
 void closest_bars(const std::vector<ModelPair>& pairs, const Options& options, BarTable& table) {
   const auto count = options.size<std::size_t>(5'000, 500);
-  for (const ModelPair& pair : pairs) {
-    const LimitSurface surface(pair.a.mesh, loop_rules(), std::make_shared<BoundsCache>(), 1);
-    SurfaceBvhOptions tight;
-    tight.tight = true;
+  SurfaceBvhOptions tight;
+  tight.tight = true;
+  for (const Model* model : models_of(pairs)) {
+    const LimitSurface surface(model->mesh, loop_rules(), std::make_shared<BoundsCache>(), 1);
     PointQueries queries(surface, tight);
-    add_points(pair.a, "in the box", 1, queries, in_box(used_box(pair.a.mesh), count), options, table);
-    add_points(pair.a, "near the surface", 0.8, queries, near_surface(surface, count), options, table);
+    add_points(*model, "in the box", 1, queries, in_box(used_box(model->mesh), count), options, table);
+    add_points(*model, "near the surface", 0.8, queries, near_surface(surface, count), options, table);
   }
 #ifndef SNUG_BENCH_EMBREE
   table.missing("closest point 0.1 %", "Embree 3 is not installed");

@@ -34,19 +34,16 @@ void add_memory(const ModelPair& pair, const Options& options, BarTable& table) 
   table.at_most("memory after 20,000 queries", "MB of both trees and workspaces", 3, pair.name(), all);
 }
 
-void add_tight(const ModelPair& pair, const Options& options, BarTable& table) {
-  const auto library = std::make_shared<BoundsCache>();
-  for (const Model* model : {&pair.a, &pair.b}) {
-    const LimitSurface surface(model->mesh, loop_rules(), library, 1);
-    SurfaceBvhOptions tight;
-    tight.tight = true;
-    tight.threads = 1;
-    Group group(model->name + ", a tight tree", "face", options);
-    group.add("surface and kinds known", static_cast<double>(surface.face_count()),
-              [&] { return static_cast<double>(SurfaceBvh(surface, tight).bytes()); });
-    const Times times = group.run().front();
-    table.at_most("tight model", "us a face", 2, model->name, 1e6 * times.median / times.items);
-  }
+void add_tight(const Model& model, const Options& options, BarTable& table) {
+  const LimitSurface surface(model.mesh, loop_rules(), std::make_shared<BoundsCache>(), 1);
+  SurfaceBvhOptions tight;
+  tight.tight = true;
+  tight.threads = 1;
+  Group group(model.name + ", a tight tree", "face", options);
+  group.add("surface and kinds known", static_cast<double>(surface.face_count()),
+            [&] { return static_cast<double>(SurfaceBvh(surface, tight).bytes()); });
+  const Times times = group.run().front();
+  table.at_most("tight model", "us a face", 2, model.name, 1e6 * times.median / times.items);
 }
 
 }  // namespace
@@ -56,7 +53,7 @@ void model_bars(const std::vector<ModelPair>& pairs, const Options& options, Bar
   for (const ModelPair& pair : pairs) {
     if (std::min(pair.a.mesh.face_count(), pair.b.mesh.face_count()) >= 600) add_memory(pair, options, table);
   }
-  for (const ModelPair& pair : pairs) add_tight(pair, options, table);
+  for (const Model* model : models_of(pairs)) add_tight(*model, options, table);
 }
 
 }  // namespace snug::bench

@@ -65,4 +65,15 @@ std::vector<ModelPair> choose_pairs(const std::vector<std::string>& files) {
   return pairs;
 }
 
+std::vector<const Model*> models_of(const std::vector<ModelPair>& pairs) {
+  std::vector<const Model*> models;
+  for (const ModelPair& pair : pairs) {
+    for (const Model* model : {&pair.a, &pair.b}) {
+      const auto same = [&](const Model* known) { return known->name == model->name; };
+      if (std::none_of(models.begin(), models.end(), same)) models.push_back(model);
+    }
+  }
+  return models;
+}
+
 }  // namespace snug::bench

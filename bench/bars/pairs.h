@@ -18,4 +18,7 @@ struct ModelPair {
 /// Errors:    as read_mesh for the first seven; others that cannot be read do not suit.
 [[nodiscard]] std::vector<ModelPair> choose_pairs(const std::vector<std::string>& files);
 
+/// Every model of the pairs once.
+[[nodiscard]] std::vector<const Model*> models_of(const std::vector<ModelPair>& pairs);
+
 }  // namespace snug::bench
