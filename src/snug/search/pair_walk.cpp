@@ -6,12 +6,6 @@
 #include <utility>
 
 namespace snug {
-namespace {
-
-// A patch so many times as large as a node of the other tree is split before that tree is opened.
-constexpr float most_often = 1024;
-
-}  // namespace
 
 PairWalk::PairWalk(PairFrames& frames, SearchStats& stats, WideNode::Gaps gaps)
     : frames_(frames),
@@ -25,10 +19,6 @@ NodePair PairWalk::roots() const {
 
 PairWalk::Opening PairWalk::opening(const NodePair& pair) const {
   const auto& [a, b] = pair.nodes;
-  if (a.bounded() != b.bounded()) {
-    const std::size_t tree = a.bounded() ? 1 : 0;
-    if (size(pair, tree) * most_often >= size(pair, 1 - tree)) return tree == 0 ? Opening::a : Opening::b;
-  }
   const bool can_a = SurfaceWorkspace::can_open(a), can_b = SurfaceWorkspace::can_open(b);
   if (can_a && can_b) return size(pair, 1) > size(pair, 0) ? Opening::b : Opening::a;
   return can_a ? Opening::a : can_b ? Opening::b : Opening::none;

@@ -32,8 +32,8 @@ class PairWalk {
     return scale_[side] * pair.nodes[side].size();
   }
 
-  /// The side to be opened next: a tree before patches and pieces, which may have to be split first, then the
-  /// larger one.
+  /// The side to be opened next: the larger one, of a tree or of pieces, so that no large piece is compared
+  /// with many small ones.
   enum class Opening : std::uint8_t { none, a, b };
   /// none: neither can be opened.
   [[nodiscard]] Opening opening(const NodePair& pair) const;
