@@ -33,7 +33,7 @@ struct Before {
   std::string_view pair;
   double ratio;
 };
-constexpr std::array grazing_before{Before{"bust and head", 3.41}, Before{"star and pawn", 3.23},
+constexpr std::array grazing_before{Before{"bust and head", 3.33}, Before{"star and pawn", 3.08},
                                     Before{"demon and figure", 2.83}, Before{"bust and figure", 2.90},
                                     Before{"ring and head", 3.18}};
 

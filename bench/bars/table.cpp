@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cstdio>
 
-#include <experiments/quantile.h>
-
 namespace snug::bench {
 
-double BarTable::Row::median() const { return quantile(values, 0.5); }
+double BarTable::Row::median() const {
+  std::vector<double> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  return (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]) / 2;
+}
 
 std::size_t BarTable::Row::worst() const {
   const auto place = at_least ? std::min_element(values.begin(), values.end())
