@@ -22,9 +22,8 @@ constexpr Vector3 cross(Vector3 a, Vector3 b) {
 constexpr double length_sq(Vector3 a) { return dot(a, a); }
 inline double length(Vector3 a) { return std::sqrt(dot(a, a)); }
 inline double distance(Point3 a, Point3 b) { return length(a - b); }
-constexpr double max_abs(Vector3 a) {
-  const double x = a.x < 0 ? -a.x : a.x, y = a.y < 0 ? -a.y : a.y, z = a.z < 0 ? -a.z : a.z;
-  return std::max(x, std::max(y, z));
+inline double max_abs(Vector3 a) {
+  return std::max(std::fabs(a.x), std::max(std::fabs(a.y), std::fabs(a.z)));
 }
 inline bool is_finite(Vector3 a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
 inline bool is_finite(Point3 a) { return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z); }
