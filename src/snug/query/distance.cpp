@@ -179,7 +179,6 @@ class Query {
   const DistanceOptions& options_;
   const WorkMonitor& monitor_;
   DistanceBounds bounds_;
-  std::vector<NodePair> children_;
   Witness witness_;
   int attempts_ = 0;
 };
