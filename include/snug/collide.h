@@ -36,7 +36,7 @@ struct CollideOptions {
   bool solid = false;  ///< compare the solids that closed surfaces bound: one inside the other intersects it
   /// For separated surfaces, refine `distance` until its lower end is at least half its upper end, and give
   /// witnesses if any are asked for: about ten microseconds more. Without it the lower end is a by-product of
-  /// the search: half the distance in the median for surfaces far apart, a hundredth of it for close ones.
+  /// the search: a third of the distance in the median for surfaces far apart, a hundredth of it for close ones.
   bool measure = true;
 };
 
