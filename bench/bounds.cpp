@@ -91,7 +91,7 @@ int main(int argc, char** argv) {
   const SchemeOptions rules;
   bench_patches("control mesh", mesh, library, options);
   bench_patches("refined three times", subdivide(mesh, rules, 3, false), library, options);
-  bench_queries(LimitSurface(mesh, rules, library, 1),
-                LimitSurface(read_mesh(options.files[1]), rules, library, 1), options);
+  bench_queries(LimitSurface(mesh, rules, library), LimitSurface(read_mesh(options.files[1]), rules, library),
+                options);
   return 0;
 }

@@ -35,7 +35,7 @@ void bench_leaves(const std::vector<Model>& models) {
               "dissertation", "uniform", "rows/dissertation, rows/tables, rows/uniform");
   std::vector<double> over_printed, over_uniform;
   for (const Model& model : models) {
-    const LimitSurface surface(model.mesh, loop_rules(), std::make_shared<BoundsCache>(), 1);
+    const LimitSurface surface(model.mesh, loop_rules(), std::make_shared<BoundsCache>());
     const auto count = [&](const LeafOptions& options) {
       return static_cast<double>(leaves(surface, options).size());
     };
@@ -147,7 +147,7 @@ void bench_memory(const Model& a, const Model& b, const Options& options) {
   const std::size_t known = heap_bytes();
   double surfaces = 0;
   {
-    const LimitSurface alone_a(a.mesh, loop_rules(), library, 1), alone_b(b.mesh, loop_rules(), library, 1);
+    const LimitSurface alone_a(a.mesh, loop_rules(), library), alone_b(b.mesh, loop_rules(), library);
     surfaces = static_cast<double>(heap_bytes() - known) / mib;
   }
   const auto pair = std::make_unique<SnugPair>(a, b, library);
@@ -254,7 +254,7 @@ void bench_volumes(const std::vector<Model>& models, const std::string& room, co
   Group group("boolean query, 1 %, " + room + ", by volume", "query", options);
   std::vector<LimitSurface> surfaces;
   for (const auto& pair : model_pairs) {
-    for (const char* name : pair) surfaces.emplace_back(named(models, name).mesh, loop_rules(), library, 1);
+    for (const char* name : pair) surfaces.emplace_back(named(models, name).mesh, loop_rules(), library);
   }
   double items = 0;
   for (const auto& list : at) items += static_cast<double>(list.size());

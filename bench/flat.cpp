@@ -32,8 +32,8 @@ struct Pair {
     return result;
   }
   Pair(const ControlMesh& mesh_a, const ControlMesh& mesh_b, const std::shared_ptr<BoundsCache>& library)
-      : a(mesh_a, {Scheme::flat}, library, 1),
-        b(mesh_b, {Scheme::flat}, library, 1),
+      : a(mesh_a, {Scheme::flat}, library),
+        b(mesh_b, {Scheme::flat}, library),
         queries(a, b),
         boxes(triangles(mesh_a), triangles(mesh_b), FclBoxes::obb),
         distances(triangles(mesh_a), triangles(mesh_b), FclBoxes::obbrss) {}

@@ -28,7 +28,7 @@ std::vector<Times> bench_faces(const std::string& title, Subject& subject, const
 
 std::vector<std::vector<Times>> bench_quads(const std::string& title, const ControlMesh& mesh,
                                             const Options& options) {
-  const LimitSurface surface(mesh, catmark(), std::make_shared<BoundsCache>(), 1);
+  const LimitSurface surface(mesh, catmark(), std::make_shared<BoundsCache>());
   std::vector<std::vector<PatchId>> patches(4);
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
     patches[extraordinary_corners(surface.kind(PatchId(p)))].push_back(PatchId(p));
@@ -52,7 +52,7 @@ std::vector<std::vector<Times>> bench_quads(const std::string& title, const Cont
 
 ColdBounds cold_bounds(const ControlMesh& mesh) {
   const auto library = std::make_shared<BoundsCache>();
-  const LimitSurface surface(mesh, catmark(), library, 1);
+  const LimitSurface surface(mesh, catmark(), library);
   BatchBounds bounds(surface, {}, 1);
   std::vector<OffsetTriangle> out;
   return {update(bounds, mesh.points, out), surface.kind_count(), library->bytes()};
@@ -61,7 +61,7 @@ ColdBounds cold_bounds(const ControlMesh& mesh) {
 std::vector<Times> bench_creases(const std::string& title, const ControlMesh& mesh, const Options& options) {
   const auto count = static_cast<double>(mesh.face_count());
   Group group(title + ", " + std::to_string(mesh.face_count()) + " faces", "face", options);
-  const LimitSurface surface(mesh, catmark(), std::make_shared<BoundsCache>(), 1);
+  const LimitSurface surface(mesh, catmark(), std::make_shared<BoundsCache>());
   BatchBounds bounds(surface, {}, 1);
   std::vector<OffsetTriangle> out;
 #ifdef SNUG_BENCH_OPENSUBDIV

@@ -17,8 +17,8 @@ struct SnugPair {
   Queries queries;
   SnugPair(const Model& model_a, const Model& model_b, const std::shared_ptr<BoundsCache>& library,
            const SurfaceBvhOptions& options = {})
-      : a(model_a.mesh, loop_rules(), library, 1),
-        b(model_b.mesh, loop_rules(), library, 1),
+      : a(model_a.mesh, loop_rules(), library),
+        b(model_b.mesh, loop_rules(), library),
         queries(a, b, options) {}
 };
 

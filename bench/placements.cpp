@@ -95,7 +95,7 @@ const char* name_of(Nearness nearness) {
 std::vector<Placed> sorted_placements(const Model& a, const Model& b, double side, std::size_t count,
                                       std::uint64_t seed) {
   const auto library = std::make_shared<BoundsCache>();
-  const LimitSurface surface_a(a.mesh, loop_rules(), library, 1), surface_b(b.mesh, loop_rules(), library, 1);
+  const LimitSurface surface_a(a.mesh, loop_rules(), library), surface_b(b.mesh, loop_rules(), library);
   Queries queries(surface_a, surface_b);
   const Box3 box_a = used_box(a.mesh), box_b = used_box(b.mesh);
   std::mt19937_64 random(seed);
@@ -125,7 +125,7 @@ std::vector<PosePair> of(const std::vector<Placed>& all) {
 std::vector<PosePair> contact_placements(const Model& a, const Model& b, double side, double reach,
                                          std::size_t count, std::uint64_t seed) {
   const auto library = std::make_shared<BoundsCache>();
-  const LimitSurface surface_a(a.mesh, loop_rules(), library, 1), surface_b(b.mesh, loop_rules(), library, 1);
+  const LimitSurface surface_a(a.mesh, loop_rules(), library), surface_b(b.mesh, loop_rules(), library);
   Queries queries(surface_a, surface_b);
   std::mt19937_64 random(seed);
   std::vector<PosePair> result;

@@ -58,8 +58,8 @@ int main(int argc, char** argv) {
   const std::vector<Model> models = read_models(options.files);
   const auto library = std::make_shared<BoundsCache>();
   for (const auto& [name_a, name_b] : model_pairs) {
-    const LimitSurface surface_a(named(models, name_a).mesh, loop_rules(), library, 1),
-        surface_b(named(models, name_b).mesh, loop_rules(), library, 1);
+    const LimitSurface surface_a(named(models, name_a).mesh, loop_rules(), library),
+        surface_b(named(models, name_b).mesh, loop_rules(), library);
     const SurfaceBvh a(surface_a, {.threads = 1}), b(surface_b, {.threads = 1});
     std::mt19937_64 random(9);
     std::vector<PosePair> poses(options.size<std::size_t>(20'000, 400));

@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
   const Options options = start(argc, argv, 0, "");
   {
     const ControlMesh mesh = quad_torus(options.size(500'000, 2'000));
-    const LimitSurface surface(mesh, catmark(), std::make_shared<BoundsCache>(), 1);
+    const LimitSurface surface(mesh, catmark(), std::make_shared<BoundsCache>());
     BatchBounds bounds(surface, {}, 1);
     std::vector<OffsetTriangle> out(bounds.patches().size());
     Group group("regular quads", "quad", options);

@@ -9,7 +9,7 @@ namespace snug::bench {
 
 Subject::Subject(ControlMesh mesh, const SchemeOptions& options, std::shared_ptr<BoundsCache> library)
     : library_(std::move(library)),
-      surface_(std::make_unique<LimitSurface>(std::move(mesh), options, library_, 1)) {}
+      surface_(std::make_unique<LimitSurface>(std::move(mesh), options, library_)) {}
 
 double Subject::enclose(std::span<const PatchId> faces, std::vector<OffsetTriangle>& out) {
   out.resize(faces.size());

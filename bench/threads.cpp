@@ -69,17 +69,13 @@ void compare(const Options& options, const std::string& name, const Work& work) 
   std::fflush(stdout);
 }
 
-LimitSurface surface_of(const ControlMesh& mesh, std::shared_ptr<BoundsCache> library, int threads) {
-  return {mesh, {Scheme::loop, BoundaryRule::edge_and_corner}, std::move(library), threads};
+LimitSurface surface_of(const ControlMesh& mesh) {
+  return {mesh, {Scheme::loop, BoundaryRule::edge_and_corner}, std::make_shared<BoundsCache>()};
 }
 
 void compare_surfaces(const Options& options, const ControlMesh& mesh, const LimitSurface& surface) {
-  const auto library = std::make_shared<BoundsCache>();
-  compare(options, "surface",
-          [&](int threads) { return static_cast<double>(surface_of(mesh, library, threads).kind_count()); });
   compare(options, "surface, kinds and rows not known", [&](int threads) {
-    const LimitSurface fresh = surface_of(mesh, std::make_shared<BoundsCache>(), threads);
-    return static_cast<double>(BatchBounds(fresh, {}, threads).patches().size());
+    return static_cast<double>(BatchBounds(surface_of(mesh), {}, threads).patches().size());
   });
   for (const bool tight : {false, true}) {
     compare(options, tight ? "model, tight" : "model", [&, tight](int threads) {
@@ -179,7 +175,7 @@ int main(int argc, char** argv) {
       "thread's; %d cores\n",
       options.rounds, hardware_threads());
   const ControlMesh mesh = irregular_mesh(options.size(100'000, 2'000));
-  const LimitSurface surface = surface_of(mesh, std::make_shared<BoundsCache>(), 1);
+  const LimitSurface surface = surface_of(mesh);
   compare_surfaces(options, mesh, surface);
   compare_closest(options, surface);
 #ifdef SNUG_BENCH_PICTURE

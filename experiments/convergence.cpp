@@ -132,7 +132,7 @@ LimitSurface net_surface(Scheme scheme, const NetPlace& place, std::uint64_t see
   SchemeOptions rules;
   rules.scheme = scheme;
   rules.boundary = net.tags.boundary.value_or(rules.boundary);
-  return {std::move(net), rules, library, 1};
+  return {std::move(net), rules, library};
 }
 
 PatchId first_patch(const LimitSurface& surface) { return PatchId(surface.patches_of(0).begin); }

@@ -92,7 +92,7 @@ std::vector<PrismRow> measure_prisms(const TightnessOptions& options, const Work
     const auto work = [&](HullPoints& scratch, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         monitor.checkpoint();
-        const LimitSurface surface(corner_net(shape, n, options.seed + i / 2), {}, library, 1);
+        const LimitSurface surface(corner_net(shape, n, options.seed + i / 2), {}, library);
         const PatchId face(i % 2 == 0 ? 0 : n / 2);
         all[i] = measure(*library, surface.patch(face), options.steps, scratch);
         const double unit = surface.scale().inverse().apply(1.0);

@@ -80,18 +80,16 @@ CreationTimes measure_creation(const ControlMesh& mesh, const SchemeOptions& rul
   const auto library = std::make_shared<BoundsCache>();
   const std::array<std::function<void()>, 4> works{
       [&] {
-        const LimitSurface surface(mesh, rules, library, 1);
+        const LimitSurface surface(mesh, rules, library);
         const SurfaceBvh model(surface, model_options({}, false));
       },
       [&] {
-        const LimitSurface surface(mesh, rules, library, 1);
+        const LimitSurface surface(mesh, rules, library);
         const SurfaceBvh model(surface, model_options({}, true));
       },
+      [&] { const PrintedHierarchy tree(LimitSurface(mesh, rules, library), with_rows(tolerance), monitor); },
       [&] {
-        const PrintedHierarchy tree(LimitSurface(mesh, rules, library, 1), with_rows(tolerance), monitor);
-      },
-      [&] {
-        const PrintedHierarchy tree(LimitSurface(mesh, rules, library, 1), as_printed(tolerance), monitor);
+        const PrintedHierarchy tree(LimitSurface(mesh, rules, library), as_printed(tolerance), monitor);
       }};
   std::array<double, 4> medians{};
   for (std::size_t w = 0; w < works.size(); ++w) {

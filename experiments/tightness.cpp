@@ -64,7 +64,7 @@ std::vector<TightnessRow> measure_tightness(const TightnessOptions& options, con
     const auto measure = [&](HullPoints& scratch, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         monitor.checkpoint();
-        const LimitSurface surface(corner_net(shape, n, options.seed + i / 2), {}, library, 1);
+        const LimitSurface surface(corner_net(shape, n, options.seed + i / 2), {}, library);
         const PatchId face(i % 2 == 0 ? 0 : n / 2);
         const Patch patch = surface.patch(face);
         const LimitLattice lattice(patch, options.steps);

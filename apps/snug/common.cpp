@@ -134,7 +134,7 @@ LimitSurface make_surface(ControlMesh mesh, const std::string& path, const Commo
   naming(path, [&] {
     const SchemeOptions rules = choose_rules(options, scheme, mesh);
     ProgressBar bar("preparing " + path, options.quiet);
-    surface.emplace(std::move(mesh), rules, library, options.threads, bar.monitor());
+    surface.emplace(std::move(mesh), rules, library, bar.monitor());
   });
   note_distance_to_faces(*surface, path, options);
   return std::move(*surface);

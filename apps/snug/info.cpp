@@ -51,7 +51,7 @@ ExitStatus run(const Options& options) {
   double size = 0;
   std::string refusal;
   try {
-    const LimitSurface surface(mesh, rules, std::make_shared<BoundsCache>(), options.threads);
+    const LimitSurface surface(mesh, rules, std::make_shared<BoundsCache>());
     apart = limit_to_faces(surface, options.threads);
     size = surface.size();
     kinds = surface.kind_count();

@@ -83,7 +83,7 @@ void closest_bars(const std::vector<ModelPair>& pairs, const Options& options, B
   SurfaceBvhOptions tight;
   tight.tight = true;
   for (const Model* model : models_of(pairs)) {
-    const LimitSurface surface(model->mesh, loop_rules(), std::make_shared<BoundsCache>(), 1);
+    const LimitSurface surface(model->mesh, loop_rules(), std::make_shared<BoundsCache>());
     PointQueries queries(surface, tight);
     add_points(*model, "in the box", 1, queries, in_box(used_box(model->mesh), count), options, table);
     add_points(*model, "near the surface", 0.8, queries, near_surface(surface, count), options, table);

@@ -35,7 +35,7 @@ void add_memory(const ModelPair& pair, const Options& options, BarTable& table) 
 }
 
 void add_tight(const Model& model, const Options& options, BarTable& table) {
-  const LimitSurface surface(model.mesh, loop_rules(), std::make_shared<BoundsCache>(), 1);
+  const LimitSurface surface(model.mesh, loop_rules(), std::make_shared<BoundsCache>());
   SurfaceBvhOptions tight;
   tight.tight = true;
   tight.threads = 1;

@@ -27,7 +27,7 @@ std::optional<Model> suitable(const std::string& file) {
     for (std::size_t f = 0; f < faces; ++f) {
       if (model.mesh.face(FaceId(f)).size() != 3) return {};
     }
-    const LimitSurface surface(model.mesh, loop_rules(), std::make_shared<BoundsCache>(), 1);
+    const LimitSurface surface(model.mesh, loop_rules(), std::make_shared<BoundsCache>());
     for (HalfEdge h = 0; h < 3 * faces; ++h) {
       if (surface.topology().twin(h) == no_half_edge) return {};
     }

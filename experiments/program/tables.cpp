@@ -57,7 +57,7 @@ Models load_models(const Options& options) {
     ControlMesh mesh = load_mesh(file, options);
     mesh.tags = {};
     // Refuses what is no surface, before a size is looked for.
-    naming(file, [&] { static_cast<void>(LimitSurface(mesh, rules(), std::make_shared<BoundsCache>(), 1)); });
+    naming(file, [&] { static_cast<void>(LimitSurface(mesh, rules(), std::make_shared<BoundsCache>())); });
     models.names.push_back(std::filesystem::path(file).stem().string());
     models.meshes.push_back(unit_model(std::move(mesh)));
   }
@@ -103,7 +103,7 @@ ExitStatus leaves_table(const Options& options) {
     const WorkMonitor monitor = bar.monitor();
     const auto library = std::make_shared<BoundsCache>();
     for (const ControlMesh& mesh : models.meshes) {
-      const LimitSurface surface(mesh, rules(), library, options.threads);
+      const LimitSurface surface(mesh, rules(), library);
       for (const double tolerance : table_tolerances) {
         rows.push_back(count_leaves(surface, tolerance, monitor));
         monitor.report(static_cast<double>(rows.size()) / static_cast<double>(count));
@@ -202,8 +202,7 @@ ExitStatus room_table(const Options& options) {
     const WorkMonitor monitor = bar.monitor();
     const auto library = std::make_shared<BoundsCache>();
     std::vector<LimitSurface> surfaces;
-    for (const ControlMesh& mesh : models.meshes)
-      surfaces.emplace_back(mesh, rules(), library, options.threads);
+    for (const ControlMesh& mesh : models.meshes) surfaces.emplace_back(mesh, rules(), library);
     for (const Cell& cell : cells) {
       rows.push_back(measure_room(surfaces[2 * cell.pair], surfaces[2 * cell.pair + 1],
                                   {cell.side, cell.tolerance, options.placements, options.seed},

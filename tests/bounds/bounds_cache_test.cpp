@@ -38,7 +38,7 @@ std::vector<std::vector<double>> numbers_with(const std::shared_ptr<BoundsCache>
   for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
     for (const oracle::TwinMesh& twin :
          {oracle::meshes::icosahedron(), oracle::meshes::bipyramid(7), oracle::meshes::bipyramid(40)}) {
-      const LimitSurface surface(testing::control_mesh(twin), {scheme}, library, 1);
+      const LimitSurface surface(testing::control_mesh(twin), {scheme}, library);
       HullPoints points;
       for (std::size_t p = 0; p < surface.patch_count(); ++p) {
         prepare_hull_points(*library, surface.kind(PatchId(p)));

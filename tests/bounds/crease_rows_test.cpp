@@ -28,7 +28,7 @@ ControlMesh creased_grid(double sharpness, bool along_x, bool far, std::size_t e
 
 LimitSurface surface_of(ControlMesh mesh, CreaseMethod method = CreaseMethod::uniform) {
   mesh.tags.crease_method = method;
-  return LimitSurface(std::move(mesh), {Scheme::catmark}, std::make_shared<BoundsCache>(), 1);
+  return LimitSurface(std::move(mesh), {Scheme::catmark}, std::make_shared<BoundsCache>());
 }
 
 // Three nets of numbers at once: where nothing is zero, and where one control point alone is not.

@@ -105,8 +105,7 @@ TEST(hull_points, of_crowded_patches_hold_their_corners) {
   oracle::TaggedMesh mesh = oracle::meshes::pole(36, false);
   mesh.creases = {{0, 1, 10}, {0, 3, 10}, {0, 37, 10}};
   mesh.points[0] = {0, 0, 1};
-  const LimitSurface surface(testing::control_mesh(mesh), {Scheme::catmark}, std::make_shared<BoundsCache>(),
-                             1);
+  const LimitSurface surface(testing::control_mesh(mesh), {Scheme::catmark}, std::make_shared<BoundsCache>());
   std::size_t crowded = 0;
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
     if (!surface.has_patch(PatchId(p)) || !surface.kind(PatchId(p)).crowded()) continue;

@@ -63,8 +63,7 @@ class Quadratics {
 };
 
 std::size_t check(const testing::TaggedCase& c, int levels, const std::shared_ptr<BoundsCache>& library) {
-  const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), library,
-                             1);
+  const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), library);
   Quadratics quadratics(surface);
   const bool loop = surface.options().scheme == Scheme::loop;
   const std::vector<oracle::FaceSample> samples = oracle::sample_faces(c.mesh, c.rules, levels);
@@ -223,7 +222,7 @@ TEST(quadratic_triangle, is_exact_for_bilinear_faces) {
   std::mt19937_64 random(85);
   for (const auto& mesh : {oracle::meshes::quad_grid(3, 2), oracle::meshes::mixed_strip()}) {
     const LimitSurface surface(testing::control_mesh(oracle::meshes::shaken(mesh, 0.3, random)),
-                               {Scheme::bilinear}, std::make_shared<BoundsCache>(), 1);
+                               {Scheme::bilinear}, std::make_shared<BoundsCache>());
     for (std::size_t p = 0; p < surface.patch_count(); ++p) {
       if (!surface.has_patch(PatchId(p))) continue;
       EXPECT_LT(compare(surface.library(), surface.patch(PatchId(p)), 8).error, 1e-13);

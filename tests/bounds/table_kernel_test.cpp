@@ -103,7 +103,7 @@ TEST(fit_table, is_the_tables_offset_triangle_where_all_functions_are_bounded) {
     });
   };
   const LimitSurface many(testing::control_mesh(oracle::meshes::pole(20, false)), {Scheme::catmark},
-                          std::make_shared<BoundsCache>(), 1);
+                          std::make_shared<BoundsCache>());
   check(many);
   testing::for_each_surface(9, [&](const testing::NamedSurface& named) { check(named.surface); });
   EXPECT_GT(seen.size(), 100u);

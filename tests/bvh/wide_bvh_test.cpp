@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <new>
 #include <random>
+#include <thread>
 #include <vector>
 
 namespace snug {
@@ -18,23 +21,38 @@ std::vector<Point3> scattered(std::size_t count) {
   return points;
 }
 
+WideBvh::Fit fit_to(const std::vector<Point3>& points) {
+  return [&points](std::size_t leaf, std::span<const std::uint32_t> items, std::vector<Obb>& boxes) {
+    // One box for all items of a leaf, or one each.
+    const std::size_t together = leaf % 2 == 0 ? items.size() : 1;
+    for (std::size_t at = 0; at < items.size(); at += together) {
+      std::vector<Point3> own;
+      for (const std::uint32_t i : items.subspan(at, together)) own.push_back(points[i]);
+      boxes.push_back(fit_box(principal_axes(own), [&](const Vector3& d) {
+        Extent extent;
+        for (const Point3& p : own) extent.add({dot(d, p - Point3{}) - 1e-15, dot(d, p - Point3{}) + 1e-15});
+        return extent;
+      }));
+    }
+  };
+}
+
 WideBvh tree_of(const std::vector<Point3>& points, int threads = 1) {
-  return {points, threads,
-          [&](std::size_t leaf, std::span<const std::uint32_t> items, std::vector<Obb>& boxes) {
-            // One box for all items of a leaf, or one each.
-            const std::size_t together = leaf % 2 == 0 ? items.size() : 1;
-            for (std::size_t at = 0; at < items.size(); at += together) {
-              std::vector<Point3> own;
-              for (const std::uint32_t i : items.subspan(at, together)) own.push_back(points[i]);
-              boxes.push_back(fit_box(principal_axes(own), [&](const Vector3& d) {
-                Extent extent;
-                for (const Point3& p : own) {
-                  extent.add({dot(d, p - Point3{}) - 1e-15, dot(d, p - Point3{}) + 1e-15});
-                }
-                return extent;
-              }));
-            }
-          }};
+  return {points, threads, fit_to(points)};
+}
+
+// Each has its point on its border.
+std::vector<Ball> balls_at(const std::vector<Point3>& points) {
+  std::vector<Ball> balls;
+  for (const Point3& p : points) {
+    const Vector3 away = 0.02 * (p - points[balls.size() / 2]);
+    balls.push_back({p + away, length(away) * (1 + 1e-15)});
+  }
+  return balls;
+}
+
+WideBvh lazy_tree_of(const std::vector<Point3>& points, unsigned part_level) {
+  return {balls_at(points), fit_to(points), part_level};
 }
 
 // Counts items below and checks that the child's box is not certainly apart from any of them.
@@ -59,18 +77,39 @@ void walk(const WideBvh& tree, const std::vector<Point3>& points, std::uint32_t 
   }
 }
 
+void expect_every_item_once(const WideBvh& tree, const std::vector<Point3>& points) {
+  std::vector<std::uint32_t> below;
+  std::size_t deepest = 0;
+  walk(tree, points, tree.root().names[0], 0, below, deepest);
+  std::sort(below.begin(), below.end());
+  ASSERT_EQ(below.size(), points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) EXPECT_EQ(below[i], i);
+  EXPECT_LE(deepest, 4u);
+  for (const Point3& p : points) {
+    EXPECT_LE(distance(p, tree.ball().centre), tree.ball().radius);
+    WideNode::Distances found;
+    tree.root().distances(p, 0, found);
+    EXPECT_LE(found[0], 0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_LE(std::fabs(dot(tree.box().axes[k], p - tree.box().centre)), tree.box().half[k] + 1e-14);
+    }
+    for (const Vector3& d : {Vector3{1, 0, 0}, Vector3{-0.3, 0.4, 0.8}}) {
+      EXPECT_LE(dot(d, p - tree.box().centre), tree.dop().reach(d) * (1 + 1e-12));
+    }
+  }
+}
+
 TEST(bounding_tree, holds_every_item_once_below_boxes_that_contain_it) {
   for (const std::size_t count : {1u, 7u, 8u, 9u, 64u, 65u, 513u, 3000u}) {
     const std::vector<Point3> points = scattered(count);
-    const WideBvh tree = tree_of(points);
-    std::vector<std::uint32_t> below;
-    std::size_t deepest = 0;
-    walk(tree, points, tree.root().names[0], 0, below, deepest);
-    std::sort(below.begin(), below.end());
-    ASSERT_EQ(below.size(), count);
-    for (std::uint32_t i = 0; i < count; ++i) EXPECT_EQ(below[i], i);
-    EXPECT_LE(deepest, 4u);
-    for (const Point3& p : points) EXPECT_LE(distance(p, tree.ball().centre), tree.ball().radius);
+    expect_every_item_once(tree_of(points), points);
+    for (const unsigned part_level : {1u, 2u})
+      expect_every_item_once(lazy_tree_of(points, part_level), points);
+    // Far from the origin, beside their size.
+    std::vector<Point3> far = points;
+    for (Point3& p : far) p = Point3{1.5, -0.7, 0.1} + 0x1p-30 * (p - Point3{});
+    expect_every_item_once(tree_of(far), far);
+    expect_every_item_once(lazy_tree_of(far, 1), far);
   }
 }
 
@@ -107,6 +146,69 @@ TEST(bounding_tree, is_the_same_for_any_number_of_threads) {
     EXPECT_TRUE(std::ranges::equal(one.leaf(c), two.leaf(c)));
   }
   expect_same(one, two, one.root(), two.root());
+}
+
+TEST(bounding_tree, made_in_parts_is_sorted_as_one_made_at_once) {
+  const std::vector<Point3> points = scattered(5000);
+  std::vector<Ball> balls;
+  for (const Point3& p : points) balls.push_back({p, 0});
+  const WideBvh whole = tree_of(points), parts(balls, fit_to(points));
+  std::vector<std::uint32_t> below;
+  std::size_t deepest = 0;
+  walk(parts, points, parts.root().names[0], 0, below, deepest);
+  for (std::size_t c = 0; c < whole.leaf_count(); ++c) {
+    EXPECT_TRUE(std::ranges::equal(whole.leaf(c), parts.leaf(c)));
+  }
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(parts.box().half[k], 1.1 * whole.box().half[k]);
+  EXPECT_LT(parts.ball().radius, 1.1 * whole.ball().radius);
+}
+
+TEST(bounding_tree, made_by_threads_at_once_is_that_of_one) {
+  const std::vector<Point3> points = scattered(20000);
+  const WideBvh alone = lazy_tree_of(points, 2);
+  for (int round = 0; round < 10; ++round) {
+    const WideBvh shared = lazy_tree_of(points, 2);
+    std::vector<std::vector<std::uint32_t>> found(4);
+    std::vector<std::thread> threads;
+    for (std::vector<std::uint32_t>& below : found) {
+      threads.emplace_back([&] {
+        std::size_t deepest = 0;
+        walk(shared, points, shared.root().names[0], 0, below, deepest);
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+    for (const std::vector<std::uint32_t>& below : found) EXPECT_EQ(below, found[0]);
+    EXPECT_EQ(found[0].size(), points.size());
+    expect_same(alone, shared, alone.root(), shared.root());
+  }
+}
+
+// What interrupts the making of a part leaves nothing half made.
+TEST(bounding_tree, makes_a_part_again_that_failed) {
+  const std::vector<Point3> points = scattered(3000);
+  int calls = 0;
+  const WideBvh tree(balls_at(points),
+                     [&, fit = fit_to(points)](std::size_t leaf, std::span<const std::uint32_t> items,
+                                               std::vector<Obb>& boxes) {
+                       if (++calls % 100 == 50) throw std::bad_alloc();
+                       fit(leaf, items, boxes);
+                     });
+  int failed = 0;
+  std::vector<std::uint32_t> below;
+  for (bool done = false; !done;) {
+    below.clear();
+    std::size_t deepest = 0;
+    try {
+      walk(tree, points, tree.root().names[0], 0, below, deepest);
+      done = true;
+    } catch (const std::bad_alloc&) {
+      ++failed;
+    }
+  }
+  EXPECT_GT(failed, 2);
+  std::sort(below.begin(), below.end());
+  ASSERT_EQ(below.size(), points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) EXPECT_EQ(below[i], i);
 }
 
 }  // namespace

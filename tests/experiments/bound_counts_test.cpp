@@ -44,7 +44,7 @@ TEST(bound_counts, split_until_sharpness_has_decayed) {
   for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
     const LimitSurface surface(
         bent_net(scheme, {NetCentre::semi_sharp, scheme == Scheme::loop ? 6u : 4u, 2.5}, 1), {scheme},
-        std::make_shared<BoundsCache>(), 1);
+        std::make_shared<BoundsCache>());
     LayoutTables tables(surface.library());
     std::vector<double> area(surface.patch_count(), 0);
     const auto check = [&](PatchId root, const Patch& piece, double) {

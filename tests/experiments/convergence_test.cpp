@@ -68,7 +68,7 @@ double factor_of_heights(std::size_t n, double centre, int block) {
     mesh.points[1 + i].z =
         std::cos(2 * std::numbers::pi * block * static_cast<double>(i) / static_cast<double>(n));
   }
-  const LimitSurface surface(std::move(mesh), {}, std::make_shared<BoundsCache>(), 1);
+  const LimitSurface surface(std::move(mesh), {}, std::make_shared<BoundsCache>());
   const Patch patch = surface.patch(PatchId(0)), child = split(patch, 0);
   const auto height = [](const Patch& p) { return p.origin.z + p.points[p.to_kind(1)].z; };
   return height(child) / height(patch);
@@ -90,7 +90,7 @@ TEST(convergence, eigenvalues_are_those_of_the_subdivision) {
 // docs/convergence.md gives the outer points of the characteristic layout in closed form.
 TEST(convergence, the_characteristic_layout_is_as_the_page_says) {
   for (const std::size_t n : experiment_valences) {
-    const LimitSurface surface(fan_mesh(n, 2), {}, std::make_shared<BoundsCache>(), 1);
+    const LimitSurface surface(fan_mesh(n, 2), {}, std::make_shared<BoundsCache>());
     const Kind& kind = surface.kind(PatchId(0));
     const double g = std::cos(2 * std::numbers::pi / static_cast<double>(n));
     const double b = (13 + 2 * g) / (5 + 4 * g), c = 3 / (2 + 2 * g);
@@ -117,7 +117,7 @@ TEST(convergence, fits_the_second_half_of_a_sequence) {
 }
 
 TEST(convergence, stops_where_rounding_shows) {
-  const LimitSurface surface(corner_net(NetShape::bent, 3, 1), {}, std::make_shared<BoundsCache>(), 1);
+  const LimitSurface surface(corner_net(NetShape::bent, 3, 1), {}, std::make_shared<BoundsCache>());
   LayoutTables tables(surface.library());
   for (const BoundSource source : all_bound_sources) {
     for (const Thicknesses& thickness : corner_thicknesses(surface, PatchId(0), tables, source, 40)) {
@@ -131,7 +131,7 @@ TEST(convergence, stops_where_rounding_shows) {
 // No enclosure is thinner across the surface than the surface is: limit points lie in its slab.
 TEST(convergence, slabs_along_the_normal_hold_limit_points) {
   for (const std::size_t n : {3u, 6u, 9u}) {
-    const LimitSurface surface(corner_net(NetShape::bent, n, 5), {}, std::make_shared<BoundsCache>(), 1);
+    const LimitSurface surface(corner_net(NetShape::bent, n, 5), {}, std::make_shared<BoundsCache>());
     Patch patch = surface.patch(PatchId(0));
     const Vector3 normal = *limit_frame(patch, TriangleParameter{0, 0}).normal;
     const double back = surface.scale().inverse().apply(1.0);
@@ -265,7 +265,7 @@ TEST(convergence, the_corners_matrix_has_the_eigenvalues_in_closed_form) {
   for (const Scheme scheme : {Scheme::loop, Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
     for (const std::size_t n : {3u, 4u, 5u, 7u, 12u}) {
       const LimitSurface surface(bent_net(scheme, {NetCentre::interior, n}, 1), {scheme},
-                                 std::make_shared<BoundsCache>(), 1);
+                                 std::make_shared<BoundsCache>());
       const std::vector<double> sizes =
           eigenvalue_sizes(corner_matrix(surface.patch(PatchId(surface.patches_of(0).begin))));
       const CornerEigenvalues closed = corner_eigenvalues(n, scheme);

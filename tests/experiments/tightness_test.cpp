@@ -11,7 +11,7 @@ namespace snug {
 namespace {
 
 LimitSurface surface_of_net(ControlMesh mesh) {
-  return LimitSurface(std::move(mesh), {}, std::make_shared<BoundsCache>(), 1);
+  return LimitSurface(std::move(mesh), {}, std::make_shared<BoundsCache>());
 }
 
 TEST(corner_nets, have_one_extraordinary_vertex) {

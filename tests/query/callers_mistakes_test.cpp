@@ -51,13 +51,13 @@ ControlMesh triangle() {
 LimitSurface surface_of(ControlMesh mesh, Scheme scheme) {
   SchemeOptions options;
   options.scheme = scheme;
-  return {std::move(mesh), options, std::make_shared<BoundsCache>(), 1};
+  return {std::move(mesh), options, std::make_shared<BoundsCache>()};
 }
 
 const std::vector<double> no_numbers{NAN, INFINITY, -INFINITY};
 
 TEST(callers_mistakes, a_surface_needs_a_library) {
-  expect_refused("null", [] { LimitSurface(square(), {.scheme = Scheme::catmark}, nullptr, 1); });
+  expect_refused("null", [] { LimitSurface(square(), {.scheme = Scheme::catmark}, nullptr); });
   const LimitSurface surface = surface_of(square(), Scheme::catmark);
   expect_refused("patch", [&] { static_cast<void>(surface.patch(PatchId(2))); });
   expect_refused("no patch", [&] { static_cast<void>(surface.patch(PatchId())); });

@@ -18,7 +18,7 @@ struct Body {
   SurfaceBvh model;
   SurfaceWorkspace scratch;
   explicit Body(const ControlMesh& mesh)
-      : surface(mesh, {Scheme::flat}, std::make_shared<BoundsCache>(), 1), model(surface), scratch(model) {}
+      : surface(mesh, {Scheme::flat}, std::make_shared<BoundsCache>()), model(surface), scratch(model) {}
   [[nodiscard]] PlacedBvh at(const Motion& pose) { return {model, scratch, pose}; }
 };
 

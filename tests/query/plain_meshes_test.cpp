@@ -89,9 +89,7 @@ struct Body {
   SurfaceBvh model;
   SurfaceWorkspace scratch;
   Body(ControlMesh mesh, const SchemeOptions& options)
-      : surface(std::move(mesh), options, std::make_shared<BoundsCache>(), 1),
-        model(surface),
-        scratch(model) {}
+      : surface(std::move(mesh), options, std::make_shared<BoundsCache>()), model(surface), scratch(model) {}
   [[nodiscard]] PlacedBvh at(const Motion& pose = {}) { return {model, scratch, pose}; }
 };
 

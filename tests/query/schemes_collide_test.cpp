@@ -31,8 +31,8 @@ struct Body {
   Body(std::string title, ControlMesh mesh, const SchemeOptions& options,
        const std::shared_ptr<BoundsCache>& library)
       : name(std::move(title)),
-        surface(std::move(mesh), options, library, 1),
-        model(surface, {.threads = 1}) {}
+        surface(std::move(mesh), options, library),
+        model(surface, {.threads = 1, .least_lazy = 0, .part_level = 1}) {}
 
   void add(const oracle::Point& p, double e) {
     samples.push_back({p[0], p[1], p[2]});
@@ -269,8 +269,8 @@ TEST(collide, separates_nested_shells_of_every_scheme) {
       for (double& x : p) x = 0.5 + 0.3 * (x - 0.5);
     }
     const auto library = std::make_shared<BoundsCache>();
-    const LimitSurface a(testing::control_mesh(outer), {scheme}, library, 1),
-        b(testing::control_mesh(inner), {scheme}, library, 1);
+    const LimitSurface a(testing::control_mesh(outer), {scheme}, library),
+        b(testing::control_mesh(inner), {scheme}, library);
     const SurfaceBvh model_a(a, {.threads = 1}), model_b(b, {.threads = 1});
     SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
     const Collision answer =

@@ -29,7 +29,7 @@ TEST(patch_evaluator, positions_agree_with_the_twin) {
     const auto library = std::make_shared<BoundsCache>();
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 91)) {
       const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules),
-                                 library, 1);
+                                 library);
       std::map<std::size_t, PatchEvaluator> evaluators;
       SurfaceEvaluator whole(surface);
       for (const oracle::FaceSample& s : oracle::sample_faces(c.mesh, c.rules, 3)) {
@@ -304,7 +304,7 @@ std::vector<std::optional<Vector3>> normals_in_the_middle(oracle::TaggedMesh mes
   std::mt19937_64 random(96);
   mesh = oracle::meshes::shaken(std::move(mesh), 0.2, random);
   if (scheme == Scheme::loop) mesh = oracle::meshes::triangulated(mesh);
-  const LimitSurface surface(testing::control_mesh(mesh), {scheme}, std::make_shared<BoundsCache>(), 1);
+  const LimitSurface surface(testing::control_mesh(mesh), {scheme}, std::make_shared<BoundsCache>());
   std::vector<std::optional<Vector3>> normals;
   for (std::size_t f = 0; f < surface.face_count(); ++f) {
     const auto face = surface.topology().face(FaceId(f));

@@ -36,7 +36,7 @@ std::size_t trials(std::size_t usual) {
 LimitSurface surface_of(ControlMesh mesh) {
   const Scheme scheme = natural_scheme(mesh);
   return LimitSurface(std::move(mesh), {scheme, BoundaryRule::edge_and_corner},
-                      std::make_shared<BoundsCache>(), 1);
+                      std::make_shared<BoundsCache>());
 }
 
 Place place(const Point3& p) { return {p.x, p.y, p.z}; }
@@ -380,7 +380,7 @@ TEST(limit_to_faces, does_not_depend_on_the_size_of_coordinates_and_knows_no_dua
     EXPECT_NEAR(there, bound, 1e-12);
   }
   mesh = testing::box({0, 0, 0}, {1, 1, 1}, false);
-  const LimitSurface dual(mesh, {Scheme::doo_sabin}, std::make_shared<BoundsCache>(), 1);
+  const LimitSurface dual(mesh, {Scheme::doo_sabin}, std::make_shared<BoundsCache>());
   EXPECT_FALSE(limit_to_faces(dual));
 }
 

@@ -31,7 +31,7 @@ struct Contestants {
         a(testing::surface_of(twin_a)),
         b(testing::surface_of(twin_b)),
         model_a(a, {.threads = 1}),
-        model_b(b, {.threads = 1}),
+        model_b(b, {.threads = 1, .least_lazy = 0, .part_level = 1}),
         scratch_a(model_a),
         scratch_b(model_b),
         distance_twin(twin_a, twin_b),

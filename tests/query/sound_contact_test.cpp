@@ -318,7 +318,7 @@ TEST(contact, bounds_hold_for_sizes_from_one_end_of_the_doubles_to_the_other) {
       mesh.points.push_back({std::ldexp(x, exponent), std::ldexp(y, exponent), height});
     const VertexId corners[3] = {VertexId(0u), VertexId(1u), VertexId(2u)};
     mesh.add_face(corners);
-    return LimitSurface(std::move(mesh), {Scheme::loop, BoundaryRule::edge_and_corner}, library, 1);
+    return LimitSurface(std::move(mesh), {Scheme::loop, BoundaryRule::edge_and_corner}, library);
   };
   std::size_t apart = 0, near = 0, undecided = 0;
   for (const int a : {-1060, -600, -100, -20, 0, 20, 100, 600, 1020}) {

@@ -388,7 +388,7 @@ class Checks {
 // Where a patch's kind once left out what its surface depends on.
 void expect_limit_points(const oracle::TaggedMesh& mesh, const oracle::Rules& rules) {
   const LimitSurface surface(testing::control_mesh(mesh, rules), testing::options_of(rules),
-                             std::make_shared<BoundsCache>(), 1);
+                             std::make_shared<BoundsCache>());
   const std::vector<oracle::FaceSample> samples = oracle::sample_faces(mesh, rules, 3);
   EXPECT_FALSE(samples.empty());
   for (const oracle::FaceSample& s : samples) {

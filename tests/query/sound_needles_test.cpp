@@ -102,7 +102,7 @@ struct Side {
   SurfaceWorkspace scratch;
   Side(ControlMesh mesh, Scheme scheme, const std::shared_ptr<BoundsCache>& library,
        const SurfaceBvhOptions& options)
-      : surface(std::move(mesh), {scheme}, library, 1), model(surface, options), scratch(model) {}
+      : surface(std::move(mesh), {scheme}, library), model(surface, options), scratch(model) {}
 };
 
 struct Setting {
@@ -123,6 +123,8 @@ struct Setting {
       if (lattice.layer() < 64 * hair && lattice.layer() > hair / 64) break;
     }
     options.tight = random() % 3 == 0;
+    if (random() % 2 == 0) options.least_lazy = 0;
+    options.part_level = 1 + static_cast<unsigned>(random() % 2);
     options.threads = 1;
     if (random() % 3 != 0) options.method = BoundMethod::table;
     const auto whole = [&] {

@@ -85,8 +85,7 @@ struct Counted {
 void check_primal(const testing::TaggedCase& c, int levels, const std::shared_ptr<BoundsCache>& library,
                   Counted& counted) {
   const std::string name = c.name + ", " + testing::text_of(c.rules);
-  const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), library,
-                             1);
+  const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), library);
   const bool loop = surface.options().scheme == Scheme::loop;
   const std::vector<oracle::FaceSample> samples = oracle::sample_faces(c.mesh, c.rules, levels);
   std::set<std::uint32_t> with_samples;
@@ -210,7 +209,7 @@ TEST(crowded_corners, limit_points_lie_inside_their_enclosures) {
 // parameters meets the samples of the patch, all of them.
 void check_dual(const std::string& name, const oracle::TaggedMesh& mesh, Scheme scheme, int levels,
                 const std::shared_ptr<BoundsCache>& library, Counted& counted) {
-  const LimitSurface surface(testing::control_mesh(mesh), {scheme}, library, 1);
+  const LimitSurface surface(testing::control_mesh(mesh), {scheme}, library);
   const auto twin = scheme == Scheme::doo_sabin ? oracle::DualScheme::doo_sabin : oracle::DualScheme::midedge;
   std::vector<std::vector<Sample>> samples(surface.owner_count());
   for (const oracle::DualSample& s : oracle::sample_dual(mesh, twin, levels)) {

@@ -60,7 +60,7 @@ TEST(signed_distance, agrees_with_refined_meshes) {
     const testing::SolidCase c = testing::solid_case(i);
     std::mt19937_64 random(i + 5);
     try {
-      const LimitSurface surface(testing::control_mesh(c), c.options, std::make_shared<BoundsCache>(), 1);
+      const LimitSurface surface(testing::control_mesh(c), c.options, std::make_shared<BoundsCache>());
       const SurfaceBvh model(surface);
       const oracle::WindingTwin twin(c.mesh, c.scheme, testing::twin_levels(c.mesh, 400));
       const std::vector<Point3> limit_points = limit_points_of(c);
@@ -142,7 +142,7 @@ TEST(signed_distance, of_sharp_polyhedra_is_exact) {
       constexpr std::array schemes{Scheme::loop, Scheme::catmark, Scheme::flat, Scheme::bilinear};
       const Scheme scheme = schemes[i % schemes.size()];
       surface.emplace(rules_of(scheme).local ? testing::control_mesh(shape) : sharp_mesh(shape),
-                      SchemeOptions{scheme}, std::make_shared<BoundsCache>(), 1);
+                      SchemeOptions{scheme}, std::make_shared<BoundsCache>());
       model.emplace(*surface);
       static_cast<void>(model->solid());
     } catch (const InputError&) {

@@ -53,7 +53,7 @@ class Trials {
       : case_(c),
         random_(seed),
         twin_(c.mesh, c.scheme, testing::twin_levels(c.mesh, 1500)),
-        surface_(testing::control_mesh(c), c.options, std::make_shared<BoundsCache>(), 1),
+        surface_(testing::control_mesh(c), c.options, std::make_shared<BoundsCache>()),
         model_(surface_, {.threads = 1}),
         scratch_(model_) {}
 
@@ -142,7 +142,7 @@ class Trials {
       const std::array corners{VertexId(f[0]), VertexId(f[1]), VertexId(f[2])};
       mesh.add_face(corners);
     }
-    const LimitSurface surface(std::move(mesh), {Scheme::loop}, std::make_shared<BoundsCache>(), 1);
+    const LimitSurface surface(std::move(mesh), {Scheme::loop}, std::make_shared<BoundsCache>());
     const SurfaceBvh model(surface);
     SurfaceWorkspace scratch(model);
     CollideOptions wanted = testing::verdict_only();

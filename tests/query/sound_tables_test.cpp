@@ -158,8 +158,7 @@ TEST(tables, contain_limit_points_of_faces) {
       const SchemeOptions options =
           with_tags({loop ? Scheme::loop : Scheme::catmark, boundary_of(plain.rules)},
                     control_mesh(twin, plain.rules).tags);
-      const LimitSurface surface(control_mesh(twin, plain.rules), options, std::make_shared<BoundsCache>(),
-                                 1);
+      const LimitSurface surface(control_mesh(twin, plain.rules), options, std::make_shared<BoundsCache>());
       const auto samples = oracle::sample_faces(twin, plain.rules, 4);
       ASSERT_TRUE(!samples.empty() || plain.rules.boundary == oracle::Boundary::none) << plain.name;
       for (const unsigned level : {0u, 2u}) {
@@ -199,7 +198,7 @@ TEST(tables, contain_limit_points_of_dual_schemes) {
       for (oracle::Point& p : twin.points) p = disguise.change(p);
       for (const bool midedge : {false, true}) {
         const LimitSurface surface(control_mesh(twin, {}), {midedge ? Scheme::midedge : Scheme::doo_sabin},
-                                   std::make_shared<BoundsCache>(), 1);
+                                   std::make_shared<BoundsCache>());
         const auto samples = oracle::sample_dual(
             twin, midedge ? oracle::DualScheme::midedge : oracle::DualScheme::doo_sabin, 3);
         ASSERT_FALSE(samples.empty()) << plain.name;
@@ -236,7 +235,7 @@ TEST(tables, give_patch_bounds_that_contain_limit_points) {
       const ControlMesh mesh = control_mesh(twin, c.rules);
       const LimitSurface surface(
           mesh, with_tags({loop ? Scheme::loop : Scheme::catmark, boundary_of(c.rules)}, mesh.tags),
-          std::make_shared<BoundsCache>(), 1);
+          std::make_shared<BoundsCache>());
       BatchBounds bounds(surface, BoundMethod::table, 1);
       std::vector<OffsetTriangle> found(bounds.patches().size());
       bounds.update(mesh.points, found);

@@ -138,8 +138,8 @@ TEST(witness_kinds, leave_the_verdict_about_solids_as_it_is) {
     const oracle::TaggedMesh shape = oracle::meshes::triangulated(oracle::meshes::cube());
     ControlMesh small = testing::control_mesh(shape);
     for (Point3& p : small.points) p = {0.2 * p.x, 0.2 * p.y, 0.2 * p.z};
-    const LimitSurface outer(testing::control_mesh(shape), {scheme}, std::make_shared<BoundsCache>(), 1),
-        inner(small, {scheme}, std::make_shared<BoundsCache>(), 1);
+    const LimitSurface outer(testing::control_mesh(shape), {scheme}, std::make_shared<BoundsCache>()),
+        inner(small, {scheme}, std::make_shared<BoundsCache>());
     const SurfaceBvh a(outer, {.threads = 1}), b(inner, {.threads = 1});
     for (int trial = 0; trial < 200; ++trial) {
       std::array<Motion, 2> poses;

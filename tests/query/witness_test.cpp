@@ -93,7 +93,7 @@ TEST(witnesses, lie_between_the_samples_of_the_twin) {
     const auto library = std::make_shared<BoundsCache>();
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 72, 0)) {
       const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules),
-                                 library, 1);
+                                 library);
       std::map<std::array<std::uint32_t, 2>, std::vector<oracle::FaceSample>> samples;
       for (const oracle::FaceSample& s : oracle::sample_faces(c.mesh, c.rules, level)) {
         samples[{s.face, s.part}].push_back(s);
@@ -227,7 +227,7 @@ TEST(normals, are_within_their_error_of_tangents_refined_in_113_bits) {
     const auto library = std::make_shared<BoundsCache>();
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 73)) {
       const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules),
-                                 library, 1);
+                                 library);
       PolygonNet net = oracle::detail::control_net(c.mesh, c.rules).net;
       for (int i = 0; i < level; ++i) net = oracle::detail::refine(net, c.rules);
       const oracle::detail::Neighbours near(net);
@@ -273,8 +273,7 @@ TEST(normals, are_within_their_error_of_tangents_refined_in_113_bits) {
 
 TEST(normals, have_no_bound_where_there_is_none) {
   const oracle::TaggedMesh mesh = oracle::meshes::pyramid(7);
-  const LimitSurface surface(testing::control_mesh(mesh), {Scheme::catmark}, std::make_shared<BoundsCache>(),
-                             1);
+  const LimitSurface surface(testing::control_mesh(mesh), {Scheme::catmark}, std::make_shared<BoundsCache>());
   const auto tip = normal_at(surface, {0, 0, 0, 0});
   if (tip) {
     EXPECT_FALSE(tip->error.has_value());

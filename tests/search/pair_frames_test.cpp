@@ -22,7 +22,7 @@ struct Body {
   Motion pose;
 
   Body(const ControlMesh& mesh, const Motion& in_pose)
-      : surface(mesh, {Scheme::flat}, std::make_shared<BoundsCache>(), 1),
+      : surface(mesh, {Scheme::flat}, std::make_shared<BoundsCache>()),
         model(surface),
         workspace(model),
         pose(in_pose) {}

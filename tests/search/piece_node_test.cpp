@@ -173,8 +173,7 @@ void expect_samples_known(SurfaceWorkspace& workspace, const Node& node, const s
 void expect_twin_known(const testing::TaggedCase& c, const std::shared_ptr<BoundsCache>& library,
                        std::mt19937_64& random, Counts& counts) {
   constexpr unsigned levels = 3;
-  const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), library,
-                             1);
+  const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), library);
   const bool loop = surface.options().scheme == Scheme::loop;
   std::vector<std::vector<Sample>> samples(surface.patch_count());
   for (const oracle::FaceSample& s : oracle::sample_faces(c.mesh, c.rules, levels)) {

@@ -44,7 +44,7 @@ std::vector<LimitSurface> surfaces() {
   for (const oracle::TaggedMesh& mesh :
        {mixed, oracle::meshes::mixed_strip(), oracle::meshes::pole(20, true)}) {
     list.emplace_back(testing::control_mesh(mesh), SchemeOptions{Scheme::catmark},
-                      std::make_shared<BoundsCache>(), 1);
+                      std::make_shared<BoundsCache>());
   }
   return list;
 }

@@ -156,7 +156,7 @@ TEST(batch_bounds, pass_over_vertices_without_faces) {
   mesh.points.insert(mesh.points.begin(), Point3{1e200, 0, 0});
   for (VertexId& v : mesh.face_vertices) v = VertexId(v.index() + 1);
   mesh.points.push_back({-1e200, 0, 0});
-  const LimitSurface surface(mesh, {}, std::make_shared<BoundsCache>(), 1);
+  const LimitSurface surface(mesh, {}, std::make_shared<BoundsCache>());
   BatchBounds bounds(surface);
   std::vector<OffsetTriangle> out(20);
   bounds.update(mesh.points, out);
@@ -175,7 +175,7 @@ TEST(batch_bounds, of_quads_contain_the_limit_and_are_a_little_wider_than_of_sin
       }
       const oracle::Rules rules;
       const LimitSurface surface(testing::control_mesh(twin), testing::options_of(rules),
-                                 std::make_shared<BoundsCache>(), 1);
+                                 std::make_shared<BoundsCache>());
       BatchBounds bounds(surface);
       std::vector<OffsetTriangle> out(bounds.patches().size());
       bounds.update(surface.mesh().points, out);

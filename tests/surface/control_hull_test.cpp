@@ -48,6 +48,44 @@ TEST(control_hull, contains_limit_points_of_its_patches) {
   EXPECT_GT(samples, 20'000u);
 }
 
+TEST(control_balls, contain_limit_points_of_their_patches) {
+  std::mt19937_64 random(64);
+  std::size_t samples = 0;
+  const auto check = [&](const LimitSurface& surface, const std::string& name) {
+    std::vector<PatchId> patches;
+    testing::for_each_patch(surface, [&](PatchId p) { patches.push_back(p); });
+    const std::vector<Ball> balls = control_balls(surface, patches);
+    ASSERT_EQ(balls.size(), patches.size());
+    std::vector<VertexId> control;
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+      // Chaikin's rule makes the sharpness of edges depend on vertices farther away, but not their positions.
+      if (!surface.rules().local && surface.options().creases == CreaseMethod::uniform) {
+        surface.control_vertices(patches[i], control);
+        for (const VertexId v : control) {
+          ASSERT_LE(distance(surface.scaled_point(v), balls[i].centre), balls[i].radius) << name;
+        }
+      }
+      const Patch patch = surface.patch(patches[i]);
+      for (int k = 0; k < 6; ++k) {
+        const LimitPoint point = limit_point(patch, testing::random_parameter(random));
+        ++samples;
+        ASSERT_LE(distance(patch.origin + point.relative, balls[i].centre),
+                  balls[i].radius + 2 * point.error + 1e-15)
+            << name;
+      }
+    }
+  };
+  testing::for_each_surface(64, [&](const NamedSurface& named) { check(named.surface, named.name); });
+  // Faces of many corners, whose sizes are not measured pair by pair.
+  for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge, Scheme::bilinear}) {
+    check({testing::control_mesh(oracle::meshes::shaken(oracle::meshes::prism(40), 0.3, random)),
+           {scheme},
+           std::make_shared<BoundsCache>()},
+          name_of(scheme));
+  }
+  EXPECT_GT(samples, 10'000u);
+}
+
 TEST(kind, outer_weight_is_that_of_the_ring_at_a_corner) {
   std::mt19937_64 random(62);
   testing::for_each_surface(62, [&](const NamedSurface& named) {

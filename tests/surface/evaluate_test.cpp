@@ -46,7 +46,7 @@ LimitSurface mixed_surface(Scheme scheme, double scale = 1) {
   mesh = oracle::meshes::shaken(std::move(mesh), 0.2, random);
   ControlMesh control = testing::control_mesh(mesh);
   for (Point3& p : control.points) p = {scale * (p.x + 2), scale * p.y, scale * p.z};
-  return LimitSurface(std::move(control), {scheme}, std::make_shared<BoundsCache>(), 1);
+  return LimitSurface(std::move(control), {scheme}, std::make_shared<BoundsCache>());
 }
 
 // Many a face, corners and edges among them, in random order.

@@ -84,6 +84,10 @@ SurfaceBvhOptions random_options(Dice& dice) {
   options.threads = 1;
   if (dice.one_in(6)) options.method = BoundMethod::table;
   options.tight = dice.one_in(3);
+  if (dice.one_in(2)) {
+    options.least_lazy = 0;
+    options.part_level = 1 + dice.below(2);
+  }
   return options;
 }
 
@@ -224,7 +228,7 @@ void Contestants::make(std::size_t side, TwinMesh mesh, const SurfaceBvhOptions&
   for (Point& p : large.points)
     for (double& x : p) x = scaled(x);
   s.mesh = std::make_shared<TwinMesh>(std::move(mesh));
-  s.surface = std::make_shared<LimitSurface>(control_mesh(large), rules(large), library(), 1);
+  s.surface = std::make_shared<LimitSurface>(control_mesh(large), rules(large), library());
   s.model = std::make_shared<SurfaceBvh>(*s.surface, options);
   s.scratch = std::make_unique<SurfaceWorkspace>(*s.model);
 }
@@ -796,7 +800,7 @@ std::string describe(const Trial& trial) {
           (trial.truth.crossing ? " crossing" : "");
   const SurfaceBvhOptions& options = trial.pair->options();
   text += std::string("; ") + (options.method == BoundMethod::table ? "tables" : "rows") +
-          (options.tight ? ", tight" : "");
+          (options.tight ? ", tight" : "") + (options.least_lazy == 0 ? ", lazy" : "");
   if (const char* folder = std::getenv("SNUG_DUMP")) {
     for (std::size_t side = 0; side < 2; ++side) {
       std::ofstream file(std::string(folder) + (side == 0 ? "/a.obj" : "/b.obj"));

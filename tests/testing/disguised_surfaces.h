@@ -25,7 +25,7 @@ void for_each_disguised_surface(std::uint64_t seed, const Visit& visit) {
           const oracle::Point q = disguise.change({p.x, p.y, p.z});
           p = {q[0], q[1], q[2]};
         }
-        const LimitSurface surface(std::move(mesh), named.surface.options(), library, 1);
+        const LimitSurface surface(std::move(mesh), named.surface.options(), library);
         visit(surface, named.name + ", " + disguise.name, random);
         if (::testing::Test::HasFailure()) return;
       }

@@ -617,7 +617,7 @@ void GroundTrials::make_sides(std::uint64_t row) {
     SchemeOptions options = options_of(s.made.rules);
     options.scheme = s.made.scheme;
     s.surface =
-        std::make_unique<LimitSurface>(control_mesh(s.made.mesh, s.made.rules), options, shared_->library, 1);
+        std::make_unique<LimitSurface>(control_mesh(s.made.mesh, s.made.rules), options, shared_->library);
     SurfaceBvhOptions model;
     model.threads = 1;
     model.method = choice<BoundMethod>(s.choices, Factor::sets);

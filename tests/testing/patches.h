@@ -10,7 +10,7 @@ namespace snug::testing {
 
 /// Surface of a twin's mesh. `scaled` coordinates are the mesh's own where they lie in [1, 2).
 [[nodiscard]] inline LimitSurface surface_of(const oracle::TwinMesh& twin) {
-  return LimitSurface(control_mesh(twin), rules(twin), std::make_shared<BoundsCache>(), 1);
+  return LimitSurface(control_mesh(twin), rules(twin), std::make_shared<BoundsCache>());
 }
 
 }  // namespace snug::testing

@@ -34,7 +34,7 @@ inline void for_each_surface(std::uint64_t seed, const std::function<void(const 
     const auto library = std::make_shared<BoundsCache>();
     for (const TaggedCase& c : tagged_cases(scheme, seed)) {
       const std::string name = c.name + ", " + text_of(c.rules);
-      visit({name, LimitSurface(control_mesh(c.mesh, c.rules), options_of(c.rules), library, 1)});
+      visit({name, LimitSurface(control_mesh(c.mesh, c.rules), options_of(c.rules), library)});
       if (::testing::Test::HasFailure()) return;
     }
   }
@@ -49,7 +49,7 @@ inline void for_each_surface(std::uint64_t seed, const std::function<void(const 
              {"mixed strip", meshes::mixed_strip()},
              {"triangles", meshes::triangulated(meshes::quad_grid(4, 4))}}) {
       visit({name + ", " + name_of(scheme),
-             LimitSurface(control_mesh(meshes::shaken(plain, 0.3, random)), {scheme}, library, 1)});
+             LimitSurface(control_mesh(meshes::shaken(plain, 0.3, random)), {scheme}, library)});
       if (::testing::Test::HasFailure()) return;
     }
   }

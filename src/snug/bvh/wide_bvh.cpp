@@ -2,31 +2,51 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+#include <utility>
 
 #include <snug/base/contract.h>
 #include <snug/base/parallel.h>
+#include <snug/geometry/rounding.h>
 
 namespace snug {
 namespace {
 
-// Leaves under each of the eight children of a node with so many leaves: as even as full subtrees allow.
-std::size_t child_capacity(std::size_t leaves) {
-  std::size_t capacity = 1;
-  while (capacity * WideNode::width < leaves) capacity *= WideNode::width;
-  return capacity;
-}
+constexpr std::size_t leaves_of_level(unsigned level) { return std::size_t{1} << 3 * level; }
 
-// A centre in single precision: enough to sort by.
-struct Item {
-  std::array<float, 3> centre;
+}  // namespace
+
+// A ball in single precision, for sorting and for boxes that need not be the tightest.
+struct WideBvh::Item {
+  std::array<float, 3> centre;  // from an origin
+  float radius;
   std::uint32_t number;
 };
 
-// Eight parts by three halvings, each across the longest side of its box; parts are of whole leaves, so that
-// all but the last of these are full.
-void sort_items(std::span<Item> items, int threads) {
-  constexpr std::size_t leaf_size = WideBvh::leaf_size;
-  const std::size_t part = child_capacity((items.size() + leaf_size - 1) / leaf_size) * leaf_size;
+struct WideBvh::Unmade {
+  Fit fit;
+  unsigned part_level;
+  std::vector<Item> items;
+  Point3 origin;
+  double reach = 0;  // no coordinate of a ball is farther from the origin
+  std::array<std::mutex, 16> locks;
+
+  [[nodiscard]] std::vector<Obb> some_of(std::span<const Item> items, std::size_t most) const;
+  [[nodiscard]] Obb box_around(std::span<const Item> items) const;
+  [[nodiscard]] Ball ball_around_all() const;
+};
+
+namespace {
+
+Vector3 wide(const std::array<float, 3>& v) {
+  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+
+// Eight parts by three halvings, each across the longest side of its box; all but the last are of `part` items.
+template <class Item>
+std::vector<std::span<Item>> split_by_eight(std::span<Item> items, std::size_t part) {
   std::vector<std::span<Item>> ranges{items};
   for (int halving = 0; halving < 3; ++halving) {
     std::vector<std::span<Item>> finer;
@@ -57,76 +77,239 @@ void sort_items(std::span<Item> items, int threads) {
     }
     ranges = std::move(finer);
   }
-  if (part <= leaf_size) return;
-  parallel_for(ranges.size(), items.size() > 4096 ? threads : 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) sort_items(ranges[i], 1);
-  });
+  return ranges;
 }
 
 }  // namespace
+
+// Boxes around some of the balls, about `most`, for choices that need no proof.
+std::vector<Obb> WideBvh::Unmade::some_of(std::span<const Item> all, std::size_t most) const {
+  std::vector<Obb> boxes;
+  for (std::size_t i = 0; i < all.size(); i += (all.size() + most - 1) / most) {
+    const auto r = static_cast<double>(all[i].radius);
+    boxes.push_back({origin + wide(all[i].centre), Obb{}.axes, {r, r, r}});
+  }
+  return boxes;
+}
+
+Obb WideBvh::Unmade::box_around(std::span<const Item> all) const {
+  const std::array<Vector3, 3> axes = merge(some_of(all, 64)).axes;
+  std::array<Extent, 3> extents;
+  for (const Item& item : all) {
+    const Vector3 from = wide(item.centre);
+    const auto r = static_cast<double>(item.radius);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double height = dot(axes[k], from);
+      extents[k].add({height - r, height + r});
+    }
+  }
+  // At most 64 roundings, and what axes lack of their length.
+  const double error = 128 * unit_roundoff * (max_abs(origin - Point3{}) + reach);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double height = dot(axes[k], origin - Point3{});
+    extents[k] = {extents[k].lower + height - error, extents[k].upper + height + error};
+  }
+  return box_of(axes, extents);
+}
+
+Ball WideBvh::Unmade::ball_around_all() const {
+  const Vector3 centre = ball_around(some_of(items, 512)).centre - origin;
+  double radius = 0;
+  for (const Item& item : items) {
+    radius = std::max(radius, length(wide(item.centre) - centre) + static_cast<double>(item.radius));
+  }
+  // The sum below is rounded once more.
+  return {origin + centre,
+          enlarged(radius) + 64 * unit_roundoff * (max_abs(origin - Point3{}) + reach) + 0x1p-480};
+}
 
 TreeNode::TreeNode(std::span<const Obb> boxes, std::span<const std::uint32_t> of_boxes) : WideNode(boxes) {
   std::copy(of_boxes.begin(), of_boxes.end(), names.begin());
 }
 
-WideBvh::WideBvh(std::span<const Point3> centres, int threads, const Fit& fit) {
-  SNUG_EXPECT(!centres.empty() && centres.size() < leaf_bit);
+WideBvh::WideBvh(std::size_t item_count) : items_(item_count) {
+  SNUG_EXPECT(item_count > 0 && item_count < leaf_bit);
+  std::iota(items_.begin(), items_.end(), 0u);
+  begins_ = {0};
+  std::size_t nodes = 0;
+  while (leaves_of_level(whole().level) < leaf_count()) {
+    begins_.push_back(static_cast<std::uint32_t>(nodes));
+    const std::size_t leaves = leaves_of_level(whole().level);
+    nodes += (leaf_count() + leaves - 1) / leaves;
+  }
+  nodes_.resize(nodes);
+  made_ = std::vector<std::atomic<bool>>(nodes);
+}
+
+WideBvh::WideBvh(WideBvh&&) noexcept = default;
+WideBvh::~WideBvh() = default;
+
+WideBvh::WideBvh(std::span<const Point3> centres, int threads, const Fit& fit) : WideBvh(centres.size()) {
   std::vector<Item> items;
   items.reserve(centres.size());
   for (std::size_t i = 0; i < centres.size(); ++i) {
     const Point3& p = centres[i];
     items.push_back({{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
+                     0,
                      static_cast<std::uint32_t>(i)});
   }
-  sort_items(items, threads);
-  items_.reserve(items.size());
-  for (const Item& item : items) items_.push_back(item.number);
+  sort(whole(), items, threads);
+  const Fitted fitted = fit_upwards(whole(), threads, fit);
+  finish(merge(fitted.below), ball_around(fitted.leaves), fitted.leaves);
+}
 
-  // What each leaf is fitted to.
-  std::vector<std::vector<Obb>> parts(leaf_count());
-  std::vector<Obb> boxes(leaf_count());
-  std::vector<std::uint32_t> names(leaf_count());
-  parallel_for(boxes.size(), threads, [&](std::size_t begin, std::size_t end) {
+WideBvh::WideBvh(std::span<const Ball> balls, Fit fit, unsigned part_level) : WideBvh(balls.size()) {
+  SNUG_EXPECT(part_level >= 1);
+  unmade_ = std::make_unique<Unmade>();
+  unmade_->fit = std::move(fit);
+  unmade_->part_level = part_level;
+  Point3 lower = balls[0].centre, upper = lower;
+  for (const Ball& ball : balls) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      lower[k] = std::min(lower[k], ball.centre[k]);
+      upper[k] = std::max(upper[k], ball.centre[k]);
+    }
+  }
+  const Point3 origin = unmade_->origin = lower + 0.5 * (upper - lower);
+  const double rounding = 16 * unit_roundoff * (max_abs(origin - Point3{}) + max_abs(upper - lower));
+  unmade_->items.reserve(balls.size());
+  for (const Ball& ball : balls) {
+    const Vector3 from = ball.centre - origin;
+    Item item{{}, 0, static_cast<std::uint32_t>(unmade_->items.size())};
+    double moved = rounding;
+    for (std::size_t k = 0; k < 3; ++k) {
+      item.centre[k] = static_cast<float>(from[k]);
+      moved += std::fabs(from[k] - static_cast<double>(item.centre[k]));
+    }
+    item.radius = float_up(enlarged(ball.radius + moved));
+    unmade_->reach = std::max(unmade_->reach, max_abs(from) + static_cast<double>(item.radius));
+    unmade_->items.push_back(item);
+  }
+  // Two levels, for a k-DOP that is not too large.
+  std::vector<Obb> parts{unmade_->box_around(unmade_->items)};
+  const Obb box = parts[0];
+  for (unsigned level = whole().level; level > part_level && level + 2 > whole().level; --level) {
+    std::vector<Obb> finer;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const std::vector<Obb> children = open({level, i});
+      finer.insert(finer.end(), children.begin(), children.end());
+    }
+    parts = std::move(finer);
+  }
+  finish(box, unmade_->ball_around_all(), parts);
+}
+
+void WideBvh::finish(const Obb& box, const Ball& ball, std::span<const Obb> parts) {
+  box_ = box;
+  ball_ = ball;
+  dop_ = Dop26(parts, box_.centre);
+  const std::uint32_t name = name_of(whole());
+  root_ = TreeNode(std::span(&box, 1), std::span(&name, 1));
+}
+
+WideBvh::Subtree WideBvh::subtree(std::uint32_t name) const {
+  unsigned level = whole().level;
+  while (begins_[level] > name) --level;
+  return {level, name - begins_[level]};
+}
+
+std::uint32_t WideBvh::name_of(Subtree of) const {
+  return of.level == 0 ? static_cast<std::uint32_t>(of.number) | leaf_bit
+                       : begins_[of.level] + static_cast<std::uint32_t>(of.number);
+}
+
+std::size_t WideBvh::leaves_below(Subtree of) const {
+  const std::size_t leaves = leaves_of_level(of.level);
+  return std::min(leaves, leaf_count() - of.number * leaves);
+}
+
+std::span<WideBvh::Item> WideBvh::items_below(Subtree of, std::span<Item> all) const {
+  const std::size_t items = leaves_of_level(of.level) * leaf_size, first = of.number * items;
+  return all.subspan(first, std::min(items, all.size() - first));
+}
+
+// Down to the leaves.
+void WideBvh::sort(Subtree of, std::span<Item> all, int threads) const {
+  const std::span<Item> items = items_below(of, all);
+  if (of.level > 1) {
+    const std::size_t parts = split_by_eight(items, leaves_of_level(of.level - 1) * leaf_size).size();
+    parallel_for(parts, items.size() > 4096 ? threads : 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) sort({of.level - 1, of.number * 8 + i}, all, 1);
+    });
+    return;
+  }
+  if (of.level == 1) split_by_eight(items, leaf_size);
+  const auto first = static_cast<std::size_t>(items.data() - all.data());
+  for (std::size_t i = 0; i < items.size(); ++i) items_[first + i] = items[i].number;
+}
+
+// The nodes of a whole subtree, from what its leaves are fitted to upwards.
+WideBvh::Fitted WideBvh::fit_upwards(Subtree of, int threads, const Fit& fit) const {
+  const std::size_t first_leaf = of.number * leaves_of_level(of.level);
+  std::vector<std::vector<Obb>> parts(leaves_below(of));
+  Fitted result;
+  result.leaves.resize(parts.size());
+  parallel_for(parts.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      fit(i, leaf(i), parts[i]);
-      boxes[i] = parts[i].size() == 1 ? parts[i][0] : merge(parts[i]);
-      names[i] = static_cast<std::uint32_t>(i) | leaf_bit;
+      fit(first_leaf + i, leaf(first_leaf + i), parts[i]);
+      result.leaves[i] = parts[i].size() == 1 ? parts[i][0] : merge(parts[i]);
     }
   });
-  const std::vector<Obb> leaves = boxes;
-  std::vector<Obb> below;         // of all leaves
-  std::vector<std::size_t> ends;  // there, of each box
+  std::vector<std::size_t> ends;  // among those below, of each box
   for (const std::vector<Obb>& part : parts) {
-    below.insert(below.end(), part.begin(), part.end());
-    ends.push_back(below.size());
+    result.below.insert(result.below.end(), part.begin(), part.end());
+    ends.push_back(result.below.size());
   }
-  // Level by level: eight neighbours in a row make a node.
-  while (boxes.size() > 1) {
-    const std::size_t count = (boxes.size() + WideNode::width - 1) / WideNode::width;
+  std::vector<Obb> boxes = result.leaves;
+  for (unsigned level = 1; level <= of.level; ++level) {
+    const std::size_t count = (boxes.size() + WideNode::width - 1) / WideNode::width,
+                      first_node = first_leaf / leaves_of_level(level);
     std::vector<Obb> parents(count);
-    std::vector<std::uint32_t> parent_names(count);
     std::vector<std::size_t> parent_ends(count);
-    const auto first_name = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.resize(nodes_.size() + count);
     parallel_for(count, threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const std::size_t first = i * WideNode::width, n = std::min(WideNode::width, boxes.size() - first);
         const std::size_t from = first == 0 ? 0 : ends[first - 1];
-        parents[i] = merge(std::span(below).subspan(from, ends[first + n - 1] - from));
-        parent_names[i] = first_name + static_cast<std::uint32_t>(i);
         parent_ends[i] = ends[first + n - 1];
-        nodes_[parent_names[i]] =
-            TreeNode(std::span(boxes).subspan(first, n), std::span(names).subspan(first, n));
+        parents[i] = merge(std::span(result.below).subspan(from, parent_ends[i] - from));
+        keep({level, first_node + i}, std::span(boxes).subspan(first, n));
       }
     });
     boxes = std::move(parents);
-    names = std::move(parent_names);
     ends = std::move(parent_ends);
   }
-  nodes_.emplace_back(boxes, names);
-  box_ = boxes[0];
-  ball_ = ball_around(leaves);
-  dop_ = Dop26(leaves, box_.centre);
+  return result;
+}
+
+// A node by what is known of its items before they are fitted.
+std::vector<Obb> WideBvh::open(Subtree of) const {
+  std::vector<Obb> boxes;
+  for (const std::span<Item> part :
+       split_by_eight(items_below(of, unmade_->items), leaves_of_level(of.level - 1) * leaf_size)) {
+    boxes.push_back(unmade_->box_around(part));
+  }
+  keep(of, boxes);
+  return boxes;
+}
+
+void WideBvh::make(std::uint32_t name) const {
+  const std::lock_guard lock(unmade_->locks[name % unmade_->locks.size()]);
+  if (made_[name].load(std::memory_order_relaxed)) return;
+  const Subtree of = subtree(name);
+  if (of.level > unmade_->part_level) {
+    open(of);
+  } else {
+    sort(of, unmade_->items, 1);
+    fit_upwards(of, 1, unmade_->fit);
+  }
+}
+
+void WideBvh::keep(Subtree of, std::span<const Obb> boxes) const {
+  std::array<std::uint32_t, WideNode::width> names;
+  for (std::size_t i = 0; i < boxes.size(); ++i) names[i] = name_of({of.level - 1, of.number * 8 + i});
+  const std::uint32_t name = name_of(of);
+  nodes_[name] = TreeNode(boxes, std::span(names).first(boxes.size()));
+  made_[name].store(true, std::memory_order_release);
 }
 
 std::span<const std::uint32_t> WideBvh::leaf(std::size_t i) const {
@@ -135,7 +318,8 @@ std::span<const std::uint32_t> WideBvh::leaf(std::size_t i) const {
 }
 
 std::size_t WideBvh::bytes() const {
-  return nodes_.capacity() * sizeof(TreeNode) + items_.capacity() * sizeof(std::uint32_t);
+  return nodes_.capacity() * (sizeof(TreeNode) + 1) + items_.capacity() * sizeof(std::uint32_t) +
+         (unmade_ ? unmade_->items.capacity() * sizeof(Item) : 0);
 }
 
 }  // namespace snug

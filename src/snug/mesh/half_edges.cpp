@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <tuple>
 
 namespace snug {
 
@@ -10,27 +9,31 @@ HalfEdgeGroups::HalfEdgeGroups(std::span<const std::uint32_t> face_offsets,
                                std::span<const VertexId> face_vertices, std::size_t vertex_count) {
   const auto count = static_cast<HalfEdge>(face_vertices.size());
   faces_.resize(count);
-  std::vector<VertexId> low(count), high(count);  // ends of the edge of each half-edge
-  std::vector<std::uint32_t> begins(vertex_count + 1, 0);
+  members_.resize(count);
+  std::vector<std::uint32_t> ends(vertex_count + 1, 0);
+  const auto edge_of = [&](FaceId f, HalfEdge h) {
+    return std::minmax({face_vertices[h], face_vertices[next_in_face(face_offsets, f, h)]});
+  };
   for (std::size_t f = 0; f + 1 < face_offsets.size(); ++f) {
     for (HalfEdge h = face_offsets[f]; h < face_offsets[f + 1]; ++h) {
       faces_[h] = FaceId(f);
-      const HalfEdge next = next_in_face(face_offsets, FaceId(f), h);
-      std::tie(low[h], high[h]) = std::minmax({face_vertices[h], face_vertices[next]});
-      ++begins[low[h].index()];
+      ++ends[edge_of(FaceId(f), h).first.index() + 1];
     }
   }
-  // By lower end first: the ends of these groups, which become their beginnings as they are filled.
-  std::partial_sum(begins.begin(), begins.end(), begins.begin());
-  members_.resize(count);
-  for (HalfEdge h = count; h-- > 0;) members_[--begins[low[h].index()]] = h;
+  // By lower end first: the beginnings of these groups, which become their ends as they are filled. Then by
+  // higher end, and by number.
+  std::partial_sum(ends.begin(), ends.end(), ends.begin());
+  std::vector<std::uint64_t> by_ends(count);
+  for (HalfEdge h = 0; h < count; ++h) {
+    const auto [low, high] = edge_of(faces_[h], h);
+    by_ends[ends[low.index()]++] = std::uint64_t{high.value()} << 32 | h;
+  }
+  std::uint32_t at = 0;
   for (std::size_t v = 0; v < vertex_count; ++v) {
-    const auto begin = members_.begin() + begins[v], end = members_.begin() + begins[v + 1];
-    std::sort(begin, end,
-              [&](HalfEdge g, HalfEdge h) { return std::tie(high[g], g) < std::tie(high[h], h); });
-    for (auto it = begin; it != end; ++it) {
-      if (it != begin && high[*it] == high[*(it - 1)]) continue;
-      offsets_.push_back(static_cast<std::uint32_t>(it - members_.begin()));
+    std::sort(by_ends.begin() + at, by_ends.begin() + ends[v]);
+    for (const std::uint32_t begin = at; at < ends[v]; ++at) {
+      members_[at] = static_cast<HalfEdge>(by_ends[at]);
+      if (at == begin || by_ends[at] >> 32 != by_ends[at - 1] >> 32) offsets_.push_back(at);
     }
   }
   offsets_.push_back(count);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include <snug/geometry/scaling.h>
@@ -110,20 +111,33 @@ class Inspector {
   }
 
   void check_duplicates() {
-    // Faces sorted by a hash of their vertices, in whatever order: candidates follow each other.
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> by_hash;
-    by_hash.reserve(mesh_.face_count());
+    // Faces by their lowest vertex, then by a hash of all, in whatever order: candidates follow each other.
+    struct Entry {
+      std::uint64_t hash;
+      std::uint32_t face, lowest;
+    };
+    std::vector<Entry> entries;
+    entries.reserve(mesh_.face_count());
+    std::vector<std::uint32_t> ends(mesh_.vertex_count() + 1, 0);
     for (std::size_t f = 0; f < mesh_.face_count(); ++f) {
       if (!regular_[f]) continue;
       std::uint64_t hash = 0;
+      std::uint32_t lowest = UINT32_MAX;
       for (const VertexId v : mesh_.face(FaceId(f))) {
         std::uint64_t mixed = (v.value() + 1) * 0x9e3779b97f4a7c15u;
         mixed ^= mixed >> 29;
         hash += mixed * 0xbf58476d1ce4e5b9u;
+        lowest = std::min(lowest, v.value());
       }
-      by_hash.emplace_back(hash, static_cast<std::uint32_t>(f));
+      entries.push_back({hash, static_cast<std::uint32_t>(f), lowest});
+      ++ends[lowest + 1];
     }
-    std::sort(by_hash.begin(), by_hash.end());
+    std::partial_sum(ends.begin(), ends.end(), ends.begin());
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> by_hash(entries.size());
+    for (const Entry& entry : entries) by_hash[ends[entry.lowest]++] = {entry.hash, entry.face};
+    for (std::size_t v = 0, begin = 0; v < mesh_.vertex_count(); begin = ends[v++]) {
+      std::sort(by_hash.begin() + static_cast<std::ptrdiff_t>(begin), by_hash.begin() + ends[v]);
+    }
     const auto sorted_face = [&](std::uint32_t f) {
       const auto face = mesh_.face(FaceId(f));
       std::vector<VertexId> sorted(face.begin(), face.end());

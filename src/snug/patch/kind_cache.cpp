@@ -186,37 +186,33 @@ Kind::Kind(KindCache& library, KindId id, const KindKey& key, const Neighbourhoo
 
 double Kind::outer_weight() const {
   SNUG_EXPECT(!key_.polygon);
-  std::call_once(outer_weight_made_, [&] {
-    if (!key_.plain() || crowded()) return;
+  return outer_weight_.get([&] {
+    if (!key_.plain() || crowded()) return 1.0;
     const std::size_t inner = rules().primal ? rules().corners : 1;
-    if (inner == control_count_) {
-      outer_weight_ = 0;
-      return;
-    }
+    if (inner == control_count_) return 0.0;
     std::vector<Vector3> values(control_count_, Vector3{1, 0, 0});
     std::fill_n(values.begin(), inner, Vector3{});
-    outer_weight_ = std::min(1.0, largest_value(*this, values, 4) + 1e-9);
+    return std::min(1.0, largest_value(*this, values, 4) + 1e-9);
   });
-  return outer_weight_;
 }
 
 const Stencils& Kind::corner_limits() const {
   SNUG_EXPECT(!key_.polygon);
-  std::call_once(limits_made_, [&] {
+  return corner_limits_.get([&] {
     const Neighbourhood around = neighbourhood(key_);
+    Stencils limits;
     for (std::size_t i = 0; i < 3; ++i) {
       const HalfEdge corner = rules().corner_of(around.topology, i);
-      if (rules().add_corner_limit(around.ruled(), corner, corner_limits_)) continue;
+      if (rules().add_corner_limit(around.ruled(), corner, limits)) continue;
       if (passing_) {  // the child at the corner shares the work with other patches
         const KindChild& child = children()[i];
-        add_product(child.kind->corner_limits().row((3 + i - child.first) % 3), child.stencils, {},
-                    corner_limits_);
+        add_product(child.kind->corner_limits().row((3 + i - child.first) % 3), child.stencils, {}, limits);
       } else {
-        rules().add_limit_row(around.ruled(), around.topology.from(corner), corner_limits_);
+        rules().add_limit_row(around.ruled(), around.topology.from(corner), limits);
       }
     }
+    return limits;
   });
-  return corner_limits_;
 }
 
 bool Kind::crowded() const {
@@ -227,56 +223,59 @@ bool Kind::crowded() const {
 
 const Stencils& Kind::corner_tangents() const {
   SNUG_EXPECT(!key_.polygon);
-  std::call_once(tangents_made_, [&] {
+  return corner_tangents_.get([&] {
     const Neighbourhood around = neighbourhood(key_);
+    Stencils tangents;
     for (std::size_t i = 0; i < 3; ++i) {
-      rules().add_corner_tangents(around.ruled(), rules().corner_of(around.topology, i), corner_tangents_);
+      rules().add_corner_tangents(around.ruled(), rules().corner_of(around.topology, i), tangents);
     }
+    return tangents;
   });
-  return corner_tangents_;
 }
 
 const KindLattice& Kind::lattice() const {
   SNUG_EXPECT(polynomial());
-  std::call_once(lattice_made_, [&] {
+  return lattice_.get([&] {
+    KindLattice lattice;
     for (const Combination& weights : lattice_of(key_)) {
       std::size_t which = 0;
       if (!is_unit(weights, which)) {
-        which = control_count_ + lattice_.ghosts.row_count();
-        add_fractions(weights, 1, lattice_.ghosts, 0);
+        which = control_count_ + lattice.ghosts.row_count();
+        add_fractions(weights, 1, lattice.ghosts, 0);
       }
-      lattice_.places.push_back(static_cast<std::uint32_t>(which));
+      lattice.places.push_back(static_cast<std::uint32_t>(which));
     }
+    return lattice;
   });
-  return lattice_;
 }
 
 const KindStep& Kind::step() const {
   SNUG_EXPECT(!key_.polygon && !polynomial());
-  std::call_once(step_made_, [&] { step_ = make_step(library_, key_); });
-  return step_;
+  return step_.get([&] { return make_step(library_, key_); });
 }
 
 const Kind::FarCorner& Kind::far_corner() const {
   SNUG_EXPECT(!key_.polygon && !rules().triangular());
-  std::call_once(far_corner_made_, [&] {
+  return far_corner_.get([&] {
     const Neighbourhood around = neighbourhood(key_);
     const HalfEdge corner = rules().corner_of(around.topology, 3);
-    rules().add_corner_tangents(around.ruled(), corner, far_corner_.tangents);
-    if (rules().add_corner_limit(around.ruled(), corner, far_corner_.limit)) return;
-    if (!passing_)
-      return rules().add_limit_row(around.ruled(), around.topology.from(corner), far_corner_.limit);
+    FarCorner far;
+    rules().add_corner_tangents(around.ruled(), corner, far.tangents);
+    if (rules().add_corner_limit(around.ruled(), corner, far.limit)) return far;
+    if (!passing_) {
+      rules().add_limit_row(around.ruled(), around.topology.from(corner), far.limit);
+      return far;
+    }
     const KindStep::Piece& piece = step().pieces[3];
     Stencils inner;
     for (const std::uint32_t p : piece.control) inner.append(step().stencils.row(p));
-    add_product(piece.kind->far_corner().limit.row(0), inner, {}, far_corner_.limit);
+    add_product(piece.kind->far_corner().limit.row(0), inner, {}, far.limit);
+    return far;
   });
-  return far_corner_;
 }
 
 const std::vector<KindChild>& Kind::children() const {
-  std::call_once(children_made_, [&] { children_ = make_children(library_, key_); });
-  return children_;
+  return children_.get([&] { return make_children(library_, key_); });
 }
 
 const Kind& KindCache::find(const KindKey& key) {
@@ -285,9 +284,11 @@ const Kind& KindCache::find(const KindKey& key) {
     if (const auto it = kinds_.find(key); it != kinds_.end()) return *it->second;
   }
   const std::unique_lock lock(mutex_);
-  std::unique_ptr<Kind>& place = kinds_[key];
-  if (!place) place = std::make_unique<Kind>(*this, KindId(kinds_.size() - 1), key);
-  return *place;
+  const auto it = kinds_.find(key);
+  if (it != kinds_.end()) return *it->second;
+  // Whole before others find it: making one may run out of memory.
+  auto made = std::make_unique<Kind>(*this, KindId(kinds_.size()), key);
+  return *kinds_.emplace(key, std::move(made)).first->second;
 }
 
 std::size_t KindCache::size() const {

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <shared_mutex>
 #include <unordered_map>
 #include <vector>
 
+#include <snug/base/lazy.h>
 #include <snug/patch/neighbourhood.h>
 #include <snug/scheme/rules.h>
 
@@ -116,14 +116,12 @@ class Kind {
   bool passing_ = false;
   std::size_t control_count_ = 0;
   std::optional<BezierRows> form_;
-  mutable std::once_flag limits_made_, tangents_made_, children_made_, outer_weight_made_, lattice_made_,
-      step_made_, far_corner_made_;
-  mutable double outer_weight_ = 1;
-  mutable Stencils corner_limits_, corner_tangents_;
-  mutable KindLattice lattice_;
-  mutable KindStep step_;
-  mutable FarCorner far_corner_;
-  mutable std::vector<KindChild> children_;
+  Lazy<double> outer_weight_;
+  Lazy<Stencils> corner_limits_, corner_tangents_;
+  Lazy<KindLattice> lattice_;
+  Lazy<KindStep> step_;
+  Lazy<FarCorner> far_corner_;
+  Lazy<std::vector<KindChild>> children_;
 };
 
 /// All kinds met so far. Grows, never forgets; kinds stay where they are as long as the library lives.

@@ -63,6 +63,7 @@ void require_valences(const Topology& topology, const SchemeRules& rules) {
   for (std::size_t i = 0; i < topology.vertex_count(); ++i) {
     const VertexId v(i);
     const std::size_t faces = topology.face_valence(v);
+    if (faces >= least && faces <= most) continue;
     const bool inside = !topology.isolated(v) && topology.is_manifold(v) && !topology.on_boundary(v);
     if (faces <= most && (!inside || faces >= least)) continue;
     if (++bad <= 10) {

@@ -53,6 +53,18 @@ const LeafNode& SurfaceBvh::keep_leaf(std::uint32_t i, std::span<const PieceSket
 const LeafNode& SurfaceBvh::make_leaf(std::uint32_t i) const { return keep_leaf(i, sketches(tree_.leaf(i))); }
 
 WideBvh SurfaceBvh::make_tree(const SurfaceBvhOptions& options, const WorkMonitor& monitor) {
+  const auto fit_to_control = [surface = surface_, patches = patches_.data()](
+                                  std::size_t, std::span<const std::uint32_t> items,
+                                  std::vector<Obb>& boxes) {
+    thread_local ControlHull hull;
+    std::array<PatchId, WideBvh::leaf_size> members;
+    for (std::size_t i = 0; i < items.size(); ++i) members[i] = patches[items[i]];
+    hull.assign(*surface, std::span(members).first(items.size()));
+    boxes.push_back(hull.box());
+  };
+  if (!options.tight && patches_.size() >= options.least_lazy) {
+    return {control_balls(*surface_, patches_), fit_to_control, options.part_level};
+  }
   std::vector<Point3> centres;
   centres.reserve(patches_.size());
   for (const PatchId p : patches_) centres.push_back(surface_->middle(p));
@@ -65,11 +77,7 @@ WideBvh SurfaceBvh::make_tree(const SurfaceBvhOptions& options, const WorkMonito
               keep_leaf(static_cast<std::uint32_t>(leaf), pieces);
               return;
             }
-            thread_local ControlHull hull;
-            std::array<PatchId, WideBvh::leaf_size> members;
-            for (std::size_t i = 0; i < items.size(); ++i) members[i] = patches_[items[i]];
-            hull.assign(*surface_, std::span(members).first(items.size()));
-            boxes.push_back(hull.box());
+            fit_to_control(leaf, items, boxes);
           }};
 }
 

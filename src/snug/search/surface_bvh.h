@@ -20,12 +20,16 @@ struct SurfaceBvhOptions {
   /// queries come.
   bool tight = false;
   int threads = 0;  ///< that make it
+  /// A tree over the control net of so many patches or more is itself made where queries come, in parts of so
+  /// many levels; one of fewer takes some milliseconds.
+  std::size_t least_lazy = 8192;
+  unsigned part_level = 2;
 };
 
-/// A surface made ready for queries: a tree down to its patches, leaves of which are made where they are not
-/// yet. Nothing else ever changes; may be read by many threads.
-/// Cost:      about 0.3 microseconds and 15 bytes a patch, and 170 bytes a patch that a query came near; see
-///            bench/results/collide.txt.
+/// A surface made ready for queries: a tree down to its patches, parts and leaves of which are made where
+/// they are not yet. Nothing else ever changes; may be read by many threads.
+/// Cost:      about 0.6 microseconds and 15 bytes a patch, and 170 bytes a patch that a query came near; of
+///            large models 0.1 and 40, and 0.6 a patch that a query came near. See bench/results/bars.txt.
 class SurfaceBvh {
  public:
   /// Requires:  the surface outlives the model.

@@ -25,7 +25,7 @@ LimitSurface make_surface(ControlMesh mesh, const SurfaceOptions& options) {
   rules.scheme = options.scheme ? *options.scheme : natural_scheme(mesh);
   rules.boundary =
       options.boundary ? *options.boundary : mesh.tags.boundary.value_or(BoundaryRule::edge_and_corner);
-  return {std::move(mesh), rules, shared_bounds(), options.threads, options.monitor};
+  return {std::move(mesh), rules, shared_bounds(), options.monitor};
 }
 
 std::uint64_t next_number() {

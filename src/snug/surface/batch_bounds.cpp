@@ -66,6 +66,7 @@ std::vector<PatchId> all_patches(const LimitSurface& surface) {
 }
 
 // Of the whole surface, so that a patch's bound does not depend on which others are asked for.
+// Requires:  surface.find_kinds().
 std::vector<std::size_t> patches_by_kind(const LimitSurface& surface) {
   std::vector<std::size_t> counts(surface.library().kinds().size());
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
@@ -107,6 +108,7 @@ BatchBounds::BatchBounds(const LimitSurface& surface, std::vector<PatchId> patch
     require_value(p.index() < surface.patch_count() && surface.has_patch(p),
                   "patch bounds: there is no such patch; has_patch() tells which are there");
   }
+  surface.find_kinds(threads);
   sort_by_kind(surface);
   collect_control(surface);
   const std::vector<std::size_t> of_kind = patches_by_kind(surface);

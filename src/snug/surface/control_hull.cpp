@@ -1,6 +1,7 @@
 #include <snug/surface/control_hull.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include <snug/geometry/rounding.h>
 
@@ -85,6 +86,65 @@ Extent ControlHull::extent(const Vector3& direction) const {
 Obb ControlHull::box() const {
   const std::span<const Point3> corners = std::span(points_).first(inner_count_);
   return fit_box(principal_axes(corners), [this](const Vector3& axis) { return extent(axis); });
+}
+
+namespace {
+
+// Of each vertex: how far the vertices of its faces are from it, but for roundings; squared.
+std::vector<double> ring_sizes_sq(const LimitSurface& surface) {
+  constexpr std::size_t most_compared = 16;
+  const Topology& topology = surface.topology();
+  std::vector<double> sizes(topology.vertex_count(), 0.0);
+  const auto raise = [&](VertexId v, double size_sq) {
+    sizes[v.index()] = std::max(sizes[v.index()], size_sq);
+  };
+  for (std::size_t f = 0; f < topology.face_count(); ++f) {
+    const std::span<const VertexId> face = topology.face(FaceId(f));
+    if (face.size() > most_compared) {
+      double radius_sq = 0;
+      for (const VertexId v : face) {
+        radius_sq = std::max(radius_sq, length_sq(surface.scaled_point(v) - surface.scaled_point(face[0])));
+      }
+      for (const VertexId v : face) raise(v, 4 * radius_sq);
+      continue;
+    }
+    for (std::size_t i = 1; i < face.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const double size_sq = length_sq(surface.scaled_point(face[i]) - surface.scaled_point(face[j]));
+        raise(face[i], size_sq);
+        raise(face[j], size_sq);
+      }
+    }
+  }
+  return sizes;
+}
+
+}  // namespace
+
+std::vector<Ball> control_balls(const LimitSurface& surface, std::span<const PatchId> patches) {
+  std::vector<double> rings(surface.topology().vertex_count(), 0.0);
+  if (!surface.rules().local) {
+    rings = ring_sizes_sq(surface);
+    for (double& ring : rings) ring = std::sqrt(ring);
+  }
+  std::vector<Ball> balls;
+  balls.reserve(patches.size());
+  for (const PatchId p : patches) {
+    const Point3 middle = surface.middle(p);
+    double radius = 0;
+    const auto take = [&](VertexId v) {
+      radius = std::max(radius, length(surface.scaled_point(v) - middle) + rings[v.index()]);
+    };
+    const std::uint32_t owner = surface.place(p).owner;
+    if (surface.rules().primal) {
+      for (const VertexId v : surface.topology().face(FaceId(owner))) take(v);
+    } else {
+      take(VertexId(owner));
+    }
+    // Squares of what is below 2^-500 are lost.
+    balls.push_back({middle, enlarged(radius) + 0x1p-480});
+  }
+  return balls;
 }
 
 }  // namespace snug

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <snug/base/compact_numbering.h>
@@ -36,5 +37,8 @@ class ControlHull {
   mutable std::vector<double> heights_;
   mutable std::vector<Extent> rings_;
 };
+
+/// A ball around each patch, from its control points too: looser, and much cheaper.
+[[nodiscard]] std::vector<Ball> control_balls(const LimitSurface& surface, std::span<const PatchId> patches);
 
 }  // namespace snug

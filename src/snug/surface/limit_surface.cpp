@@ -9,7 +9,7 @@
 
 namespace snug {
 LimitSurface::LimitSurface(ControlMesh mesh, const SchemeOptions& options,
-                           std::shared_ptr<BoundsCache> library, int threads, const WorkMonitor& monitor)
+                           std::shared_ptr<BoundsCache> library, const WorkMonitor& monitor)
     : mesh_(std::move(mesh)),
       options_(with_tags(options, mesh_.tags)),
       rules_(&rules_of(options.scheme)),
@@ -17,55 +17,59 @@ LimitSurface::LimitSurface(ControlMesh mesh, const SchemeOptions& options,
   require_value(library_ != nullptr, "surface: the library is null; give std::make_shared<BoundsCache>()");
   topology_ = require_surface(mesh_, options_);
   monitor.checkpoint();
-  const Box3 box = used_box(mesh_);
+  Box3 box;
+  for (std::size_t v = 0; v < mesh_.vertex_count(); ++v) {
+    if (!topology_.isolated(VertexId(v))) box.add(mesh_.points[v]);
+  }
   size_ = longest_side(box);
   scale_ = PowerOfTwo::normalising(std::max(max_abs(box.lower - Point3{}), max_abs(box.upper - Point3{})));
   scaled_.reserve(mesh_.points.size());
   for (const Point3& p : mesh_.points) scaled_.push_back(scale_.apply(p));
 
-  const bool primal = rules_->primal;
-  const Sharpness sharpness = primal ? sharpness_of(mesh_, topology_) : Sharpness{};
-  std::vector<bool> holes;
-  if (primal && !mesh_.tags.holes.empty()) {
-    holes.assign(mesh_.face_count(), false);
-    for (const FaceId f : mesh_.tags.holes) holes[f.index()] = true;
-  }
+  if (rules_->primal) sharpness_ = sharpness_of(mesh_, topology_);
   lay_out_patches();
-  parallel_for(owner_count(), threads, [&](std::size_t begin, std::size_t end) {
-    monitor.checkpoint();
-    for (std::size_t owner = begin; owner < end; ++owner) {
-      if (has_surface(owner, sharpness, holes)) find_kinds(owner, sharpness);
-    }
-  });
+  find_bare_owners();
 }
 
 void LimitSurface::lay_out_patches() {
   if (rules_->triangular()) {
-    kinds_.assign(topology_.face_count(), nullptr);
-    firsts_.assign(topology_.face_count(), 0);
-    return;
+    patch_count_ = topology_.face_count();
+    firsts_ = std::vector<std::atomic<std::uint8_t>>(patch_count_);
+  } else {
+    const bool primal = rules_->primal;
+    bool polygons = false;
+    begins_.push_back(0);
+    for (std::size_t owner = 0; owner < owner_count(); ++owner) {
+      const std::size_t n =
+          primal ? topology_.face(FaceId(owner)).size() : topology_.face_valence(VertexId(owner));
+      const std::size_t parts = n == 4 ? 2 : 2 * n;
+      owners_.insert(owners_.end(), parts, static_cast<std::uint32_t>(owner));
+      begins_.push_back(static_cast<std::uint32_t>(owners_.size()));
+      polygons = polygons || (n != 4 && n > 0);
+    }
+    patch_count_ = owners_.size();
+    if (polygons) polygons_ = std::vector<std::atomic<const Kind*>>(owner_count());
   }
-  const bool primal = rules_->primal;
-  begins_.push_back(0);
-  for (std::size_t owner = 0; owner < owner_count(); ++owner) {
-    const std::size_t n =
-        primal ? topology_.face(FaceId(owner)).size() : topology_.face_valence(VertexId(owner));
-    const std::size_t parts = n == 4 ? 2 : 2 * n;
-    owners_.insert(owners_.end(), parts, static_cast<std::uint32_t>(owner));
-    begins_.push_back(static_cast<std::uint32_t>(owners_.size()));
-    if (n != 4 && n > 0 && polygons_.empty()) polygons_.assign(owner_count(), nullptr);
-  }
-  kinds_.assign(owners_.size(), nullptr);
+  kinds_ = std::vector<std::atomic<const Kind*>>(patch_count_);
 }
 
-bool LimitSurface::has_surface(std::size_t owner, const Sharpness& sharpness,
-                               const std::vector<bool>& holes) const {
+void LimitSurface::find_bare_owners() {
+  const auto leave_out = [this](std::size_t owner) {
+    if (bare_.empty()) bare_.assign(owner_count(), false);
+    bare_[owner] = true;
+  };
   if (!rules_->primal) {
-    const VertexId v(owner);
-    return !topology_.isolated(v) && !topology_.on_boundary(v);
+    for (std::size_t owner = 0; owner < owner_count(); ++owner) {
+      const VertexId v(owner);
+      if (topology_.isolated(v) || topology_.on_boundary(v)) leave_out(owner);
+    }
+    return;
   }
-  if (!holes.empty() && holes[owner]) return false;
-  return options_.boundary != BoundaryRule::none || !loses_surface(topology_, sharpness, FaceId(owner));
+  for (const FaceId f : mesh_.tags.holes) leave_out(f.index());
+  if (options_.boundary != BoundaryRule::none) return;
+  for (std::size_t owner = 0; owner < owner_count(); ++owner) {
+    if (loses_surface(topology_, sharpness_, FaceId(owner))) leave_out(owner);
+  }
 }
 
 HalfEdge LimitSurface::corner_at(std::size_t owner, std::size_t k) const {
@@ -74,26 +78,36 @@ HalfEdge LimitSurface::corner_at(std::size_t owner, std::size_t k) const {
   return h;
 }
 
-void LimitSurface::find_kinds(std::size_t owner, const Sharpness& sharpness) {
+void LimitSurface::find_kinds(int threads) const {
+  parallel_for(patch_count(), threads, [this](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) {
+      if (has_patch(PatchId(p))) static_cast<void>(kind(PatchId(p)));
+    }
+  });
+}
+
+// Several threads may find the same at once.
+const Kind& LimitSurface::find_kind(PatchId p) const {
+  const auto [owner, part] = place(p);
+  const auto keep = [this](std::size_t patch, const Kind& kind) -> const Kind& {
+    kinds_[patch].store(&kind, std::memory_order_release);
+    return kind;
+  };
   if (rules_->triangular()) {
-    const TurnedKey key = kind_key(topology_, FaceId(owner), options_, sharpness);
-    kinds_[owner] = &library_->kinds().find(key.key);
-    firsts_[owner] = key.first;
-    return;
+    const TurnedKey key = kind_key(topology_, FaceId(owner), options_, sharpness_);
+    firsts_[owner].store(key.first, std::memory_order_relaxed);
+    return keep(owner, library_->kinds().find(key.key));
   }
-  const HalfEdge start = corner_at(owner);
-  const std::size_t begin = begins_[owner];
-  const KindKey key = kind_key_from(topology_, start, options_, sharpness);
-  const Kind& whole = library_->kinds().find(key);
-  if (key.polygon) {
-    polygons_[owner] = &whole;
-    const auto& children = whole.children();
-    for (std::size_t part = 0; part < children.size(); ++part) kinds_[begin + part] = children[part].kind;
-    return;
+  if (!after_first_split(p)) {
+    const HalfEdge start = corner_at(owner, 2 * std::size_t{part});
+    return keep(p.index(), library_->kinds().find(kind_key_from(topology_, start, options_, sharpness_)));
   }
-  kinds_[begin] = &whole;
-  kinds_[begin + 1] =
-      &library_->kinds().find(kind_key_from(topology_, corner_at(owner, 2), options_, sharpness));
+  const Kind& whole =
+      library_->kinds().find(kind_key_from(topology_, corner_at(owner), options_, sharpness_));
+  polygons_[owner].store(&whole, std::memory_order_relaxed);
+  const std::vector<KindChild>& children = whole.children();
+  for (std::size_t k = 0; k < children.size(); ++k) keep(begins_[owner] + k, *children[k].kind);
+  return *children[part].kind;
 }
 
 LimitSurface::PatchRange LimitSurface::patches_of(std::size_t owner) const {
@@ -107,8 +121,16 @@ PatchPlace LimitSurface::place(PatchId p) const {
   return {owner, p.value() - begins_[owner]};
 }
 
+bool LimitSurface::after_first_split(PatchId p) const {
+  if (polygons_.empty()) return false;
+  const PatchRange range = patches_of(owners_[p.index()]);
+  return range.end - range.begin != 2;
+}
+
 const Kind* LimitSurface::polygon_of(PatchId p) const {
-  return polygons_.empty() ? nullptr : polygons_[owners_[p.index()]];
+  if (!after_first_split(p)) return nullptr;
+  static_cast<void>(kind(p));  // tells it
+  return polygons_[owners_[p.index()]].load(std::memory_order_relaxed);
 }
 
 void LimitSurface::control_vertices(PatchId p, std::vector<VertexId>& out) const {
@@ -178,8 +200,10 @@ std::array<std::uint32_t, 3> LimitSurface::corner_names(PatchId p) const {
 }
 
 std::size_t LimitSurface::kind_count() const {
-  std::unordered_set<const Kind*> distinct(kinds_.begin(), kinds_.end());
-  distinct.erase(nullptr);
+  std::unordered_set<const Kind*> distinct;
+  for (std::size_t p = 0; p < patch_count(); ++p) {
+    if (has_patch(PatchId(p))) distinct.insert(&kind(PatchId(p)));
+  }
   return distinct.size();
 }
 

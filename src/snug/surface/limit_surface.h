@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <unordered_map>
 #include <vector>
@@ -31,14 +32,14 @@ using PatchId = Id<struct PatchTag>;
 /// from mesh units. Everything below surface/ works in scaled units, all answers are in mesh units.
 ///
 /// Errors:    InputError (refused) from require_subdividable, and (value) for a library that is null.
-/// Cost:      linear; 9 bytes a patch beside mesh and topology. Rows of kinds are made when a patch is first
-///            bounded.
+/// Cost:      linear; 9 bytes a patch beside mesh and topology. Kinds are found where they are first asked
+///            for, and their rows made when a patch is first bounded.
 class LimitSurface {
  public:
   /// The mesh's tags name creases, corners, holes, the crease method and how triangles are treated;
   /// options.boundary alone counts for the boundary.
   LimitSurface(ControlMesh mesh, const SchemeOptions& options, std::shared_ptr<BoundsCache> library,
-               int threads = 0, const WorkMonitor& monitor = {});
+               const WorkMonitor& monitor = {});
 
   [[nodiscard]] const ControlMesh& mesh() const { return mesh_; }
   [[nodiscard]] const Topology& topology() const { return topology_; }
@@ -57,7 +58,7 @@ class LimitSurface {
     return rules().primal ? topology_.face_count() : topology_.vertex_count();
   }
   /// Number of patches, those that are not there included.
-  [[nodiscard]] std::size_t patch_count() const { return kinds_.size(); }
+  [[nodiscard]] std::size_t patch_count() const { return patch_count_; }
   /// The patches of an owner: begin, begin + 1, ... end - 1.
   struct PatchRange {
     std::size_t begin, end;
@@ -65,19 +66,24 @@ class LimitSurface {
   [[nodiscard]] PatchRange patches_of(std::size_t owner) const;
   [[nodiscard]] PatchPlace place(PatchId p) const;
   /// Is the patch half a quad that the first split of its owner made? Then it lies one level down.
-  [[nodiscard]] bool after_first_split(PatchId p) const { return polygon_of(p) != nullptr; }
+  [[nodiscard]] bool after_first_split(PatchId p) const;
 
   /// Is there a limit patch? Not in a hole, not at a boundary with BoundaryRule::none, and with a dual scheme
   /// not of a boundary vertex.
-  [[nodiscard]] bool has_patch(PatchId p) const { return kinds_[p.index()] != nullptr; }
+  [[nodiscard]] bool has_patch(PatchId p) const { return bare_.empty() || !bare_[place(p).owner]; }
   /// Requires:  has_patch(p).
-  [[nodiscard]] const Kind& kind(PatchId p) const { return *kinds_[p.index()]; }
+  [[nodiscard]] const Kind& kind(PatchId p) const {
+    const Kind* const known = kinds_[p.index()].load(std::memory_order_acquire);
+    return known != nullptr ? *known : find_kind(p);
+  }
   /// Which corner of the face its kind calls corner 0; 0 unless the scheme is triangular.
   /// Requires:  has_patch(p).
   [[nodiscard]] std::uint8_t first(PatchId p) const {
-    return firsts_.empty() ? std::uint8_t{0} : firsts_[p.index()];
+    if (firsts_.empty()) return 0;
+    static_cast<void>(kind(p));  // tells it
+    return firsts_[p.index()].load(std::memory_order_relaxed);
   }
-  /// The kind of the polygon that a patch is made of in a first split; none for others.
+  /// The kind of the polygon that a patch is made of in a first split; none for others. Requires has_patch(p).
   [[nodiscard]] const Kind* polygon_of(PatchId p) const;
   /// The control vertices of a patch, or of its polygon, in the order of its kind. Requires has_patch(p).
   void control_vertices(PatchId p, std::vector<VertexId>& out) const;
@@ -91,14 +97,15 @@ class LimitSurface {
   /// Names of the patch's three corners: equal names, equal limit points. Below corner_name_count().
   [[nodiscard]] std::array<std::uint32_t, 3> corner_names(PatchId p) const;
   [[nodiscard]] std::size_t corner_name_count() const;
-  /// Number of different kinds among its patches.
+  /// Finds the kinds of all patches.
+  void find_kinds(int threads) const;
+  /// Number of different kinds among its patches, all of which it finds.
   [[nodiscard]] std::size_t kind_count() const;
 
  private:
   void lay_out_patches();
-  [[nodiscard]] bool has_surface(std::size_t owner, const Sharpness& sharpness,
-                                 const std::vector<bool>& holes) const;
-  void find_kinds(std::size_t owner, const Sharpness& sharpness);
+  void find_bare_owners();
+  const Kind& find_kind(PatchId p) const;
   // The half-edge of corner k: of the face from there, or from the vertex in face k.
   [[nodiscard]] HalfEdge corner_at(std::size_t owner, std::size_t k = 0) const;
 
@@ -110,11 +117,15 @@ class LimitSurface {
   PowerOfTwo scale_;
   double size_ = 0;
   std::vector<Point3> scaled_;
-  std::vector<const Kind*> kinds_;
-  std::vector<std::uint8_t> firsts_;
+  Sharpness sharpness_;
+  std::size_t patch_count_ = 0;
+  std::vector<bool> bare_;             // owners without a surface; empty where there are none
   std::vector<std::uint32_t> begins_;  // first patch of each owner and the end; empty for triangles
   std::vector<std::uint32_t> owners_;  // of each patch; empty for triangles
-  std::vector<const Kind*> polygons_;  // of each owner; empty where there are none
+  // Null until asked for. What `firsts_` and `polygons_` say is there before the kind.
+  mutable std::vector<std::atomic<const Kind*>> kinds_;
+  mutable std::vector<std::atomic<std::uint8_t>> firsts_;   // empty unless triangles
+  mutable std::vector<std::atomic<const Kind*>> polygons_;  // of each owner; empty where there are none
 };
 
 }  // namespace snug
