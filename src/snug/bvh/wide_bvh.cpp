@@ -181,7 +181,7 @@ WideBvh::WideBvh(std::span<const Ball> balls, Fit fit, unsigned part_level) : Wi
       item.centre[k] = static_cast<float>(from[k]);
       moved += std::fabs(from[k] - static_cast<double>(item.centre[k]));
     }
-    item.radius = float_up(enlarged(ball.radius + moved));
+    item.radius = static_cast<float>((ball.radius + moved) * (1 + 0x1p-22) + 0x1p-120);
     unmade_->reach = std::max(unmade_->reach, max_abs(from) + static_cast<double>(item.radius));
     unmade_->items.push_back(item);
   }

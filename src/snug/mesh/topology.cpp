@@ -27,13 +27,14 @@ Topology::Topology(std::vector<std::uint32_t> face_offsets, std::vector<VertexId
   twins_.assign(face_vertices_.size(), no_half_edge);
   edges_.resize(face_vertices_.size());
   edge_half_.resize(groups.edge_count());
+  const auto face_of = [&](HalfEdge h) { return uniform_size_ == 3 ? FaceId(h / 3) : groups.face(h); };
   std::vector<HalfEdge> apart;  // edges of their own
   for (std::size_t e = 0; e < groups.edge_count(); ++e) {
     const auto members = groups.of_edge(EdgeId(e));
     edge_half_[e] = members[0];
     edges_[members[0]] = EdgeId(e);
     if (members.size() == 2 && face_vertices_[members[0]] != face_vertices_[members[1]] &&
-        groups.face(members[0]) != groups.face(members[1])) {
+        face_of(members[0]) != face_of(members[1])) {
       edges_[members[1]] = EdgeId(e);
       twins_[members[0]] = members[1];
       twins_[members[1]] = members[0];

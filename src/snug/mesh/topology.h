@@ -52,8 +52,12 @@ class Topology {
   [[nodiscard]] EdgeId edge_of(HalfEdge h) const { return edges_[h]; }
   [[nodiscard]] VertexId from(HalfEdge h) const { return face_vertices_[h]; }
   [[nodiscard]] VertexId to(HalfEdge h) const { return face_vertices_[next(h)]; }
-  [[nodiscard]] HalfEdge next(HalfEdge h) const { return next_in_face(face_offsets_, faces_[h], h); }
+  [[nodiscard]] HalfEdge next(HalfEdge h) const {
+    if (uniform_size_ == 3) return h % 3 == 2 ? h - 2 : h + 1;
+    return next_in_face(face_offsets_, faces_[h], h);
+  }
   [[nodiscard]] HalfEdge prev(HalfEdge h) const {
+    if (uniform_size_ == 3) return h % 3 == 0 ? h + 2 : h - 1;
     const std::size_t f = faces_[h].index();
     return h == face_offsets_[f] ? face_offsets_[f + 1] - 1 : h - 1;
   }

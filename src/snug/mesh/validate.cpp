@@ -66,6 +66,7 @@ class Inspector {
                                                 " of " + number(mesh_.vertex_count()));
         good = false;
       }
+      if (face.size() == 3 && face[0] != face[1] && face[1] != face[2] && face[2] != face[0]) continue;
       sorted.assign(face.begin(), face.end());
       std::sort(sorted.begin(), sorted.end());
       const auto twice = std::adjacent_find(sorted.begin(), sorted.end());

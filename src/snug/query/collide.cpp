@@ -124,7 +124,9 @@ class Query {
     const bool whole = answer.verdict == Verdict::separated;
     answer.distance.lower = whole ? unscaled_down(std::min(lower_, best_.distance), back) : 0.0;
     if (best_.distance < INFINITY) {
-      answer.distance.upper = require_representable(unscaled_up(best_.distance, back));
+      // What two quadratics tell may be nearer than their limit points as doubles.
+      const double upper = near_ ? std::min(best_.distance, near_->near_distance) : best_.distance;
+      answer.distance.upper = require_representable(unscaled_up(upper, back));
       if (options_.witness != WitnessKind::none) pieces_.tell(best_, answer);
     }
     if (crossing_) answer.distance.upper = 0;
