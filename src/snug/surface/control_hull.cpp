@@ -122,18 +122,17 @@ std::vector<double> ring_sizes_sq(const LimitSurface& surface) {
 }  // namespace
 
 std::vector<Ball> control_balls(const LimitSurface& surface, std::span<const PatchId> patches) {
-  std::vector<double> rings(surface.topology().vertex_count(), 0.0);
-  if (!surface.rules().local) {
-    rings = ring_sizes_sq(surface);
-    for (double& ring : rings) ring = std::sqrt(ring);
-  }
+  const std::vector<double> rings_sq =
+      surface.rules().local ? std::vector<double>(surface.topology().vertex_count(), 0.0)
+                            : ring_sizes_sq(surface);
   std::vector<Ball> balls;
   balls.reserve(patches.size());
   for (const PatchId p : patches) {
     const Point3 middle = surface.middle(p);
-    double radius = 0;
+    double radius_sq = 0, ring_sq = 0;
     const auto take = [&](VertexId v) {
-      radius = std::max(radius, length(surface.scaled_point(v) - middle) + rings[v.index()]);
+      radius_sq = std::max(radius_sq, length_sq(surface.scaled_point(v) - middle));
+      ring_sq = std::max(ring_sq, rings_sq[v.index()]);
     };
     const std::uint32_t owner = surface.place(p).owner;
     if (surface.rules().primal) {
@@ -142,7 +141,7 @@ std::vector<Ball> control_balls(const LimitSurface& surface, std::span<const Pat
       take(VertexId(owner));
     }
     // Squares of what is below 2^-500 are lost.
-    balls.push_back({middle, enlarged(radius) + 0x1p-480});
+    balls.push_back({middle, enlarged(std::sqrt(radius_sq) + std::sqrt(ring_sq)) + 0x1p-480});
   }
   return balls;
 }
