@@ -122,9 +122,9 @@ std::vector<double> ring_sizes_sq(const LimitSurface& surface) {
 }  // namespace
 
 std::vector<Ball> control_balls(const LimitSurface& surface, std::span<const PatchId> patches) {
-  const std::vector<double> rings_sq =
-      surface.rules().local ? std::vector<double>(surface.topology().vertex_count(), 0.0)
-                            : ring_sizes_sq(surface);
+  const std::vector<double> rings_sq = surface.rules().local
+                                           ? std::vector<double>(surface.topology().vertex_count(), 0.0)
+                                           : ring_sizes_sq(surface);
   std::vector<Ball> balls;
   balls.reserve(patches.size());
   for (const PatchId p : patches) {
