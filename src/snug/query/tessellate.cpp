@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -26,12 +25,15 @@ using Index = TriangleComplex::Index;
 // Tolerances below these, for coordinates from 1 to 2, are refused: rounding would take too much of them.
 constexpr double least_tolerance = 0x1p-41, least_single_tolerance = 0x1p-21;
 // The error of a piece's quadratic that is no hindrance, as a part of the tolerance.
-constexpr double quadratic_share = 0.2;
+constexpr double quadratic_share = 0.25;
 constexpr unsigned deepest_level = 40;
 constexpr double shortest_side = 0x1p-46;  // in parameters
 
+constexpr std::array<std::uint8_t, 8> number_of_bits{0, 1, 1, 2, 1, 2, 2, 3};
+
 struct Vertex {
   Point3 written;            // in mesh units
+  Point3 scaled;
   double error = 0;          // a coordinate, in scaled units
   Index patch = UINT32_MAX;  // and where on it it is
   TriangleParameter at;
@@ -148,7 +150,7 @@ class Refinement {
   void carry_out(const Cut& cut);
   [[nodiscard]] std::size_t choose(Index t, unsigned marks) const;
   [[nodiscard]] FlatTriangle flat(Index t) const;
-  [[nodiscard]] Point3 scaled(Index v) const { return surface_.scale().apply(vertices_[v].written); }
+  [[nodiscard]] const Point3& scaled(Index v) const { return vertices_[v].scaled; }
   void finish(Vertex& vertex, const BoundedPoint& point) const;
   void refuse_if_stuck() const;
   void add_normals(Tessellation& result, const std::vector<Index>& order) const;
@@ -165,6 +167,7 @@ class Refinement {
   std::vector<Index> piece_;
   std::vector<double> error_;
   std::vector<Piece> pieces_;
+  std::vector<Index> coarse_;  // triangles of whole pieces that are split in four or not at all
   std::atomic<bool> stuck_{false};
 };
 
@@ -179,7 +182,7 @@ void Refinement::place_roots() {
     pieces_.push_back({roots[t].value(), {}, {}, false, false, {}});
     for (std::size_t k = 0; k < 3; ++k) {
       Vertex& vertex = vertices_[complex_.corners(t)[k]];
-      if (vertex.patch == UINT32_MAX) vertex = {{}, 0, roots[t].value(), corners[k]};
+      if (vertex.patch == UINT32_MAX) vertex = {{}, {}, 0, roots[t].value(), corners[k]};
     }
   }
   evaluate(0, vertices_.size());
@@ -200,7 +203,8 @@ void Refinement::finish(Vertex& vertex, const BoundedPoint& point) const {
     }
   }
   vertex.written = require_representable(written);
-  const Vector3 moved = surface_.scale().apply(written) - point.position;
+  vertex.scaled = surface_.scale().apply(written);
+  const Vector3 moved = vertex.scaled - point.position;
   vertex.error = enlarged(point.error + max_abs(moved));
 }
 
@@ -326,14 +330,17 @@ void Refinement::examine(const std::vector<Index>& triangles, bool mark) {
         }
       });
   refuse_if_stuck();
+  for (const Index t : triangles) {
+    if (pieces_[piece_[t]].coarse) coarse_.push_back(t);
+  }
 }
 
 void Refinement::mark_rest_of_coarse() {
   for (bool more = true; more;) {
     more = false;
-    for (Index t = 0; t < triangle_count(); ++t) {
+    for (const Index t : coarse_) {
       const unsigned marks = complex_.marks(t);
-      if (marks == 0 || marks == 7 || !pieces_[piece_[t]].coarse) continue;
+      if (marks == 0 || marks == 7) continue;
       mark_sides(t);
       more = true;
     }
@@ -342,7 +349,7 @@ void Refinement::mark_rest_of_coarse() {
 
 std::uint64_t Refinement::count_after() const {
   std::uint64_t count = triangle_count();
-  for (Index t = 0; t < triangle_count(); ++t) count += std::popcount(complex_.marks(t));
+  for (Index t = 0; t < triangle_count(); ++t) count += number_of_bits[complex_.marks(t)];
   return count;
 }
 
@@ -388,7 +395,7 @@ std::vector<Refinement::Cut> Refinement::plan_cuts() {
   const std::size_t old = triangle_count();
   std::size_t triangles = 0, edges = 0, pieces = pieces_.size();
   for (Index t = 0; t < old; ++t) {
-    const auto marks = static_cast<std::size_t>(std::popcount(complex_.marks(t)));
+    const std::size_t marks = number_of_bits[complex_.marks(t)];
     if (marks == 0) continue;
     const bool coarse = pieces_[piece_[t]].coarse;
     cuts.push_back({t, static_cast<Index>(old + triangles),
@@ -432,7 +439,7 @@ void Refinement::split(std::vector<Index>& parts) {
   const std::size_t old = vertices_.size();
   complex_.number_middles([&](std::size_t t, std::size_t k) {
     const TriangleParameter a = at_[t][k], b = at_[t][(k + 1) % 3];
-    vertices_.push_back({{}, 0, pieces_[piece_[t]].patch, {0.5 * (a.u + b.u), 0.5 * (a.v + b.v)}});
+    vertices_.push_back({{}, {}, 0, pieces_[piece_[t]].patch, {0.5 * (a.u + b.u), 0.5 * (a.v + b.v)}});
   });
   evaluate(old, vertices_.size());
   const std::vector<Cut> cuts = plan_cuts();
@@ -446,6 +453,7 @@ void Refinement::split(std::vector<Index>& parts) {
     for (std::size_t t = cuts[i].first_new; t < end; ++t) parts.push_back(static_cast<Index>(t));
   }
   complex_.clear_marks();
+  std::erase_if(coarse_, [&](Index t) { return !pieces_[piece_[t]].coarse; });
 }
 
 bool Refinement::run(std::uint64_t most) {
@@ -461,6 +469,7 @@ bool Refinement::run(std::uint64_t most) {
   }
   active.resize(triangle_count());
   for (Index t = 0; t < active.size(); ++t) active[t] = t;
+  coarse_.clear();
   double done = 0;
   while (true) {
     examine(active, true);
