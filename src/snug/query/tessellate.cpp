@@ -52,6 +52,7 @@ struct Piece {
 // The limits of a run, in scaled units.
 struct Limits {
   double tolerance = INFINITY, max_edge = INFINITY;
+  std::vector<double> of_owner{};  // tolerances of owners instead of that; or none
   double least_cosine = -2;  // of normals; -2 for none
   double shortest_turn = 0;  // edges that are shorter are not split for their normals
 };
@@ -125,7 +126,8 @@ class Refinement {
   [[nodiscard]] std::size_t triangle_count() const { return complex_.triangle_count(); }
   // Upper bound over all triangles, in mesh units.
   [[nodiscard]] double error_bound() const;
-  [[nodiscard]] Tessellation result() const;
+  /// Also the errors of triangles, in mesh units, if asked for.
+  [[nodiscard]] Tessellation result(std::vector<double>* errors = nullptr) const;
 
  private:
   struct Cut {
@@ -150,6 +152,10 @@ class Refinement {
   void carry_out(const Cut& cut);
   [[nodiscard]] std::size_t choose(Index t, unsigned marks) const;
   [[nodiscard]] FlatTriangle flat(Index t) const;
+  [[nodiscard]] double tolerance(Index t) const {
+    if (limits_.of_owner.empty()) return limits_.tolerance;
+    return limits_.of_owner[surface_.place(PatchId(pieces_[piece_[t]].patch)).owner];
+  }
   [[nodiscard]] const Point3& scaled(Index v) const { return vertices_[v].scaled; }
   void finish(Vertex& vertex, const BoundedPoint& point) const;
   void refuse_if_stuck() const;
@@ -250,7 +256,7 @@ void Refinement::learn(Worker& worker, Index t) {
   if (patch.kind->shared()) hull_points(library, patch, worker.hull);
   const QuadraticTriangle near = quadratic_triangle(library, patch, worker.hull);
   piece.known = true;
-  piece.coarse = !(near.error <= quadratic_share * limits_.tolerance) || !(near.error < INFINITY);
+  piece.coarse = !(near.error <= quadratic_share * tolerance(t)) || !(near.error < INFINITY);
   if (piece.coarse) {
     error_[t] = distance_to_triangle(library, patch, worker.hull, flat(t).corner);
   } else {
@@ -264,8 +270,8 @@ void Refinement::prove(Worker& worker, Index t, bool mark) {
   if (!piece.coarse) {
     const Flatness flatness = piece.quadratic.flatness(flat(t));
     error_[t] = flatness.error;
-    if (mark && flatness.error > limits_.tolerance) mark_bent(t, flatness);
-  } else if (mark && error_[t] > limits_.tolerance) {
+    if (mark && flatness.error > tolerance(t)) mark_bent(t, flatness);
+  } else if (mark && error_[t] > tolerance(t)) {
     if (piece.path.level() >= deepest_level) return stuck_.store(true, std::memory_order_relaxed);
     mark_sides(t);
   }
@@ -274,7 +280,7 @@ void Refinement::prove(Worker& worker, Index t, bool mark) {
 // Sides that are bent beyond what is left of the tolerance, or the most bent one.
 void Refinement::mark_bent(Index t, const Flatness& flatness) {
   const double taken = pieces_[piece_[t]].quadratic.error() + flatness.corner_gap,
-               left = std::max(limits_.tolerance - taken, limits_.tolerance / 4);
+               left = std::max(tolerance(t) - taken, tolerance(t) / 4);
   std::array<double, 3> bow_sq;
   for (std::size_t k = 0; k < 3; ++k) bow_sq[k] = length_sq(flatness.bow[k]);
   const auto most = static_cast<std::size_t>(std::max_element(bow_sq.begin(), bow_sq.end()) - bow_sq.begin());
@@ -515,7 +521,7 @@ void Refinement::add_normals(Tessellation& result, const std::vector<Index>& ord
       });
 }
 
-Tessellation Refinement::result() const {
+Tessellation Refinement::result(std::vector<double>* errors) const {
   Tessellation result;
   const std::size_t count = triangle_count();
   // Patch by patch.
@@ -524,11 +530,13 @@ Tessellation Refinement::result() const {
   for (std::size_t p = 1; p < begins.size(); ++p) begins[p] += begins[p - 1];
   result.triangles.resize(count);
   result.owners.resize(count);
+  if (errors != nullptr) errors->resize(count);
   for (std::size_t t = 0; t < count; ++t) {
     const Index patch = pieces_[piece_[t]].patch;
     const std::size_t place = begins[patch]++;
     result.triangles[place] = complex_.corners(t);
     result.owners[place] = surface_.place(PatchId(patch)).owner;
+    if (errors != nullptr) (*errors)[place] = unscaled_up(error_[t], back_);
   }
   // Vertices in the order in which triangles name them.
   std::vector<Index> number(vertices_.size(), UINT32_MAX), order;
@@ -668,6 +676,22 @@ Tessellation tessellate(const LimitSurface& surface, const TessellateOptions& op
   const bool reached = refinement.run(options.budget);
   Tessellation result = refinement.result();
   result.reached = reached;
+  return result;
+}
+
+LocalTessellation tessellate(const LimitSurface& surface, std::span<const double> tolerances,
+                             const TessellateOptions& options, const WorkMonitor& monitor) {
+  Limits limits;
+  limits.of_owner.reserve(tolerances.size());
+  for (const double tolerance : tolerances) {
+    limits.of_owner.push_back(std::max(surface.scale().apply(tolerance), least_tolerance));
+  }
+  limits.tolerance = limits.of_owner.empty() ? double{INFINITY} : *std::min_element(limits.of_owner.begin(), limits.of_owner.end());
+  Refinement refinement(surface, options, limits, monitor);
+  const bool reached = refinement.run(options.budget);
+  LocalTessellation result;
+  result.mesh = refinement.result(&result.errors);
+  result.mesh.reached = reached;
   return result;
 }
 
