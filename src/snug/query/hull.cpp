@@ -39,8 +39,11 @@ constexpr auto fault_names = std::to_array<Named<HullFault>>({
 
 // Of the tolerance: that of the triangles which are moved, at first; below which it is no longer made smaller.
 constexpr double first_share = 0.4, least_share = 0x1p-10;
-// A facet is kept off its own plane by its triangle's error, and by this share of its tolerance at least.
-constexpr double least_offset = 0.05;
+// Of the tolerance of a triangle: how much farther off its plane than its error its facet is kept, and the error
+// of the quadratics that it is to be kept off.
+constexpr double clearance = 0.1, quadratic_share = 0x1p-6;
+// And how far Bezier points of its parts may stick out of them.
+constexpr double flat_share = 0x1p-5;
 constexpr std::size_t most_problems = 100, most_contacts = 10'000;
 constexpr int most_rounds = 24;
 
@@ -83,15 +86,14 @@ class OneHull {
       make_triangles();
       if (round == 0) {
         border_ = has_border(mesh_);
-        pieces_ = quadratic_pieces(surface_, 0x1p-5 * scale_.apply(options_.tolerance), options_.threads, monitor_);
+        pieces_ = quadratic_pieces(surface_, quadratic_share * first_share * scale_.apply(options_.tolerance), options_.threads, monitor_);
         make_tree();
       }
       problems_.clear();
       piece_marks_.assign(pieces_.size(), 0);
       wrong_.assign(surface_.owner_count(), 0);
       move_vertices();
-      // What stays too far or has no place would only hide what is behind it.
-      if (problems_.empty()) keep_off();
+      keep_off();
       if (problems_.empty()) break;
       if (round + 1 == most_rounds || !mesh_.reached || !refine()) break;
     }
@@ -141,7 +143,7 @@ class OneHull {
     parallel_for(normals.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         normals[t] = sign * unit_normal(scaled(mesh_.positions, mesh_.triangles[t]));
-        offsets[t] = std::max(1.02 * errors_[t], least_offset * tolerances_[mesh_.owners[t]]);
+        offsets[t] = errors_[t] + clearance * tolerances_[mesh_.owners[t]];
       }
     });
     hull_ = mesh_.positions;
@@ -191,7 +193,9 @@ class OneHull {
     parallel_for(count, options_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         if (t % 256 == 0) monitor_.checkpoint();
-        meets[t] = tree_->may_meet(flat_quadratic(scaled(hull_, mesh_.triangles[t])));
+        if (wrong_[mesh_.owners[t]] != 0) continue;  // there is no position, or none that is near enough
+        const double flat = flat_share * scale_.apply(tolerances_[mesh_.owners[t]]);
+        meets[t] = tree_->may_meet(flat_quadratic(scaled(hull_, mesh_.triangles[t])), flat);
       }
     });
     for (std::size_t t = 0; t < count; ++t) {
@@ -225,7 +229,7 @@ class OneHull {
       any = true;
     }
     if (any && std::any_of(piece_marks_.begin(), piece_marks_.end(), [](auto m) { return m != 0; })) {
-      pieces_ = refined(surface_, pieces_, piece_marks_, 0x1p-4 * scale_.apply(error), options_.threads, monitor_).pieces;
+      pieces_ = refined(surface_, pieces_, piece_marks_, quadratic_share * scale_.apply(error), options_.threads, monitor_).pieces;
       make_tree();
     }
     return any;
