@@ -11,9 +11,9 @@ namespace snug {
 
 struct HullOptions {
   double tolerance = 0;  ///< > 0, mesh units: no hull is farther than this from the surface, nor it from them
-  bool inner = true, outer = true;         ///< which ones are wanted
-  std::uint64_t budget = 10'000'000;       ///< most triangles of a hull
-  int threads = 0;                         ///< 0: all cores
+  bool inner = true, outer = true;    ///< which ones are wanted
+  std::uint64_t budget = 10'000'000;  ///< most triangles of a hull
+  int threads = 0;                    ///< 0: all cores
 };
 
 /// Triangles on one side of a limit surface, oriented as its faces.
@@ -37,8 +37,8 @@ enum class HullFault : std::uint8_t {
 /// Where.
 struct HullProblem {
   HullFault fault;
-  bool inner;     ///< of the inner hull
-  Point3 place;   ///< a limit point there, mesh units
+  bool inner;           ///< of the inner hull
+  Point3 place;         ///< a limit point there, mesh units
   std::uint32_t owner;  ///< face; in a dual scheme, vertex
 };
 
