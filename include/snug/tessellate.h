@@ -18,6 +18,7 @@ struct TessellateOptions {
   std::optional<std::uint64_t> max_triangles{};
   bool single_precision = false;  ///< coordinates are floats, for formats that hold no others
   bool normals = true;            ///< fill Tessellation::normals
+  bool corners = false;           ///< fill Tessellation::corners
   /// Most triangles before refinement gives up; see Tessellation::reached.
   std::uint64_t budget = 50'000'000;
   int threads = 0;  ///< 0: all cores
@@ -32,6 +33,9 @@ struct Tessellation {
   double position_error = 0;                 ///< upper bound, per coordinate, of |position - limit point|
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< oriented as the faces
   std::vector<std::uint32_t> owners;  ///< of each triangle the face; in a dual scheme, the vertex
+  /// Of each triangle the parameters of its corners on its own face (vertex), whatever `parameters` has: all with
+  /// the same `corner`. Between them parameters are linear.
+  std::vector<std::array<SurfaceParameter, 3>> corners;
   double error_bound = 0;             ///< proved, see tessellate()
   bool reached = true;                ///< false if the budget, or max_triangles, ended refinement before
 };

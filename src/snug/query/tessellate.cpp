@@ -524,11 +524,16 @@ Tessellation Refinement::result() const {
   for (std::size_t p = 1; p < begins.size(); ++p) begins[p] += begins[p - 1];
   result.triangles.resize(count);
   result.owners.resize(count);
+  if (options_.corners) result.corners.resize(count);
   for (std::size_t t = 0; t < count; ++t) {
     const Index patch = pieces_[piece_[t]].patch;
     const std::size_t place = begins[patch]++;
     result.triangles[place] = complex_.corners(t);
     result.owners[place] = surface_.place(PatchId(patch)).owner;
+    if (!options_.corners) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      result.corners[place][k] = place_of(surface_, PatchId(patch), at_[t][k]);
+    }
   }
   // Vertices in the order in which triangles name them.
   std::vector<Index> number(vertices_.size(), UINT32_MAX), order;

@@ -149,7 +149,7 @@ bool TriangleComplex::mark_what_is_not_simple() {
   std::vector<std::array<Index, 2>> ends;
   std::vector<std::array<Index, 3>> triples;
   for (std::size_t t = 0; t < corners_.size(); ++t) {
-    triples.push_back(corners_[t]);
+    triples.push_back({edge_of(t, 0), edge_of(t, 1), edge_of(t, 2)});
     std::sort(triples.back().begin(), triples.back().end());
     for (std::size_t k = 0; k < 3; ++k) {
       const Index e = edge_of(t, k);
