@@ -13,7 +13,9 @@ struct TessellateOptions {
   /// Largest distance, in mesh units, between the limit surface and the triangles, either way.
   std::optional<double> tolerance{};
   std::optional<double> max_edge{};   ///< longest edge, in mesh units
-  std::optional<double> max_angle{};  ///< largest angle between limit normals at corners of a triangle, in degrees
+  /// Largest angle between limit normals at corners of a triangle, in degrees: in double precision, and only of
+  /// triangles with a side longer than the tolerance (without one, a millionth of the size).
+  std::optional<double> max_angle{};
   /// Most triangles: the smallest error that is found for so many, but not below the tolerance if there is one.
   std::optional<std::uint64_t> max_triangles{};
   bool single_precision = false;  ///< coordinates are floats, for formats that hold no others

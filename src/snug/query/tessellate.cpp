@@ -53,7 +53,7 @@ struct Piece {
 struct Limits {
   double tolerance = INFINITY, max_edge = INFINITY;
   double least_cosine = -2;  // of normals; -2 for none
-  double shortest_turn = 0;  // edges that are shorter are not split for their normals
+  double shortest_turn = 0;  // triangles without a longer side are not split for their normals
 };
 
 // Limit points and patches, for one thread; what comes together should be asked for together.
@@ -306,13 +306,17 @@ void Refinement::mark_turning(Worker& worker, Index t) {
     normal[k] = worker.evaluator(patch).frame(place_of(surface_, PatchId(patch), at_[t][k])).normal;
   }
   const std::array<Point3, 3> corner = flat(t).corner;
+  bool turns = false;
+  std::size_t longest = 0;
+  std::array<double, 3> side;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3;
-    if (!normal[k] || !normal[next] || dot(*normal[k], *normal[next]) >= limits_.least_cosine) continue;
-    if (distance(corner[k], corner[next]) > limits_.shortest_turn) {
-      complex_.mark(complex_.edge_of(t, k));
-    }
+    turns = turns || (normal[k] && normal[next] && dot(*normal[k], *normal[next]) < limits_.least_cosine);
+    side[k] = distance(corner[k], corner[next]);
+    if (side[k] > side[longest]) longest = k;
   }
+  // Not the sides that turn: slivers along a fold would be split for ever.
+  if (turns && side[longest] > limits_.shortest_turn) complex_.mark(complex_.edge_of(t, longest));
 }
 
 void Refinement::examine(Worker& worker, Index t, bool mark) {
