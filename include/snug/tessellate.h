@@ -12,7 +12,7 @@ namespace snug {
 struct TessellateOptions {
   /// Largest distance, in mesh units, between the limit surface and the triangles, either way.
   std::optional<double> tolerance{};
-  std::optional<double> max_edge{};   ///< longest edge, in mesh units
+  std::optional<double> max_edge{};  ///< longest edge, in mesh units
   /// Largest angle between limit normals at corners of a triangle, in degrees: in double precision, and only of
   /// triangles with a side longer than the tolerance (without one, a millionth of the size).
   std::optional<double> max_angle{};
@@ -38,8 +38,8 @@ struct Tessellation {
   /// Of each triangle the parameters of its corners on its own face (vertex), whatever `parameters` has: all with
   /// the same `corner`. Between them parameters are linear.
   std::vector<std::array<SurfaceParameter, 3>> corners;
-  double error_bound = 0;             ///< proved, see tessellate()
-  bool reached = true;                ///< false if the budget, or max_triangles, ended refinement before
+  double error_bound = 0;  ///< proved, see tessellate()
+  bool reached = true;     ///< false if the budget, or max_triangles, ended refinement before
 };
 
 /// Triangles that approximate the whole limit surface without cracks: adaptive, each edge split as its own bend

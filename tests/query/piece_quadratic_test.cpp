@@ -50,7 +50,8 @@ Case random_case(std::mt19937_64& random) {
     for (std::size_t a = 0; a < 3; ++a) c.near.middles[k][a] = (p[a] + q[a]) / 2 + coordinate(bend * size);
   }
   c.near.error = random() % 2 == 0 ? 0 : 0.01 * bend * size;
-  for (std::size_t level = random() % 4; level > 0; --level) c.place = c.place.child(static_cast<unsigned>(random() % 4));
+  for (std::size_t level = random() % 4; level > 0; --level)
+    c.place = c.place.child(static_cast<unsigned>(random() % 4));
   std::array<std::array<double, 2>, 3> local{{{0, 0}, {1, 0}, {0, 1}}};
   if (random() % 2 == 0) {
     for (auto& p : local) {
@@ -83,8 +84,8 @@ long double sampled(const Case& c, int steps) {
       const Extended p = value(c.near, local[0], local[1]);
       long double sq = 0;
       for (std::size_t a = 0; a < 3; ++a) {
-        const long double x = c.triangle.corner[0][a], y = c.triangle.corner[1][a], z = c.triangle.corner[2][a],
-                          off = p[a] - (x + b * (y - x) + d * (z - x));
+        const long double x = c.triangle.corner[0][a], y = c.triangle.corner[1][a],
+                          z = c.triangle.corner[2][a], off = p[a] - (x + b * (y - x) + d * (z - x));
         sq += off * off;
       }
       largest = std::max(largest, std::sqrt(sq));

@@ -29,7 +29,8 @@ TessellateOptions to_tolerance(double tolerance) {
 }
 
 // Weights of corners 1 and 2 at a parameter of a triangle's owner; nothing if it lies outside.
-std::optional<std::array<double, 2>> weights_at(const std::array<SurfaceParameter, 3>& corner, double u, double v) {
+std::optional<std::array<double, 2>> weights_at(const std::array<SurfaceParameter, 3>& corner, double u,
+                                                double v) {
   const double bu = corner[1].u - corner[0].u, bv = corner[1].v - corner[0].v, cu = corner[2].u - corner[0].u,
                cv = corner[2].v - corner[0].v, pu = u - corner[0].u, pv = v - corner[0].v;
   const double whole = bu * cv - cu * bv, b = (pu * cv - cu * pv) / whole, c = (bu * pv - pu * bv) / whole;
@@ -47,7 +48,8 @@ void print(const char* name, const Counted& counted) {
             << counted.samples << " checks; largest distance " << counted.tightest << " of the bound\n";
 }
 
-void check_primal(const testing::TaggedCase& c, const std::shared_ptr<BoundsCache>& library, Counted& counted) {
+void check_primal(const testing::TaggedCase& c, const std::shared_ptr<BoundsCache>& library,
+                  Counted& counted) {
   const std::string name = c.name + ", " + testing::text_of(c.rules);
   const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), library);
   const std::vector<oracle::FaceSample> samples = oracle::sample_faces(c.mesh, c.rules, 4);
@@ -143,7 +145,8 @@ TEST(tessellate, has_no_point_far_from_the_surface_of_the_twins) {
     std::size_t number = 0;
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 94)) {
       if (number++ % 8 != 0) continue;
-      const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules), library);
+      const LimitSurface surface(testing::control_mesh(c.mesh, c.rules), testing::options_of(c.rules),
+                                 library);
       const Tessellation t = tessellate(surface, to_tolerance(0.02 * surface.size()));
       if (t.triangles.empty()) continue;
       ++counted.surfaces;
@@ -168,25 +171,26 @@ TEST(tessellate, has_no_point_far_from_the_surface_of_the_twins) {
 
 TEST(tessellate, holds_in_every_disguise) {
   std::size_t surfaces = 0, refused = 0;
-  testing::for_each_disguised_surface(95, [&](const LimitSurface& surface, const std::string& name, std::mt19937_64&) {
-    if (!(surface.size() > 0)) return;
-    TessellateOptions options = to_tolerance(0.05 * surface.size());
-    options.budget = 20'000;
-    try {
-      const Tessellation t = tessellate(surface, options);
-      testing::expect_watertight(surface, t, name);
-      if (::testing::Test::HasFatalFailure()) return;
-      if (t.reached) {
-        EXPECT_LE(t.error_bound, *options.tolerance) << name;
-      }
-      // Distances are computed near 1, and evaluation too.
-      if (surface.scale().moderate()) testing::expect_near(surface, t, name, 2);
-      ++surfaces;
-    } catch (const InputError& error) {
-      EXPECT_EQ(error.problem(), InputProblem::value) << name << ": " << error.what();
-      ++refused;
-    }
-  });
+  testing::for_each_disguised_surface(
+      95, [&](const LimitSurface& surface, const std::string& name, std::mt19937_64&) {
+        if (!(surface.size() > 0)) return;
+        TessellateOptions options = to_tolerance(0.05 * surface.size());
+        options.budget = 20'000;
+        try {
+          const Tessellation t = tessellate(surface, options);
+          testing::expect_watertight(surface, t, name);
+          if (::testing::Test::HasFatalFailure()) return;
+          if (t.reached) {
+            EXPECT_LE(t.error_bound, *options.tolerance) << name;
+          }
+          // Distances are computed near 1, and evaluation too.
+          if (surface.scale().moderate()) testing::expect_near(surface, t, name, 2);
+          ++surfaces;
+        } catch (const InputError& error) {
+          EXPECT_EQ(error.problem(), InputProblem::value) << name << ": " << error.what();
+          ++refused;
+        }
+      });
   std::cout << surfaces << " surfaces, " << refused << " tolerances refused\n";
   EXPECT_GT(surfaces, 2'000u);
 }

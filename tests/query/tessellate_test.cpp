@@ -18,7 +18,8 @@ namespace {
 LimitSurface model(const char* file) {
   ControlMesh mesh = read_mesh(std::string(SNUG_MODELS_DIR) + "/" + file);
   bool triangles = true;
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) triangles = triangles && mesh.face(FaceId(f)).size() == 3;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f)
+    triangles = triangles && mesh.face(FaceId(f)).size() == 3;
   return {std::move(mesh), {triangles ? Scheme::loop : Scheme::catmark}, std::make_shared<BoundsCache>()};
 }
 
@@ -107,7 +108,8 @@ TEST(tessellate, takes_a_quarter_of_the_triangles_of_uniform_refinement) {
       if (error <= wanted) break;
     }
     const Tessellation t = tessellate(surface, to_tolerance(surface.scale().inverse().apply(error)));
-    const double uniform = std::ldexp(static_cast<double>(surface.patch_count()), 2 * static_cast<int>(level));
+    const double uniform =
+        std::ldexp(static_cast<double>(surface.patch_count()), 2 * static_cast<int>(level));
     ratios.push_back(static_cast<double>(t.triangles.size()) / uniform);
     std::cout << file << ": level " << level << ", " << uniform << " triangles; adaptive "
               << t.triangles.size() << '\n';
@@ -147,11 +149,14 @@ TEST(tessellate, holds_a_largest_angle_of_normals) {
   const double least = std::cos(10.01 * 3.14159265358979 / 180);
   for (std::size_t i = 0; i < t.triangles.size(); ++i) {
     const auto& [p, q, r] = t.triangles[i];
-    const auto side = [&](std::uint32_t x, std::uint32_t y) { return distance(t.positions[x], t.positions[y]); };
+    const auto side = [&](std::uint32_t x, std::uint32_t y) {
+      return distance(t.positions[x], t.positions[y]);
+    };
     if (std::max({side(p, q), side(q, r), side(r, p)}) <= *options.tolerance) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t next = (k + 1) % 3;
-      const auto a = evaluate(surface, t.corners[i][k]).normal, b = evaluate(surface, t.corners[i][next]).normal;
+      const auto a = evaluate(surface, t.corners[i][k]).normal,
+                 b = evaluate(surface, t.corners[i][next]).normal;
       ASSERT_TRUE(a && b);
       EXPECT_GE(dot(*a, *b), least);
     }
@@ -229,7 +234,8 @@ TEST(tessellate, refuses_what_it_cannot_hold) {
 
 TEST(tessellate, stops_when_asked) {
   const std::atomic<bool> stop = true;
-  EXPECT_THROW(static_cast<void>(tessellate(model("pawn.obj"), to_tolerance(1e-3), {{}, &stop})), Interrupted);
+  EXPECT_THROW(static_cast<void>(tessellate(model("pawn.obj"), to_tolerance(1e-3), {{}, &stop})),
+               Interrupted);
 }
 
 }  // namespace

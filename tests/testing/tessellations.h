@@ -96,7 +96,8 @@ inline void expect_watertight(const LimitSurface& surface, const Tessellation& t
       ASSERT_TRUE(use.forward == 1 && use.backward == 1) << name << ": a crack inside owner " << use.owner;
       continue;
     }
-    ASSERT_EQ(use.forward + use.backward, sheets[use.edge->index()]) << name << ": edge " << use.edge->index();
+    ASSERT_EQ(use.forward + use.backward, sheets[use.edge->index()])
+        << name << ": edge " << use.edge->index();
     if (!surface.topology().ends_fans(*use.edge) && sheets[use.edge->index()] == 2) {
       ASSERT_EQ(use.forward, 1u) << name << ": orientation at edge " << use.edge->index();
     }
@@ -112,7 +113,8 @@ inline void expect_watertight(const LimitSurface& surface, const Tessellation& t
   }
 }
 
-[[nodiscard]] inline SurfaceParameter between(const std::array<SurfaceParameter, 3>& corner, double b, double c) {
+[[nodiscard]] inline SurfaceParameter between(const std::array<SurfaceParameter, 3>& corner, double b,
+                                              double c) {
   const auto mix = [&](double x, double y, double z) { return x + b * (y - x) + c * (z - x); };
   return {corner[0].owner, corner[0].corner, std::clamp(mix(corner[0].u, corner[1].u, corner[2].u), 0.0, 1.0),
           std::clamp(mix(corner[0].v, corner[1].v, corner[2].v), 0.0, 1.0)};
@@ -142,8 +144,7 @@ inline double expect_near(const LimitSurface& surface, const Tessellation& t, co
         SurfaceParameter at = between(t.corners[i], b, c);
         if (surface.rules().triangular()) at.v = std::min(at.v, 1 - at.u);
         const SurfacePoint point = evaluator(at);
-        const double found =
-            distance_at(t, i, b, c, {point.position.x, point.position.y, point.position.z});
+        const double found = distance_at(t, i, b, c, {point.position.x, point.position.y, point.position.z});
         largest = std::max(largest, found);
         // Weights and parameters are rounded, by far less than the surface moves.
         const double slack = 1.8 * point.error + 1e-12 * t.error_bound + 0x1p-48 * surface.size();
