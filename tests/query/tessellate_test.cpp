@@ -65,17 +65,6 @@ TEST(tessellate, is_watertight_and_near_for_every_scheme_and_tag) {
   EXPECT_GT(surfaces, 150u);
 }
 
-TEST(tessellate, does_not_depend_on_threads) {
-  for (const char* const file : {"pawn.obj", "ring.obj", "bracket.obj"}) {
-    const LimitSurface surface = model(file);
-    TessellateOptions options = to_tolerance(1e-3 * surface.size());
-    options.threads = 1;
-    const Tessellation one = tessellate(surface, options);
-    options.threads = 3;
-    EXPECT_TRUE(same(one, tessellate(surface, options))) << file;
-  }
-}
-
 // Of all pieces after so many splits, with their limit corners as corners of triangles.
 double error_of_uniform(const LimitSurface& surface, const Patch& piece, unsigned levels) {
   if (levels > 0) {
@@ -230,6 +219,13 @@ TEST(tessellate, refuses_what_it_cannot_hold) {
   EXPECT_LE(tessellate(surface, options).triangles.size(), *options.max_triangles);
   options.max_angle = 0;
   EXPECT_NE(refusal(surface, options).find("angle"), std::string::npos);
+}
+
+TEST(tessellate, is_the_same_of_a_handle) {
+  const std::string file = std::string(SNUG_MODELS_DIR) + "/pawn.obj";
+  const Surface handle = load(file);
+  TessellateOptions options = to_tolerance(1e-2 * handle.size());
+  EXPECT_TRUE(same(tessellate(handle, options), tessellate(model("pawn.obj"), options)));
 }
 
 TEST(tessellate, stops_when_asked) {

@@ -251,10 +251,13 @@ void Refinement::learn(Worker& worker, Index t) {
   const QuadraticTriangle near = quadratic_triangle(library, patch, worker.hull);
   piece.known = true;
   piece.coarse = !(near.error <= quadratic_share * limits_.tolerance) || !(near.error < INFINITY);
-  if (piece.coarse) {
-    error_[t] = distance_to_triangle(library, patch, worker.hull, flat(t).corner);
-  } else {
-    piece.quadratic = PieceQuadratic(near, piece.place);
+  if (near.error < INFINITY) piece.quadratic = PieceQuadratic(near, piece.place);
+  if (!piece.coarse) return;
+  const FlatTriangle triangle = flat(t);
+  if (near.error < INFINITY) error_[t] = piece.quadratic.flatness(triangle).error;
+  // Where the quadratic itself is too far away there is nothing to be gained.
+  if (error_[t] > limits_.tolerance && !(error_[t] - 2 * near.error > limits_.tolerance)) {
+    error_[t] = std::min(error_[t], distance_to_triangle(library, patch, worker.hull, triangle.corner));
   }
 }
 
@@ -468,9 +471,10 @@ bool Refinement::run(std::uint64_t most) {
   std::vector<Index> active(triangle_count());
   for (Index t = 0; t < active.size(); ++t) active[t] = t;
   // First what makes the triangles a complex, whatever the limits are.
-  for (bool first = true;; first = false) {
+  while (true) {
     examine(active, false);
-    if (!complex_.mark_what_is_not_simple() && !first) break;
+    complex_.mark_what_is_not_simple();
+    if (count_after() == triangle_count()) break;
     mark_rest_of_coarse();
     split(active);
   }
