@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include <snug/error.h>
 
 namespace snug {
@@ -10,6 +12,9 @@ namespace snug {
 inline void require_value(bool holds, const char* message) {
   if (!holds) refuse_value(message);
 }
+
+/// The shortest digits that read back as x: 1e-300 is not 0.
+[[nodiscard]] std::string shortest(double x);
 
 /// Throws InputError (value), naming `what`, unless x is finite and >= 0.
 void require_length(double x, const char* what);

@@ -5,6 +5,7 @@
 #include <snug/front/workspace.h>
 #include <snug/query/bound.h>
 #include <snug/query/closest.h>
+#include <snug/query/deviation.h>
 #include <snug/query/pairs.h>
 #include <snug/query/subdivide.h>
 #include <snug/surface/evaluate.h>
@@ -80,6 +81,16 @@ std::vector<SignedDistance> signed_distances(const Surface& surface, std::span<c
                                              const ClosestOptions& options, int threads,
                                              const WorkMonitor& monitor) {
   return signed_distances(bvh(surface), points, options, threads, monitor);
+}
+
+Deviation deviation(const Surface& surface, std::span<const Triangle> candidate,
+                    const DeviationOptions& options, const WorkMonitor& monitor) {
+  return deviation(bvh(surface), candidate, options, monitor);
+}
+
+Deviation deviation(const Surface& surface, const Surface& candidate, const DeviationOptions& options,
+                    const WorkMonitor& monitor) {
+  return deviation(bvh(surface), bvh(candidate), options, monitor);
 }
 
 SurfacePoint evaluate(const Surface& surface, const SurfaceParameter& at) {

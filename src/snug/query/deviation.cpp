@@ -1,0 +1,389 @@
+#include <snug/query/deviation.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <snug/base/error.h>
+#include <snug/geometry/rounding.h>
+#include <snug/geometry/scaling.h>
+#include <snug/patch/evaluate.h>
+#include <snug/query/one_sided.h>
+#include <snug/search/winding.h>
+#include <snug/search/workspace.h>
+#include <snug/surface/evaluate.h>
+#include <snug/surface/quadratic_pieces.h>
+#include <snug/surface/unscale.h>
+
+namespace snug {
+namespace {
+
+// In common units: below, roundings would be most of an interval.
+constexpr double least_precision = 0x1p-37;
+// Errors of quadratics: at first a share of the size, then smaller by a factor where that is not enough, at
+// last a share of the precision.
+constexpr double first_share = 0x1p-13, next_share = 0x1p-3, last_share = 0x1p-3;
+
+// A set as quadratic triangles, in units in which the largest coordinate of both sets is in [1, 2).
+class ComparedSet {
+ public:
+  virtual ~ComparedSet() = default;
+  // Splits what `which` names until errors are at most `error`; tells of which piece each one is a part.
+  virtual std::vector<std::uint32_t> refine(std::span<const std::uint8_t> which, double error) = 0;
+  [[nodiscard]] virtual BoundedPoint point(std::uint32_t piece, TriangleParameter at) const = 0;
+  [[nodiscard]] virtual std::optional<SurfaceParameter> place(std::uint32_t piece,
+                                                              TriangleParameter at) const = 0;
+
+  [[nodiscard]] std::span<const QuadraticTriangle> quadratics() const { return quadratics_; }
+  [[nodiscard]] const QuadraticBvh& tree(int threads) {
+    if (!tree_) tree_ = std::make_unique<QuadraticBvh>(quadratics_, threads);
+    return *tree_;
+  }
+
+ protected:
+  std::vector<QuadraticTriangle> quadratics_;
+  std::unique_ptr<QuadraticBvh> tree_;
+};
+
+class TriangleSet final : public ComparedSet {
+ public:
+  TriangleSet(std::span<const Triangle> triangles, PowerOfTwo scale) {
+    quadratics_.reserve(triangles.size());
+    for (const Triangle& t : triangles) {
+      quadratics_.push_back(flat_quadratic({scale.apply(t[0]), scale.apply(t[1]), scale.apply(t[2])}));
+    }
+  }
+  std::vector<std::uint32_t> refine(std::span<const std::uint8_t>, double) override { return {}; }
+  [[nodiscard]] BoundedPoint point(std::uint32_t piece, TriangleParameter at) const override {
+    return {point_of(quadratics_[piece], at), 0x1p-48};
+  }
+  [[nodiscard]] std::optional<SurfaceParameter> place(std::uint32_t, TriangleParameter) const override {
+    return std::nullopt;
+  }
+};
+
+class SurfaceSet final : public ComparedSet {
+ public:
+  SurfaceSet(const LimitSurface& surface, PowerOfTwo scale, double error, int threads,
+             const WorkMonitor& monitor)
+      : surface_(surface),
+        to_common_(scale * surface.scale().inverse()),
+        threads_(threads),
+        monitor_{.on_progress = {}, .stop = monitor.stop},
+        pieces_(quadratic_pieces(surface, own(error), threads, monitor_)) {
+    take();
+  }
+  std::vector<std::uint32_t> refine(std::span<const std::uint8_t> which, double error) override {
+    RefinedPieces parts = refined(surface_, pieces_, which, own(error), threads_, monitor_);
+    pieces_ = std::move(parts.pieces);
+    take();
+    return std::move(parts.origins);
+  }
+  [[nodiscard]] BoundedPoint point(std::uint32_t piece, TriangleParameter at) const override {
+    const Patch patch = surface_.patch(pieces_[piece].root);
+    const BoundedPoint own = limit_point(patch, to_face(pieces_[piece].path, at)).from(patch.origin);
+    return unscaled(own, to_common_);
+  }
+  [[nodiscard]] std::optional<SurfaceParameter> place(std::uint32_t piece,
+                                                      TriangleParameter at) const override {
+    return place_of(surface_, pieces_[piece].root, to_face(pieces_[piece].path, at));
+  }
+
+ private:
+  [[nodiscard]] double own(double error) const { return to_common_.inverse().apply(error); }
+  void take() {
+    tree_.reset();
+    quadratics_.clear();
+    quadratics_.reserve(pieces_.size());
+    for (const QuadraticPiece& piece : pieces_) {
+      QuadraticTriangle q = piece.quadratic;
+      if (!std::isfinite(q.error)) {
+        throw InputError(InputProblem::unrepresentable,
+                         "deviation: a patch of the surface does not fit doubles; scale the mesh");
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        q.corners[k] = to_common_.apply(q.corners[k]);
+        q.middles[k] = to_common_.apply(q.middles[k]);
+      }
+      q.error = to_common_.apply(q.error) + 8 * underflow_error;
+      quadratics_.push_back(q);
+    }
+  }
+
+  const LimitSurface& surface_;
+  PowerOfTwo to_common_;
+  int threads_;
+  WorkMonitor monitor_;
+  std::vector<QuadraticPiece> pieces_;
+};
+
+// One of the questions: how far is a set, or what of it lies on one side, from the other set?
+class Question {
+ public:
+  Question(ComparedSet& from, ComparedSet& to, OneSidedOptions options)
+      : from_(from), to_(to), options_(std::move(options)), active_(from.quadratics().size()) {
+    for (std::size_t i = 0; i < active_.size(); ++i) active_[i] = static_cast<std::uint32_t>(i);
+  }
+
+  void settle(bool last, const WorkMonitor& monitor) {
+    const QuadraticSet set{from_.quadratics(), [this](std::uint32_t piece, TriangleParameter at) {
+                             return from_.point(piece, at);
+                           }};
+    unsettled_ = snug::settle(set, active_, to_.tree(options_.threads), options_, last, farthest_, monitor);
+    if (!farthest_.at) return;
+    keep(farthest_.from, *farthest_.at, farthest_.to);
+    farthest_.at.reset();
+  }
+  [[nodiscard]] bool settled() const { return unsettled_.empty(); }
+  [[nodiscard]] bool open() const { return !active_.empty(); }
+
+  // Marks the pieces whose errors are in the way.
+  void mark(const ComparedSet& of, std::span<std::uint8_t> marks) const {
+    for (const Unsettled& u : unsettled_) {
+      if (&of == &from_) {
+        marks[u.piece] = 1;
+      } else {
+        to_.tree(options_.threads).mark_near(from_.quadratics()[u.piece], u.reach, marks);
+      }
+    }
+  }
+  // After refinement of its own set: `origins` as from refine(), empty where that did nothing.
+  void go_on(std::span<const std::uint32_t> origins) {
+    active_.clear();
+    if (origins.empty()) {
+      for (const Unsettled& u : unsettled_) active_.push_back(u.piece);
+      std::sort(active_.begin(), active_.end());
+      return;
+    }
+    std::vector<std::uint32_t> left;
+    left.reserve(unsettled_.size());
+    for (const Unsettled& u : unsettled_) left.push_back(u.piece);
+    std::sort(left.begin(), left.end());
+    for (std::size_t i = 0; i < origins.size(); ++i) {
+      if (std::binary_search(left.begin(), left.end(), origins[i])) {
+        active_.push_back(static_cast<std::uint32_t>(i));
+      }
+    }
+  }
+  [[nodiscard]] const ComparedSet& from() const { return from_; }
+
+  [[nodiscard]] OneSidedDistance answer(PowerOfTwo back) {
+    if (!found_) {
+      // Nothing is farther away than 0: any point will do.
+      const BoundedPoint first = from_.point(0, {});
+      keep(first, {0, {}}, to_.tree(options_.threads).nearest(from_.quadratics()[0].corners[0]));
+    }
+    OneSidedDistance result;
+    result.distance = {unscaled_down(std::max(0.0, farthest_.lower), back),
+                       require_representable(unscaled_up(farthest_.upper, back))};
+    const BoundedPoint from = unscaled(from_point_, back);
+    result.from = require_representable(from.position);
+    result.error = from.error;
+    result.to = require_representable(back.apply(to_point_));
+    result.at = at_;
+    return result;
+  }
+
+ private:
+  void keep(const BoundedPoint& from, const std::pair<std::uint32_t, TriangleParameter>& at,
+            const QuadraticFoot& to) {
+    found_ = true;
+    from_point_ = from;
+    at_ = from_.place(at.first, at.second);
+    to_point_ = to_.point(to.piece, to.at).position;
+  }
+
+  ComparedSet& from_;
+  ComparedSet& to_;
+  OneSidedOptions options_;
+  std::vector<std::uint32_t> active_;
+  std::vector<Unsettled> unsettled_;
+  Farthest farthest_;
+  bool found_ = false;
+  BoundedPoint from_point_;
+  Point3 to_point_;
+  std::optional<SurfaceParameter> at_;
+};
+
+// Is a point, in common units, inside of a closed surface?
+SideTest side_test(const SurfaceBvh& model, PowerOfTwo from_common, bool inside) {
+  auto workspace = std::make_shared<SurfaceWorkspace>(model);
+  return [workspace, from_common, inside](const Point3& point, double error) -> std::optional<bool> {
+    workspace->begin();
+    const Point3 own = from_common.apply(point);
+    // More than 10^12 sizes away.
+    if (!(max_abs(own - Point3{}) <= 0x1p40)) return !inside;
+    const double own_error = from_common.apply(error) + 2 * underflow_error;
+    const std::optional<int> number = winding_number(*workspace, own, own_error);
+    return number ? std::optional((*number != 0) == inside) : std::nullopt;
+  };
+}
+
+// What is asked, in common units.
+struct Asked {
+  Asked(const DeviationOptions& options, const LimitSurface& surface, PowerOfTwo of_candidate)
+      : scale(std::min(surface.scale().exponent(), of_candidate.exponent())),
+        size(scale.apply(std::min(surface.size(), std::numeric_limits<double>::max()))) {
+    if (options.absolute) {
+      require_value(*options.absolute > 0 && std::isfinite(*options.absolute),
+                    "deviation: the precision must be finite and greater than 0");
+      precision = scale.apply(*options.absolute);
+      if (precision < least_precision) {
+        throw InputError(InputProblem::value,
+                         "deviation: doubles allow no precision below " +
+                             shortest(scale.inverse().apply(least_precision)) +
+                             " for coordinates of this size; ask for that or more");
+      }
+    } else {
+      precision = std::max(1e-4 * size, least_precision);
+    }
+    if (options.tolerance) {
+      require_length(*options.tolerance, "deviation: the tolerance");
+      tolerance = scale.apply(*options.tolerance) * (1 - 4 * unit_roundoff);
+    }
+  }
+  [[nodiscard]] OneSidedOptions options(const DeviationOptions& given) const {
+    // Less by the roundings of the way back.
+    return {.precision = precision * (1 - 0x1p-10),
+            .tolerance = tolerance,
+            .budget = given.budget,
+            .threads = given.threads};
+  }
+
+  [[nodiscard]] double last_error() const { return last_share * precision; }
+  [[nodiscard]] double first_error() const { return std::max(first_share * size, last_error()); }
+
+  PowerOfTwo scale;  // from mesh units
+  double size;
+  double precision = 0;
+  std::optional<double> tolerance{};
+};
+
+// Is the interval as narrow as it was asked for, or does it answer the question?
+bool is_reached(const Interval& distance, const DeviationOptions& options, double precision) {
+  if (options.tolerance && (distance.upper <= *options.tolerance || distance.lower > *options.tolerance)) {
+    return true;
+  }
+  return distance.upper - distance.lower <= precision;
+}
+
+OneSidedDistance farther(const OneSidedDistance& a, const OneSidedDistance& b) {
+  OneSidedDistance result = a.distance.lower >= b.distance.lower ? a : b;
+  result.distance.upper = std::max(a.distance.upper, b.distance.upper);
+  return result;
+}
+
+Deviation compare(const SurfaceBvh& model, ComparedSet& surface, ComparedSet& candidate, const Asked& asked,
+                  const DeviationOptions& options, const WorkMonitor& monitor) {
+  std::vector<Question> questions;
+  questions.emplace_back(surface, candidate, asked.options(options));
+  if (options.solid) {
+    const PowerOfTwo from_common = model.surface().scale() * asked.scale.inverse();
+    for (const bool inside : {true, false}) {
+      OneSidedOptions one_side = asked.options(options);
+      one_side.make_side_test = [&model, from_common, inside] {
+        return side_test(model, from_common, inside);
+      };
+      questions.emplace_back(candidate, surface, std::move(one_side));
+    }
+  } else {
+    questions.emplace_back(candidate, surface, asked.options(options));
+  }
+
+  const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+  double error = asked.first_error();
+  double done = 0;
+  const auto all_settled = [&] {
+    return std::all_of(questions.begin(), questions.end(), [](const Question& q) { return q.settled(); });
+  };
+  for (;;) {
+    const bool last = error <= asked.last_error();
+    for (Question& question : questions) {
+      if (!question.open()) continue;
+      question.settle(last, stop_only);
+      done += (1 - done) / static_cast<double>(2 * questions.size());
+      monitor.report(done);
+    }
+    if (last || all_settled()) break;
+    error = std::max(next_share * error, asked.last_error());
+    std::array<ComparedSet*, 2> sets{&surface, &candidate};
+    std::array<std::vector<std::uint8_t>, 2> marks;
+    for (std::size_t i = 0; i < 2; ++i) {
+      marks[i].assign(sets[i]->quadratics().size(), 0);
+      for (const Question& question : questions) question.mark(*sets[i], marks[i]);
+    }
+    std::array<std::vector<std::uint32_t>, 2> origins;
+    for (std::size_t i = 0; i < 2; ++i) origins[i] = sets[i]->refine(marks[i], error);
+    for (Question& question : questions) question.go_on(origins[&question.from() == &surface ? 0 : 1]);
+  }
+
+  const PowerOfTwo back = asked.scale.inverse();
+  Deviation result;
+  result.from_surface = questions[0].answer(back);
+  result.from_candidate = questions[1].answer(back);
+  if (options.solid) {
+    result.inside = result.from_candidate;
+    result.outside = questions[2].answer(back);
+    result.from_candidate = farther(*result.inside, *result.outside);
+  }
+  const double precision = unscaled_up(asked.precision, back);
+  result.reached = is_reached(result.from_surface.distance, options, precision) &&
+                   is_reached(result.from_candidate.distance, options, precision);
+  for (const auto& side : {result.inside, result.outside}) {
+    if (side) result.reached = result.reached && is_reached(side->distance, options, precision);
+  }
+  monitor.report(1);
+  return result;
+}
+
+double largest_coordinate(std::span<const Triangle> triangles) {
+  double largest = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    for (const Point3& p : triangles[i]) {
+      if (!is_finite(p)) {
+        throw InputError(InputProblem::value, "deviation: a corner of triangle " + std::to_string(i) +
+                                                  " of the candidate is not finite; give three numbers");
+      }
+      largest = std::max(largest, max_abs(p - Point3{}));
+    }
+  }
+  return largest;
+}
+
+void require_closed_if_solid(const SurfaceBvh& model, const DeviationOptions& options) {
+  if (options.solid) static_cast<void>(model.solid());
+}
+
+}  // namespace
+
+Deviation deviation(const SurfaceBvh& model, std::span<const Triangle> candidate,
+                    const DeviationOptions& options, const WorkMonitor& monitor) {
+  require_value(!candidate.empty(), "deviation: the candidate has no triangles");
+  require_value(candidate.size() < WideBvh::leaf_bit,
+                "deviation: the candidate has more than 2^31 triangles; compare parts of it");
+  const double largest = largest_coordinate(candidate);
+  const LimitSurface& surface = model.surface();
+  // Zero fits any scale.
+  const PowerOfTwo own = largest > 0 ? PowerOfTwo::normalising(largest) : surface.scale();
+  const Asked asked(options, surface, own);
+  require_closed_if_solid(model, options);
+  SurfaceSet first(surface, asked.scale, asked.first_error(), options.threads, monitor);
+  TriangleSet second(candidate, asked.scale);
+  return compare(model, first, second, asked, options, monitor);
+}
+
+Deviation deviation(const SurfaceBvh& model, const SurfaceBvh& candidate, const DeviationOptions& options,
+                    const WorkMonitor& monitor) {
+  const Asked asked(options, model.surface(), candidate.surface().scale());
+  require_closed_if_solid(model, options);
+  SurfaceSet first(model.surface(), asked.scale, asked.first_error(), options.threads, monitor);
+  SurfaceSet second(candidate.surface(), asked.scale, asked.first_error(), options.threads, monitor);
+  return compare(model, first, second, asked, options, monitor);
+}
+
+}  // namespace snug

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <span>
+
+#include <snug/deviation.h>
+#include <snug/search/surface_bvh.h>
+
+/// The questions of deviation.h about surfaces whose trees are at hand.
+namespace snug {
+
+[[nodiscard]] Deviation deviation(const SurfaceBvh& surface, std::span<const Triangle> candidate,
+                                  const DeviationOptions& options, const WorkMonitor& monitor = {});
+[[nodiscard]] Deviation deviation(const SurfaceBvh& surface, const SurfaceBvh& candidate,
+                                  const DeviationOptions& options, const WorkMonitor& monitor = {});
+
+}  // namespace snug

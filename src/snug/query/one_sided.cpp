@@ -1,0 +1,405 @@
+#include <snug/query/one_sided.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <snug/base/parallel.h>
+#include <snug/geometry/rounding.h>
+
+namespace snug {
+namespace {
+
+// What is known of a part: are all its points on the side that is asked about?
+enum class Side : std::uint8_t { unknown, asked, other };
+
+struct Part {
+  std::uint32_t piece;
+  std::uint8_t depth = 0;
+  std::uint8_t tried = 0;  // corners that were no lower bound when asked, a bit each
+  Side side = Side::unknown;
+  std::array<TriangleParameter, 3> at;
+  std::array<QuadraticFoot, 3> feet;  // of the corners, on the other set
+  double upper = INFINITY;            // all its points are at most this far from the other set
+  double reach = INFINITY;            // all points of the whole piece are
+};
+
+// How a part compares with the pieces of the other set below its corners.
+struct Comparison {
+  double upper = INFINITY;      // all its points are at most this far from the other set
+  double geometric = INFINITY;  // without the errors of the quadratics
+  double errors = 0;
+  std::size_t edge = 0;  // where to cut, from corner `edge` to the next
+  double share = 0.5;
+};
+
+// What rounding leaves uncovered at each cut adds up to less than distance_rounding.
+constexpr unsigned max_depth = 120;
+
+// Parts that are compared before what is left goes back to be handed out again.
+constexpr std::size_t chunk_work = 4096;
+constexpr std::size_t chunk_pieces = 32;
+constexpr std::size_t chunks_at_once = 64;
+
+class Chunk {
+ public:
+  Chunk(const QuadraticSet& set, const QuadraticBvh& other, const OneSidedOptions& options, bool last,
+        const Farthest& known)
+      : set_(set), other_(other), options_(options), last_(last), found_(known) {
+    found_.compared = 0;
+  }
+
+  // Settles parts until the work of a chunk is done; `stack` keeps the others.
+  void run(std::vector<Part>& stack, const SideTest& side_test, std::vector<Unsettled>& unsettled,
+           const WorkMonitor& monitor) {
+    while (!stack.empty() && found_.compared < chunk_work) {
+      if (found_.compared % 64 == 0) monitor.checkpoint();
+      Part part = stack.back();
+      stack.pop_back();
+      ++found_.compared;
+      if (settle(part, side_test)) continue;
+      if (limited_) {
+        // What else there is of the piece comes again with it.
+        const std::uint32_t piece = part.piece;
+        std::erase_if(stack, [&](const Part& p) { return p.piece == piece; });
+        unsettled.push_back({piece, part.reach});
+        continue;
+      }
+      cut(part, stack);
+    }
+  }
+  // Settles all parts as they are.
+  void give_up(std::vector<Part>& stack) {
+    for (Part& part : stack) {
+      if (part.side == Side::other) continue;
+      if (part.upper == INFINITY) see(part);
+      found_.upper = std::max(found_.upper, part.upper);
+    }
+    stack.clear();
+  }
+  [[nodiscard]] const Farthest& found() const { return found_; }
+
+ private:
+  void see(Part& part) {
+    quadratic_ = restricted(set_.quadratics[part.piece], part.at);
+    compare(part);
+    if (part.depth == 0) part.reach = part.upper;
+  }
+
+  // What parts need not be below.
+  [[nodiscard]] double goal() const {
+    const double wanted = found_.lower + options_.precision;
+    if (!options_.tolerance) return wanted;
+    return found_.lower > *options_.tolerance ? INFINITY : std::max(wanted, *options_.tolerance);
+  }
+
+  bool settle(Part& part, const SideTest& side_test) {
+    limited_ = false;
+    if (part.side == Side::other) return true;
+    see(part);
+    if (accept(part)) return true;
+    if (side_test && part.side == Side::unknown) {
+      find_side(part, side_test);
+      if (part.side == Side::other) return true;
+    }
+    if (raise_lower(part, side_test)) {
+      compare(part);
+      if (accept(part)) return true;
+    }
+    const double farthest_corner =
+        std::max({part.feet[0].distance, part.feet[1].distance, part.feet[2].distance});
+    // Is there nothing to be had from smaller parts?
+    const bool errors_rule = now_.errors > options_.precision / 4;
+    const bool small = now_.geometric - farthest_corner <= options_.precision * (errors_rule ? 0.25 : 0x1p-4);
+    limited_ = small && errors_rule && !last_;
+    if (limited_) return false;
+    const bool on_side = !side_test || part.side == Side::asked;
+    if (part.depth < max_depth && !(small && on_side)) return false;
+    found_.upper = std::max(found_.upper, part.upper);
+    return true;
+  }
+
+  bool accept(const Part& part) {
+    if (!(part.upper <= goal())) return false;
+    found_.upper = std::max(found_.upper, part.upper);
+    return true;
+  }
+
+  void find_side(Part& part, const SideTest& side_test) const {
+    if (other_.may_meet(quadratic_)) return;
+    // No point of it is on the surface: all are on one side.
+    const std::optional<bool> asked = side_test(quadratic_.corners[0], distance_rounding);
+    if (asked) part.side = *asked ? Side::asked : Side::other;
+  }
+
+  // Asks the farthest corner for a lower bound. Has a nearer foot of it come up?
+  bool raise_lower(Part& part, const SideTest& side_test) {
+    const std::size_t k = static_cast<std::size_t>(
+        std::max_element(part.feet.begin(), part.feet.end(),
+                         [](const auto& x, const auto& y) { return x.distance < y.distance; }) -
+        part.feet.begin());
+    const double error = other_[part.feet[k].piece].error;
+    if ((part.tried >> k & 1u) != 0) return false;
+    if (!(part.feet[k].distance - error > found_.lower + options_.precision / 16)) return false;
+    part.tried = static_cast<std::uint8_t>(part.tried | 1u << k);
+    const BoundedPoint point = set_.point(part.piece, part.at[k]);
+    if (side_test && part.side != Side::asked) {
+      if (side_test(point.position, spatial_error(point.error)) != true) return false;
+    }
+    QuadraticFoot foot = other_.foot_on(part.feet[k].piece, point.position);
+    const double before = foot.distance;
+    const double lower =
+        other_.certain_distance(point.position, options_.precision / 16, foot) - spatial_error(point.error);
+    if (lower > found_.lower) {
+      found_.lower = lower;
+      found_.from = point;
+      found_.to = foot;
+      found_.at = {part.piece, part.at[k]};
+    }
+    if (foot.distance < before) {
+      part.feet[k] = other_.foot_on(foot.piece, quadratic_.corners[k]);
+      part.tried = static_cast<std::uint8_t>(part.tried & ~(1u << k));
+    }
+    return true;
+  }
+
+  // With the piece below each corner in turn; stops at one that is near enough.
+  void compare(Part& part) {
+    now_ = {};
+    std::array<std::array<double, 3>, 3> to_piece{};  // distances of corners to the piece below corner i
+    std::size_t best = 0, different = 0;
+    double bent = 0, corner = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t piece = part.feet[i].piece;
+      if ((i > 0 && piece == part.feet[0].piece) || (i == 2 && piece == part.feet[1].piece)) {
+        to_piece[i] = to_piece[piece == part.feet[0].piece ? 0 : 1];
+        continue;
+      }
+      ++different;
+      std::array<TriangleParameter, 3> at;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const QuadraticFoot foot =
+            part.feet[k].piece == piece ? part.feet[k] : other_.foot_on(piece, quadratic_.corners[k]);
+        at[k] = foot.at;
+        to_piece[i][k] = foot.distance;
+      }
+      const QuadraticTriangle below = restricted(other_[piece], at);
+      double at_corners = 0;
+      std::array<double, 3> at_middles;
+      for (std::size_t k = 0; k < 3; ++k) {
+        at_corners = std::max(at_corners, distance(quadratic_.corners[k], below.corners[k]));
+        at_middles[k] = distance(quadratic_.middles[k], below.middles[k]);
+      }
+      const double geometric = std::max({at_corners, at_middles[0], at_middles[1], at_middles[2]});
+      const double errors = set_.quadratics[part.piece].error + other_[piece].error;
+      const double upper = enlarged(geometric + errors) + distance_rounding;
+      if (upper < now_.upper) {
+        now_.upper = upper;
+        now_.geometric = geometric;
+        now_.errors = errors;
+        best = static_cast<std::size_t>(std::max_element(at_middles.begin(), at_middles.end()) -
+                                        at_middles.begin());
+        bent = at_middles[best];
+        corner = at_corners;
+      }
+      if (upper <= goal()) break;
+    }
+    part.upper = std::min(part.upper, now_.upper);
+    now_.edge = best;
+    if (different > 1 && corner >= bent * (1 - 0x1p-20)) choose_border(part, to_piece);
+  }
+
+  // Where an edge leaves the piece below one end for that below the other: exact where both lie in a plane.
+  void choose_border(const Part& part, const std::array<std::array<double, 3>, 3>& to_piece) {
+    double most = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      if (part.feet[k].piece == part.feet[next].piece) continue;
+      const auto over = [&](std::size_t piece_of, std::size_t c) {
+        const double own = part.feet[c].distance, far = to_piece[piece_of][c];
+        return std::sqrt(std::max(0.0, (far - own) * (far + own)));
+      };
+      const double there = over(next, k), here = over(k, next);
+      if (there + here > most) {
+        most = there + here;
+        now_.edge = k;
+        now_.share = std::clamp(there / (there + here), 0x1p-6, 1 - 0x1p-6);
+      }
+    }
+  }
+
+  void cut(const Part& part, std::vector<Part>& stack) {
+    std::size_t k = now_.edge;
+    double share = now_.share;
+    if (part.depth % 8 == 7) {
+      // Cuts near corners leave needles.
+      double longest = -1;
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (const double length = distance(quadratic_corner(part, i), quadratic_corner(part, (i + 1) % 3));
+            length > longest) {
+          longest = length;
+          k = i;
+        }
+      }
+      share = 0.5;
+    }
+    const std::size_t next = (k + 1) % 3;
+    const TriangleParameter a = part.at[k], b = part.at[next];
+    TriangleParameter at{a.u + share * (b.u - a.u), a.v + share * (b.v - a.v)};
+    if (at.u + at.v > 1) at.v = 1 - at.u;
+    const Point3 point = point_of(set_.quadratics[part.piece], at);
+    const QuadraticFoot foot = other_.nearest(point, part.feet[share < 0.5 ? k : next]);
+    for (const std::size_t moved : {k, next}) {
+      Part child = part;
+      child.at[moved] = at;
+      child.feet[moved] = foot;
+      child.tried = static_cast<std::uint8_t>(child.tried & ~(1u << moved));
+      ++child.depth;
+      stack.push_back(child);
+    }
+  }
+  [[nodiscard]] Point3 quadratic_corner(const Part& part, std::size_t k) const {
+    return point_of(set_.quadratics[part.piece], part.at[k]);
+  }
+
+  const QuadraticSet& set_;
+  const QuadraticBvh& other_;
+  const OneSidedOptions& options_;
+  bool last_;
+  Farthest found_;
+  QuadraticTriangle quadratic_{};  // of the part at hand
+  Comparison now_;
+  bool limited_ = false;
+};
+
+// The feet of the corners of pieces; corners at the same point are asked once.
+class CornerFeet {
+ public:
+  CornerFeet(const QuadraticSet& set, std::span<const std::uint32_t> pieces, const QuadraticBvh& other,
+             int threads, const WorkMonitor& monitor) {
+    std::size_t size = 16;
+    while (size < 6 * pieces.size()) size *= 2;
+    std::vector<std::uint32_t> table(size, UINT32_MAX);
+    std::vector<Point3> points;
+    names_.resize(3 * pieces.size());
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Point3& p = set.quadratics[pieces[i]].corners[k];
+        std::size_t slot = hash(p) & (size - 1);
+        while (table[slot] != UINT32_MAX && !(points[table[slot]] == p)) slot = (slot + 1) & (size - 1);
+        if (table[slot] == UINT32_MAX) {
+          table[slot] = static_cast<std::uint32_t>(points.size());
+          points.push_back(p);
+        }
+        names_[3 * i + k] = table[slot];
+      }
+    }
+    feet_.resize(points.size());
+    // Blocks of a fixed length, so that hints depend on the input alone.
+    constexpr std::size_t block = 256;
+    parallel_for((points.size() + block - 1) / block, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) {
+        monitor.checkpoint();
+        QuadraticFoot hint;
+        for (std::size_t i = b * block; i < std::min(points.size(), (b + 1) * block); ++i) {
+          hint = feet_[i] = other.nearest(points[i], hint);
+        }
+      }
+    });
+  }
+
+  [[nodiscard]] const QuadraticFoot& operator()(std::size_t i, std::size_t corner) const {
+    return feet_[names_[3 * i + corner]];
+  }
+
+ private:
+  static std::size_t hash(const Point3& p) {
+    std::uint64_t h = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      h = (h ^ std::bit_cast<std::uint64_t>(p[a] + 0.0)) * 0x9e3779b97f4a7c15u;
+      h ^= h >> 29;
+    }
+    return h;
+  }
+
+  std::vector<std::uint32_t> names_;
+  std::vector<QuadraticFoot> feet_;
+};
+
+void merge(Farthest& all, const Farthest& part) {
+  all.compared += part.compared;
+  all.upper = std::max(all.upper, part.upper);
+  if (part.lower > all.lower) {
+    all.lower = part.lower;
+    all.from = part.from;
+    all.to = part.to;
+    all.at = part.at;
+  }
+}
+
+}  // namespace
+
+std::vector<Unsettled> settle(const QuadraticSet& set, std::span<const std::uint32_t> pieces,
+                              const QuadraticBvh& other, const OneSidedOptions& options, bool last,
+                              Farthest& farthest, const WorkMonitor& monitor) {
+  const CornerFeet corners(set, pieces, other, options.threads, monitor);
+  const auto first_part = [&](std::size_t i) {
+    Part part{.piece = pieces[i], .at = {TriangleParameter{0, 0}, {1, 0}, {0, 1}}, .feet = {}};
+    for (std::size_t k = 0; k < 3; ++k) part.feet[k] = corners(i, k);
+    return part;
+  };
+  // The farthest first: they tell at once how far the others need not be looked at.
+  std::vector<double> far(pieces.size());
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    far[i] = std::max({corners(i, 0).distance, corners(i, 1).distance, corners(i, 2).distance});
+  }
+  std::vector<std::uint32_t> order(pieces.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t x, std::uint32_t y) { return far[x] != far[y] ? far[x] > far[y] : x < y; });
+
+  std::vector<Unsettled> unsettled;
+  std::vector<std::vector<Part>> left;  // of chunks that had more to do
+  std::size_t next = 0;
+  // With the first ones the lower end is not known yet.
+  std::size_t chunks = 4;
+  while (next < order.size() || !left.empty()) {
+    monitor.report(static_cast<double>(next) / static_cast<double>(order.size()));
+    std::vector<std::vector<Part>> stacks = std::exchange(left, {});
+    while (stacks.size() < chunks && next < order.size()) {
+      std::vector<Part>& stack = stacks.emplace_back();
+      const std::size_t end = std::min(order.size(), next + chunk_pieces);
+      for (std::size_t i = end; i-- > next;) stack.push_back(first_part(order[i]));
+      next = end;
+    }
+    chunks = std::min(chunks_at_once, 2 * chunks);
+    const bool ends = farthest.compared >= options.budget;
+    std::vector<Farthest> found(stacks.size());
+    std::vector<std::vector<Unsettled>> limited(stacks.size());
+    parallel_for_with(
+        stacks.size(), options.threads,
+        [&] { return options.make_side_test ? options.make_side_test() : SideTest{}; },
+        [&](const SideTest& side_test, std::size_t begin, std::size_t end) {
+          for (std::size_t c = begin; c < end; ++c) {
+            Chunk chunk(set, other, options, last, farthest);
+            if (ends) {
+              chunk.give_up(stacks[c]);
+            } else {
+              chunk.run(stacks[c], side_test, limited[c], monitor);
+            }
+            found[c] = chunk.found();
+          }
+        });
+    for (std::size_t c = 0; c < stacks.size(); ++c) {
+      merge(farthest, found[c]);
+      unsettled.insert(unsettled.end(), limited[c].begin(), limited[c].end());
+      if (!stacks[c].empty()) left.push_back(std::move(stacks[c]));
+    }
+    farthest.ended = farthest.ended || ends;
+  }
+  return unsettled;
+}
+
+}  // namespace snug

@@ -1,0 +1,413 @@
+#include <snug/search/quadratic_bvh.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <snug/bvh/obb.h>
+#include <snug/geometry/direction.h>
+#include <snug/geometry/rounding.h>
+#include <snug/search/piece.h>
+
+namespace snug {
+namespace {
+
+using Points = std::array<Point3, 6>;
+
+Points points_of(const QuadraticTriangle& q) {
+  return {q.corners[0], q.corners[1], q.corners[2], q.middles[0], q.middles[1], q.middles[2]};
+}
+
+// The polar form at two parameters; relative to corner 0, so that little is lost.
+Point3 blossom(const QuadraticTriangle& q, TriangleParameter s, TriangleParameter t) {
+  const double ws = 1 - s.u - s.v, wt = 1 - t.u - t.v;
+  const Point3 o = q.corners[0];
+  return o + s.u * t.u * (q.corners[1] - o) + s.v * t.v * (q.corners[2] - o) +
+         (ws * t.u + s.u * wt) * (q.middles[0] - o) + (s.u * t.v + s.v * t.u) * (q.middles[1] - o) +
+         (s.v * wt + ws * t.v) * (q.middles[2] - o);
+}
+
+Vector3 bend(const QuadraticTriangle& q, std::size_t k) {
+  return (q.middles[k] - q.corners[k]) + (q.middles[k] - q.corners[(k + 1) % 3]);
+}
+
+bool is_curved(const QuadraticTriangle& q) {
+  return max_abs(bend(q, 0)) > 0x1p-50 || max_abs(bend(q, 1)) > 0x1p-50 || max_abs(bend(q, 2)) > 0x1p-50;
+}
+
+double clamped(double x) { return x > 0 ? std::min(x, 1.0) : 0; }
+
+// The foot on a flat triangle [Ericson05, sec. 5.1.5], by the regions of its plane; a needle may be answered
+// badly, which costs time only.
+TriangleParameter flat_foot(const Point3& a, const Point3& b, const Point3& c, const Point3& p) {
+  const Vector3 ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+  if (d1 <= 0 && d2 <= 0) return {0, 0};
+  const Vector3 bp = p - b;
+  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+  if (d3 >= 0 && d4 <= d3) return {1, 0};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {d1 - d3 > 0 ? clamped(d1 / (d1 - d3)) : 0, 0};
+  const Vector3 cp = p - c;
+  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+  if (d6 >= 0 && d5 <= d6) return {0, 1};
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {0, d2 - d6 > 0 ? clamped(d2 / (d2 - d6)) : 0};
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double sum = (d4 - d3) + (d5 - d6);
+    const double t = sum > 0 ? clamped((d4 - d3) / sum) : 0;
+    return {1 - t, t};
+  }
+  const double sum = va + vb + vc;
+  if (!(sum > 0)) return {0, 0};
+  const double u = clamped(vb / sum);
+  return {u, std::min(clamped(vc / sum), 1 - u)};
+}
+
+TriangleParameter into_triangle(double u, double v) {
+  u = clamped(u);
+  v = clamped(v);
+  if (u + v > 1) {
+    // Across the far edge.
+    const double over = (u + v - 1) / 2;
+    u = clamped(u - over);
+    v = 1 - u;
+  }
+  return {u, v};
+}
+
+// Newton's method for |Q - p|^2 from a first parameter, projected into the triangle.
+TriangleParameter curved_foot(const QuadraticTriangle& q, const Point3& p, TriangleParameter at) {
+  const Point3 o = q.corners[0];
+  const Vector3 l0 = q.middles[0] - o, l2 = q.middles[2] - o;
+  const Vector3 uu = bend(q, 0), vv = bend(q, 2);
+  // Q = o + 2 l0 u + 2 l2 v - uu u^2 + ... in the power basis.
+  const Vector3 q_uu = -uu, q_vv = -vv;
+  const Vector3 q_uv = (q.middles[1] - q.middles[0]) - l2;
+  const Vector3 from = o - p;
+  const auto rest = [&](TriangleParameter t) {
+    return from + t.u * (2.0 * l0 + t.u * q_uu + 2 * t.v * q_uv) + t.v * (2.0 * l2 + t.v * q_vv);
+  };
+  TriangleParameter best = at;
+  double least = length_sq(rest(at));
+  for (int step = 0; step < 6; ++step) {
+    const Vector3 r = rest(at);
+    const Vector3 du = 2.0 * (l0 + at.u * q_uu + at.v * q_uv), dv = 2.0 * (l2 + at.u * q_uv + at.v * q_vv);
+    const double gu = dot(r, du), gv = dot(r, dv);
+    double a = dot(du, du) + 2 * dot(r, q_uu), b = dot(du, dv) + 2 * dot(r, q_uv),
+           c = dot(dv, dv) + 2 * dot(r, q_vv);
+    if (!(a > 0 && a * c > b * b)) {  // not convex here: Gauss-Newton
+      a = dot(du, du);
+      b = dot(du, dv);
+      c = dot(dv, dv);
+    }
+    const double det = a * c - b * b;
+    double su, sv;
+    // On a border that the gradient presses against, along the border.
+    const bool low_u = at.u <= 0 && gu > 0, low_v = at.v <= 0 && gv > 0,
+               far = at.u + at.v >= 1 && gu + gv < 0;
+    if (low_u + low_v + far >= 2) break;
+    if (low_u) {
+      su = 0;
+      sv = c > 0 ? -gv / c : 0;
+    } else if (low_v) {
+      su = a > 0 ? -gu / a : 0;
+      sv = 0;
+    } else if (far) {
+      const double along = a - 2 * b + c;
+      su = along > 0 ? -(gu - gv) / along : 0;
+      sv = -su;
+    } else if (det > 0) {
+      su = (b * gv - c * gu) / det;
+      sv = (b * gu - a * gv) / det;
+    } else {
+      break;
+    }
+    const TriangleParameter next = into_triangle(at.u + su, at.v + sv);
+    const double now = length_sq(rest(next));
+    if (now < least) {
+      best = next;
+      least = now;
+    }
+    if (std::fabs(next.u - at.u) + std::fabs(next.v - at.v) < 0x1p-30) break;
+    at = next;
+  }
+  return best;
+}
+
+TriangleParameter foot_of(const QuadraticTriangle& q, bool curved, const Point3& p) {
+  const TriangleParameter flat = flat_foot(q.corners[0], q.corners[1], q.corners[2], p);
+  return curved ? curved_foot(q, p, flat) : flat;
+}
+
+std::array<Vector3, 3> axes_of(const QuadraticTriangle& q) {
+  const Vector3 normal = unit_normal(q.corners);
+  if (normal == Vector3{}) return principal_axes(points_of(q));
+  Vector3 along;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3 edge = q.corners[(k + 1) % 3] - q.corners[k];
+    if (length_sq(edge) > length_sq(along)) along = edge;
+  }
+  along = normalized(along - dot(along, normal) * normal);
+  if (along == Vector3{}) return Obb{}.axes;
+  return {along, cross(normal, along), normal};
+}
+
+Extent extent_of(const QuadraticTriangle& q, const Vector3& direction) {
+  Extent extent;
+  for (const Point3& p : points_of(q)) extent.add(dot(direction, p - Point3{}));
+  const double reach = enlarged(q.error * length(direction)) + distance_rounding;
+  return {extent.lower - reach, extent.upper + reach};
+}
+
+Obb box_of(const QuadraticTriangle& q) {
+  return fit_box(axes_of(q), [&](const Vector3& d) { return extent_of(q, d); });
+}
+
+// The hull of the points is at least this far from p: a plane across the direction to a point nearby.
+double plane_distance(const QuadraticTriangle& q, const Point3& p, const Point3& near) {
+  const Vector3 w = normalized(near - p);
+  double least = INFINITY;
+  for (const Point3& x : points_of(q)) least = std::min(least, dot(w, x - p));
+  return least - distance_rounding;
+}
+
+// A ball that contains what a quadratic stands for.
+Ball ball_of(const QuadraticTriangle& q) {
+  Vector3 sum;
+  for (const Point3& x : q.corners) sum = sum + (x - Point3{});
+  Ball ball{Point3{} + (1.0 / 3) * sum, 0};
+  for (const Point3& x : points_of(q)) ball.radius = std::max(ball.radius, distance(x, ball.centre));
+  ball.radius = enlarged(ball.radius + q.error) + distance_rounding;
+  return ball;
+}
+
+// Are the sets on different sides of a plane across a direction?
+bool apart(const QuadraticTriangle& a, const QuadraticTriangle& b, const Vector3& direction) {
+  if (direction == Vector3{}) return false;
+  const Extent x = extent_of(a, direction), y = extent_of(b, direction);
+  return x.upper < y.lower || y.upper < x.lower;
+}
+
+}  // namespace
+
+Point3 point_of(const QuadraticTriangle& q, TriangleParameter at) { return blossom(q, at, at); }
+
+QuadraticTriangle restricted(const QuadraticTriangle& q, const std::array<TriangleParameter, 3>& corners) {
+  QuadraticTriangle part;
+  for (std::size_t k = 0; k < 3; ++k) {
+    part.corners[k] = blossom(q, corners[k], corners[k]);
+    part.middles[k] = blossom(q, corners[k], corners[(k + 1) % 3]);
+  }
+  part.error = q.error;
+  return part;
+}
+
+QuadraticTriangle flat_quadratic(const Triangle& triangle) {
+  QuadraticTriangle q{triangle, {}, 0};
+  for (std::size_t k = 0; k < 3; ++k) {
+    q.middles[k] = triangle[k] + 0.5 * (triangle[(k + 1) % 3] - triangle[k]);
+  }
+  return q;
+}
+
+QuadraticBvh::QuadraticBvh(std::span<const QuadraticTriangle> quadratics, int threads)
+    : quadratics_(quadratics),
+      curved_(quadratics.size()),
+      leaves_((quadratics.size() + WideBvh::leaf_size - 1) / WideBvh::leaf_size),
+      tree_([&] {
+        std::vector<Point3> centres;
+        centres.reserve(quadratics.size());
+        for (std::size_t i = 0; i < quadratics.size(); ++i) {
+          curved_[i] = is_curved(quadratics[i]);
+          Vector3 sum;
+          for (const Point3& x : quadratics[i].corners) sum = sum + (x - Point3{});
+          centres.push_back(Point3{} + (1.0 / 3) * sum);
+        }
+        return WideBvh(centres, threads,
+                       [&](std::size_t leaf, std::span<const std::uint32_t> items, std::vector<Obb>& boxes) {
+                         const std::size_t first = boxes.size();
+                         for (const std::uint32_t i : items) boxes.push_back(box_of(quadratics[i]));
+                         leaves_[leaf] = WideNode(std::span(boxes).subspan(first));
+                       });
+      }()) {}
+
+QuadraticFoot QuadraticBvh::foot_on(std::uint32_t piece, const Point3& p) const {
+  const QuadraticTriangle& q = quadratics_[piece];
+  QuadraticFoot foot;
+  foot.piece = piece;
+  foot.at = foot_of(q, curved_[piece] != 0, p);
+  foot.point = point_of(q, foot.at);
+  foot.distance = distance(foot.point, p);
+  return foot;
+}
+
+template <class Visit>
+bool QuadraticBvh::any_near(const Point3& p, double reach, const Visit& visit) const {
+  struct Near {
+    float gap;
+    std::uint32_t name;
+  };
+  thread_local std::vector<Near> stack;
+  stack.clear();
+  const auto open = [&](const WideNode& boxes, const auto& name) {
+    WideNode::Distances gaps;
+    boxes.distances(p, 0, gaps);
+    const std::size_t begin = stack.size();
+    for (std::size_t i = 0; i < boxes.count(); ++i) {
+      if (static_cast<double>(gaps[i]) <= visit.limit(reach)) stack.push_back({gaps[i], name(i)});
+    }
+    // The nearest last, to be taken first.
+    for (std::size_t i = begin + 1; i < stack.size(); ++i) {
+      const Near moved = stack[i];
+      std::size_t k = i;
+      for (; k > begin && stack[k - 1].gap < moved.gap; --k) stack[k] = stack[k - 1];
+      stack[k] = moved;
+    }
+  };
+  const auto open_tree = [&](const TreeNode& node) {
+    open(node, [&](std::size_t i) { return node.names[i]; });
+  };
+  open_tree(tree_.root());
+  while (!stack.empty()) {
+    const Near near = stack.back();
+    stack.pop_back();
+    if (static_cast<double>(near.gap) > visit.limit(reach)) continue;
+    if ((near.name & WideBvh::leaf_bit) == 0) {
+      open_tree(tree_.node(near.name));
+      continue;
+    }
+    const std::uint32_t leaf = near.name & ~WideBvh::leaf_bit;
+    const std::span<const std::uint32_t> items = tree_.leaf(leaf);
+    WideNode::Distances gaps;
+    leaves_[leaf].distances(p, 0, gaps);
+    std::uint32_t left = (1u << items.size()) - 1;
+    while (left != 0) {
+      std::size_t next = 8;
+      for (std::size_t i = 0; i < items.size(); ++i) {
+        if ((left >> i & 1u) != 0 && (next == 8 || gaps[i] < gaps[next])) next = i;
+      }
+      if (static_cast<double>(gaps[next]) > visit.limit(reach)) break;
+      left &= ~(1u << next);
+      if (visit(items[next])) return true;
+    }
+  }
+  return false;
+}
+
+QuadraticFoot QuadraticBvh::nearest(const Point3& p, const QuadraticFoot& hint) const {
+  struct Nearest {
+    const QuadraticBvh& tree;
+    const Point3& p;
+    mutable QuadraticFoot best;
+    [[nodiscard]] double limit(double) const { return best.distance; }
+    bool operator()(std::uint32_t i) const {
+      const QuadraticTriangle& q = tree.quadratics_[i];
+      const TriangleParameter at = foot_of(q, tree.curved_[i] != 0, p);
+      const Point3 point = point_of(q, at);
+      const double between = distance(point, p);
+      if (between < best.distance) best = {i, at, point, between};
+      return false;
+    }
+  };
+  Nearest visit{*this, p, hint};
+  if (hint.distance != INFINITY) visit.best = foot_on(hint.piece, p);
+  any_near(p, INFINITY, visit);
+  return visit.best;
+}
+
+double QuadraticBvh::certain_distance(const Point3& p, double gap, QuadraticFoot& foot) const {
+  // Splits of quadratics after which a bound is taken as it is.
+  constexpr int max_splits = 20'000;
+  struct Certain {
+    const QuadraticBvh& tree;
+    const Point3& p;
+    double gap;
+    QuadraticFoot& foot;
+    mutable double least = INFINITY;
+    mutable int splits = 0;
+    [[nodiscard]] double limit(double) const { return least; }
+    bool operator()(std::uint32_t i) const {
+      const QuadraticTriangle& q = tree.quadratics_[i];
+      if (const QuadraticFoot own = tree.foot_on(i, p); own.distance < foot.distance) foot = own;
+      struct Open {
+        QuadraticTriangle part;
+        std::array<TriangleParameter, 3> at;
+      };
+      std::vector<Open> open{{q, {TriangleParameter{0, 0}, {1, 0}, {0, 1}}}};
+      while (!open.empty()) {
+        const Open next = open.back();
+        open.pop_back();
+        const TriangleParameter near = foot_of(next.part, tree.curved_[i] != 0, p);
+        const Point3 point = point_of(next.part, near);
+        if (const double between = distance(point, p); between < foot.distance) {
+          const double w = 1 - near.u - near.v;
+          foot = {i,
+                  into_triangle(w * next.at[0].u + near.u * next.at[1].u + near.v * next.at[2].u,
+                                w * next.at[0].v + near.u * next.at[1].v + near.v * next.at[2].v),
+                  point, between};
+        }
+        const double lower = plane_distance(next.part, p, point);
+        if (tree.curved_[i] == 0 || lower >= foot.distance - gap || lower - q.error >= least ||
+            splits >= max_splits) {
+          least = std::min(least, lower - q.error - distance_rounding);
+          continue;
+        }
+        ++splits;
+        const auto middle = [&](std::size_t k) {
+          const TriangleParameter a = next.at[k], b = next.at[(k + 1) % 3];
+          return TriangleParameter{(a.u + b.u) / 2, (a.v + b.v) / 2};
+        };
+        const std::array m{middle(0), middle(1), middle(2)};
+        for (const std::array<TriangleParameter, 3>& child :
+             {std::array{next.at[0], m[0], m[2]}, {m[0], next.at[1], m[1]}, {m[2], m[1], next.at[2]},
+              std::array{m[1], m[2], m[0]}}) {
+          open.push_back({restricted(q, child), child});
+        }
+      }
+      return false;
+    }
+  };
+  Certain visit{*this, p, gap, foot};
+  any_near(p, INFINITY, visit);
+  return std::max(0.0, visit.least);
+}
+
+bool QuadraticBvh::may_meet(const QuadraticTriangle& part) const {
+  const Ball ball = ball_of(part);
+  const Vector3 normal = unit_normal(part.corners);
+  struct Meet {
+    const QuadraticBvh& tree;
+    const QuadraticTriangle& part;
+    const Ball& ball;
+    const Vector3& normal;
+    [[nodiscard]] double limit(double reach) const { return reach; }
+    bool operator()(std::uint32_t i) const {
+      const QuadraticTriangle& q = tree.quadratics_[i];
+      if (snug::apart(part, q, normal) || snug::apart(part, q, unit_normal(q.corners))) return false;
+      const QuadraticFoot foot = tree.foot_on(i, ball.centre);
+      return !snug::apart(part, q, normalized(foot.point - ball.centre));
+    }
+  };
+  return any_near(ball.centre, ball.radius, Meet{*this, part, ball, normal});
+}
+
+void QuadraticBvh::mark_near(const QuadraticTriangle& part, double reach,
+                             std::span<std::uint8_t> marks) const {
+  const Ball ball = ball_of(part);
+  struct Mark {
+    std::span<std::uint8_t> marks;
+    [[nodiscard]] double limit(double most) const { return most; }
+    bool operator()(std::uint32_t i) const {
+      marks[i] = 1;
+      return false;
+    }
+  };
+  any_near(ball.centre, enlarged(ball.radius + reach) + distance_rounding, Mark{marks});
+}
+
+std::size_t QuadraticBvh::bytes() const {
+  return curved_.capacity() + leaves_.capacity() * sizeof(WideNode) + tree_.bytes();
+}
+
+}  // namespace snug

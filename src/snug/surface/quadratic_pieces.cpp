@@ -1,0 +1,75 @@
+#include <snug/surface/quadratic_pieces.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include <snug/base/parallel.h>
+#include <snug/geometry/rounding.h>
+
+namespace snug {
+namespace {
+
+// Below this error, in scaled units, roundings are what is left.
+constexpr double least_error = 0x1p-46;
+
+void add_pieces(const LimitSurface& surface, PatchId root, const Patch& patch, double error,
+                std::vector<QuadraticPiece>& out) {
+  const QuadraticTriangle quadratic = quadratic_triangle(surface.library(), patch);
+  if (quadratic.error <= error || quadratic.error <= least_error ||
+      patch.path.level() >= PiecePath::max_level) {
+    out.push_back({quadratic, root, patch.path});
+    return;
+  }
+  for (unsigned child = 0; child < 4; ++child) add_pieces(surface, root, split(patch, child), error, out);
+}
+
+// What make(i, out) adds for each i, in their order.
+template <class Make>
+RefinedPieces in_order(std::size_t count, int threads, const WorkMonitor& monitor, const Make& make) {
+  constexpr std::size_t block = 64;
+  std::vector<RefinedPieces> parts((count + block - 1) / block);
+  parallel_for(parts.size(), threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t b = begin; b < end; ++b) {
+      monitor.checkpoint();
+      for (std::size_t i = b * block; i < std::min(count, (b + 1) * block); ++i) {
+        make(i, parts[b].pieces);
+        parts[b].origins.resize(parts[b].pieces.size(), static_cast<std::uint32_t>(i));
+      }
+    }
+  });
+  RefinedPieces all;
+  for (const RefinedPieces& part : parts) {
+    all.pieces.insert(all.pieces.end(), part.pieces.begin(), part.pieces.end());
+    all.origins.insert(all.origins.end(), part.origins.begin(), part.origins.end());
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<QuadraticPiece> quadratic_pieces(const LimitSurface& surface, double error, int threads,
+                                             const WorkMonitor& monitor) {
+  return in_order(surface.patch_count(), threads, monitor, [&](std::size_t p, auto& out) {
+           const PatchId root(p);
+           if (surface.has_patch(root)) add_pieces(surface, root, surface.patch(root), error, out);
+         }).pieces;
+}
+
+RefinedPieces refined(const LimitSurface& surface, std::span<const QuadraticPiece> pieces,
+                      std::span<const std::uint8_t> which, double error, int threads,
+                      const WorkMonitor& monitor) {
+  return in_order(pieces.size(), threads, monitor, [&](std::size_t i, auto& out) {
+    const QuadraticPiece& piece = pieces[i];
+    if (which[i] == 0) {
+      out.push_back(piece);
+      return;
+    }
+    Patch patch = surface.patch(piece.root);
+    for (unsigned level = 0; level < piece.path.level(); ++level) {
+      patch = split(patch, piece.path.digit(level));
+    }
+    add_pieces(surface, piece.root, patch, error, out);
+  });
+}
+
+}  // namespace snug
