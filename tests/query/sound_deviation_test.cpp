@@ -40,6 +40,9 @@ using testing::TriangleSet;
 
 constexpr std::array precisions{1e-2, 1e-3, 1e-4, 1e-5};
 
+// Enough for nearly all, and an end of the others.
+constexpr std::uint64_t budget = 200'000;
+
 /// Scales to the ends of the doubles, and far away.
 struct Disguise {
   const char* name;
@@ -226,16 +229,20 @@ void expect_told(const Surface& surface, const Trial& trial, const HausdorffBoun
                  const HausdorffBounds& back, double factor, Counts& counts) {
   DeviationOptions options;
   options.threads = 1;
+  options.budget = budget;
   options.tolerance = static_cast<double>(factor * std::max(there.upper, back.upper));
+  options.absolute = 1e-4 * trial.size;
   const Deviation found = deviation(surface, testing::candidate_of(trial.candidate), options);
   EXPECT_TRUE(agree(found.from_surface.distance, there, 0))
       << trial.name << text_of(found.from_surface.distance, there);
   EXPECT_TRUE(agree(found.from_candidate.distance, back, 0))
       << trial.name << text_of(found.from_candidate.distance, back);
   bool told = true;
-  for (const Interval& d : {found.from_surface.distance, found.from_candidate.distance})
-    told = told && (d.lower > *options.tolerance || d.upper <= *options.tolerance);
-  EXPECT_TRUE(told || !found.reached) << trial.name;
+  for (const Interval& d : {found.from_surface.distance, found.from_candidate.distance}) {
+    const bool own = d.lower > *options.tolerance || d.upper <= *options.tolerance;
+    EXPECT_TRUE(own || d.upper - d.lower <= *options.absolute || !found.reached) << trial.name;
+    told = told && own;
+  }
   ++(told ? counts.told : counts.untold);
 }
 
@@ -245,6 +252,7 @@ void check(const Surface& surface, const Trial& trial, double precision, std::mt
   DeviationOptions options;
   options.absolute = precision;
   options.threads = 1;
+  options.budget = budget;
   options.solid = trial.polyhedron.closed && random() % 2 == 0;
   const Deviation found = deviation(surface, candidate, options);
   // Planar quads are no longer planar once they are rounded.
@@ -526,6 +534,7 @@ void check_triangles(const Curved& c, const Surface& surface, int power, const T
   DeviationOptions options;
   options.absolute = std::ldexp(precision, power);
   options.threads = 1;
+  options.budget = budget;
   const Deviation found = deviation(surface, testing::candidate_of(asked), options);
   const OneSidedDistance there = unscaled(found.from_surface, power),
                          back = unscaled(found.from_candidate, power);
@@ -580,6 +589,7 @@ void check_surfaces(const Curved& a, const Surface& surface, const Curved& b, do
   DeviationOptions options;
   options.absolute = precision;
   options.threads = 1;
+  options.budget = budget;
   const Deviation found = deviation(surface, *other, options);
   ++counts.asked;
   counts.unreached += !found.reached;
@@ -662,6 +672,7 @@ TEST(deviation, of_curved_solids_is_not_below_what_points_of_either_side_say) {
       DeviationOptions options;
       options.absolute = precisions[i % 3] * surface->size();
       options.solid = true;
+      options.budget = budget;
       const Deviation found = deviation(*surface, testing::candidate_of(set), options);
       ++counts.asked;
       counts.unreached += !found.reached;
