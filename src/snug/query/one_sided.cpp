@@ -108,17 +108,21 @@ class Chunk {
       compare(part);
       if (accept(part)) return true;
     }
-    const double farthest_corner =
-        std::max({part.feet[0].distance, part.feet[1].distance, part.feet[2].distance});
     // Is there nothing to be had from smaller parts?
     const bool errors_rule = now_.errors > options_.precision / 4;
-    const bool small = now_.geometric - farthest_corner <= options_.precision * (errors_rule ? 0.25 : 0x1p-4);
+    const bool small = gain(part) <= options_.precision * (errors_rule ? 0.25 : 0x1p-4);
     limited_ = small && errors_rule && !last_;
     if (limited_) return false;
     const bool on_side = !side_test || part.side == Side::asked;
     if (part.depth < max_depth && !(small && on_side)) return false;
     found_.upper = std::max(found_.upper, part.upper);
     return true;
+  }
+
+  // What smaller parts may be nearer by.
+  [[nodiscard]] double gain(const Part& part) const {
+    return now_.geometric -
+           std::max({part.feet[0].distance, part.feet[1].distance, part.feet[2].distance});
   }
 
   bool accept(const Part& part) {
@@ -233,8 +237,8 @@ class Chunk {
   void cut(const Part& part, std::vector<Part>& stack) {
     std::size_t k = now_.edge;
     double share = now_.share;
-    if (part.depth % 8 == 7) {
-      // Cuts near corners leave needles.
+    // Where distances themselves are too long no edge is to blame; cuts near corners leave needles.
+    if (gain(part) <= options_.precision / 16 || part.depth % 8 == 7) {
       double longest = -1;
       for (std::size_t i = 0; i < 3; ++i) {
         if (const double length = distance(quadratic_corner(part, i), quadratic_corner(part, (i + 1) % 3));

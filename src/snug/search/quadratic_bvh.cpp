@@ -12,6 +12,18 @@ namespace snug {
 namespace {
 
 using Points = std::array<Point3, 6>;
+using Corners = std::array<TriangleParameter, 3>;
+
+constexpr Corners whole{TriangleParameter{0, 0}, {1, 0}, {0, 1}};
+
+std::array<Corners, 4> quarters(const Corners& of) {
+  Corners m;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const TriangleParameter a = of[k], b = of[(k + 1) % 3];
+    m[k] = {(a.u + b.u) / 2, (a.v + b.v) / 2};
+  }
+  return {Corners{of[0], m[0], m[2]}, {m[0], of[1], m[1]}, {m[2], m[1], of[2]}, {m[1], m[2], m[0]}};
+}
 
 Points points_of(const QuadraticTriangle& q) {
   return {q.corners[0], q.corners[1], q.corners[2], q.middles[0], q.middles[1], q.middles[2]};
@@ -332,9 +344,9 @@ double QuadraticBvh::certain_distance(const Point3& p, double gap, QuadraticFoot
       if (const QuadraticFoot own = tree.foot_on(i, p); own.distance < foot.distance) foot = own;
       struct Open {
         QuadraticTriangle part;
-        std::array<TriangleParameter, 3> at;
+        Corners at;
       };
-      std::vector<Open> open{{q, {TriangleParameter{0, 0}, {1, 0}, {0, 1}}}};
+      std::vector<Open> open{{q, whole}};
       while (!open.empty()) {
         const Open next = open.back();
         open.pop_back();
@@ -354,16 +366,7 @@ double QuadraticBvh::certain_distance(const Point3& p, double gap, QuadraticFoot
           continue;
         }
         ++splits;
-        const auto middle = [&](std::size_t k) {
-          const TriangleParameter a = next.at[k], b = next.at[(k + 1) % 3];
-          return TriangleParameter{(a.u + b.u) / 2, (a.v + b.v) / 2};
-        };
-        const std::array m{middle(0), middle(1), middle(2)};
-        for (const std::array<TriangleParameter, 3>& child :
-             {std::array{next.at[0], m[0], m[2]}, {m[0], next.at[1], m[1]}, {m[2], m[1], next.at[2]},
-              std::array{m[1], m[2], m[0]}}) {
-          open.push_back({restricted(q, child), child});
-        }
+        for (const Corners& quarter : quarters(next.at)) open.push_back({restricted(q, quarter), quarter});
       }
       return false;
     }
@@ -372,6 +375,26 @@ double QuadraticBvh::certain_distance(const Point3& p, double gap, QuadraticFoot
   any_near(p, INFINITY, visit);
   return std::max(0.0, visit.least);
 }
+
+namespace {
+
+// May what two quadratics stand for meet? The second one is split until it is as small as the first.
+bool may_meet(const QuadraticTriangle& part, const Ball& ball, const Vector3& normal,
+              const QuadraticTriangle& q, bool curved) {
+  const Ball other = ball_of(q);
+  const double between = distance(ball.centre, other.centre);
+  if (between > enlarged(ball.radius + other.radius) + distance_rounding) return false;
+  if (apart(part, q, normal) || apart(part, q, unit_normal(q.corners))) return false;
+  const Point3 near = point_of(q, foot_of(q, curved, ball.centre));
+  if (apart(part, q, normalized(near - ball.centre))) return false;
+  if (other.radius <= std::max(ball.radius, 2 * q.error + 4 * distance_rounding)) return true;
+  for (const Corners& quarter : quarters(whole)) {
+    if (may_meet(part, ball, normal, restricted(q, quarter), curved)) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 bool QuadraticBvh::may_meet(const QuadraticTriangle& part) const {
   const Ball ball = ball_of(part);
@@ -383,10 +406,7 @@ bool QuadraticBvh::may_meet(const QuadraticTriangle& part) const {
     const Vector3& normal;
     [[nodiscard]] double limit(double reach) const { return reach; }
     bool operator()(std::uint32_t i) const {
-      const QuadraticTriangle& q = tree.quadratics_[i];
-      if (snug::apart(part, q, normal) || snug::apart(part, q, unit_normal(q.corners))) return false;
-      const QuadraticFoot foot = tree.foot_on(i, ball.centre);
-      return !snug::apart(part, q, normalized(foot.point - ball.centre));
+      return snug::may_meet(part, ball, normal, tree.quadratics_[i], tree.curved_[i] != 0);
     }
   };
   return any_near(ball.centre, ball.radius, Meet{*this, part, ball, normal});
