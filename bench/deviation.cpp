@@ -63,7 +63,8 @@ int main(int argc, char** argv) {
       const std::vector<Triangle> candidate = triangles_of(mesh, by);
       for (const double precision : {1e-3, 1e-4}) {
         char title[160];
-        std::snprintf(title, sizeof title, "%s against %zu triangles of its own limit points%s, to %g of the size",
+        std::snprintf(title, sizeof title,
+                      "%s against %zu triangles of its own limit points%s, to %g of the size",
                       model.name.c_str(), candidate.size(), moved > 0 ? ", moved by 0.5 %" : "", precision);
         Group group(title, "triangle", options);
         group.limit_rounds(5);
