@@ -15,8 +15,8 @@ std::string shortest(double x) {
 
 void require_length(double x, const char* what) {
   if (x >= 0 && std::isfinite(x)) return;
-  throw InputError(InputProblem::value, std::string(what) + " is " + shortest(x) +
-                                            ": give a finite number that is not negative");
+  throw InputError(InputProblem::value,
+                   std::string(what) + " is " + shortest(x) + ": give a finite number that is not negative");
 }
 
 }  // namespace snug

@@ -27,7 +27,7 @@ namespace {
 constexpr double least_precision = 0x1p-37;
 // Errors of quadratics: at first a share of the size, then smaller by a factor where that is not enough, at
 // last a share of the precision.
-constexpr double first_share = 0x1p-13, next_share = 0x1p-3, last_share = 0x1p-3;
+constexpr double first_share = 0x1p-12, next_share = 0x1p-3, last_share = 0x1p-3;
 
 // A set as quadratic triangles, in units in which the largest coordinate of both sets is in [1, 2).
 class ComparedSet {
@@ -234,10 +234,9 @@ struct Asked {
                     "deviation: the precision must be finite and greater than 0");
       precision = scale.apply(*options.absolute);
       if (precision < least_precision) {
-        throw InputError(InputProblem::value,
-                         "deviation: doubles allow no precision below " +
-                             shortest(scale.inverse().apply(least_precision)) +
-                             " for coordinates of this size; ask for that or more");
+        throw InputError(InputProblem::value, "deviation: doubles allow no precision below " +
+                                                  shortest(scale.inverse().apply(least_precision)) +
+                                                  " for coordinates of this size; ask for that or more");
       }
     } else {
       precision = std::max(1e-4 * size, least_precision);

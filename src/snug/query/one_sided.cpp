@@ -121,8 +121,7 @@ class Chunk {
 
   // What smaller parts may be nearer by.
   [[nodiscard]] double gain(const Part& part) const {
-    return now_.geometric -
-           std::max({part.feet[0].distance, part.feet[1].distance, part.feet[2].distance});
+    return now_.geometric - std::max({part.feet[0].distance, part.feet[1].distance, part.feet[2].distance});
   }
 
   bool accept(const Part& part) {
@@ -182,18 +181,16 @@ class Chunk {
         continue;
       }
       ++different;
-      std::array<TriangleParameter, 3> at;
+      std::array<QuadraticFoot, 3> feet = part.feet;
       for (std::size_t k = 0; k < 3; ++k) {
-        const QuadraticFoot foot =
-            part.feet[k].piece == piece ? part.feet[k] : other_.foot_on(piece, quadratic_.corners[k]);
-        at[k] = foot.at;
-        to_piece[i][k] = foot.distance;
+        if (feet[k].piece != piece) feet[k] = other_.foot_on(piece, quadratic_.corners[k]);
+        to_piece[i][k] = feet[k].distance;
       }
-      const QuadraticTriangle below = restricted(other_[piece], at);
+      const QuadraticTriangle below = other_.below(feet);
       double at_corners = 0;
       std::array<double, 3> at_middles;
       for (std::size_t k = 0; k < 3; ++k) {
-        at_corners = std::max(at_corners, distance(quadratic_.corners[k], below.corners[k]));
+        at_corners = std::max(at_corners, feet[k].distance);
         at_middles[k] = distance(quadratic_.middles[k], below.middles[k]);
       }
       const double geometric = std::max({at_corners, at_middles[0], at_middles[1], at_middles[2]});

@@ -38,6 +38,10 @@ Point3 blossom(const QuadraticTriangle& q, TriangleParameter s, TriangleParamete
          (s.v * wt + ws * t.v) * (q.middles[2] - o);
 }
 
+Point3 flat_point(const QuadraticTriangle& q, TriangleParameter at) {
+  return q.corners[0] + at.u * (q.corners[1] - q.corners[0]) + at.v * (q.corners[2] - q.corners[0]);
+}
+
 Vector3 bend(const QuadraticTriangle& q, std::size_t k) {
   return (q.middles[k] - q.corners[k]) + (q.middles[k] - q.corners[(k + 1) % 3]);
 }
@@ -249,9 +253,21 @@ QuadraticFoot QuadraticBvh::foot_on(std::uint32_t piece, const Point3& p) const 
   QuadraticFoot foot;
   foot.piece = piece;
   foot.at = foot_of(q, curved_[piece] != 0, p);
-  foot.point = point_of(q, foot.at);
+  foot.point = curved_[piece] != 0 ? point_of(q, foot.at) : flat_point(q, foot.at);
   foot.distance = distance(foot.point, p);
   return foot;
+}
+
+QuadraticTriangle QuadraticBvh::below(const std::array<QuadraticFoot, 3>& feet) const {
+  const std::uint32_t piece = feet[0].piece;
+  const QuadraticTriangle& q = quadratics_[piece];
+  QuadraticTriangle part{{feet[0].point, feet[1].point, feet[2].point}, {}, q.error};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    part.middles[k] = curved_[piece] != 0 ? blossom(q, feet[k].at, feet[next].at)
+                                          : part.corners[k] + 0.5 * (part.corners[next] - part.corners[k]);
+  }
+  return part;
 }
 
 template <class Visit>
@@ -314,11 +330,7 @@ QuadraticFoot QuadraticBvh::nearest(const Point3& p, const QuadraticFoot& hint) 
     mutable QuadraticFoot best;
     [[nodiscard]] double limit(double) const { return best.distance; }
     bool operator()(std::uint32_t i) const {
-      const QuadraticTriangle& q = tree.quadratics_[i];
-      const TriangleParameter at = foot_of(q, tree.curved_[i] != 0, p);
-      const Point3 point = point_of(q, at);
-      const double between = distance(point, p);
-      if (between < best.distance) best = {i, at, point, between};
+      if (const QuadraticFoot foot = tree.foot_on(i, p); foot.distance < best.distance) best = foot;
       return false;
     }
   };

@@ -43,6 +43,9 @@ class QuadraticBvh {
 
   /// A point on one piece near p: exact up to rounding on a flat one, by Newton's method on others.
   [[nodiscard]] QuadraticFoot foot_on(std::uint32_t piece, const Point3& p) const;
+  /// The part of a piece whose corners are three feet on it.
+  /// Requires:  feet of the same piece.
+  [[nodiscard]] QuadraticTriangle below(const std::array<QuadraticFoot, 3>& feet) const;
   /// The nearest of such points on all pieces; `hint` is one that was found before.
   /// No proof rests on its being the nearest one.
   [[nodiscard]] QuadraticFoot nearest(const Point3& p, const QuadraticFoot& hint = {}) const;

@@ -49,10 +49,12 @@ RefinedPieces in_order(std::size_t count, int threads, const WorkMonitor& monito
 
 std::vector<QuadraticPiece> quadratic_pieces(const LimitSurface& surface, double error, int threads,
                                              const WorkMonitor& monitor) {
-  return in_order(surface.patch_count(), threads, monitor, [&](std::size_t p, auto& out) {
-           const PatchId root(p);
-           if (surface.has_patch(root)) add_pieces(surface, root, surface.patch(root), error, out);
-         }).pieces;
+  return in_order(surface.patch_count(), threads, monitor,
+                  [&](std::size_t p, auto& out) {
+                    const PatchId root(p);
+                    if (surface.has_patch(root)) add_pieces(surface, root, surface.patch(root), error, out);
+                  })
+      .pieces;
 }
 
 RefinedPieces refined(const LimitSurface& surface, std::span<const QuadraticPiece> pieces,

@@ -32,9 +32,8 @@ struct RefinedPieces {
 };
 /// The same pieces, but for those that `which` names: these are split further.
 /// Requires:  which.size() == pieces.size().
-[[nodiscard]] RefinedPieces refined(const LimitSurface& surface,
-                                                  std::span<const QuadraticPiece> pieces,
-                                                  std::span<const std::uint8_t> which, double error,
-                                                  int threads, const WorkMonitor& monitor = {});
+[[nodiscard]] RefinedPieces refined(const LimitSurface& surface, std::span<const QuadraticPiece> pieces,
+                                    std::span<const std::uint8_t> which, double error, int threads,
+                                    const WorkMonitor& monitor = {});
 
 }  // namespace snug

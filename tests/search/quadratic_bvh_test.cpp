@@ -1,0 +1,166 @@
+#include <snug/search/quadratic_bvh.h>
+
+#include <gtest/gtest.h>
+#include <snug/geometry/direction.h>
+#include <snug/geometry/rounding.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace snug {
+namespace {
+
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : random_(seed) {}
+  double unit() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
+  double within(double a) { return a * (2 * unit() - 1); }
+  Vector3 vector(double a) { return {within(a), within(a), within(a)}; }
+  std::uint64_t below(std::uint64_t n) { return random_() % n; }
+  TriangleParameter parameter() {
+    const double u = unit(), v = unit();
+    return u + v <= 1 ? TriangleParameter{u, v} : TriangleParameter{1 - u, 1 - v};
+  }
+  // Flat, bent a little, bent a lot; large, small, needles, points.
+  QuadraticTriangle quadratic() {
+    const double size = std::pow(10, -3 * unit());
+    const Point3 o = Point3{} + vector(1);
+    Triangle t{o, o + vector(size), o + vector(size)};
+    if (below(8) == 0) t[2] = t[0] + unit() * (t[1] - t[0]) + vector(1e-9);
+    if (below(30) == 0) t[1] = t[2] = t[0];
+    QuadraticTriangle q = flat_quadratic(t);
+    const double bend = std::array{0.0, 0.01, 0.1, 0.6}[below(4)];
+    if (bend > 0) {
+      for (Point3& m : q.middles) m = m + vector(bend * size);
+      q.error = below(2) == 0 ? 0 : 0.01 * size * unit();
+    }
+    return q;
+  }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+double sampled_distance(const QuadraticTriangle& q, const Point3& p, int steps) {
+  double least = INFINITY;
+  for (int i = 0; i <= steps; ++i) {
+    for (int j = 0; i + j <= steps; ++j) {
+      const TriangleParameter at{static_cast<double>(i) / steps, static_cast<double>(j) / steps};
+      least = std::min(least, distance(point_of(q, at), p));
+    }
+  }
+  return least;
+}
+
+TEST(quadratic_bvh, restrictions_are_the_same_points) {
+  Draw draw(1);
+  for (int i = 0; i < 1000; ++i) {
+    const QuadraticTriangle q = draw.quadratic();
+    const std::array<TriangleParameter, 3> corners{draw.parameter(), draw.parameter(), draw.parameter()};
+    const QuadraticTriangle part = restricted(q, corners);
+    const TriangleParameter at = draw.parameter();
+    const double w = 1 - at.u - at.v;
+    const TriangleParameter there{w * corners[0].u + at.u * corners[1].u + at.v * corners[2].u,
+                                  w * corners[0].v + at.u * corners[1].v + at.v * corners[2].v};
+    EXPECT_LT(distance(point_of(part, at), point_of(q, there)), 1e-14);
+    EXPECT_EQ(part.error, q.error);
+  }
+}
+
+// Lower bounds hold against samples, and are as near to the nearest foot as they say.
+TEST(quadratic_bvh, certain_distances_hold_and_are_narrow) {
+  Draw draw(2);
+  for (int trial = 0; trial < 60; ++trial) {
+    std::vector<QuadraticTriangle> quadratics(1 + draw.below(60));
+    for (QuadraticTriangle& q : quadratics) q = draw.quadratic();
+    const QuadraticBvh tree(quadratics, 1);
+    for (int i = 0; i < 20; ++i) {
+      Point3 p = Point3{} + draw.vector(1.5);
+      if (i % 3 == 0)
+        p = point_of(quadratics[draw.below(quadratics.size())], draw.parameter()) + draw.vector(1e-3);
+      QuadraticFoot foot = tree.nearest(p);
+      const double gap = 1e-4, certain = tree.certain_distance(p, gap, foot);
+      double sampled = INFINITY, most_error = 0;
+      for (const QuadraticTriangle& q : quadratics) {
+        sampled = std::min(sampled, sampled_distance(q, p, 24) - q.error);
+        most_error = std::max(most_error, q.error);
+      }
+      EXPECT_LE(certain, std::max(0.0, sampled));
+      EXPECT_GE(certain, foot.distance - gap - most_error - 1e-11);
+      EXPECT_LE(foot.distance, sampled + most_error + gap) << "there is a nearer point";
+      EXPECT_NEAR(distance(foot.point, p), foot.distance, 1e-15);
+      EXPECT_LT(distance(point_of(quadratics[foot.piece], foot.at), foot.point), 1e-12);
+    }
+  }
+}
+
+TEST(quadratic_bvh, feet_on_triangles_are_the_nearest) {
+  Draw draw(3);
+  for (int i = 0; i < 20'000; ++i) {
+    const Point3 o = Point3{} + draw.vector(1);
+    const std::vector<QuadraticTriangle> one{flat_quadratic({o, o + draw.vector(1), o + draw.vector(1)})};
+    const QuadraticBvh tree(one, 1);
+    const Point3 p = Point3{} + draw.vector(2);
+    QuadraticFoot foot = tree.foot_on(0, p);
+    EXPECT_NEAR(tree.certain_distance(p, 0, foot), foot.distance, 1e-11);
+  }
+}
+
+TEST(quadratic_bvh, below_is_the_restriction_to_feet) {
+  Draw draw(4);
+  for (int i = 0; i < 1000; ++i) {
+    const std::vector<QuadraticTriangle> one{draw.quadratic()};
+    const QuadraticBvh tree(one, 1);
+    std::array<QuadraticFoot, 3> feet;
+    for (QuadraticFoot& foot : feet) foot = tree.foot_on(0, Point3{} + draw.vector(1.5));
+    const QuadraticTriangle below = tree.below(feet),
+                            expected = restricted(one[0], {feet[0].at, feet[1].at, feet[2].at});
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_LT(distance(below.corners[k], expected.corners[k]), 1e-14);
+      EXPECT_LT(distance(below.middles[k], expected.middles[k]), 1e-14);
+    }
+  }
+}
+
+// What is not marked is farther away than the reach; what cannot meet is apart.
+TEST(quadratic_bvh, marks_all_that_is_near_and_denies_no_contact) {
+  Draw draw(5);
+  int denied = 0, pairs = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    std::vector<QuadraticTriangle> quadratics(1 + draw.below(30));
+    for (QuadraticTriangle& q : quadratics) q = draw.quadratic();
+    const QuadraticBvh tree(quadratics, 1);
+    QuadraticTriangle part = draw.quadratic();
+    const std::size_t chosen = draw.below(quadratics.size());
+    if (trial % 2 == 0) {
+      // Where two points meet, up to both errors.
+      const Vector3 between =
+          point_of(quadratics[chosen], draw.parameter()) - point_of(part, draw.parameter());
+      const Vector3 gap = (quadratics[chosen].error + part.error) * 0.999 * normalized(draw.vector(1));
+      for (std::size_t k = 0; k < 3; ++k) {
+        part.corners[k] = part.corners[k] + between + gap;
+        part.middles[k] = part.middles[k] + between + gap;
+      }
+      EXPECT_TRUE(tree.may_meet(part));
+    } else {
+      ++pairs;
+      denied += !tree.may_meet(part);
+    }
+    const double reach = 0.3 * draw.unit();
+    std::vector<std::uint8_t> marks(quadratics.size());
+    tree.mark_near(part, reach, marks);
+    for (std::size_t i = 0; i < quadratics.size(); ++i) {
+      if (marks[i] != 0) continue;
+      for (int s = 0; s < 50; ++s) {
+        const double apart =
+            distance(point_of(quadratics[i], draw.parameter()), point_of(part, draw.parameter()));
+        EXPECT_GT(apart + quadratics[i].error + part.error, reach);
+      }
+    }
+  }
+  EXPECT_GT(denied, pairs / 4);
+}
+
+}  // namespace
+}  // namespace snug
