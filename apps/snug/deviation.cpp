@@ -197,7 +197,7 @@ void write_text(Report& report, const Deviation& answer, const std::array<const 
 }
 
 // The verdict as a sentence for people.
-std::string sentence(Within verdict, double tolerance) {
+std::string sentence(Within verdict, double tolerance, bool narrow) {
   switch (verdict) {
     case Within::yes:
       return fmt::format("within: proved, no point of either is farther than {:.6g} from the other",
@@ -207,8 +207,8 @@ std::string sentence(Within verdict, double tolerance) {
     case Within::undecided:
       break;
   }
-  return fmt::format(
-      "undecided: whether all points are within {:.6g} was not found out; give a larger --budget", tolerance);
+  return fmt::format("undecided: a distance is too near to {:.6g} to tell; give a {}", tolerance,
+                     narrow ? "smaller --precision" : "larger --budget");
 }
 
 ExitStatus run(const Options& options) {
@@ -245,7 +245,7 @@ ExitStatus run(const Options& options) {
     verdict ? report.write().value(name_of(*verdict)) : report.write().null();
     write_answer(report.write(), answer, surfaces);
   }
-  if (verdict) report.text(sentence(*verdict, *wanted.tolerance));
+  if (verdict) report.text(sentence(*verdict, *wanted.tolerance, answer.reached));
   write_text(report, answer, surfaces);
   if (!verdict && !answer.reached) {
     report.text("the precision was not reached: give a larger --budget or --precision");
