@@ -124,6 +124,7 @@ class Report {
 [[nodiscard]] Command bound_command();
 [[nodiscard]] Command eval_command();
 [[nodiscard]] Command subdivide_command();
+[[nodiscard]] Command tessellate_command();
 [[nodiscard]] Command collide_command();
 [[nodiscard]] Command distance_command();
 [[nodiscard]] Command closest_command();

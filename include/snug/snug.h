@@ -11,3 +11,4 @@
 #include <snug/mesh.h>
 #include <snug/motion.h>
 #include <snug/surface.h>
+#include <snug/tessellate.h>

@@ -398,14 +398,22 @@ struct Fit {
   double error;
 };
 
-Fit fit_of(BoundsCache& library, const Patch& patch, const HullPoints& hull) {
+double distance_to(BoundsCache& library, const Patch& patch, const Quadratic& q, const HullPoints& hull) {
   thread_local Comparison comparison;
-  Patch whole = patch;
+  thread_local Patch whole;
+  whole = patch;
   whole.first = 0;
   whole.path = {};
+  return comparison.distance(library, whole, q, hull);
+}
+
+Fit fit_of(BoundsCache& library, const Patch& patch, const HullPoints& hull) {
   Fit fit{{}, 0};
   const Kind& kind = *patch.kind;
   if (!kind.shared()) {
+    Patch whole = patch;
+    whole.first = 0;
+    whole.path = {};
     fit.quadratic = through_limits(whole);
   } else if (kind.polynomial() && kind.form().degree == 1) {
     for (std::size_t k = 0; k < 3; ++k) fit.quadratic[k] = kind.bezier().apply<Vector3>(k, patch.points);
@@ -415,7 +423,7 @@ Fit fit_of(BoundsCache& library, const Patch& patch, const HullPoints& hull) {
   } else {
     fit.quadratic = fitted(library.quadratic_rows(kind), patch);
   }
-  fit.error = comparison.distance(library, whole, fit.quadratic, hull);
+  fit.error = distance_to(library, patch, fit.quadratic, hull);
   return fit;
 }
 
@@ -443,6 +451,20 @@ QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch) {
   thread_local HullPoints hull;
   if (patch.kind->shared()) hull_points(library, patch, hull);
   return quadratic_triangle(library, patch, hull);
+}
+
+double distance_to_triangle(BoundsCache& library, const Patch& patch, const HullPoints& hull,
+                            const Triangle& triangle) {
+  Quadratic flat;
+  for (std::size_t k = 0; k < 3; ++k) flat[patch.to_kind(k)] = triangle[k] - patch.origin;
+  for (std::size_t k = 0; k < 3; ++k) flat[3 + k] = 0.5 * (flat[k] + flat[(k + 1) % 3]);
+  const double largest = largest_of(flat);
+  const bool finite =
+      std::all_of(patch.points.begin(), patch.points.end(), [](const Vector3& p) { return is_finite(p); }) &&
+      largest < INFINITY;
+  if (!finite) return INFINITY;
+  const double distance = distance_to(library, patch, flat, hull);
+  return enlarged(distance + spatial_error(2 * unit_roundoff * largest));
 }
 
 }  // namespace snug

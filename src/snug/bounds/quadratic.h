@@ -78,4 +78,10 @@ class QuadraticRows {
 /// The same without a hull at hand.
 [[nodiscard]] QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch);
 
+/// Upper bound of |patch(t) - l(t)| over all t, for the linear map l of the patch's parameters to this triangle,
+/// corner to corner; infinite if not finite. Rounding and the patch's own error included.
+/// Requires, Cost: those of quadratic_triangle(); no hull is needed unless kind->shared().
+[[nodiscard]] double distance_to_triangle(BoundsCache& library, const Patch& patch, const HullPoints& hull,
+                                          const Triangle& triangle);
+
 }  // namespace snug

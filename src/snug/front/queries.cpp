@@ -8,6 +8,7 @@
 #include <snug/query/deviation.h>
 #include <snug/query/pairs.h>
 #include <snug/query/subdivide.h>
+#include <snug/query/tessellate.h>
 #include <snug/surface/evaluate.h>
 
 /// The public queries: from handles to trees and workspaces, and nothing else.
@@ -121,6 +122,11 @@ std::optional<double> limit_to_faces(const Surface& surface, int threads) {
 ControlMesh subdivided(const Surface& surface, unsigned level, bool limit_positions,
                        const WorkMonitor& monitor) {
   return subdivide(surface.mesh(), limit(surface).options(), level, limit_positions, monitor);
+}
+
+Tessellation tessellate(const Surface& surface, const TessellateOptions& options,
+                        const WorkMonitor& monitor) {
+  return tessellate(limit(surface), options, monitor);
 }
 
 }  // namespace snug

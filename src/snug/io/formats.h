@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -99,15 +100,17 @@ namespace snug {
                                      const Notes& notes = {});
 
 /// The mesh as a binary glTF 2.0 file, for viewers: one node, one mesh, one list of triangles; positions as
-/// floats, indices of 32 bits, no normals, no materials. Its tags are left out.
+/// floats, indices of 32 bits, normals of the vertices if there are any, no materials. Its tags are left out.
 ///
 /// Guarantee: a face of n corners becomes the n - 2 triangles of the fan at its first corner; vertices keep
-///            their numbers. Coordinates are the nearest floats, `min` and `max` are exact.
+///            their numbers. Coordinates are the nearest floats, `min` and `max` are exact. A vertex whose normal
+///            is 0 0 0 gets 0 0 1: the format has unit vectors only.
+/// Requires:  no normals, or one a vertex, of length 1 or 0.
 /// Notes:     one line if coordinates were rounded; one if faces were split into triangles.
 /// Errors:    InputError (refused) naming a face of one or two corners, or a vertex that does not fit floats;
 ///            for files beyond 4 GiB, which the format cannot hold, and meshes without triangles.
 /// Source:    glTF 2.0 specification, sections 3.6, 3.7 and 4.4.
 [[nodiscard]] std::string format_glb(const ControlMesh& mesh, const std::string& name,
-                                     const Notes& notes = {});
+                                     const Notes& notes = {}, std::span<const Vector3> normals = {});
 
 }  // namespace snug

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include <snug/base/contract.h>
 #include <snug/base/error.h>
 #include <snug/io/binary.h>
 #include <snug/io/number.h>
@@ -57,40 +58,66 @@ void append_bounds(std::string& json, const std::vector<Position>& positions) {
   append(",\"max\":", upper);
 }
 
-std::string describe(const std::vector<Position>& positions, std::size_t triangles) {
-  const std::size_t position_bytes = positions.size() * position_size;
+// A view of the buffer, and what it holds.
+void append_view(std::string& json, std::size_t begin, std::size_t size, const char* target) {
+  json += begin == 0 ? "" : ",";
+  json += "{\"buffer\":0,\"byteOffset\":";
+  append_integer(json, begin);
+  json += ",\"byteLength\":";
+  append_integer(json, size);
+  json += target;
+}
+
+std::string describe(const std::vector<Position>& positions, bool normals, std::size_t triangles) {
+  constexpr const char *vertices = ",\"target\":34962}", *indices = ",\"target\":34963}";
+  const std::size_t vector_bytes = positions.size() * position_size;
   const std::size_t index_bytes = 3 * triangles * index_size;
+  const std::size_t vectors = (normals ? 2 : 1) * vector_bytes;
   std::string json =
       R"({"asset":{"version":"2.0","generator":"snug"},"scene":0,"scenes":[{"nodes":[0]}],)"
-      R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"mode":4}]}],)"
-      R"("buffers":[{"byteLength":)";
-  append_integer(json, position_bytes + index_bytes);
-  json += R"(}],"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":)";
-  append_integer(json, position_bytes);
-  json += R"(,"target":34962},{"buffer":0,"byteOffset":)";  // ARRAY_BUFFER
-  append_integer(json, position_bytes);
-  json += R"(,"byteLength":)";
-  append_integer(json, index_bytes);
-  json +=
-      R"(,"target":34963}],"accessors":[{"bufferView":0,"componentType":5126,"count":)";  // ELEMENT_ARRAY_BUFFER, float
+      R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0)";
+  json += normals ? R"(,"NORMAL":2},"indices":1,"mode":4}]}],)" : R"(},"indices":1,"mode":4}]}],)";
+  json += R"("buffers":[{"byteLength":)";
+  append_integer(json, vectors + index_bytes);
+  json += R"(}],"bufferViews":[)";
+  append_view(json, 0, vector_bytes, vertices);
+  append_view(json, vectors, index_bytes, indices);
+  if (normals) append_view(json, vector_bytes, vector_bytes, vertices);
+  json += R"(],"accessors":[{"bufferView":0,"componentType":5126,"count":)";  // float
   append_integer(json, positions.size());
   json += R"(,"type":"VEC3")";
   append_bounds(json, positions);
   json += R"(},{"bufferView":1,"componentType":5125,"count":)";  // unsigned int
   append_integer(json, 3 * triangles);
-  json += R"(,"type":"SCALAR"}]})";
+  json += R"(,"type":"SCALAR"})";
+  if (normals) {
+    json += R"(,{"bufferView":2,"componentType":5126,"count":)";
+    append_integer(json, positions.size());
+    json += R"(,"type":"VEC3"})";
+  }
+  json += "]}";
   json.resize((json.size() + 3) / 4 * 4, ' ');
   return json;
 }
 
+void append_normals(std::string& bytes, std::span<const Vector3> normals) {
+  for (const Vector3& normal : normals) {
+    const Vector3 written = normal == Vector3{} ? Vector3{0, 0, 1} : normal;
+    for (std::size_t axis = 0; axis < 3; ++axis) append_binary(bytes, static_cast<float>(written[axis]));
+  }
+}
+
 }  // namespace
 
-std::string format_glb(const ControlMesh& mesh, const std::string& name, const Notes& notes) {
+std::string format_glb(const ControlMesh& mesh, const std::string& name, const Notes& notes,
+                       std::span<const Vector3> normals) {
+  SNUG_EXPECT(normals.empty() || normals.size() == mesh.vertex_count());
   const std::size_t triangles = count_triangles(mesh, name, notes);
   const std::vector<Position> positions = in_single_precision(mesh.points, name, notes);
-  const std::string json = describe(positions, triangles);
+  const std::string json = describe(positions, !normals.empty(), triangles);
   // Both sorts of values take whole words: nothing is left to pad.
-  const std::size_t binary_size = positions.size() * position_size + 3 * triangles * index_size;
+  const std::size_t binary_size =
+      (positions.size() + normals.size()) * position_size + 3 * triangles * index_size;
   const std::size_t size = header_size + chunk_head_size + json.size() + chunk_head_size + binary_size;
   if (size > std::numeric_limits<std::uint32_t>::max()) {
     refuse(name, "the mesh takes more than the 4 GiB of a binary glTF file: write PLY");
@@ -107,6 +134,7 @@ std::string format_glb(const ControlMesh& mesh, const std::string& name, const N
   for (const Position& position : positions) {
     for (const float x : position) append_binary(bytes, x);
   }
+  append_normals(bytes, normals);
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
     const auto corners = mesh.face(FaceId(face));
     for (std::size_t corner = 2; corner < corners.size(); ++corner) {

@@ -44,11 +44,11 @@ std::string sniffed_format(std::string_view bytes) {
 }
 
 std::string formatted(const ControlMesh& mesh, const std::string& ending, const std::string& path,
-                      const Notes& notes) {
+                      const Notes& notes, std::span<const Vector3> normals) {
   if (ending == ".off") return format_off(mesh);
   if (ending == ".ply") return format_ply(mesh);
   if (ending == ".stl") return format_stl(mesh, path, notes);
-  if (ending == ".glb") return format_glb(mesh, path, notes);
+  if (ending == ".glb") return format_glb(mesh, path, notes, normals);
   return format_obj(mesh);
 }
 
@@ -112,8 +112,12 @@ bool writes_polygons(const std::string& path) {
   return ending != ".stl" && ending != ".glb";
 }
 
+bool writes_floats(const std::string& path) { return !writes_polygons(path); }
+
+bool writes_normals(const std::string& path) { return format_to_write(path) == ".glb"; }
+
 void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& path, const Notes& notes,
-                const WorkMonitor& monitor) {
+                const WorkMonitor& monitor, std::span<const Vector3> normals) {
   const std::string ending = format_to_write(path);
   const auto note_if = [&](bool dropped, const char* what) {
     if (dropped && ending != ".obj" && notes) notes(path + what);
@@ -121,7 +125,7 @@ void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& pa
   note_if(changes_surface(mesh.tags), ": this format has no tags: creases and rules are dropped");
   note_if(mesh.polyline_count() > 0, ": this format has no polylines: they are dropped");
   monitor.checkpoint();
-  const std::string bytes = formatted(mesh, ending, path, notes);
+  const std::string bytes = formatted(mesh, ending, path, notes, normals);
   constexpr std::size_t part = std::size_t{1} << 20;
   for (std::size_t begin = 0; begin < bytes.size(); begin += part) {
     monitor.checkpoint();

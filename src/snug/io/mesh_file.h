@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 
 #include <snug/mesh.h>
@@ -10,14 +11,19 @@ namespace snug {
 
 class AtomicFile;
 
-/// write_mesh() into a file that was opened for this name, and that is left to the caller to commit.
+/// write_mesh() into a file that was opened for this name, and that is left to the caller to commit; with
+/// normals of the vertices if there are any and writes_normals(path).
 void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& path, const Notes& notes,
-                const WorkMonitor& monitor);
+                const WorkMonitor& monitor, std::span<const Vector3> normals = {});
 
 /// Before work whose result write_mesh will write: throws InputError (unreadable) for names without a writer.
 void require_writable_ending(const std::string& path);
 
 /// Does the format that write_mesh takes for this name hold faces other than triangles? Throws likewise.
 [[nodiscard]] bool writes_polygons(const std::string& path);
+/// Does it hold coordinates in single precision only?
+[[nodiscard]] bool writes_floats(const std::string& path);
+/// Does write_mesh write normals of vertices into it?
+[[nodiscard]] bool writes_normals(const std::string& path);
 
 }  // namespace snug

@@ -424,18 +424,30 @@ bool QuadraticBvh::may_meet(const QuadraticTriangle& part) const {
   return any_near(ball.centre, ball.radius, Meet{*this, part, ball, normal});
 }
 
+namespace {
+
+struct EachNear {
+  const std::function<void(std::uint32_t)>& visit;
+  [[nodiscard]] double limit(double reach) const { return reach; }
+  bool operator()(std::uint32_t i) const {
+    visit(i);
+    return false;
+  }
+};
+
+}  // namespace
+
 void QuadraticBvh::mark_near(const QuadraticTriangle& part, double reach,
                              std::span<std::uint8_t> marks) const {
   const Ball ball = ball_of(part);
-  struct Mark {
-    std::span<std::uint8_t> marks;
-    [[nodiscard]] double limit(double most) const { return most; }
-    bool operator()(std::uint32_t i) const {
-      marks[i] = 1;
-      return false;
-    }
-  };
-  any_near(ball.centre, enlarged(ball.radius + reach) + distance_rounding, Mark{marks});
+  const std::function<void(std::uint32_t)> mark = [&](std::uint32_t i) { marks[i] = 1; };
+  any_near(ball.centre, enlarged(ball.radius + reach) + distance_rounding, EachNear{mark});
+}
+
+void QuadraticBvh::for_each_near(const QuadraticTriangle& part,
+                                 const std::function<void(std::uint32_t)>& visit) const {
+  const Ball ball = ball_of(part);
+  any_near(ball.centre, ball.radius, EachNear{visit});
 }
 
 std::size_t QuadraticBvh::bytes() const {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -62,6 +63,9 @@ class QuadraticBvh {
   /// Marks pieces whose sets may be within `reach` of a point of what `part` stands for; all others are
   /// certainly farther away.
   void mark_near(const QuadraticTriangle& part, double reach, std::span<std::uint8_t> marks) const;
+
+  /// Calls visit(piece) for all whose sets may meet the ball around what `part` stands for.
+  void for_each_near(const QuadraticTriangle& part, const std::function<void(std::uint32_t)>& visit) const;
 
   [[nodiscard]] std::size_t bytes() const;
 

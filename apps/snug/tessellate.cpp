@@ -1,0 +1,123 @@
+#include <snug/query/tessellate.h>
+
+#include <fmt/core.h>
+#include <snug/io/atomic_file.h>
+#include <snug/io/mesh_file.h>
+
+#include "common.h"
+#include "length.h"
+#include "progress_bar.h"
+
+namespace snug::command {
+namespace {
+
+struct Options : CommonOptions {
+  std::string mesh, tolerance, max_edge;
+  std::optional<std::uint64_t> max_triangles;
+  double max_angle = 0;
+  std::uint64_t most = TessellateOptions{}.budget;
+};
+
+std::optional<double> length_of(const std::string& text, const char* option, double size) {
+  if (text.empty()) return {};
+  return parse_length(text, option).in_mesh_units(size);
+}
+
+void require_options(const Options& options) {
+  if (options.output.empty()) throw UsageError("tessellate: -o FILE is missing: where the triangles go");
+  if (options.json && options.output == "-") {
+    throw UsageError("tessellate: --json and -o - both want standard output");
+  }
+  if (options.tolerance.empty() && options.max_edge.empty() && !options.max_triangles && options.max_angle == 0) {
+    throw UsageError("tessellate: give --tolerance, --max-triangles, --max-edge or --max-angle");
+  }
+  if (!options.tolerance.empty()) static_cast<void>(parse_length(options.tolerance, "--tolerance"));
+  if (!options.max_edge.empty()) static_cast<void>(parse_length(options.max_edge, "--max-edge"));
+}
+
+TessellateOptions how_to(const Options& options, const LimitSurface& surface) {
+  TessellateOptions how;
+  how.tolerance = length_of(options.tolerance, "--tolerance", surface.size());
+  how.max_edge = length_of(options.max_edge, "--max-edge", surface.size());
+  if (options.max_angle > 0) how.max_angle = options.max_angle;
+  how.max_triangles = options.max_triangles;
+  how.budget = options.most;
+  how.threads = options.threads;
+  how.single_precision = writes_floats(options.output);
+  how.normals = writes_normals(options.output);
+  return how;
+}
+
+ControlMesh mesh_of(const Tessellation& tessellation) {
+  ControlMesh mesh;
+  mesh.points = tessellation.positions;
+  mesh.face_vertices.reserve(3 * tessellation.triangles.size());
+  mesh.face_offsets.reserve(tessellation.triangles.size() + 1);
+  for (const auto& [a, b, c] : tessellation.triangles) {
+    mesh.add_face(std::array{VertexId(a), VertexId(b), VertexId(c)});
+  }
+  return mesh;
+}
+
+void write_summary(Report& report, const Options& options, const Tessellation& result) {
+  if (report.json()) {
+    JsonWriter& json = report.write();
+    json.field("vertices", result.positions.size()).field("triangles", result.triangles.size());
+    json.field("error_bound", result.error_bound).field("position_error", result.position_error);
+    json.field("reached", result.reached);
+  }
+  if (options.output == "-") return;
+  report.text(fmt::format("{}: {} vertices, {} triangles within {} of the limit surface, both ways",
+                          options.output, result.positions.size(), result.triangles.size(),
+                          text_at_most(result.error_bound, true)));
+  if (result.reached) return;
+  report.text(options.max_triangles ? "the tolerance was not reached: give more --max-triangles, or a larger --tolerance"
+                                    : "not all that was asked for was reached: give a larger --budget or --tolerance");
+}
+
+ExitStatus run(const Options& options) {
+  require_options(options);
+  const LimitSurface surface =
+      load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  Tessellation result;
+  naming(options.mesh, [&] {
+    ProgressBar bar("tessellating " + options.mesh, options.quiet);
+    result = tessellate(surface, how_to(options, surface), bar.monitor());
+  });
+  AtomicFile file(options.output);
+  write_mesh(mesh_of(result), file, options.output, notes_for(options), stopped_by_interrupts(), result.normals);
+  CommonOptions to_standard_output = options;
+  to_standard_output.output.clear();
+  Report report("tessellate", to_standard_output);
+  report.heads({options.mesh}, {name_of(surface.options().scheme)});
+  write_summary(report, options, result);
+  return report.finish(result.reached, &file);
+}
+
+}  // namespace
+
+Command tessellate_command() {
+  auto options = std::make_shared<Options>();
+  OptionList list;
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
+  list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
+           "Largest distance between limit surface and triangles, either way; mesh units or percent (0.1%)");
+  list.add(Group::own, "--max-triangles N", &options->max_triangles,
+           "The smallest error that is found for so many triangles, but not below --tolerance");
+  list.add(Group::own, "--max-edge LENGTH", &options->max_edge, "Longest edge; mesh units or percent");
+  list.add(Group::own, "--max-angle DEGREES", &options->max_angle,
+           "Largest angle between the limit normals at corners of a triangle; 0 for any")
+      .between(0, 180);
+  add_common_options(list, *options);
+  list.add(Group::effort, "--budget N", &options->most,
+           "Most triangles; with fewer than needed the answer says what is proved, and the status is 5");
+  return {"tessellate",
+          Topic::files,
+          "Write triangles within a proved distance of the limit surface",
+          {"snug tessellate pawn.obj --tolerance 0.1% -o pawn.ply",
+           "snug tessellate pawn.obj --max-triangles 5000 -o pawn.glb"},
+          std::move(list),
+          [options] { return run(*options); }};
+}
+
+}  // namespace snug::command

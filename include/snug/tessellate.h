@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <snug/surface.h>
+
+namespace snug {
+
+struct TessellateOptions {
+  /// Largest distance, in mesh units, between the limit surface and the triangles, either way.
+  std::optional<double> tolerance{};
+  std::optional<double> max_edge{};   ///< longest edge, in mesh units
+  std::optional<double> max_angle{};  ///< largest angle between limit normals at corners of a triangle, in degrees
+  /// Most triangles: the smallest error that is found for so many, but not below the tolerance if there is one.
+  std::optional<std::uint64_t> max_triangles{};
+  bool single_precision = false;  ///< coordinates are floats, for formats that hold no others
+  bool normals = true;            ///< fill Tessellation::normals
+  /// Most triangles before refinement gives up; see Tessellation::reached.
+  std::uint64_t budget = 50'000'000;
+  int threads = 0;  ///< 0: all cores
+};
+
+/// Triangles near a limit surface, as doubles in mesh units.
+struct Tessellation {
+  std::vector<Point3> positions;
+  /// Limit normals of length 1, 0 0 0 where there is none; at creases that of one of the faces there.
+  std::vector<Vector3> normals;
+  std::vector<SurfaceParameter> parameters;  ///< whose limit points the positions are
+  double position_error = 0;                 ///< upper bound, per coordinate, of |position - limit point|
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< oriented as the faces
+  std::vector<std::uint32_t> owners;  ///< of each triangle the face; in a dual scheme, the vertex
+  double error_bound = 0;             ///< proved, see tessellate()
+  bool reached = true;                ///< false if the budget, or max_triangles, ended refinement before
+};
+
+/// Triangles that approximate the whole limit surface without cracks: adaptive, each edge split as its own bend
+/// needs, and cut where a neighbour is.
+///
+/// Guarantee: over every triangle the limit surface at each parameter is at most error_bound from the triangle at
+///            the same parameter (between the corners linear), for the doubles given. The triangles cover all
+///            parameters of all patches. So neither the surface nor the triangles have a point farther than that
+///            from the other, face by face, and boundaries and creases are as near to the edges along them.
+///            error_bound <= tolerance if `reached`. An edge belongs to as many triangles as the surface has
+///            sheets there: two inside, one at the boundary; no vertex lies inside an edge, and two triangles
+///            have at most an edge in common. Results do not depend on threads.
+/// Holes, and faces without a surface, are left out. Triangles without area are kept: where control vertices
+/// coincide, leaving them out would open the surface.
+/// Errors:    InputError: (value) for options that are not finite and positive, without any, for a tolerance too
+///            small for the arithmetic (it names the smallest that is taken) and for max_triangles below the
+///            number of patches (it names that); (unrepresentable) if a coordinate does not fit. Interrupted.
+/// Cost:      about a microsecond a triangle; with max_triangles some ten times that. 400 bytes a triangle.
+/// Source:    derivations/tessellation.md.
+[[nodiscard]] SNUG_API Tessellation tessellate(const Surface& surface, const TessellateOptions& options,
+                                               const WorkMonitor& monitor = {});
+
+}  // namespace snug

@@ -1,0 +1,674 @@
+#include <snug/query/tessellate.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include <snug/base/error.h>
+#include <snug/base/parallel.h>
+#include <snug/geometry/rounding.h>
+#include <snug/patch/limit_evaluator.h>
+#include <snug/query/piece_quadratic.h>
+#include <snug/query/triangle_complex.h>
+#include <snug/surface/evaluate.h>
+#include <snug/surface/unscale.h>
+
+namespace snug {
+namespace {
+
+using Index = TriangleComplex::Index;
+
+// Tolerances below these, for coordinates from 1 to 2, are refused: rounding would take too much of them.
+constexpr double least_tolerance = 0x1p-41, least_single_tolerance = 0x1p-21;
+// The error of a piece's quadratic that is no hindrance, as a part of the tolerance.
+constexpr double quadratic_share = 0.25;
+constexpr unsigned deepest_level = 40;
+constexpr double shortest_side = 0x1p-46;  // in parameters
+
+constexpr std::array<std::uint8_t, 8> number_of_bits{0, 1, 1, 2, 1, 2, 2, 3};
+
+struct Vertex {
+  Point3 written;            // in mesh units
+  Point3 scaled;
+  double error = 0;          // a coordinate, in scaled units
+  Index patch = UINT32_MAX;  // and where on it it is
+  TriangleParameter at;
+};
+
+// A piece of a root patch by splits in four. Where its quadratic is `coarse` only the triangle of the whole
+// piece is proved, and it is split in four or not at all.
+struct Piece {
+  Index patch;
+  PiecePath path;
+  PiecePlace place;
+  bool known = false, coarse = false;
+  PieceQuadratic quadratic;
+};
+
+// The limits of a run, in scaled units.
+struct Limits {
+  double tolerance = INFINITY, max_edge = INFINITY;
+  double least_cosine = -2;  // of normals; -2 for none
+  double shortest_turn = 0;  // edges that are shorter are not split for their normals
+};
+
+// Limit points and patches, for one thread; what comes together should be asked for together.
+class Worker {
+ public:
+  explicit Worker(const LimitSurface& surface) : surface_(&surface) {}
+
+  // The patch of a piece.
+  const Patch& patch(Index root, const PiecePath& path) {
+    if (root != root_ || chain_.empty()) {
+      root_ = root;
+      if (chain_.empty()) chain_.emplace_back();
+      surface_->patch(PatchId(root), chain_[0]);
+      length_ = 0;
+    }
+    unsigned level = 0;
+    while (level < std::min(length_, path.level()) && path.digit(level) == digits_[level]) ++level;
+    for (; level < path.level(); ++level) {
+      if (chain_.size() <= level + 1) chain_.emplace_back();
+      split(chain_[level], path.digit(level), chain_[level + 1]);
+      digits_[level] = path.digit(level);
+      length_ = level + 1;
+    }
+    return chain_[path.level()];
+  }
+
+  // The evaluator of a patch, or of the quad that it is half of.
+  LimitEvaluator& evaluator(Index patch) {
+    const Index first = surface_->rules().triangular() ? patch : patch & ~Index{1};
+    if (first != first_) {
+      surface_->patch(PatchId(first), quad_);
+      evaluator_.reset(quad_);
+      first_ = first;
+    }
+    return evaluator_;
+  }
+  [[nodiscard]] bool same_quad(Index a, Index b) const {
+    return surface_->rules().triangular() ? a == b : (a | 1) == (b | 1);
+  }
+
+  HullPoints hull;
+  std::array<SurfaceParameter, 64> at;
+  std::array<BoundedPoint, 64> points;
+
+ private:
+  const LimitSurface* surface_;
+  Index root_ = UINT32_MAX, first_ = UINT32_MAX;
+  std::vector<Patch> chain_;  // the root patch and pieces of pieces down to the last one
+  std::array<unsigned, deepest_level + 1> digits_{};
+  unsigned length_ = 0;
+  Patch quad_;
+  LimitEvaluator evaluator_;
+};
+
+class Refinement {
+ public:
+  Refinement(const LimitSurface& surface, const TessellateOptions& options, const Limits& limits,
+             const WorkMonitor& monitor)
+      : surface_(surface),
+        options_(options),
+        limits_(limits),
+        monitor_(monitor),
+        back_(surface.scale().inverse()),
+        complex_(surface),
+        vertices_(complex_.vertex_count()) {}
+
+  // Refines until all limits hold; false if that would take more than `most` triangles.
+  bool run(std::uint64_t most);
+  [[nodiscard]] std::size_t triangle_count() const { return complex_.triangle_count(); }
+  // Upper bound over all triangles, in mesh units.
+  [[nodiscard]] double error_bound() const;
+  [[nodiscard]] Tessellation result() const;
+
+ private:
+  struct Cut {
+    Index triangle, first_new, first_edge;
+    Index first_piece;  // the children of a coarse one
+  };
+
+  void place_roots();
+  void evaluate(std::size_t begin, std::size_t end);
+  void examine(const std::vector<Index>& triangles, bool mark);
+  void examine(Worker& worker, Index t, bool mark);
+  void prove(Worker& worker, Index t, bool mark);
+  void learn(Worker& worker, Index t);
+  void mark_bent(Index t, const Flatness& flatness);
+  void mark_long(Worker& worker, Index t);
+  void mark_turning(Worker& worker, Index t);
+  void mark_sides(Index t);
+  void mark_rest_of_coarse();
+  [[nodiscard]] std::uint64_t count_after() const;
+  void split(std::vector<Index>& parts);
+  std::vector<Cut> plan_cuts();
+  void carry_out(const Cut& cut);
+  [[nodiscard]] std::size_t choose(Index t, unsigned marks) const;
+  [[nodiscard]] FlatTriangle flat(Index t) const;
+  [[nodiscard]] const Point3& scaled(Index v) const { return vertices_[v].scaled; }
+  void finish(Vertex& vertex, const BoundedPoint& point) const;
+  void refuse_if_stuck() const;
+  void add_normals(Tessellation& result, const std::vector<Index>& order) const;
+
+  const LimitSurface& surface_;
+  const TessellateOptions& options_;
+  Limits limits_;
+  const WorkMonitor& monitor_;
+  PowerOfTwo back_;
+  TriangleComplex complex_;
+  std::vector<Vertex> vertices_;
+  // Of triangles.
+  std::vector<std::array<TriangleParameter, 3>> at_;
+  std::vector<Index> piece_;
+  std::vector<double> error_;
+  std::vector<Piece> pieces_;
+  std::vector<Index> coarse_;  // triangles of whole pieces that are split in four or not at all
+  std::atomic<bool> stuck_{false};
+};
+
+void Refinement::place_roots() {
+  const std::vector<PatchId>& roots = complex_.root_patches();
+  constexpr std::array<TriangleParameter, 3> corners{{{0, 0}, {1, 0}, {0, 1}}};
+  at_.assign(roots.size(), corners);
+  error_.assign(roots.size(), INFINITY);
+  pieces_.reserve(roots.size());
+  for (std::size_t t = 0; t < roots.size(); ++t) {
+    piece_.push_back(static_cast<Index>(t));
+    pieces_.push_back({roots[t].value(), {}, {}, false, false, {}});
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vertex& vertex = vertices_[complex_.corners(t)[k]];
+      if (vertex.patch == UINT32_MAX) vertex = {{}, {}, 0, roots[t].value(), corners[k]};
+    }
+  }
+  evaluate(0, vertices_.size());
+}
+
+// The number that is written, and its error.
+void Refinement::finish(Vertex& vertex, const BoundedPoint& point) const {
+  Point3 written = back_.apply(point.position);
+  if (options_.single_precision) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto rounded = static_cast<float>(written[a]);
+      if (!std::isfinite(rounded)) {
+        throw InputError(InputProblem::unrepresentable,
+                         "tessellate: a coordinate does not fit a float; scale the mesh down, or write a "
+                         "format that holds doubles");
+      }
+      written[a] = static_cast<double>(rounded);
+    }
+  }
+  vertex.written = require_representable(written);
+  vertex.scaled = surface_.scale().apply(written);
+  const Vector3 moved = vertex.scaled - point.position;
+  vertex.error = enlarged(point.error + max_abs(moved));
+}
+
+void Refinement::evaluate(std::size_t begin, std::size_t end) {
+  parallel_for_with(
+      end - begin, options_.threads, [&] { return Worker(surface_); },
+      [&](Worker& worker, std::size_t from, std::size_t to) {
+        monitor_.checkpoint();
+        for (std::size_t i = begin + from; i < begin + to;) {
+          if (vertices_[i].patch == UINT32_MAX) {
+            ++i;
+            continue;
+          }
+          const Index patch = vertices_[i].patch;
+          std::size_t count = 0;
+          while (i + count < begin + to && count < worker.at.size() &&
+                 vertices_[i + count].patch != UINT32_MAX &&
+                 worker.same_quad(patch, vertices_[i + count].patch)) {
+            const Vertex& vertex = vertices_[i + count];
+            worker.at[count++] = place_of(surface_, PatchId(vertex.patch), vertex.at);
+          }
+          worker.evaluator(patch).points({worker.at.data(), count}, {worker.points.data(), count});
+          for (std::size_t k = 0; k < count; ++k) finish(vertices_[i + k], worker.points[k]);
+          i += count;
+        }
+      });
+}
+
+FlatTriangle Refinement::flat(Index t) const {
+  const std::array<Index, 3>& corners = complex_.corners(t);
+  return {{scaled(corners[0]), scaled(corners[1]), scaled(corners[2])}, at_[t]};
+}
+
+void Refinement::mark_sides(Index t) {
+  for (std::size_t k = 0; k < 3; ++k) complex_.mark(complex_.edge_of(t, k));
+}
+
+// Finds the quadratic of a piece that is still one triangle; where it is coarse, the triangle's error.
+void Refinement::learn(Worker& worker, Index t) {
+  Piece& piece = pieces_[piece_[t]];
+  const Patch& patch = worker.patch(piece.patch, piece.path);
+  BoundsCache& library = surface_.library();
+  if (patch.kind->shared()) hull_points(library, patch, worker.hull);
+  const QuadraticTriangle near = quadratic_triangle(library, patch, worker.hull);
+  piece.known = true;
+  piece.coarse = !(near.error <= quadratic_share * limits_.tolerance) || !(near.error < INFINITY);
+  if (piece.coarse) {
+    error_[t] = distance_to_triangle(library, patch, worker.hull, flat(t).corner);
+  } else {
+    piece.quadratic = PieceQuadratic(near, piece.place);
+  }
+}
+
+void Refinement::prove(Worker& worker, Index t, bool mark) {
+  Piece& piece = pieces_[piece_[t]];
+  if (!piece.known) learn(worker, t);
+  if (!piece.coarse) {
+    const Flatness flatness = piece.quadratic.flatness(flat(t));
+    error_[t] = flatness.error;
+    if (mark && flatness.error > limits_.tolerance) mark_bent(t, flatness);
+  } else if (mark && error_[t] > limits_.tolerance) {
+    if (piece.path.level() >= deepest_level) return stuck_.store(true, std::memory_order_relaxed);
+    mark_sides(t);
+  }
+}
+
+// Sides that are bent beyond what is left of the tolerance, or the most bent one.
+void Refinement::mark_bent(Index t, const Flatness& flatness) {
+  const double taken = pieces_[piece_[t]].quadratic.error() + flatness.corner_gap,
+               left = std::max(limits_.tolerance - taken, limits_.tolerance / 4);
+  std::array<double, 3> bow_sq;
+  for (std::size_t k = 0; k < 3; ++k) bow_sq[k] = length_sq(flatness.bow[k]);
+  const auto most = static_cast<std::size_t>(std::max_element(bow_sq.begin(), bow_sq.end()) - bow_sq.begin());
+  const TriangleParameter a = at_[t][most], b = at_[t][(most + 1) % 3];
+  if (std::max(std::fabs(a.u - b.u), std::fabs(a.v - b.v)) <= shortest_side) {
+    return stuck_.store(true, std::memory_order_relaxed);
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (k == most || bow_sq[k] > left * left) complex_.mark(complex_.edge_of(t, k));
+  }
+}
+
+void Refinement::mark_long(Worker& worker, Index t) {
+  if (limits_.max_edge < INFINITY) {
+    const std::array<Point3, 3> corner = flat(t).corner;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (enlarged(distance(corner[k], corner[(k + 1) % 3])) > limits_.max_edge) {
+        complex_.mark(complex_.edge_of(t, k));
+      }
+    }
+  }
+  if (limits_.least_cosine >= -1) mark_turning(worker, t);
+}
+
+void Refinement::mark_turning(Worker& worker, Index t) {
+  const Index patch = pieces_[piece_[t]].patch;
+  std::array<std::optional<Vector3>, 3> normal;
+  for (std::size_t k = 0; k < 3; ++k) {
+    normal[k] = worker.evaluator(patch).frame(place_of(surface_, PatchId(patch), at_[t][k])).normal;
+  }
+  const std::array<Point3, 3> corner = flat(t).corner;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    if (!normal[k] || !normal[next] || dot(*normal[k], *normal[next]) >= limits_.least_cosine) continue;
+    if (distance(corner[k], corner[next]) > limits_.shortest_turn) {
+      complex_.mark(complex_.edge_of(t, k));
+    }
+  }
+}
+
+void Refinement::examine(Worker& worker, Index t, bool mark) {
+  prove(worker, t, mark);
+  if (mark) mark_long(worker, t);
+}
+
+void Refinement::examine(const std::vector<Index>& triangles, bool mark) {
+  parallel_for_with(
+      triangles.size(), options_.threads, [&] { return Worker(surface_); },
+      [&](Worker& worker, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          if (i % 256 == 0) monitor_.checkpoint();
+          examine(worker, triangles[i], mark);
+        }
+      });
+  refuse_if_stuck();
+  for (const Index t : triangles) {
+    if (pieces_[piece_[t]].coarse) coarse_.push_back(t);
+  }
+}
+
+void Refinement::mark_rest_of_coarse() {
+  for (bool more = true; more;) {
+    more = false;
+    for (const Index t : coarse_) {
+      const unsigned marks = complex_.marks(t);
+      if (marks == 0 || marks == 7) continue;
+      mark_sides(t);
+      more = true;
+    }
+  }
+}
+
+std::uint64_t Refinement::count_after() const {
+  std::uint64_t count = triangle_count();
+  for (Index t = 0; t < triangle_count(); ++t) count += number_of_bits[complex_.marks(t)];
+  return count;
+}
+
+// Which way to cut: lines inside that are less bent, and where none is bent shorter ones.
+std::size_t Refinement::choose(Index t, unsigned marks) const {
+  const Piece& piece = pieces_[piece_[t]];
+  const std::size_t choices = split_count(marks);
+  if (piece.coarse || choices == 1) return 0;
+  std::array<TriangleParameter, 6> at;
+  std::array<Point3, 6> point;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const TriangleParameter a = at_[t][k], b = at_[t][(k + 1) % 3];
+    at[k] = a;
+    at[3 + k] = {0.5 * (a.u + b.u), 0.5 * (a.v + b.v)};
+    point[k] = scaled(complex_.corners(t)[k]);
+    const TriangleComplex::Edge& edge = complex_.edge(complex_.edge_of(t, k));
+    if (edge.halves != TriangleComplex::none) point[3 + k] = scaled(complex_.edge(edge.halves).to);
+  }
+  const double slight = limits_.tolerance < INFINITY ? limits_.tolerance / 4 : 0;
+  const auto bend = [&](std::size_t p, std::size_t q) {
+    return std::max(slight, length(piece.quadratic.bow(at[p], at[q])));
+  };
+  const auto size = [&](std::size_t p, std::size_t q) { return length_sq(point[p] - point[q]); };
+  if (choices == 2) {
+    const std::size_t k = marks == 3 ? 0 : marks == 6 ? 1 : 2, a = 3 + k, b = 3 + (k + 1) % 3, behind = (k + 2) % 3;
+    const double first = bend(a, behind), second = bend(k, b);
+    return first < second || (first == second && size(a, behind) <= size(k, b)) ? 0 : 1;
+  }
+  std::size_t best = 0;
+  double least = 0.5;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double ratio = bend(k, 3 + (k + 1) % 3) / bend(3 + k, 3 + (k + 2) % 3);
+    if (ratio < least) {
+      least = ratio;
+      best = k + 1;
+    }
+  }
+  return best;
+}
+
+std::vector<Refinement::Cut> Refinement::plan_cuts() {
+  std::vector<Cut> cuts;
+  const std::size_t old = triangle_count();
+  std::size_t triangles = 0, edges = 0, pieces = pieces_.size();
+  for (Index t = 0; t < old; ++t) {
+    const std::size_t marks = number_of_bits[complex_.marks(t)];
+    if (marks == 0) continue;
+    const bool coarse = pieces_[piece_[t]].coarse;
+    cuts.push_back({t, static_cast<Index>(old + triangles),
+                    static_cast<Index>(complex_.edge_count() + edges), static_cast<Index>(pieces)});
+    triangles += marks;
+    edges += marks;
+    pieces += coarse ? 4 : 0;
+  }
+  complex_.extend(triangles, edges);
+  at_.resize(old + triangles);
+  piece_.resize(old + triangles);
+  error_.resize(old + triangles, INFINITY);
+  pieces_.resize(pieces);
+  return cuts;
+}
+
+void Refinement::carry_out(const Cut& cut) {
+  const unsigned marks = complex_.marks(cut.triangle);
+  const TriangleSplit shape = split_of(marks, choose(cut.triangle, marks));
+  complex_.cut(cut.triangle, shape, cut.first_new, cut.first_edge);
+  const std::array<TriangleParameter, 3> corner = at_[cut.triangle];
+  const Index whole = piece_[cut.triangle];
+  const auto local = [&](std::size_t p) -> TriangleParameter {
+    if (p < 3) return corner[p];
+    const TriangleParameter a = corner[p - 3], b = corner[(p - 2) % 3];
+    return {0.5 * (a.u + b.u), 0.5 * (a.v + b.v)};
+  };
+  for (unsigned i = 0; i < shape.count; ++i) {
+    const Index t = i == 0 ? cut.triangle : cut.first_new + i - 1;
+    for (std::size_t k = 0; k < 3; ++k) at_[t][k] = local(shape.triangles[i][k]);
+    piece_[t] = whole;
+    if (!pieces_[whole].coarse) continue;
+    const Piece& parent = pieces_[whole];
+    piece_[t] = cut.first_piece + i;
+    pieces_[piece_[t]] = {parent.patch, parent.path.child(i), parent.place.child(i), false, false, {}};
+  }
+}
+
+// Splits what is marked; the parts, whose sides have no marks.
+void Refinement::split(std::vector<Index>& parts) {
+  const std::size_t old = vertices_.size();
+  complex_.number_middles([&](std::size_t t, std::size_t k) {
+    const TriangleParameter a = at_[t][k], b = at_[t][(k + 1) % 3];
+    vertices_.push_back({{}, {}, 0, pieces_[piece_[t]].patch, {0.5 * (a.u + b.u), 0.5 * (a.v + b.v)}});
+  });
+  evaluate(old, vertices_.size());
+  const std::vector<Cut> cuts = plan_cuts();
+  parallel_for(cuts.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) carry_out(cuts[i]);
+  });
+  parts.clear();
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
+    const std::size_t end = i + 1 < cuts.size() ? cuts[i + 1].first_new : triangle_count();
+    parts.push_back(cuts[i].triangle);
+    for (std::size_t t = cuts[i].first_new; t < end; ++t) parts.push_back(static_cast<Index>(t));
+  }
+  complex_.clear_marks();
+  std::erase_if(coarse_, [&](Index t) { return !pieces_[piece_[t]].coarse; });
+}
+
+bool Refinement::run(std::uint64_t most) {
+  place_roots();
+  std::vector<Index> active(triangle_count());
+  for (Index t = 0; t < active.size(); ++t) active[t] = t;
+  // First what makes the triangles a complex, whatever the limits are.
+  for (bool first = true;; first = false) {
+    examine(active, false);
+    if (!complex_.mark_what_is_not_simple() && !first) break;
+    mark_rest_of_coarse();
+    split(active);
+  }
+  active.resize(triangle_count());
+  for (Index t = 0; t < active.size(); ++t) active[t] = t;
+  coarse_.clear();
+  double done = 0;
+  while (true) {
+    examine(active, true);
+    mark_rest_of_coarse();
+    const std::uint64_t next = count_after();
+    if (next == triangle_count()) return true;
+    if (next > most) return false;
+    done = std::max(done, 1 - static_cast<double>(active.size()) / static_cast<double>(next));
+    monitor_.report(done);
+    split(active);
+  }
+}
+
+double Refinement::error_bound() const {
+  double largest = 0;
+  for (const double error : error_) largest = std::max(largest, error);
+  return unscaled_up(largest, back_);
+}
+
+void Refinement::refuse_if_stuck() const {
+  if (!stuck_.load()) return;
+  double largest = 0;
+  for (std::size_t t = 0; t < error_.size(); ++t) {
+    if (pieces_[piece_[t]].path.level() >= deepest_level) largest = std::max(largest, error_[t]);
+  }
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "tessellate: rounding leaves more than the tolerance on this mesh; take %.3g or more",
+                4 * unscaled_up(std::max(largest, limits_.tolerance), back_));
+  refuse_value(text);
+}
+
+void Refinement::add_normals(Tessellation& result, const std::vector<Index>& order) const {
+  result.normals.resize(order.size());
+  parallel_for_with(
+      order.size(), options_.threads, [&] { return Worker(surface_); },
+      [&](Worker& worker, std::size_t begin, std::size_t end) {
+        monitor_.checkpoint();
+        for (std::size_t i = begin; i < end; ++i) {
+          const LimitFrame frame = worker.evaluator(vertices_[order[i]].patch).frame(result.parameters[i]);
+          result.normals[i] = frame.normal.value_or(Vector3{});
+        }
+      });
+}
+
+Tessellation Refinement::result() const {
+  Tessellation result;
+  const std::size_t count = triangle_count();
+  // Patch by patch.
+  std::vector<std::size_t> begins(surface_.patch_count() + 1, 0);
+  for (std::size_t t = 0; t < count; ++t) ++begins[pieces_[piece_[t]].patch + 1];
+  for (std::size_t p = 1; p < begins.size(); ++p) begins[p] += begins[p - 1];
+  result.triangles.resize(count);
+  result.owners.resize(count);
+  for (std::size_t t = 0; t < count; ++t) {
+    const Index patch = pieces_[piece_[t]].patch;
+    const std::size_t place = begins[patch]++;
+    result.triangles[place] = complex_.corners(t);
+    result.owners[place] = surface_.place(PatchId(patch)).owner;
+  }
+  // Vertices in the order in which triangles name them.
+  std::vector<Index> number(vertices_.size(), UINT32_MAX), order;
+  double position_error = 0;
+  for (std::array<Index, 3>& triangle : result.triangles) {
+    for (Index& v : triangle) {
+      if (number[v] == UINT32_MAX) {
+        number[v] = static_cast<Index>(order.size());
+        order.push_back(v);
+        const Vertex& vertex = vertices_[v];
+        result.positions.push_back(vertex.written);
+        result.parameters.push_back(place_of(surface_, PatchId(vertex.patch), vertex.at));
+        position_error = std::max(position_error, vertex.error);
+      }
+      v = number[v];
+    }
+  }
+  result.position_error = unscaled_up(position_error, back_);
+  result.error_bound = error_bound();
+  if (options_.normals) add_normals(result, order);
+  return result;
+}
+
+void require_positive(const std::optional<double>& value, const char* message) {
+  require_value(!value || (*value > 0 && std::isfinite(*value)), message);
+}
+
+Limits limits_of(const LimitSurface& surface, const TessellateOptions& options) {
+  require_value(options.tolerance || options.max_edge || options.max_angle || options.max_triangles,
+                "tessellate: give a tolerance, or what else the triangles are to hold");
+  require_positive(options.tolerance, "tessellate: the tolerance must be finite and positive");
+  require_positive(options.max_edge, "tessellate: the longest edge must be finite and positive");
+  require_value(!options.max_angle || (*options.max_angle > 0 && *options.max_angle <= 180),
+                "tessellate: the largest angle must be above 0 and at most 180 degrees");
+  require_value(!options.max_triangles || *options.max_triangles > 0,
+                "tessellate: the number of triangles must be positive");
+  const PowerOfTwo scale = surface.scale(), back = scale.inverse();
+  const double least = options.single_precision ? least_single_tolerance : least_tolerance;
+  const auto scaled = [&](const std::optional<double>& length, const char* what) {
+    if (!length) return double{INFINITY};
+    const double result = scale.apply(*length);
+    if (!(result >= least)) {
+      char text[200];
+      std::snprintf(text, sizeof text, "tessellate: %s of %g is too small for coordinates as large as these%s; take %.4g or more",
+                    what, *length, options.single_precision ? " in single precision" : "",
+                    rounded_up(unscaled_up(least, back) * (1 + 1e-3)));
+      refuse_value(text);
+    }
+    return result;
+  };
+  Limits limits;
+  limits.tolerance = scaled(options.tolerance, "a tolerance");
+  limits.max_edge = scaled(options.max_edge, "a longest edge");
+  if (options.max_angle) limits.least_cosine = std::cos(*options.max_angle * 3.14159265358979323846 / 180);
+  limits.shortest_turn = std::isfinite(limits.tolerance) ? limits.tolerance : 1e-6 * scale.apply(surface.size());
+  return limits;
+}
+
+// The smallest error that is found for at most so many triangles, by tolerances in between.
+class Search {
+ public:
+  Search(const LimitSurface& surface, const TessellateOptions& options, const Limits& limits,
+         const WorkMonitor& monitor)
+      : surface_(surface), options_(options), limits_(limits), monitor_(monitor) {}
+
+  Tessellation run() {
+    const std::uint64_t most = *options_.max_triangles;
+    const double wanted = limits_.tolerance;
+    if (std::isfinite(wanted) && attempt(wanted)) return finished(true);
+    if (!attempt(INFINITY)) refuse_number(most);
+    // So many triangles are too many at `low`; at `high` they are enough.
+    double low = std::isfinite(wanted) ? wanted : 0, high = error_;
+    constexpr int most_attempts = 16;
+    for (int i = 0; i < most_attempts && high > least() && high > 1.02 * low; ++i) {
+      monitor_.report(i / static_cast<double>(most_attempts));
+      const double guess = high * static_cast<double>(count_) / static_cast<double>(most);
+      double next = low > 0 ? std::sqrt(low * high) : guess / (i == 0 ? 1.0 : 2.0);
+      next = std::max({next, least(), 1.01 * low});
+      if (attempt(next)) {
+        high = std::min(next, error_);
+      } else {
+        low = next;
+      }
+    }
+    return finished(!std::isfinite(wanted));
+  }
+
+ private:
+  [[nodiscard]] double least() const {
+    return options_.single_precision ? least_single_tolerance : least_tolerance;
+  }
+  // Keeps the best.
+  bool attempt(double tolerance) {
+    limits_.tolerance = tolerance;
+    const WorkMonitor quiet{{}, monitor_.stop};
+    Refinement refinement(surface_, options_, limits_, quiet);
+    if (!refinement.run(*options_.max_triangles) || refinement.triangle_count() > *options_.max_triangles) {
+      return false;
+    }
+    const double error = surface_.scale().apply(refinement.error_bound());
+    if (!best_ || error < error_) {
+      best_ = refinement.result();
+      error_ = error;
+      count_ = refinement.triangle_count();
+    }
+    return true;
+  }
+  Tessellation finished(bool reached) {
+    best_->reached = reached;
+    return std::move(*best_);
+  }
+  [[noreturn]] void refuse_number(std::uint64_t most) {
+    limits_.tolerance = INFINITY;
+    Refinement refinement(surface_, options_, limits_, monitor_);
+    refinement.run(options_.budget);
+    refuse_value(("tessellate: " + std::to_string(most) + " triangles are too few for this mesh; take " +
+                  std::to_string(refinement.triangle_count()) + " or more")
+                     .c_str());
+  }
+
+  const LimitSurface& surface_;
+  const TessellateOptions& options_;
+  Limits limits_;
+  const WorkMonitor& monitor_;
+  std::optional<Tessellation> best_;
+  double error_ = INFINITY;  // of the best, in scaled units
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+Tessellation tessellate(const LimitSurface& surface, const TessellateOptions& options,
+                        const WorkMonitor& monitor) {
+  const Limits limits = limits_of(surface, options);
+  if (options.max_triangles) return Search(surface, options, limits, monitor).run();
+  Refinement refinement(surface, options, limits, monitor);
+  const bool reached = refinement.run(options.budget);
+  Tessellation result = refinement.result();
+  result.reached = reached;
+  return result;
+}
+
+}  // namespace snug

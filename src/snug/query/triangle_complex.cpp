@@ -1,0 +1,212 @@
+#include <snug/query/triangle_complex.h>
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+
+#include <snug/base/contract.h>
+#include <snug/surface/patch_sides.h>
+
+namespace snug {
+namespace {
+
+using Index = TriangleComplex::Index;
+using Local = std::array<std::uint8_t, 3>;
+
+std::uint8_t corner(std::size_t k) { return static_cast<std::uint8_t>(k % 3); }
+std::uint8_t middle_of(std::size_t side) { return static_cast<std::uint8_t>(3 + side % 3); }
+
+// The side with the only bit, or the one before the other two.
+std::size_t side_of_bit(unsigned bit) { return bit == 1 ? 0 : bit == 2 ? 1 : 2; }
+
+// Groups of equal keys, calls visit(begin, end) on the sorted numbers of each with more than one.
+template <class Key, class Visit>
+void for_each_group(const std::vector<Key>& keys, const Visit& visit) {
+  std::vector<Index> order(keys.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return keys[a] < keys[b]; });
+  for (std::size_t begin = 0; begin < order.size();) {
+    std::size_t end = begin + 1;
+    while (end < order.size() && keys[order[end]] == keys[order[begin]]) ++end;
+    if (end - begin > 1) {
+      for (std::size_t i = begin; i < end; ++i) visit(order[i]);
+    }
+    begin = end;
+  }
+}
+
+}  // namespace
+
+std::size_t split_count(unsigned marks) {
+  const int bits = __builtin_popcount(marks);
+  return bits == 1 ? 1 : bits == 2 ? 2 : 4;
+}
+
+TriangleSplit split_of(unsigned marks, std::size_t choice) {
+  const int bits = __builtin_popcount(marks);
+  if (bits == 1) {
+    const std::size_t k = side_of_bit(marks);
+    return {2,
+            {Local{corner(k), middle_of(k), corner(k + 2)}, Local{middle_of(k), corner(k + 1), corner(k + 2)}}};
+  }
+  if (bits == 2) {
+    const std::size_t k = (side_of_bit(7 - marks) + 1) % 3;  // marked: sides k and k + 1
+    const std::uint8_t a = middle_of(k), b = middle_of(k + 1), before = corner(k), behind = corner(k + 2);
+    const Local tip{a, corner(k + 1), b};
+    if (choice == 0) return {3, {tip, Local{before, a, behind}, Local{a, b, behind}}};
+    return {3, {tip, Local{before, a, b}, Local{before, b, behind}}};
+  }
+  TriangleSplit split{4, {Local{0, 3, 5}, Local{3, 1, 4}, Local{5, 4, 2}, Local{4, 5, 3}}};
+  if (choice > 0) {
+    const std::size_t k = choice - 1;
+    split.triangles[k] = {corner(k), middle_of(k), middle_of(k + 1)};
+    split.triangles[3] = {corner(k), middle_of(k + 1), middle_of(k + 2)};
+  }
+  return split;
+}
+
+TriangleComplex::TriangleComplex(const LimitSurface& surface)
+    : vertex_count_(surface.corner_name_count()),
+      whole_(surface.topology().edge_count(), none),
+      inside_(surface.rules().triangular() ? 0 : surface.patch_count(), none) {
+  std::vector<bool> in_halves(whole_.size(), false), in_one(whole_.size(), false);
+  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+    if (!surface.has_patch(PatchId(p))) continue;
+    root_patches_.emplace_back(p);
+    for (const PatchSide& side : sides_of(surface, PatchId(p))) {
+      if (side.part == PatchSide::Part::whole) in_one[side.number] = true;
+      if (side.part == PatchSide::Part::first_half) in_halves[side.number] = true;
+    }
+  }
+  for (std::size_t e = 0; e < whole_.size(); ++e) {
+    if (!in_halves[e] && !in_one[e]) continue;
+    const auto [from, middle, to] = ends_of(surface, EdgeId(e));
+    whole_[e] = add_edge(from, to);
+    if (!in_halves[e]) continue;
+    split_edge(whole_[e], middle);
+    if (in_one[e]) marks_[whole_[e]] = 1;
+  }
+  for (const PatchId p : root_patches_) {
+    const std::array<std::uint32_t, 3> names = surface.corner_names(p);
+    const std::array<PatchSide, 3> sides = sides_of(surface, p);
+    corners_.push_back(names);
+    Sides& numbers = sides_.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index from = names[k], to = names[(k + 1) % 3];
+      numbers.of[k] = 2 * edge_for(surface, sides[k], from, to) + (sides[k].reversed ? 1 : 0);
+      const Edge& edge = edges_[numbers.of[k] / 2];
+      SNUG_EXPECT((sides[k].reversed ? edge.to : edge.from) == from);
+      SNUG_EXPECT((sides[k].reversed ? edge.from : edge.to) == to);
+    }
+  }
+  whole_ = {};
+  inside_ = {};
+}
+
+Index TriangleComplex::edge_for(const LimitSurface&, const PatchSide& side, Index from, Index to) {
+  switch (side.part) {
+    case PatchSide::Part::whole:
+      return whole_[side.number];
+    case PatchSide::Part::first_half:
+      return edges_[whole_[side.number]].halves;
+    case PatchSide::Part::second_half:
+      return edges_[whole_[side.number]].halves + 1;
+    case PatchSide::Part::inside:
+      break;
+  }
+  Index& known = inside_[side.number];
+  if (known == none) known = side.reversed ? add_edge(to, from) : add_edge(from, to);
+  return known;
+}
+
+Index TriangleComplex::add_edge(Index from, Index to) {
+  SNUG_EXPECT(edges_.size() < none / 2);
+  edges_.push_back({from, to});
+  marks_.push_back(0);
+  return static_cast<Index>(edges_.size() - 1);
+}
+
+void TriangleComplex::split_edge(Index e, Index middle) {
+  const Index first = add_edge(edges_[e].from, middle);
+  add_edge(middle, edges_[e].to);
+  edges_[e].halves = first;
+}
+
+void TriangleComplex::mark(Index e) {
+  std::atomic_ref<std::uint8_t>(marks_[e]).store(1, std::memory_order_relaxed);
+}
+
+void TriangleComplex::clear_marks() { std::fill(marks_.begin(), marks_.end(), std::uint8_t{0}); }
+
+bool TriangleComplex::mark_what_is_not_simple() {
+  bool any = false;
+  const auto mark_edge = [&](Index e) {
+    mark(e);
+    any = true;
+  };
+  std::vector<Index> live;
+  std::vector<bool> used(edges_.size(), false);
+  std::vector<std::array<Index, 2>> ends;
+  std::vector<std::array<Index, 3>> triples;
+  for (std::size_t t = 0; t < corners_.size(); ++t) {
+    triples.push_back(corners_[t]);
+    std::sort(triples.back().begin(), triples.back().end());
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index e = edge_of(t, k);
+      if (used[e]) continue;
+      used[e] = true;
+      live.push_back(e);
+      ends.push_back({std::min(edges_[e].from, edges_[e].to), std::max(edges_[e].from, edges_[e].to)});
+      if (edges_[e].from == edges_[e].to) mark_edge(e);
+    }
+  }
+  for_each_group(ends, [&](Index i) { mark_edge(live[i]); });
+  for_each_group(triples, [&](Index t) {
+    for (std::size_t k = 0; k < 3; ++k) mark_edge(edge_of(t, k));
+  });
+  return any;
+}
+
+// The first or second half of a side, along it.
+Index TriangleComplex::half(Index side, bool second) const {
+  const bool reversed = side % 2 != 0;
+  return 2 * (edges_[side / 2].halves + (second != reversed ? 1u : 0u)) + (reversed ? 1u : 0u);
+}
+
+void TriangleComplex::extend(std::size_t triangles, std::size_t edges) {
+  SNUG_EXPECT(edges_.size() + edges < none / 2);
+  corners_.resize(corners_.size() + triangles);
+  sides_.resize(sides_.size() + triangles);
+  edges_.resize(edges_.size() + edges);
+  marks_.resize(marks_.size() + edges, 0);
+}
+
+void TriangleComplex::cut(std::size_t t, const TriangleSplit& split, std::size_t first_new, Index first_edge) {
+  const std::array<Index, 3> old = sides_[t].of, whole = corners_[t];
+  const auto vertex = [&](std::size_t local) { return local < 3 ? whole[local] : middle(old[local - 3]); };
+  std::array<std::array<std::uint8_t, 2>, 3> inner{};
+  std::size_t inner_count = 0;
+  const auto side_between = [&](std::uint8_t p, std::uint8_t q) -> Index {
+    if (p < 3 && q < 3) return old[p];
+    if (p < 3 && q == 3 + p) return half(old[p], false);
+    if (p < 3 && q == 3 + (p + 2) % 3) return half(old[(p + 2) % 3], true) ^ 1;
+    if (q < 3 && p == 3 + q) return half(old[q], false) ^ 1;
+    if (q < 3 && p == 3 + (q + 2) % 3) return half(old[(q + 2) % 3], true);
+    for (std::size_t i = 0; i < inner_count; ++i) {
+      if (inner[i][0] == q && inner[i][1] == p) return 2 * (first_edge + static_cast<Index>(i)) + 1;
+    }
+    inner[inner_count] = {p, q};
+    edges_[first_edge + inner_count] = {vertex(p), vertex(q)};
+    return 2 * (first_edge + static_cast<Index>(inner_count++));
+  };
+  for (std::size_t i = 0; i < split.count; ++i) {
+    const std::size_t number = i == 0 ? t : first_new + i - 1;
+    const Local& local = split.triangles[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners_[number][k] = vertex(local[k]);
+      sides_[number].of[k] = side_between(local[k], local[(k + 1) % 3]);
+    }
+  }
+}
+
+}  // namespace snug
