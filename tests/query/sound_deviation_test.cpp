@@ -201,6 +201,7 @@ struct Trial {
   Polyhedron polyhedron;
   TriangleSet surface, candidate;  // disguised
   double size = 0;                 // of the surface
+  bool coincident = false;         // candidate and surface may have triangles in one plane
   std::string name;
 };
 
@@ -217,11 +218,15 @@ Trial make_trial(Kind kind, CandidateKind candidate, const Disguise& disguise, s
   testing::change_points(trial.candidate, [&](const oracle::Point& p) { return disguised(disguise, p); });
   trial.surface = testing::triangles_of(mesh);
   trial.size = testing::size_of(trial.surface);
+  trial.coincident = candidate != CandidateKind::soup && candidate != CandidateKind::points &&
+                     candidate != CandidateKind::one && candidate != CandidateKind::needles &&
+                     candidate != CandidateKind::far;
   return trial;
 }
 
 struct Counts {
-  std::size_t asked = 0, solids = 0, unreached = 0, spent = 0, told = 0, untold = 0;
+  std::size_t asked = 0, solids = 0, spent = 0, told = 0, untold = 0;
+  std::array<std::size_t, 2> unreached{};  // beside candidates without and with triangles in the surface
 };
 
 // With a tolerance about as large as the distance every answer is right.
@@ -240,8 +245,9 @@ void expect_told(const Surface& surface, const Trial& trial, const HausdorffBoun
   bool told = true;
   for (const Interval& d : {found.from_surface.distance, found.from_candidate.distance}) {
     const bool own = d.lower > *options.tolerance || d.upper <= *options.tolerance;
-    EXPECT_TRUE(own || d.upper - d.lower <= *options.absolute || !found.reached) << trial.name;
-    told = told && own;
+    const bool narrow = d.upper - d.lower <= *options.absolute;
+    EXPECT_TRUE(own || narrow || !found.reached) << trial.name;
+    told = told && (own || narrow);
   }
   ++(told ? counts.told : counts.untold);
 }
@@ -290,7 +296,7 @@ void check(const Surface& surface, const Trial& trial, double precision, std::mt
   for (const Interval& d : intervals) narrow = narrow && d.upper - d.lower <= precision;
   EXPECT_EQ(found.reached, narrow) << trial.name;
   ++counts.asked;
-  counts.unreached += !found.reached;
+  counts.unreached[trial.coincident] += !found.reached;
   counts.spent += there.spent || back.spent;
   if (counts.asked % 8 == 0) {
     DeviationOptions more = options;
@@ -334,12 +340,13 @@ TEST(deviation, of_polyhedra_contains_that_of_the_twin) {
     pairs.add({kind, other, precision, disguise});
   }
   std::cout << "  " << counts.asked << " pairs, " << counts.solids << " of them with solids; "
-            << counts.unreached << " not as narrow as asked, the twin not in " << counts.spent << "; "
+            << counts.unreached[1] << " not as narrow as asked beside triangles in one plane, "
+            << counts.unreached[0] << " beside others, the twin not in " << counts.spent << "; "
             << counts.told << " questions told, " << counts.untold << " not; " << pairs.missing()
             << " pairs of choices not drawn\n";
   EXPECT_GT(10 * counts.asked, 9 * trials);
-  EXPECT_LE(100 * counts.unreached, counts.asked);
-  EXPECT_LE(50 * counts.untold, counts.told);
+  EXPECT_LE(200 * counts.unreached[0], counts.asked);
+  EXPECT_LE(10 * (counts.unreached[1] + counts.untold), counts.asked);
   EXPECT_TRUE(trials < 2000 || pairs.missing() == 0);
 }
 
@@ -386,8 +393,7 @@ std::vector<Curved> curved_surfaces(std::uint64_t seed) {
   return list;
 }
 
-/// Of which sort a surface is, for the pairs.
-enum class Sort { catmark, loop, doo_sabin, midedge };
+/// Of which sort a surface is, for the pairs: Catmull-Clark, Loop, Doo-Sabin, Midedge.
 std::size_t sort_of(const Curved& c) {
   switch (*c.options.scheme) {
     case Scheme::loop:
@@ -621,10 +627,13 @@ TEST(deviation, of_curved_surfaces_is_not_below_what_points_say) {
   const std::uint64_t trials = number_of("SNUG_PLACEMENTS", 2000) / 4, first = number_of("SNUG_FIRST", 0);
   CurvedCounts counts;
   testing::PairsDrawn pairs({4, beside_names.size(), precisions.size(), powers.size()});
-  // Of all sorts equally many.
+  // Of all sorts equally many; other ones for each thousand.
   std::array<std::vector<Curved>, 4> sorts;
-  for (Curved& c : curved_surfaces(first + 1)) sorts[sort_of(c)].push_back(std::move(c));
   for (std::uint64_t i = first; i < first + trials && !HasFailure(); ++i) {
+    if (i == first || i % 1000 == 0) {
+      for (std::vector<Curved>& list : sorts) list.clear();
+      for (Curved& c : curved_surfaces(i / 1000 + 1)) sorts[sort_of(c)].push_back(std::move(c));
+    }
     std::mt19937_64 random(i * 7907 + 3);
     const std::size_t sort = random() % 4, kind = random() % beside_names.size();
     // The finest precision takes its time.
@@ -667,8 +676,8 @@ TEST(deviation, of_curved_solids_is_not_below_what_points_of_either_side_say) {
       surface.emplace(testing::control_mesh(c),
                       SurfaceOptions{.scheme = c.options.scheme, .boundary = c.options.boundary});
       TriangleSet set = testing::triangles_of(subdivided(*surface, 1, true));
-      set = testing::make_candidate(i % 3 == 0 ? CandidateKind::soup : CandidateKind::moved, set,
-                                    surface->size(), random);
+      constexpr std::array kinds{CandidateKind::soup, CandidateKind::moved, CandidateKind::scaled};
+      set = testing::make_candidate(kinds[i % 3], set, surface->size(), random);
       DeviationOptions options;
       options.absolute = precisions[i % 3] * surface->size();
       options.solid = true;
@@ -707,9 +716,10 @@ TEST(deviation, of_curved_solids_is_not_below_what_points_of_either_side_say) {
   std::cout << "  " << counts.asked << " solids, " << counts.inside << " points inside, " << counts.outside
             << " outside; " << counts.unreached << " not as narrow as asked\n";
   EXPECT_GT(10 * counts.asked, 8 * solids);
-  EXPECT_GT(counts.inside, 10 * solids);
+  EXPECT_GT(counts.inside, 5 * solids);
   EXPECT_GT(counts.outside, 10 * solids);
-  EXPECT_LE(50 * counts.unreached, counts.asked);
+  // Where corners touch the surface, nothing else may be on a side.
+  EXPECT_LE(10 * counts.unreached, counts.asked);
 }
 
 }  // namespace
