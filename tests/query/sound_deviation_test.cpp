@@ -220,8 +220,16 @@ Trial make_trial(Kind kind, CandidateKind candidate, const Disguise& disguise, s
   trial.size = testing::size_of(trial.surface);
   trial.coincident = candidate != CandidateKind::soup && candidate != CandidateKind::points &&
                      candidate != CandidateKind::one && candidate != CandidateKind::needles &&
-                     candidate != CandidateKind::far;
+                     candidate != CandidateKind::far && candidate != CandidateKind::other_size;
   return trial;
+}
+
+double largest(const TriangleSet& set) {
+  double most = 0;
+  for (const oracle::Corners& t : set)
+    for (const oracle::Point& p : t)
+      for (const double x : p) most = std::max(most, std::fabs(x));
+  return most;
 }
 
 struct Counts {
@@ -236,7 +244,7 @@ void expect_told(const Surface& surface, const Trial& trial, const HausdorffBoun
   options.threads = 1;
   options.budget = budget;
   options.tolerance = static_cast<double>(factor * std::max(there.upper, back.upper));
-  options.absolute = 1e-4 * trial.size;
+  options.absolute = std::max(1e-4 * trial.size, 0x1p-36 * largest(trial.candidate));
   const Deviation found = deviation(surface, testing::candidate_of(trial.candidate), options);
   EXPECT_TRUE(agree(found.from_surface.distance, there, 0))
       << trial.name << text_of(found.from_surface.distance, there);
@@ -262,7 +270,8 @@ void check(const Surface& surface, const Trial& trial, double precision, std::mt
   options.solid = trial.polyhedron.closed && random() % 2 == 0;
   const Deviation found = deviation(surface, candidate, options);
   // Planar quads are no longer planar once they are rounded.
-  const long double extent = trial.size + std::fabs(static_cast<long double>(trial.surface[0][0][0]));
+  const long double extent =
+      trial.size + largest(trial.surface) + static_cast<long double>(largest(trial.candidate));
   const long double slack = trial.polyhedron.planar_quads ? extent * 0x1p-48L : 0;
   const oracle::HausdorffGoal goal{precision / 4.0L, Side::any, 3000};
   const HausdorffBounds there = oracle::one_sided_hausdorff(trial.surface, trial.candidate, goal),
@@ -330,7 +339,9 @@ TEST(deviation, of_polyhedra_contains_that_of_the_twin) {
       continue;  // the same triangle twice
     }
     try {
-      check(*surface, trial, precisions[precision] * trial.size, random, counts);
+      // No finer than doubles of such coordinates allow.
+      const double wanted = std::max(precisions[precision] * trial.size, 0x1p-36 * largest(trial.candidate));
+      check(*surface, trial, wanted, random, counts);
     } catch (const InputError& error) {
       // Four triangles at an edge, or a side that winds both ways.
       EXPECT_TRUE(trial.polyhedron.closed && error.problem() == InputProblem::refused)

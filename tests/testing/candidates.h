@@ -97,10 +97,11 @@ enum class CandidateKind {
   soup,
   one,  ///< a single triangle
   far,
+  other_size,  ///< a grain, or a boulder
 };
 inline constexpr std::array candidate_names{"same",    "moved",   "scaled",  "remeshed", "holes",
                                             "flipped", "spoiled", "slivers", "overlays", "points",
-                                            "needles", "soup",    "one",     "far"};
+                                            "needles", "soup",    "one",     "far",      "of another size"};
 
 /// Beside triangles whose corners are whole numbers, or nearly so; about `size` large. Corners of the result
 /// are multiples of 1/64 of those.
@@ -196,6 +197,11 @@ inline constexpr std::array candidate_names{"same",    "moved",   "scaled",  "re
     case CandidateKind::far: {
       const double away = random() % 2 == 0 ? 10 : 1000;
       change_points(set, [&](const Point& p) { return plus(p, {away * size, 3 * size, 0}); });
+      return set;
+    }
+    case CandidateKind::other_size: {
+      const double s = std::ldexp(1.0, random() % 2 == 0 ? -30 : 30);
+      change_points(set, [&](const Point& p) { return Point{s * p[0], s * p[1], s * p[2]}; });
       return set;
     }
   }
