@@ -45,7 +45,6 @@ Surface read_surface(const std::string& path, const Options& options, const std:
     ProgressBar bar("preparing " + path, options.quiet);
     surface.emplace(std::move(mesh), SurfaceOptions{.scheme = rules.scheme,
                                                     .boundary = rules.boundary,
-                                                    .bounds = bound_method(options),
                                                     .threads = options.threads,
                                                     .monitor = bar.monitor()});
   });
@@ -274,8 +273,9 @@ Command deviation_command() {
   list.add(Group::own, "--solid", &options->solid,
            "MESH bounds a solid: also how far CANDIDATE lies inside and outside of it");
   add_common_options(list, *options);
-  add_bound_options(list, *options)[0]->help =
-      "Compare at most N parts in each direction, then report what was reached";
+  list.add(Group::effort, "--budget N", &options->budget,
+           "Compare at most N parts in each direction, then report what was reached")
+      .between(0, std::uint64_t{1} << 40);
   add_scheme_option(list, "--scheme-b", options->scheme_b, "Scheme of CANDIDATE; overrides --scheme")
       .needs("--surface");
   return {

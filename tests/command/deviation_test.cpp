@@ -171,6 +171,7 @@ TEST_F(deviation, of_two_control_meshes_is_that_of_their_surfaces) {
   EXPECT_EQ(other["scheme"], json({"catmark", "loop"}));
   EXPECT_GT(other["from_surface"][0], 0);
   EXPECT_EQ(run({quads_, moved_, "--scheme-b", "loop"}).status, 2);
+  EXPECT_EQ(run({quads_, moved_, "--bounds", "table"}).status, 2);
 }
 
 // Any triangles are good: no mesh has to be made of them.
