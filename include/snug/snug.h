@@ -8,6 +8,7 @@
 #include <snug/deviation.h>
 #include <snug/distance.h>
 #include <snug/evaluate.h>
+#include <snug/hull.h>
 #include <snug/mesh.h>
 #include <snug/motion.h>
 #include <snug/surface.h>

@@ -6,6 +6,7 @@
 #include <snug/query/bound.h>
 #include <snug/query/closest.h>
 #include <snug/query/deviation.h>
+#include <snug/query/hull.h>
 #include <snug/query/pairs.h>
 #include <snug/query/subdivide.h>
 #include <snug/query/tessellate.h>
@@ -92,6 +93,10 @@ Deviation deviation(const Surface& surface, std::span<const Triangle> candidate,
 Deviation deviation(const Surface& surface, const Surface& candidate, const DeviationOptions& options,
                     const WorkMonitor& monitor) {
   return deviation(bvh(surface), bvh(candidate), options, monitor);
+}
+
+Hulls hulls(const Surface& surface, const HullOptions& options, const WorkMonitor& monitor) {
+  return hulls(bvh(surface), options, monitor);
 }
 
 SurfacePoint evaluate(const Surface& surface, const SurfaceParameter& at) {

@@ -32,7 +32,7 @@ constexpr double shortest_side = 0x1p-46;  // in parameters
 constexpr std::array<std::uint8_t, 8> number_of_bits{0, 1, 1, 2, 1, 2, 2, 3};
 
 struct Vertex {
-  Point3 written;            // in mesh units
+  Point3 written;  // in mesh units
   Point3 scaled;
   double error = 0;          // a coordinate, in scaled units
   Index patch = UINT32_MAX;  // and where on it it is
@@ -52,8 +52,9 @@ struct Piece {
 // The limits of a run, in scaled units.
 struct Limits {
   double tolerance = INFINITY, max_edge = INFINITY;
-  double least_cosine = -2;  // of normals; -2 for none
-  double shortest_turn = 0;  // edges that are shorter are not split for their normals
+  std::vector<double> of_owner{};  // tolerances of owners instead of that; or none
+  double least_cosine = -2;        // of normals; -2 for none
+  double shortest_turn = 0;        // edges that are shorter are not split for their normals
 };
 
 // Limit points and patches, for one thread; what comes together should be asked for together.
@@ -125,7 +126,8 @@ class Refinement {
   [[nodiscard]] std::size_t triangle_count() const { return complex_.triangle_count(); }
   // Upper bound over all triangles, in mesh units.
   [[nodiscard]] double error_bound() const;
-  [[nodiscard]] Tessellation result() const;
+  /// Also the errors of triangles, in mesh units, if asked for.
+  [[nodiscard]] Tessellation result(std::vector<double>* errors = nullptr) const;
 
  private:
   struct Cut {
@@ -150,6 +152,10 @@ class Refinement {
   void carry_out(const Cut& cut);
   [[nodiscard]] std::size_t choose(Index t, unsigned marks) const;
   [[nodiscard]] FlatTriangle flat(Index t) const;
+  [[nodiscard]] double tolerance(Index t) const {
+    if (limits_.of_owner.empty()) return limits_.tolerance;
+    return limits_.of_owner[surface_.place(PatchId(pieces_[piece_[t]].patch)).owner];
+  }
   [[nodiscard]] const Point3& scaled(Index v) const { return vertices_[v].scaled; }
   void finish(Vertex& vertex, const BoundedPoint& point) const;
   void refuse_if_stuck() const;
@@ -250,7 +256,7 @@ void Refinement::learn(Worker& worker, Index t) {
   if (patch.kind->shared()) hull_points(library, patch, worker.hull);
   const QuadraticTriangle near = quadratic_triangle(library, patch, worker.hull);
   piece.known = true;
-  piece.coarse = !(near.error <= quadratic_share * limits_.tolerance) || !(near.error < INFINITY);
+  piece.coarse = !(near.error <= quadratic_share * tolerance(t)) || !(near.error < INFINITY);
   if (piece.coarse) {
     error_[t] = distance_to_triangle(library, patch, worker.hull, flat(t).corner);
   } else {
@@ -264,8 +270,8 @@ void Refinement::prove(Worker& worker, Index t, bool mark) {
   if (!piece.coarse) {
     const Flatness flatness = piece.quadratic.flatness(flat(t));
     error_[t] = flatness.error;
-    if (mark && flatness.error > limits_.tolerance) mark_bent(t, flatness);
-  } else if (mark && error_[t] > limits_.tolerance) {
+    if (mark && flatness.error > tolerance(t)) mark_bent(t, flatness);
+  } else if (mark && error_[t] > tolerance(t)) {
     if (piece.path.level() >= deepest_level) return stuck_.store(true, std::memory_order_relaxed);
     mark_sides(t);
   }
@@ -274,7 +280,7 @@ void Refinement::prove(Worker& worker, Index t, bool mark) {
 // Sides that are bent beyond what is left of the tolerance, or the most bent one.
 void Refinement::mark_bent(Index t, const Flatness& flatness) {
   const double taken = pieces_[piece_[t]].quadratic.error() + flatness.corner_gap,
-               left = std::max(limits_.tolerance - taken, limits_.tolerance / 4);
+               left = std::max(tolerance(t) - taken, tolerance(t) / 4);
   std::array<double, 3> bow_sq;
   for (std::size_t k = 0; k < 3; ++k) bow_sq[k] = length_sq(flatness.bow[k]);
   const auto most = static_cast<std::size_t>(std::max_element(bow_sq.begin(), bow_sq.end()) - bow_sq.begin());
@@ -374,7 +380,10 @@ std::size_t Refinement::choose(Index t, unsigned marks) const {
   };
   const auto size = [&](std::size_t p, std::size_t q) { return length_sq(point[p] - point[q]); };
   if (choices == 2) {
-    const std::size_t k = marks == 3 ? 0 : marks == 6 ? 1 : 2, a = 3 + k, b = 3 + (k + 1) % 3, behind = (k + 2) % 3;
+    const std::size_t k = marks == 3   ? 0
+                          : marks == 6 ? 1
+                                       : 2,
+                      a = 3 + k, b = 3 + (k + 1) % 3, behind = (k + 2) % 3;
     const double first = bend(a, behind), second = bend(k, b);
     return first < second || (first == second && size(a, behind) <= size(k, b)) ? 0 : 1;
   }
@@ -398,8 +407,8 @@ std::vector<Refinement::Cut> Refinement::plan_cuts() {
     const std::size_t marks = number_of_bits[complex_.marks(t)];
     if (marks == 0) continue;
     const bool coarse = pieces_[piece_[t]].coarse;
-    cuts.push_back({t, static_cast<Index>(old + triangles),
-                    static_cast<Index>(complex_.edge_count() + edges), static_cast<Index>(pieces)});
+    cuts.push_back({t, static_cast<Index>(old + triangles), static_cast<Index>(complex_.edge_count() + edges),
+                    static_cast<Index>(pieces)});
     triangles += marks;
     edges += marks;
     pieces += coarse ? 4 : 0;
@@ -515,7 +524,7 @@ void Refinement::add_normals(Tessellation& result, const std::vector<Index>& ord
       });
 }
 
-Tessellation Refinement::result() const {
+Tessellation Refinement::result(std::vector<double>* errors) const {
   Tessellation result;
   const std::size_t count = triangle_count();
   // Patch by patch.
@@ -524,11 +533,13 @@ Tessellation Refinement::result() const {
   for (std::size_t p = 1; p < begins.size(); ++p) begins[p] += begins[p - 1];
   result.triangles.resize(count);
   result.owners.resize(count);
+  if (errors != nullptr) errors->resize(count);
   for (std::size_t t = 0; t < count; ++t) {
     const Index patch = pieces_[piece_[t]].patch;
     const std::size_t place = begins[patch]++;
     result.triangles[place] = complex_.corners(t);
     result.owners[place] = surface_.place(PatchId(patch)).owner;
+    if (errors != nullptr) (*errors)[place] = unscaled_up(error_[t], back_);
   }
   // Vertices in the order in which triangles name them.
   std::vector<Index> number(vertices_.size(), UINT32_MAX), order;
@@ -572,9 +583,11 @@ Limits limits_of(const LimitSurface& surface, const TessellateOptions& options) 
     const double result = scale.apply(*length);
     if (!(result >= least)) {
       char text[200];
-      std::snprintf(text, sizeof text, "tessellate: %s of %g is too small for coordinates as large as these%s; take %.4g or more",
-                    what, *length, options.single_precision ? " in single precision" : "",
-                    rounded_up(unscaled_up(least, back) * (1 + 1e-3)));
+      std::snprintf(
+          text, sizeof text,
+          "tessellate: %s of %g is too small for coordinates as large as these%s; take %.4g or more", what,
+          *length, options.single_precision ? " in single precision" : "",
+          rounded_up(unscaled_up(least, back) * (1 + 1e-3)));
       refuse_value(text);
     }
     return result;
@@ -583,7 +596,8 @@ Limits limits_of(const LimitSurface& surface, const TessellateOptions& options) 
   limits.tolerance = scaled(options.tolerance, "a tolerance");
   limits.max_edge = scaled(options.max_edge, "a longest edge");
   if (options.max_angle) limits.least_cosine = std::cos(*options.max_angle * 3.14159265358979323846 / 180);
-  limits.shortest_turn = std::isfinite(limits.tolerance) ? limits.tolerance : 1e-6 * scale.apply(surface.size());
+  limits.shortest_turn =
+      std::isfinite(limits.tolerance) ? limits.tolerance : 1e-6 * scale.apply(surface.size());
   return limits;
 }
 
@@ -668,6 +682,24 @@ Tessellation tessellate(const LimitSurface& surface, const TessellateOptions& op
   const bool reached = refinement.run(options.budget);
   Tessellation result = refinement.result();
   result.reached = reached;
+  return result;
+}
+
+LocalTessellation tessellate(const LimitSurface& surface, std::span<const double> tolerances,
+                             const TessellateOptions& options, const WorkMonitor& monitor) {
+  Limits limits;
+  limits.of_owner.reserve(tolerances.size());
+  for (const double tolerance : tolerances) {
+    limits.of_owner.push_back(std::max(surface.scale().apply(tolerance), least_tolerance));
+  }
+  limits.tolerance = limits.of_owner.empty()
+                         ? double{INFINITY}
+                         : *std::min_element(limits.of_owner.begin(), limits.of_owner.end());
+  Refinement refinement(surface, options, limits, monitor);
+  const bool reached = refinement.run(options.budget);
+  LocalTessellation result;
+  result.mesh = refinement.result(&result.errors);
+  result.mesh.reached = reached;
   return result;
 }
 

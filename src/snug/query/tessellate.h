@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include <snug/surface/limit_surface.h>
 #include <snug/tessellate.h>
 
@@ -8,5 +11,14 @@ namespace snug {
 /// tessellate() of tessellate.h.
 [[nodiscard]] Tessellation tessellate(const LimitSurface& surface, const TessellateOptions& options,
                                       const WorkMonitor& monitor = {});
+
+/// Of a refinement with tolerances of its own for each owner, in mesh units: also a proved error for each triangle.
+struct LocalTessellation {
+  Tessellation mesh;
+  std::vector<double> errors;
+};
+/// Requires:  finite, positive tolerances, one an owner; none of `options` counts but budget and threads.
+[[nodiscard]] LocalTessellation tessellate(const LimitSurface& surface, std::span<const double> tolerances,
+                                           const TessellateOptions& options, const WorkMonitor& monitor = {});
 
 }  // namespace snug

@@ -6,6 +6,7 @@
 #include <snug/bvh/obb.h>
 #include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
+#include <snug/geometry/triangle_distance.h>
 #include <snug/search/piece.h>
 
 namespace snug {
@@ -390,25 +391,32 @@ double QuadraticBvh::certain_distance(const Point3& p, double gap, QuadraticFoot
 
 namespace {
 
-// May what two quadratics stand for meet? The second one is split until it is as small as the first.
+// May what two quadratics stand for meet? The second one is split until it is as small
+// as the first, and flat.
 bool may_meet(const QuadraticTriangle& part, const Ball& ball, const Vector3& normal,
-              const QuadraticTriangle& q, bool curved) {
+              const QuadraticTriangle& q, bool curved, double flat) {
   const Ball other = ball_of(q);
   const double between = distance(ball.centre, other.centre);
   if (between > enlarged(ball.radius + other.radius) + distance_rounding) return false;
   if (apart(part, q, normal) || apart(part, q, unit_normal(q.corners))) return false;
-  const Point3 near = point_of(q, foot_of(q, curved, ball.centre));
-  if (apart(part, q, normalized(near - ball.centre))) return false;
-  if (other.radius <= std::max(ball.radius, 2 * q.error + 4 * distance_rounding)) return true;
+  // Along the shortest way between the triangles of their corners.
+  const NearestTriangles near = nearest(part.corners, q.corners);
+  const auto at = [](const Triangle& t, const Barycentric& p) {
+    return t[0] + p.b * (t[1] - t[0]) + p.c * (t[2] - t[0]);
+  };
+  if (apart(part, q, normalized(at(q.corners, near.on_b) - at(part.corners, near.on_a)))) return false;
+  const bool small = other.radius <= std::max(ball.radius, 2 * q.error + 4 * distance_rounding);
+  const double bent = std::max({max_abs(bend(q, 0)), max_abs(bend(q, 1)), max_abs(bend(q, 2))});
+  if (small && bent <= flat) return true;
   for (const Corners& quarter : quarters(whole)) {
-    if (may_meet(part, ball, normal, restricted(q, quarter), curved)) return true;
+    if (may_meet(part, ball, normal, restricted(q, quarter), curved, flat)) return true;
   }
   return false;
 }
 
 }  // namespace
 
-bool QuadraticBvh::may_meet(const QuadraticTriangle& part) const {
+bool QuadraticBvh::may_meet(const QuadraticTriangle& part, double flat) const {
   const Ball ball = ball_of(part);
   const Vector3 normal = unit_normal(part.corners);
   struct Meet {
@@ -416,12 +424,14 @@ bool QuadraticBvh::may_meet(const QuadraticTriangle& part) const {
     const QuadraticTriangle& part;
     const Ball& ball;
     const Vector3& normal;
+    double flat;
     [[nodiscard]] double limit(double reach) const { return reach; }
     bool operator()(std::uint32_t i) const {
-      return snug::may_meet(part, ball, normal, tree.quadratics_[i], tree.curved_[i] != 0);
+      return snug::may_meet(part, ball, normal, tree.quadratics_[i], tree.curved_[i] != 0, flat);
     }
   };
-  return any_near(ball.centre, ball.radius, Meet{*this, part, ball, normal});
+  return any_near(ball.centre, ball.radius,
+                  Meet{*this, part, ball, normal, std::max(flat, 4 * distance_rounding)});
 }
 
 namespace {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -57,8 +58,9 @@ class QuadraticBvh {
   ///            this too dear.
   [[nodiscard]] double certain_distance(const Point3& p, double gap, QuadraticFoot& foot) const;
 
-  /// May what `part` stands for meet what a piece stands for? False is proved.
-  [[nodiscard]] bool may_meet(const QuadraticTriangle& part) const;
+  /// May what `part` stands for meet what a piece stands for? False is proved. Pieces are split
+  /// until they are as small as the part and their Bezier points nearly as flat as `flat`.
+  [[nodiscard]] bool may_meet(const QuadraticTriangle& part, double flat = INFINITY) const;
 
   /// Marks pieces whose sets may be within `reach` of a point of what `part` stands for; all others are
   /// certainly farther away.

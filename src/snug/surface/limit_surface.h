@@ -46,6 +46,8 @@ class LimitSurface {
   [[nodiscard]] const SchemeOptions& options() const { return options_; }
   [[nodiscard]] const SchemeRules& rules() const { return *rules_; }
   [[nodiscard]] BoundsCache& library() const { return *library_; }
+  /// The same, for another surface to share.
+  [[nodiscard]] const std::shared_ptr<BoundsCache>& shared_library() const { return library_; }
 
   /// From mesh units to scaled ones.
   [[nodiscard]] PowerOfTwo scale() const { return scale_; }

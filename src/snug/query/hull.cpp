@@ -1,0 +1,396 @@
+#include <snug/query/hull.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include <snug/base/error.h>
+#include <snug/base/names.h>
+#include <snug/base/parallel.h>
+#include <snug/geometry/direction.h>
+#include <snug/geometry/nearest_to_origin.h>
+#include <snug/geometry/rounding.h>
+#include <snug/patch/evaluate.h>
+#include <snug/query/closest.h>
+#include <snug/query/deviation.h>
+#include <snug/query/pairs.h>
+#include <snug/query/tessellate.h>
+#include <snug/search/piece.h>
+#include <snug/search/quadratic_bvh.h>
+#include <snug/search/self_contact.h>
+#include <snug/surface/quadratic_pieces.h>
+#include <snug/surface/unscale.h>
+
+namespace snug {
+namespace {
+
+using Names = std::array<std::uint32_t, 3>;
+
+constexpr auto fault_names = std::to_array<Named<HullFault>>({
+    {"no-position", HullFault::no_position},
+    {"meets-surface", HullFault::meets_surface},
+    {"meets-itself", HullFault::meets_itself},
+    {"meets-other", HullFault::meets_other},
+    {"not-around", HullFault::not_around},
+});
+
+// Of the tolerance: that of the triangles which are moved, at first; below which it is no longer made smaller.
+constexpr double first_share = 0.4, least_share = 0x1p-10;
+// Of the tolerance of a triangle: how much farther off its plane than its error its facet is kept, and the error
+// of the quadratics that it is to be kept off.
+constexpr double clearance = 0.1, quadratic_share = 0x1p-6;
+// And how far Bezier points of its parts may stick out of them.
+constexpr double flat_share = 0x1p-5;
+constexpr std::size_t most_problems = 100, most_contacts = 10'000;
+constexpr int most_rounds = 24;
+
+// Is there a border? Refuses what has no two sides.
+bool has_border(const Tessellation& mesh) {
+  std::unordered_map<std::uint64_t, std::uint32_t> sides;
+  sides.reserve(3 * mesh.triangles.size());
+  const auto key = [](std::uint32_t from, std::uint32_t to) { return std::uint64_t{from} << 32 | to; };
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = mesh.triangles[t][k], to = mesh.triangles[t][(k + 1) % 3];
+      const auto [there, added] = sides.emplace(key(from, to), static_cast<std::uint32_t>(t));
+      if (added) continue;
+      throw InputError(
+          InputProblem::refused,
+          "hull: faces " + std::to_string(mesh.owners[there->second]) + " and " +
+              std::to_string(mesh.owners[t]) +
+              " run along an edge of the surface the same way, so that it has no two sides there; "
+              "orient the faces, or separate sheets that share an edge");
+    }
+  }
+  return std::any_of(sides.begin(), sides.end(), [&](const auto& side) {
+    return !sides.contains(
+        key(static_cast<std::uint32_t>(side.first), static_cast<std::uint32_t>(side.first >> 32)));
+  });
+}
+
+// A hull on one side, by triangles whose tolerances are made smaller where it fails.
+class OneHull {
+ public:
+  OneHull(const LimitSurface& surface, const HullOptions& options, bool inner,
+          std::vector<QuadraticPiece> pieces, const WorkMonitor& monitor)
+      : surface_(surface),
+        options_(options),
+        inner_(inner),
+        monitor_{.on_progress = {}, .stop = monitor.stop},
+        scale_(surface.scale()),
+        tolerances_(surface.owner_count(), first_share * options.tolerance),
+        pieces_(std::move(pieces)) {
+    make_tree();
+  }
+
+  // Moves triangles until nothing is wrong, or nothing can be done about it. Returns the problems left.
+  std::vector<HullProblem> run() {
+    for (int round = 0;; ++round) {
+      make_triangles();
+      if (round == 0) {
+        border_ = has_border(mesh_);
+      }
+      problems_.clear();
+      piece_marks_.assign(pieces_.size(), 0);
+      wrong_.assign(surface_.owner_count(), 0);
+      move_vertices();
+      keep_off();
+      if (problems_.empty()) break;
+      if (round + 1 == most_rounds || !mesh_.reached || !refine()) break;
+    }
+    return std::move(problems_);
+  }
+  [[nodiscard]] bool has_border_edges() const { return border_; }
+  [[nodiscard]] Hull take() { return {std::move(hull_), std::move(mesh_.triangles), gap_}; }
+
+ private:
+  void make_triangles() {
+    LocalTessellation made =
+        tessellate(surface_, tolerances_,
+                   {.normals = false, .budget = options_.budget, .threads = options_.threads}, monitor_);
+    mesh_ = std::move(made.mesh);
+    errors_ = std::move(made.errors);
+    begins_.assign(mesh_.positions.size() + 1, 0);
+    for (const Names& t : mesh_.triangles) {
+      for (const std::uint32_t v : t) ++begins_[v + 1];
+    }
+    for (std::size_t v = 1; v < begins_.size(); ++v) begins_[v] += begins_[v - 1];
+    around_.resize(3 * mesh_.triangles.size());
+    std::vector<std::uint32_t> next(begins_.begin(), begins_.end() - 1);
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      for (const std::uint32_t v : mesh_.triangles[t]) around_[next[v]++] = static_cast<std::uint32_t>(t);
+    }
+  }
+  void make_tree() {
+    quadratics_.clear();
+    quadratics_.reserve(pieces_.size());
+    for (const QuadraticPiece& piece : pieces_) quadratics_.push_back(piece.quadratic);
+    tree_ = std::make_unique<QuadraticBvh>(quadratics_, options_.threads);
+  }
+
+  [[nodiscard]] Triangle scaled(const std::vector<Point3>& points, const Names& t) const {
+    return {scale_.apply(points[t[0]]), scale_.apply(points[t[1]]), scale_.apply(points[t[2]])};
+  }
+  void blame(HullFault fault, std::size_t t, const Point3& place) {
+    problems_.push_back({fault, inner_, place, mesh_.owners[t]});
+    wrong_[mesh_.owners[t]] = 1;
+  }
+
+  // Each vertex as near as possible to where it was, beyond the planes of the triangles around it.
+  void move_vertices() {
+    const double sign = inner_ ? -1 : 1;
+    std::vector<Vector3> normals(mesh_.triangles.size());
+    std::vector<double> offsets(mesh_.triangles.size());
+    parallel_for(normals.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        normals[t] = sign * unit_normal(scaled(mesh_.positions, mesh_.triangles[t]));
+        offsets[t] = errors_[t] + clearance * tolerances_[mesh_.owners[t]];
+      }
+    });
+    hull_ = mesh_.positions;
+    std::vector<double> moved(hull_.size());
+    parallel_for(hull_.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+      monitor_.checkpoint();
+      std::vector<Vector3> planes;
+      for (std::size_t v = begin; v < end; ++v) {
+        planes.clear();
+        double largest = 0;
+        for (std::uint32_t i = begins_[v]; i < begins_[v + 1]; ++i)
+          largest = std::max(largest, offsets[around_[i]]);
+        for (std::uint32_t i = begins_[v]; i < begins_[v + 1]; ++i) {
+          const std::uint32_t t = around_[i];
+          if (normals[t] != Vector3{}) planes.push_back((largest / offsets[t]) * normals[t]);
+        }
+        if (planes.empty()) continue;  // a point of needles only: it stays, and is found to be on the surface
+        const Vector3 z = nearest_to_origin(planes);
+        const double square = length_sq(z);
+        if (!(square > 1e-16)) {
+          moved[v] = INFINITY;
+          continue;
+        }
+        const Vector3 d = (largest / square) * z;
+        hull_[v] = hull_[v] + d;
+        moved[v] = enlarged(distance(scale_.apply(hull_[v]), scale_.apply(mesh_.positions[v])));
+      }
+    });
+    gap_ = 0;
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      const Names& names = mesh_.triangles[t];
+      const double most = std::max({moved[names[0]], moved[names[1]], moved[names[2]]});
+      // Parameter by parameter: the facet from its triangle, this from the surface.
+      const double gap =
+          most == INFINITY ? INFINITY : rounded_up(unscaled_up(most, scale_.inverse()) + errors_[t]);
+      gap_ = std::max(gap_, gap);
+      if (gap <= options_.tolerance) continue;
+      const std::size_t k = static_cast<std::size_t>(
+          std::max_element(names.begin(), names.end(), [&](auto a, auto b) { return moved[a] < moved[b]; }) -
+          names.begin());
+      blame(HullFault::no_position, t, mesh_.positions[names[k]]);
+    }
+  }
+
+  // Facets that may meet the surface, or each other.
+  void keep_off() {
+    const std::size_t count = mesh_.triangles.size();
+    std::vector<std::uint8_t> meets(count);
+    parallel_for(count, options_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        if (t % 256 == 0) monitor_.checkpoint();
+        if (wrong_[mesh_.owners[t]] != 0) continue;  // there is no position, or none that is near enough
+        const double flat = flat_share * scale_.apply(tolerances_[mesh_.owners[t]]);
+        meets[t] = tree_->may_meet(flat_quadratic(scaled(hull_, mesh_.triangles[t])), flat);
+      }
+    });
+    for (std::size_t t = 0; t < count; ++t) {
+      if (meets[t] == 0) continue;
+      const Names& names = mesh_.triangles[t];
+      blame(HullFault::meets_surface, t, mesh_.positions[names[0]]);
+      // What it meets may be another sheet, whose own facets are as near.
+      const QuadraticTriangle facet = flat_quadratic(scaled(hull_, names));
+      tree_->mark_near(facet, 0, piece_marks_);
+    }
+    for (std::size_t p = 0; p < pieces_.size(); ++p) {
+      if (piece_marks_[p] != 0) wrong_[surface_.place(pieces_[p].root).owner] = 1;
+    }
+    std::vector<Point3> points;
+    points.reserve(hull_.size());
+    for (const Point3& p : hull_) points.push_back(scale_.apply(p));
+    for (const auto& [a, b] :
+         self_contacts(points, mesh_.triangles, most_contacts, options_.threads, monitor_)) {
+      blame(HullFault::meets_itself, a, mesh_.positions[mesh_.triangles[a][0]]);
+      blame(HullFault::meets_itself, b, mesh_.positions[mesh_.triangles[b][0]]);
+    }
+  }
+
+  // Smaller tolerances where something is wrong; false where they are as small as they get.
+  bool refine() {
+    bool any = false;
+    double error = INFINITY;
+    for (std::size_t owner = 0; owner < tolerances_.size(); ++owner) {
+      if (wrong_[owner] == 0 || tolerances_[owner] <= least_share * options_.tolerance) continue;
+      tolerances_[owner] /= 2;
+      error = std::min(error, tolerances_[owner]);
+      any = true;
+    }
+    if (any && std::any_of(piece_marks_.begin(), piece_marks_.end(), [](auto m) { return m != 0; })) {
+      pieces_ = refined(surface_, pieces_, piece_marks_, quadratic_share * scale_.apply(error),
+                        options_.threads, monitor_)
+                    .pieces;
+      make_tree();
+    }
+    return any;
+  }
+
+  const LimitSurface& surface_;
+  const HullOptions& options_;
+  bool inner_;
+  WorkMonitor monitor_;
+  PowerOfTwo scale_;
+  std::vector<double> tolerances_;  // of owners
+  Tessellation mesh_;
+  std::vector<double> errors_;
+  std::vector<std::uint32_t> begins_, around_;  // triangles around each vertex
+  std::vector<QuadraticPiece> pieces_;
+  std::vector<QuadraticTriangle> quadratics_;
+  std::unique_ptr<QuadraticBvh> tree_;
+  bool border_ = false;
+  std::vector<HullProblem> problems_;
+  std::vector<std::uint8_t> wrong_, piece_marks_;  // owners; pieces that facets come near
+  std::vector<Point3> hull_;
+  double gap_ = 0;
+};
+
+// A hull as a surface of its own.
+class FacetSurface {
+ public:
+  FacetSurface(const Hull& hull, const std::shared_ptr<BoundsCache>& library, const WorkMonitor& monitor)
+      : limit_(mesh_of(hull), SchemeOptions{Scheme::flat}, library, monitor),
+        bvh_(limit_, {}, monitor),
+        workspace_(bvh_) {}
+
+  [[nodiscard]] PlacedBvh placed() { return {bvh_, workspace_, {}}; }
+  [[nodiscard]] SurfaceWorkspace& workspace() { return workspace_; }
+
+ private:
+  static ControlMesh mesh_of(const Hull& hull) {
+    ControlMesh mesh;
+    mesh.points = hull.positions;
+    for (const Names& t : hull.triangles)
+      mesh.add_face(std::array{VertexId(t[0]), VertexId(t[1]), VertexId(t[2])});
+    return mesh;
+  }
+
+  LimitSurface limit_;
+  SurfaceBvh bvh_;
+  SurfaceWorkspace workspace_;
+};
+
+// All that is claimed, by queries that know nothing of how the hulls were made.
+class Verification {
+ public:
+  Verification(const SurfaceBvh& model, const HullOptions& options, Hulls& hulls, const WorkMonitor& monitor)
+      : model_(model),
+        options_(options),
+        hulls_(hulls),
+        monitor_{.on_progress = {}, .stop = monitor.stop},
+        own_(model) {}
+
+  void run() {
+    std::array<std::unique_ptr<FacetSurface>, 2> sides;
+    for (const bool inner : {true, false}) {
+      const std::optional<Hull>& hull = inner ? hulls_.inner : hulls_.outer;
+      if (!hull) continue;
+      sides[inner] = std::make_unique<FacetSurface>(*hull, model_.surface().shared_library(), monitor_);
+      apart({model_, own_, {}}, sides[inner]->placed(), HullFault::meets_surface, inner);
+      near(*hull, inner);
+      if (hulls_.closed) around(*sides[inner], inner);
+    }
+    if (sides[0] && sides[1]) apart(sides[1]->placed(), sides[0]->placed(), HullFault::meets_other, true);
+  }
+
+ private:
+  void blame(HullFault fault, bool inner, const Point3& place, std::uint32_t owner) {
+    hulls_.problems.push_back({fault, inner, place, owner});
+  }
+  void apart(const PlacedBvh& a, const PlacedBvh& b, HullFault fault, bool inner) {
+    const Collision found =
+        collide(a, b, {.tolerance = 0, .witness = WitnessKind::none, .measure = false}, monitor_);
+    if (found.verdict == Verdict::separated) return;
+    const Point3 place = found.witness ? (*found.witness)[0] : Point3{};
+    blame(fault, inner, place, found.at[0] ? found.at[0]->owner : 0);
+  }
+  void near(const Hull& hull, bool inner) {
+    std::vector<Triangle> facets;
+    facets.reserve(hull.triangles.size());
+    for (const Names& t : hull.triangles) {
+      facets.push_back({hull.positions[t[0]], hull.positions[t[1]], hull.positions[t[2]]});
+    }
+    const Deviation found = deviation(model_, facets,
+                                      {.absolute = 0x1p-6 * options_.tolerance,
+                                       .tolerance = options_.tolerance,
+                                       .threads = options_.threads},
+                                      monitor_);
+    for (const OneSidedDistance* side : {&found.from_surface, &found.from_candidate}) {
+      if (side->distance.upper <= options_.tolerance) continue;
+      blame(HullFault::no_position, inner, side->from, side->at ? side->at->owner : 0);
+    }
+  }
+  // A limit point of each component is in the solid of the outer hull, and not in that of the inner one.
+  void around(FacetSurface& hull, bool inner) {
+    const LimitSurface& surface = model_.surface();
+    for (const PatchId p : model_.solid().components()) {
+      const Patch patch = surface.patch(p);
+      const Point3 point =
+          surface.scale().inverse().apply(limit_point(patch, {1.0 / 3, 1.0 / 3}).from(patch.origin).position);
+      if (contains(hull.workspace(), point, monitor_) != !inner) {
+        blame(HullFault::not_around, inner, point, surface.place(p).owner);
+      }
+    }
+  }
+
+  const SurfaceBvh& model_;
+  const HullOptions& options_;
+  Hulls& hulls_;
+  WorkMonitor monitor_;
+  SurfaceWorkspace own_;
+};
+
+}  // namespace
+
+const char* name_of(HullFault fault) { return name_in(fault_names, fault); }
+
+Hulls hulls(const SurfaceBvh& model, const HullOptions& options, const WorkMonitor& monitor) {
+  const LimitSurface& surface = model.surface();
+  require_value(options.tolerance > 0 && std::isfinite(options.tolerance),
+                "hull: the tolerance must be finite and greater than 0");
+  // Tolerances of triangles go down to a share of it.
+  const double least = surface.scale().inverse().apply(0x1p-30);
+  if (options.tolerance < least) {
+    throw InputError(InputProblem::value, "hull: doubles allow no tolerance below " + shortest(least) +
+                                              " for coordinates of this size; ask for that or more");
+  }
+  require_value(options.inner || options.outer, "hull: ask for the inner hull, the outer one, or both");
+  const double error = quadratic_share * first_share * surface.scale().apply(options.tolerance);
+  const std::vector<QuadraticPiece> pieces =
+      quadratic_pieces(surface, error, options.threads, {.on_progress = {}, .stop = monitor.stop});
+  Hulls result;
+  for (const bool inner : {true, false}) {
+    if (!(inner ? options.inner : options.outer)) continue;
+    OneHull hull(surface, options, inner, pieces, monitor);
+    const std::vector<HullProblem> problems = hull.run();
+    result.problems.insert(result.problems.end(), problems.begin(), problems.end());
+    result.closed = !hull.has_border_edges();
+    (inner ? result.inner : result.outer) = hull.take();
+    monitor.report(inner ? 0.3 : 0.6);
+  }
+  if (result.problems.empty()) Verification(model, options, result, monitor).run();
+  result.verified = result.problems.empty();
+  if (result.problems.size() > most_problems) result.problems.resize(most_problems);
+  monitor.report(1);
+  return result;
+}
+
+}  // namespace snug
