@@ -7,6 +7,7 @@
 #include <snug/collide.h>
 #include <snug/distance.h>
 #include <snug/evaluate.h>
+#include <snug/measure.h>
 #include <snug/mesh.h>
 #include <snug/motion.h>
 #include <snug/surface.h>

@@ -5,6 +5,7 @@
 #include <snug/front/workspace.h>
 #include <snug/query/bound.h>
 #include <snug/query/closest.h>
+#include <snug/query/measure.h>
 #include <snug/query/pairs.h>
 #include <snug/query/subdivide.h>
 #include <snug/surface/evaluate.h>
@@ -105,6 +106,10 @@ std::optional<SurfaceNormal> normal_at(const PlacedSurface& surface, const Surfa
 
 std::optional<double> limit_to_faces(const Surface& surface, int threads) {
   return limit_to_faces(limit(surface), threads);
+}
+
+Measures measure(const Surface& surface, const MeasureOptions& options, const WorkMonitor& monitor) {
+  return measure(limit(surface), options, monitor);
 }
 
 ControlMesh subdivided(const Surface& surface, unsigned level, bool limit_positions,
