@@ -82,13 +82,13 @@ ExitStatus run(const Options& options) {
   wanted.threads = options.threads;
   const LimitSurface surface =
       load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  Report report("measure", options);
   Measures found;
   {
     ProgressBar bar("measuring", options.quiet);
     const WorkMonitor monitor = bar.monitor();
     naming(options.mesh, [&] { found = measure(surface, wanted, monitor); });
   }
-  Report report("measure", options);
   report.heads({options.mesh}, {name_of(surface.options().scheme)});
   if (report.json()) write_json(report.write(), found, *wanted.relative);
   write_text(report, found, open_reason(surface));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <snug/geometry/rounding.h>
@@ -10,8 +11,8 @@
 namespace snug {
 namespace {
 
-// Steps from a patch to one that repeats itself: sharpness may decay that long, and more.
-constexpr unsigned max_depth = 64;
+// Steps after which a kind comes again, at most: one, but where faces around it are named in turns.
+constexpr std::size_t max_period = 24;
 // Largest matrices whose powers are taken for a smaller factor, or to find one at all.
 constexpr std::size_t common_size = 80, largest_size = 600;
 
@@ -45,104 +46,149 @@ class Overlap {
 
 double growth_of(const Stencils& rows, std::span<const std::uint32_t> which, std::size_t columns) {
   Overlap overlap(columns);
-  double error = 0;
-  for (const std::uint32_t r : which) {
-    overlap.add(rows.row(r));
-    error += rows.row(r).error;
-  }
+  for (const std::uint32_t r : which) overlap.add(rows.row(r));
   return growth(rows.max_abs_sum(), overlap.sum(),
-                static_cast<double>(columns) * (rows.max_error() + gamma_bound(8)) + error);
+                2 * static_cast<double>(columns) * (rows.max_error() + gamma_bound(8)));
 }
 
-// Of a patch whose child is of its own kind: the least factor by 1, 2, 4, ... steps at once, `other` being
-// that of all that one step splits off.
-class Repeated {
+// Control points after some steps from those before.
+class DenseRows {
  public:
-  Repeated(const Stencils& rows, std::span<const std::uint32_t> which, std::size_t size)
-      : size_(size), sum_(std::max(1.0, rows.max_abs_sum())), error_(rows.max_error() + gamma_bound(8)) {
-    matrix_.assign(size * size, 0.0);
-    for (std::size_t r = 0; r < size; ++r) {
+  // None yet: each point by itself.
+  explicit DenseRows(std::size_t size) : columns_(size) {}
+
+  void step(const Stencils& rows, std::span<const std::uint32_t> which) {
+    std::vector<double> product(which.size() * columns_, 0.0);
+    for (std::size_t r = 0; r < which.size(); ++r) {
       const Stencils::Row row = rows.row(which[r]);
+      double* const to = product.data() + r * columns_;
       for (std::size_t i = 0; i < row.sources.size(); ++i) {
-        matrix_[r * size + row.sources[i]] += row.weights[i];
+        add(row.weights[i], row.sources[i], to);
       }
     }
+    multiplied(rows.max_abs_sum(), rows.max_error() + gamma_bound(8));
+    matrix_ = std::move(product);
   }
-  [[nodiscard]] double factor(double other) {
-    double best = INFINITY, reach = rate();
-    double sum = 1;  // of squared growths of 0, 1, ... steps - 1 steps
-    for (unsigned steps = 1;; steps *= 2) {
-      const double reach_sq = enlarged(reach * reach);
-      if (reach_sq < 1) best = std::min(best, enlarged(other * sum / (1 - reach_sq)));
-      const std::size_t limit = best == INFINITY ? largest_size : common_size;
-      if (size_ > limit || steps >= most_steps || (best < INFINITY && steps >= enough_steps)) return best;
-      sum *= 1 + reach_sq;
-      square();
-      reach = rate();
+  // Requires:  as many rows as columns.
+  void square() {
+    std::vector<double> product(columns_ * columns_, 0.0);
+    for (std::size_t r = 0; r < columns_; ++r) {
+      for (std::size_t k = 0; k < columns_; ++k) {
+        const double weight = matrix_[r * columns_ + k];
+        if (weight != 0) add(weight, k, product.data() + r * columns_);
+      }
     }
+    multiplied(sum_, error_);
+    matrix_ = std::move(product);
+  }
+  [[nodiscard]] std::size_t columns() const { return columns_; }
+  [[nodiscard]] double growth() const {
+    if (matrix_.empty()) return 1;
+    Overlap overlap(columns_);
+    for (std::size_t begin = 0; begin < matrix_.size(); begin += columns_) {
+      overlap.add(std::span(matrix_).subspan(begin, columns_));
+    }
+    return snug::growth(sum_, overlap.sum(), 2 * static_cast<double>(columns_) * error_);
   }
 
  private:
-  static constexpr unsigned enough_steps = 8, most_steps = 4096;
-
-  [[nodiscard]] double rate() const {
-    Overlap overlap(size_);
-    for (std::size_t r = 0; r < size_; ++r) overlap.add(std::span(matrix_).subspan(r * size_, size_));
-    return growth(sum_, overlap.sum(), 2 * static_cast<double>(size_) * error_);
-  }
-  void square() {
-    std::vector<double> product(size_ * size_, 0.0);
-    for (std::size_t r = 0; r < size_; ++r) {
-      for (std::size_t k = 0; k < size_; ++k) {
-        const double weight = matrix_[r * size_ + k];
-        if (weight == 0) continue;
-        for (std::size_t c = 0; c < size_; ++c) product[r * size_ + c] += weight * matrix_[k * size_ + c];
-      }
+  // Adds a row, weighted.
+  void add(double weight, std::size_t row, double* to) const {
+    if (matrix_.empty()) {
+      to[row] += weight;
+      return;
     }
-    matrix_ = std::move(product);
-    error_ = enlarged(error_ * (2 * sum_ + error_) + gamma_bound(size_ + 2) * sum_ * sum_);
-    sum_ = enlarged(sum_ * sum_);
+    const double* const from = matrix_.data() + row * columns_;
+    for (std::size_t c = 0; c < columns_; ++c) to[c] += weight * from[c];
+  }
+  void multiplied(double sum, double error) {
+    error_ = enlarged(error_ * (sum + error) + error * sum_ +
+                      gamma_bound(columns_ + 2) * (sum + error) * (sum_ + error_));
+    sum_ = enlarged(sum_ * sum);
   }
 
-  std::size_t size_;
+  std::size_t columns_;
   std::vector<double> matrix_;
-  double sum_;    // largest absolute sum of a row
-  double error_;  // of the entries of a row, in sum
+  double sum_ = 1, error_ = 0;  // largest absolute sum of a row; of errors of its entries
 };
+
+// The least factor, by one period, two, four, ... at once, `other` being that of all that one period splits
+// off.
+double repeated(DenseRows period, double other) {
+  constexpr unsigned enough = 8, most = 4096;
+  double best = INFINITY;
+  double sum = 1;  // of squared growths of 0, 1, ... times - 1 periods
+  for (unsigned times = 1;; times *= 2) {
+    const double growth = period.growth(), growth_sq = enlarged(growth * growth);
+    if (growth_sq < 1) best = std::min(best, enlarged(other * sum / (1 - growth_sq)));
+    const std::size_t limit = best == INFINITY ? largest_size : common_size;
+    if (period.columns() > limit || times >= most || (best < INFINITY && times >= enough)) return best;
+    sum *= 1 + growth_sq;
+    period.square();
+  }
+}
+
+using Path = std::vector<std::size_t>;
+
+// Children by which a kind comes again, if it does.
+bool comes_again(const Kind& kind, const Kind& from, std::unordered_set<const Kind*>& seen, Path& path) {
+  if (path.size() >= max_period) return false;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Kind& child = *from.step().pieces[k].kind;
+    if (child.polynomial()) continue;
+    path.push_back(k);
+    if (&child == &kind) return true;
+    if (seen.insert(&child).second && comes_again(kind, child, seen, path)) return true;
+    path.pop_back();
+  }
+  return false;
+}
 
 }  // namespace
 
-double TipAreas::factor(const Kind& kind) { return find(kind, 0); }
+double TipAreas::factor(const Kind& kind) {
+  const double factor = find(kind);
+  known_[&kind] = factor;
+  return factor;
+}
 
-double TipAreas::find(const Kind& kind, unsigned depth) {
+double TipAreas::find(const Kind& kind) {
   if (const auto it = known_.find(&kind); it != known_.end()) return it->second;
-  const double domain = kind.rules().triangular() ? 0.5 : 1;
   if (kind.polynomial()) {
     // Derivatives along u and v are averages of differences of lattice points.
+    const double domain = kind.rules().triangular() ? 0.5 : 1;
     const double stretch = std::max(1.0, kind.lattice().ghosts.max_abs_sum());
     return known_[&kind] = enlarged(domain * stretch * stretch);
   }
-  if (depth >= max_depth) return INFINITY;
-  const KindStep& step = kind.step();
-  double other = 0;
-  const KindStep::Piece* again = nullptr;
-  bool repeated = false;
-  for (const KindStep::Piece& piece : step.pieces) {
-    if (piece.kind == &kind) {
-      repeated = again != nullptr;
-      again = &piece;
-      continue;
+  if (!open_.insert(&kind).second) return INFINITY;
+  const double factor = find_new(kind);
+  open_.erase(&kind);
+  if (factor < INFINITY) known_[&kind] = factor;
+  return factor;
+}
+
+double TipAreas::find_new(const Kind& kind) {
+  Path path;
+  std::unordered_set<const Kind*> seen;
+  const bool again = !kind.passing() && comes_again(kind, kind, seen, path);
+  if (!again) path = {4};  // no child is left out
+  DenseRows rows(kind.control_count());
+  double factor = 0;
+  const Kind* at = &kind;
+  for (const std::size_t next : path) {
+    const KindStep& step = at->step();
+    const double growth = at == &kind ? 1 : rows.growth();
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (k == next) continue;
+      const KindStep::Piece& piece = step.pieces[k];
+      const double grows = growth * growth_of(step.stencils, piece.control, at->control_count());
+      factor += grows * grows * find(*piece.kind);
     }
-    const double grows = growth_of(step.stencils, piece.control, kind.control_count());
-    other += grows * grows * find(*piece.kind, depth + 1);
+    if (!again) return enlarged(factor);
+    rows.step(step.stencils, step.pieces[next].control);
+    at = step.pieces[next].kind;
   }
-  double factor = enlarged(other);
-  if (repeated) {
-    factor = INFINITY;
-  } else if (again != nullptr) {
-    factor = Repeated(step.stencils, again->control, kind.control_count()).factor(factor);
-  }
-  return known_[&kind] = factor;
+  return repeated(std::move(rows), enlarged(factor));
 }
 
 }  // namespace snug

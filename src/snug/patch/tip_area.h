@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <unordered_map>
+#include <unordered_set>
+#include <vector>
 
 #include <snug/patch/kind_cache.h>
 
@@ -19,8 +22,10 @@ class TipAreas {
   [[nodiscard]] double factor(const Kind& kind);
 
  private:
-  [[nodiscard]] double find(const Kind& kind, unsigned depth);
+  [[nodiscard]] double find(const Kind& kind);
+  [[nodiscard]] double find_new(const Kind& kind);
   std::unordered_map<const Kind*, double> known_;
+  std::unordered_set<const Kind*> open_;  // whose factors are being found
 };
 
 }  // namespace snug

@@ -323,7 +323,8 @@ Interval unscaled_interval(const Interval& x, PowerOfTwo back) {
 Measures in_mesh_units(const Answer& answer, PowerOfTwo back, bool closed) {
   const PowerOfTwo square = back * back, cube = square * back, fifth = cube * square;
   Measures result;
-  result.area = unscaled_interval({std::max(0.0, answer.area.lower), answer.area.upper}, square);
+  result.area = unscaled_interval(answer.area, square);
+  result.area.lower = std::max(0.0, result.area.lower);
   if (!closed) return result;
   result.volume = unscaled_interval(answer.volume, cube);
   if (!answer.has_centroid) return result;
