@@ -107,7 +107,8 @@ Command measure_command() {
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL)");
   list.add(Group::own, "--precision SHARE", &options->precision,
            "Largest width of an interval, as a share of what is measured: 0.0001 or 0.01%");
-  list.add(Group::effort, "--budget N", &options->budget, "Split at most N pieces, shared out evenly among patches")
+  list.add(Group::effort, "--budget N", &options->budget,
+           "Split at most N pieces, shared out evenly among patches")
       .between(0, std::uint64_t{1} << 40);
   add_common_options(list, *options);
   return {"measure",

@@ -166,10 +166,10 @@ std::vector<Function> box_spline_functions(std::array<int, 2> e, std::array<int,
     for (const Term& t : terms) add(result, t.factor, power(u, t.u) * power(v, t.v) * power(w, t.w));
     return result;
   };
-  const std::vector<Term> corner{{6, 4, 0, 0},  {24, 3, 0, 1}, {24, 2, 0, 2}, {8, 1, 0, 3},  {1, 0, 0, 4},
-                                 {24, 3, 1, 0}, {60, 2, 1, 1}, {36, 1, 1, 2}, {6, 0, 1, 3},  {24, 2, 2, 0},
-                                 {36, 1, 2, 1}, {12, 0, 2, 2}, {8, 1, 3, 0},  {6, 0, 3, 1},  {1, 0, 4, 0}},
-      across{{1, 4, 0, 0},  {2, 3, 0, 1}, {6, 3, 1, 0}, {6, 2, 1, 1}, {12, 2, 2, 0},
+  const std::vector<Term> corner{{6, 4, 0, 0},  {24, 3, 0, 1}, {24, 2, 0, 2}, {8, 1, 0, 3}, {1, 0, 0, 4},
+                                 {24, 3, 1, 0}, {60, 2, 1, 1}, {36, 1, 1, 2}, {6, 0, 1, 3}, {24, 2, 2, 0},
+                                 {36, 1, 2, 1}, {12, 0, 2, 2}, {8, 1, 3, 0},  {6, 0, 3, 1}, {1, 0, 4, 0}},
+      across{{1, 4, 0, 0}, {2, 3, 0, 1}, {6, 3, 1, 0}, {6, 2, 1, 1}, {12, 2, 2, 0},
              {6, 1, 2, 1}, {6, 1, 3, 0}, {2, 0, 3, 1}, {1, 0, 4, 0}},
       beyond{{1, 4, 0, 0}, {2, 3, 1, 0}};
   push(sum(corner, a, b, c), 0, 0);
@@ -230,8 +230,7 @@ MeasureValues polyhedron_measures(const TaggedMesh& mesh) {
 MeasureEstimate limit_measures(const TaggedMesh& mesh, const WindingScheme& scheme, int levels) {
   std::array<MeasureValues, 3> at;
   for (int k = 0; k < 3; ++k) {
-    at[static_cast<std::size_t>(k)] =
-        polyhedron_measures(WindingTwin(mesh, scheme, levels - 2 + k).mesh());
+    at[static_cast<std::size_t>(k)] = polyhedron_measures(WindingTwin(mesh, scheme, levels - 2 + k).mesh());
   }
   MeasureEstimate estimate;
   for (std::size_t m = 0; m < kMeasures; ++m) {
@@ -251,7 +250,9 @@ std::array<mpq_class, kMeasures - 1> exact_measures(PeriodicBasis basis, std::ui
   if (triangle) {
     patches = {box_spline_functions({1, 0}, {1, 1}), box_spline_functions({1, 1}, {0, 1})};
   } else {
-    patches = {tensor_functions(basis == PeriodicBasis::bilinear ? 1 : basis == PeriodicBasis::biquadratic ? 2 : 3)};
+    patches = {tensor_functions(basis == PeriodicBasis::bilinear      ? 1
+                                : basis == PeriodicBasis::biquadratic ? 2
+                                                                      : 3)};
   }
   Moments<mpq_class> sum;
   for (std::uint32_t i = 0; i < m; ++i) {

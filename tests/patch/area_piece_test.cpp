@@ -30,11 +30,11 @@ long double length_at(Domain domain, const Coefficients& normal, double u, doubl
   std::size_t k = 0;
   for (std::size_t j = 0; j <= d; ++j) {
     for (std::size_t i = 0; i <= (domain == Domain::triangle ? d - j : d); ++i, ++k) {
-      const double basis = domain == Domain::triangle
-                               ? choose(d, j) * choose(d - j, i) * power(u, i) * power(v, j) *
-                                     power(1 - u - v, d - i - j)
-                               : choose(d, i) * choose(d, j) * power(u, i) * power(1 - u, d - i) *
-                                     power(v, j) * power(1 - v, d - j);
+      const double basis =
+          domain == Domain::triangle
+              ? choose(d, j) * choose(d - j, i) * power(u, i) * power(v, j) * power(1 - u - v, d - i - j)
+              : choose(d, i) * choose(d, j) * power(u, i) * power(1 - u, d - i) * power(v, j) *
+                    power(1 - v, d - j);
       for (std::size_t a = 0; a < 3; ++a) sum[a] += static_cast<long double>(basis) * normal[a][k];
     }
   }
@@ -84,7 +84,8 @@ TEST(area_piece, holds_the_area_however_it_is_split) {
   for (const Domain domain : {Domain::triangle, Domain::square}) {
     for (int trial = 0; trial < 70; ++trial) {
       const Coefficients normal = random_normal(trial % 7, random);
-      const long double truth = area(domain, normal, 24), error = std::fabs(truth - area(domain, normal, 16)) * 4 + 1e-13L * truth;
+      const long double truth = area(domain, normal, 24),
+                        error = std::fabs(truth - area(domain, normal, 16)) * 4 + 1e-13L * truth;
       std::vector<AreaPiece> pieces{AreaPiece(domain, normal, 0)};
       for (int step = 0; step < 6; ++step) {
         long double lower = 0, upper = 0;

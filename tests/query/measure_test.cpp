@@ -73,10 +73,9 @@ TEST(measure, holds_the_exact_moments_of_regular_tori) {
     Scheme scheme;
     PeriodicBasis basis;
   };
-  for (const auto& [scheme, basis] : {Case{Scheme::bilinear, PeriodicBasis::bilinear},
-                                      Case{Scheme::doo_sabin, PeriodicBasis::biquadratic},
-                                      Case{Scheme::catmark, PeriodicBasis::bicubic},
-                                      Case{Scheme::loop, PeriodicBasis::box_spline}}) {
+  for (const auto& [scheme, basis] :
+       {Case{Scheme::bilinear, PeriodicBasis::bilinear}, Case{Scheme::doo_sabin, PeriodicBasis::biquadratic},
+        Case{Scheme::catmark, PeriodicBasis::bicubic}, Case{Scheme::loop, PeriodicBasis::box_spline}}) {
     const bool triangles = scheme == Scheme::loop;
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
       const oracle::TaggedMesh mesh = torus(4, 3, triangles, seed);
@@ -111,8 +110,8 @@ TEST(measure, holds_the_moments_of_boxes) {
     ASSERT_TRUE(found.inertia);
     EXPECT_TRUE(found.volume->contains(v));
     const std::array<double, 3> middle{a / 2 + 10, b / 2 - 4, c / 2 + 1};
-    const std::array<double, 6> moments{v / 12 * (b * b + c * c), v / 12 * (a * a + c * c),
-                                        v / 12 * (a * a + b * b), 0, 0, 0};
+    const std::array<double, 6> moments{
+        v / 12 * (b * b + c * c), v / 12 * (a * a + c * c), v / 12 * (a * a + b * b), 0, 0, 0};
     for (std::size_t k = 0; k < 3; ++k) EXPECT_TRUE((*found.centroid)[k].contains(middle[k]));
     for (std::size_t k = 0; k < 6; ++k) EXPECT_TRUE((*found.inertia)[k].contains(moments[k])) << k;
     EXPECT_LE(width(found.area), 1e-6 * found.area.upper);

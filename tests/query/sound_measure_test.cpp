@@ -1,4 +1,5 @@
-// Measures of random solids of every scheme and with every tag, against refined meshes.
+// Measures of random solids of every scheme and with every tag, against refined meshes, and against those of the same
+// surface by a mesh that was refined once.
 //
 //   SNUG_SOLIDS=1000 build/release/bin/tests/sound_measure_test
 //
@@ -46,6 +47,18 @@ TEST(measure, holds_those_of_refined_meshes) {
     for (std::size_t m = 0; m < all.size(); ++m) {
       EXPECT_LE(all[m].lower, twin.value[m] + twin.error[m]) << m;
       EXPECT_GE(all[m].upper, twin.value[m] - twin.error[m]) << m;
+    }
+    // Once refined by the twin it is the same surface, but for the rounding of its points.
+    testing::SolidCase refined = c;
+    refined.mesh = oracle::WindingTwin(c.mesh, c.scheme, 1).mesh();
+    const Measures again = measure(Surface(testing::control_mesh(refined), {.scheme = c.options.scheme}),
+                                   {.relative = 1e-7}),
+                   closer = measure(surface, {.relative = 1e-7});
+    ASSERT_TRUE(again.inertia && closer.inertia);
+    const auto first_time = all_of(closer), second = all_of(again);
+    for (std::size_t m = 0; m < all.size(); ++m) {
+      EXPECT_LE(first_time[m].lower, second[m].upper + 1e-11) << m;
+      EXPECT_GE(first_time[m].upper, second[m].lower - 1e-11) << m;
     }
     errors.push_back(twin.error[0] / twin.value[0]);
     errors.push_back(twin.error[1] / std::fabs(twin.value[1]));

@@ -79,8 +79,7 @@ class PartIntegrals {
       u[a] = along<AlongU>(points[a], 1, 0, largest);
       v[a] = along<AlongV>(points[a], 0, 1, largest);
     }
-    const double slope_error =
-        static_cast<double>(degree) * 2 * point_error_ + 4 * unit_roundoff * largest;
+    const double slope_error = static_cast<double>(degree) * 2 * point_error_ + 4 * unit_roundoff * largest;
     largest += slope_error;
     for (std::size_t a = 0; a < 3; ++a) {
       const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
@@ -94,7 +93,8 @@ class PartIntegrals {
     largest_normal_ = normal_error_;
     for (const Normal& n : normal_) {
       for (std::size_t k = 0; k < Normal::count; ++k) {
-        largest_normal_ = std::max(largest_normal_, std::fabs(n.scaled[k]) / binomials<Normal>[k] + normal_error_);
+        largest_normal_ =
+            std::max(largest_normal_, std::fabs(n.scaled[k]) / binomials<Normal>[k] + normal_error_);
       }
     }
   }
@@ -170,7 +170,10 @@ constexpr std::array<std::array<double, degree + 1>, degree + 1> segment() {
   } else if constexpr (degree == 2) {
     return {{{0.5, 0.5, 0}, {0, 1, 0}, {0, 0.5, 0.5}}};
   } else {
-    return {{{1.0 / 6, 2.0 / 3, 1.0 / 6, 0}, {0, 2.0 / 3, 1.0 / 3, 0}, {0, 1.0 / 3, 2.0 / 3, 0}, {0, 1.0 / 6, 2.0 / 3, 1.0 / 6}}};
+    return {{{1.0 / 6, 2.0 / 3, 1.0 / 6, 0},
+             {0, 2.0 / 3, 1.0 / 3, 0},
+             {0, 1.0 / 3, 2.0 / 3, 0},
+             {0, 1.0 / 6, 2.0 / 3, 1.0 / 6}}};
   }
 }
 
@@ -266,12 +269,24 @@ FluxMoments integrate(const RegularPiece& piece, std::vector<AreaPiece>& normals
   FluxMoments sum;
   const double error = enlarged(piece.error + gamma_bound(point_roundings) * piece.largest) + tiny;
   switch (piece.basis) {
-    case RegularBasis::linear: integrate_triangle(piece, error, sum, normals); break;
-    case RegularBasis::box_spline: integrate_box_spline(piece, error, sum, normals); break;
-    case RegularBasis::bilinear: integrate_tensor<1>(piece, error, sum, normals); break;
-    case RegularBasis::biquadratic: integrate_tensor<2>(piece, error, sum, normals); break;
-    case RegularBasis::bicubic: integrate_tensor<3>(piece, error, sum, normals); break;
-    case RegularBasis::zwart_powell: integrate_zwart_powell(piece, error, sum, normals); break;
+    case RegularBasis::linear:
+      integrate_triangle(piece, error, sum, normals);
+      break;
+    case RegularBasis::box_spline:
+      integrate_box_spline(piece, error, sum, normals);
+      break;
+    case RegularBasis::bilinear:
+      integrate_tensor<1>(piece, error, sum, normals);
+      break;
+    case RegularBasis::biquadratic:
+      integrate_tensor<2>(piece, error, sum, normals);
+      break;
+    case RegularBasis::bicubic:
+      integrate_tensor<3>(piece, error, sum, normals);
+      break;
+    case RegularBasis::zwart_powell:
+      integrate_zwart_powell(piece, error, sum, normals);
+      break;
   }
   for (double& e : sum.error) e = enlarged(e);
   return sum;

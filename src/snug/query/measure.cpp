@@ -48,11 +48,11 @@ class BoundedSum {
 
 // Of one patch, or of a quad: two patches.
 struct PatchMeasures {
-  FluxMoments moments;    // what is left at corners counts as error
+  FluxMoments moments;        // what is left at corners counts as error
   double lower = 0, gap = 0;  // of the area, what is left at corners included
-  double tips = 0;        // area left at corners, at most
+  double tips = 0;            // area left at corners, at most
   std::uint64_t splits = 0;
-  bool stuck = false;     // in rounding, or at the end of the budget
+  bool stuck = false;  // in rounding, or at the end of the budget
 };
 
 struct Goal {
@@ -93,7 +93,8 @@ class PatchMeasurer {
     if (kind.polynomial()) {
       const KindLattice& lattice = kind.lattice();
       double error = net.error;
-      if (lattice.ghosts.row_count() > 0) error = append_rows(lattice.ghosts, net, net.points, net.largest, error);
+      if (lattice.ghosts.row_count() > 0)
+        error = append_rows(lattice.ghosts, net, net.points, net.largest, error);
       add_regular(net.points, lattice.places, net.largest, error);
     } else if (kind.passing() && result_.splits < most_splits_) {
       refine(net);
@@ -152,9 +153,10 @@ class PatchMeasurer {
   double area_of(const Net& net) {
     const double factor = tip_areas_.factor(*net.kind);
     if (!(factor < INFINITY)) {
-      throw InputError(InputProblem::refused,
-                       "measure: Midedge converges too slowly beside a face of so many corners; split that face "
-                       "or use another scheme");
+      throw InputError(
+          InputProblem::refused,
+          "measure: Midedge converges too slowly beside a face of so many corners; split that face "
+          "or use another scheme");
     }
     return enlarged(factor * extent_sq(net));
   }
@@ -176,7 +178,8 @@ class PatchMeasurer {
     };
     double left = sum_of_tips();
     while (left > goal) {
-      if (result_.splits >= most_splits_ || extent_sq(tips_.front()) <= 0x1p12 * tips_.front().error * tips_.front().error) {
+      if (result_.splits >= most_splits_ ||
+          extent_sq(tips_.front()) <= 0x1p12 * tips_.front().error * tips_.front().error) {
         result_.stuck = true;
         break;
       }
@@ -276,7 +279,9 @@ struct Answer {
 double width(const Interval& x) { return x.upper - x.lower; }
 double magnitude(const Interval& x) { return std::max(std::fabs(x.lower), std::fabs(x.upper)); }
 
-double excess(double is, double wanted) { return is <= wanted ? is / std::max(wanted, 0x1p-900) : wanted > 0 ? is / wanted : 0x1p900; }
+double excess(double is, double wanted) {
+  return is <= wanted ? is / std::max(wanted, 0x1p-900) : wanted > 0 ? is / wanted : 0x1p900;
+}
 
 void add_inertia(const Totals& totals, Answer& answer) {
   const auto first = [&](std::size_t a) { return totals.moments[1 + a] / Interval(4); };
@@ -296,14 +301,12 @@ Answer answer_of(const Totals& totals, const Point3& origin, double size, double
   answer.area_excess = excess(width(answer.area), relative * answer.area.upper);
   if (!closed) return answer;
   answer.volume = totals.moments[0] / Interval(3);
-  answer.solid_excess =
-      excess(width(answer.volume),
-             relative * std::max(magnitude(answer.volume), relative * size * size * size));
+  answer.solid_excess = excess(width(answer.volume),
+                               relative * std::max(magnitude(answer.volume), relative * size * size * size));
   if (answer.volume.contains(0)) return answer;
   answer.has_centroid = true;
   for (std::size_t a = 0; a < 3; ++a) {
-    answer.centroid[a] =
-        Interval(origin[a]) + totals.moments[1 + a] / Interval(4) / answer.volume;
+    answer.centroid[a] = Interval(origin[a]) + totals.moments[1 + a] / Interval(4) / answer.volume;
     answer.solid_excess = std::max(answer.solid_excess, excess(width(answer.centroid[a]), relative * size));
   }
   add_inertia(totals, answer);
@@ -317,7 +320,8 @@ Answer answer_of(const Totals& totals, const Point3& origin, double size, double
 }
 
 Interval unscaled_interval(const Interval& x, PowerOfTwo back) {
-  return {require_representable(unscaled_down(x.lower, back)), require_representable(unscaled_up(x.upper, back))};
+  return {require_representable(unscaled_down(x.lower, back)),
+          require_representable(unscaled_up(x.upper, back))};
 }
 
 Measures in_mesh_units(const Answer& answer, PowerOfTwo back, bool closed) {

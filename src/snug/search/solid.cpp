@@ -66,7 +66,8 @@ std::optional<std::string> open_reason(const LimitSurface& surface) {
     return "edge (" + std::to_string(topology.from(h).value()) + ", " +
            std::to_string(topology.to(h).value()) + ") of face " +
            std::to_string(topology.face_of(h).value()) +
-           " does not have two faces that run along it in opposite directions; close the mesh or ask about its "
+           " does not have two faces that run along it in opposite directions; close the mesh or ask about "
+           "its "
            "surface";
   }
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
