@@ -123,17 +123,17 @@ template <class P, class Q>
 template <class P, class Q>
 [[nodiscard]] std::array<double, P::count> means_with(const Q& q) {
   using Out = ProductOf<P, Q>;
-  const double* const weights_of = means<Out>.data();
-  std::array<double, P::count> result;
-  P::for_each([&](std::size_t i, std::size_t j) {
-    double sum = 0;
-    const double* from = q.scaled.data();
-    for (std::size_t l = 0; from < q.scaled.data() + Q::count; from += Q::width(l), ++l) {
-      const double* const weights = weights_of + Out::place(i, j + l);
-      for (std::size_t k = 0; k < Q::width(l); ++k) sum += weights[k] * from[k];
+  std::array<double, P::count> result{};
+  for (std::size_t j = 0, row = 0; row < P::count; row += P::width(j), ++j) {
+    double* const to = result.data() + row;  // sums side by side: no addition waits for the one before
+    const double* factor = q.scaled.data();
+    for (std::size_t l = 0; factor < q.scaled.data() + Q::count; ++l) {
+      const double* weights = means<Out>.data() + Out::place(0, j + l);
+      for (std::size_t k = 0; k < Q::width(l); ++k, ++factor, ++weights) {
+        for (std::size_t i = 0; i < P::width(j); ++i) to[i] += *factor * weights[i];
+      }
     }
-    result[P::place(i, j)] = sum;
-  });
+  }
   return result;
 }
 

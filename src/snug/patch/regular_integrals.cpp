@@ -51,6 +51,14 @@ class PartIntegrals {
 
  private:
   static constexpr bool triangle = domain == Domain::triangle;
+
+  template <std::size_t n>
+  static double dot(const std::array<double, n>& a, const std::array<double, n>& b) {
+    double sum = 0;
+    for (std::size_t k = 0; k < n; ++k) sum += a[k] * b[k];
+    return sum;
+  }
+
   using AlongU = Bernstein<domain, degree - 1, triangle ? degree - 1 : degree>;
   using AlongV = Bernstein<domain, triangle ? degree - 1 : degree, degree - 1>;
   using Normal = ProductOf<AlongU, AlongV>;
@@ -117,25 +125,29 @@ class PartIntegrals {
     const double flux_error = 3 * (x_error * largest_normal_ + reach * normal_error_) +
                               gamma_bound(product_roundings) * largest_flux;
 
+    // Means of q times Bernstein polynomials, then of x_i q times those of half the degree.
     using Pair = ProductOf<Point, Point>;
     const std::array<double, Pair::count> means = means_with<Pair>(flux);
-    const auto integral_of = [&](const Pair& p) {
-      double mean = 0;
-      for (std::size_t k = 0; k < Pair::count; ++k) mean += p.scaled[k] * means[k];
-      return area_of(domain) * mean;
-    };
     std::array<double, 10> value;
-    value[0] = integral_of(one<Pair>);
-    for (std::size_t a = 0; a < 3; ++a) value[1 + a] = integral_of(product(x[a], one<Point>));
+    value[0] = area_of(domain) * dot(one<Pair>.scaled, means);
+    std::array<std::array<double, Point::count>, 3> by_axis{};
     for (std::size_t a = 0; a < 3; ++a) {
-      value[4 + a] = integral_of(product(x[a], x[a]));
-      value[7 + a] = integral_of(product(x[a], x[(a + 1) % 3]));
+      Point::for_each([&](std::size_t i, std::size_t j) {
+        const double factor = x[a].scaled[Point::place(i, j)];
+        Point::for_each([&](std::size_t k, std::size_t l) {
+          by_axis[a][Point::place(k, l)] += factor * means[Pair::place(i + k, j + l)];
+        });
+      });
+      value[1 + a] = area_of(domain) * dot(one<Point>.scaled, by_axis[a]);
     }
-    double power = 1;
+    for (std::size_t a = 0; a < 3; ++a) {
+      value[4 + a] = area_of(domain) * dot(x[a].scaled, by_axis[a]);
+      value[7 + a] = area_of(domain) * dot(x[(a + 1) % 3].scaled, by_axis[a]);
+    }
     const double rounded = gamma_bound(mean_roundings) * largest_flux;
     for (std::size_t m = 0; m < 10; ++m) {
       const unsigned factors = m == 0 ? 0 : m < 4 ? 1 : 2;
-      power = factors == 0 ? 1 : factors == 1 ? reach : reach * reach;
+      const double power = factors == 0 ? 1 : factors == 1 ? reach : reach * reach;
       const double by_points = factors == 0 ? 0 : factors == 1 ? x_error : 2 * reach * x_error;
       sum.value[m] += value[m];
       sum.error[m] += area_of(domain) * (power * (flux_error + rounded) + by_points * largest_flux) +

@@ -177,7 +177,7 @@ class PatchMeasurer {
       return enlarged(sum * (1 + gamma_bound(tips_.size())));
     };
     double left = sum_of_tips();
-    while (left > goal) {
+    while (left > goal && !tips_.empty()) {
       if (result_.splits >= most_splits_ ||
           extent_sq(tips_.front()) <= 0x1p12 * tips_.front().error * tips_.front().error) {
         result_.stuck = true;
