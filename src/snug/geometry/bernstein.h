@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 
 /// Polynomials on a triangle or a square, and their products and means.
 namespace snug {
@@ -33,6 +34,12 @@ struct Bernstein {
     for (std::size_t j = 0; j <= B; ++j) {
       for (std::size_t i = 0; i < width(j); ++i) visit(i, j);
     }
+  }
+  /// Calls visit.operator()<j>() for j from 0 to B.
+  template <class Visit>
+  static void for_each_row(const Visit& visit) {
+    [&]<std::size_t... j>(std::index_sequence<j...>) { (visit.template operator()<j>(), ...); }
+    (std::make_index_sequence<B + 1>());
   }
 };
 
@@ -123,17 +130,20 @@ template <class P, class Q>
 template <class P, class Q>
 [[nodiscard]] std::array<double, P::count> means_with(const Q& q) {
   using Out = ProductOf<P, Q>;
-  std::array<double, P::count> result{};
-  for (std::size_t j = 0, row = 0; row < P::count; row += P::width(j), ++j) {
-    double* const to = result.data() + row;  // sums side by side: no addition waits for the one before
+  std::array<double, P::count> result;
+  const auto set_row = [&]<std::size_t... i>(std::size_t j, std::index_sequence<i...>) {
+    std::array<double, sizeof...(i)> sums{};
     const double* factor = q.scaled.data();
     for (std::size_t l = 0; factor < q.scaled.data() + Q::count; ++l) {
       const double* weights = means<Out>.data() + Out::place(0, j + l);
       for (std::size_t k = 0; k < Q::width(l); ++k, ++factor, ++weights) {
-        for (std::size_t i = 0; i < P::width(j); ++i) to[i] += *factor * weights[i];
+        ((sums[i] += *factor * weights[i]), ...);
       }
     }
-  }
+    ((result[P::place(i, j)] = sums[i]), ...);
+  };
+  // Each row by code of its own, with sums in registers.
+  P::for_each_row([&]<std::size_t j>() { set_row(j, std::make_index_sequence<P::width(j)>()); });
   return result;
 }
 
