@@ -110,6 +110,33 @@ TEST(area_piece, holds_the_area_however_it_is_split) {
   }
 }
 
+// Linear, with its zero inside, on the border or just outside: the least of |N| decides there.
+TEST(area_piece, holds_near_zeros_of_the_normal) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> number(-0.2, 1.2);
+  for (const Domain domain : {Domain::triangle, Domain::square}) {
+    const std::size_t d = degree_on(domain);
+    for (int trial = 0; trial < 60; ++trial) {
+      const double u = number(random), v = number(random), away = std::exp2(-trial % 12);
+      Coefficients normal{};
+      std::size_t k = 0;
+      for (std::size_t j = 0; j <= d; ++j) {
+        for (std::size_t i = 0; i <= (domain == Domain::triangle ? d - j : d); ++i, ++k) {
+          normal[0][k] = static_cast<double>(i) / static_cast<double>(d) - u;
+          normal[1][k] = trial % 3 == 0 ? 0 : static_cast<double>(j) / static_cast<double>(d) - v;
+          normal[2][k] = trial % 2 == 0 ? away : 0;
+        }
+      }
+      const long double truth = area(domain, normal, 40),
+                        error = std::fabs(truth - area(domain, normal, 24)) * 4 + 1e-13L * truth;
+      AreaPiece piece(domain, normal, 0);
+      piece.tighten();
+      EXPECT_LE(piece.area().lower, truth + error) << trial;
+      EXPECT_GE(piece.area().upper, truth - error) << trial;
+    }
+  }
+}
+
 TEST(area_piece, counts_the_error_of_the_normal) {
   std::mt19937_64 random(2);
   for (const Domain domain : {Domain::triangle, Domain::square}) {

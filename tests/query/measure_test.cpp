@@ -118,6 +118,36 @@ TEST(measure, holds_the_moments_of_boxes) {
   }
 }
 
+// Polygons in planes, split into bilinear quads at their first split or not.
+TEST(measure, holds_those_of_polyhedra) {
+  for (const auto& mesh : {meshes::cube(), meshes::prism(3), meshes::prism(5), meshes::pyramid(3),
+                           meshes::pyramid(7), meshes::two_cubes_at_a_vertex()}) {
+    const Measures found = measure(surface_of(mesh, Scheme::bilinear));
+    const oracle::MeasureValues exact = oracle::polyhedron_measures(mesh);
+    EXPECT_TRUE(found.reached);
+    ASSERT_TRUE(found.inertia);
+    const auto expect_near = [](const Interval& x, long double y) {
+      EXPECT_LE(x.lower, y + 1e-12L);
+      EXPECT_GE(x.upper, y - 1e-12L);
+    };
+    expect_near(found.area, exact[0]);
+    expect_near(*found.volume, exact[1]);
+    for (std::size_t a = 0; a < 3; ++a) expect_near((*found.centroid)[a], exact[2 + a]);
+    for (std::size_t k = 0; k < 6; ++k) expect_near((*found.inertia)[k], exact[5 + k]);
+    EXPECT_LE(width(*found.volume), 1e-9 * found.volume->upper);
+  }
+}
+
+// Nothing is left to be narrowed but rounding.
+TEST(measure, ends_where_nothing_can_be_asked_for) {
+  for (const auto& mesh : {meshes::cube(), meshes::quad_grid(2, 2)}) {
+    const Measures found = measure(surface_of(mesh, Scheme::bilinear), {.relative = 0});
+    EXPECT_FALSE(found.reached);
+    EXPECT_LE(width(found.area), 1e-10 * found.area.upper);
+    EXPECT_LE(found.splits, 1000);
+  }
+}
+
 // Simpson's rule, whose error here is below 1e-13.
 double saddle_area() {
   constexpr int n = 400;

@@ -367,8 +367,8 @@ class SurfaceMeasurer {
 
   [[nodiscard]] Measures run() {
     const double relative = options_.relative.value_or(default_relative);
-    // Of the area: corners count more in moments than in the area.
-    double gap = 0.4 * relative * estimate_, tips = 0.05 * relative * estimate_;
+    // What is left at corners counts more in moments than in the area.
+    double gap = 0.4 * relative * estimate_, tips = (closed_ ? 0.05 : 0.4) * relative * estimate_;
     Answer answer;
     for (int round = 0; round < max_rounds; ++round) {
       const bool some = round_of(gap, tips, round);
