@@ -227,6 +227,23 @@ MeasureValues polyhedron_measures(const TaggedMesh& mesh) {
   return sum.result();
 }
 
+AreaEstimate limit_area(const TaggedMesh& mesh, const Rules& rules, int levels) {
+  std::array<Long, 3> at;
+  for (int k = 0; k < 3; ++k) {
+    TaggedMesh fine = refine(mesh, rules, levels - 2 + k), with_surface = fine;
+    with_surface.polygons.clear();
+    std::sort(fine.holes.begin(), fine.holes.end());
+    for (std::uint32_t f = 0; f < fine.polygons.size(); ++f) {
+      const bool hole = std::binary_search(fine.holes.begin(), fine.holes.end(), f);
+      if (!hole) with_surface.polygons.push_back(fine.polygons[f]);
+    }
+    at[static_cast<std::size_t>(k)] =
+        with_surface.polygons.empty() ? 0 : polyhedron_measures(with_surface)[0];
+  }
+  const Long before = at[1] + (at[1] - at[0]) / 3, last = at[2] - at[1], value = at[2] + last / 3;
+  return {value, 3 * std::fabs(value - before) + std::fabs(last) / 5 + 1e-12L * value};
+}
+
 MeasureEstimate limit_measures(const TaggedMesh& mesh, const WindingScheme& scheme, int levels) {
   std::array<MeasureValues, 3> at;
   for (int k = 0; k < 3; ++k) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <oracle/polygon_twin.h>
 #include <oracle/tagged_mesh.h>
 #include <oracle/winding_twin.h>
 
@@ -26,6 +27,12 @@ struct MeasureEstimate {
 };
 /// Requires:  levels >= 2.
 [[nodiscard]] MeasureEstimate limit_measures(const TaggedMesh& mesh, const WindingScheme& scheme, int levels);
+
+/// The same of the area alone, of any mesh with a primal scheme: faces without a surface are left out.
+struct AreaEstimate {
+  long double value, error;
+};
+[[nodiscard]] AreaEstimate limit_area(const TaggedMesh& mesh, const Rules& rules, int levels);
 
 /// Surfaces that are polynomial everywhere: on tori of m times n control points, point (i, j) at i n + j.
 enum class PeriodicBasis {

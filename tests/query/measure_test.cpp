@@ -367,7 +367,7 @@ TEST(measure, holds_for_disguises) {
       for (oracle::Point& p : mesh.points) p = change(p);
       Measures found;
       try {
-        found = measure(surface_of(mesh, scheme), {.budget = 20'000});
+        found = measure(surface_of(mesh, scheme), {.budget = 5'000});
       } catch (const InputError& error) {
         EXPECT_EQ(error.problem(), InputProblem::unrepresentable) << error.what();
         continue;

@@ -75,5 +75,34 @@ TEST(measure, holds_those_of_refined_meshes) {
             << errors[errors.size() * 19 / 20] << " in 95 of 100\n";
 }
 
+TEST(measure, holds_the_area_with_every_tag_and_rule) {
+  std::vector<long double> errors;
+  std::size_t none = 0;
+  for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
+    for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 21)) {
+      SCOPED_TRACE(c.name + ", " + testing::text_of(c.rules));
+      const oracle::AreaEstimate twin =
+          oracle::limit_area(c.mesh, c.rules, testing::twin_levels(c.mesh, 4000));
+      const SchemeOptions options = testing::options_of(c.rules);
+      const Surface surface(testing::control_mesh(c.mesh, c.rules),
+                            {.scheme = options.scheme, .boundary = options.boundary});
+      if (twin.value == 0) {
+        EXPECT_THROW((void)measure(surface), InputError);
+        ++none;
+        continue;
+      }
+      const Measures found = measure(surface);
+      EXPECT_TRUE(found.reached);
+      EXPECT_LE(found.area.lower, twin.value + twin.error);
+      EXPECT_GE(found.area.upper, twin.value - twin.error);
+      errors.push_back(twin.error / twin.value);
+      if (::testing::Test::HasFailure()) return;
+    }
+  }
+  std::sort(errors.begin(), errors.end());
+  std::cout << errors.size() << " surfaces and " << none << " without any; twins were good to "
+            << errors[errors.size() / 2] << " in the median\n";
+}
+
 }  // namespace
 }  // namespace snug
