@@ -29,9 +29,9 @@ struct Measures {
   /// About the centroid, with density 1 and axes along the coordinates': moments about x, y, z, then the
   /// products of the inertia tensor xy, yz, zx, which are minus the integrals of xy, yz, zx.
   std::optional<std::array<Interval, 6>> inertia;
-  /// Is every interval that is there at most `relative` times this wide: the area; |volume|, or where it is
-  /// below relative * size^3 that; the size, for the centroid; the largest moment, or where it is below relative
-  /// * size^5 that, for inertia?
+  /// Is every interval that is there at most `relative` times as wide as the area; as |volume|; as the size,
+  /// for the centroid; as the largest entry, for inertia? Areas, volumes and entries below relative times
+  /// size^2, size^3 and size^5 count as these.
   bool reached = false;
   std::uint64_t splits = 0;
 };

@@ -380,6 +380,9 @@ TEST(measure, holds_for_disguises) {
       if (name.find("flat") == 0 || name == "line" || name == "a single point") {
         EXPECT_TRUE(found.volume->contains(0));
       }
+      if (name == "flat" && scheme != Scheme::midedge) {
+        EXPECT_TRUE(found.reached);
+      }
       if (name == "line" || name == "a single point") {
         EXPECT_LE(found.area.lower, 1e-12);
       }

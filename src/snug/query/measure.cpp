@@ -101,7 +101,6 @@ class PatchMeasurer {
     } else {
       net.area = area_of(net);
       tips_.push_back(std::move(net));
-      std::push_heap(tips_.begin(), tips_.end(), smaller);
     }
   }
 
@@ -176,19 +175,27 @@ class PatchMeasurer {
       for (const Net& tip : tips_) sum += tip.area;
       return enlarged(sum * (1 + gamma_bound(tips_.size())));
     };
+    std::make_heap(tips_.begin(), tips_.end(), smaller);
     double left = sum_of_tips();
     while (left > goal && !tips_.empty()) {
-      if (result_.splits >= most_splits_ ||
-          extent_sq(tips_.front()) <= 0x1p12 * tips_.front().error * tips_.front().error) {
+      const Net& largest = tips_.front();
+      if (result_.splits >= most_splits_ || extent_sq(largest) <= 0x1p12 * largest.error * largest.error) {
         result_.stuck = true;
         break;
       }
       std::pop_heap(tips_.begin(), tips_.end(), smaller);
       const Net tip = std::move(tips_.back());
       tips_.pop_back();
+      const std::size_t before = tips_.size();
+      left -= tip.area;
       refine(tip);
-      left = sum_of_tips();
+      for (std::size_t i = before; i < tips_.size(); ++i) left += tips_[i].area;
+      for (std::size_t i = before; i < tips_.size(); ++i) {
+        std::push_heap(tips_.begin(), tips_.begin() + static_cast<std::ptrdiff_t>(i) + 1, smaller);
+      }
+      if (left <= goal) left = sum_of_tips();
     }
+    left = sum_of_tips();
     result_.tips = left;
     for (const Net& tip : tips_) {
       // |x . N| is at most sqrt 3 reach |N|.
@@ -298,7 +305,8 @@ void add_inertia(const Totals& totals, Answer& answer) {
 Answer answer_of(const Totals& totals, const Point3& origin, double size, double relative, bool closed) {
   Answer answer;
   answer.area = totals.area;
-  answer.area_excess = excess(width(answer.area), relative * answer.area.upper);
+  answer.area_excess =
+      excess(width(answer.area), relative * std::max(answer.area.upper, relative * size * size));
   if (!closed) return answer;
   answer.volume = totals.moments[0] / Interval(3);
   answer.solid_excess = excess(width(answer.volume),
