@@ -66,21 +66,19 @@ std::optional<std::string> open_reason(const LimitSurface& surface) {
     return "edge (" + std::to_string(topology.from(h).value()) + ", " +
            std::to_string(topology.to(h).value()) + ") of face " +
            std::to_string(topology.face_of(h).value()) +
-           " does not have two faces that run along it in opposite directions; close the mesh or ask about "
-           "its "
-           "surface";
+           " does not have two faces that run along it in opposite directions";
   }
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
     if (surface.has_patch(PatchId(p))) continue;
-    return "face " + std::to_string(surface.place(PatchId(p)).owner) +
-           " is a hole; fill it or ask about its surface";
+    return "face " + std::to_string(surface.place(PatchId(p)).owner) + " is a hole";
   }
   return {};
 }
 
 Solid::Solid(const LimitSurface& surface) {
   if (const auto reason = open_reason(surface)) {
-    throw InputError(InputProblem::refused, "solids are bounded by closed surfaces, and " + *reason);
+    throw InputError(InputProblem::refused, "solids are bounded by closed surfaces, and " + *reason +
+                                                "; close the mesh or ask about its surface");
   }
   components_ = component_patches(surface);
   // Where both sides of an edge are cut, their fillers cancel.

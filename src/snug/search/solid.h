@@ -10,7 +10,7 @@
 
 namespace snug {
 
-/// Why a surface bounds no solid, naming an edge or a face and the next step; nothing if it does: every edge of
+/// Why a surface bounds no solid, naming an edge or a face; nothing if it does: every edge of
 /// its mesh has two faces that run along it in opposite directions, and all have a limit surface.
 [[nodiscard]] std::optional<std::string> open_reason(const LimitSurface& surface);
 
