@@ -68,47 +68,36 @@ Tessellation part_of(const Tessellation& fine, const std::vector<unsigned int>& 
 
 }  // namespace
 
-Coarsened coarsened(const SurfaceBvh& surface, const Tessellation& fine, double tolerance, int threads,
-                    const WorkMonitor& monitor) {
-  const auto judged = [&](Tessellation mesh) {
+Tessellation coarsened(const SurfaceBvh& surface, const Tessellation& fine, double tolerance, int threads,
+                       const WorkMonitor& monitor) {
+  // Upper bound of both distances.
+  const auto judge = [&](const Tessellation& mesh) {
     std::vector<Triangle> triangles;
     triangles.reserve(mesh.triangles.size());
     for (const auto& [a, b, c] : mesh.triangles) {
       triangles.push_back({mesh.positions[a], mesh.positions[b], mesh.positions[c]});
     }
-    Coarsened result{std::move(mesh), {}};
-    result.deviation = deviation(surface, triangles,
-                                 {.absolute = tolerance / 64, .tolerance = tolerance, .threads = threads},
-                                 {.on_progress = {}, .stop = monitor.stop});
-    result.mesh.error_bound = std::max(result.deviation.from_surface.distance.upper,
-                                       result.deviation.from_candidate.distance.upper);
-    return result;
+    const Deviation found = deviation(
+        surface, triangles, {.absolute = tolerance / 64, .tolerance = tolerance, .threads = threads},
+        {.on_progress = {}, .stop = monitor.stop});
+    return std::max(found.from_surface.distance.upper, found.from_candidate.distance.upper);
   };
   const FloatMesh floats(fine);
-  std::optional<Coarsened> best;
+  Tessellation best = fine;
+  best.owners.clear();
   // Halving in logarithms: what is near enough goes below, what is not above.
   double low = least_share * tolerance, high = most_share * tolerance;
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     monitor.report(attempt / static_cast<double>(most_attempts));
     const double error = std::sqrt(low * high);
-    const std::vector<unsigned int> indices = floats.simplified(error);
-    if (indices.empty()) {
-      high = error;
-      continue;
-    }
-    Coarsened now = judged(part_of(fine, indices));
-    const bool near = now.mesh.error_bound <= tolerance;
+    Tessellation now = part_of(fine, floats.simplified(error));
+    now.error_bound = now.triangles.empty() ? double{INFINITY} : judge(now);
+    const bool near = now.error_bound <= tolerance;
     (near ? low : high) = error;
-    if (near && (!best || now.mesh.triangles.size() < best->mesh.triangles.size())) best = std::move(now);
+    if (near && now.triangles.size() < best.triangles.size()) best = std::move(now);
   }
   monitor.report(1);
-  if (best && best->mesh.triangles.size() < fine.triangles.size()) return std::move(*best);
-  Tessellation whole = fine;
-  whole.owners.clear();
-  const double bound = whole.error_bound;
-  Coarsened result = judged(std::move(whole));
-  result.mesh.error_bound = std::min(result.mesh.error_bound, bound);
-  return result;
+  return best;
 }
 
 }  // namespace snug::command

@@ -53,8 +53,8 @@ struct Piece {
 struct Limits {
   double tolerance = INFINITY, max_edge = INFINITY;
   std::vector<double> of_owner{};  // tolerances of owners instead of that; or none
-  double least_cosine = -2;  // of normals; -2 for none
-  double shortest_turn = 0;  // triangles without a longer side are not split for their normals
+  double least_cosine = -2;        // of normals; -2 for none
+  double shortest_turn = 0;        // triangles without a longer side are not split for their normals
 };
 
 // Limit points and patches, for one thread; what comes together should be asked for together.
