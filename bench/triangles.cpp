@@ -75,8 +75,9 @@ int main(int argc, char** argv) {
 
     const double fine = share / 10 * surface.size();
     const std::size_t many = tessellate(surface, {.tolerance = fine, .normals = false}).triangles.size();
-    Group rates(model.name + ", triangles within " + std::to_string(share / 10) + " of the size, proof included",
-                "triangle", options);
+    Group rates(
+        model.name + ", triangles within " + std::to_string(share / 10) + " of the size, proof included",
+        "triangle", options);
     rates.limit_rounds(5);
     for (const int threads : {1, 2}) {
       rates.add("tessellate, threads: " + std::to_string(threads), static_cast<double>(many), [&, threads] {
