@@ -91,7 +91,7 @@ ExitStatus run(const Options& options) {
   Report report("tessellate", to_standard_output);
   report.heads({options.mesh}, {name_of(surface.options().scheme)});
   write_summary(report, options, result);
-  return report.finish(result.reached, &file);
+  return report.finish(result.reached, {&file});
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include <snug/geometry/direction.h>
 #include <snug/geometry/nearest_to_origin.h>
 #include <snug/geometry/rounding.h>
-#include <snug/patch/evaluate.h>
 #include <snug/query/closest.h>
 #include <snug/query/deviation.h>
 #include <snug/query/pairs.h>
@@ -21,6 +20,7 @@
 #include <snug/search/piece.h>
 #include <snug/search/quadratic_bvh.h>
 #include <snug/search/self_contact.h>
+#include <snug/surface/evaluate.h>
 #include <snug/surface/quadratic_pieces.h>
 #include <snug/surface/unscale.h>
 
@@ -78,6 +78,7 @@ class OneHull {
         inner_(inner),
         monitor_{.on_progress = {}, .stop = monitor.stop},
         scale_(surface.scale()),
+        float_loss_(options.single_precision ? largest_float_loss() : 0),
         tolerances_(surface.owner_count(), first_share * options.tolerance) {}
 
   // Moves triangles until nothing is wrong, or nothing can be done about it. Returns the problems left.
@@ -100,7 +101,9 @@ class OneHull {
     return std::move(problems_);
   }
   [[nodiscard]] bool has_border_edges() const { return border_; }
-  [[nodiscard]] Hull take() { return {std::move(hull_), std::move(mesh_.triangles), gap_}; }
+  [[nodiscard]] Hull take() {
+    return {std::move(hull_), std::move(mesh_.triangles), std::move(mesh_.owners), gap_};
+  }
 
  private:
   void make_triangles() {
@@ -135,6 +138,25 @@ class OneHull {
     wrong_[mesh_.owners[t]] = 1;
   }
 
+  // How far a vertex of a hull is at most moved when it becomes a float.
+  [[nodiscard]] double largest_float_loss() const {
+    const double largest = scale_.inverse().apply(2) + options_.tolerance;
+    return 2 * (0x1p-24 * largest + 0x1p-150);
+  }
+  // The coordinates that are handed out.
+  [[nodiscard]] Point3 as_written(Point3 p) const {
+    for (std::size_t a = 0; a < 3 && options_.single_precision; ++a) {
+      const auto rounded = static_cast<float>(p[a]);
+      if (!std::isfinite(rounded)) {
+        throw InputError(InputProblem::unrepresentable,
+                         "hull: a coordinate does not fit a float; scale the mesh down, or write a format that "
+                         "holds doubles");
+      }
+      p[a] = static_cast<double>(rounded);
+    }
+    return require_representable(p);
+  }
+
   // Each vertex as near as possible to where it was, beyond the planes of the triangles around it.
   void move_vertices() {
     const double sign = inner_ ? -1 : 1;
@@ -143,7 +165,7 @@ class OneHull {
     parallel_for(normals.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         normals[t] = sign * unit_normal(scaled(mesh_.positions, mesh_.triangles[t]));
-        offsets[t] = errors_[t] + clearance * tolerances_[mesh_.owners[t]];
+        offsets[t] = errors_[t] + clearance * tolerances_[mesh_.owners[t]] + float_loss_;
       }
     });
     hull_ = mesh_.positions;
@@ -159,15 +181,16 @@ class OneHull {
           const std::uint32_t t = around_[i];
           if (normals[t] != Vector3{}) planes.push_back((largest / offsets[t]) * normals[t]);
         }
-        if (planes.empty()) continue;  // a point of needles only: it stays, and is found to be on the surface
-        const Vector3 z = nearest_to_origin(planes);
-        const double square = length_sq(z);
-        if (!(square > 1e-16)) {
-          moved[v] = INFINITY;
-          continue;
+        if (!planes.empty()) {  // else a point of needles only: it stays, and is found to be on the surface
+          const Vector3 z = nearest_to_origin(planes);
+          const double square = length_sq(z);
+          if (!(square > 1e-16)) {
+            moved[v] = INFINITY;
+            continue;
+          }
+          hull_[v] = hull_[v] + (largest / square) * z;
         }
-        const Vector3 d = (largest / square) * z;
-        hull_[v] = hull_[v] + d;
+        hull_[v] = as_written(hull_[v]);
         moved[v] = enlarged(distance(scale_.apply(hull_[v]), scale_.apply(mesh_.positions[v])));
       }
     });
@@ -240,6 +263,7 @@ class OneHull {
   bool inner_;
   WorkMonitor monitor_;
   PowerOfTwo scale_;
+  double float_loss_;               // mesh units
   std::vector<double> tolerances_;  // of owners
   Tessellation mesh_;
   std::vector<double> errors_;
@@ -261,6 +285,7 @@ class FacetSurface {
       : limit_(mesh_of(hull), SchemeOptions{Scheme::flat}, library, monitor), bvh_(limit_, {}, monitor), workspace_(bvh_) {}
 
   [[nodiscard]] PlacedBvh placed() { return {bvh_, workspace_, {}}; }
+  [[nodiscard]] const SurfaceBvh& model() const { return bvh_; }
   [[nodiscard]] SurfaceWorkspace& workspace() { return workspace_; }
 
  private:
@@ -296,14 +321,17 @@ class Verification {
   }
 
  private:
-  void blame(HullFault fault, bool inner, const Point3& place, std::uint32_t owner) {
+  // What does not meet is farther apart than this, mesh units.
+  [[nodiscard]] double certain_gap() const { return model_.surface().scale().inverse().apply(0x1p-46); }
+  void blame(HullFault fault, bool inner, const Point3& place, std::optional<std::uint32_t> owner) {
     hulls_.problems.push_back({fault, inner, place, owner});
   }
   void apart(const PlacedBvh& a, const PlacedBvh& b, HullFault fault, bool inner) {
-    const Collision found = collide(a, b, {.tolerance = 0, .witness = WitnessKind::none, .measure = false}, monitor_);
+    const Collision found = collide(a, b, {.tolerance = 0, .margin = certain_gap(), .witness = WitnessKind::approximate, .measure = false}, monitor_);
     if (found.verdict == Verdict::separated) return;
-    const Point3 place = found.witness ? (*found.witness)[0] : Point3{};
-    blame(fault, inner, place, found.at[0] ? found.at[0]->owner : 0);
+    std::optional<std::uint32_t> owner;
+    if (found.at[0]) owner = fault == HullFault::meets_other ? hulls_.inner->owners[found.at[0]->owner] : found.at[0]->owner;
+    blame(fault, inner, found.witness ? (*found.witness)[0] : Point3{}, owner);
   }
   void near(const Hull& hull, bool inner) {
     std::vector<Triangle> facets;
@@ -315,17 +343,25 @@ class Verification {
         deviation(model_, facets, {.tolerance = options_.tolerance, .threads = options_.threads}, monitor_);
     for (const OneSidedDistance* side : {&found.from_surface, &found.from_candidate}) {
       if (side->distance.upper <= options_.tolerance) continue;
-      blame(HullFault::no_position, inner, side->from, side->at ? side->at->owner : 0);
+      std::optional<std::uint32_t> owner;
+      if (side->at) owner = side->at->owner;
+      blame(HullFault::no_position, inner, side->from, owner);
     }
   }
-  // A limit point of each component is in the solid of the outer hull, and not in that of the inner one.
+  // One lies in the solid of the other with all its components, and none of these in the solid of the one.
   void around(FacetSurface& hull, bool inner) {
-    const LimitSurface& surface = model_.surface();
-    for (const PatchId p : model_.solid().components()) {
-      const Patch patch = surface.patch(p);
-      const Point3 point = surface.scale().inverse().apply(limit_point(patch, {1.0 / 3, 1.0 / 3}).from(patch.origin).position);
-      if (contains(hull.workspace(), point, monitor_) != !inner) {
-        blame(HullFault::not_around, inner, point, surface.place(p).owner);
+    for (const bool of_hull : {false, true}) {
+      const SurfaceBvh& asked = of_hull ? hull.model() : model_;
+      const LimitSurface& surface = asked.surface();
+      for (const PatchId p : asked.solid().components()) {
+        const SurfacePoint at = evaluate(surface, place_of(surface, p, {1.0 / 3, 1.0 / 3}));
+        // What it stands for is on the same side: the surfaces are farther apart than that.
+        const bool exact = 2 * at.error <= certain_gap();
+        const std::optional<bool> inside = contains(of_hull ? own_ : hull.workspace(), at.position, monitor_);
+        if (exact && inside == (of_hull == inner)) continue;
+        const std::uint32_t owner = surface.place(p).owner;
+        blame(HullFault::not_around, inner, at.position,
+              of_hull ? (inner ? hulls_.inner : hulls_.outer)->owners[owner] : owner);
       }
     }
   }
@@ -346,10 +382,13 @@ Hulls hulls(const SurfaceBvh& model, const HullOptions& options, const WorkMonit
   require_value(options.tolerance > 0 && std::isfinite(options.tolerance),
                 "hull: the tolerance must be finite and greater than 0");
   // Tolerances of triangles go down to a share of it.
-  const double least = surface.scale().inverse().apply(0x1p-30);
+  const double least = surface.scale().inverse().apply(options.single_precision ? 0x1p-18 : 0x1p-30);
   if (options.tolerance < least) {
-    throw InputError(InputProblem::value, "hull: doubles allow no tolerance below " + shortest(least) +
-                                              " for coordinates of this size; ask for that or more");
+    throw InputError(InputProblem::value,
+                     std::string("hull: ") + (options.single_precision ? "floats" : "doubles") +
+                         " allow no tolerance below " + shortest(least) +
+                         " for coordinates of this size; ask for that or more" +
+                         (options.single_precision ? ", or write a format that holds doubles" : ""));
   }
   require_value(options.inner || options.outer, "hull: ask for the inner hull, the outer one, or both");
   Hulls result;
