@@ -34,7 +34,8 @@ void require_options(const Options& options) {
 }
 
 // Surfaces that do not meet are inside of each other patch by patch.
-Fit fit_of(const LimitSurface& part, const Hull& envelope, const Options& options, const WorkMonitor& monitor) {
+Fit fit_of(const LimitSurface& part, const Hull& envelope, const Options& options,
+           const WorkMonitor& monitor) {
   const LimitSurface around(mesh_of(envelope), SchemeOptions{Scheme::flat}, part.shared_library(), monitor);
   const SurfaceBvh part_model(part, {.threads = options.threads}, monitor),
       around_model(around, {.threads = options.threads}, monitor);
@@ -65,12 +66,15 @@ void write_fit(Report& report, const Options& options, const Fit& fit) {
     json.key("clearance").begin_array().value(fit.clearance.lower).value(fit.clearance.upper).end_array();
     json.end_object();
   }
-  const std::string apart = fmt::format("at least {} and at most {} from it", text_at_most(fit.clearance.lower),
-                                        text_at_most(fit.clearance.upper, true));
+  const std::string apart =
+      fmt::format("at least {} and at most {} from it", text_at_most(fit.clearance.lower),
+                  text_at_most(fit.clearance.upper, true));
   if (!fit.inside) {
-    report.text(fmt::format("{}: undecided, its limit surface is too near to the envelope, {}", options.part, apart));
+    report.text(
+        fmt::format("{}: undecided, its limit surface is too near to the envelope, {}", options.part, apart));
   } else if (*fit.inside) {
-    report.text(fmt::format("{}: proved, its limit surface is inside of the envelope, {}", options.part, apart));
+    report.text(
+        fmt::format("{}: proved, its limit surface is inside of the envelope, {}", options.part, apart));
   } else if (fit.clearance.upper > 0) {
     report.text(fmt::format("{}: proved, its limit surface or a part of it is outside of the envelope, {}",
                             options.part, apart));
@@ -86,10 +90,11 @@ void write_summary(Report& report, const Options& options, const LimitSurface& s
     write_hull(report.write(), found.outer, found.verified);
   }
   if (found.verified) {
-    report.text(fmt::format("{}: {} triangles around the solid, proved closed and not to meet its limit surface, at "
-                            "most {} from it",
-                            options.output.empty() ? "envelope" : options.output, found.outer->triangles.size(),
-                            text_at_most(found.outer->gap, true)));
+    report.text(
+        fmt::format("{}: {} triangles around the solid, proved closed and not to meet its limit surface, at "
+                    "most {} from it",
+                    options.output.empty() ? "envelope" : options.output, found.outer->triangles.size(),
+                    text_at_most(found.outer->gap, true)));
   }
   write_verdict(report, found, surface.rules().primal);
 }
@@ -112,7 +117,8 @@ ExitStatus run(const Options& options) {
     found = hulls(model, how, monitor);
   });
   std::optional<Fit> fit;
-  if (part && found.verified) naming(options.part, [&] { fit = fit_of(*part, *found.outer, options, monitor); });
+  if (part && found.verified)
+    naming(options.part, [&] { fit = fit_of(*part, *found.outer, options, monitor); });
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("envelope", to_standard_output);
@@ -131,7 +137,8 @@ ExitStatus run(const Options& options) {
 Command envelope_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh of a solid (OBJ, OFF, PLY or STL; - for standard input)");
+  list.add(Group::own, "MESH", &options->mesh,
+           "Control mesh of a solid (OBJ, OFF, PLY or STL; - for standard input)");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Largest distance between limit surface and envelope, either way; mesh units or percent (1%)");
   list.add(Group::own, "--part PART", &options->part,

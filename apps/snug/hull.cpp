@@ -39,7 +39,8 @@ HullOptions how_to(const Options& options, const LimitSurface& surface) {
   how.outer = !options.outer.empty();
   how.budget = options.most;
   how.threads = options.threads;
-  how.single_precision = (how.inner && writes_floats(options.inner)) || (how.outer && writes_floats(options.outer));
+  how.single_precision =
+      (how.inner && writes_floats(options.inner)) || (how.outer && writes_floats(options.outer));
   return how;
 }
 
@@ -56,8 +57,9 @@ void write_summary(Report& report, const Options& options, const LimitSurface& s
   for (const auto& [hull, file, name] :
        {std::tuple{&found.inner, &options.inner, "inner"}, {&found.outer, &options.outer, "outer"}}) {
     if (!*hull || !found.verified) continue;
-    report.text(fmt::format("{}: {} hull of {} triangles, proved not to meet the limit surface, at most {} from it",
-                            *file, name, (*hull)->triangles.size(), text_at_most((*hull)->gap, true)));
+    report.text(
+        fmt::format("{}: {} hull of {} triangles, proved not to meet the limit surface, at most {} from it",
+                    *file, name, (*hull)->triangles.size(), text_at_most((*hull)->gap, true)));
   }
   if (found.verified && !found.closed) {
     report.text("the surface is open: the hulls are sheets behind and in front of it, not solids");
@@ -82,7 +84,8 @@ ExitStatus run(const Options& options) {
   std::deque<AtomicFile> files;
   for (const auto& [hull, path] : {std::pair{&found.inner, &options.inner}, {&found.outer, &options.outer}}) {
     if (!*hull || !found.verified) continue;
-    write_mesh(mesh_of(**hull), files.emplace_back(*path), *path, notes_for(options), stopped_by_interrupts());
+    write_mesh(mesh_of(**hull), files.emplace_back(*path), *path, notes_for(options),
+               stopped_by_interrupts());
   }
   write_summary(report, options, surface, how.tolerance, found);
   std::vector<AtomicFile*> written;

@@ -16,12 +16,14 @@ constexpr std::size_t most_printed = 10;
 const char* explained(HullFault fault) {
   switch (fault) {
     case HullFault::no_position:
-      return "no point near is in front of all faces around; a larger --tolerance may help, or a less sharp spike";
+      return "no point near is in front of all faces around; a larger --tolerance may help, or a less sharp "
+             "spike";
     case HullFault::meets_surface:
       return "the hull could not be kept off the surface: sheets are too near to each other, or touch; try a "
              "smaller --tolerance";
     case HullFault::meets_itself:
-      return "the hull could not be kept off itself: sheets are too near to each other, or touch; try a smaller "
+      return "the hull could not be kept off itself: sheets are too near to each other, or touch; try a "
+             "smaller "
              "--tolerance";
     case HullFault::meets_other:
       return "the hulls could not be kept off each other; try a smaller --tolerance";
@@ -35,8 +37,8 @@ const char* explained(HullFault fault) {
 std::string sentence(const HullProblem& problem, const char* owner) {
   const auto& [x, y, z] = problem.place;
   const std::string at = problem.owner ? fmt::format(" at {} {}", owner, *problem.owner) : "";
-  return fmt::format("{} hull{}, near ({:.6g} {:.6g} {:.6g}): {}", problem.inner ? "inner" : "outer", at, x, y, z,
-                     explained(problem.fault));
+  return fmt::format("{} hull{}, near ({:.6g} {:.6g} {:.6g}): {}", problem.inner ? "inner" : "outer", at, x,
+                     y, z, explained(problem.fault));
 }
 
 void write_problem(JsonWriter& json, const HullProblem& problem, const char* owner) {
@@ -53,7 +55,8 @@ ControlMesh mesh_of(const Hull& hull) {
   mesh.points = hull.positions;
   mesh.face_vertices.reserve(3 * hull.triangles.size());
   mesh.face_offsets.reserve(hull.triangles.size() + 1);
-  for (const auto& [a, b, c] : hull.triangles) mesh.add_face(std::array{VertexId(a), VertexId(b), VertexId(c)});
+  for (const auto& [a, b, c] : hull.triangles)
+    mesh.add_face(std::array{VertexId(a), VertexId(b), VertexId(c)});
   return mesh;
 }
 

@@ -28,7 +28,8 @@ void require_options(const Options& options) {
   if (options.json && options.output == "-") {
     throw UsageError("tessellate: --json and -o - both want standard output");
   }
-  if (options.tolerance.empty() && options.max_edge.empty() && !options.max_triangles && options.max_angle == 0) {
+  if (options.tolerance.empty() && options.max_edge.empty() && !options.max_triangles &&
+      options.max_angle == 0) {
     throw UsageError("tessellate: give --tolerance, --max-triangles, --max-edge or --max-angle");
   }
   if (!options.tolerance.empty()) static_cast<void>(parse_length(options.tolerance, "--tolerance"));
@@ -71,8 +72,9 @@ void write_summary(Report& report, const Options& options, const Tessellation& r
                           options.output, result.positions.size(), result.triangles.size(),
                           text_at_most(result.error_bound, true)));
   if (result.reached) return;
-  report.text(options.max_triangles ? "the tolerance was not reached: give more --max-triangles, or a larger --tolerance"
-                                    : "not all that was asked for was reached: give a larger --budget or --tolerance");
+  report.text(options.max_triangles
+                  ? "the tolerance was not reached: give more --max-triangles, or a larger --tolerance"
+                  : "not all that was asked for was reached: give a larger --budget or --tolerance");
 }
 
 ExitStatus run(const Options& options) {
@@ -85,7 +87,8 @@ ExitStatus run(const Options& options) {
     result = tessellate(surface, how_to(options, surface), bar.monitor());
   });
   AtomicFile file(options.output);
-  write_mesh(mesh_of(result), file, options.output, notes_for(options), stopped_by_interrupts(), result.normals);
+  write_mesh(mesh_of(result), file, options.output, notes_for(options), stopped_by_interrupts(),
+             result.normals);
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("tessellate", to_standard_output);

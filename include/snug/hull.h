@@ -11,17 +11,18 @@ namespace snug {
 
 struct HullOptions {
   double tolerance = 0;  ///< > 0, mesh units: no hull is farther than this from the surface, nor it from them
-  bool inner = true, outer = true;         ///< which ones are wanted
-  std::uint64_t budget = 10'000'000;       ///< most triangles of a hull
-  int threads = 0;                         ///< 0: all cores
-  bool single_precision = false;           ///< coordinates are floats, for formats that hold no others
+  bool inner = true, outer = true;    ///< which ones are wanted
+  std::uint64_t budget = 10'000'000;  ///< most triangles of a hull
+  int threads = 0;                    ///< 0: all cores
+  bool single_precision = false;      ///< coordinates are floats, for formats that hold no others
 };
 
 /// Triangles on one side of a limit surface, oriented as its faces.
 struct Hull {
   std::vector<Point3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<std::uint32_t> owners;  ///< of each triangle the face that it is over; in a dual scheme, the vertex
+  std::vector<std::uint32_t>
+      owners;  ///< of each triangle the face that it is over; in a dual scheme, the vertex
   /// Proved: no point of it is farther from the surface, no point of the surface is farther from it.
   double gap = 0;
 };
@@ -39,8 +40,8 @@ enum class HullFault : std::uint8_t {
 /// Where.
 struct HullProblem {
   HullFault fault;
-  bool inner;     ///< of the inner hull
-  Point3 place;   ///< a point of the surface or of the hull there, mesh units
+  bool inner;                            ///< of the inner hull
+  Point3 place;                          ///< a point of the surface or of the hull there, mesh units
   std::optional<std::uint32_t> owner{};  ///< face there; in a dual scheme, vertex
 };
 

@@ -12,8 +12,9 @@ namespace snug {
 struct TessellateOptions {
   /// Largest distance, in mesh units, between the limit surface and the triangles, either way.
   std::optional<double> tolerance{};
-  std::optional<double> max_edge{};   ///< longest edge, in mesh units
-  std::optional<double> max_angle{};  ///< largest angle between limit normals at corners of a triangle, in degrees
+  std::optional<double> max_edge{};  ///< longest edge, in mesh units
+  std::optional<double>
+      max_angle{};  ///< largest angle between limit normals at corners of a triangle, in degrees
   /// Most triangles: the smallest error that is found for so many, but not below the tolerance if there is one.
   std::optional<std::uint64_t> max_triangles{};
   bool single_precision = false;  ///< coordinates are floats, for formats that hold no others

@@ -73,9 +73,8 @@ std::string describe(const std::vector<Position>& positions, bool normals, std::
   const std::size_t vector_bytes = positions.size() * position_size;
   const std::size_t index_bytes = 3 * triangles * index_size;
   const std::size_t vectors = (normals ? 2 : 1) * vector_bytes;
-  std::string json =
-      R"({"asset":{"version":"2.0","generator":"snug"},"scene":0,"scenes":[{"nodes":[0]}],)"
-      R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0)";
+  std::string json = R"({"asset":{"version":"2.0","generator":"snug"},"scene":0,"scenes":[{"nodes":[0]}],)"
+                     R"("nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0)";
   json += normals ? R"(,"NORMAL":2},"indices":1,"mode":4}]}],)" : R"(},"indices":1,"mode":4}]}],)";
   json += R"("buffers":[{"byteLength":)";
   append_integer(json, vectors + index_bytes);

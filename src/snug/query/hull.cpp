@@ -57,29 +57,35 @@ bool has_border(const Tessellation& mesh) {
       const std::uint32_t from = mesh.triangles[t][k], to = mesh.triangles[t][(k + 1) % 3];
       const auto [there, added] = sides.emplace(key(from, to), static_cast<std::uint32_t>(t));
       if (added) continue;
-      throw InputError(InputProblem::refused,
-                       "hull: faces " + std::to_string(mesh.owners[there->second]) + " and " +
-                           std::to_string(mesh.owners[t]) +
-                           " run along an edge of the surface the same way, so that it has no two sides there; "
-                           "orient the faces, or separate sheets that share an edge");
+      throw InputError(
+          InputProblem::refused,
+          "hull: faces " + std::to_string(mesh.owners[there->second]) + " and " +
+              std::to_string(mesh.owners[t]) +
+              " run along an edge of the surface the same way, so that it has no two sides there; "
+              "orient the faces, or separate sheets that share an edge");
     }
   }
   return std::any_of(sides.begin(), sides.end(), [&](const auto& side) {
-    return !sides.contains(key(static_cast<std::uint32_t>(side.first), static_cast<std::uint32_t>(side.first >> 32)));
+    return !sides.contains(
+        key(static_cast<std::uint32_t>(side.first), static_cast<std::uint32_t>(side.first >> 32)));
   });
 }
 
 // A hull on one side, by triangles whose tolerances are made smaller where it fails.
 class OneHull {
  public:
-  OneHull(const LimitSurface& surface, const HullOptions& options, bool inner, const WorkMonitor& monitor)
+  OneHull(const LimitSurface& surface, const HullOptions& options, bool inner,
+          std::vector<QuadraticPiece> pieces, const WorkMonitor& monitor)
       : surface_(surface),
         options_(options),
         inner_(inner),
         monitor_{.on_progress = {}, .stop = monitor.stop},
         scale_(surface.scale()),
         float_loss_(options.single_precision ? largest_float_loss() : 0),
-        tolerances_(surface.owner_count(), first_share * options.tolerance) {}
+        tolerances_(surface.owner_count(), first_share * options.tolerance),
+        pieces_(std::move(pieces)) {
+    make_tree();
+  }
 
   // Moves triangles until nothing is wrong, or nothing can be done about it. Returns the problems left.
   std::vector<HullProblem> run() {
@@ -87,8 +93,6 @@ class OneHull {
       make_triangles();
       if (round == 0) {
         border_ = has_border(mesh_);
-        pieces_ = quadratic_pieces(surface_, quadratic_share * first_share * scale_.apply(options_.tolerance), options_.threads, monitor_);
-        make_tree();
       }
       problems_.clear();
       piece_marks_.assign(pieces_.size(), 0);
@@ -108,8 +112,8 @@ class OneHull {
  private:
   void make_triangles() {
     LocalTessellation made =
-        tessellate(surface_, tolerances_, {.normals = false, .budget = options_.budget, .threads = options_.threads},
-                   monitor_);
+        tessellate(surface_, tolerances_,
+                   {.normals = false, .budget = options_.budget, .threads = options_.threads}, monitor_);
     mesh_ = std::move(made.mesh);
     errors_ = std::move(made.errors);
     begins_.assign(mesh_.positions.size() + 1, 0);
@@ -148,9 +152,10 @@ class OneHull {
     for (std::size_t a = 0; a < 3 && options_.single_precision; ++a) {
       const auto rounded = static_cast<float>(p[a]);
       if (!std::isfinite(rounded)) {
-        throw InputError(InputProblem::unrepresentable,
-                         "hull: a coordinate does not fit a float; scale the mesh down, or write a format that "
-                         "holds doubles");
+        throw InputError(
+            InputProblem::unrepresentable,
+            "hull: a coordinate does not fit a float; scale the mesh down, or write a format that "
+            "holds doubles");
       }
       p[a] = static_cast<double>(rounded);
     }
@@ -176,7 +181,8 @@ class OneHull {
       for (std::size_t v = begin; v < end; ++v) {
         planes.clear();
         double largest = 0;
-        for (std::uint32_t i = begins_[v]; i < begins_[v + 1]; ++i) largest = std::max(largest, offsets[around_[i]]);
+        for (std::uint32_t i = begins_[v]; i < begins_[v + 1]; ++i)
+          largest = std::max(largest, offsets[around_[i]]);
         for (std::uint32_t i = begins_[v]; i < begins_[v + 1]; ++i) {
           const std::uint32_t t = around_[i];
           if (normals[t] != Vector3{}) planes.push_back((largest / offsets[t]) * normals[t]);
@@ -199,7 +205,8 @@ class OneHull {
       const Names& names = mesh_.triangles[t];
       const double most = std::max({moved[names[0]], moved[names[1]], moved[names[2]]});
       // Parameter by parameter: the facet from its triangle, this from the surface.
-      const double gap = most == INFINITY ? INFINITY : rounded_up(unscaled_up(most, scale_.inverse()) + errors_[t]);
+      const double gap =
+          most == INFINITY ? INFINITY : rounded_up(unscaled_up(most, scale_.inverse()) + errors_[t]);
       gap_ = std::max(gap_, gap);
       if (gap <= options_.tolerance) continue;
       const std::size_t k = static_cast<std::size_t>(
@@ -235,7 +242,8 @@ class OneHull {
     std::vector<Point3> points;
     points.reserve(hull_.size());
     for (const Point3& p : hull_) points.push_back(scale_.apply(p));
-    for (const auto& [a, b] : self_contacts(points, mesh_.triangles, most_contacts, options_.threads, monitor_)) {
+    for (const auto& [a, b] :
+         self_contacts(points, mesh_.triangles, most_contacts, options_.threads, monitor_)) {
       blame(HullFault::meets_itself, a, mesh_.positions[mesh_.triangles[a][0]]);
       blame(HullFault::meets_itself, b, mesh_.positions[mesh_.triangles[b][0]]);
     }
@@ -252,7 +260,9 @@ class OneHull {
       any = true;
     }
     if (any && std::any_of(piece_marks_.begin(), piece_marks_.end(), [](auto m) { return m != 0; })) {
-      pieces_ = refined(surface_, pieces_, piece_marks_, quadratic_share * scale_.apply(error), options_.threads, monitor_).pieces;
+      pieces_ = refined(surface_, pieces_, piece_marks_, quadratic_share * scale_.apply(error),
+                        options_.threads, monitor_)
+                    .pieces;
       make_tree();
     }
     return any;
@@ -282,7 +292,9 @@ class OneHull {
 class FacetSurface {
  public:
   FacetSurface(const Hull& hull, const std::shared_ptr<BoundsCache>& library, const WorkMonitor& monitor)
-      : limit_(mesh_of(hull), SchemeOptions{Scheme::flat}, library, monitor), bvh_(limit_, {}, monitor), workspace_(bvh_) {}
+      : limit_(mesh_of(hull), SchemeOptions{Scheme::flat}, library, monitor),
+        bvh_(limit_, {}, monitor),
+        workspace_(bvh_) {}
 
   [[nodiscard]] PlacedBvh placed() { return {bvh_, workspace_, {}}; }
   [[nodiscard]] const SurfaceBvh& model() const { return bvh_; }
@@ -292,7 +304,8 @@ class FacetSurface {
   static ControlMesh mesh_of(const Hull& hull) {
     ControlMesh mesh;
     mesh.points = hull.positions;
-    for (const Names& t : hull.triangles) mesh.add_face(std::array{VertexId(t[0]), VertexId(t[1]), VertexId(t[2])});
+    for (const Names& t : hull.triangles)
+      mesh.add_face(std::array{VertexId(t[0]), VertexId(t[1]), VertexId(t[2])});
     return mesh;
   }
 
@@ -305,7 +318,11 @@ class FacetSurface {
 class Verification {
  public:
   Verification(const SurfaceBvh& model, const HullOptions& options, Hulls& hulls, const WorkMonitor& monitor)
-      : model_(model), options_(options), hulls_(hulls), monitor_{.on_progress = {}, .stop = monitor.stop}, own_(model) {}
+      : model_(model),
+        options_(options),
+        hulls_(hulls),
+        monitor_{.on_progress = {}, .stop = monitor.stop},
+        own_(model) {}
 
   void run() {
     std::array<std::unique_ptr<FacetSurface>, 2> sides;
@@ -327,10 +344,14 @@ class Verification {
     hulls_.problems.push_back({fault, inner, place, owner});
   }
   void apart(const PlacedBvh& a, const PlacedBvh& b, HullFault fault, bool inner) {
-    const Collision found = collide(a, b, {.tolerance = 0, .margin = certain_gap(), .witness = WitnessKind::approximate, .measure = false}, monitor_);
+    const Collision found = collide(
+        a, b,
+        {.tolerance = 0, .margin = certain_gap(), .witness = WitnessKind::approximate, .measure = false},
+        monitor_);
     if (found.verdict == Verdict::separated) return;
     std::optional<std::uint32_t> owner;
-    if (found.at[0]) owner = fault == HullFault::meets_other ? hulls_.inner->owners[found.at[0]->owner] : found.at[0]->owner;
+    if (found.at[0])
+      owner = fault == HullFault::meets_other ? hulls_.inner->owners[found.at[0]->owner] : found.at[0]->owner;
     blame(fault, inner, found.witness ? (*found.witness)[0] : Point3{}, owner);
   }
   void near(const Hull& hull, bool inner) {
@@ -339,8 +360,11 @@ class Verification {
     for (const Names& t : hull.triangles) {
       facets.push_back({hull.positions[t[0]], hull.positions[t[1]], hull.positions[t[2]]});
     }
-    const Deviation found =
-        deviation(model_, facets, {.tolerance = options_.tolerance, .threads = options_.threads}, monitor_);
+    const Deviation found = deviation(model_, facets,
+                                      {.absolute = 0x1p-6 * options_.tolerance,
+                                       .tolerance = options_.tolerance,
+                                       .threads = options_.threads},
+                                      monitor_);
     for (const OneSidedDistance* side : {&found.from_surface, &found.from_candidate}) {
       if (side->distance.upper <= options_.tolerance) continue;
       std::optional<std::uint32_t> owner;
@@ -391,10 +415,13 @@ Hulls hulls(const SurfaceBvh& model, const HullOptions& options, const WorkMonit
                          (options.single_precision ? ", or write a format that holds doubles" : ""));
   }
   require_value(options.inner || options.outer, "hull: ask for the inner hull, the outer one, or both");
+  const double error = quadratic_share * first_share * surface.scale().apply(options.tolerance);
+  const std::vector<QuadraticPiece> pieces =
+      quadratic_pieces(surface, error, options.threads, {.on_progress = {}, .stop = monitor.stop});
   Hulls result;
   for (const bool inner : {true, false}) {
     if (!(inner ? options.inner : options.outer)) continue;
-    OneHull hull(surface, options, inner, monitor);
+    OneHull hull(surface, options, inner, pieces, monitor);
     const std::vector<HullProblem> problems = hull.run();
     result.problems.insert(result.problems.end(), problems.begin(), problems.end());
     result.closed = !hull.has_border_edges();

@@ -28,8 +28,8 @@ struct FlatTriangle {
 
 /// How far a surface is from a flat triangle, parameter by parameter.
 struct Flatness {
-  double error;                ///< |patch(t) - triangle(t)| <= error over the triangle; infinite if not finite
-  double corner_gap;           ///< largest distance of the quadratic at a corner from that of the triangle
+  double error;       ///< |patch(t) - triangle(t)| <= error over the triangle; infinite if not finite
+  double corner_gap;  ///< largest distance of the quadratic at a corner from that of the triangle
   std::array<Vector3, 3> bow;  ///< of each side: the middle of the quadratic's chord less its curve, rounded
 };
 

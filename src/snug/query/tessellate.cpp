@@ -32,7 +32,7 @@ constexpr double shortest_side = 0x1p-46;  // in parameters
 constexpr std::array<std::uint8_t, 8> number_of_bits{0, 1, 1, 2, 1, 2, 2, 3};
 
 struct Vertex {
-  Point3 written;            // in mesh units
+  Point3 written;  // in mesh units
   Point3 scaled;
   double error = 0;          // a coordinate, in scaled units
   Index patch = UINT32_MAX;  // and where on it it is
@@ -53,8 +53,8 @@ struct Piece {
 struct Limits {
   double tolerance = INFINITY, max_edge = INFINITY;
   std::vector<double> of_owner{};  // tolerances of owners instead of that; or none
-  double least_cosine = -2;  // of normals; -2 for none
-  double shortest_turn = 0;  // edges that are shorter are not split for their normals
+  double least_cosine = -2;        // of normals; -2 for none
+  double shortest_turn = 0;        // edges that are shorter are not split for their normals
 };
 
 // Limit points and patches, for one thread; what comes together should be asked for together.
@@ -380,7 +380,10 @@ std::size_t Refinement::choose(Index t, unsigned marks) const {
   };
   const auto size = [&](std::size_t p, std::size_t q) { return length_sq(point[p] - point[q]); };
   if (choices == 2) {
-    const std::size_t k = marks == 3 ? 0 : marks == 6 ? 1 : 2, a = 3 + k, b = 3 + (k + 1) % 3, behind = (k + 2) % 3;
+    const std::size_t k = marks == 3   ? 0
+                          : marks == 6 ? 1
+                                       : 2,
+                      a = 3 + k, b = 3 + (k + 1) % 3, behind = (k + 2) % 3;
     const double first = bend(a, behind), second = bend(k, b);
     return first < second || (first == second && size(a, behind) <= size(k, b)) ? 0 : 1;
   }
@@ -404,8 +407,8 @@ std::vector<Refinement::Cut> Refinement::plan_cuts() {
     const std::size_t marks = number_of_bits[complex_.marks(t)];
     if (marks == 0) continue;
     const bool coarse = pieces_[piece_[t]].coarse;
-    cuts.push_back({t, static_cast<Index>(old + triangles),
-                    static_cast<Index>(complex_.edge_count() + edges), static_cast<Index>(pieces)});
+    cuts.push_back({t, static_cast<Index>(old + triangles), static_cast<Index>(complex_.edge_count() + edges),
+                    static_cast<Index>(pieces)});
     triangles += marks;
     edges += marks;
     pieces += coarse ? 4 : 0;
@@ -580,9 +583,11 @@ Limits limits_of(const LimitSurface& surface, const TessellateOptions& options) 
     const double result = scale.apply(*length);
     if (!(result >= least)) {
       char text[200];
-      std::snprintf(text, sizeof text, "tessellate: %s of %g is too small for coordinates as large as these%s; take %.4g or more",
-                    what, *length, options.single_precision ? " in single precision" : "",
-                    rounded_up(unscaled_up(least, back) * (1 + 1e-3)));
+      std::snprintf(
+          text, sizeof text,
+          "tessellate: %s of %g is too small for coordinates as large as these%s; take %.4g or more", what,
+          *length, options.single_precision ? " in single precision" : "",
+          rounded_up(unscaled_up(least, back) * (1 + 1e-3)));
       refuse_value(text);
     }
     return result;
@@ -591,7 +596,8 @@ Limits limits_of(const LimitSurface& surface, const TessellateOptions& options) 
   limits.tolerance = scaled(options.tolerance, "a tolerance");
   limits.max_edge = scaled(options.max_edge, "a longest edge");
   if (options.max_angle) limits.least_cosine = std::cos(*options.max_angle * 3.14159265358979323846 / 180);
-  limits.shortest_turn = std::isfinite(limits.tolerance) ? limits.tolerance : 1e-6 * scale.apply(surface.size());
+  limits.shortest_turn =
+      std::isfinite(limits.tolerance) ? limits.tolerance : 1e-6 * scale.apply(surface.size());
   return limits;
 }
 
@@ -686,7 +692,9 @@ LocalTessellation tessellate(const LimitSurface& surface, std::span<const double
   for (const double tolerance : tolerances) {
     limits.of_owner.push_back(std::max(surface.scale().apply(tolerance), least_tolerance));
   }
-  limits.tolerance = limits.of_owner.empty() ? double{INFINITY} : *std::min_element(limits.of_owner.begin(), limits.of_owner.end());
+  limits.tolerance = limits.of_owner.empty()
+                         ? double{INFINITY}
+                         : *std::min_element(limits.of_owner.begin(), limits.of_owner.end());
   Refinement refinement(surface, options, limits, monitor);
   const bool reached = refinement.run(options.budget);
   LocalTessellation result;

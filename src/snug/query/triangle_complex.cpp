@@ -46,8 +46,9 @@ TriangleSplit split_of(unsigned marks, std::size_t choice) {
   const int bits = __builtin_popcount(marks);
   if (bits == 1) {
     const std::size_t k = side_of_bit(marks);
-    return {2,
-            {Local{corner(k), middle_of(k), corner(k + 2)}, Local{middle_of(k), corner(k + 1), corner(k + 2)}}};
+    return {
+        2,
+        {Local{corner(k), middle_of(k), corner(k + 2)}, Local{middle_of(k), corner(k + 1), corner(k + 2)}}};
   }
   if (bits == 2) {
     const std::size_t k = (side_of_bit(7 - marks) + 1) % 3;  // marked: sides k and k + 1
@@ -181,7 +182,8 @@ void TriangleComplex::extend(std::size_t triangles, std::size_t edges) {
   marks_.resize(marks_.size() + edges, 0);
 }
 
-void TriangleComplex::cut(std::size_t t, const TriangleSplit& split, std::size_t first_new, Index first_edge) {
+void TriangleComplex::cut(std::size_t t, const TriangleSplit& split, std::size_t first_new,
+                          Index first_edge) {
   const std::array<Index, 3> old = sides_[t].of, whole = corners_[t];
   const auto vertex = [&](std::size_t local) { return local < 3 ? whole[local] : middle(old[local - 3]); };
   std::array<std::array<std::uint8_t, 2>, 3> inner{};

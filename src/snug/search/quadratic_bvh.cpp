@@ -401,7 +401,9 @@ bool may_meet(const QuadraticTriangle& part, const Ball& ball, const Vector3& no
   if (apart(part, q, normal) || apart(part, q, unit_normal(q.corners))) return false;
   // Along the shortest way between the triangles of their corners.
   const NearestTriangles near = nearest(part.corners, q.corners);
-  const auto at = [](const Triangle& t, const Barycentric& p) { return t[0] + p.b * (t[1] - t[0]) + p.c * (t[2] - t[0]); };
+  const auto at = [](const Triangle& t, const Barycentric& p) {
+    return t[0] + p.b * (t[1] - t[0]) + p.c * (t[2] - t[0]);
+  };
   if (apart(part, q, normalized(at(q.corners, near.on_b) - at(part.corners, near.on_a)))) return false;
   const bool small = other.radius <= std::max(ball.radius, 2 * q.error + 4 * distance_rounding);
   const double bent = std::max({max_abs(bend(q, 0)), max_abs(bend(q, 1)), max_abs(bend(q, 2))});
@@ -428,7 +430,8 @@ bool QuadraticBvh::may_meet(const QuadraticTriangle& part, double flat) const {
       return snug::may_meet(part, ball, normal, tree.quadratics_[i], tree.curved_[i] != 0, flat);
     }
   };
-  return any_near(ball.centre, ball.radius, Meet{*this, part, ball, normal, std::max(flat, 4 * distance_rounding)});
+  return any_near(ball.centre, ball.radius,
+                  Meet{*this, part, ball, normal, std::max(flat, 4 * distance_rounding)});
 }
 
 namespace {
