@@ -17,7 +17,7 @@ struct HullOptions {
   bool single_precision = false;      ///< coordinates are floats, for formats that hold no others
 };
 
-/// Triangles on one side of a limit surface, oriented as its faces.
+/// Triangles on one side of a limit surface, oriented as its faces; of a closed one outward.
 struct Hull {
   std::vector<Point3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -53,7 +53,7 @@ struct Hulls {
 };
 
 /// Two meshes that sandwich a limit surface: the inner hull lies inside of the solid that a closed surface
-/// bounds, the outer one around it. Of an open surface they are a sheet behind and one in front of it, with
+/// bounds, whichever way its faces are oriented, the outer one around it. Of an open surface they are a sheet behind and one in front of it, with
 /// the same border as the surface's, moved: a strip as wide as the gap along it is not covered.
 ///
 /// Guarantee: if `verified`, no triangle of a hull has a point in common with the limit surface, nor with the

@@ -71,6 +71,17 @@ bool has_border(const Tessellation& mesh) {
   });
 }
 
+// Are the faces of a closed surface oriented inward, on the whole? No proof rests on it.
+bool is_inward(const Tessellation& mesh, PowerOfTwo scale) {
+  const Point3 origin = scale.apply(mesh.positions[0]);
+  double volume = 0;
+  for (const Names& t : mesh.triangles) {
+    const auto from = [&](std::uint32_t v) { return scale.apply(mesh.positions[v]) - origin; };
+    volume += dot(from(t[0]), cross(from(t[1]), from(t[2])));
+  }
+  return volume < 0;
+}
+
 // A hull on one side, by triangles whose tolerances are made smaller where it fails.
 class OneHull {
  public:
@@ -93,6 +104,7 @@ class OneHull {
       make_triangles();
       if (round == 0) {
         border_ = has_border(mesh_);
+        inward_ = !border_ && is_inward(mesh_, scale_);
       }
       problems_.clear();
       piece_marks_.assign(pieces_.size(), 0);
@@ -105,7 +117,11 @@ class OneHull {
     return std::move(problems_);
   }
   [[nodiscard]] bool has_border_edges() const { return border_; }
+  // Oriented outward.
   [[nodiscard]] Hull take() {
+    for (Names& t : mesh_.triangles) {
+      if (inward_) std::swap(t[1], t[2]);
+    }
     return {std::move(hull_), std::move(mesh_.triangles), std::move(mesh_.owners), gap_};
   }
 
@@ -164,7 +180,7 @@ class OneHull {
 
   // Each vertex as near as possible to where it was, beyond the planes of the triangles around it.
   void move_vertices() {
-    const double sign = inner_ ? -1 : 1;
+    const double sign = inner_ != inward_ ? -1 : 1;
     std::vector<Vector3> normals(mesh_.triangles.size());
     std::vector<double> offsets(mesh_.triangles.size());
     parallel_for(normals.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
@@ -281,7 +297,7 @@ class OneHull {
   std::vector<QuadraticPiece> pieces_;
   std::vector<QuadraticTriangle> quadratics_;
   std::unique_ptr<QuadraticBvh> tree_;
-  bool border_ = false;
+  bool border_ = false, inward_ = false;
   std::vector<HullProblem> problems_;
   std::vector<std::uint8_t> wrong_, piece_marks_;  // owners; pieces that facets come near
   std::vector<Point3> hull_;
