@@ -130,6 +130,7 @@ class Report {
 [[nodiscard]] Command collide_command();
 [[nodiscard]] Command distance_command();
 [[nodiscard]] Command closest_command();
+[[nodiscard]] Command deviation_command();
 [[nodiscard]] Command render_command();
 
 }  // namespace snug::command

@@ -12,6 +12,7 @@ enum class ExitStatus : int {
   within = 10,        // with --exit-code
   intersecting = 11,  // with --exit-code
   undecided = 12,     // with --exit-code
+  exceeds = 13,       // with --exit-code
   interrupted = 130,
 };
 

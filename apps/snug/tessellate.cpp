@@ -81,6 +81,9 @@ ExitStatus run(const Options& options) {
   require_options(options);
   const LimitSurface surface =
       load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  CommonOptions to_standard_output = options;
+  to_standard_output.output.clear();
+  Report report("tessellate", to_standard_output);
   Tessellation result;
   naming(options.mesh, [&] {
     ProgressBar bar("tessellating " + options.mesh, options.quiet);
@@ -89,9 +92,6 @@ ExitStatus run(const Options& options) {
   AtomicFile file(options.output);
   write_mesh(mesh_of(result), file, options.output, notes_for(options), stopped_by_interrupts(),
              result.normals);
-  CommonOptions to_standard_output = options;
-  to_standard_output.output.clear();
-  Report report("tessellate", to_standard_output);
   report.heads({options.mesh}, {name_of(surface.options().scheme)});
   write_summary(report, options, result);
   return report.finish(result.reached, {&file});

@@ -13,12 +13,14 @@ struct TessellateOptions {
   /// Largest distance, in mesh units, between the limit surface and the triangles, either way.
   std::optional<double> tolerance{};
   std::optional<double> max_edge{};  ///< longest edge, in mesh units
-  std::optional<double>
-      max_angle{};  ///< largest angle between limit normals at corners of a triangle, in degrees
+  /// Largest angle between limit normals at corners of a triangle, in degrees: in double precision, and only of
+  /// triangles with a side longer than the tolerance (without one, a millionth of the size).
+  std::optional<double> max_angle{};
   /// Most triangles: the smallest error that is found for so many, but not below the tolerance if there is one.
   std::optional<std::uint64_t> max_triangles{};
   bool single_precision = false;  ///< coordinates are floats, for formats that hold no others
   bool normals = true;            ///< fill Tessellation::normals
+  bool corners = false;           ///< fill Tessellation::corners
   /// Most triangles before refinement gives up; see Tessellation::reached.
   std::uint64_t budget = 50'000'000;
   int threads = 0;  ///< 0: all cores
@@ -33,8 +35,11 @@ struct Tessellation {
   double position_error = 0;                 ///< upper bound, per coordinate, of |position - limit point|
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< oriented as the faces
   std::vector<std::uint32_t> owners;  ///< of each triangle the face; in a dual scheme, the vertex
-  double error_bound = 0;             ///< proved, see tessellate()
-  bool reached = true;                ///< false if the budget, or max_triangles, ended refinement before
+  /// Of each triangle the parameters of its corners on its own face (vertex), whatever `parameters` has: all with
+  /// the same `corner`. Between them parameters are linear.
+  std::vector<std::array<SurfaceParameter, 3>> corners;
+  double error_bound = 0;  ///< proved, see tessellate()
+  bool reached = true;     ///< false if the budget, or max_triangles, ended refinement before
 };
 
 /// Triangles that approximate the whole limit surface without cracks: adaptive, each edge split as its own bend

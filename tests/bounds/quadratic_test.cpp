@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
 #include <oracle/polygon_twin.h>
+#include <snug/bounds/hull_points.h>
 #include <snug/geometry/scaling.h>
+#include <snug/patch/evaluate.h>
 #include <testing/containment.h>
 #include <testing/disguises.h>
 #include <testing/patches.h>
@@ -228,6 +230,36 @@ TEST(quadratic_triangle, is_exact_for_bilinear_faces) {
       EXPECT_LT(compare(surface.library(), surface.patch(PatchId(p)), 8).error, 1e-13);
     }
   }
+}
+
+// Triangles with corners on the surface and off it.
+TEST(distance_to_triangle, bounds_dense_samples_of_every_kind) {
+  std::mt19937_64 random(86);
+  testing::for_each_surface(87, [&](const testing::NamedSurface& named) {
+    testing::for_each_patch(named.surface, [&](PatchId p) {
+      if (p.index() % 5 != 0) return;
+      const Patch patch = named.surface.patch(p);
+      const std::array<Vector3, 3> limits = limit_corners(patch);
+      Triangle triangle;
+      for (std::size_t k = 0; k < 3; ++k) {
+        triangle[k] =
+            patch.origin + limits[k] + (0.1 * static_cast<double>(random() % 2)) * limits[(k + 1) % 3];
+      }
+      HullPoints hull;
+      if (patch.kind->shared()) hull_points(named.surface.library(), patch, hull);
+      const double bound = distance_to_triangle(named.surface.library(), patch, hull, triangle);
+      for (int i = 0; i <= 8; ++i) {
+        for (int j = 0; i + j <= 8; ++j) {
+          const double u = i / 8.0, v = j / 8.0;
+          const LimitPoint limit = limit_point(patch, {u, v});
+          const Point3 flat =
+              triangle[0] + (u * (triangle[1] - triangle[0]) + v * (triangle[2] - triangle[0]));
+          EXPECT_LE(distance(patch.origin + limit.relative, flat), bound + 2 * limit.error + 1e-14)
+              << named.name << ", patch " << p.index();
+        }
+      }
+    });
+  });
 }
 
 TEST(quadratic_triangle, of_points_that_are_not_finite_has_an_infinite_error) {

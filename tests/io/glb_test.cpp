@@ -136,6 +136,23 @@ TEST(glb, triangles_of_floats_need_no_notes) {
   EXPECT_FALSE(format_glb(mesh, "out.glb", [](const std::string& line) { ADD_FAILURE() << line; }).empty());
 }
 
+TEST(glb, holds_normals_of_length_1) {
+  ControlMesh mesh;
+  mesh.points = {{0, 0, 0}, {0.5, 0, 0}, {0, 1, 0}};
+  mesh.add_face(std::vector{VertexId(0), VertexId(1), VertexId(2)});
+  const std::vector<Vector3> normals{{1, 0, 0}, {0, 0, 0}, {0, -1, 0}};
+  const Container container = open(format_glb(mesh, "out.glb", {}, normals));
+  const auto& attributes = container.json["meshes"][0]["primitives"][0]["attributes"];
+  const std::string bytes = accessor_bytes(container, attributes["NORMAL"], 12);
+  const std::vector<float> wanted{1, 0, 0, 0, 0, 1, 0, -1, 0};
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    EXPECT_EQ(std::bit_cast<float>(word_at(bytes, 4 * i)), wanted[i]);
+  }
+  EXPECT_EQ(accessor_bytes(container, attributes["POSITION"], 12).size(), 36u);
+  EXPECT_EQ(accessor_bytes(container, container.json["meshes"][0]["primitives"][0]["indices"], 4).size(),
+            12u);
+}
+
 TEST(glb, refuses_what_it_cannot_hold) {
   const auto refusal = [](const ControlMesh& mesh) -> std::string {
     try {

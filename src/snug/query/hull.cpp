@@ -38,7 +38,7 @@ constexpr auto fault_names = std::to_array<Named<HullFault>>({
 });
 
 // Of the tolerance: that of the triangles which are moved, at first; below which it is no longer made smaller.
-constexpr double first_share = 0.4, least_share = 0x1p-10;
+constexpr double first_share = 0.4, least_share = 0x1p-6;
 // Of the tolerance of a triangle: how much farther off its plane than its error its facet is kept, and the error
 // of the quadratics that it is to be kept off.
 constexpr double clearance = 0.1, quadratic_share = 0x1p-6;

@@ -54,7 +54,7 @@ struct Limits {
   double tolerance = INFINITY, max_edge = INFINITY;
   std::vector<double> of_owner{};  // tolerances of owners instead of that; or none
   double least_cosine = -2;        // of normals; -2 for none
-  double shortest_turn = 0;        // edges that are shorter are not split for their normals
+  double shortest_turn = 0;        // triangles without a longer side are not split for their normals
 };
 
 // Limit points and patches, for one thread; what comes together should be asked for together.
@@ -257,10 +257,13 @@ void Refinement::learn(Worker& worker, Index t) {
   const QuadraticTriangle near = quadratic_triangle(library, patch, worker.hull);
   piece.known = true;
   piece.coarse = !(near.error <= quadratic_share * tolerance(t)) || !(near.error < INFINITY);
-  if (piece.coarse) {
-    error_[t] = distance_to_triangle(library, patch, worker.hull, flat(t).corner);
-  } else {
-    piece.quadratic = PieceQuadratic(near, piece.place);
+  if (near.error < INFINITY) piece.quadratic = PieceQuadratic(near, piece.place);
+  if (!piece.coarse) return;
+  const FlatTriangle triangle = flat(t);
+  if (near.error < INFINITY) error_[t] = piece.quadratic.flatness(triangle).error;
+  // Where the quadratic itself is too far away there is nothing to be gained.
+  if (error_[t] > tolerance(t) && !(error_[t] - 2 * near.error > tolerance(t))) {
+    error_[t] = std::min(error_[t], distance_to_triangle(library, patch, worker.hull, triangle.corner));
   }
 }
 
@@ -312,13 +315,17 @@ void Refinement::mark_turning(Worker& worker, Index t) {
     normal[k] = worker.evaluator(patch).frame(place_of(surface_, PatchId(patch), at_[t][k])).normal;
   }
   const std::array<Point3, 3> corner = flat(t).corner;
+  bool turns = false;
+  std::size_t longest = 0;
+  std::array<double, 3> side;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3;
-    if (!normal[k] || !normal[next] || dot(*normal[k], *normal[next]) >= limits_.least_cosine) continue;
-    if (distance(corner[k], corner[next]) > limits_.shortest_turn) {
-      complex_.mark(complex_.edge_of(t, k));
-    }
+    turns = turns || (normal[k] && normal[next] && dot(*normal[k], *normal[next]) < limits_.least_cosine);
+    side[k] = distance(corner[k], corner[next]);
+    if (side[k] > side[longest]) longest = k;
   }
+  // Not the sides that turn: slivers along a fold would be split for ever.
+  if (turns && side[longest] > limits_.shortest_turn) complex_.mark(complex_.edge_of(t, longest));
 }
 
 void Refinement::examine(Worker& worker, Index t, bool mark) {
@@ -470,9 +477,10 @@ bool Refinement::run(std::uint64_t most) {
   std::vector<Index> active(triangle_count());
   for (Index t = 0; t < active.size(); ++t) active[t] = t;
   // First what makes the triangles a complex, whatever the limits are.
-  for (bool first = true;; first = false) {
+  while (true) {
     examine(active, false);
-    if (!complex_.mark_what_is_not_simple() && !first) break;
+    complex_.mark_what_is_not_simple();
+    if (count_after() == triangle_count()) break;
     mark_rest_of_coarse();
     split(active);
   }
@@ -534,12 +542,17 @@ Tessellation Refinement::result(std::vector<double>* errors) const {
   result.triangles.resize(count);
   result.owners.resize(count);
   if (errors != nullptr) errors->resize(count);
+  if (options_.corners) result.corners.resize(count);
   for (std::size_t t = 0; t < count; ++t) {
     const Index patch = pieces_[piece_[t]].patch;
     const std::size_t place = begins[patch]++;
     result.triangles[place] = complex_.corners(t);
     result.owners[place] = surface_.place(PatchId(patch)).owner;
     if (errors != nullptr) (*errors)[place] = unscaled_up(error_[t], back_);
+    if (!options_.corners) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      result.corners[place][k] = place_of(surface_, PatchId(patch), at_[t][k]);
+    }
   }
   // Vertices in the order in which triangles name them.
   std::vector<Index> number(vertices_.size(), UINT32_MAX), order;
@@ -692,9 +705,7 @@ LocalTessellation tessellate(const LimitSurface& surface, std::span<const double
   for (const double tolerance : tolerances) {
     limits.of_owner.push_back(std::max(surface.scale().apply(tolerance), least_tolerance));
   }
-  limits.tolerance = limits.of_owner.empty()
-                         ? double{INFINITY}
-                         : *std::min_element(limits.of_owner.begin(), limits.of_owner.end());
+  limits.tolerance = *std::min_element(limits.of_owner.begin(), limits.of_owner.end());
   Refinement refinement(surface, options, limits, monitor);
   const bool reached = refinement.run(options.budget);
   LocalTessellation result;

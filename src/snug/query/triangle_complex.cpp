@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <numeric>
+#include <tuple>
 
 #include <snug/base/contract.h>
 #include <snug/surface/patch_sides.h>
@@ -19,19 +19,21 @@ std::uint8_t middle_of(std::size_t side) { return static_cast<std::uint8_t>(3 + 
 // The side with the only bit, or the one before the other two.
 std::size_t side_of_bit(unsigned bit) { return bit == 1 ? 0 : bit == 2 ? 1 : 2; }
 
-// Groups of equal keys, calls visit(begin, end) on the sorted numbers of each with more than one.
-template <class Key, class Visit>
-void for_each_group(const std::vector<Key>& keys, const Visit& visit) {
-  std::vector<Index> order(keys.size());
-  std::iota(order.begin(), order.end(), Index{0});
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return keys[a] < keys[b]; });
-  for (std::size_t begin = 0; begin < order.size();) {
-    std::size_t end = begin + 1;
-    while (end < order.size() && keys[order[end]] == keys[order[begin]]) ++end;
-    if (end - begin > 1) {
-      for (std::size_t i = begin; i < end; ++i) visit(order[i]);
+// Calls visit(i) for the numbers of all keys that are there more than once. First entries are below `limit`.
+template <std::size_t N, class Visit>
+void for_each_repeated(const std::vector<std::array<Index, N>>& keys, std::size_t limit, const Visit& visit) {
+  std::vector<Index> begins(limit + 1, 0), order(keys.size());
+  for (const auto& key : keys) ++begins[key[0] + 1];
+  for (std::size_t i = 1; i < begins.size(); ++i) begins[i] += begins[i - 1];
+  std::vector<Index> next(begins.begin(), begins.end() - 1);
+  for (Index i = 0; i < keys.size(); ++i) order[next[keys[i][0]]++] = i;
+  for (std::size_t first = 0; first < limit; ++first) {
+    const auto begin = order.begin() + begins[first], end = order.begin() + begins[first + 1];
+    std::sort(begin, end, [&](Index a, Index b) { return std::tie(keys[a], a) < std::tie(keys[b], b); });
+    for (auto it = begin; it < end; ++it) {
+      const bool as_before = it != begin && keys[it[-1]] == keys[*it];
+      if (as_before || (it + 1 < end && keys[it[1]] == keys[*it])) visit(*it);
     }
-    begin = end;
   }
 }
 
@@ -150,7 +152,7 @@ bool TriangleComplex::mark_what_is_not_simple() {
   std::vector<std::array<Index, 2>> ends;
   std::vector<std::array<Index, 3>> triples;
   for (std::size_t t = 0; t < corners_.size(); ++t) {
-    triples.push_back(corners_[t]);
+    triples.push_back({edge_of(t, 0), edge_of(t, 1), edge_of(t, 2)});
     std::sort(triples.back().begin(), triples.back().end());
     for (std::size_t k = 0; k < 3; ++k) {
       const Index e = edge_of(t, k);
@@ -161,8 +163,8 @@ bool TriangleComplex::mark_what_is_not_simple() {
       if (edges_[e].from == edges_[e].to) mark_edge(e);
     }
   }
-  for_each_group(ends, [&](Index i) { mark_edge(live[i]); });
-  for_each_group(triples, [&](Index t) {
+  for_each_repeated(ends, vertex_count_, [&](Index i) { mark_edge(live[i]); });
+  for_each_repeated(triples, edges_.size(), [&](Index t) {
     for (std::size_t k = 0; k < 3; ++k) mark_edge(edge_of(t, k));
   });
   return any;

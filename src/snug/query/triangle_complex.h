@@ -63,8 +63,9 @@ class TriangleComplex {
     const std::array<Index, 3>& s = sides_[t].of;
     return static_cast<unsigned>(marks_[s[0] / 2] | (marks_[s[1] / 2] << 1) | (marks_[s[2] / 2] << 2));
   }
-  /// Marks edges until a further step leaves no two edges with the same ends, no edge from a vertex to itself,
-  /// and no two triangles with the same corners near the edges and triangles that were found so. Did it mark any?
+  /// Marks edges that others with the same ends have beside them, edges from a vertex to itself, and sides of
+  /// triangles with the same sides. Did it mark any? After few steps there are none, and later steps make none:
+  /// parts of what its corners tell apart are told apart by theirs.
   bool mark_what_is_not_simple();
 
   /// Gives the middles of marked edges that have none the next vertex numbers, in the order in which triangles

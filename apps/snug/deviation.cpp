@@ -1,0 +1,290 @@
+#include <snug/deviation.h>
+
+#include <algorithm>
+#include <array>
+#include <variant>
+
+#include <fmt/core.h>
+#include <snug/base/error.h>
+#include <snug/search/surface_data.h>
+
+#include "curve.h"
+#include "length.h"
+#include "mesh_reading.h"
+#include "progress_bar.h"
+#include "witness.h"
+
+namespace snug::command {
+namespace {
+
+struct Options : CommonOptions {
+  std::string mesh, candidate;
+  std::string scheme_b;
+  std::string precision = "0.01%";
+  std::string tolerance;  ///< a length; empty: how far, not whether
+  bool surface = false;
+  bool solid = false;
+  bool exit_code = false;
+};
+
+/// Triangles as they are, or a control mesh with its own limit surface.
+using Candidate = std::variant<std::vector<Triangle>, Surface>;
+
+/// What --tolerance asks for: do both sets stay that near each other?
+enum class Within { yes, no, undecided };
+
+const LimitSurface& limit_of(const Surface& surface) { return surface.data()->limit(); }
+
+// The surface of a mesh file under the rules that the options and its tags give.
+Surface read_surface(const std::string& path, const Options& options, const std::string& scheme) {
+  ControlMesh mesh = load_mesh(path, options);
+  refuse_curves(mesh, scheme, path);
+  std::optional<Surface> surface;
+  naming(path, [&] {
+    const SchemeOptions rules = choose_rules(options, scheme, mesh);
+    ProgressBar bar("preparing " + path, options.quiet);
+    surface.emplace(std::move(mesh), SurfaceOptions{.scheme = rules.scheme,
+                                                    .boundary = rules.boundary,
+                                                    .threads = options.threads,
+                                                    .monitor = bar.monitor()});
+  });
+  note_distance_to_faces(limit_of(*surface), path, options);
+  return *surface;
+}
+
+// Whatever else may be wrong with them does not matter: a set of triangles is all that is asked for.
+std::vector<Triangle> triangles_of(const ControlMesh& mesh, const std::string& path) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(mesh.face_count());
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(FaceId(f));
+    if (face.size() != 3) {
+      throw InputError(
+          InputProblem::refused,
+          fmt::format("{}: face {} has {} corners; the candidate is compared as triangles: triangulate it, "
+                      "or give --surface to compare its own limit surface",
+                      path, f, face.size()));
+    }
+    Triangle& corners = triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (face[k].index() >= mesh.points.size()) {
+        throw InputError(InputProblem::refused,
+                         fmt::format("{}: face {} refers to vertex {}, and there are {}", path, f,
+                                     face[k].value(), mesh.points.size()));
+      }
+      corners[k] = mesh.points[face[k].index()];
+    }
+  }
+  return triangles;
+}
+
+Candidate read_candidate(const Options& options) {
+  const std::string& path = options.candidate;
+  if (options.surface) {
+    return read_surface(path, options, options.scheme_b.empty() ? options.scheme : options.scheme_b);
+  }
+  ProgressBar bar("reading " + path, options.quiet);
+  const ControlMesh mesh = read_mesh(path, {{}, notes_for(options), bar.monitor()});
+  if (mesh.face_count() == 0) {
+    throw InputError(InputProblem::refused,
+                     path + ": there are no triangles to compare; give a mesh with faces");
+  }
+  return triangles_of(mesh, path);
+}
+
+// Both distances are at most the tolerance, or one is greater: proved.
+Within within(const Deviation& answer, double tolerance) {
+  const Interval &there = answer.from_surface.distance, &back = answer.from_candidate.distance;
+  if (there.lower > tolerance || back.lower > tolerance) return Within::no;
+  return there.upper <= tolerance && back.upper <= tolerance ? Within::yes : Within::undecided;
+}
+
+const char* name_of(Within verdict) {
+  constexpr std::array names{"within", "exceeds", "undecided"};
+  return names[static_cast<std::size_t>(verdict)];
+}
+
+// With --exit-code.
+ExitStatus status_of(Within verdict) {
+  constexpr std::array statuses{ExitStatus::answered, ExitStatus::exceeds, ExitStatus::undecided};
+  return statuses[static_cast<std::size_t>(verdict)];
+}
+
+void write_interval(JsonWriter& json, const char* key, const Interval& interval) {
+  json.key(key).begin_array().value(interval.lower).value(interval.upper).end_array();
+}
+
+// Null where the farthest point lies on no surface.
+void write_place_of(JsonWriter& json, const OneSidedDistance& found, const LimitSurface* on) {
+  if (!found.at || on == nullptr) {
+    json.null();
+    return;
+  }
+  json.begin_object();
+  write_place(json, *on, *found.at);
+  json.end_object();
+}
+
+void write_points(JsonWriter& json, const OneSidedDistance& found) {
+  json.begin_array().value(found.from).value(found.to).end_array();
+}
+
+// Of the points of the candidate on one side of the solid; no points where there are none.
+void write_side(JsonWriter& json, const std::string& side, const OneSidedDistance& found,
+                const LimitSurface* candidate) {
+  write_interval(json, side.c_str(), found.distance);
+  const bool none = found.distance.upper == 0;
+  json.key(side + "_points");
+  if (none) {
+    json.null();
+  } else {
+    write_points(json, found);
+  }
+  json.key(side + "_error");
+  none ? json.null() : json.value(found.error);
+  json.key(side + "_at");
+  write_place_of(json, found, none ? nullptr : candidate);
+}
+
+void write_answer(JsonWriter& json, const Deviation& answer,
+                  const std::array<const LimitSurface*, 2>& surfaces) {
+  const std::array sides{&answer.from_surface, &answer.from_candidate};
+  json.field("reached", answer.reached);
+  write_interval(json, "from_surface", sides[0]->distance);
+  write_interval(json, "from_candidate", sides[1]->distance);
+  json.key("points").begin_array();
+  for (const OneSidedDistance* side : sides) write_points(json, *side);
+  json.end_array().key("points_error").begin_array();
+  for (const OneSidedDistance* side : sides) json.value(side->error);
+  json.end_array().key("points_at").begin_array();
+  for (std::size_t s = 0; s < 2; ++s) write_place_of(json, *sides[s], surfaces[s]);
+  json.end_array();
+  if (answer.inside) write_side(json, "inside", *answer.inside, surfaces[1]);
+  if (answer.outside) write_side(json, "outside", *answer.outside, surfaces[1]);
+}
+
+// "at least 0.1 and at most 0.2".
+std::string text_of(const Interval& distance) {
+  return fmt::format("at least {} and at most {}", text_at_most(distance.lower),
+                     text_at_most(distance.upper, true));
+}
+
+// The farthest point, what is near it, and where it lies.
+std::string text_of(const OneSidedDistance& found, const LimitSurface* on) {
+  std::string text = fmt::format("  ({:.8g} {:.8g} {:.8g}), and near it ({:.8g} {:.8g} {:.8g})", found.from.x,
+                                 found.from.y, found.from.z, found.to.x, found.to.y, found.to.z);
+  if (!found.at || on == nullptr) return text;
+  const SchemeRules& rules = on->rules();
+  return text + fmt::format(", {} {}{} u {:.6g} v {:.6g}", rules.owner(), found.at->owner,
+                            rules.triangular() ? "" : fmt::format(" corner {}", found.at->corner),
+                            found.at->u, found.at->v);
+}
+
+void write_text(Report& report, const Deviation& answer, const std::array<const LimitSurface*, 2>& surfaces) {
+  const auto write = [&](const std::string& what, const OneSidedDistance& found, const LimitSurface* on) {
+    if (found.distance.upper == 0) {
+      report.text(what + ": 0, proved");
+      return;
+    }
+    report.text(what + ": " + text_of(found.distance) + "; the farthest point found");
+    report.text(text_of(found, on));
+  };
+  write("from the surface to the candidate", answer.from_surface, surfaces[0]);
+  write("from the candidate to the surface", answer.from_candidate, surfaces[1]);
+  if (answer.inside) write("of the candidate's points inside of the solid", *answer.inside, surfaces[1]);
+  if (answer.outside) write("of the candidate's points outside of the solid", *answer.outside, surfaces[1]);
+}
+
+// The verdict as a sentence for people.
+std::string sentence(Within verdict, double tolerance, bool narrow) {
+  switch (verdict) {
+    case Within::yes:
+      return fmt::format("within: proved, no point of either is farther than {:.6g} from the other",
+                         tolerance);
+    case Within::no:
+      return fmt::format("exceeds: proved, a point of one is farther than {:.6g} from the other", tolerance);
+    case Within::undecided:
+      break;
+  }
+  return fmt::format("undecided: a distance is too near to {:.6g} to tell; give a {}", tolerance,
+                     narrow ? "smaller --precision" : "larger --budget");
+}
+
+ExitStatus run(const Options& options) {
+  const Length precision = parse_length(options.precision, "--precision");
+  std::optional<Length> tolerance;
+  if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--tolerance", true);
+  const Surface surface = read_surface(options.mesh, options, options.scheme);
+  const Candidate candidate = read_candidate(options);
+  DeviationOptions wanted;
+  wanted.absolute = precision.in_mesh_units(surface.size());
+  if (tolerance) wanted.tolerance = tolerance->in_mesh_units(surface.size());
+  wanted.solid = options.solid;
+  wanted.budget = options.budget;
+  wanted.threads = options.threads;
+  Deviation answer;
+  {
+    ProgressBar bar("comparing", options.quiet);
+    const WorkMonitor monitor = bar.monitor();
+    if (options.solid) naming(options.mesh, [&] { static_cast<void>(surface.data()->bvh().solid()); });
+    answer =
+        std::visit([&](const auto& other) { return deviation(surface, other, wanted, monitor); }, candidate);
+  }
+  const Surface* const other = std::get_if<Surface>(&candidate);
+  const std::array<const LimitSurface*, 2> surfaces{&limit_of(surface), other ? &limit_of(*other) : nullptr};
+  Report report("deviation", options);
+  report.heads({options.mesh, options.candidate},
+               {snug::name_of(surface.scheme()), snug::name_of(other ? other->scheme() : Scheme::flat)});
+  std::optional<Within> verdict;
+  if (wanted.tolerance) verdict = within(answer, *wanted.tolerance);
+  if (report.json()) {
+    report.write().field("precision", *wanted.absolute).key("tolerance");
+    wanted.tolerance ? report.write().value(*wanted.tolerance) : report.write().null();
+    report.write().key("verdict");
+    verdict ? report.write().value(name_of(*verdict)) : report.write().null();
+    write_answer(report.write(), answer, surfaces);
+  }
+  if (verdict) report.text(sentence(*verdict, *wanted.tolerance, answer.reached));
+  write_text(report, answer, surfaces);
+  if (!verdict && !answer.reached) {
+    report.text("the precision was not reached: give a larger --budget or --precision");
+  }
+  const ExitStatus status = report.finish(verdict ? *verdict != Within::undecided : answer.reached);
+  return options.exit_code ? status_of(*verdict) : status;
+}
+
+}  // namespace
+
+Command deviation_command() {
+  auto options = std::make_shared<Options>();
+  options->budget = DeviationOptions{}.budget;
+  OptionList list;
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL)");
+  list.add(Group::own, "CANDIDATE", &options->candidate,
+           "Triangles to compare with its limit surface: any, such as a tessellation or a scan");
+  list.add(Group::own, "--precision LENGTH", &options->precision,
+           "Largest width of the intervals; mesh units, or percent of MESH");
+  list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
+           "Only ask whether all points are this near; mesh units, or percent of MESH");
+  list.add(Group::own, "--exit-code", &options->exit_code, "Exit with 0 within, 13 exceeds, 12 undecided")
+      .needs("--tolerance");
+  list.add(Group::own, "--surface", &options->surface,
+           "CANDIDATE is a control mesh: compare the two limit surfaces");
+  list.add(Group::own, "--solid", &options->solid,
+           "MESH bounds a solid: also how far CANDIDATE lies inside and outside of it");
+  add_common_options(list, *options);
+  list.add(Group::effort, "--budget N", &options->budget,
+           "Compare at most N parts in each direction, then report what was reached")
+      .between(0, std::uint64_t{1} << 40);
+  add_scheme_option(list, "--scheme-b", options->scheme_b, "Scheme of CANDIDATE; overrides --scheme")
+      .needs("--surface");
+  return {
+      "deviation",
+      Topic::two_surfaces,
+      "How far are a limit surface and a mesh that stands for it from each other? Bounds both ways",
+      {"snug deviation bust.obj tessellated.stl", "snug deviation bust.obj tessellated.stl --tolerance 0.1%"},
+      std::move(list),
+      [options] { return run(*options); }};
+}
+
+}  // namespace snug::command

@@ -1,0 +1,115 @@
+#include <snug/io/mesh_file.h>
+#include <snug/io/read_file.h>
+#include <snug/mesh/topology.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "run_snug.h"
+
+namespace snug::testing {
+namespace {
+
+nlohmann::json answer(std::vector<std::string> arguments, int status = 0) {
+  arguments.insert(arguments.begin(), "tessellate");
+  arguments.emplace_back("--json");
+  const Outcome outcome = run_snug(arguments);
+  EXPECT_EQ(outcome.status, status) << outcome.err;
+  return nlohmann::json::parse(outcome.out);
+}
+
+void expect_refused(std::vector<std::string> arguments, int status, const std::string& text) {
+  arguments.insert(arguments.begin(), "tessellate");
+  const Outcome outcome = run_snug(arguments);
+  EXPECT_EQ(outcome.status, status) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_NE(outcome.err.find(text), std::string::npos) << outcome.err;
+}
+
+TEST(tessellate, writes_closed_triangles_in_every_format) {
+  const TemporaryFolder folder;
+  for (const char* const format : {"obj", "off", "ply", "stl"}) {
+    const std::string file = folder.file(std::string("pawn.") + format);
+    const auto json = answer({model("pawn.obj"), "--tolerance", "0.03", "-o", file});
+    EXPECT_TRUE(json["reached"]);
+    EXPECT_GT(json["error_bound"], 0);
+    EXPECT_LE(json["error_bound"], 0.03);
+    ReadOptions reading;
+    if (std::string(format) == "stl") reading.weld = [](double) { return 0.0; };
+    const ControlMesh mesh = read_mesh(file, reading);
+    EXPECT_EQ(mesh.face_count(), json["triangles"]) << format;
+    EXPECT_EQ(mesh.vertex_count(), json["vertices"]) << format;
+    const Topology topology(mesh);
+    EXPECT_TRUE(topology.is_manifold()) << format;
+    EXPECT_EQ(2 * topology.edge_count(), 3 * mesh.face_count()) << format;
+    for (std::size_t e = 0; e < topology.edge_count(); ++e)
+      EXPECT_FALSE(topology.ends_fans(EdgeId(e))) << format;
+  }
+}
+
+TEST(tessellate, writes_gltf_with_normals) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("pawn.glb");
+  const auto json = answer({model("pawn.obj"), "--tolerance", "1%", "-o", file});
+  const std::string bytes = read_file(file, {});
+  EXPECT_NE(bytes.find("\"NORMAL\":2"), std::string::npos);
+  EXPECT_GT(bytes.size(),
+            24 * json["vertices"].get<std::size_t>() + 12 * json["triangles"].get<std::size_t>());
+}
+
+// Floats are off by more than doubles, and the error says so.
+TEST(tessellate, states_the_error_of_floats) {
+  const TemporaryFolder folder;
+  const auto doubles = answer({model("pawn.obj"), "--tolerance", "1%", "-o", folder.file("a.ply")}),
+             floats = answer({model("pawn.obj"), "--tolerance", "1%", "-o", folder.file("a.stl")});
+  EXPECT_GT(floats["position_error"], 1e-9);
+  EXPECT_LT(doubles["position_error"], 1e-13);
+}
+
+TEST(tessellate, holds_numbers_of_triangles_edges_and_angles) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("a.off"), pawn = model("pawn.obj");
+  EXPECT_LE(answer({pawn, "--max-triangles", "2000", "-o", file})["triangles"], 2000);
+  EXPECT_GT(answer({pawn, "--max-edge", "2%", "-o", file})["triangles"], 5000);
+  EXPECT_GT(answer({pawn, "--tolerance", "1%", "--max-angle", "10", "-o", file})["triangles"],
+            answer({pawn, "--tolerance", "1%", "-o", file})["triangles"]);
+  const auto ended = answer({pawn, "--tolerance", "0.001%", "--budget", "3000", "-o", file}, 5);
+  EXPECT_FALSE(ended["reached"]);
+  EXPECT_LE(ended["triangles"], 3000);
+}
+
+TEST(tessellate, does_not_depend_on_threads) {
+  const TemporaryFolder folder;
+  const std::string one = folder.file("one.ply"), three = folder.file("three.ply");
+  answer({model("ring.obj"), "--tolerance", "0.1%", "-o", one, "--threads", "1"});
+  answer({model("ring.obj"), "--tolerance", "0.1%", "-o", three, "--threads", "3"});
+  EXPECT_EQ(read_file(one, {}), read_file(three, {}));
+}
+
+TEST(tessellate, says_what_is_wrong) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("a.off"), pawn = model("pawn.obj");
+  expect_refused({pawn, "--tolerance", "1%"}, 2, "-o FILE is missing");
+  expect_refused({pawn, "-o", file}, 2, "--tolerance");
+  expect_refused({pawn, "--tolerance", "-1", "-o", file}, 2, "--tolerance");
+  expect_refused({pawn, "--tolerance", "1%", "-o", folder.file("a.txt")}, 3, "written to");
+  expect_refused({pawn, "--tolerance", "1e-20", "-o", file}, 4, "take ");
+  expect_refused({pawn, "--tolerance", "1e-8", "-o", folder.file("a.stl")}, 4, "single precision");
+  expect_refused({pawn, "--max-triangles", "3", "-o", file}, 4, "take ");
+  EXPECT_TRUE(folder.empty());
+}
+
+TEST(tessellate, leaves_nothing_after_a_signal) {
+  const TemporaryFolder folder;
+  const Outcome outcome = interrupt_snug(
+      {"tessellate", model("bust.obj"), "--tolerance", "0.00002%", "-o", folder.file("a.ply")}, 300);
+  EXPECT_EQ(outcome.status, 130) << outcome.err;
+  EXPECT_TRUE(folder.empty());
+}
+
+}  // namespace
+}  // namespace snug::testing

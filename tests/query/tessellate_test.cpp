@@ -1,0 +1,238 @@
+#include <snug/query/tessellate.h>
+
+#include <gtest/gtest.h>
+#include <oracle/test_meshes.h>
+#include <snug/bounds/hull_points.h>
+#include <snug/bounds/quadratic.h>
+#include <snug/io/mesh_file.h>
+#include <snug/patch/evaluate.h>
+#include <testing/scheme_surfaces.h>
+#include <testing/tessellations.h>
+
+#include <cmath>
+#include <iostream>
+
+namespace snug {
+namespace {
+
+LimitSurface model(const char* file) {
+  ControlMesh mesh = read_mesh(std::string(SNUG_MODELS_DIR) + "/" + file);
+  bool triangles = true;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f)
+    triangles = triangles && mesh.face(FaceId(f)).size() == 3;
+  return {std::move(mesh), {triangles ? Scheme::loop : Scheme::catmark}, std::make_shared<BoundsCache>()};
+}
+
+TessellateOptions to_tolerance(double tolerance) {
+  TessellateOptions options;
+  options.tolerance = tolerance;
+  options.corners = true;
+  return options;
+}
+
+bool same(const Tessellation& a, const Tessellation& b) {
+  return a.positions == b.positions && a.normals == b.normals && a.triangles == b.triangles &&
+         a.owners == b.owners && a.error_bound == b.error_bound && a.position_error == b.position_error;
+}
+
+std::string refusal(const LimitSurface& surface, const TessellateOptions& options) {
+  try {
+    static_cast<void>(tessellate(surface, options));
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.problem(), InputProblem::value);
+    return error.what();
+  }
+  return "not refused";
+}
+
+TEST(tessellate, is_watertight_and_near_for_every_scheme_and_tag) {
+  std::size_t surfaces = 0, triangles = 0;
+  testing::for_each_surface(301, [&](const testing::NamedSurface& named) {
+    const LimitSurface& surface = named.surface;
+    const double size = surface.size();
+    for (const double tolerance : {10 * size, 0.02 * size}) {
+      const Tessellation t = tessellate(surface, to_tolerance(tolerance));
+      testing::expect_watertight(surface, t, named.name);
+      if (HasFatalFailure()) return;
+      testing::expect_near(surface, t, named.name, 2);
+      EXPECT_TRUE(t.reached);
+      EXPECT_LE(t.error_bound, tolerance) << named.name;
+      triangles += t.triangles.size();
+    }
+    ++surfaces;
+  });
+  std::cout << surfaces << " surfaces, " << triangles << " triangles\n";
+  EXPECT_GT(surfaces, 150u);
+}
+
+// Of all pieces after so many splits, with their limit corners as corners of triangles.
+double error_of_uniform(const LimitSurface& surface, const Patch& piece, unsigned levels) {
+  if (levels > 0) {
+    double largest = 0;
+    for (unsigned child = 0; child < 4; ++child) {
+      largest = std::max(largest, error_of_uniform(surface, split(piece, child), levels - 1));
+    }
+    return largest;
+  }
+  HullPoints hull;
+  if (piece.kind->shared()) hull_points(surface.library(), piece, hull);
+  const std::array<Vector3, 3> c = limit_corners(piece);
+  return distance_to_triangle(surface.library(), piece, hull,
+                              {piece.origin + c[0], piece.origin + c[1], piece.origin + c[2]});
+}
+
+TEST(tessellate, takes_a_quarter_of_the_triangles_of_uniform_refinement) {
+  std::vector<double> ratios;
+  for (const char* const file : {"pawn.obj", "ring.obj", "pin.obj", "bracket.obj", "head.obj"}) {
+    const LimitSurface surface = model(file);
+    // The first level with an error below 0.1 % of the size, on the patches that are worst one level before.
+    unsigned level = 0;
+    double error = INFINITY;
+    for (; level < 6; ++level) {
+      error = 0;
+      const double wanted = surface.scale().apply(1e-3 * surface.size());
+      for (std::size_t p = 0; p < surface.patch_count() && error <= wanted; ++p) {
+        error = std::max(error, error_of_uniform(surface, surface.patch(PatchId(p)), level));
+      }
+      if (error <= wanted) break;
+    }
+    const Tessellation t = tessellate(surface, to_tolerance(surface.scale().inverse().apply(error)));
+    const double uniform =
+        std::ldexp(static_cast<double>(surface.patch_count()), 2 * static_cast<int>(level));
+    ratios.push_back(static_cast<double>(t.triangles.size()) / uniform);
+    std::cout << file << ": level " << level << ", " << uniform << " triangles; adaptive "
+              << t.triangles.size() << '\n';
+  }
+  std::sort(ratios.begin(), ratios.end());
+  EXPECT_LE(ratios[ratios.size() / 2], 0.25);
+}
+
+TEST(tessellate, bounds_are_tight) {
+  for (const char* const file : {"pawn.obj", "ring.obj", "bracket.obj"}) {
+    const LimitSurface surface = model(file);
+    const Tessellation t = tessellate(surface, to_tolerance(1e-3 * surface.size()));
+    const double found = testing::expect_near(surface, t, file, 8);
+    std::cout << file << ": bound " << t.error_bound / found << " times the largest distance\n";
+    EXPECT_LE(t.error_bound, 2 * found) << file;
+  }
+}
+
+TEST(tessellate, holds_a_longest_edge) {
+  const LimitSurface surface = model("pawn.obj");
+  TessellateOptions options = to_tolerance(1e-2 * surface.size());
+  options.max_edge = 0.03 * surface.size();
+  const Tessellation t = tessellate(surface, options);
+  testing::expect_watertight(surface, t, "pawn");
+  for (const auto& [a, b, c] : t.triangles) {
+    EXPECT_LE(distance(t.positions[a], t.positions[b]), *options.max_edge);
+    EXPECT_LE(distance(t.positions[b], t.positions[c]), *options.max_edge);
+  }
+}
+
+TEST(tessellate, holds_a_largest_angle_of_normals) {
+  const LimitSurface surface = model("pawn.obj");
+  TessellateOptions options = to_tolerance(1e-2 * surface.size());
+  options.max_angle = 10;
+  const Tessellation t = tessellate(surface, options);
+  testing::expect_watertight(surface, t, "pawn");
+  const double least = std::cos(10.01 * 3.14159265358979 / 180);
+  for (std::size_t i = 0; i < t.triangles.size(); ++i) {
+    const auto& [p, q, r] = t.triangles[i];
+    const auto side = [&](std::uint32_t x, std::uint32_t y) {
+      return distance(t.positions[x], t.positions[y]);
+    };
+    if (std::max({side(p, q), side(q, r), side(r, p)}) <= *options.tolerance) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t next = (k + 1) % 3;
+      const auto a = evaluate(surface, t.corners[i][k]).normal,
+                 b = evaluate(surface, t.corners[i][next]).normal;
+      ASSERT_TRUE(a && b);
+      EXPECT_GE(dot(*a, *b), least);
+    }
+  }
+}
+
+TEST(tessellate, finds_a_small_error_for_so_many_triangles) {
+  const LimitSurface surface = model("pawn.obj");
+  TessellateOptions options;
+  options.max_triangles = 5000;
+  options.corners = true;
+  const Tessellation t = tessellate(surface, options);
+  testing::expect_watertight(surface, t, "pawn");
+  testing::expect_near(surface, t, "pawn");
+  EXPECT_TRUE(t.reached);
+  EXPECT_LE(t.triangles.size(), 5000u);
+  EXPECT_GE(t.triangles.size(), 4000u);
+  options.tolerance = t.error_bound / 10;
+  EXPECT_FALSE(tessellate(surface, options).reached);
+  options.tolerance = t.error_bound * 10;
+  const Tessellation loose = tessellate(surface, options);
+  EXPECT_TRUE(loose.reached);
+  EXPECT_LT(loose.triangles.size(), t.triangles.size());
+}
+
+TEST(tessellate, says_what_is_proved_when_the_budget_ends) {
+  const LimitSurface surface = model("pawn.obj");
+  TessellateOptions options = to_tolerance(1e-5 * surface.size());
+  options.budget = 2000;
+  const Tessellation t = tessellate(surface, options);
+  EXPECT_FALSE(t.reached);
+  EXPECT_LE(t.triangles.size(), 2000u);
+  testing::expect_watertight(surface, t, "pawn");
+  testing::expect_near(surface, t, "pawn");
+}
+
+TEST(tessellate, proves_the_floats_that_it_returns) {
+  const LimitSurface surface = model("pawn.obj");
+  TessellateOptions options = to_tolerance(1e-6 * surface.size());
+  options.single_precision = true;
+  options.budget = 100'000;
+  const Tessellation t = tessellate(surface, options);
+  for (const Point3& p : t.positions) {
+    for (std::size_t a = 0; a < 3; ++a) EXPECT_EQ(static_cast<double>(static_cast<float>(p[a])), p[a]);
+  }
+  testing::expect_near(surface, t, "pawn", 1);
+  EXPECT_GT(t.position_error, 1e-9 * surface.size());
+}
+
+TEST(tessellate, refuses_what_it_cannot_hold) {
+  const LimitSurface surface = model("pawn.obj");
+  TessellateOptions options;
+  EXPECT_NE(refusal(surface, options).find("give a tolerance"), std::string::npos);
+  options.tolerance = -1;
+  EXPECT_NE(refusal(surface, options).find("finite and positive"), std::string::npos);
+  options.tolerance = NAN;
+  EXPECT_NE(refusal(surface, options).find("finite and positive"), std::string::npos);
+  options.tolerance = 1e-30;
+  const std::string message = refusal(surface, options);
+  const std::size_t at = message.find("take ");
+  ASSERT_NE(at, std::string::npos) << message;
+  // What it names is taken.
+  options.tolerance = std::stod(message.substr(at + 5));
+  options.budget = 1000;
+  EXPECT_FALSE(tessellate(surface, options).reached);
+  options = {};
+  options.max_triangles = 10;
+  const std::string few = refusal(surface, options);
+  ASSERT_NE(few.find("take "), std::string::npos) << few;
+  options.max_triangles = std::stoull(few.substr(few.find("take ") + 5));
+  EXPECT_LE(tessellate(surface, options).triangles.size(), *options.max_triangles);
+  options.max_angle = 0;
+  EXPECT_NE(refusal(surface, options).find("angle"), std::string::npos);
+}
+
+TEST(tessellate, is_the_same_of_a_handle) {
+  const std::string file = std::string(SNUG_MODELS_DIR) + "/pawn.obj";
+  const Surface handle = load(file);
+  TessellateOptions options = to_tolerance(1e-2 * handle.size());
+  EXPECT_TRUE(same(tessellate(handle, options), tessellate(model("pawn.obj"), options)));
+}
+
+TEST(tessellate, stops_when_asked) {
+  const std::atomic<bool> stop = true;
+  EXPECT_THROW(static_cast<void>(tessellate(model("pawn.obj"), to_tolerance(1e-3), {{}, &stop})),
+               Interrupted);
+}
+
+}  // namespace
+}  // namespace snug

@@ -1,0 +1,29 @@
+#include <snug/query/tessellate.h>
+
+#include <gtest/gtest.h>
+#include <snug/io/mesh_file.h>
+
+namespace snug {
+namespace {
+
+TEST(tessellate, does_not_depend_on_threads) {
+  for (const char* const file : {"pawn.obj", "ring.obj", "bracket.obj"}) {
+    const LimitSurface surface(read_mesh(std::string(SNUG_MODELS_DIR) + "/" + file), {Scheme::catmark},
+                               std::make_shared<BoundsCache>());
+    TessellateOptions options;
+    options.tolerance = 1e-3 * surface.size();
+    options.threads = 1;
+    const Tessellation one = tessellate(surface, options);
+    options.threads = 3;
+    const Tessellation three = tessellate(surface, options);
+    EXPECT_EQ(one.positions, three.positions) << file;
+    EXPECT_EQ(one.normals, three.normals) << file;
+    EXPECT_EQ(one.triangles, three.triangles) << file;
+    EXPECT_EQ(one.owners, three.owners) << file;
+    EXPECT_EQ(one.error_bound, three.error_bound) << file;
+    EXPECT_EQ(one.position_error, three.position_error) << file;
+  }
+}
+
+}  // namespace
+}  // namespace snug
