@@ -63,7 +63,7 @@ struct Hulls {
 ///            and was proved from them, not by how they were found. Does not depend on threads.
 ///            Surfaces that touch themselves, or have sheets nearer to each other than hulls fit between, are
 ///            never `verified`.
-/// Errors:    InputError: (value) for a tolerance that is not finite and positive, or too small for doubles or floats;
+/// Errors:    InputError: (value) for a tolerance that is not finite and positive, above half of the size, or too small for doubles or floats;
 ///            (refused), naming the edge, where more than two faces meet or two run along an edge the same way,
 ///            as on a Moebius strip; (unrepresentable). Interrupted.
 /// Cost:      some 20 microseconds a triangle.

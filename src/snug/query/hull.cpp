@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -47,28 +48,40 @@ constexpr double flat_share = 0x1p-5;
 constexpr std::size_t most_problems = 100, most_contacts = 10'000;
 constexpr int most_rounds = 24;
 
-// Is there a border? Refuses what has no two sides.
-bool has_border(const Tessellation& mesh) {
-  std::unordered_map<std::uint64_t, std::uint32_t> sides;
-  sides.reserve(3 * mesh.triangles.size());
+// What triangles do along their edges.
+struct Sides {
+  std::optional<std::array<std::size_t, 2>> same_way;  // two that run along an edge the same way
+  bool border = false;                                 // does an edge belong to one triangle only?
+};
+
+Sides sides_of(std::span<const Names> triangles) {
+  Sides found;
+  std::unordered_map<std::uint64_t, std::size_t> sides;
+  sides.reserve(3 * triangles.size());
   const auto key = [](std::uint32_t from, std::uint32_t to) { return std::uint64_t{from} << 32 | to; };
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = mesh.triangles[t][k], to = mesh.triangles[t][(k + 1) % 3];
-      const auto [there, added] = sides.emplace(key(from, to), static_cast<std::uint32_t>(t));
-      if (added) continue;
-      throw InputError(
-          InputProblem::refused,
-          "hull: faces " + std::to_string(mesh.owners[there->second]) + " and " +
-              std::to_string(mesh.owners[t]) +
-              " run along an edge of the surface the same way, so that it has no two sides there; "
-              "orient the faces, or separate sheets that share an edge");
+      const auto [there, added] = sides.emplace(key(triangles[t][k], triangles[t][(k + 1) % 3]), t);
+      if (!added) found.same_way = {there->second, t};
     }
   }
-  return std::any_of(sides.begin(), sides.end(), [&](const auto& side) {
+  found.border = std::any_of(sides.begin(), sides.end(), [&](const auto& side) {
     return !sides.contains(
         key(static_cast<std::uint32_t>(side.first), static_cast<std::uint32_t>(side.first >> 32)));
   });
+  return found;
+}
+
+// Is there a border? Refuses what has no two sides.
+bool has_border(const Tessellation& mesh) {
+  const Sides sides = sides_of(mesh.triangles);
+  if (!sides.same_way) return sides.border;
+  const auto [s, t] = *sides.same_way;
+  throw InputError(InputProblem::refused,
+                   "hull: faces " + std::to_string(mesh.owners[s]) + " and " +
+                       std::to_string(mesh.owners[t]) +
+                       " run along an edge of the surface the same way, so that it has no two sides there; "
+                       "orient the faces, or separate sheets that share an edge");
 }
 
 // Are the faces of a closed surface oriented inward, on the whole? No proof rests on it.
@@ -333,31 +346,51 @@ class FacetSurface {
 // All that is claimed, by queries that know nothing of how the hulls were made.
 class Verification {
  public:
-  Verification(const SurfaceBvh& model, const HullOptions& options, Hulls& hulls, const WorkMonitor& monitor)
+  Verification(const SurfaceBvh& model, const HullOptions& options, const Hulls& hulls,
+               const WorkMonitor& monitor)
       : model_(model),
         options_(options),
         hulls_(hulls),
         monitor_{.on_progress = {}, .stop = monitor.stop},
         own_(model) {}
 
-  void run() {
+  std::vector<HullProblem> run() {
     std::array<std::unique_ptr<FacetSurface>, 2> sides;
     for (const bool inner : {true, false}) {
       const std::optional<Hull>& hull = inner ? hulls_.inner : hulls_.outer;
-      if (!hull) continue;
+      if (!hull || !is_whole(*hull, inner)) continue;
       sides[inner] = std::make_unique<FacetSurface>(*hull, model_.surface().shared_library(), monitor_);
       apart({model_, own_, {}}, sides[inner]->placed(), HullFault::meets_surface, inner);
       near(*hull, inner);
       if (hulls_.closed) around(*sides[inner], inner);
     }
     if (sides[0] && sides[1]) apart(sides[1]->placed(), sides[0]->placed(), HullFault::meets_other, true);
+    return std::move(problems_);
   }
 
  private:
   // What does not meet is farther apart than this, mesh units.
   [[nodiscard]] double certain_gap() const { return model_.surface().scale().inverse().apply(0x1p-46); }
   void blame(HullFault fault, bool inner, const Point3& place, std::optional<std::uint32_t> owner) {
-    hulls_.problems.push_back({fault, inner, place, owner});
+    problems_.push_back({fault, inner, place, owner});
+  }
+  // Does it touch itself at vertices and edges only, and is it closed where the surface is?
+  bool is_whole(const Hull& hull, bool inner) {
+    const std::size_t before = problems_.size();
+    const auto blame_triangle = [&](HullFault fault, std::size_t t) {
+      blame(fault, inner, hull.positions[hull.triangles[t][0]], hull.owners[t]);
+    };
+    const Sides sides = sides_of(hull.triangles);
+    if (sides.same_way) blame_triangle(HullFault::meets_itself, (*sides.same_way)[1]);
+    if (hulls_.closed && sides.border) blame_triangle(HullFault::not_around, 0);
+    std::vector<Point3> points;
+    points.reserve(hull.positions.size());
+    for (const Point3& p : hull.positions) points.push_back(model_.surface().scale().apply(p));
+    for (const auto& [a, b] :
+         self_contacts(points, hull.triangles, most_problems, options_.threads, monitor_)) {
+      blame_triangle(HullFault::meets_itself, a);
+    }
+    return problems_.size() == before;
   }
   void apart(const PlacedBvh& a, const PlacedBvh& b, HullFault fault, bool inner) {
     const Collision found = collide(
@@ -408,14 +441,20 @@ class Verification {
 
   const SurfaceBvh& model_;
   const HullOptions& options_;
-  Hulls& hulls_;
+  const Hulls& hulls_;
   WorkMonitor monitor_;
   SurfaceWorkspace own_;
+  std::vector<HullProblem> problems_;
 };
 
 }  // namespace
 
 const char* name_of(HullFault fault) { return name_in(fault_names, fault); }
+
+std::vector<HullProblem> problems_of(const SurfaceBvh& surface, const Hulls& hulls,
+                                     const HullOptions& options, const WorkMonitor& monitor) {
+  return Verification(surface, options, hulls, monitor).run();
+}
 
 Hulls hulls(const SurfaceBvh& model, const HullOptions& options, const WorkMonitor& monitor) {
   const LimitSurface& surface = model.surface();
@@ -429,6 +468,11 @@ Hulls hulls(const SurfaceBvh& model, const HullOptions& options, const WorkMonit
                          " allow no tolerance below " + shortest(least) +
                          " for coordinates of this size; ask for that or more" +
                          (options.single_precision ? ", or write a format that holds doubles" : ""));
+  }
+  if (options.tolerance > surface.size() / 2) {
+    throw InputError(InputProblem::value,
+                     "hull: the tolerance is more than half of the surface's size; give at most " +
+                         shortest(surface.size() / 2));
   }
   require_value(options.inner || options.outer, "hull: ask for the inner hull, the outer one, or both");
   const double error = quadratic_share * first_share * surface.scale().apply(options.tolerance);
@@ -444,7 +488,7 @@ Hulls hulls(const SurfaceBvh& model, const HullOptions& options, const WorkMonit
     (inner ? result.inner : result.outer) = hull.take();
     monitor.report(inner ? 0.3 : 0.6);
   }
-  if (result.problems.empty()) Verification(model, options, result, monitor).run();
+  if (result.problems.empty()) result.problems = problems_of(model, result, options, monitor);
   result.verified = result.problems.empty();
   if (result.problems.size() > most_problems) result.problems.resize(most_problems);
   monitor.report(1);
