@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <fmt/core.h>
 
@@ -71,7 +72,9 @@ void write_hull(JsonWriter& json, const std::optional<Hull>& hull, bool verified
     return;
   }
   json.begin_object().field("vertices", hull->positions.size()).field("triangles", hull->triangles.size());
-  json.field("gap", hull->gap).field("verified", verified).end_object();
+  json.key("gap");
+  std::isfinite(hull->gap) ? json.value(hull->gap) : json.null();
+  json.field("verified", verified).end_object();
 }
 
 void write_verdict(Report& report, const Hulls& hulls, bool primal) {

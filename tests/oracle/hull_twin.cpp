@@ -159,7 +159,7 @@ std::vector<std::pair<std::size_t, std::size_t>> HullTwin::contacts() const {
   std::vector<std::pair<std::size_t, std::size_t>> found;
   std::vector<std::size_t> order;
   for (std::size_t t = 0; t < triangles_.size(); ++t)
-    has_area(t) ? order.push_back(t) : found.emplace_back(t, t);
+    has_area(t) ? order.push_back(t) : found.push_back({t, t});
   std::sort(order.begin(), order.end(),
             [&](std::size_t s, std::size_t t) { return boxes_[s].lower[0] < boxes_[t].lower[0]; });
   for (std::size_t i = 0; i < order.size(); ++i) {

@@ -356,10 +356,12 @@ class Verification {
 
   std::vector<HullProblem> run() {
     std::array<std::unique_ptr<FacetSurface>, 2> sides;
+    if (hulls_.closed) own_points_ = points_of(model_);
     for (const bool inner : {true, false}) {
       const std::optional<Hull>& hull = inner ? hulls_.inner : hulls_.outer;
       if (!hull || !is_whole(*hull, inner)) continue;
       sides[inner] = std::make_unique<FacetSurface>(*hull, model_.surface().shared_library(), monitor_);
+      if (hulls_.closed) hull_points_ = points_of(sides[inner]->model());
       apart({model_, own_, {}}, sides[inner]->placed(), HullFault::meets_surface, inner);
       near(*hull, inner);
       if (hulls_.closed) around(*sides[inner], inner);
@@ -369,8 +371,22 @@ class Verification {
   }
 
  private:
-  // What does not meet is farther apart than this, mesh units.
-  [[nodiscard]] double certain_gap() const { return model_.surface().scale().inverse().apply(0x1p-46); }
+  // A limit point of each component.
+  struct Member {
+    Point3 position;
+    std::uint32_t owner;
+  };
+  std::vector<Member> points_of(const SurfaceBvh& model) {
+    const LimitSurface& surface = model.surface();
+    std::vector<Member> points;
+    for (const PatchId p : model.solid().components()) {
+      const SurfacePoint at = evaluate(surface, place_of(surface, p, {1.0 / 3, 1.0 / 3}));
+      points.push_back({at.position, surface.place(p).owner});
+      // What does not meet is to be farther apart than this: then the limit point is on the side of the double.
+      certain_gap_ = std::max(certain_gap_, 2 * at.error);
+    }
+    return points;
+  }
   void blame(HullFault fault, bool inner, const Point3& place, std::optional<std::uint32_t> owner) {
     problems_.push_back({fault, inner, place, owner});
   }
@@ -394,8 +410,7 @@ class Verification {
   }
   void apart(const PlacedBvh& a, const PlacedBvh& b, HullFault fault, bool inner) {
     const Collision found = collide(
-        a, b,
-        {.tolerance = 0, .margin = certain_gap(), .witness = WitnessKind::approximate, .measure = false},
+        a, b, {.tolerance = 0, .margin = certain_gap_, .witness = WitnessKind::approximate, .measure = false},
         monitor_);
     if (found.verdict == Verdict::separated) return;
     std::optional<std::uint32_t> owner;
@@ -424,16 +439,10 @@ class Verification {
   // One lies in the solid of the other with all its components, and none of these in the solid of the one.
   void around(FacetSurface& hull, bool inner) {
     for (const bool of_hull : {false, true}) {
-      const SurfaceBvh& asked = of_hull ? hull.model() : model_;
-      const LimitSurface& surface = asked.surface();
-      for (const PatchId p : asked.solid().components()) {
-        const SurfacePoint at = evaluate(surface, place_of(surface, p, {1.0 / 3, 1.0 / 3}));
-        // What it stands for is on the same side: the surfaces are farther apart than that.
-        const bool exact = 2 * at.error <= certain_gap();
-        const std::optional<bool> inside = contains(of_hull ? own_ : hull.workspace(), at.position, monitor_);
-        if (exact && inside == (of_hull == inner)) continue;
-        const std::uint32_t owner = surface.place(p).owner;
-        blame(HullFault::not_around, inner, at.position,
+      for (const auto& [position, owner] : of_hull ? hull_points_ : own_points_) {
+        const std::optional<bool> inside = contains(of_hull ? own_ : hull.workspace(), position, monitor_);
+        if (inside == (of_hull == inner)) continue;
+        blame(HullFault::not_around, inner, position,
               of_hull ? (inner ? hulls_.inner : hulls_.outer)->owners[owner] : owner);
       }
     }
@@ -444,6 +453,8 @@ class Verification {
   const Hulls& hulls_;
   WorkMonitor monitor_;
   SurfaceWorkspace own_;
+  std::vector<Member> own_points_, hull_points_;
+  double certain_gap_ = 0;  // mesh units
   std::vector<HullProblem> problems_;
 };
 
