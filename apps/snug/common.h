@@ -129,6 +129,7 @@ class Report {
 [[nodiscard]] Command envelope_command();
 [[nodiscard]] Command collide_command();
 [[nodiscard]] Command distance_command();
+[[nodiscard]] Command measure_command();
 [[nodiscard]] Command closest_command();
 [[nodiscard]] Command deviation_command();
 [[nodiscard]] Command render_command();

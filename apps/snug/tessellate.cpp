@@ -4,6 +4,7 @@
 #include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
 
+#include "coarsen.h"
 #include "common.h"
 #include "length.h"
 #include "progress_bar.h"
@@ -11,10 +12,14 @@
 namespace snug::command {
 namespace {
 
+// Of the tolerance: that of the triangles that are simplified.
+constexpr double fine_share = 0.25;
+
 struct Options : CommonOptions {
   std::string mesh, tolerance, max_edge;
   std::optional<std::uint64_t> max_triangles;
   double max_angle = 0;
+  bool coarsen = false;
   std::uint64_t most = TessellateOptions{}.budget;
 };
 
@@ -32,6 +37,10 @@ void require_options(const Options& options) {
       options.max_angle == 0) {
     throw UsageError("tessellate: give --tolerance, --max-triangles, --max-edge or --max-angle");
   }
+  if (options.coarsen && (options.tolerance.empty() || !options.max_edge.empty() || options.max_triangles ||
+                          options.max_angle > 0)) {
+    throw UsageError("tessellate: --coarsen goes with --tolerance, and no other goal");
+  }
   if (!options.tolerance.empty()) static_cast<void>(parse_length(options.tolerance, "--tolerance"));
   if (!options.max_edge.empty()) static_cast<void>(parse_length(options.max_edge, "--max-edge"));
 }
@@ -46,6 +55,8 @@ TessellateOptions how_to(const Options& options, const LimitSurface& surface) {
   how.threads = options.threads;
   how.single_precision = writes_floats(options.output);
   how.normals = writes_normals(options.output);
+  // What is simplified keeps some of its error.
+  if (options.coarsen) how.tolerance = *how.tolerance * fine_share;
   return how;
 }
 
@@ -89,6 +100,13 @@ ExitStatus run(const Options& options) {
     ProgressBar bar("tessellating " + options.mesh, options.quiet);
     result = tessellate(surface, how_to(options, surface), bar.monitor());
   });
+  if (options.coarsen && result.reached) {
+    naming(options.mesh, [&] {
+      ProgressBar bar("simplifying", options.quiet);
+      const double tolerance = *length_of(options.tolerance, "--tolerance", surface.size());
+      result = coarsened(SurfaceBvh(surface), result, tolerance, options.threads, bar.monitor());
+    });
+  }
   AtomicFile file(options.output);
   write_mesh(mesh_of(result), file, options.output, notes_for(options), stopped_by_interrupts(),
              result.normals);
@@ -111,6 +129,8 @@ Command tessellate_command() {
   list.add(Group::own, "--max-angle DEGREES", &options->max_angle,
            "Largest angle between the limit normals at corners of a triangle; 0 for any")
       .between(0, 180);
+  list.add(Group::own, "--coarsen", &options->coarsen,
+           "Fewer triangles than the faces have, too: simplified, then proved to be within the tolerance");
   add_common_options(list, *options);
   list.add(Group::effort, "--budget N", &options->most,
            "Most triangles; with fewer than needed the answer says what is proved, and the status is 5");

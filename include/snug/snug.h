@@ -9,6 +9,7 @@
 #include <snug/distance.h>
 #include <snug/evaluate.h>
 #include <snug/hull.h>
+#include <snug/measure.h>
 #include <snug/mesh.h>
 #include <snug/motion.h>
 #include <snug/surface.h>

@@ -55,9 +55,10 @@ struct Tessellation {
 /// Holes, and faces without a surface, are left out. Triangles without area are kept: where control vertices
 /// coincide, leaving them out would open the surface.
 /// Errors:    InputError: (value) for options that are not finite and positive, without any, for a tolerance too
-///            small for the arithmetic (it names the smallest that is taken) and for max_triangles below the
-///            number of patches (it names that); (unrepresentable) if a coordinate does not fit. Interrupted.
-/// Cost:      about a microsecond a triangle; with max_triangles some ten times that. 400 bytes a triangle.
+///            small for the arithmetic (it names the smallest that is taken) and for fewer max_triangles than the
+///            patches need (it names these); (unrepresentable) if a coordinate does not fit. Interrupted.
+/// Cost:      0.5 to 2 microseconds a triangle on one core, most where patches are irregular; with max_triangles
+///            some ten times that. 300 bytes a triangle.
 /// Source:    derivations/tessellation.md.
 [[nodiscard]] SNUG_API Tessellation tessellate(const Surface& surface, const TessellateOptions& options,
                                                const WorkMonitor& monitor = {});

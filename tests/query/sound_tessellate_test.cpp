@@ -150,6 +150,7 @@ TEST(tessellate, has_no_point_far_from_the_surface_of_the_twins) {
       const Tessellation t = tessellate(surface, to_tolerance(0.02 * surface.size()));
       if (t.triangles.empty()) continue;
       ++counted.surfaces;
+      counted.triangles += t.triangles.size();
       oracle::LimitTwin twin(c.mesh, std::make_shared<oracle::LimitRules>(c.rules));
       const oracle::Placement identity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
       for (std::size_t n = 0; n < std::min<std::size_t>(60, t.triangles.size()); ++n) {

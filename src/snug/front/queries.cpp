@@ -7,6 +7,7 @@
 #include <snug/query/closest.h>
 #include <snug/query/deviation.h>
 #include <snug/query/hull.h>
+#include <snug/query/measure.h>
 #include <snug/query/pairs.h>
 #include <snug/query/subdivide.h>
 #include <snug/query/tessellate.h>
@@ -122,6 +123,10 @@ std::optional<SurfaceNormal> normal_at(const PlacedSurface& surface, const Surfa
 
 std::optional<double> limit_to_faces(const Surface& surface, int threads) {
   return limit_to_faces(limit(surface), threads);
+}
+
+Measures measure(const Surface& surface, const MeasureOptions& options, const WorkMonitor& monitor) {
+  return measure(limit(surface), options, monitor);
 }
 
 ControlMesh subdivided(const Surface& surface, unsigned level, bool limit_positions,

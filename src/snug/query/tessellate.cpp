@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include <snug/base/contract.h>
 #include <snug/base/error.h>
 #include <snug/base/parallel.h>
 #include <snug/geometry/rounding.h>
@@ -430,6 +431,7 @@ std::vector<Refinement::Cut> Refinement::plan_cuts() {
 
 void Refinement::carry_out(const Cut& cut) {
   const unsigned marks = complex_.marks(cut.triangle);
+  SNUG_EXPECT(marks == 7 || !pieces_[piece_[cut.triangle]].coarse);
   const TriangleSplit shape = split_of(marks, choose(cut.triangle, marks));
   complex_.cut(cut.triangle, shape, cut.first_new, cut.first_edge);
   const std::array<TriangleParameter, 3> corner = at_[cut.triangle];

@@ -12,28 +12,6 @@
 namespace snug {
 namespace {
 
-[[noreturn]] void refuse(const std::string& reason) {
-  throw InputError(InputProblem::refused, "solids are bounded by closed surfaces, and " + reason);
-}
-
-void require_closed(const LimitSurface& surface) {
-  const Topology& topology = surface.topology();
-  for (std::size_t e = 0; e < topology.edge_count(); ++e) {
-    if (!topology.ends_fans(EdgeId(e))) continue;
-    const HalfEdge h = topology.half_of(EdgeId(e));
-    refuse(
-        "edge (" + std::to_string(topology.from(h).value()) + ", " + std::to_string(topology.to(h).value()) +
-        ") of face " + std::to_string(topology.face_of(h).value()) +
-        " does not have two faces that run along it in opposite directions; close the mesh or ask about its "
-        "surface");
-  }
-  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
-    if (surface.has_patch(PatchId(p))) continue;
-    refuse("face " + std::to_string(surface.place(PatchId(p)).owner) +
-           " is a hole; fill it or ask about its surface");
-  }
-}
-
 std::vector<PatchId> component_patches(const LimitSurface& surface) {
   DisjointSets components(surface.corner_name_count());
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
@@ -80,8 +58,28 @@ LimitTriangle make_filler(const LimitSurface& surface, PatchId first, PatchId se
 
 }  // namespace
 
+std::optional<std::string> open_reason(const LimitSurface& surface) {
+  const Topology& topology = surface.topology();
+  for (std::size_t e = 0; e < topology.edge_count(); ++e) {
+    if (!topology.ends_fans(EdgeId(e))) continue;
+    const HalfEdge h = topology.half_of(EdgeId(e));
+    return "edge (" + std::to_string(topology.from(h).value()) + ", " +
+           std::to_string(topology.to(h).value()) + ") of face " +
+           std::to_string(topology.face_of(h).value()) +
+           " does not have two faces that run along it in opposite directions";
+  }
+  for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+    if (surface.has_patch(PatchId(p))) continue;
+    return "face " + std::to_string(surface.place(PatchId(p)).owner) + " is a hole";
+  }
+  return {};
+}
+
 Solid::Solid(const LimitSurface& surface) {
-  require_closed(surface);
+  if (const auto reason = open_reason(surface)) {
+    throw InputError(InputProblem::refused, "solids are bounded by closed surfaces, and " + *reason +
+                                                "; close the mesh or ask about its surface");
+  }
   components_ = component_patches(surface);
   // Where both sides of an edge are cut, their fillers cancel.
   std::vector<std::uint8_t> cuts(surface.corner_name_count());

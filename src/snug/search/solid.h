@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include <snug/bvh/wide_bvh.h>
@@ -8,13 +10,16 @@
 
 namespace snug {
 
+/// Why a surface bounds no solid, naming an edge or a face; nothing if it does: every edge of
+/// its mesh has two faces that run along it in opposite directions, and all have a limit surface.
+[[nodiscard]] std::optional<std::string> open_reason(const LimitSurface& surface);
+
 /// What a closed limit surface needs to be asked about inside and outside: the solid that it bounds is the
 /// surface with all points around which it winds. Immutable; may be read by many threads.
 /// Source:    derivations/contact.md, "Inside or outside of a closed surface".
 class Solid {
  public:
-  /// Errors:    InputError (refused), naming an edge or a face, unless every edge of the surface's mesh has
-  ///            two faces that run along it in opposite directions, and all have a limit surface.
+  /// Errors:    InputError (refused) where open_reason() has one.
   explicit Solid(const LimitSurface& surface);
 
   /// Triangles (a, b, m) over edges from a to b whose middle m belongs to the first split of one side alone.

@@ -1,0 +1,122 @@
+#include <snug/query/measure.h>
+
+#include <fmt/core.h>
+#include <snug/search/solid.h>
+
+#include "common.h"
+#include "length.h"
+#include "progress_bar.h"
+
+namespace snug::command {
+namespace {
+
+struct Options : CommonOptions {
+  std::string mesh;
+  std::string precision = "0.01%";
+};
+
+// A share of what is measured: 0.0001 or 0.01%.
+double relative_precision(const std::string& text) {
+  const Length share = parse_length(text, "--precision", true);
+  return share.percent ? share.number / 100 : share.number;
+}
+
+JsonWriter& operator<<(JsonWriter& json, const Interval& x) {
+  return json.begin_array().value(x.lower).value(x.upper).end_array();
+}
+
+template <std::size_t N>
+void write_intervals(JsonWriter& json, const char* name, const std::optional<std::array<Interval, N>>& all) {
+  json.key(name);
+  if (!all) {
+    json.null();
+    return;
+  }
+  json.begin_array();
+  for (const Interval& x : *all) json << x;
+  json.end_array();
+}
+
+void write_json(JsonWriter& json, const Measures& found, double relative) {
+  json.field("precision", relative).field("reached", found.reached);
+  json.key("area") << found.area;
+  json.field("closed", found.volume.has_value());
+  json.key("volume");
+  if (found.volume) {
+    json << *found.volume;
+  } else {
+    json.null();
+  }
+  write_intervals(json, "centroid", found.centroid);
+  write_intervals(json, "inertia", found.inertia);
+  json.key("stats").begin_object().field("splits", found.splits).end_object();
+}
+
+std::string text_of(const Interval& x) { return fmt::format("{} to {}", x.lower, x.upper); }
+
+void write_text(Report& report, const Measures& found, const std::optional<std::string>& open) {
+  report.text("area      " + text_of(found.area));
+  if (open) {
+    report.text("volume    none: " + *open);
+    return;
+  }
+  report.text("volume    " + text_of(*found.volume));
+  if (!found.centroid) {
+    report.text("centroid  none: the volume may be 0");
+    return;
+  }
+  constexpr const char* axes[] = {"x", "y", "z"};
+  constexpr const char* products[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+  for (std::size_t a = 0; a < 3; ++a) {
+    report.text(fmt::format("centroid  {}   {}", axes[a], text_of((*found.centroid)[a])));
+  }
+  for (std::size_t m = 0; m < 6; ++m) {
+    report.text(fmt::format("inertia   {}  {}", products[m], text_of((*found.inertia)[m])));
+  }
+}
+
+ExitStatus run(const Options& options) {
+  MeasureOptions wanted;
+  wanted.relative = relative_precision(options.precision);
+  wanted.budget = options.budget;
+  wanted.threads = options.threads;
+  const LimitSurface surface =
+      load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  Report report("measure", options);
+  Measures found;
+  {
+    ProgressBar bar("measuring", options.quiet);
+    const WorkMonitor monitor = bar.monitor();
+    naming(options.mesh, [&] { found = measure(surface, wanted, monitor); });
+  }
+  report.heads({options.mesh}, {name_of(surface.options().scheme)});
+  if (report.json()) write_json(report.write(), found, *wanted.relative);
+  write_text(report, found, open_reason(surface));
+  if (!found.reached) {
+    report.text("the precision was not reached; give a larger --budget or --precision");
+  }
+  return report.finish(found.reached);
+}
+
+}  // namespace
+
+Command measure_command() {
+  auto options = std::make_shared<Options>();
+  options->budget = MeasureOptions{}.budget;
+  OptionList list;
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL)");
+  list.add(Group::own, "--precision SHARE", &options->precision,
+           "Largest width of an interval, as a share of what is measured: 0.0001 or 0.01%");
+  list.add(Group::effort, "--budget N", &options->budget,
+           "Split at most N pieces, shared out evenly among patches")
+      .between(0, std::uint64_t{1} << 40);
+  add_common_options(list, *options);
+  return {"measure",
+          Topic::one_surface,
+          "Area, volume, centroid and inertia of a limit surface, each between proved bounds",
+          {"snug measure pawn.obj", "snug measure part.stl --sharp auto --precision 1e-6 --json"},
+          std::move(list),
+          [options] { return run(*options); }};
+}
+
+}  // namespace snug::command

@@ -1,0 +1,102 @@
+// bench_triangles: how many triangles a proved error takes, adaptive beside uniform refinement with the same proved error, how fast they
+// are made, and hulls. Files: any models.
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include <snug/query/deviation.h>
+#include <snug/query/hull.h>
+#include <snug/query/subdivide.h>
+#include <snug/query/tessellate.h>
+#include <snug/search/surface_bvh.h>
+
+#include "placements.h"
+#include "runner.h"
+
+namespace {
+
+using namespace snug;
+using namespace snug::bench;
+
+// Triangles of limit points after so many steps of subdivision.
+std::vector<Triangle> uniform(const LimitSurface& surface, unsigned level) {
+  const ControlMesh mesh = subdivide(surface.mesh(), surface.options(), level, true);
+  std::vector<Triangle> triangles;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    const auto face = mesh.face(FaceId(f));
+    for (std::size_t k = 2; k < face.size(); ++k) {
+      triangles.push_back(
+          {mesh.points[face[0].index()], mesh.points[face[k - 1].index()], mesh.points[face[k].index()]});
+    }
+  }
+  return triangles;
+}
+
+// The first level whose triangles are proved to be within the tolerance, and how many these are.
+std::size_t uniform_count(const SurfaceBvh& model, double tolerance, unsigned& level) {
+  for (level = 0; level < 9; ++level) {
+    const std::vector<Triangle> triangles = uniform(model.surface(), level);
+    if (triangles.size() > 4'000'000) break;
+    const Deviation found =
+        deviation(model, triangles, {.absolute = tolerance / 64, .tolerance = tolerance, .threads = 0});
+    if (std::max(found.from_surface.distance.upper, found.from_candidate.distance.upper) <= tolerance) {
+      return triangles.size();
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Options options = start(argc, argv, any_files, " MODEL...");
+  const double share = options.size(1e-3, 1e-2);
+  std::vector<double> ratios;
+  for (const Model& model : read_models(options.files)) {
+    Scheme scheme = Scheme::loop;
+    for (std::size_t f = 0; f < model.mesh.face_count(); ++f) {
+      if (model.mesh.face(FaceId(f)).size() != 3) scheme = Scheme::catmark;
+    }
+    const LimitSurface surface(model.mesh, {scheme}, std::make_shared<BoundsCache>());
+    const SurfaceBvh bvh(surface);
+    const double tolerance = share * surface.size();
+    const Tessellation adaptive = tessellate(surface, {.tolerance = tolerance, .normals = false});
+    unsigned level = 0;
+    const std::size_t count = uniform_count(bvh, tolerance, level);
+    std::printf("# %s: %zu triangles within %g of the size, uniform %zu (level %u)", model.name.c_str(),
+                adaptive.triangles.size(), share, count, level);
+    if (count > 0) {
+      ratios.push_back(static_cast<double>(count) / static_cast<double>(adaptive.triangles.size()));
+      std::printf(", %.2f times as many", ratios.back());
+    }
+    std::printf("\n");
+
+    const double fine = share / 10 * surface.size();
+    const std::size_t many = tessellate(surface, {.tolerance = fine, .normals = false}).triangles.size();
+    Group rates(
+        model.name + ", triangles within " + std::to_string(share / 10) + " of the size, proof included",
+        "triangle", options);
+    rates.limit_rounds(5);
+    for (const int threads : {1, 2}) {
+      rates.add("tessellate, threads: " + std::to_string(threads), static_cast<double>(many), [&, threads] {
+        const Tessellation t = tessellate(surface, {.tolerance = fine, .normals = false, .threads = threads});
+        return t.error_bound + static_cast<double>(t.triangles.size());
+      });
+    }
+    rates.run();
+    Group hull(model.name + ", both hulls within 0.01 of the size, verified", "pair of hulls", options);
+    hull.limit_rounds(5);
+    hull.add("hulls", 1, [&] {
+      const Hulls h = hulls(bvh, {.tolerance = 0.01 * surface.size()});
+      return (h.verified ? 1 : 0) + h.outer->gap + h.inner->gap;
+    });
+    hull.run();
+  }
+  if (ratios.empty()) return 0;
+  std::sort(ratios.begin(), ratios.end());
+  std::printf("# uniform over adaptive: median %.2f, least %.2f, most %.2f of %zu models\n",
+              ratios[ratios.size() / 2], ratios.front(), ratios.back(), ratios.size());
+  return 0;
+}

@@ -1,0 +1,474 @@
+#include <snug/query/measure.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <snug/base/error.h>
+#include <snug/base/parallel.h>
+#include <snug/geometry/interval.h>
+#include <snug/patch/evaluate.h>
+#include <snug/patch/regular_integrals.h>
+#include <snug/patch/tip_area.h>
+#include <snug/search/solid.h>
+#include <snug/surface/unscale.h>
+
+namespace snug {
+namespace {
+
+constexpr double default_relative = 1e-4;
+// Of a patch: pieces take a kilobyte each.
+constexpr std::uint64_t max_splits = 100'000;
+constexpr int max_rounds = 12;
+
+// A sum of many numbers, as in twice the precision.
+class BoundedSum {
+ public:
+  void add(double x, double error) {
+    const double sum = sum_ + x, part = sum - sum_;
+    rest_ += (sum_ - (sum - part)) + (x - part);  // what the first sum lost, exactly
+    sum_ = sum;
+    size_ += std::fabs(x);
+    error_ += error;
+    ++count_;
+  }
+  [[nodiscard]] Interval interval() const {
+    const double g = gamma_bound(count_ + 1), value = sum_ + rest_;
+    const double error = error_ * (1 + g) + 2 * g * g * size_ + unit_roundoff * std::fabs(value);
+    return {rounded_down(value - enlarged(error)), rounded_up(value + enlarged(error))};
+  }
+
+ private:
+  double sum_ = 0, rest_ = 0, size_ = 0, error_ = 0;
+  std::size_t count_ = 0;
+};
+
+// Of one patch, or of a quad: two patches.
+struct PatchMeasures {
+  FluxMoments moments;        // what is left at corners counts as error
+  double lower = 0, gap = 0;  // of the area, what is left at corners included
+  double tips = 0;            // area left at corners, at most
+  std::uint64_t splits = 0;
+  bool stuck = false;  // in rounding, or at the end of the budget
+};
+
+struct Goal {
+  double gap, tips;
+};
+
+// A piece that is not regular.
+struct Net {
+  const Kind* kind;
+  std::vector<kernels::NetPoint> points;
+  double largest, error;
+  double area = 0;  // at most
+};
+
+class PatchMeasurer {
+ public:
+  PatchMeasurer(const LimitSurface& surface, const Point3& origin, std::uint64_t most_splits,
+                const WorkMonitor& monitor)
+      : surface_(surface), origin_(origin), most_splits_(most_splits), monitor_(monitor) {}
+
+  [[nodiscard]] PatchMeasures run(PatchId p, const Goal& goal) {
+    result_ = {};
+    pieces_.clear();
+    tips_.clear();
+    surface_.patch(p, patch_);
+    middle_ = patch_.origin - origin_;
+    Net whole{patch_.kind, {}, patch_.largest, patch_.error};
+    for (const Vector3& point : patch_.points) whole.points.push_back({point.x, point.y, point.z, 0});
+    open(std::move(whole));
+    split_tips(goal.tips);
+    narrow_area(goal.gap);
+    return result_;
+  }
+
+ private:
+  void open(Net net) {
+    const Kind& kind = *net.kind;
+    if (kind.polynomial()) {
+      const KindLattice& lattice = kind.lattice();
+      double error = net.error;
+      if (lattice.ghosts.row_count() > 0)
+        error = append_rows(lattice.ghosts, net, net.points, net.largest, error);
+      add_regular(net.points, lattice.places, net.largest, error);
+    } else if (kind.passing() && result_.splits < most_splits_) {
+      refine(net);
+    } else {
+      net.area = area_of(net);
+      tips_.push_back(std::move(net));
+    }
+  }
+
+  // Rows of a net after other points; returns their common error and raises `largest`.
+  static double append_rows(const Stencils& rows, const Net& net, std::vector<kernels::NetPoint>& to,
+                            double& largest, double error) {
+    const std::size_t begin = to.size();
+    const double from_largest = net.largest;
+    to.resize(begin + rows.row_count());
+    largest = std::max(largest, kernels::refine_net(rows, net.points.data(), to.data() + begin));
+    return std::max(error, rows.result_error(from_largest, net.error));
+  }
+
+  void refine(const Net& net) {
+    monitor_.checkpoint();
+    ++result_.splits;
+    const KindStep& step = net.kind->step();
+    std::vector<kernels::NetPoint> points;
+    points.reserve(step.stencils.row_count() + step.ghosts.row_count());
+    double largest = 0;
+    const double plain = append_rows(step.stencils, net, points, largest, 0);
+    double error = plain;
+    if (step.ghosts.row_count() > 0) error = append_rows(step.ghosts, net, points, largest, plain);
+    for (const KindStep::Piece& piece : step.pieces) {
+      if (!piece.lattice.empty()) {
+        add_regular(points, piece.lattice, largest, error);
+        continue;
+      }
+      Net child{piece.kind, {}, largest, plain};
+      child.points.reserve(piece.control.size());
+      for (const std::uint32_t i : piece.control) child.points.push_back(points[i]);
+      open(std::move(child));
+    }
+  }
+
+  void add_regular(const std::vector<kernels::NetPoint>& points, std::span<const std::uint32_t> lattice,
+                   double largest, double error) {
+    RegularPiece piece{surface_.rules().basis, {}, largest, error, middle_, unit_roundoff * max_abs(middle_)};
+    for (std::size_t i = 0; i < lattice.size(); ++i) piece.points[i] = points[lattice[i]];
+    const FluxMoments moments = integrate(piece, pieces_);
+    for (std::size_t m = 0; m < moments.value.size(); ++m) {
+      double& sum = result_.moments.value[m];
+      sum += moments.value[m];
+      result_.moments.error[m] += moments.error[m] + unit_roundoff * std::fabs(sum);
+    }
+  }
+
+  // Upper bound of the area of a net's piece.
+  double area_of(const Net& net) {
+    const double factor = tip_areas_.factor(*net.kind);
+    if (!(factor < INFINITY)) {
+      throw InputError(
+          InputProblem::refused,
+          "measure: Midedge converges too slowly beside a face of so many corners; split that face "
+          "or use another scheme");
+    }
+    return enlarged(factor * extent_sq(net));
+  }
+  // Squared diagonal of the box around the control points.
+  static double extent_sq(const Net& net) {
+    Box3 box;
+    for (const auto& p : net.points) box.add(Point3{p[0], p[1], p[2]});
+    const Vector3 sides = box.upper - box.lower;
+    const double more = 2 * net.error;
+    return enlarged(length_sq({sides.x + more, sides.y + more, sides.z + more}));
+  }
+  static bool smaller(const Net& a, const Net& b) { return a.area < b.area; }
+
+  void split_tips(double goal) {
+    const auto sum_of_tips = [&] {
+      double sum = 0;
+      for (const Net& tip : tips_) sum += tip.area;
+      return enlarged(sum * (1 + gamma_bound(tips_.size())));
+    };
+    std::make_heap(tips_.begin(), tips_.end(), smaller);
+    double left = sum_of_tips();
+    while (left > goal && !tips_.empty()) {
+      const Net& largest = tips_.front();
+      if (result_.splits >= most_splits_ || extent_sq(largest) <= 0x1p12 * largest.error * largest.error) {
+        result_.stuck = true;
+        break;
+      }
+      std::pop_heap(tips_.begin(), tips_.end(), smaller);
+      const Net tip = std::move(tips_.back());
+      tips_.pop_back();
+      const std::size_t before = tips_.size();
+      left -= tip.area;
+      refine(tip);
+      for (std::size_t i = before; i < tips_.size(); ++i) left += tips_[i].area;
+      for (std::size_t i = before; i < tips_.size(); ++i) {
+        std::push_heap(tips_.begin(), tips_.begin() + static_cast<std::ptrdiff_t>(i) + 1, smaller);
+      }
+      if (left <= goal) left = sum_of_tips();
+    }
+    left = sum_of_tips();
+    result_.tips = left;
+    for (const Net& tip : tips_) {
+      // |x . N| is at most sqrt 3 reach |N|.
+      const double reach = max_abs(middle_) * (1 + 2 * unit_roundoff) + tip.largest + tip.error;
+      double power = spatial_error(reach) * tip.area;
+      for (std::size_t m = 0; m < 10; ++m) {
+        if (m == 1 || m == 4) power *= reach;
+        result_.moments.error[m] += enlarged(power);
+      }
+    }
+  }
+
+  void narrow_area(double goal) {
+    heap_.clear();
+    double gap = 0;
+    for (std::uint32_t i = 0; i < pieces_.size(); ++i) gap += push(i);
+    std::uint64_t halvings = 0;
+    while (gap > goal && !heap_.empty()) {
+      if (result_.splits + halvings / 4 >= most_splits_) {
+        result_.stuck = true;
+        break;
+      }
+      const std::uint32_t i = heap_.front().second;
+      std::pop_heap(heap_.begin(), heap_.end());
+      heap_.pop_back();
+      gap -= pieces_[i].gap();
+      if (!pieces_[i].tight()) {
+        pieces_[i].tighten();
+      } else {
+        monitor_.checkpoint();
+        ++halvings;
+        auto halves = pieces_[i].split();
+        pieces_[i] = std::move(halves.first);
+        pieces_.push_back(std::move(halves.second));
+        gap += push(static_cast<std::uint32_t>(pieces_.size() - 1));
+      }
+      gap += push(i);
+    }
+    if (gap > goal) result_.stuck = true;
+    result_.splits += halvings / 4;
+    double lower = 0, upper = 0;
+    for (const AreaPiece& piece : pieces_) {
+      lower += piece.area().lower;
+      upper += piece.area().upper;
+    }
+    const double g = gamma_bound(pieces_.size() + 2);
+    result_.lower = lower * (1 - g);
+    result_.gap = enlarged(upper * (1 + g) + result_.tips - result_.lower);
+  }
+  // Puts a piece in line if it can be improved; its gap.
+  double push(std::uint32_t i) {
+    if (pieces_[i].can_improve()) {
+      heap_.emplace_back(pieces_[i].gap(), i);
+      std::push_heap(heap_.begin(), heap_.end());
+    }
+    return pieces_[i].gap();
+  }
+
+  const LimitSurface& surface_;
+  Point3 origin_;
+  std::uint64_t most_splits_;
+  const WorkMonitor& monitor_;
+  TipAreas tip_areas_;
+  PatchMeasures result_;
+  Patch patch_;
+  Vector3 middle_;
+  std::vector<Net> tips_;
+  std::vector<AreaPiece> pieces_;
+  std::vector<std::pair<double, std::uint32_t>> heap_;
+};
+
+// Integrals in scaled units, about an origin amid the surface.
+struct Totals {
+  Interval area;
+  std::array<Interval, 10> moments;
+};
+
+// What is asked for in scaled units, and how far totals are from it.
+struct Answer {
+  Interval area, volume;
+  bool has_centroid = false;
+  std::array<Interval, 3> centroid;
+  std::array<Interval, 6> inertia;
+  // Widths over what was asked for: at most 1 where reached.
+  double area_excess = 0, solid_excess = 0;
+};
+
+double width(const Interval& x) { return x.upper - x.lower; }
+double magnitude(const Interval& x) { return std::max(std::fabs(x.lower), std::fabs(x.upper)); }
+
+double excess(double is, double wanted) {
+  return is <= wanted ? is / std::max(wanted, 0x1p-900) : wanted > 0 ? is / wanted : 0x1p900;
+}
+
+void add_inertia(const Totals& totals, Answer& answer) {
+  const auto first = [&](std::size_t a) { return totals.moments[1 + a] / Interval(4); };
+  const auto about_centroid = [&](std::size_t m, std::size_t a, std::size_t b) {
+    return totals.moments[m] / Interval(5) - first(a) * first(b) / answer.volume;
+  };
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+    answer.inertia[a] = about_centroid(4 + b, b, b) + about_centroid(4 + c, c, c);
+    answer.inertia[3 + a] = -about_centroid(7 + a, a, b);
+  }
+}
+
+Answer answer_of(const Totals& totals, const Point3& origin, double size, double relative, bool closed) {
+  Answer answer;
+  answer.area = totals.area;
+  answer.area_excess =
+      excess(width(answer.area), relative * std::max(answer.area.upper, relative * size * size));
+  if (!closed) return answer;
+  answer.volume = totals.moments[0] / Interval(3);
+  answer.solid_excess = excess(width(answer.volume),
+                               relative * std::max(magnitude(answer.volume), relative * size * size * size));
+  if (answer.volume.contains(0)) return answer;
+  answer.has_centroid = true;
+  for (std::size_t a = 0; a < 3; ++a) {
+    answer.centroid[a] = Interval(origin[a]) + totals.moments[1 + a] / Interval(4) / answer.volume;
+    answer.solid_excess = std::max(answer.solid_excess, excess(width(answer.centroid[a]), relative * size));
+  }
+  add_inertia(totals, answer);
+  double largest = relative * std::pow(size, 5), widest = 0;
+  for (const Interval& x : answer.inertia) {
+    largest = std::max(largest, magnitude(x));
+    widest = std::max(widest, width(x));
+  }
+  answer.solid_excess = std::max(answer.solid_excess, excess(widest, relative * largest));
+  return answer;
+}
+
+Interval unscaled_interval(const Interval& x, PowerOfTwo back) {
+  return {require_representable(unscaled_down(x.lower, back)),
+          require_representable(unscaled_up(x.upper, back))};
+}
+
+Measures in_mesh_units(const Answer& answer, PowerOfTwo back, bool closed) {
+  const PowerOfTwo square = back * back, cube = square * back, fifth = cube * square;
+  Measures result;
+  result.area = unscaled_interval(answer.area, square);
+  result.area.lower = std::max(0.0, result.area.lower);
+  if (!closed) return result;
+  result.volume = unscaled_interval(answer.volume, cube);
+  if (!answer.has_centroid) return result;
+  result.centroid.emplace();
+  result.inertia.emplace();
+  for (std::size_t a = 0; a < 3; ++a) (*result.centroid)[a] = unscaled_interval(answer.centroid[a], back);
+  for (std::size_t a = 0; a < 6; ++a) (*result.inertia)[a] = unscaled_interval(answer.inertia[a], fifth);
+  return result;
+}
+
+// All patches, each until its share of a goal is reached; then again with nearer goals for those that need
+// it.
+class SurfaceMeasurer {
+ public:
+  SurfaceMeasurer(const LimitSurface& surface, const MeasureOptions& options, const WorkMonitor& monitor)
+      : surface_(surface), options_(options), monitor_(monitor) {
+    Box3 box;
+    for (std::size_t v = 0; v < surface.mesh().vertex_count(); ++v) {
+      if (!surface.topology().isolated(VertexId(v))) box.add(surface.scaled_point(VertexId(v)));
+    }
+    for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+      const bool second = !surface.rules().triangular() && surface.place(PatchId(p)).part % 2 == 1;
+      if (!second && surface.has_patch(PatchId(p))) patches_.emplace_back(p);
+    }
+    if (patches_.empty()) {
+      throw InputError(
+          InputProblem::refused,
+          "no face has a limit surface: all are holes or touch the boundary; use another boundary rule");
+    }
+    size_ = longest_side(box);
+    origin_ = box.lower + 0.5 * (box.upper - box.lower);
+    closed_ = !open_reason(surface);
+    most_splits_ = std::min<std::uint64_t>(options.budget / patches_.size(), max_splits);
+    find_shares();
+  }
+
+  [[nodiscard]] Measures run() {
+    const double relative = options_.relative.value_or(default_relative);
+    // What is left at corners counts more in moments than in the area.
+    double gap = 0.4 * relative * estimate_, tips = (closed_ ? 0.05 : 0.4) * relative * estimate_;
+    Answer answer;
+    for (int round = 0; round < max_rounds; ++round) {
+      const bool some = round_of(gap, tips, round);
+      if (round > 0 && !some) break;
+      answer = answer_of(totals(), origin_, size_, relative, closed_);
+      if (answer.area_excess <= 1 && answer.solid_excess <= 1) break;
+      if (answer.area_excess > 1) {
+        const double nearer = 0.4 * relative * answer.area.lower;
+        gap = round == 0 ? std::min(gap, nearer) : 0.5 * gap;
+        tips = std::min(tips, 0.5 * nearer);
+      }
+      if (answer.solid_excess > 1) tips *= std::max(0.4 / answer.solid_excess, 0x1p-20);
+    }
+    Measures result = in_mesh_units(answer, surface_.scale().inverse(), closed_);
+    result.reached = answer.area_excess <= 1 && answer.solid_excess <= 1;
+    for (const PatchMeasures& patch : results_) result.splits += patch.splits;
+    return result;
+  }
+
+ private:
+  // Shares of the goals: half alike, half by areas of flat triangles.
+  void find_shares() {
+    shares_.resize(patches_.size());
+    parallel_for(patches_.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+      Patch patch;
+      for (std::size_t i = begin; i < end; ++i) {
+        surface_.patch(patches_[i], patch);
+        const std::array<Vector3, 3> corners = limit_corners(patch);
+        const double area = 0.5 * length(cross(corners[1] - corners[0], corners[2] - corners[0]));
+        shares_[i] = surface_.rules().triangular() ? area : 2 * area;
+      }
+    });
+    for (const double share : shares_) estimate_ += share;
+    const double by = estimate_ > 0 ? 0.5 / estimate_ : 0;
+    for (double& share : shares_) share = share * by + 0.5 / static_cast<double>(patches_.size());
+  }
+
+  // Measures patches that have not reached their goals; were there some?
+  bool round_of(double gap, double tips, int round) {
+    std::vector<std::uint32_t> open;
+    results_.resize(patches_.size());
+    for (std::uint32_t i = 0; i < patches_.size(); ++i) {
+      const PatchMeasures& before = results_[i];
+      const bool done = before.gap - before.tips <= shares_[i] * gap && before.tips <= shares_[i] * tips;
+      if (round == 0 || (!done && !before.stuck)) open.push_back(i);
+    }
+    std::atomic<std::size_t> count{0};
+    parallel_for_with(
+        open.size(), options_.threads,
+        [&] { return PatchMeasurer(surface_, origin_, most_splits_, monitor_); },
+        [&](PatchMeasurer& measurer, std::size_t begin, std::size_t end) {
+          for (std::size_t k = begin; k < end; ++k) {
+            const std::uint32_t i = open[k];
+            results_[i] = measurer.run(patches_[i], {shares_[i] * gap, shares_[i] * tips});
+          }
+          count += end - begin;
+          if (round == 0) monitor_.report(static_cast<double>(count) / static_cast<double>(open.size()));
+        });
+    return !open.empty();
+  }
+
+  [[nodiscard]] Totals totals() const {
+    BoundedSum lower, gap;
+    std::array<BoundedSum, 10> moments;
+    for (const PatchMeasures& patch : results_) {
+      lower.add(patch.lower, 0);
+      gap.add(patch.gap, 0);
+      for (std::size_t m = 0; m < 10; ++m) moments[m].add(patch.moments.value[m], patch.moments.error[m]);
+    }
+    Totals result;
+    result.area = {lower.interval().lower, rounded_up(lower.interval().upper + gap.interval().upper)};
+    for (std::size_t m = 0; m < 10; ++m) result.moments[m] = moments[m].interval();
+    return result;
+  }
+
+  const LimitSurface& surface_;
+  MeasureOptions options_;
+  const WorkMonitor& monitor_;
+  std::vector<PatchId> patches_;  // a quad's first patch stands for both
+  std::vector<double> shares_;
+  std::vector<PatchMeasures> results_;
+  double size_ = 0, estimate_ = 0;
+  Point3 origin_;
+  bool closed_ = false;
+  std::uint64_t most_splits_ = 0;
+};
+
+}  // namespace
+
+Measures measure(const LimitSurface& surface, const MeasureOptions& options, const WorkMonitor& monitor) {
+  if (options.relative) require_length(*options.relative, "the relative precision");
+  return SurfaceMeasurer(surface, options, monitor).run();
+}
+
+}  // namespace snug
