@@ -187,7 +187,8 @@ ExitStatus run(const Options& options) {
     file.emplace(options.polyhedra);
     write_polyhedra(polyhedra, options, *file, report);
   }
-  return report.finish(summary.reached, file ? &*file : nullptr);
+  if (file) return report.finish(summary.reached, {&*file});
+  return report.finish(summary.reached);
 }
 
 }  // namespace

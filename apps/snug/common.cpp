@@ -20,7 +20,7 @@ namespace snug::command {
 
 void require_output(const std::string& command, const std::string& output) {
   if (output.empty() || output == "-") return;
-  if (command == "subdivide" || command == "tessellate") {
+  if (command == "subdivide" || command == "tessellate" || command == "envelope") {
     require_writable_ending(output);
   } else if (command != "render" && !output.ends_with(".json")) {
     throw UsageError("-o " + output + ": " + command + " writes JSON; give a file that ends in .json");
@@ -186,7 +186,7 @@ void Report::flush_text() {
   if (text_) text_->file.complete();
 }
 
-ExitStatus Report::finish(bool reached, AtomicFile* other) {
+ExitStatus Report::finish(bool reached, const std::vector<AtomicFile*>& others) {
   stopped_by_interrupts().checkpoint();
   if (writer_) {
     writer_->field("seconds",
@@ -197,13 +197,13 @@ ExitStatus Report::finish(bool reached, AtomicFile* other) {
     notes_("the system refused to start threads: fewer did the work, and it took longer");
   }
   // What may fail comes before any file is put in its place.
-  AtomicFile* const files[] = {text_ ? &text_->file : nullptr, target_ ? &target_->file : nullptr, other};
-  for (AtomicFile* file : files) {
-    if (file) file->complete();
+  std::vector<AtomicFile*> files;
+  for (Target* target : {text_.get(), target_.get()}) {
+    if (target) files.push_back(&target->file);
   }
-  for (AtomicFile* file : files) {
-    if (file) file->commit();
-  }
+  files.insert(files.end(), others.begin(), others.end());
+  for (AtomicFile* file : files) file->complete();
+  for (AtomicFile* file : files) file->commit();
   return reached ? ExitStatus::answered : ExitStatus::not_reached;
 }
 

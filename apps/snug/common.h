@@ -101,12 +101,12 @@ class Report {
   void text(const std::string& line);
   /// Lets lines of text out at once.
   void flush_text();
-  /// The end of a command: ends the document and puts the file in place, and another one that the command has
-  /// written. Where anything cannot be written, neither is left. What the command ends with: was all
+  /// The end of a command: ends the document and puts the file in place, and others that the command has
+  /// written. Where anything cannot be written, none is left. What the command ends with: was all
   /// `reached` that was asked for?
   /// Notes:     one line if threads could not be started.
   /// Errors:    InputError (unreadable) if standard output or a file cannot be written; Interrupted.
-  ExitStatus finish(bool reached = true, AtomicFile* other = nullptr);
+  ExitStatus finish(bool reached = true, const std::vector<AtomicFile*>& others = {});
 
  private:
   struct Target;
@@ -125,6 +125,8 @@ class Report {
 [[nodiscard]] Command eval_command();
 [[nodiscard]] Command subdivide_command();
 [[nodiscard]] Command tessellate_command();
+[[nodiscard]] Command hull_command();
+[[nodiscard]] Command envelope_command();
 [[nodiscard]] Command collide_command();
 [[nodiscard]] Command distance_command();
 [[nodiscard]] Command measure_command();

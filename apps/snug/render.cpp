@@ -327,7 +327,7 @@ ExitStatus run(const Options& options) {
           most_enclosures));
     }
   }
-  return report.finish(enclosures.reached, &file);
+  return report.finish(enclosures.reached, {&file});
 }
 
 }  // namespace

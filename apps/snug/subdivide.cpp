@@ -73,7 +73,7 @@ ExitStatus run(const Options& options) {
                             curves ? "polylines" : "faces",
                             options.limit ? ", at their limit positions" : ""));
   }
-  return report.finish(true, &file);
+  return report.finish(true, {&file});
 }
 
 }  // namespace

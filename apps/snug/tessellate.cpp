@@ -112,7 +112,7 @@ ExitStatus run(const Options& options) {
              result.normals);
   report.heads({options.mesh}, {name_of(surface.options().scheme)});
   write_summary(report, options, result);
-  return report.finish(result.reached, &file);
+  return report.finish(result.reached, {&file});
 }
 
 }  // namespace

@@ -109,7 +109,7 @@ ExitStatus subdivide_older(const OlderOptions& options) {
     report.text(
         fmt::format("{}: {} vertices, {} faces", options.output, mesh.vertex_count(), mesh.face_count()));
   }
-  report.finish(true, &file);
+  report.finish(true, {&file});
   return ExitStatus::answered;
 }
 

@@ -14,12 +14,15 @@ struct HullOptions {
   bool inner = true, outer = true;    ///< which ones are wanted
   std::uint64_t budget = 10'000'000;  ///< most triangles of a hull
   int threads = 0;                    ///< 0: all cores
+  bool single_precision = false;      ///< coordinates are floats, for formats that hold no others
 };
 
-/// Triangles on one side of a limit surface, oriented as its faces.
+/// Triangles on one side of a limit surface, oriented as its faces; of a closed one outward.
 struct Hull {
   std::vector<Point3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint32_t>
+      owners;  ///< of each triangle the face that it is over; in a dual scheme, the vertex
   /// Proved: no point of it is farther from the surface, no point of the surface is farther from it.
   double gap = 0;
 };
@@ -37,9 +40,9 @@ enum class HullFault : std::uint8_t {
 /// Where.
 struct HullProblem {
   HullFault fault;
-  bool inner;           ///< of the inner hull
-  Point3 place;         ///< a limit point there, mesh units
-  std::uint32_t owner;  ///< face; in a dual scheme, vertex
+  bool inner;                            ///< of the inner hull
+  Point3 place;                          ///< a point of the surface or of the hull there, mesh units
+  std::optional<std::uint32_t> owner{};  ///< face there; in a dual scheme, vertex
 };
 
 struct Hulls {
@@ -50,7 +53,7 @@ struct Hulls {
 };
 
 /// Two meshes that sandwich a limit surface: the inner hull lies inside of the solid that a closed surface
-/// bounds, the outer one around it. Of an open surface they are a sheet behind and one in front of it, with
+/// bounds, whichever way its faces are oriented, the outer one around it. Of an open surface they are a sheet behind and one in front of it, with
 /// the same border as the surface's, moved: a strip as wide as the gap along it is not covered.
 ///
 /// Guarantee: if `verified`, no triangle of a hull has a point in common with the limit surface, nor with the
@@ -60,7 +63,7 @@ struct Hulls {
 ///            and was proved from them, not by how they were found. Does not depend on threads.
 ///            Surfaces that touch themselves, or have sheets nearer to each other than hulls fit between, are
 ///            never `verified`.
-/// Errors:    InputError: (value) for a tolerance that is not finite and positive, or too small for doubles;
+/// Errors:    InputError: (value) for a tolerance that is not finite and positive, above half of the size, or too small for doubles or floats;
 ///            (refused), naming the edge, where more than two faces meet or two run along an edge the same way,
 ///            as on a Moebius strip; (unrepresentable). Interrupted.
 /// Cost:      some 20 microseconds a triangle.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -13,7 +14,6 @@
 #include <snug/geometry/direction.h>
 #include <snug/geometry/nearest_to_origin.h>
 #include <snug/geometry/rounding.h>
-#include <snug/patch/evaluate.h>
 #include <snug/query/closest.h>
 #include <snug/query/deviation.h>
 #include <snug/query/pairs.h>
@@ -21,6 +21,7 @@
 #include <snug/search/piece.h>
 #include <snug/search/quadratic_bvh.h>
 #include <snug/search/self_contact.h>
+#include <snug/surface/evaluate.h>
 #include <snug/surface/quadratic_pieces.h>
 #include <snug/surface/unscale.h>
 
@@ -47,28 +48,51 @@ constexpr double flat_share = 0x1p-5;
 constexpr std::size_t most_problems = 100, most_contacts = 10'000;
 constexpr int most_rounds = 24;
 
-// Is there a border? Refuses what has no two sides.
-bool has_border(const Tessellation& mesh) {
-  std::unordered_map<std::uint64_t, std::uint32_t> sides;
-  sides.reserve(3 * mesh.triangles.size());
+// What triangles do along their edges.
+struct Sides {
+  std::optional<std::array<std::size_t, 2>> same_way;  // two that run along an edge the same way
+  bool border = false;                                 // does an edge belong to one triangle only?
+};
+
+Sides sides_of(std::span<const Names> triangles) {
+  Sides found;
+  std::unordered_map<std::uint64_t, std::size_t> sides;
+  sides.reserve(3 * triangles.size());
   const auto key = [](std::uint32_t from, std::uint32_t to) { return std::uint64_t{from} << 32 | to; };
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = mesh.triangles[t][k], to = mesh.triangles[t][(k + 1) % 3];
-      const auto [there, added] = sides.emplace(key(from, to), static_cast<std::uint32_t>(t));
-      if (added) continue;
-      throw InputError(
-          InputProblem::refused,
-          "hull: faces " + std::to_string(mesh.owners[there->second]) + " and " +
-              std::to_string(mesh.owners[t]) +
-              " run along an edge of the surface the same way, so that it has no two sides there; "
-              "orient the faces, or separate sheets that share an edge");
+      const auto [there, added] = sides.emplace(key(triangles[t][k], triangles[t][(k + 1) % 3]), t);
+      if (!added) found.same_way = {there->second, t};
     }
   }
-  return std::any_of(sides.begin(), sides.end(), [&](const auto& side) {
+  found.border = std::any_of(sides.begin(), sides.end(), [&](const auto& side) {
     return !sides.contains(
         key(static_cast<std::uint32_t>(side.first), static_cast<std::uint32_t>(side.first >> 32)));
   });
+  return found;
+}
+
+// Is there a border? Refuses what has no two sides.
+bool has_border(const Tessellation& mesh) {
+  const Sides sides = sides_of(mesh.triangles);
+  if (!sides.same_way) return sides.border;
+  const auto [s, t] = *sides.same_way;
+  throw InputError(InputProblem::refused,
+                   "hull: faces " + std::to_string(mesh.owners[s]) + " and " +
+                       std::to_string(mesh.owners[t]) +
+                       " run along an edge of the surface the same way, so that it has no two sides there; "
+                       "orient the faces, or separate sheets that share an edge");
+}
+
+// Are the faces of a closed surface oriented inward, on the whole? No proof rests on it.
+bool is_inward(const Tessellation& mesh, PowerOfTwo scale) {
+  const Point3 origin = scale.apply(mesh.positions[0]);
+  double volume = 0;
+  for (const Names& t : mesh.triangles) {
+    const auto from = [&](std::uint32_t v) { return scale.apply(mesh.positions[v]) - origin; };
+    volume += dot(from(t[0]), cross(from(t[1]), from(t[2])));
+  }
+  return volume < 0;
 }
 
 // A hull on one side, by triangles whose tolerances are made smaller where it fails.
@@ -81,6 +105,7 @@ class OneHull {
         inner_(inner),
         monitor_{.on_progress = {}, .stop = monitor.stop},
         scale_(surface.scale()),
+        float_loss_(options.single_precision ? largest_float_loss() : 0),
         tolerances_(surface.owner_count(), first_share * options.tolerance),
         pieces_(std::move(pieces)) {
     make_tree();
@@ -92,6 +117,7 @@ class OneHull {
       make_triangles();
       if (round == 0) {
         border_ = has_border(mesh_);
+        inward_ = !border_ && is_inward(mesh_, scale_);
       }
       problems_.clear();
       piece_marks_.assign(pieces_.size(), 0);
@@ -104,7 +130,13 @@ class OneHull {
     return std::move(problems_);
   }
   [[nodiscard]] bool has_border_edges() const { return border_; }
-  [[nodiscard]] Hull take() { return {std::move(hull_), std::move(mesh_.triangles), gap_}; }
+  // Oriented outward.
+  [[nodiscard]] Hull take() {
+    for (Names& t : mesh_.triangles) {
+      if (inward_) std::swap(t[1], t[2]);
+    }
+    return {std::move(hull_), std::move(mesh_.triangles), std::move(mesh_.owners), gap_};
+  }
 
  private:
   void make_triangles() {
@@ -139,15 +171,35 @@ class OneHull {
     wrong_[mesh_.owners[t]] = 1;
   }
 
+  // How far a vertex of a hull is at most moved when it becomes a float.
+  [[nodiscard]] double largest_float_loss() const {
+    const double largest = scale_.inverse().apply(2) + options_.tolerance;
+    return 2 * (0x1p-24 * largest + 0x1p-150);
+  }
+  // The coordinates that are handed out.
+  [[nodiscard]] Point3 as_written(Point3 p) const {
+    for (std::size_t a = 0; a < 3 && options_.single_precision; ++a) {
+      const auto rounded = static_cast<float>(p[a]);
+      if (!std::isfinite(rounded)) {
+        throw InputError(
+            InputProblem::unrepresentable,
+            "hull: a coordinate does not fit a float; scale the mesh down, or write a format that "
+            "holds doubles");
+      }
+      p[a] = static_cast<double>(rounded);
+    }
+    return require_representable(p);
+  }
+
   // Each vertex as near as possible to where it was, beyond the planes of the triangles around it.
   void move_vertices() {
-    const double sign = inner_ ? -1 : 1;
+    const double sign = inner_ != inward_ ? -1 : 1;
     std::vector<Vector3> normals(mesh_.triangles.size());
     std::vector<double> offsets(mesh_.triangles.size());
     parallel_for(normals.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         normals[t] = sign * unit_normal(scaled(mesh_.positions, mesh_.triangles[t]));
-        offsets[t] = errors_[t] + clearance * tolerances_[mesh_.owners[t]];
+        offsets[t] = errors_[t] + clearance * tolerances_[mesh_.owners[t]] + float_loss_;
       }
     });
     hull_ = mesh_.positions;
@@ -164,15 +216,16 @@ class OneHull {
           const std::uint32_t t = around_[i];
           if (normals[t] != Vector3{}) planes.push_back((largest / offsets[t]) * normals[t]);
         }
-        if (planes.empty()) continue;  // a point of needles only: it stays, and is found to be on the surface
-        const Vector3 z = nearest_to_origin(planes);
-        const double square = length_sq(z);
-        if (!(square > 1e-16)) {
-          moved[v] = INFINITY;
-          continue;
+        if (!planes.empty()) {  // else a point of needles only: it stays, and is found to be on the surface
+          const Vector3 z = nearest_to_origin(planes);
+          const double square = length_sq(z);
+          if (!(square > 1e-16)) {
+            moved[v] = INFINITY;
+            continue;
+          }
+          hull_[v] = hull_[v] + (largest / square) * z;
         }
-        const Vector3 d = (largest / square) * z;
-        hull_[v] = hull_[v] + d;
+        hull_[v] = as_written(hull_[v]);
         moved[v] = enlarged(distance(scale_.apply(hull_[v]), scale_.apply(mesh_.positions[v])));
       }
     });
@@ -249,6 +302,7 @@ class OneHull {
   bool inner_;
   WorkMonitor monitor_;
   PowerOfTwo scale_;
+  double float_loss_;               // mesh units
   std::vector<double> tolerances_;  // of owners
   Tessellation mesh_;
   std::vector<double> errors_;
@@ -256,7 +310,7 @@ class OneHull {
   std::vector<QuadraticPiece> pieces_;
   std::vector<QuadraticTriangle> quadratics_;
   std::unique_ptr<QuadraticBvh> tree_;
-  bool border_ = false;
+  bool border_ = false, inward_ = false;
   std::vector<HullProblem> problems_;
   std::vector<std::uint8_t> wrong_, piece_marks_;  // owners; pieces that facets come near
   std::vector<Point3> hull_;
@@ -272,6 +326,7 @@ class FacetSurface {
         workspace_(bvh_) {}
 
   [[nodiscard]] PlacedBvh placed() { return {bvh_, workspace_, {}}; }
+  [[nodiscard]] const SurfaceBvh& model() const { return bvh_; }
   [[nodiscard]] SurfaceWorkspace& workspace() { return workspace_; }
 
  private:
@@ -291,36 +346,77 @@ class FacetSurface {
 // All that is claimed, by queries that know nothing of how the hulls were made.
 class Verification {
  public:
-  Verification(const SurfaceBvh& model, const HullOptions& options, Hulls& hulls, const WorkMonitor& monitor)
+  Verification(const SurfaceBvh& model, const HullOptions& options, const Hulls& hulls,
+               const WorkMonitor& monitor)
       : model_(model),
         options_(options),
         hulls_(hulls),
         monitor_{.on_progress = {}, .stop = monitor.stop},
         own_(model) {}
 
-  void run() {
+  std::vector<HullProblem> run() {
     std::array<std::unique_ptr<FacetSurface>, 2> sides;
+    if (hulls_.closed) own_points_ = points_of(model_);
     for (const bool inner : {true, false}) {
       const std::optional<Hull>& hull = inner ? hulls_.inner : hulls_.outer;
-      if (!hull) continue;
+      if (!hull || !is_whole(*hull, inner)) continue;
       sides[inner] = std::make_unique<FacetSurface>(*hull, model_.surface().shared_library(), monitor_);
+      if (hulls_.closed) hull_points_ = points_of(sides[inner]->model());
       apart({model_, own_, {}}, sides[inner]->placed(), HullFault::meets_surface, inner);
       near(*hull, inner);
       if (hulls_.closed) around(*sides[inner], inner);
     }
     if (sides[0] && sides[1]) apart(sides[1]->placed(), sides[0]->placed(), HullFault::meets_other, true);
+    return std::move(problems_);
   }
 
  private:
-  void blame(HullFault fault, bool inner, const Point3& place, std::uint32_t owner) {
-    hulls_.problems.push_back({fault, inner, place, owner});
+  // A limit point of each component.
+  struct Member {
+    Point3 position;
+    std::uint32_t owner;
+  };
+  std::vector<Member> points_of(const SurfaceBvh& model) {
+    const LimitSurface& surface = model.surface();
+    std::vector<Member> points;
+    for (const PatchId p : model.solid().components()) {
+      const SurfacePoint at = evaluate(surface, place_of(surface, p, {1.0 / 3, 1.0 / 3}));
+      points.push_back({at.position, surface.place(p).owner});
+      // What does not meet is to be farther apart than this: then the limit point is on the side of the double.
+      certain_gap_ = std::max(certain_gap_, 2 * at.error);
+    }
+    return points;
+  }
+  void blame(HullFault fault, bool inner, const Point3& place, std::optional<std::uint32_t> owner) {
+    problems_.push_back({fault, inner, place, owner});
+  }
+  // Does it touch itself at vertices and edges only, and is it closed where the surface is?
+  bool is_whole(const Hull& hull, bool inner) {
+    const std::size_t before = problems_.size();
+    const auto blame_triangle = [&](HullFault fault, std::size_t t) {
+      blame(fault, inner, hull.positions[hull.triangles[t][0]], hull.owners[t]);
+    };
+    const Sides sides = sides_of(hull.triangles);
+    if (sides.same_way) blame_triangle(HullFault::meets_itself, (*sides.same_way)[1]);
+    if (hulls_.closed && sides.border) blame_triangle(HullFault::not_around, 0);
+    std::vector<Point3> points;
+    points.reserve(hull.positions.size());
+    for (const Point3& p : hull.positions) points.push_back(model_.surface().scale().apply(p));
+    for (const auto& [a, b] :
+         self_contacts(points, hull.triangles, most_problems, options_.threads, monitor_)) {
+      blame_triangle(HullFault::meets_itself, a);
+    }
+    return problems_.size() == before;
   }
   void apart(const PlacedBvh& a, const PlacedBvh& b, HullFault fault, bool inner) {
-    const Collision found =
-        collide(a, b, {.tolerance = 0, .witness = WitnessKind::none, .measure = false}, monitor_);
+    const Collision found = collide(
+        a, b, {.tolerance = 0, .margin = certain_gap_, .witness = WitnessKind::approximate, .measure = false},
+        monitor_);
     if (found.verdict == Verdict::separated) return;
-    const Point3 place = found.witness ? (*found.witness)[0] : Point3{};
-    blame(fault, inner, place, found.at[0] ? found.at[0]->owner : 0);
+    std::optional<std::uint32_t> owner;
+    if (found.at[0])
+      owner = fault == HullFault::meets_other ? hulls_.inner->owners[found.at[0]->owner] : found.at[0]->owner;
+    blame(fault, inner, found.witness ? (*found.witness)[0] : Point3{}, owner);
   }
   void near(const Hull& hull, bool inner) {
     std::vector<Triangle> facets;
@@ -335,42 +431,59 @@ class Verification {
                                       monitor_);
     for (const OneSidedDistance* side : {&found.from_surface, &found.from_candidate}) {
       if (side->distance.upper <= options_.tolerance) continue;
-      blame(HullFault::no_position, inner, side->from, side->at ? side->at->owner : 0);
+      std::optional<std::uint32_t> owner;
+      if (side->at) owner = side->at->owner;
+      blame(HullFault::no_position, inner, side->from, owner);
     }
   }
-  // A limit point of each component is in the solid of the outer hull, and not in that of the inner one.
+  // One lies in the solid of the other with all its components, and none of these in the solid of the one.
   void around(FacetSurface& hull, bool inner) {
-    const LimitSurface& surface = model_.surface();
-    for (const PatchId p : model_.solid().components()) {
-      const Patch patch = surface.patch(p);
-      const Point3 point =
-          surface.scale().inverse().apply(limit_point(patch, {1.0 / 3, 1.0 / 3}).from(patch.origin).position);
-      if (contains(hull.workspace(), point, monitor_) != !inner) {
-        blame(HullFault::not_around, inner, point, surface.place(p).owner);
+    for (const bool of_hull : {false, true}) {
+      for (const auto& [position, owner] : of_hull ? hull_points_ : own_points_) {
+        const std::optional<bool> inside = contains(of_hull ? own_ : hull.workspace(), position, monitor_);
+        if (inside == (of_hull == inner)) continue;
+        blame(HullFault::not_around, inner, position,
+              of_hull ? (inner ? hulls_.inner : hulls_.outer)->owners[owner] : owner);
       }
     }
   }
 
   const SurfaceBvh& model_;
   const HullOptions& options_;
-  Hulls& hulls_;
+  const Hulls& hulls_;
   WorkMonitor monitor_;
   SurfaceWorkspace own_;
+  std::vector<Member> own_points_, hull_points_;
+  double certain_gap_ = 0;  // mesh units
+  std::vector<HullProblem> problems_;
 };
 
 }  // namespace
 
 const char* name_of(HullFault fault) { return name_in(fault_names, fault); }
 
+std::vector<HullProblem> problems_of(const SurfaceBvh& surface, const Hulls& hulls,
+                                     const HullOptions& options, const WorkMonitor& monitor) {
+  return Verification(surface, options, hulls, monitor).run();
+}
+
 Hulls hulls(const SurfaceBvh& model, const HullOptions& options, const WorkMonitor& monitor) {
   const LimitSurface& surface = model.surface();
   require_value(options.tolerance > 0 && std::isfinite(options.tolerance),
                 "hull: the tolerance must be finite and greater than 0");
   // Tolerances of triangles go down to a share of it.
-  const double least = surface.scale().inverse().apply(0x1p-30);
+  const double least = surface.scale().inverse().apply(options.single_precision ? 0x1p-18 : 0x1p-30);
   if (options.tolerance < least) {
-    throw InputError(InputProblem::value, "hull: doubles allow no tolerance below " + shortest(least) +
-                                              " for coordinates of this size; ask for that or more");
+    throw InputError(InputProblem::value,
+                     std::string("hull: ") + (options.single_precision ? "floats" : "doubles") +
+                         " allow no tolerance below " + shortest(least) +
+                         " for coordinates of this size; ask for that or more" +
+                         (options.single_precision ? ", or write a format that holds doubles" : ""));
+  }
+  if (options.tolerance > surface.size() / 2) {
+    throw InputError(InputProblem::value,
+                     "hull: the tolerance is more than half of the surface's size; give at most " +
+                         shortest(surface.size() / 2));
   }
   require_value(options.inner || options.outer, "hull: ask for the inner hull, the outer one, or both");
   const double error = quadratic_share * first_share * surface.scale().apply(options.tolerance);
@@ -386,7 +499,7 @@ Hulls hulls(const SurfaceBvh& model, const HullOptions& options, const WorkMonit
     (inner ? result.inner : result.outer) = hull.take();
     monitor.report(inner ? 0.3 : 0.6);
   }
-  if (result.problems.empty()) Verification(model, options, result, monitor).run();
+  if (result.problems.empty()) result.problems = problems_of(model, result, options, monitor);
   result.verified = result.problems.empty();
   if (result.problems.size() > most_problems) result.problems.resize(most_problems);
   monitor.report(1);

@@ -9,4 +9,11 @@ namespace snug {
 [[nodiscard]] Hulls hulls(const SurfaceBvh& surface, const HullOptions& options,
                           const WorkMonitor& monitor = {});
 
+/// The places where hulls are not proved to be what hulls() guarantees, whoever made them: from their positions and
+/// triangles alone. None if `hulls.inner`, `hulls.outer`, as far as they are there, and `hulls.closed` hold.
+/// Requires:  indices in range, an owner for each triangle; of the options tolerance and threads count.
+[[nodiscard]] std::vector<HullProblem> problems_of(const SurfaceBvh& surface, const Hulls& hulls,
+                                                   const HullOptions& options,
+                                                   const WorkMonitor& monitor = {});
+
 }  // namespace snug

@@ -1,0 +1,157 @@
+#include <fmt/core.h>
+#include <snug/io/atomic_file.h>
+#include <snug/io/mesh_file.h>
+#include <snug/query/closest.h>
+#include <snug/query/hull.h>
+#include <snug/query/pairs.h>
+#include <snug/surface/evaluate.h>
+
+#include "hulls_of_mesh.h"
+#include "length.h"
+#include "progress_bar.h"
+
+namespace snug::command {
+namespace {
+
+struct Options : CommonOptions {
+  std::string mesh, tolerance, part;
+  std::uint64_t most = HullOptions{}.budget;
+};
+
+// Where a part is: its surface and the envelope are `clearance` apart; nothing where it cannot be told whether
+// it is inside.
+struct Fit {
+  std::optional<bool> inside;
+  Interval clearance;
+};
+
+void require_options(const Options& options) {
+  require_tolerance("envelope", options.tolerance);
+  if (options.output == "-") throw UsageError("envelope: standard output takes no envelope; give a file");
+  if (options.output.empty() && options.part.empty()) {
+    throw UsageError("envelope: give -o FILE, where the triangles go, or --part PART, or both");
+  }
+}
+
+// Surfaces that do not meet are inside of each other patch by patch.
+Fit fit_of(const LimitSurface& part, const Hull& envelope, const Options& options,
+           const WorkMonitor& monitor) {
+  const LimitSurface around(mesh_of(envelope), SchemeOptions{Scheme::flat}, part.shared_library(), monitor);
+  const SurfaceBvh part_model(part, {.threads = options.threads}, monitor),
+      around_model(around, {.threads = options.threads}, monitor);
+  SurfaceWorkspace own(part_model), other(around_model);
+  const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+  const Distance found =
+      distance({part_model, own, {}}, {around_model, other, {}}, {.relative = 0.01}, stop_only);
+  Fit fit{.inside = {}, .clearance = found.distance};
+  if (found.distance.upper == 0) fit.inside = false;
+  if (!(found.distance.lower > 0)) return fit;
+  fit.inside = true;
+  for (std::size_t p = 0; p < part.patch_count() && fit.inside == true; ++p) {
+    if (!part.has_patch(PatchId(p))) continue;
+    const SurfaceParameter middle = place_of(part, PatchId(p), {1.0 / 3, 1.0 / 3});
+    const SurfacePoint at = evaluate(part, middle);
+    // The limit point that it stands for is on the same side.
+    if (2 * at.error > found.distance.lower) return {.inside = {}, .clearance = found.distance};
+    fit.inside = contains(other, at.position, stop_only);
+  }
+  return fit;
+}
+
+void write_fit(Report& report, const Options& options, const Fit& fit) {
+  if (report.json()) {
+    JsonWriter& json = report.write();
+    json.key("part").begin_object().field("mesh", options.part).key("inside");
+    fit.inside ? json.value(*fit.inside) : json.null();
+    json.key("clearance").begin_array().value(fit.clearance.lower).value(fit.clearance.upper).end_array();
+    json.end_object();
+  }
+  const std::string apart =
+      fmt::format("at least {} and at most {} from it", text_at_most(fit.clearance.lower),
+                  text_at_most(fit.clearance.upper, true));
+  if (!fit.inside) {
+    report.text(
+        fmt::format("{}: undecided, its limit surface is too near to the envelope, {}", options.part, apart));
+  } else if (*fit.inside) {
+    report.text(
+        fmt::format("{}: proved, its limit surface is inside of the envelope, {}", options.part, apart));
+  } else if (fit.clearance.upper > 0) {
+    report.text(fmt::format("{}: proved, its limit surface or a part of it is outside of the envelope, {}",
+                            options.part, apart));
+  } else {
+    report.text(fmt::format("{}: proved, its limit surface meets the envelope", options.part));
+  }
+}
+
+void write_summary(Report& report, const Options& options, const LimitSurface& surface, double tolerance,
+                   const Hulls& found) {
+  if (report.json()) {
+    report.write().field("tolerance", tolerance).key("envelope");
+    write_hull(report.write(), found.outer, found.verified);
+  }
+  if (found.verified) {
+    report.text(
+        fmt::format("{}: {} triangles around the solid, proved closed and not to meet its limit surface, at "
+                    "most {} from it",
+                    options.output.empty() ? "envelope" : options.output, found.outer->triangles.size(),
+                    text_at_most(found.outer->gap, true)));
+  }
+  write_verdict(report, found, surface.rules().primal);
+}
+
+ExitStatus run(const Options& options) {
+  require_options(options);
+  const auto library = std::make_shared<BoundsCache>();
+  const LimitSurface surface = load_surface(options.mesh, options, options.scheme, library);
+  std::optional<LimitSurface> part;
+  if (!options.part.empty()) part.emplace(load_surface(options.part, options, options.scheme, library));
+  HullOptions how{.inner = false, .budget = options.most, .threads = options.threads};
+  how.single_precision = !options.output.empty() && writes_floats(options.output);
+  Hulls found;
+  ProgressBar bar("making an envelope of " + options.mesh, options.quiet);
+  const WorkMonitor monitor = bar.monitor();
+  naming(options.mesh, [&] {
+    how.tolerance = parse_length(options.tolerance, "--tolerance").in_mesh_units(surface.size());
+    const SurfaceBvh model(surface, {.threads = options.threads}, monitor);
+    static_cast<void>(model.solid());  // refuses what is open
+    found = hulls(model, how, monitor);
+  });
+  std::optional<Fit> fit;
+  if (part && found.verified)
+    naming(options.part, [&] { fit = fit_of(*part, *found.outer, options, monitor); });
+  CommonOptions to_standard_output = options;
+  to_standard_output.output.clear();
+  Report report("envelope", to_standard_output);
+  report.heads({options.mesh}, {name_of(surface.options().scheme)});
+  write_summary(report, options, surface, how.tolerance, found);
+  if (fit) write_fit(report, options, *fit);
+  const bool reached = found.verified && (!fit || fit->inside);
+  if (options.output.empty() || !found.verified) return report.finish(reached);
+  AtomicFile file(options.output);
+  write_mesh(mesh_of(*found.outer), file, options.output, notes_for(options), stopped_by_interrupts());
+  return report.finish(reached, {&file});
+}
+
+}  // namespace
+
+Command envelope_command() {
+  auto options = std::make_shared<Options>();
+  OptionList list;
+  list.add(Group::own, "MESH", &options->mesh,
+           "Control mesh of a solid (OBJ, OFF, PLY or STL; - for standard input)");
+  list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
+           "Largest distance between limit surface and envelope, either way; mesh units or percent (1%)");
+  list.add(Group::own, "--part PART", &options->part,
+           "Is the limit surface of this control mesh inside of the envelope, and how far from it?");
+  add_common_options(list, *options);
+  list.add(Group::effort, "--budget N", &options->most, "Most triangles of the envelope");
+  return {"envelope",
+          Topic::files,
+          "Write a closed mesh around the solid of a limit surface, proved not to meet it",
+          {"snug envelope pawn.obj --tolerance 1% -o around.stl",
+           "snug envelope pawn.obj --tolerance 2% --part pin.obj"},
+          std::move(list),
+          [options] { return run(*options); }};
+}
+
+}  // namespace snug::command
