@@ -70,6 +70,28 @@ TEST(tessellate, states_the_error_of_floats) {
   EXPECT_LT(doubles["position_error"], 1e-13);
 }
 
+// Fewer triangles than faces, closed, and another command proves that they are near.
+TEST(tessellate, coarsens_below_the_number_of_faces) {
+  const TemporaryFolder folder;
+  const std::string bust = model("bust.obj");
+  const std::string file = folder.file("bust.stl");
+  const auto json = answer({bust, "--tolerance", "3%", "--coarsen", "-o", file});
+  EXPECT_LT(json["triangles"], 400) << "bust has 1398 faces";
+  const auto judged =
+      nlohmann::json::parse(run_snug({"deviation", bust, file, "--tolerance", "3%", "--json"}).out);
+  EXPECT_EQ(judged["verdict"], "within");
+  ReadOptions reading;
+  reading.weld = [](double) { return 0.0; };
+  const ControlMesh mesh = read_mesh(file, reading);
+  EXPECT_EQ(mesh.face_count(), json["triangles"]);
+  const Topology topology(mesh);
+  for (std::size_t e = 0; e < topology.edge_count(); ++e) EXPECT_FALSE(topology.ends_fans(EdgeId(e)));
+  expect_refused({bust, "--coarsen", "--max-edge", "1%", "-o", folder.file("a.ply")}, 2,
+                 "--coarsen goes with --tolerance");
+  expect_refused({bust, "--coarsen", "--tolerance", "1%", "--max-angle", "9", "-o", folder.file("a.ply")}, 2,
+                 "--coarsen goes with --tolerance");
+}
+
 TEST(tessellate, holds_numbers_of_triangles_edges_and_angles) {
   const TemporaryFolder folder;
   const std::string file = folder.file("a.off"), pawn = model("pawn.obj");

@@ -99,6 +99,8 @@ class Chunk {
     limited_ = false;
     if (part.side == Side::other) return true;
     see(part);
+    // A point to show, whatever is asked.
+    if (found_.lower == 0 && !side_test && raise_lower(part, side_test)) compare(part);
     if (accept(part)) return true;
     if (side_test && part.side == Side::unknown) {
       find_side(part, side_test);
