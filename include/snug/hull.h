@@ -53,19 +53,20 @@ struct Hulls {
 };
 
 /// Two meshes that sandwich a limit surface: the inner hull lies inside of the solid that a closed surface
-/// bounds, whichever way its faces are oriented, the outer one around it. Of an open surface they are a sheet behind and one in front of it, with
-/// the same border as the surface's, moved: a strip as wide as the gap along it is not covered.
+/// bounds, whichever way its faces are oriented, the outer one around it. Of an open surface they are a sheet
+/// behind and one in front of it, with the same border as the surface's, moved: a strip as wide as the gap
+/// along it is not covered.
 ///
 /// Guarantee: if `verified`, no triangle of a hull has a point in common with the limit surface, nor with the
 ///            other hull, nor with its own triangles but for vertices and edges that both name; each point of a
-///            hull is within Hull::gap <= tolerance of the surface, and of the surface likewise; a closed surface
-///            lies inside of the outer hull and around the inner one. Everything holds for the doubles given,
-///            and was proved from them, not by how they were found. Does not depend on threads.
-///            Surfaces that touch themselves, or have sheets nearer to each other than hulls fit between, are
-///            never `verified`.
-/// Errors:    InputError: (value) for a tolerance that is not finite and positive, above half of the size, or too small for doubles or floats;
-///            (refused), naming the edge, where more than two faces meet or two run along an edge the same way,
-///            as on a Moebius strip; (unrepresentable). Interrupted.
+///            hull is within Hull::gap <= tolerance of the surface, and of the surface likewise; the solid of a
+///            closed surface lies inside of the outer hull's and around the inner one's. Everything holds for
+///            the doubles given and, but for a gap below the tolerance, was proved from them, not by how they
+///            were found. Does not depend on threads. Surfaces that touch themselves, or have sheets nearer to
+///            each other than hulls fit between, are not `verified`, as a rule.
+/// Errors:    InputError: (value) for a tolerance that is not finite and positive, above half of the size, or
+///            too small for doubles or floats; (refused), naming two faces, where these run along an edge the
+///            same way, as on a Moebius strip or where three meet; (unrepresentable). Interrupted.
 /// Cost:      some 20 microseconds a triangle.
 /// Source:    [Wu05, sec. 5.2]; differs: planes of whole facets, verified; derivations/hulls.md.
 [[nodiscard]] SNUG_API Hulls hulls(const Surface& surface, const HullOptions& options,
