@@ -105,6 +105,10 @@ ExitStatus run(const Options& options) {
   const LimitSurface surface = load_surface(options.mesh, options, options.scheme, library);
   std::optional<LimitSurface> part;
   if (!options.part.empty()) part.emplace(load_surface(options.part, options, options.scheme, library));
+  CommonOptions to_standard_output = options;
+  to_standard_output.output.clear();
+  Report report("envelope", to_standard_output);
+  report.heads({options.mesh}, {name_of(surface.options().scheme)});
   HullOptions how{.inner = false, .budget = options.most, .threads = options.threads};
   how.single_precision = !options.output.empty() && writes_floats(options.output);
   Hulls found;
@@ -119,10 +123,6 @@ ExitStatus run(const Options& options) {
   std::optional<Fit> fit;
   if (part && found.verified)
     naming(options.part, [&] { fit = fit_of(*part, *found.outer, options, monitor); });
-  CommonOptions to_standard_output = options;
-  to_standard_output.output.clear();
-  Report report("envelope", to_standard_output);
-  report.heads({options.mesh}, {name_of(surface.options().scheme)});
   write_summary(report, options, surface, how.tolerance, found);
   if (fit) write_fit(report, options, *fit);
   const bool reached = found.verified && (!fit || fit->inside);

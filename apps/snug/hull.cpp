@@ -71,6 +71,8 @@ ExitStatus run(const Options& options) {
   require_options(options);
   const LimitSurface surface =
       load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  Report report("hull", options);
+  report.heads({options.mesh}, {name_of(surface.options().scheme)});
   HullOptions how;
   Hulls found;
   naming(options.mesh, [&] {
@@ -79,8 +81,6 @@ ExitStatus run(const Options& options) {
     const WorkMonitor monitor = bar.monitor();
     found = hulls(SurfaceBvh(surface, {.threads = options.threads}, monitor), how, monitor);
   });
-  Report report("hull", options);
-  report.heads({options.mesh}, {name_of(surface.options().scheme)});
   std::deque<AtomicFile> files;
   for (const auto& [hull, path] : {std::pair{&found.inner, &options.inner}, {&found.outer, &options.outer}}) {
     if (!*hull || !found.verified) continue;

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -38,8 +40,9 @@ constexpr auto fault_names = std::to_array<Named<HullFault>>({
     {"not-around", HullFault::not_around},
 });
 
-// Of the tolerance: that of the triangles which are moved, at first; below which it is no longer made smaller.
-constexpr double first_share = 0.4, least_share = 0x1p-6;
+// Of the tolerance: that of the triangles which are moved, at first; below which it is no longer made smaller,
+// where a vertex has no position, and where facets meet something.
+constexpr double first_share = 0.4, least_share = 0x1p-6, least_share_apart = 0x1p-8;
 // Of the tolerance of a triangle: how much farther off its plane than its error its facet is kept, and the error
 // of the quadratics that it is to be kept off.
 constexpr double clearance = 0.1, quadratic_share = 0x1p-6;
@@ -93,6 +96,14 @@ bool is_inward(const Tessellation& mesh, PowerOfTwo scale) {
     volume += dot(from(t[0]), cross(from(t[1]), from(t[2])));
   }
   return volume < 0;
+}
+
+// One problem of a sort and side for each owner, and not too many.
+void keep_some(std::vector<HullProblem>& problems) {
+  std::set<std::tuple<HullFault, bool, std::optional<std::uint32_t>>> known;
+  std::erase_if(problems,
+                [&](const HullProblem& p) { return !known.emplace(p.fault, p.inner, p.owner).second; });
+  if (problems.size() > most_problems) problems.resize(most_problems);
 }
 
 // A hull on one side, by triangles whose tolerances are made smaller where it fails.
@@ -166,9 +177,13 @@ class OneHull {
   [[nodiscard]] Triangle scaled(const std::vector<Point3>& points, const Names& t) const {
     return {scale_.apply(points[t[0]]), scale_.apply(points[t[1]]), scale_.apply(points[t[2]])};
   }
+  // The tolerances of an owner are to be made smaller, down to a share of the whole.
+  void mark_wrong(std::uint32_t owner, double least) {
+    if (wrong_[owner] == 0 || least < wrong_[owner]) wrong_[owner] = least;
+  }
   void blame(HullFault fault, std::size_t t, const Point3& place) {
     problems_.push_back({fault, inner_, place, mesh_.owners[t]});
-    wrong_[mesh_.owners[t]] = 1;
+    mark_wrong(mesh_.owners[t], fault == HullFault::no_position ? least_share : least_share_apart);
   }
 
   // How far a vertex of a hull is at most moved when it becomes a float.
@@ -266,7 +281,7 @@ class OneHull {
       tree_->mark_near(facet, 0, piece_marks_);
     }
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-      if (piece_marks_[p] != 0) wrong_[surface_.place(pieces_[p].root).owner] = 1;
+      if (piece_marks_[p] != 0) mark_wrong(surface_.place(pieces_[p].root).owner, least_share_apart);
     }
     std::vector<Point3> points;
     points.reserve(hull_.size());
@@ -283,7 +298,7 @@ class OneHull {
     bool any = false;
     double error = INFINITY;
     for (std::size_t owner = 0; owner < tolerances_.size(); ++owner) {
-      if (wrong_[owner] == 0 || tolerances_[owner] <= least_share * options_.tolerance) continue;
+      if (wrong_[owner] == 0 || tolerances_[owner] <= wrong_[owner] * options_.tolerance) continue;
       tolerances_[owner] /= 2;
       error = std::min(error, tolerances_[owner]);
       any = true;
@@ -312,7 +327,8 @@ class OneHull {
   std::unique_ptr<QuadraticBvh> tree_;
   bool border_ = false, inward_ = false;
   std::vector<HullProblem> problems_;
-  std::vector<std::uint8_t> wrong_, piece_marks_;  // owners; pieces that facets come near
+  std::vector<double> wrong_;              // of owners where something is: the least share
+  std::vector<std::uint8_t> piece_marks_;  // pieces that facets come near
   std::vector<Point3> hull_;
   double gap_ = 0;
 };
@@ -501,7 +517,7 @@ Hulls hulls(const SurfaceBvh& model, const HullOptions& options, const WorkMonit
   }
   if (result.problems.empty()) result.problems = problems_of(model, result, options, monitor);
   result.verified = result.problems.empty();
-  if (result.problems.size() > most_problems) result.problems.resize(most_problems);
+  keep_some(result.problems);
   monitor.report(1);
   return result;
 }
