@@ -67,7 +67,7 @@ struct Hulls {
 /// Errors:    InputError: (value) for a tolerance that is not finite and positive, above half of the size, or
 ///            too small for doubles or floats; (refused), naming two faces, where these run along an edge the
 ///            same way, as on a Moebius strip or where three meet; (unrepresentable). Interrupted.
-/// Cost:      some 20 microseconds a triangle.
+/// Cost:      50 to 100 microseconds a triangle in one thread; where hulls fail, many times that.
 /// Source:    [Wu05, sec. 5.2]; differs: planes of whole facets, verified; derivations/hulls.md.
 [[nodiscard]] SNUG_API Hulls hulls(const Surface& surface, const HullOptions& options,
                                    const WorkMonitor& monitor = {});

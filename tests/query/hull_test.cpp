@@ -233,6 +233,18 @@ TEST(hulls, of_floats_withstand_their_rounding) {
   EXPECT_TRUE(found.verified) << (found.problems.empty() ? "" : name_of(found.problems[0].fault));
 }
 
+TEST(hulls, do_not_depend_on_the_unit) {
+  const Hulls plain = Model(meshes::cube()).hulls(0x1p-6);
+  ASSERT_TRUE(plain.verified);
+  for (const int exponent : {-990, -300, 300, 990}) {
+    const Model model(moved(meshes::cube(), std::ldexp(1, exponent), {}));
+    const Hulls found = model.hulls(std::ldexp(1, exponent - 6));
+    EXPECT_TRUE(found.verified) << exponent;
+    EXPECT_EQ(found.outer->triangles, plain.outer->triangles);
+    EXPECT_NEAR(std::ldexp(found.outer->gap, -exponent), plain.outer->gap, 1e-12);
+  }
+}
+
 std::string refusal(const Model& model, const HullOptions& options, InputProblem problem) {
   try {
     static_cast<void>(model.hulls(options));

@@ -488,7 +488,7 @@ Hulls hulls(const SurfaceBvh& model, const HullOptions& options, const WorkMonit
   require_value(options.tolerance > 0 && std::isfinite(options.tolerance),
                 "hull: the tolerance must be finite and greater than 0");
   // Tolerances of triangles go down to a share of it.
-  const double least = surface.scale().inverse().apply(options.single_precision ? 0x1p-18 : 0x1p-30);
+  const double least = surface.scale().inverse().apply(options.single_precision ? 0x1p-20 : 0x1p-30);
   if (options.tolerance < least) {
     throw InputError(InputProblem::value,
                      std::string("hull: ") + (options.single_precision ? "floats" : "doubles") +
