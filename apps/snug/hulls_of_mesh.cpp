@@ -17,8 +17,9 @@ constexpr std::size_t most_printed = 10;
 const char* explained(HullFault fault) {
   switch (fault) {
     case HullFault::no_position:
-      return "no point near is in front of all faces around; a larger --tolerance may help, or a less sharp "
-             "spike";
+      return "no position near enough is in front of all faces around: a spike or a fold, or too few "
+             "triangles; try a "
+             "larger --tolerance or --budget";
     case HullFault::meets_surface:
       return "the hull could not be kept off the surface: sheets are too near to each other, or touch; try a "
              "smaller --tolerance";
@@ -31,7 +32,9 @@ const char* explained(HullFault fault) {
     case HullFault::not_around:
       break;
   }
-  return "the hull is on the wrong side: are the faces oriented outward, and is no part inside of another?";
+  return "the hull is on the wrong side: a part of the surface is inside of another one, or is oriented the "
+         "other way; "
+         "ask about the parts one by one";
 }
 
 // Words for people, `place` in mesh units.
