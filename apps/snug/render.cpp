@@ -14,6 +14,7 @@
 #include <snug/io/number.h>
 
 #include "common.h"
+#include "numbers.h"
 #include "pose.h"
 #include "progress_bar.h"
 #include "scene_builder.h"
@@ -58,23 +59,6 @@ Size parse_size(const std::string& text) {
   if (by == std::string::npos) return {side(text), side(text)};
   const std::string_view whole = text;
   return {side(whole.substr(0, by)), side(whole.substr(by + 1))};
-}
-
-// As many numbers, separated by blanks or commas; nothing if the text is not that.
-template <std::size_t count>
-std::optional<std::array<double, count>> parse_numbers(std::string_view text) {
-  constexpr std::string_view blanks = " ,\t\r\n";
-  std::array<double, count> numbers{};
-  std::size_t found = 0;
-  for (auto begin = text.find_first_not_of(blanks); begin != std::string_view::npos;) {
-    const auto end = std::min(text.find_first_of(blanks, begin), text.size());
-    const ParsedReal number = parse_real(text.substr(begin, end - begin));
-    if (!number.fault.empty() || found == count) return {};
-    numbers[found++] = number.value;
-    begin = text.find_first_not_of(blanks, end);
-  }
-  if (found < count) return {};
-  return numbers;
 }
 
 // Three numbers, scaled to a direction of length 1.

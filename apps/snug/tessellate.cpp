@@ -7,6 +7,7 @@
 #include "coarsen.h"
 #include "common.h"
 #include "length.h"
+#include "numbers.h"
 #include "progress_bar.h"
 
 namespace snug::command {
@@ -16,9 +17,9 @@ namespace {
 constexpr double fine_share = 0.25;
 
 struct Options : CommonOptions {
-  std::string mesh, tolerance, max_edge;
+  std::string mesh, tolerance, max_edge, max_thickness, eye;
   std::optional<std::uint64_t> max_triangles;
-  double max_angle = 0;
+  double max_angle = 0, eye_angle = 0.02;
   bool coarsen = false;
   std::uint64_t most = TessellateOptions{}.budget;
 };
@@ -33,22 +34,33 @@ void require_options(const Options& options) {
   if (options.json && options.output == "-") {
     throw UsageError("tessellate: --json and -o - both want standard output");
   }
-  if (options.tolerance.empty() && options.max_edge.empty() && !options.max_triangles &&
-      options.max_angle == 0) {
-    throw UsageError("tessellate: give --tolerance, --max-triangles, --max-edge or --max-angle");
+  const bool other_goal = !options.max_edge.empty() || !options.max_thickness.empty() ||
+                          !options.eye.empty() || options.max_triangles || options.max_angle > 0;
+  if (options.tolerance.empty() && !other_goal) {
+    throw UsageError(
+        "tessellate: give --tolerance, --max-triangles, --max-edge, --max-angle, --max-thickness or --eye");
   }
-  if (options.coarsen && (options.tolerance.empty() || !options.max_edge.empty() || options.max_triangles ||
-                          options.max_angle > 0)) {
+  if (options.coarsen && (options.tolerance.empty() || other_goal)) {
     throw UsageError("tessellate: --coarsen goes with --tolerance, and no other goal");
   }
   if (!options.tolerance.empty()) static_cast<void>(parse_length(options.tolerance, "--tolerance"));
   if (!options.max_edge.empty()) static_cast<void>(parse_length(options.max_edge, "--max-edge"));
+  if (!options.max_thickness.empty())
+    static_cast<void>(parse_length(options.max_thickness, "--max-thickness"));
+  if (!options.eye.empty() && !parse_numbers<3>(options.eye)) {
+    throw UsageError("--eye: '" + options.eye + "' is not a point; give three numbers");
+  }
 }
 
 TessellateOptions how_to(const Options& options, const LimitSurface& surface) {
   TessellateOptions how;
   how.tolerance = length_of(options.tolerance, "--tolerance", surface.size());
   how.max_edge = length_of(options.max_edge, "--max-edge", surface.size());
+  how.max_thickness = length_of(options.max_thickness, "--max-thickness", surface.size());
+  if (!options.eye.empty()) {
+    const auto [x, y, z] = *parse_numbers<3>(options.eye);
+    how.view = {{x, y, z}, options.eye_angle};
+  }
   if (options.max_angle > 0) how.max_angle = options.max_angle;
   how.max_triangles = options.max_triangles;
   how.budget = options.most;
@@ -129,6 +141,13 @@ Command tessellate_command() {
   list.add(Group::own, "--max-angle DEGREES", &options->max_angle,
            "Largest angle between the limit normals at corners of a triangle; 0 for any")
       .between(0, 180);
+  list.add(Group::own, "--max-thickness LENGTH", &options->max_thickness,
+           "Longest side of the boxes of pieces' interval triangles, the dissertation's criterion");
+  list.add(Group::own, "--eye \"X Y Z\"", &options->eye,
+           "Seen from this point no error is larger than --eye-angle; mesh units");
+  list.add(Group::own, "--eye-angle DEGREES", &options->eye_angle,
+           "Largest angle under which an error is seen: a field of view over its pixels")
+      .between(1e-9, 45);
   list.add(Group::own, "--coarsen", &options->coarsen,
            "Fewer triangles than the faces have, too: simplified, then proved to be within the tolerance");
   add_common_options(list, *options);

@@ -9,6 +9,12 @@
 
 namespace snug {
 
+/// From where, and how exactly, triangles are looked at.
+struct Viewpoint {
+  Point3 eye;
+  double angle = 0;  ///< in degrees: under which an error may be seen, such as a pixel's
+};
+
 struct TessellateOptions {
   /// Largest distance, in mesh units, between the limit surface and the triangles, either way.
   std::optional<double> tolerance{};
@@ -16,6 +22,11 @@ struct TessellateOptions {
   /// Largest angle between limit normals at corners of a triangle, in degrees: in double precision, and only of
   /// triangles with a side longer than the tolerance (without one, a millionth of the size).
   std::optional<double> max_angle{};
+  /// A triangle at the distance d from the eye may have an error of d sin(angle), and so be seen under that angle at most.
+  std::optional<Viewpoint> view{};
+  /// Most of the thickness of pieces, in mesh units: the longest side of the three boxes of a piece's interval
+  /// triangle [Wu05, sec. 5.3]. Pieces are then split in four, their neighbours cut as needed.
+  std::optional<double> max_thickness{};
   /// Most triangles: the smallest error that is found for so many, but not below the tolerance if there is one.
   std::optional<std::uint64_t> max_triangles{};
   bool single_precision = false;  ///< coordinates are floats, for formats that hold no others
@@ -49,9 +60,10 @@ struct Tessellation {
 ///            the same parameter (between the corners linear), for the doubles given. The triangles cover all
 ///            parameters of all patches. So neither the surface nor the triangles have a point farther than that
 ///            from the other, face by face, and boundaries and creases are as near to the edges along them.
-///            error_bound <= tolerance if `reached`. An edge belongs to as many triangles as the surface has
-///            sheets there: two inside, one at the boundary; no vertex lies inside an edge, and two triangles
-///            have at most an edge in common. Results do not depend on threads.
+///            error_bound <= tolerance if `reached`, and each triangle's own error is as small as `view` asks. An
+///            edge belongs to as many triangles as the surface has sheets there: two inside, one at the boundary;
+///            no vertex lies inside an edge, and two triangles have at most an edge in common. Results do not
+///            depend on threads.
 /// Holes, and faces without a surface, are left out. Triangles without area are kept: where control vertices
 /// coincide, leaving them out would open the surface.
 /// Errors:    InputError: (value) for options that are not finite and positive, without any, for a tolerance too

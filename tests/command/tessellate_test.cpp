@@ -71,6 +71,18 @@ TEST(tessellate, states_the_error_of_floats) {
 }
 
 // Fewer triangles than faces, closed, and another command proves that they are near.
+TEST(tessellate, holds_what_is_seen_and_thicknesses) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("a.off"), pawn = model("pawn.obj");
+  EXPECT_GT(answer({pawn, "--eye", "0 0 9", "-o", file})["triangles"],
+            answer({pawn, "--eye", "0 0 90", "-o", file})["triangles"]);
+  EXPECT_GT(answer({pawn, "--eye", "0,0,9", "--eye-angle", "0.01", "-o", file})["triangles"],
+            answer({pawn, "--eye", "0 0 9", "-o", file})["triangles"]);
+  EXPECT_GT(answer({pawn, "--max-thickness", "1%", "-o", file})["triangles"],
+            answer({pawn, "--max-thickness", "5%", "-o", file})["triangles"]);
+  expect_refused({pawn, "--eye", "0 0", "-o", file}, 2, "--eye: '0 0' is not a point");
+}
+
 TEST(tessellate, coarsens_below_the_number_of_faces) {
   const TemporaryFolder folder;
   const std::string bust = model("bust.obj");

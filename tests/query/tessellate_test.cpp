@@ -2,15 +2,21 @@
 
 #include <gtest/gtest.h>
 #include <oracle/test_meshes.h>
+#include <snug/bounds/enclosure.h>
 #include <snug/bounds/hull_points.h>
 #include <snug/bounds/quadratic.h>
 #include <snug/io/mesh_file.h>
 #include <snug/patch/evaluate.h>
+#include <snug/query/deviation.h>
+#include <snug/surface/evaluate.h>
 #include <testing/scheme_surfaces.h>
 #include <testing/tessellations.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <random>
+#include <utility>
 
 namespace snug {
 namespace {
@@ -232,6 +238,110 @@ TEST(tessellate, stops_when_asked) {
   const std::atomic<bool> stop = true;
   EXPECT_THROW(static_cast<void>(tessellate(model("pawn.obj"), to_tolerance(1e-3), {{}, &stop})),
                Interrupted);
+}
+
+// A random point of a triangle, and where the surface has its own one.
+std::pair<SurfaceParameter, Point3> sample(const Tessellation& t, std::size_t i, std::mt19937_64& random) {
+  const TriangleParameter at = testing::random_parameter(random);
+  const auto mean = [&](double a, double b, double c) { return (1 - at.u - at.v) * a + at.u * b + at.v * c; };
+  const auto& c = t.corners[i];
+  const Point3 &p = t.positions[t.triangles[i][0]], &q = t.positions[t.triangles[i][1]],
+               &r = t.positions[t.triangles[i][2]];
+  return {{c[0].owner, c[0].corner, mean(c[0].u, c[1].u, c[2].u), mean(c[0].v, c[1].v, c[2].v)},
+          p + at.u * (q - p) + at.v * (r - p)};
+}
+
+// The surface at each parameter is as near to its triangle as the distance from the eye allows; from farther away
+// fewer triangles do. Within reach of the eye, too.
+TEST(tessellate, shows_no_error_from_where_it_is_seen) {
+  std::mt19937_64 random(11);
+  for (const char* const file : {"pawn.obj", "bracket.obj"}) {
+    const LimitSurface surface = model(file);
+    std::size_t before = SIZE_MAX;
+    for (const double away : {0.6, 2.0, 20.0}) {
+      TessellateOptions options;
+      options.corners = true;
+      options.view = {{0.1 * surface.size(), 0.2 * surface.size(), away * surface.size()}, 0.05};
+      const Tessellation t = tessellate(surface, options);
+      testing::expect_watertight(surface, t, file);
+      EXPECT_LT(t.triangles.size(), before);
+      before = t.triangles.size();
+      const double slope = std::sin(0.05 * 3.14159265358979323846 / 180);
+      double largest = 0;
+      for (std::size_t i = 0; i < t.triangles.size(); ++i) {
+        const auto [there, flat] = sample(t, i, random);
+        const double error = distance(evaluate(surface, there).position, flat),
+                     allowed = slope * distance(flat, options.view->eye);
+        EXPECT_LE(error, allowed + 1e-12);
+        largest = std::max(largest, error / allowed);
+      }
+      if (away < 20) {
+        EXPECT_GT(largest, 0.2) << "there are no more triangles than needed";
+      }
+    }
+  }
+}
+
+// Whole pieces only, split in four until they are thin, as in figure 5-3; flat ones of axes' directions are thin at once.
+TEST(tessellate, holds_the_thickness_of_pieces) {
+  for (const char* const file : {"pawn.obj", "bracket.obj"}) {
+    const LimitSurface surface = model(file);
+    std::size_t before = 0;
+    for (const double share : {0.02, 0.004, 0.001}) {
+      TessellateOptions options;
+      options.max_thickness = share * surface.size();
+      options.corners = true;
+      const Tessellation t = tessellate(surface, options);
+      testing::expect_watertight(surface, t, file);
+      testing::expect_near(surface, t, file, 2);
+      EXPECT_GT(t.triangles.size(), before);
+      // A piece and the triangle of its corners are in one hull of boxes; middles of its edges are, too.
+      std::vector<Triangle> triangles;
+      for (const auto& [x, y, z] : t.triangles)
+        triangles.push_back({t.positions[x], t.positions[y], t.positions[z]});
+      const double within = 3.5 * *options.max_thickness;
+      const Deviation found =
+          deviation(SurfaceBvh(surface), triangles, {.absolute = within / 64, .tolerance = within});
+      EXPECT_LE(found.from_surface.distance.upper, within);
+      EXPECT_LE(found.from_candidate.distance.upper, within);
+      before = t.triangles.size();
+      const double thin = *options.max_thickness;
+      HullPoints hull;
+      for (std::size_t p = 0; p < surface.patch_count(); ++p) {
+        const Patch patch = surface.patch(PatchId(p));
+        hull_points(surface.library(), patch, hull);
+        double longest = 0;
+        for (const Box3& box : interval_simplex<3>(hull, limit_corners(patch)).corner) {
+          longest = std::max(longest, longest_side(box));
+        }
+        const auto owner = surface.place(PatchId(p)).owner;
+        const auto of_owner = static_cast<std::size_t>(std::count(t.owners.begin(), t.owners.end(), owner));
+        const auto [begin, end] = surface.patches_of(owner);
+        if (longest > thin) {
+          EXPECT_GE(of_owner, end - begin + 3) << "patch " << p << " is too thick to be one triangle";
+        }
+      }
+    }
+  }
+}
+
+TEST(tessellate, refuses_eyes_and_thicknesses_that_are_none) {
+  const LimitSurface surface = model("pawn.obj");
+  TessellateOptions options;
+  options.view = {{0, 0, NAN}, 0.1};
+  EXPECT_NE(refusal(surface, options).find("eye"), std::string::npos);
+  options.view = {{0, 0, 9}, 0};
+  EXPECT_NE(refusal(surface, options).find("angle"), std::string::npos);
+  options.view = {{0, 0, 9}, 90};
+  EXPECT_NE(refusal(surface, options).find("angle"), std::string::npos);
+  options.view.reset();
+  options.max_thickness = -1;
+  EXPECT_NE(refusal(surface, options).find("thickness"), std::string::npos);
+  // With the eye on the surface the budget ends it.
+  options.max_thickness.reset();
+  options.view = {tessellate(surface, to_tolerance(surface.size())).positions[0], 0.05};
+  options.budget = 20'000;
+  EXPECT_FALSE(tessellate(surface, options).reached);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <snug/base/contract.h>
 #include <snug/base/error.h>
 #include <snug/base/parallel.h>
+#include <snug/bounds/enclosure.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/limit_evaluator.h>
 #include <snug/query/piece_quadratic.h>
@@ -46,16 +47,18 @@ struct Piece {
   Index patch;
   PiecePath path;
   PiecePlace place;
-  bool known = false, coarse = false;
+  bool known = false, coarse = false, thick = false;
   PieceQuadratic quadratic;
 };
 
 // The limits of a run, in scaled units.
 struct Limits {
-  double tolerance = INFINITY, max_edge = INFINITY;
+  double tolerance = INFINITY, max_edge = INFINITY, max_thickness = INFINITY;
   std::vector<double> of_owner{};  // tolerances of owners instead of that; or none
   double least_cosine = -2;        // of normals; -2 for none
-  double shortest_turn = 0;        // triangles without a longer side are not split for their normals
+  Point3 eye;
+  double slope = INFINITY;   // of a triangle's tolerance over its distance from the eye
+  double shortest_turn = 0;  // triangles without a longer side are not split for their normals
 };
 
 // Limit points and patches, for one thread; what comes together should be asked for together.
@@ -141,6 +144,8 @@ class Refinement {
   void examine(const std::vector<Index>& triangles, bool mark);
   void examine(Worker& worker, Index t, bool mark);
   void prove(Worker& worker, Index t, bool mark);
+  [[nodiscard]] double seen_tolerance(Index t) const;
+  [[nodiscard]] static double thickness(const Patch& patch, const HullPoints& hull);
   void learn(Worker& worker, Index t);
   void mark_bent(Index t, const Flatness& flatness);
   void mark_long(Worker& worker, Index t);
@@ -154,6 +159,7 @@ class Refinement {
   [[nodiscard]] std::size_t choose(Index t, unsigned marks) const;
   [[nodiscard]] FlatTriangle flat(Index t) const;
   [[nodiscard]] double tolerance(Index t) const {
+    if (limits_.slope < INFINITY) return std::min(limits_.tolerance, seen_tolerance(t));
     if (limits_.of_owner.empty()) return limits_.tolerance;
     return limits_.of_owner[surface_.place(PatchId(pieces_[piece_[t]].patch)).owner];
   }
@@ -186,7 +192,7 @@ void Refinement::place_roots() {
   pieces_.reserve(roots.size());
   for (std::size_t t = 0; t < roots.size(); ++t) {
     piece_.push_back(static_cast<Index>(t));
-    pieces_.push_back({roots[t].value(), {}, {}, false, false, {}});
+    pieces_.push_back({roots[t].value(), {}, {}, false, false, false, {}});
     for (std::size_t k = 0; k < 3; ++k) {
       Vertex& vertex = vertices_[complex_.corners(t)[k]];
       if (vertex.patch == UINT32_MAX) vertex = {{}, {}, 0, roots[t].value(), corners[k]};
@@ -249,15 +255,34 @@ void Refinement::mark_sides(Index t) {
   for (std::size_t k = 0; k < 3; ++k) complex_.mark(complex_.edge_of(t, k));
 }
 
+// What may be seen from the eye, by a ball around the triangle. On the surface at the eye the arithmetic's own limit is what is left.
+double Refinement::seen_tolerance(Index t) const {
+  const Triangle triangle = flat(t).corner;
+  const Point3 middle = triangle[0] + 0.5 * (triangle[1] - triangle[0]);
+  double radius = 0;
+  for (const Point3& p : triangle) radius = std::max(radius, distance(p, middle));
+  const double nearest = (distance(middle, limits_.eye) - radius) * (1 - 0x1p-40) - 0x1p-45;
+  return std::max(limits_.slope * (1 - 0x1p-40) * nearest, least_tolerance);
+}
+
+// The longest side of the boxes of its interval triangle.
+double Refinement::thickness(const Patch& patch, const HullPoints& hull) {
+  const IntervalTriangle boxes = interval_simplex<3>(hull, limit_corners(patch));
+  double longest = 0;
+  for (const Box3& box : boxes.corner) longest = std::max(longest, longest_side(box));
+  return longest;
+}
+
 // Finds the quadratic of a piece that is still one triangle; where it is coarse, the triangle's error.
 void Refinement::learn(Worker& worker, Index t) {
   Piece& piece = pieces_[piece_[t]];
   const Patch& patch = worker.patch(piece.patch, piece.path);
   BoundsCache& library = surface_.library();
-  if (patch.kind->shared()) hull_points(library, patch, worker.hull);
+  if (patch.kind->shared() || limits_.max_thickness < INFINITY) hull_points(library, patch, worker.hull);
   const QuadraticTriangle near = quadratic_triangle(library, patch, worker.hull);
   piece.known = true;
-  piece.coarse = !(near.error <= quadratic_share * tolerance(t)) || !(near.error < INFINITY);
+  if (limits_.max_thickness < INFINITY) piece.thick = thickness(patch, worker.hull) > limits_.max_thickness;
+  piece.coarse = piece.thick || !(near.error <= quadratic_share * tolerance(t)) || !(near.error < INFINITY);
   if (near.error < INFINITY) piece.quadratic = PieceQuadratic(near, piece.place);
   if (!piece.coarse) return;
   const FlatTriangle triangle = flat(t);
@@ -275,7 +300,7 @@ void Refinement::prove(Worker& worker, Index t, bool mark) {
     const Flatness flatness = piece.quadratic.flatness(flat(t));
     error_[t] = flatness.error;
     if (mark && flatness.error > tolerance(t)) mark_bent(t, flatness);
-  } else if (mark && error_[t] > tolerance(t)) {
+  } else if (mark && (piece.thick || error_[t] > tolerance(t))) {
     if (piece.path.level() >= deepest_level) return stuck_.store(true, std::memory_order_relaxed);
     mark_sides(t);
   }
@@ -448,7 +473,7 @@ void Refinement::carry_out(const Cut& cut) {
     if (!pieces_[whole].coarse) continue;
     const Piece& parent = pieces_[whole];
     piece_[t] = cut.first_piece + i;
-    pieces_[piece_[t]] = {parent.patch, parent.path.child(i), parent.place.child(i), false, false, {}};
+    pieces_[piece_[t]] = {parent.patch, parent.path.child(i), parent.place.child(i), false, false, false, {}};
   }
 }
 
@@ -515,9 +540,10 @@ void Refinement::refuse_if_stuck() const {
     if (pieces_[piece_[t]].path.level() >= deepest_level) largest = std::max(largest, error_[t]);
   }
   char text[160];
-  std::snprintf(text, sizeof text,
-                "tessellate: rounding leaves more than the tolerance on this mesh; take %.3g or more",
-                4 * unscaled_up(std::max(largest, limits_.tolerance), back_));
+  std::snprintf(
+      text, sizeof text,
+      "tessellate: rounding leaves more than the tolerance on this mesh; take %.3g or more",
+      4 * unscaled_up(std::max(largest, std::min(limits_.tolerance, limits_.max_thickness)), back_));
   refuse_value(text);
 }
 
@@ -583,10 +609,12 @@ void require_positive(const std::optional<double>& value, const char* message) {
 }
 
 Limits limits_of(const LimitSurface& surface, const TessellateOptions& options) {
-  require_value(options.tolerance || options.max_edge || options.max_angle || options.max_triangles,
+  require_value(options.tolerance || options.max_edge || options.max_angle || options.max_triangles ||
+                    options.view || options.max_thickness,
                 "tessellate: give a tolerance, or what else the triangles are to hold");
   require_positive(options.tolerance, "tessellate: the tolerance must be finite and positive");
   require_positive(options.max_edge, "tessellate: the longest edge must be finite and positive");
+  require_positive(options.max_thickness, "tessellate: the thickness must be finite and positive");
   require_value(!options.max_angle || (*options.max_angle > 0 && *options.max_angle <= 180),
                 "tessellate: the largest angle must be above 0 and at most 180 degrees");
   require_value(!options.max_triangles || *options.max_triangles > 0,
@@ -610,6 +638,15 @@ Limits limits_of(const LimitSurface& surface, const TessellateOptions& options) 
   Limits limits;
   limits.tolerance = scaled(options.tolerance, "a tolerance");
   limits.max_edge = scaled(options.max_edge, "a longest edge");
+  limits.max_thickness = scaled(options.max_thickness, "a thickness");
+  if (options.view) {
+    require_value(is_finite(options.view->eye),
+                  "tessellate: a coordinate of the eye is not finite; give three numbers");
+    require_value(options.view->angle > 0 && options.view->angle < 90,
+                  "tessellate: the angle under which errors are seen must be above 0 and below 90 degrees");
+    limits.eye = scale.apply(options.view->eye);
+    limits.slope = std::sin(options.view->angle * 3.14159265358979323846 / 180);
+  }
   if (options.max_angle) limits.least_cosine = std::cos(*options.max_angle * 3.14159265358979323846 / 180);
   limits.shortest_turn =
       std::isfinite(limits.tolerance) ? limits.tolerance : 1e-6 * scale.apply(surface.size());
