@@ -585,7 +585,7 @@ Bits everything() {
     if (trial % 8 == 0) {
       for (double& z : cloud.z) z = random() % 2 ? 0.0 : -0.0;
     }
-    if (trial % 16 == 1) cloud.x[random() % count] = NAN;
+    if (trial % 16 == 1 && count > 1) cloud.x[random() % count] = NAN;
     const auto reach = farthest(cloud, corners);
     add(bits, reach ? reach->distance : -1);
     add(bits, reach ? reach->rounding : -1);

@@ -16,7 +16,7 @@
 
 #include "run_snug.h"
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef SNUG_SANITIZED
 // Sanitizers take terabytes of addresses, and their own place before the C library.
 #define SNUG_SKIP_UNDER_SANITIZERS() GTEST_SKIP() << "not under a sanitizer"
 #else

@@ -138,7 +138,7 @@ TEST(piece, heights_hold_those_of_needles) {
         const Vector3 normal = unit_normal(piece.offset.base);
         for (int i = 0; i < 12; ++i) {
           const LimitPoint point = limit_point(piece.patch, testing::random_parameter(random));
-          const auto extended = [&](std::size_t x) {
+          const auto extended = [&piece = piece, &point](std::size_t x) {
             return static_cast<long double>(piece.patch.origin[x]) + point.relative[x] -
                    piece.offset.base[0][x];
           };

@@ -13,7 +13,7 @@ namespace {
 std::atomic<std::size_t> allocations{0};
 }  // namespace
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef SNUG_SANITIZED
 constexpr bool counting = false;
 #else
 constexpr bool counting = true;

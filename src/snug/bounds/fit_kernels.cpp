@@ -16,7 +16,7 @@
 // Arrays of vectors stay in registers only where everything is inlined. Sanitizers' checks take minutes to
 // compile then.
 #undef SNUG_FLAT
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef SNUG_SANITIZED
 #define SNUG_FLAT
 #else
 #define SNUG_FLAT HWY_FLATTEN
@@ -435,12 +435,12 @@ struct BicubicShape {
   template <class D, class V = hn::Vec<D>>
   static HWY_INLINE void hull(D d, const V* b, V* out) {
     static constexpr Sums sums = make_sums();
-#ifndef __SANITIZE_ADDRESS__  // whose checks take minutes to compile then
+#ifndef SNUG_SANITIZED  // whose checks take minutes to compile then
 #pragma GCC unroll 28
 #endif
     for (std::size_t p = 0; p < hull_count; ++p) {
       V sum = hn::Zero(d);
-#ifndef __SANITIZE_ADDRESS__
+#ifndef SNUG_SANITIZED
 #pragma GCC unroll 8
 #endif
       for (std::size_t t = 0; t < sums.terms[p]; ++t) {

@@ -1,6 +1,10 @@
 // Vector code, compiled once for each instruction set. A file of it defines HWY_TARGET_INCLUDE as its own
 // path and includes this first: no #pragma once, since each instruction set reads it again.
+#ifdef SNUG_SANITIZED  // one old and one common instruction set, since their checks take minutes to compile
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3 | HWY_AVX3_DL)
+#else
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)
+#endif
 #include <hwy/foreach_target.h>
 // After it, as the library wants it.
 #include <hwy/highway.h>
