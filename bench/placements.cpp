@@ -71,6 +71,13 @@ std::vector<Model> read_models(const std::vector<std::string>& files) {
   return models;
 }
 
+Scheme usual_scheme(const ControlMesh& mesh) {
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    if (mesh.face(FaceId(f)).size() != 3) return Scheme::catmark;
+  }
+  return Scheme::loop;
+}
+
 const Model& named(const std::vector<Model>& models, const std::string& name) {
   for (const Model& model : models) {
     if (model.name == name) return model;

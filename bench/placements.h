@@ -57,6 +57,8 @@ struct Placed {
                                                        double reach, std::size_t count, std::uint64_t seed);
 
 /// Loop, boundary edge and corner: the rules that peers get, too.
+/// Loop where all faces are triangles, else Catmull-Clark.
+[[nodiscard]] Scheme usual_scheme(const ControlMesh& mesh);
 [[nodiscard]] inline SchemeOptions loop_rules() { return {Scheme::loop, BoundaryRule::edge_and_corner}; }
 
 /// Prints "bar  what: value, at least (at most) limit: ok" or "missed".

@@ -1,5 +1,5 @@
-// bench_triangles: how many triangles a proved error takes, adaptive beside uniform refinement with the same proved error, how fast they
-// are made, and hulls. Files: any models.
+// bench_triangles: how many triangles a proved error takes, adaptive beside uniform refinement with the same proved error, and how
+// fast they are made. Files: any models.
 
 #include <algorithm>
 #include <cstdio>
@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <snug/query/deviation.h>
-#include <snug/query/hull.h>
 #include <snug/query/subdivide.h>
 #include <snug/query/tessellate.h>
 #include <snug/search/surface_bvh.h>
@@ -55,11 +54,7 @@ int main(int argc, char** argv) {
   const double share = options.size(1e-3, 1e-2);
   std::vector<double> ratios;
   for (const Model& model : read_models(options.files)) {
-    Scheme scheme = Scheme::loop;
-    for (std::size_t f = 0; f < model.mesh.face_count(); ++f) {
-      if (model.mesh.face(FaceId(f)).size() != 3) scheme = Scheme::catmark;
-    }
-    const LimitSurface surface(model.mesh, {scheme}, std::make_shared<BoundsCache>());
+    const LimitSurface surface(model.mesh, {usual_scheme(model.mesh)}, std::make_shared<BoundsCache>());
     const SurfaceBvh bvh(surface);
     const double tolerance = share * surface.size();
     const Tessellation adaptive = tessellate(surface, {.tolerance = tolerance, .normals = false});
@@ -86,13 +81,6 @@ int main(int argc, char** argv) {
       });
     }
     rates.run();
-    Group hull(model.name + ", both hulls within 0.01 of the size, verified", "pair of hulls", options);
-    hull.limit_rounds(5);
-    hull.add("hulls", 1, [&] {
-      const Hulls h = hulls(bvh, {.tolerance = 0.01 * surface.size()});
-      return (h.verified ? 1 : 0) + h.outer->gap + h.inner->gap;
-    });
-    hull.run();
   }
   if (ratios.empty()) return 0;
   std::sort(ratios.begin(), ratios.end());

@@ -2,8 +2,10 @@
 
 #include <meshoptimizer.h>
 #include <snug/query/deviation.h>
+#include <snug/query/tessellate.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -11,9 +13,12 @@
 namespace snug::command {
 namespace {
 
-// Errors of meshoptimizer's own that are tried: it does not measure distances to the surface.
-constexpr double least_share = 1.0 / 8, most_share = 8;
-constexpr int most_attempts = 9;
+// Of the tolerance: those of the tessellations that are simplified. Above 1 for what tessellate() proves may be
+// more than the deviation.
+constexpr std::array shares{1.0, 0.7, 0.5, 1.4, 2.0, 0.25};
+// Of the tolerance: errors of meshoptimizer's own, which does not measure distances to the surface.
+constexpr double least_share = 1.0 / 16, most_share = 8;
+constexpr int most_attempts = 7;
 
 // Indices and positions as meshoptimizer takes them: floats, about the middle.
 struct FloatMesh {
@@ -68,33 +73,50 @@ Tessellation part_of(const Tessellation& fine, const std::vector<unsigned int>& 
 
 }  // namespace
 
-Tessellation coarsened(const SurfaceBvh& surface, const Tessellation& fine, double tolerance, int threads,
-                       const WorkMonitor& monitor) {
-  // Upper bound of both distances.
-  const auto judge = [&](const Tessellation& mesh) {
+Tessellation coarsened(const SurfaceBvh& surface, TessellateOptions how, const WorkMonitor& monitor) {
+  const double tolerance = how.tolerance.value();
+  const WorkMonitor silent{.on_progress = {}, .stop = monitor.stop};
+  Tessellation best = tessellate(surface.surface(), how, silent);
+  best.owners.clear();
+  if (!best.reached) return best;
+
+  // Keeps it if it has fewer triangles and is near enough. Is it not farther than the tolerance, as far as known?
+  const auto consider = [&](Tessellation mesh) {
+    if (mesh.triangles.size() >= best.triangles.size()) return true;
+    if (mesh.triangles.empty()) return false;
     std::vector<Triangle> triangles;
     triangles.reserve(mesh.triangles.size());
     for (const auto& [a, b, c] : mesh.triangles) {
       triangles.push_back({mesh.positions[a], mesh.positions[b], mesh.positions[c]});
     }
-    const Deviation found = deviation(
-        surface, triangles, {.absolute = tolerance / 64, .tolerance = tolerance, .threads = threads},
-        {.on_progress = {}, .stop = monitor.stop});
-    return std::max(found.from_surface.distance.upper, found.from_candidate.distance.upper);
+    const Deviation found =
+        deviation(surface, triangles,
+                  {.absolute = tolerance / 64, .tolerance = tolerance, .threads = how.threads}, silent);
+    mesh.error_bound = std::max(found.from_surface.distance.upper, found.from_candidate.distance.upper);
+    const bool near = mesh.error_bound <= tolerance;
+    if (near) best = std::move(mesh);
+    return near;
   };
-  const FloatMesh floats(fine);
-  Tessellation best = fine;
-  best.owners.clear();
-  // Halving in logarithms: what is near enough goes below, what is not above.
-  double low = least_share * tolerance, high = most_share * tolerance;
-  for (int attempt = 0; attempt < most_attempts; ++attempt) {
-    monitor.report(attempt / static_cast<double>(most_attempts));
-    const double error = std::sqrt(low * high);
-    Tessellation now = part_of(fine, floats.simplified(error));
-    now.error_bound = now.triangles.empty() ? double{INFINITY} : judge(now);
-    const bool near = now.error_bound <= tolerance;
-    (near ? low : high) = error;
-    if (near && now.triangles.size() < best.triangles.size()) best = std::move(now);
+  int done = 0;
+  for (const double share : shares) {
+    how.tolerance = share * tolerance;
+    Tessellation fine;
+    try {
+      fine = tessellate(surface.surface(), how, silent);
+    } catch (const InputError&) {
+      continue;  // too fine for the arithmetic
+    }
+    if (!fine.reached) continue;
+    fine.owners.clear();
+    const FloatMesh floats(fine);
+    // Halving in logarithms: what is near enough goes below, what is not above.
+    double low = least_share * tolerance, high = most_share * tolerance;
+    if (share > 1 && !consider(fine)) high = low;
+    for (int attempt = 0; attempt < most_attempts && low < high; ++attempt, ++done) {
+      monitor.report(done / static_cast<double>(shares.size() * most_attempts));
+      const double error = std::sqrt(low * high);
+      (consider(part_of(fine, floats.simplified(error))) ? low : high) = error;
+    }
   }
   monitor.report(1);
   return best;

@@ -13,9 +13,6 @@
 namespace snug::command {
 namespace {
 
-// Of the tolerance: that of the triangles that are simplified.
-constexpr double fine_share = 0.25;
-
 struct Options : CommonOptions {
   std::string mesh, tolerance, max_edge, max_thickness, eye;
   std::optional<std::uint64_t> max_triangles;
@@ -67,8 +64,6 @@ TessellateOptions how_to(const Options& options, const LimitSurface& surface) {
   how.threads = options.threads;
   how.single_precision = writes_floats(options.output);
   how.normals = writes_normals(options.output);
-  // What is simplified keeps some of its error.
-  if (options.coarsen) how.tolerance = *how.tolerance * fine_share;
   return how;
 }
 
@@ -109,16 +104,11 @@ ExitStatus run(const Options& options) {
   Report report("tessellate", to_standard_output);
   Tessellation result;
   naming(options.mesh, [&] {
-    ProgressBar bar("tessellating " + options.mesh, options.quiet);
-    result = tessellate(surface, how_to(options, surface), bar.monitor());
+    ProgressBar bar((options.coarsen ? "simplifying " : "tessellating ") + options.mesh, options.quiet);
+    const TessellateOptions how = how_to(options, surface);
+    result = options.coarsen ? coarsened(SurfaceBvh(surface), how, bar.monitor())
+                             : tessellate(surface, how, bar.monitor());
   });
-  if (options.coarsen && result.reached) {
-    naming(options.mesh, [&] {
-      ProgressBar bar("simplifying", options.quiet);
-      const double tolerance = *length_of(options.tolerance, "--tolerance", surface.size());
-      result = coarsened(SurfaceBvh(surface), result, tolerance, options.threads, bar.monitor());
-    });
-  }
   AtomicFile file(options.output);
   write_mesh(mesh_of(result), file, options.output, notes_for(options), stopped_by_interrupts(),
              result.normals);
