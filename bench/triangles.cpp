@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,7 +56,13 @@ int main(int argc, char** argv) {
   const double share = options.size(1e-3, 1e-2);
   std::vector<double> ratios;
   for (const Model& model : read_models(options.files)) {
-    const LimitSurface surface(model.mesh, {usual_scheme(model.mesh)}, std::make_shared<BoundsCache>());
+    std::optional<LimitSurface> made;
+    try {
+      made.emplace(model.mesh, SchemeOptions{usual_scheme(model.mesh)}, std::make_shared<BoundsCache>());
+    } catch (const InputError&) {
+      continue;  // without a surface by these rules
+    }
+    const LimitSurface& surface = *made;
     const SurfaceBvh bvh(surface);
     const double tolerance = share * surface.size();
     const Tessellation adaptive = tessellate(surface, {.tolerance = tolerance, .normals = false});

@@ -38,7 +38,7 @@ using testing::GroundSide;
 using testing::GroundTrial;
 
 constexpr int most_failures = 20;
-constexpr std::uint64_t of_each_row = 2;
+constexpr std::uint64_t of_each_row = 3;
 
 std::uint64_t from_environment(const char* name, std::uint64_t usual) {
   const char* text = std::getenv(name);
