@@ -38,7 +38,7 @@ using testing::GroundSide;
 using testing::GroundTrial;
 
 constexpr int most_failures = 20;
-constexpr std::uint64_t of_each_row = 3;
+constexpr std::uint64_t of_each_row = 2;
 
 std::uint64_t from_environment(const char* name, std::uint64_t usual) {
   const char* text = std::getenv(name);
@@ -137,13 +137,14 @@ class Checks {
   void expect_on_surfaces(const std::array<Point3, 2>& witness, double error) {
     const double near = std::max(2 * error, 1e-9 * size_) + 8 * rounding_;
     for (std::size_t s = 0; s < 2; ++s) {
-      // The twin goes down 46 levels, which at large faces of a dual scheme are still wide.
-      const bool wide = !snug::rules_of(side(s).made.scheme).primal && side(s).has_many();
+      // The twin goes down 46 levels, which where many edges meet are still wide, most in a dual scheme.
+      double reached = near;
+      if (side(s).has_many()) reached = (snug::rules_of(side(s).made.scheme).primal ? 1e-7 : 1e-3) * size_;
       ContactGoal goal;
       goal.threshold = near;
       const ContactBounds off = side(s).twin->distance_to(trial_->places[s], point_of(witness[s]), goal);
       counts_["twin left a witness open"] += off.upper > near;
-      expect(off.lower <= near && off.upper <= (wide ? 1e-3 * size_ : near),
+      expect(off.lower <= near && off.upper <= reached,
              s == 0 ? "the witness on A is on the surface" : "the witness on B is on the surface", near,
              error);
     }
