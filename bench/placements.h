@@ -56,9 +56,10 @@ struct Placed {
 [[nodiscard]] std::vector<PosePair> contact_placements(const Model& a, const Model& b, double side,
                                                        double reach, std::size_t count, std::uint64_t seed);
 
-/// Loop, boundary edge and corner: the rules that peers get, too.
 /// Loop where all faces are triangles, else Catmull-Clark.
 [[nodiscard]] Scheme usual_scheme(const ControlMesh& mesh);
+
+/// Loop, boundary edge and corner: the rules that peers get, too.
 [[nodiscard]] inline SchemeOptions loop_rules() { return {Scheme::loop, BoundaryRule::edge_and_corner}; }
 
 /// Prints "bar  what: value, at least (at most) limit: ok" or "missed".

@@ -15,6 +15,7 @@ namespace {
 
 // Of the tolerance: those of the tessellations that are simplified. Above 1 for what tessellate() proves may be
 // more than the deviation.
+// The first is 1, of which there is a tessellation already.
 constexpr std::array shares{1.0, 0.7, 0.5, 1.4, 2.0, 0.25};
 // Of the tolerance: errors of meshoptimizer's own, which does not measure distances to the surface.
 constexpr double least_share = 1.0 / 16, most_share = 8;
@@ -102,7 +103,7 @@ Tessellation coarsened(const SurfaceBvh& surface, TessellateOptions how, const W
     how.tolerance = share * tolerance;
     Tessellation fine;
     try {
-      fine = tessellate(surface.surface(), how, silent);
+      fine = share == 1 ? best : tessellate(surface.surface(), how, silent);
     } catch (const InputError&) {
       continue;  // too fine for the arithmetic
     }

@@ -18,8 +18,7 @@ const char* explained(HullFault fault) {
   switch (fault) {
     case HullFault::no_position:
       return "no position near enough is in front of all faces around: a spike or a fold, or too few "
-             "triangles; try a "
-             "larger --tolerance or --budget";
+             "triangles; try a larger --tolerance or --budget";
     case HullFault::meets_surface:
       return "the hull could not be kept off the surface: sheets are too near to each other, or touch; try a "
              "smaller --tolerance";
@@ -33,8 +32,7 @@ const char* explained(HullFault fault) {
       break;
   }
   return "the hull is on the wrong side: a part of the surface is inside of another one, or is oriented the "
-         "other way; "
-         "ask about the parts one by one";
+         "other way; ask about the parts one by one";
 }
 
 // Words for people, `place` in mesh units.

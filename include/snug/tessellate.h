@@ -22,7 +22,8 @@ struct TessellateOptions {
   /// Largest angle between limit normals at corners of a triangle, in degrees: in double precision, and only of
   /// triangles with a side longer than the tolerance (without one, a millionth of the size).
   std::optional<double> max_angle{};
-  /// A triangle at the distance d from the eye may have an error of d sin(angle), and so be seen under that angle at most.
+  /// A triangle at the distance d from the eye may have an error of d sin(angle): from there no error is seen under
+  /// a larger angle.
   std::optional<Viewpoint> view{};
   /// Most of the thickness of pieces, in mesh units: the longest side of the three boxes of a piece's interval
   /// triangle [Wu05, sec. 5.3]. Pieces are then split in four, their neighbours cut as needed.

@@ -255,7 +255,7 @@ void Refinement::mark_sides(Index t) {
   for (std::size_t k = 0; k < 3; ++k) complex_.mark(complex_.edge_of(t, k));
 }
 
-// What may be seen from the eye, by a ball around the triangle. On the surface at the eye the arithmetic's own limit is what is left.
+// Of a triangle as near to the eye as a ball around it; at the eye itself, what the arithmetic can do.
 double Refinement::seen_tolerance(Index t) const {
   const Triangle triangle = flat(t).corner;
   const Point3 middle = triangle[0] + 0.5 * (triangle[1] - triangle[0]);
