@@ -1,6 +1,7 @@
 #include <snug/geometry/triangle_distance.h>
 
 #include <gtest/gtest.h>
+#include <snug/geometry/direction.h>
 #include <testing/containment.h>
 #include <testing/instruction_sets.h>
 
@@ -72,6 +73,31 @@ TEST(nearest_triangles, is_as_good_as_the_points_it_finds) {
     ASSERT_LE(near.certain_distance, found);
   }
   EXPECT_LE(loose, 20);
+}
+
+// Facets of a fillet: edges on one line but for a rounding. Quotients of roundings once were crossings here.
+TEST(nearest_triangles, keeps_triangles_with_edges_on_one_line_apart) {
+  std::mt19937_64 random(23);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int trial = 0; trial < 50'000; ++trial) {
+    const bool along_axis = trial % 2 == 0;
+    const Point3 begin{0.3 + unit(random), unit(random), unit(random)};
+    const Vector3 line =
+        along_axis ? Vector3{1, 0, 0} : normalized({unit(random), unit(random), unit(random)});
+    const auto on_line = [&](double s) {
+      Point3 p = begin + s * line;
+      for (std::size_t a = 0; a < 3; ++a) p[a] *= 1 + 0x1p-53 * static_cast<double>(random() % 4);
+      return p;
+    };
+    const auto across = [&] { return 0.02 * cross(line, Vector3{unit(random), unit(random), unit(random)}); };
+    const double gap = 0x1p-10 + 0.02 * std::abs(unit(random));
+    Triangle a{on_line(0), on_line(-0.03), on_line(-0.01) + across()};
+    Triangle b{on_line(gap) + across(), on_line(gap), on_line(gap + 0.02)};
+    const auto distance = static_cast<double>(sampled_distance(a, b));
+    const double certain = nearest(a, b).certain_distance;
+    ASSERT_LE(certain, distance + 1e-18) << trial;
+    ASSERT_GE(certain, 0.9 * gap) << trial;
+  }
 }
 
 TEST(nearest_triangles, sees_piercing_and_coplanar_overlap_as_contact) {

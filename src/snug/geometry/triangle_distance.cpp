@@ -239,8 +239,25 @@ HWY_INLINE void search(Tag d, const Prepared& a, const Prepared& b, PairOfPoints
   out = {{a_b[lane], a_c[lane]}, {b_b[lane], b_c[lane]}};
 }
 
-void AllCrossings(const Corners& a, const Corners& b, Crossings& out) {
-  find_crossings(Tag(), Prepared(a), Prepared(b), out);
+Vector3 point_at(const Prepared& t, Barycentric p) { return t.corner[0] + (p.b * t.edge[0] + p.c * t.side); }
+
+// Is it a crossing? Of edges along a face, where quotients are of roundings, points may be anywhere.
+bool coincide(const Prepared& a, const Prepared& b, const PairOfPoints& crossing) {
+  const Vector3 on_b = point_at(b, crossing.on_b);
+  const Vector3 apart = on_b - point_at(a, crossing.on_a);
+  // Corners are relative to the first one of a.
+  const double size_sq =
+      length_sq(on_b) + length_sq(b.edge[0]) + length_sq(b.side) + length_sq(a.edge[0]) + length_sq(a.side);
+  return length_sq(apart) <= 0x1p-60 * size_sq;
+}
+
+void AllCrossings(const Corners& first, const Corners& second, Crossings& out) {
+  const Prepared a(first), b(second);
+  find_crossings(Tag(), a, b, out);
+  const auto end =
+      std::remove_if(out.points.begin(), out.points.begin() + static_cast<std::ptrdiff_t>(out.count),
+                     [&](const PairOfPoints& p) { return !coincide(a, b, p); });
+  out.count = static_cast<std::size_t>(end - out.points.begin());
 }
 
 // Nearest points in double precision, or the first of the crossings if there are any; true then. b >= 0, c >=
@@ -252,8 +269,9 @@ bool Nearest(const Corners& first, const Corners& second, PairOfPoints& out) {
   if (!on_one_side(d, a, b) && !on_one_side(d, b, a)) {
     Crossings found;
     find_crossings(d, a, b, found);
-    if (found.count > 0) {
-      out = found.points[0];
+    for (std::size_t i = 0; i < found.count; ++i) {
+      if (!coincide(a, b, found.points[i])) continue;
+      out = found.points[i];
       return true;
     }
   }
