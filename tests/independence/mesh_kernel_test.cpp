@@ -1,0 +1,352 @@
+#include <snug/independence/mesh_kernel.h>
+
+#include <gtest/gtest.h>
+#include <oracle/kernel_twin.h>
+#include <testing/closed_meshes.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+
+#include <snug/error.h>
+#include <snug/query/subdivide.h>
+#include <snug/scheme/rules.h>
+
+// Kernels of meshes against eliminations of limits in exact arithmetic. SNUG_KERNELS: how many random meshes.
+namespace snug {
+namespace {
+
+using oracle::KernelMesh;
+using oracle::KernelScheme;
+using testing::ClosedMesh;
+
+constexpr std::array schemes{std::pair{Scheme::loop, KernelScheme::loop},
+                             std::pair{Scheme::catmark, KernelScheme::catmark},
+                             std::pair{Scheme::doo_sabin, KernelScheme::doo_sabin},
+                             std::pair{Scheme::midedge, KernelScheme::midedge}};
+
+std::vector<std::int8_t> values_of(const KernelVector& vector, std::size_t vertices) {
+  std::vector<std::int8_t> values(vertices, 0);
+  for (std::size_t i = 0; i < vector.vertices.size(); ++i) {
+    values[vector.vertices[i].index()] = vector.signs[i];
+  }
+  return values;
+}
+
+ControlMesh mesh_of(const KernelMesh& twin) {
+  std::mt19937_64 random(1);
+  ControlMesh mesh = testing::control_mesh_of({"", twin.vertices, twin.faces}, random);
+  const auto sharpness = [](int quarters) {
+    return quarters == KernelMesh::infinite ? infinite_sharpness : quarters / 4.0;
+  };
+  for (const auto& [edge, s] : twin.creases) {
+    mesh.tags.creases.push_back({VertexId(edge.first), VertexId(edge.second), sharpness(s)});
+  }
+  for (const auto& [v, s] : twin.corners) mesh.tags.corners.push_back({VertexId(v), sharpness(s)});
+  if (twin.smooth_triangles) mesh.tags.smooth_triangles = SmoothTriangles::smooth;
+  return mesh;
+}
+
+int levels_until_rest(const KernelMesh& mesh) {
+  int most = 0;
+  for (const auto& [edge, s] : mesh.creases) most = std::max(most, s == KernelMesh::infinite ? 0 : s);
+  for (const auto& [v, s] : mesh.corners) most = std::max(most, s == KernelMesh::infinite ? 0 : s);
+  return (most + 3) / 4;
+}
+
+// The kernel lies between what vanishes after one step and what has limits 0.
+std::size_t expect_exact(const KernelMesh& twin, Scheme scheme, KernelScheme own, const std::string& name) {
+  SCOPED_TRACE(name + ", " + name_of(scheme));
+  SchemeOptions options{.scheme = scheme};
+  options.boundary = twin.boundary_corners ? BoundaryRule::edge_and_corner : BoundaryRule::edge_only;
+  const MeshKernel kernel = mesh_kernel(mesh_of(twin), options);
+  EXPECT_EQ(kernel.dimension(), nullity_of_limits(twin, own, 2 + levels_until_rest(twin)));
+  std::vector<int> times(twin.vertices, 0);
+  for (const KernelVector& vector : kernel.vectors) {
+    EXPECT_TRUE(vanishes(twin, own, values_of(vector, twin.vertices)));
+    EXPECT_TRUE(std::is_sorted(vector.vertices.begin(), vector.vertices.end()));
+    EXPECT_EQ(vector.signs.at(0), 1);
+    EXPECT_EQ(vector.signs.size(), vector.vertices.size());
+    for (const VertexId v : vector.vertices) ++times[v.index()];
+  }
+  EXPECT_LE(*std::max_element(times.begin(), times.end()), 1);
+  return kernel.dimension();
+}
+
+// All schemes; Loop with a vertex in each face that is no triangle.
+std::array<std::size_t, 4> expect_exact(const ClosedMesh& mesh) {
+  std::array<std::size_t, 4> dimensions{};
+  EXPECT_TRUE(is_closed_manifold(mesh)) << mesh.name;
+  const bool triangles =
+      std::all_of(mesh.faces.begin(), mesh.faces.end(), [](const auto& face) { return face.size() == 3; });
+  for (std::size_t s = 0; s < schemes.size(); ++s) {
+    const ClosedMesh used = s == 0 && !triangles ? stellated(mesh) : mesh;
+    dimensions[s] =
+        expect_exact({used.vertices, used.faces}, schemes[s].first, schemes[s].second, used.name);
+  }
+  return dimensions;
+}
+
+using Dimensions = std::array<std::size_t, 4>;  // Loop, Catmull-Clark, Doo-Sabin, Midedge
+
+std::vector<ClosedMesh> families() {
+  using namespace testing;
+  std::vector<ClosedMesh> all{tetrahedron(), truncated(tetrahedron())};
+  for (std::uint32_t n = 3; n <= 8; ++n) {
+    for (const ClosedMesh& mesh : {prism(n), antiprism(n), bipyramid(n), trapezohedron(n)}) all.push_back(mesh);
+  }
+  for (std::uint32_t n = 3; n <= 4; ++n) all.push_back(truncated(bipyramid(n)));
+  for (std::uint32_t a = 3; a <= 6; ++a) {
+    for (std::uint32_t b = 3; b <= a; ++b) {
+      all.push_back(torus(a, b));
+      all.push_back(torus(a, b, true));
+      if (a * b <= 16) all.push_back(dual(torus(a, b, true)));  // hexagons
+    }
+  }
+  all.push_back(truncated(torus(3, 3)));
+  return all;
+}
+
+TEST(mesh_kernel, of_named_meshes) {
+  using namespace testing;
+  EXPECT_EQ(expect_exact(prism(4)), (Dimensions{0, 1, 0, 1}));  // a cube
+  EXPECT_EQ(expect_exact(prism(6)), (Dimensions{0, 1, 0, 1}));
+  EXPECT_EQ(expect_exact(prism(5)), (Dimensions{0, 0, 0, 0}));
+  EXPECT_EQ(expect_exact(tetrahedron()), (Dimensions{0, 0, 0, 0}));
+  EXPECT_EQ(expect_exact(torus(4, 4)), (Dimensions{0, 0, 0, 1}));
+  EXPECT_EQ(expect_exact(torus(5, 4)), (Dimensions{0, 0, 0, 0}));
+  EXPECT_EQ(expect_exact(dual(torus(4, 4, true))), (Dimensions{0, 1, 0, 1}));  // hexagons all around
+  EXPECT_EQ(expect_exact(dual(torus(3, 3, true))), (Dimensions{0, 1, 0, 1}));
+  EXPECT_EQ(expect_exact(truncated(bipyramid(4))), (Dimensions{0, 1, 0, 1}));  // squares and hexagons
+  EXPECT_EQ(expect_exact(dual(truncated(bipyramid(4)))), (Dimensions{0, 0, 0, 0}));
+  EXPECT_EQ(expect_exact(trapezohedron(4)), (Dimensions{0, 0, 0, 1}));
+  EXPECT_EQ(expect_exact(beside(prism(4), prism(6))), (Dimensions{0, 2, 0, 2}));
+  EXPECT_EQ(expect_exact(beside(prism(4), prism(5))), (Dimensions{0, 1, 0, 1}));
+  EXPECT_EQ(expect_exact(beside(torus(4, 4), prism(8))), (Dimensions{0, 1, 0, 2}));
+}
+
+TEST(mesh_kernel, of_small_closed_meshes) {
+  std::size_t catmark = 0, midedge = 0;
+  for (const ClosedMesh& mesh : families()) {
+    const Dimensions found = expect_exact(mesh);
+    catmark += found[1];
+    midedge += found[3];
+  }
+  EXPECT_GE(catmark, 8);
+  EXPECT_GE(midedge, 15);
+}
+
+TEST(mesh_kernel, of_sums_and_pairs) {
+  using namespace testing;
+  const std::vector<ClosedMesh> parts{prism(4), prism(6), prism(5), torus(4, 4), torus(4, 3), trapezohedron(3)};
+  for (const ClosedMesh& a : parts) {
+    for (const ClosedMesh& b : parts) {
+      expect_exact(beside(a, b));
+      const ClosedMesh sum = joined(a, b);
+      if (is_closed_manifold(sum)) expect_exact(sum);
+    }
+  }
+}
+
+TEST(mesh_kernel, of_random_closed_meshes) {
+  const char* const wanted = std::getenv("SNUG_KERNELS");
+  const std::size_t trials = wanted ? std::strtoull(wanted, nullptr, 10) : 60;
+  std::mt19937_64 random(20240601);
+  const std::vector<ClosedMesh> all = families();
+  Dimensions sum{};
+  for (std::size_t trial = 0; trial < trials; ++trial) {
+    ClosedMesh mesh = all[random() % all.size()];
+    for (std::size_t k = random() % 6; k > 0; --k) {
+      if (ClosedMesh next = changed(mesh, random); next.vertices <= 40) mesh = std::move(next);
+    }
+    if (mesh.vertices > 40) continue;
+    const Dimensions found = expect_exact(mesh);
+    for (std::size_t s = 0; s < 4; ++s) sum[s] += found[s];
+  }
+  EXPECT_GT(sum[1], 0);
+  EXPECT_GT(sum[3], sum[1]);
+}
+
+// Faces taken away where the rest stays manifold; creases and corners of each sort.
+TEST(mesh_kernel, of_random_open_and_creased_meshes) {
+  const char* const wanted = std::getenv("SNUG_KERNELS");
+  const std::size_t trials = wanted ? std::strtoull(wanted, nullptr, 10) : 80;
+  std::mt19937_64 random(20240602);
+  const std::vector<ClosedMesh> all = families();
+  std::size_t kernels = 0, open = 0, refused = 0;
+  for (std::size_t trial = 0; trial < trials; ++trial) {
+    for (const std::size_t s : {std::size_t{0}, std::size_t{1}}) {
+      ClosedMesh mesh = all[random() % all.size()];
+      if (s == 1 && random() % 3 == 0) mesh = testing::prism(4 + 2 * static_cast<std::uint32_t>(random() % 3));
+      if (s == 0) mesh = stellated(mesh);
+      if (mesh.vertices > 40) continue;
+      KernelMesh twin{mesh.vertices, mesh.faces};
+      twin.boundary_corners = random() % 2 == 0;
+      twin.smooth_triangles = s == 1 && random() % 2 == 0;
+      for (std::size_t k = random() % 3; k > 0 && twin.faces.size() > 2; --k) {
+        KernelMesh fewer = twin;
+        fewer.faces.erase(fewer.faces.begin() + static_cast<std::ptrdiff_t>(random() % fewer.faces.size()));
+        if (Topology(mesh_of(fewer)).is_manifold()) twin = std::move(fewer);
+      }
+      for (std::size_t k = random() % 6; k > 0; --k) {
+        const auto& face = twin.faces[random() % twin.faces.size()];
+        const std::size_t i = random() % face.size();
+        constexpr std::array sharpnesses{KernelMesh::infinite, 4, 8, 2, 7};
+        const int sharp = sharpnesses[random() % (s == 0 ? 3 : 5)];
+        if (random() % 4 == 0) {
+          twin.corners[face[i]] = sharp;
+        } else {
+          twin.creases[std::minmax(face[i], face[(i + 1) % face.size()])] = sharp;
+        }
+      }
+      try {
+        kernels += expect_exact(twin, schemes[s].first, schemes[s].second, mesh.name + " with tags");
+        ++open;
+      } catch (const InputError& error) {
+        ++refused;
+        EXPECT_NE(std::string(error.what()).find("not decided"), std::string::npos) << error.what();
+      }
+    }
+  }
+  EXPECT_GT(kernels, 0);
+  EXPECT_GT(open, trials);
+  EXPECT_EQ(refused, 0);
+}
+
+// A cube keeps its kernel with darts, and loses it to a crease through a vertex, a corner or a hole's edge.
+TEST(mesh_kernel, of_a_cube_with_tags) {
+  const ClosedMesh cube = testing::prism(4);
+  const KernelMesh plain{cube.vertices, cube.faces};
+  const auto expect = [&](const KernelMesh& twin, std::size_t dimension) {
+    EXPECT_EQ(expect_exact(twin, Scheme::catmark, KernelScheme::catmark, "cube"), dimension);
+  };
+  for (const int sharp : {KernelMesh::infinite, 2, 4, 9}) {
+    KernelMesh twin = plain;
+    twin.creases[{0, 1}] = sharp;
+    expect(twin, 1);
+    twin.creases[{2, 3}] = sharp;
+    expect(twin, 1);
+    twin.creases[{1, 2}] = sharp;
+    expect(twin, 0);
+    twin = plain;
+    twin.corners[3] = sharp;
+    expect(twin, 0);
+  }
+}
+
+TEST(mesh_kernel, names_isolated_vertices) {
+  const ClosedMesh cube = testing::prism(4);
+  for (const auto& [scheme, own] : schemes) {
+    ClosedMesh mesh = scheme == Scheme::loop ? stellated(cube) : cube;
+    mesh.vertices += 2;
+    const std::size_t without = scheme == Scheme::catmark || scheme == Scheme::midedge ? 1 : 0;
+    EXPECT_EQ(expect_exact({mesh.vertices, mesh.faces}, scheme, own, "isolated"), without + 2);
+  }
+}
+
+TEST(mesh_kernel, of_plain_meshes_is_what_no_surface_uses) {
+  std::mt19937_64 random(3);
+  ControlMesh mesh = testing::control_mesh_of(testing::prism(4), random);
+  EXPECT_EQ(mesh_kernel(mesh, {.scheme = Scheme::bilinear}).dimension(), 0);
+  for (const std::size_t face : {1, 2, 3}) mesh.tags.holes.emplace_back(face);
+  const MeshKernel kernel = mesh_kernel(mesh, {.scheme = Scheme::bilinear});
+  ASSERT_EQ(kernel.dimension(), 1);
+  EXPECT_EQ(kernel.vectors[0].vertices, std::vector<VertexId>{VertexId(5)});
+}
+
+// What is not proved is refused, and says what to do.
+TEST(mesh_kernel, refuses_what_is_not_decided) {
+  std::mt19937_64 random(4);
+  const auto message = [](const ControlMesh& mesh, SchemeOptions options) -> std::string {
+    try {
+      static_cast<void>(mesh_kernel(mesh, options));
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.problem(), InputProblem::refused);
+      return error.what();
+    }
+    return "decided";
+  };
+  const auto has = [](const std::string& text, const char* part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  const ControlMesh cube = testing::control_mesh_of(testing::prism(4), random);
+  ClosedMesh open = testing::prism(4);
+  open.faces.pop_back();
+  const ControlMesh box = testing::control_mesh_of(open, random);
+  for (const Scheme scheme : {Scheme::doo_sabin, Scheme::midedge}) {
+    has(message(box, {.scheme = scheme}), "on the boundary, and the scheme is dual");
+  }
+  has(message(box, {.scheme = Scheme::catmark, .boundary = BoundaryRule::none}), "face 0 has no surface");
+  ControlMesh hole = cube;
+  hole.tags.holes.emplace_back(4);
+  has(message(hole, {.scheme = Scheme::catmark}), "face 4 has no surface");
+  EXPECT_EQ(message(hole, {.scheme = Scheme::midedge}), "decided");
+
+  ControlMesh triangles = testing::control_mesh_of(stellated(testing::prism(4)), random);
+  triangles.tags.creases.push_back({VertexId(0), VertexId(1), 1.5});
+  has(message(triangles, {.scheme = Scheme::loop}), "edge (0, 1)");
+  triangles.tags.creases[0].sharpness = 2;
+  EXPECT_EQ(message(triangles, {.scheme = Scheme::loop}), "decided");
+  triangles.tags.crease_method = CreaseMethod::chaikin;
+  has(message(triangles, {.scheme = Scheme::loop}), "Chaikin");
+  triangles.tags.creases.clear();
+  triangles.tags.corners.push_back({VertexId(5), 0.5});
+  has(message(triangles, {.scheme = Scheme::loop}), "vertex 5");
+
+  ClosedMesh three = testing::prism(4);
+  three.faces.push_back({0, 1, 8});
+  three.vertices = 9;
+  has(message(testing::control_mesh_of(three, random), {.scheme = Scheme::catmark}), "not manifold");
+}
+
+// Half a regular patch: two quadratics, of the functions of eight vertices. One relation, and it alternates.
+TEST(mesh_kernel, of_a_regular_midedge_patch_is_the_alternating_net) {
+  const Stencils rows = rules_of(Scheme::midedge).bezier(Topology(), {}).rows;
+  constexpr std::array alternating{1, -1, -1, -1, -1, 1, 1, 1, 1};  // as rings of vertices number them
+  std::vector<std::array<double, 9>> left;
+  for (std::size_t r = 0; r < rows.row_count(); ++r) {
+    std::array<double, 9> row{};
+    double sum = 0;
+    EXPECT_EQ(rows.row(r).error, 0);
+    for (std::size_t i = 0; i < rows.row(r).sources.size(); ++i) {
+      row[rows.row(r).sources[i]] += rows.row(r).weights[i];
+      sum += rows.row(r).weights[i] * alternating[rows.row(r).sources[i]];
+    }
+    EXPECT_EQ(sum, 0);
+    EXPECT_EQ(row[8], 0);
+    left.push_back(row);
+  }
+  ASSERT_EQ(left.size(), 12);
+  std::size_t rank = 0;  // far from rounding: small multiples of 1/8
+  for (std::size_t column = 0; column < 8; ++column) {
+    const auto larger = [&](const auto& a, const auto& b) {
+      return std::fabs(a[column]) < std::fabs(b[column]);
+    };
+    const auto pivot = std::max_element(left.begin() + static_cast<std::ptrdiff_t>(rank), left.end(), larger);
+    if (std::fabs((*pivot)[column]) < 1e-9) continue;
+    std::swap(*pivot, left[rank]);
+    for (std::size_t r = rank + 1; r < left.size(); ++r) {
+      const double factor = left[r][column] / left[rank][column];
+      for (std::size_t c = 0; c < 9; ++c) left[r][c] -= factor * left[rank][c];
+    }
+    ++rank;
+  }
+  EXPECT_EQ(rank, 7);
+}
+
+TEST(mesh_kernel, of_a_million_vertices_takes_seconds) {
+  std::mt19937_64 random(5);
+  const ControlMesh mesh = testing::control_mesh_of(testing::torus(1000, 1000), random);
+  for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
+    const auto start = std::chrono::steady_clock::now();
+    const MeshKernel kernel = mesh_kernel(mesh, {.scheme = scheme});
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    EXPECT_EQ(kernel.dimension(), scheme == Scheme::midedge ? 1 : 0);
+    RecordProperty(name_of(scheme), std::to_string(taken.count()));
+    EXPECT_LT(taken.count(), 20);
+  }
+}
+
+}  // namespace
+}  // namespace snug
