@@ -14,11 +14,15 @@ import sys
 import tempfile
 
 # A folder includes itself and folders before it, but for the exceptions.
-ORDER = ["base", "geometry", "mesh", "scheme", "patch", "bounds", "bvh", "surface", "search", "query", "io", "front"]
+ORDER = ["base", "geometry", "mesh", "scheme", "patch", "bounds", "bvh", "surface", "search", "query", "independence", "io",
+         "front"]
 EXCEPTIONS = {
     "bvh": {"base", "geometry"},  # knows sets and ids, no surfaces
     "io": {"base", "geometry", "mesh"},
 }
+# Rooms with a library of their own, which is not installed: of the other folders only these include them, and their own
+# CMakeLists.txt lists their sources.
+SEPARATE = {"independence": ("apps", "tests")}
 # What a layer may include besides the C++ standard library and snug; all others: nothing.
 LIBRARIES = {
     "geometry": ("hwy/",),
@@ -29,7 +33,7 @@ LIBRARIES = {
 POSIX = ("fcntl.h", "unistd.h", "sys/")
 # Folders outside src/snug, and the layers they may include: those that must not lean on what they are there to check, and
 # adapters, which is installed and so includes what is installed.
-INDEPENDENT = {"tests/oracle": set(), "checker": {"base", "geometry"}, "adapters": set(ORDER)}
+INDEPENDENT = {"tests/oracle": set(), "checker": {"base", "geometry"}, "adapters": set(ORDER) - set(SEPARATE)}
 # Headers of this folder are included as <snug/adapters/...>; nothing of src/snug includes them.
 ADAPTERS = "adapters"
 # Folders whose headers are checked for #pragma once and whose includes of snug must exist.
@@ -39,7 +43,7 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.MULTIL
 
 
 def allowed(layer):
-    return EXCEPTIONS.get(layer, set(ORDER[: ORDER.index(layer)])) | {layer}
+    return EXCEPTIONS.get(layer, set(ORDER[: ORDER.index(layer)]) - set(SEPARATE)) | {layer}
 
 
 def cpp_files(folder):
@@ -63,11 +67,10 @@ def public(name):
     return name.startswith("snug/") and name.count("/") == 1
 
 
-def listed(root):
-    """Sources that src/snug/CMakeLists.txt lists, as "room/file.cpp"."""
-    cmake = root / "src/snug/CMakeLists.txt"
+def listed(cmake, function):
+    """Words in the call of a function in a CMakeLists.txt."""
     text = re.sub(r"#.*", "", cmake.read_text(encoding="utf-8")) if cmake.exists() else ""
-    call = re.search(r"\bsnug_library\s*\(([^)]*)\)", text)
+    call = re.search(rf"\b{function}\s*\(([^)]*)\)", text)
     return set(call[1].split()) if call else set()
 
 
@@ -86,8 +89,13 @@ def check_layer(root, layer):
             elif not public(name) and ("." in name or "/" in name) and not name.startswith(POSIX + LIBRARIES.get(layer, ())):
                 faults.append(f"{where}:{line}: {layer} may not include <{name}>")
 
-    present = {f"{layer}/{p.relative_to(folder)}" for p in cpp_files(folder) if p.suffix == ".cpp"}
-    return faults + [f"src/snug/CMakeLists.txt: lacks {name}" for name in sorted(present - listed(root))]
+    present = {str(p.relative_to(folder)) for p in cpp_files(folder) if p.suffix == ".cpp"}
+    if layer in SEPARATE:
+        cmake, names = folder / "CMakeLists.txt", listed(folder / "CMakeLists.txt", "add_library")
+    else:
+        cmake, present = root / "src/snug/CMakeLists.txt", {f"{layer}/{name}" for name in present}
+        names = listed(cmake, "snug_library")
+    return faults + [f"{cmake.relative_to(root)}: lacks {name}" for name in sorted(present - names)]
 
 
 def check_public(root):
@@ -119,6 +127,8 @@ def check_tree(root):
                           include.removeprefix("snug/") if layer_of(include) == ADAPTERS else f"src/{include}")
                 if include.startswith("snug/") and not (root / source).exists():
                     faults.append(f"{where}:{line}: <{include}> does not exist")
+                if name != "src" and name not in SEPARATE.get(layer_of(include), FOLDERS):
+                    faults.append(f"{where}:{line}: {name} may not include {layer_of(include)}")
     for name, layers in INDEPENDENT.items():
         for path in cpp_files(root / name):
             if not path.stem.endswith("_test"):
@@ -138,6 +148,11 @@ GOOD_TREE = {
     "src/snug/mesh/m.h": "#pragma once\n#include <snug/base/a.h>\n",
     "src/snug/mesh/m.cpp": "#include <snug/mesh/m.h>\n",
     "src/snug/query/q.cpp": "#include <snug/mesh/m.h>\n",
+    "src/snug/independence/CMakeLists.txt": "add_library(snug_independence STATIC k.cpp)",
+    "src/snug/independence/k.h": "#pragma once\n",
+    "src/snug/independence/k.cpp": "#include <snug/independence/k.h>\n#include <snug/mesh/m.h>\n",
+    "apps/a.cpp": "#include <snug/independence/k.h>\n",
+    "tests/independence/k_test.cpp": "#include <snug/independence/k.h>\n",
     "src/snug/io/r.h": "#pragma once\n",
     "src/snug/io/r.cpp": "#include <snug/base/a.h>\n#include <unistd.h>\n",
     "tests/oracle/o.h": "#pragma once\n#include <gmp.h>\n",
@@ -159,6 +174,11 @@ BAD_FILES = [
     ("src/snug/mesh/m.cpp", "#include <snug/mesh/gone.h>\n", "does not exist"),
     ("src/snug/mesh/m.cpp", "#include <snug/gone.h>\n", "does not exist"),
     ("src/snug/mesh/n.cpp", "\n", "lacks mesh/n.cpp"),
+    ("src/snug/independence/k.cpp", "#include <snug/io/r.h>\n", "independence may not include io"),
+    ("src/snug/independence/l.cpp", "\n", "src/snug/independence/CMakeLists.txt: lacks l.cpp"),
+    ("src/snug/front/f.cpp", "#include <snug/independence/k.h>\n", "front may not include independence"),
+    ("examples/e.cpp", "#include <snug/independence/k.h>\n", "e.cpp:1: examples may not include independence"),
+    ("adapters/d.h", "#pragma once\n#include <snug/independence/k.h>\n", "adapters may not include independence"),
     ("src/snug/extra/e.cpp", "\n", "src/snug/extra: not a room"),
     ("include/snug/p.h", "#pragma once\n#include <snug/base/a.h>\n", "p.h:2: public headers may not include"),
     ("include/snug/p.h", "#pragma once\n#include <hwy/highway.h>\n", "p.h:2: public headers may not include"),

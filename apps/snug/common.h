@@ -123,6 +123,7 @@ class Report {
 [[nodiscard]] Command info_command();
 [[nodiscard]] Command bound_command();
 [[nodiscard]] Command eval_command();
+[[nodiscard]] Command fit_command();
 [[nodiscard]] Command subdivide_command();
 [[nodiscard]] Command tessellate_command();
 [[nodiscard]] Command hull_command();
