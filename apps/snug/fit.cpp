@@ -88,8 +88,7 @@ void assign(const LimitSurface& surface, Samples& samples, const Options& option
   wanted.budget = options.budget;
   const SurfaceBvh model(surface, {}, monitor);
   samples.at.clear();
-  for (const ClosestPoint& found :
-       closest_points(model, samples.points, wanted, options.threads, monitor)) {
+  for (const ClosestPoint& found : closest_points(model, samples.points, wanted, options.threads, monitor)) {
     samples.at.push_back(found.at);
   }
 }
@@ -124,9 +123,10 @@ std::string first_ones(const Ids& ids, const NumberOf& number_of) {
 }
 
 [[noreturn]] void refuse_singular(const std::string& why) {
-  throw InputError(InputProblem::refused,
-                   "the points do not determine the control points: " + why +
-                       "; give --smooth WEIGHT, or --least-change to leave as they are what points do not tell");
+  throw InputError(
+      InputProblem::refused,
+      "the points do not determine the control points: " + why +
+          "; give --smooth WEIGHT, or --least-change to leave as they are what points do not tell");
 }
 
 // Says where a system is singular, by what the mesh is and by what the points miss.
@@ -137,10 +137,11 @@ void require_regular(const LeastSquares& system, std::size_t unknowns, std::size
   if (options.smooth == 0) {
     for (const KernelVector& vector : kernel ? kernel->vectors : std::vector<KernelVector>{}) {
       if (vector.vertices.size() == 1) continue;  // has no sample
-      refuse_singular(fmt::format("with {} the surface stays where it is if control points {} move by 1 and "
-                                  "-1 in turn, neighbours against each other",
-                                  name_of(surface.options().scheme),
-                                  first_ones(vector.vertices, [](VertexId v) { return v.index(); })));
+      refuse_singular(
+          fmt::format("with {} the surface stays where it is if control points {} move by 1 and "
+                      "-1 in turn, neighbours against each other",
+                      name_of(surface.options().scheme),
+                      first_ones(vector.vertices, [](VertexId v) { return v.index(); })));
     }
     const std::vector<std::size_t> unseen = system.unseen();
     if (!unseen.empty()) {
@@ -149,8 +150,7 @@ void require_regular(const LeastSquares& system, std::size_t unknowns, std::size
     }
   }
   if (rank < unknowns) {
-    refuse_singular(
-        fmt::format("of {} directions they tell {} apart, in double precision", unknowns, rank));
+    refuse_singular(fmt::format("of {} directions they tell {} apart, in double precision", unknowns, rank));
   }
 }
 
@@ -181,8 +181,11 @@ Fit fitted(const Fit& before, const std::optional<MeshKernel>& kernel, const Opt
   for (std::size_t v = 0; v < unknowns; ++v) {
     mesh.points[v] = require_representable(mesh.points[v] + moves[v]);
   }
-  return {LimitSurface(std::move(mesh), surface.options(), surface.shared_library(), monitor), samples, {},
-          before.rounds + 1, rank};
+  return {LimitSurface(std::move(mesh), surface.options(), surface.shared_library(), monitor),
+          samples,
+          {},
+          before.rounds + 1,
+          rank};
 }
 
 Fit fit(LimitSurface surface, Samples samples, const std::optional<MeshKernel>& kernel,
@@ -237,9 +240,9 @@ std::optional<MeshKernel> kernel_of(const LimitSurface& surface, const WorkMonit
 
 ExitStatus run(const Options& options) {
   if (options.output.empty()) throw UsageError("fit: -o FILE is missing: where the fitted mesh goes");
-  if (options.json && options.output == "-") throw UsageError("fit: --json and -o - both want standard output");
-  LimitSurface surface =
-      load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  if (options.json && options.output == "-")
+    throw UsageError("fit: --json and -o - both want standard output");
+  LimitSurface surface = load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
   Samples samples = read_samples(options.points, surface);
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
@@ -260,10 +263,10 @@ ExitStatus run(const Options& options) {
   report.heads({options.mesh}, {name_of(found->surface.options().scheme)});
   if (report.json()) write_json(report.write(), *found, kernel);
   if (options.output != "-") {
-    report.text(fmt::format("{}: {} control points, {} points, residual {:.6g} rms, {:.6g} at most, {} round{}",
-                            options.output, mesh.vertex_count(), found->samples.points.size(),
-                            found->residual.rms, found->residual.max, found->rounds,
-                            found->rounds == 1 ? "" : "s"));
+    report.text(
+        fmt::format("{}: {} control points, {} points, residual {:.6g} rms, {:.6g} at most, {} round{}",
+                    options.output, mesh.vertex_count(), found->samples.points.size(), found->residual.rms,
+                    found->residual.max, found->rounds, found->rounds == 1 ? "" : "s"));
   }
   return report.finish(true, {&file});
 }
@@ -281,7 +284,8 @@ Command fit_command() {
            "Without places: find the closest ones and solve at most N times, as long as points come nearer")
       .between(1, 1000);
   list.add(Group::own, "--smooth WEIGHT", &options->smooth,
-           "Add this times the squares of what moves of control points differ from the mean of their neighbours'")
+           "Add this times the squares of what moves of control points differ from the mean of their "
+           "neighbours'")
       .between(0, 1e6);
   list.add(Group::own, "--least-change", &options->least_change,
            "Where points do not determine control points, take those that move least");

@@ -20,7 +20,8 @@ SurfaceParameter read_place(std::string_view line, const LimitSurface& surface, 
     return InputError(InputProblem::unreadable, where + why);
   };
   SurfaceParameter at{};
-  bool good = parse(next_word(line), at.owner) && parse(next_word(line), at.u) && parse(next_word(line), at.v);
+  bool good =
+      parse(next_word(line), at.owner) && parse(next_word(line), at.u) && parse(next_word(line), at.v);
   if (const std::string_view corner = next_word(line); good && !corner.empty()) {
     good = !rules.triangular() && parse(corner, at.corner) && next_word(line).empty();
   }
@@ -41,8 +42,9 @@ SurfaceParameter read_place(std::string_view line, const LimitSurface& surface, 
                      ", which counts from 0 to " + std::to_string(corners - 1));
   }
   if (!patch_at(surface, at)) {
-    throw InputError(InputProblem::refused, where + owner + " " + std::to_string(at.owner) +
-                                                " has no limit surface: it lies at the boundary, or is a hole");
+    throw InputError(InputProblem::refused,
+                     where + owner + " " + std::to_string(at.owner) +
+                         " has no limit surface: it lies at the boundary, or is a hole");
   }
   return at;
 }

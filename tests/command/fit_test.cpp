@@ -41,7 +41,8 @@ class fit_command : public ::testing::Test {
     return folder_.file("moved.obj");
   }
   // Limit points of a mesh: "x y z", and where they are.
-  std::string points_of(const std::string& path, const std::string& scheme, unsigned samples, bool with_place) {
+  std::string points_of(const std::string& path, const std::string& scheme, unsigned samples,
+                        bool with_place) {
     const Outcome outcome =
         run_snug({"eval", path, "--scheme", scheme, "--samples", std::to_string(samples), "--json"});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -51,8 +52,8 @@ class fit_command : public ::testing::Test {
     for (const json& at : answer["points"]) {
       for (const json& x : at["position"]) text << x.get<double>() << ' ';
       if (with_place) {
-        text << (at.contains("face") ? at["face"] : at["vertex"]).get<unsigned>() << ' ' << at["u"].get<double>()
-             << ' ' << at["v"].get<double>();
+        text << (at.contains("face") ? at["face"] : at["vertex"]).get<unsigned>() << ' '
+             << at["u"].get<double>() << ' ' << at["v"].get<double>();
         if (at.contains("corner")) text << ' ' << at["corner"].get<unsigned>();
       }
       text << '\n';
@@ -97,9 +98,12 @@ TEST_F(fit_command, finds_the_control_points_of_given_places) {
   struct Case {
     std::string mesh, scheme;
   };
-  for (const auto& [mesh, scheme] :
-       {Case{house, "catmark"}, {house, "doo-sabin"}, {house, "midedge"}, {model("pawn.obj"), "loop"},
-        {model("bracket.obj"), "catmark"}, {write("cube.obj", cube), "bilinear"}}) {
+  for (const auto& [mesh, scheme] : {Case{house, "catmark"},
+                                     {house, "doo-sabin"},
+                                     {house, "midedge"},
+                                     {model("pawn.obj"), "loop"},
+                                     {model("bracket.obj"), "catmark"},
+                                     {write("cube.obj", cube), "bilinear"}}) {
     SCOPED_TRACE(mesh + " " + scheme);
     const std::string points = points_of(mesh, scheme, 3, true);
     const json found = answer({moved(mesh, 0.1), "--scheme", scheme, "--points", points});
@@ -157,8 +161,9 @@ TEST_F(fit_command, names_the_kernel_of_a_cube) {
   for (const std::string scheme : {"catmark", "midedge"}) {
     const std::string points = points_of(box, scheme, 4, true);
     const std::string begin = moved(box, 0.1);
-    expect_refused({begin, "--scheme", scheme, "--points", points}, 4,
-                   {"moved.obj: ", scheme, "control points 0, 1, 2, 3, 4, 5, 6, 7", "--smooth", "--least-change"});
+    expect_refused(
+        {begin, "--scheme", scheme, "--points", points}, 4,
+        {"moved.obj: ", scheme, "control points 0, 1, 2, 3, 4, 5, 6, 7", "--smooth", "--least-change"});
     const json found = answer({begin, "--scheme", scheme, "--points", points, "--least-change"});
     EXPECT_EQ(found["rank"], 7);
     EXPECT_EQ(found["dimension"], 8);
@@ -197,7 +202,8 @@ TEST_F(fit_command, refuses_too_few_points) {
   std::string corners;
   const std::size_t faces = read_mesh(model("bracket.obj")).face_count();
   for (std::size_t f = 0; f < faces; ++f) corners += "0 0 0 " + std::to_string(f) + " 0.5 0.5\n";
-  expect_refused({model("bracket.obj"), "--points", write("few.txt", corners)}, 4, {"of 16 directions they tell "});
+  expect_refused({model("bracket.obj"), "--points", write("few.txt", corners)}, 4,
+                 {"of 16 directions they tell "});
   EXPECT_EQ(answer({pawn, "--points", one, "--least-change"})["rank"], 1);
   EXPECT_EQ(answer({pawn, "--points", one, "--smooth", "1"})["rank"], 133);
 }

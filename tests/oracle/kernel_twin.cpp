@@ -31,9 +31,7 @@ class Field {
       if (generates) return;
     }
   }
-  [[nodiscard]] Element add(Element a, Element b) const {
-    return a + b >= prime_ ? a + b - prime_ : a + b;
-  }
+  [[nodiscard]] Element add(Element a, Element b) const { return a + b >= prime_ ? a + b - prime_ : a + b; }
   [[nodiscard]] Element negative(Element a) const { return a == 0 ? 0 : prime_ - a; }
   [[nodiscard]] Element times(Element a, Element b) const {
     __extension__ using Wide = unsigned __int128;
@@ -107,7 +105,8 @@ class Step {
       : f_(field), net_(net), mesh_(net.mesh), near_(net.mesh), scheme_(scheme) {}
 
   [[nodiscard]] Net refined() const {
-    return scheme_ == KernelScheme::loop || scheme_ == KernelScheme::catmark ? refined_primal() : refined_dual();
+    return scheme_ == KernelScheme::loop || scheme_ == KernelScheme::catmark ? refined_primal()
+                                                                             : refined_dual();
   }
   // Of vertices, or of faces.
   [[nodiscard]] std::vector<Row> limits() const {
@@ -231,7 +230,8 @@ class Step {
       result.rows.push_back(near_.faces[v].empty() ? net_.rows[v] : vertex_point(v));
       if (decayed(sharpness(v)) > 0) result.mesh.corners[v] = decayed(sharpness(v));
     }
-    const std::uint32_t edges = mesh_.vertices, faces = edges + static_cast<std::uint32_t>(near_.edges.size());
+    const std::uint32_t edges = mesh_.vertices,
+                        faces = edges + static_cast<std::uint32_t>(near_.edges.size());
     for (const auto& [edge, number] : near_.number) {
       result.rows.push_back(edge_point(edge));
       const int s = decayed(sharpness(edge.first, edge.second));
@@ -338,7 +338,8 @@ class Step {
         if (sharpness(v, w) > 0) add(sum, f_.ratio(1, 6), w);
       }
     } else if (scheme_ == KernelScheme::loop) {
-      const Field::Element w = f_.inverse(f_.add(1, f_.times(f_.ratio(8, 3), ring_share(near_.ends[v].size()))));
+      const Field::Element w =
+          f_.inverse(f_.add(1, f_.times(f_.ratio(8, 3), ring_share(near_.ends[v].size()))));
       add(sum, w, v);
       const Field::Element each = f_.times(f_.add(1, f_.negative(w)), f_.ratio(1, n));
       for (const std::uint32_t end : near_.ends[v]) add(sum, each, end);

@@ -26,7 +26,8 @@ struct ClosedMesh {
 /// Is it an oriented closed manifold of simple faces, no two edges between the same vertices, all valences
 /// and sizes 3 or more?
 inline bool is_closed_manifold(const ClosedMesh& mesh) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> after;  // edge before, of an edge around its first vertex
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t>
+      after;  // edge before, of an edge around its first vertex
   std::map<std::uint32_t, std::uint32_t> valence;
   for (const auto& face : mesh.faces) {
     const std::size_t n = face.size();
@@ -74,7 +75,8 @@ inline ClosedMesh antiprism(std::uint32_t n) {
 }
 
 inline ClosedMesh torus(std::uint32_t a, std::uint32_t b, bool triangles = false) {
-  ClosedMesh mesh{(triangles ? "cut torus " : "torus ") + std::to_string(a) + " " + std::to_string(b), a * b, {}};
+  ClosedMesh mesh{
+      (triangles ? "cut torus " : "torus ") + std::to_string(a) + " " + std::to_string(b), a * b, {}};
   const auto at = [=](std::uint32_t i, std::uint32_t j) { return i % a + a * (j % b); };
   for (std::uint32_t j = 0; j < b; ++j) {
     for (std::uint32_t i = 0; i < a; ++i) {
@@ -204,8 +206,12 @@ inline ClosedMesh changed(const ClosedMesh& mesh, std::mt19937_64& random) {
   const std::size_t f = below(mesh.faces.size()), n = mesh.faces[f].size();
   const auto& face = mesh.faces[f];
   switch (below(5)) {
-    case 0: result = truncated(mesh, face[below(n)]); break;
-    case 1: result = stellated(mesh, f); break;
+    case 0:
+      result = truncated(mesh, face[below(n)]);
+      break;
+    case 1:
+      result = stellated(mesh, f);
+      break;
     case 2: {  // a diagonal
       const std::size_t i = below(n), steps = 2 + below(n);
       if (n < 4 || steps > n - 2) return mesh;
