@@ -1,7 +1,6 @@
 #include <snug/independence/mesh_kernel.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -49,23 +48,6 @@ void require_manifold_with_surfaces(const Topology& topology, const std::vector<
   if (first != bare.end()) {
     refuse("face " + std::to_string(first - bare.begin()) +
            " has no surface; remove the tag of the hole, or take another boundary rule");
-  }
-}
-
-// With Loop, a step whose rules are mixtures is not known to lose nothing.
-void require_whole_sharpness(const RuledMesh& ruled) {
-  const bool chaikin = ruled.options.creases == CreaseMethod::chaikin;
-  const auto mixes = [&](double s) { return is_semi_sharp(s) && s != std::floor(s); };
-  const Sharpness& sharpness = ruled.sharpness;
-  for (std::size_t e = 0; e < sharpness.edges.size(); ++e) {
-    if (!mixes(sharpness.edges[e]) && !(chaikin && is_semi_sharp(sharpness.edges[e]))) continue;
-    refuse(name_of_edge(ruled.topology, EdgeId(e)) +
-           " has a sharpness that ends in fractions; with loop give whole numbers, without Chaikin's method");
-  }
-  for (std::size_t v = 0; v < sharpness.vertices.size(); ++v) {
-    if (!mixes(sharpness.vertices[v])) continue;
-    refuse("vertex " + std::to_string(v) +
-           " has a sharpness that is no whole number; with loop give whole numbers");
   }
 }
 
@@ -165,7 +147,6 @@ MeshKernel mesh_kernel(const ControlMesh& mesh, const SchemeOptions& options, co
   } else {
     require_closed(topology);
   }
-  if (how.scheme == Scheme::loop) require_whole_sharpness(ruled);
   if (how.scheme == Scheme::catmark || how.scheme == Scheme::midedge) {
     add_alternating(ruled, monitor, kernel.vectors);
   }

@@ -32,8 +32,8 @@ struct MeshKernel {
 ///
 /// Guarantee: exact, from connectivity and tags alone; positions do not matter.
 /// Decided:   dual schemes: closed meshes. Loop and Catmull-Clark: manifold meshes, closed or open, all faces
-///            with a surface, with any tags; but for fractions of sharpness with Loop (or Chaikin's method
-///            there), and vertices of valence 2 at semi-sharp edges with Catmull-Clark, if all hangs on them.
+///            with a surface, with any tags; but for Catmull-Clark components where all hangs on vertices of
+///            valence 2 at semi-sharp edges.
 /// Errors:    InputError (refused): those of require_surface(), and what is not decided, naming an element and
 ///            the next step. Interrupted.
 /// Cost:      linear; 0.3 seconds for a million vertices (tests/independence).
