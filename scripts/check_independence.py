@@ -8,8 +8,8 @@ a corner of some valence, span a space of dimension `rank`. Shown here without a
 Meshes and masks are built here from the rules of the schemes. `--self-test` makes right certificates, spoils each in every
 way that it knows, and expects the right ones accepted and all others rejected.
 
-Exact numbers are polynomials in t = 2 cos(2 pi / n), lowest degree first, modulo the minimal polynomial of t. Vectors are lists
-of planes, plane i having the coefficients of t^i of all entries, times a common denominator where only zero matters.
+Exact numbers are polynomials in t = 2 cos(2 pi / n), lowest degree first, modulo the minimal polynomial of t. Vectors are
+lists of planes, plane i having the coefficients of t^i of all entries, times a common denominator where only zero matters.
 """
 
 import argparse
@@ -44,7 +44,7 @@ def need(ok, why):
         raise Fault(why)
 
 
-# --- Numbers --------------------------------------------------------------------------------------------------------------
+# --- Numbers -----------------------------------------------------------------------------------------------------------
 
 
 def poly_add(a, b):
@@ -157,7 +157,7 @@ def value_modulo(poly, t, p):
     return value % p
 
 
-# --- Meshes: lists of faces, a face the tuple of its vertices in cyclic order -------------------------------------------------
+# --- Meshes: lists of faces, a face the tuple of its vertices in cyclic order ------------------------------------------
 
 
 def edges_of(face):
@@ -259,7 +259,8 @@ def closed_mesh(scheme, n):
         return [(pole, 3 + i, 3 + (i + 1) % n) for pole in (1, 2) for i in range(n)]
     if scheme == "catmark":
         r = [3 + i % (2 * n) for i in range(2 * n + 2)]
-        return [face for i in range(0, 2 * n, 2) for face in ((1, r[i], r[i + 1], r[i + 2]), (2, r[i + 3], r[i + 2], r[i + 1]))]
+        return [face for i in range(0, 2 * n, 2)
+                for face in ((1, r[i], r[i + 1], r[i + 2]), (2, r[i + 3], r[i + 2], r[i + 1]))]
     sides = [(1 + i, 1 + (i + 1) % n, n + 1 + (i + 1) % n, n + 1 + i) for i in range(n)]
     return [tuple(range(1, n + 1)), tuple(range(n + 1, 2 * n + 1))] + sides
 
@@ -375,7 +376,7 @@ def embed(pattern, mesh, seed):
     return place
 
 
-# --- Matrices of a step -----------------------------------------------------------------------------------------------------
+# --- Matrices of a step ------------------------------------------------------------------------------------------------
 
 
 class Step:
@@ -489,7 +490,7 @@ class Corner:
                 assert face[0] == 1
                 sides = [("edge", e) for e in edges_of(face)]
                 if scheme == "loop":
-                    names += [(("vertex", face[1]), sides[0], sides[1]), tuple(sides), (("vertex", face[2]), sides[1], sides[2])]
+                    names += [(("vertex", face[1]), *sides[:2]), tuple(sides), (("vertex", face[2]), *sides[1:])]
                 else:
                     names += [(("vertex", face[k]), ("face", i)) for k in (1, 2, 3)]
         return names
@@ -557,7 +558,7 @@ def valences_of(scheme, mesh):
     return {len(around) for around in faces_by_vertex(mesh).values()} - {6 if scheme == "loop" else 4}
 
 
-# --- Ranks modulo a prime -------------------------------------------------------------------------------------------------------
+# --- Ranks modulo a prime ----------------------------------------------------------------------------------------------
 
 
 def extend(basis, row, p):
@@ -647,7 +648,7 @@ def global_rows(scheme, n, rule, level, t, p):
     return rows
 
 
-# --- Domains ----------------------------------------------------------------------------------------------------------------
+# --- Domains -----------------------------------------------------------------------------------------------------------
 
 
 def parse_domain(name):
@@ -722,7 +723,7 @@ def forms(tests):
     return len(points) - sum(find(v)[0] == v and v not in odd for v in points)
 
 
-# --- Certificates ----------------------------------------------------------------------------------------------------------------
+# --- Certificates ------------------------------------------------------------------------------------------------------
 
 
 def field(record, name, kind):
@@ -746,7 +747,8 @@ def parse_vector(entries, size, n):
     need(type(entries) is dict, "a vector of the kernel is of a wrong type")
     columns = {}
     for key, entry in entries.items():
-        need(re.fullmatch(r"[1-9][0-9]{0,8}", key) and int(key) <= size, f"the kernel has an entry of control point {key!r:.20}")
+        known = re.fullmatch(r"[1-9][0-9]{0,8}", key) and int(key) <= size
+        need(known, f"the kernel has an entry of control point {key!r:.20}")
         need(type(entry) is not list or entry, "the kernel has an empty entry")
         columns[int(key) - 1] = [rational(x) for x in (entry if type(entry) is list else [entry])]
     planes = [[column[i] if (column := columns.get(c)) and i < len(column) else 0 for c in range(size)]
@@ -776,8 +778,8 @@ def check_prime(n, certificate):
 def check_closed(case, steps, rank, root, p):
     """That lower bounds of the control points after `steps` steps hold for the functions.
 
-    Where no piece has two extraordinary corners, a function that is zero has control points zero: by the regular patches, and by
-    the annulus around each corner; midedge: but for the chess board, which sums over edges do not see.
+    Where no piece has two extraordinary corners, a function that is zero has control points zero: by the regular patches, and
+    by the annulus around each corner; midedge: but for the chess board, which sums over edges do not see.
     """
     _, crowded, meshes = closed_steps(case.scheme, case.n, case.rule)
     level = next((i for i in range(steps, MOST_STEPS + 1) if not crowded[i]), None)
@@ -825,8 +827,9 @@ def nonzero(case, vector, left_out, certificate, factor):
         tests = case.first_tests() - left_out
         return "is not 0 on the domain" if any(sum(plane[i] for i in e) for e in tests for plane in points) else None
     if case.kind == "omega":
-        wrong, _ = case.corner.advance(vector)
-        return "is not 0 on ring 1" if wrong else None if multiplied(case.corner, vector, factor) else "is not multiplied by factor"
+        if case.corner.advance(vector)[0]:
+            return "is not 0 on ring 1"
+        return None if multiplied(case.corner, vector, factor) else "is not multiplied by factor"
     for k in range(1, case.number + 1):
         wrong, part = case.corner.advance(vector)
         if wrong - left_out and (case.kind == "rings" or k == case.number):
@@ -890,7 +893,7 @@ def fault_of(scheme, record):
     return None
 
 
-# --- Files -------------------------------------------------------------------------------------------------------------------------
+# --- Files -------------------------------------------------------------------------------------------------------------
 
 
 def unique(pairs):
@@ -933,10 +936,11 @@ def check_file(name):
         return lines, False
     valences = [record["valence"] for record in cases]
     spread = f"valences {min(valences)} to {max(valences)}" if len(set(valences)) > 1 else f"valence {valences[0]}"
-    return [f"{shown}: {len(cases)} {'cases' if len(cases) > 1 else 'case'} of {spread} hold{'' if len(cases) > 1 else 's'}"], True
+    what, verb = ("cases", "hold") if len(cases) > 1 else ("case", "holds")
+    return [f"{shown}: {len(cases)} {what} of {spread} {verb}"], True
 
 
-# --- Self test: certificates made here, and spoiled ----------------------------------------------------------------------------------
+# --- Self test: certificates made here, and spoiled --------------------------------------------------------------------
 
 
 def null_space(rows, size):
@@ -1020,7 +1024,8 @@ def kernel_of(case, rank, certificate):
     if case.kind not in ("ring", "rings", "omega", "global"):
         steps = 1
     if case.scheme == "doo-sabin" and case.kind in ("ring", "rings", "omega"):
-        return {"bound": "kernel", "left_out": 0, "kernel": shifts(case), **({"factor": "1/4"} if case.kind == "omega" else {})}
+        factor = {"factor": "1/4"} if case.kind == "omega" else {}
+        return {"bound": "kernel", "left_out": 0, "kernel": shifts(case), **factor}
     for without in (frozenset(), case.own_tests()) if case.kind != "global" else [frozenset()]:
         vectors = null_space(rational_rows(case, steps, without), case.dimension)
         if case.dimension - len(vectors) + len(without) == rank:
@@ -1086,8 +1091,8 @@ def spoiled_kernels(record):
     yield "one vector less", with_rank(put(*rest), record["rank"] + 1)
     if rest:
         yield "a vector in place of another", put(first, first, *rest[1:])
-        yield "a multiple in place of another", put(first, {k: entry_of(poly_scale(list(map(Fraction, x)), 3)) if type(x) is list
-                                                            else str(-3 * Fraction(x)) for k, x in first.items()}, *rest[1:])
+        multiple = {k: [str(-3 * Fraction(c)) for c in (x if type(x) is list else [x])] for k, x in first.items()}
+        yield "a multiple in place of another", put(first, multiple, *rest[1:])
     if len(rest) > 1 and all(type(x) is str for v in vectors for x in v.values()):
         total = {k: str(Fraction(first.get(k, 0)) + Fraction(rest[0].get(k, 0))) for k in first | rest[0]}
         yield "a sum in place of another", put(first, rest[0], total, *rest[2:])
@@ -1148,8 +1153,8 @@ def spoiled_cases(record):
         yield f"text {bad!r}", changed(record, text=bad)
         yield f"rule {bad!r}", changed(record, rule=bad)
     yield "rule newer", changed(record, rule="newer")
-    for bad in ("piece:0", "piece:4", "piece:1,2", "pieces:2,1", "pieces:1,1", "pieces:1", "rings:0", "ring:01", "rings:", "Omega",
-                "omega ", "rings:-1", "ring:1\n", "rings:99999"):
+    for bad in ("piece:0", "piece:4", "piece:1,2", "pieces:2,1", "pieces:1,1", "pieces:1", "rings:0", "ring:01", "rings:",
+                "Omega", "omega ", "rings:-1", "ring:1\n", "rings:99999"):
         yield f"domain {bad!r}", changed(record, domain=bad)
     for m in (n - 1, n + 1, 2 * n, -n, 0, 2, 1001):
         yield f"valence {m}", changed(record, valence=m)
@@ -1231,11 +1236,13 @@ def known_results():
            [("loop", n, f"pieces:{i}", min(n + 6, 13)) for n in range(3, 13) for i in ("1,2", "1,3", "2,3")])
     for scheme, size in (("loop", lambda n: 3 * n + 1), ("catmark", lambda n: 6 * n + 1), ("doo-sabin", lambda n: 4 * n),
                          ("midedge", lambda n: 4 * n - (n % 2 == 0))):
-        yield (f"{scheme}, annulus: all" + (", but for the chess board of even n" if scheme == "midedge" else ""),
+        but = ", but for the chess board of even n" if scheme == "midedge" else ""
+        yield (f"{scheme}, annulus: all{but}",
                [(scheme, n, "annulus", size(n)) for n in range(3, 13)])
     for scheme, size in (("loop", lambda n: n + 2), ("catmark", lambda n: 7 if n == 3 else 2 * n + 2),
                          ("doo-sabin", lambda n: 2 * n), ("midedge", lambda n: 2 * n - (n % 2 == 0))):
-        yield (f"{scheme}, global: all" + {"catmark": ", but 7 of 8 on the cube", "midedge": ", but one for even n"}.get(scheme, ""),
+        but = {"catmark": ", but 7 of 8 on the cube", "midedge": ", but one for even n"}.get(scheme, "")
+        yield (f"{scheme}, global: all{but}",
                [(scheme, n, "global", size(n)) for n in range(3, 13)])
 
 
@@ -1244,8 +1251,8 @@ def rank_of(scheme, n, domain):
     return Case(scheme, n, None, domain).rank_modulo(root, p, None, MOST_STEPS)
 
 
-SELF_TEST_DOMAINS = ["piece:1", "piece:2", "piece:3", "pieces:1,2", "pieces:1,3", "pieces:2,3", "rings:1", "rings:2", "rings:3",
-                     "ring:1", "ring:2", "ring:3", "omega", "annulus", "global"]
+SELF_TEST_DOMAINS = ["piece:1", "piece:2", "piece:3", "pieces:1,2", "pieces:1,3", "pieces:2,3", "rings:1", "rings:2",
+                     "rings:3", "ring:1", "ring:2", "ring:3", "omega", "annulus", "global"]
 
 
 def self_test_files(record):
@@ -1254,7 +1261,8 @@ def self_test_files(record):
     good = json.dumps({"scheme": "loop", "cases": [record, record]})
     holds = "2 cases of valence 7 hold"
     texts = [(good, 0, holds), (json.dumps({"scheme": "loop", "cases": [record, bad, bad]}), 1, "valence 7, piece:1: "),
-             (json.dumps({"scheme": "loop", "cases": [record, 5]}), 1, "case 2: "), (good[:-1], 2, ""), ("", 2, ""), ("[]", 2, ""),
+             (json.dumps({"scheme": "loop", "cases": [record, 5]}), 1, "case 2: "),
+             (good[:-1], 2, ""), ("", 2, ""), ("[]", 2, ""),
              ('{"scheme": "loop", "cases": []}', 2, "no cases"), ('{"scheme": "loop"}', 2, "no cases"),
              (good.replace('"loop"', '"sqrt3"'), 2, "scheme"), (good.replace('"rank"', '"rank": 1, "rank"'), 2, "two fields"),
              (good.replace('"scheme"', '"schema"'), 2, "scheme"), ("[" * 100000, 2, "")]
@@ -1273,11 +1281,72 @@ def self_test_files(record):
     return wrong
 
 
+def flat_corner(scheme):
+    """Regular corners drawn in the plane: places of the control points, and of those of the three pieces, doubled."""
+    square = list(itertools.product((-1, 0, 1), repeat=2))
+    if scheme in DUAL:
+        places = [(1, 1), (-1, 1), (-1, -1), (1, -1), (-1, 3), (1, 3), (3, 3), (3, 1), (3, -1)]
+        return places, [{(x + 2 * a, y + 2 * b) for a, b in square} for x, y in ((1, 3), (3, 3), (3, 1))]
+    if scheme == "catmark":
+        places = [(0, 0), (0, -1), (1, -1), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1),
+                  (2, -1), (2, 0), (2, 1), (2, 2), (1, 2), (0, 2), (-1, 2)]
+        return places, [set(itertools.product(range(x, x + 4), range(y, y + 4))) for x, y in ((0, -1), (0, 0), (-1, 0))]
+    places = [(0, 0), (1, 0), (1, -1), (0, -1), (-1, 0), (-1, 1), (0, 1), (1, 1), (2, 0), (2, -1), (0, 2), (-1, 2)]
+    around = [(a, b) for a, b in square if a != b or a == 0]
+    children = (((2, 0), (1, 0), (1, 1)), ((1, 0), (1, 1), (0, 1)), ((0, 2), (0, 1), (1, 1)))
+    return places, [{(x + a, y + b) for x, y in child for a, b in around} for child in children]
+
+
+def self_test_geometry(scheme):
+    """Faults of the meshes: a regular corner halves a drawing in the plane, and its pieces lie where they should."""
+    n = 6 if scheme == "loop" else 4
+    places, expected = flat_corner(scheme)
+    where = corner(scheme, n, None)
+    points = list(zip(*(where.step.apply([list(axis)])[0] for axis in zip(*places))))
+    doubled = [tuple(Fraction(2 * x, where.step.scale) for x in point) for point in points]
+    wrong = [] if [doubled[i] for i in where.part] == places else [f"{scheme}: the part left is not at the corner"]
+    for i, (tests, drawn) in enumerate(zip(where.pieces, expected), 1):
+        if {doubled[v] for test in tests for v in test} != drawn:
+            wrong.append(f"{scheme}: piece {i} is elsewhere")
+    return wrong
+
+
+def self_test_masks(n):
+    """Faults of masks against closed forms, and of eigenvalues against those known."""
+    wrong, p, root = [], *own_prime(n, 0)
+    t, c = t_modulo(root, p), [pow(root, i, p) + pow(root, -i, p) for i in range(n)]
+    loop = (5 * pow(8, -1, p) - (11 + 6 * c[1] + c[2 % n]) * pow(64, -1, p)) * pow(n, -1, p)
+    spectra = {"loop": [3 + c[1], -8], "catmark": [1, -10 - c[1], 16], "doo-sabin": [1, -2], "midedge": [2 + c[1], -4]}
+    vertex = {None: (1 - Fraction(7, 4 * n), Fraction(3, 2 * n * n), Fraction(1, 4 * n * n)),
+              "older": (Fraction(9, 16), Fraction(3, 8 * n), Fraction(1, 16 * n))}
+    for scheme, rule in [(s, None) for s in SCHEMES] + [("catmark", "older")]:
+        where = corner(scheme, n, rule)
+        size, sparse = where.count, where.step.modulo(t, p)
+        if any(sum(w for _, w in row) % p != 1 for row in sparse):
+            wrong.append(f"{scheme} {n}: weights do not sum to 1")
+        own = [dict(sparse[i]).get(k, 0) for i in where.part[:1] for k in range(size)]
+        if scheme == "loop" and own != [(1 - n * loop) % p] + [loop % p] * n + [0] * (size - n - 1):
+            wrong.append(f"{scheme} {n}: the vertex mask is wrong")
+        if scheme == "catmark" and own != [value_modulo([x], t, p) for x in vertex[rule][:1] + vertex[rule][1:] * n] + [0] * 7:
+            wrong.append(f"{scheme} {n} {rule}: the vertex mask is wrong")
+        power = [[int(i == j) for j in range(size)] for i in range(size)]
+        total = [[0] * size for _ in range(size)]
+        for x in spectra[scheme] if not rule else ():
+            total = [[(a + x * b) % p for a, b in zip(r, q)] for r, q in zip(total, power)]
+            power = [times(row, [sparse[i] for i in where.part], size, p) for row in power]
+        if not rule and rank_modulo(total, p, size) > size - 2 * (len(spectra[scheme]) - 1):
+            wrong.append(f"{scheme} {n}: the second eigenvalues are wrong")
+    return wrong
+
+
 def self_test():
     """Faults of this check, and what was tried."""
     wrong, right, truth, count = [], [], {}, 0
+    for fault in itertools.chain(*map(self_test_geometry, SCHEMES), *map(self_test_masks, range(3, 13))):
+        wrong.append(fault)
     for name, cases in known_results():
-        off = [f"{n} {domain}: {found}, not {rank}" for s, n, domain, rank in cases if (found := rank_of(s, n, domain)) != rank]
+        off = [f"{n} {domain}: {found}, not {rank}"
+               for s, n, domain, rank in cases if (found := rank_of(s, n, domain)) != rank]
         print(f"  {name}: {f'WRONG at {off}' if off else f'{len(cases)} ranks agree'}")
         wrong += off
     for scheme, n, domain in itertools.product(SCHEMES, range(3, 9), SELF_TEST_DOMAINS):
@@ -1288,17 +1357,15 @@ def self_test():
                 continue
             right.append((scheme, record))
             truth[scheme, n, domain, rule] = record["rank"], record["dimension"]
-    for i, (scheme, record) in enumerate(right):
+    for scheme, record in right:
         where = f"{scheme} {record['valence']} {record['domain']} {record.get('rule', '')}"
         for what, other in [("as made", record), *also_right(record)]:
             if why := fault_of(scheme, json.loads(json.dumps(other))):
                 wrong.append(f"{where}, {what}: rejected: {why}")
-        kernel = record["certificate"]["bound"] == "kernel"
-        for j, (what, s, other) in enumerate(spoiled(record, scheme, truth)):
-            if kernel or (i + j) % 4 == 0:  # bounds without kernels are many and alike: a quarter of them, in turn
-                count += 1
-                if not fault_of(s, json.loads(json.dumps(other))):
-                    wrong.append(f"{where}, {what}: accepted")
+        for what, s, other in spoiled(record, scheme, truth):
+            count += 1
+            if not fault_of(s, json.loads(json.dumps(other))):
+                wrong.append(f"{where}, {what}: accepted")
     wrong += self_test_files(next(r for s, r in right if s == "loop" and r["valence"] == 7 and r["domain"] == "piece:1"))
     return wrong, f"{len(right)} certificates accepted, {count} spoiled ones rejected"
 
@@ -1318,7 +1385,7 @@ def check_files(names):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("files", nargs="*", metavar="FILE.json", help="what `snug independence --json` printed; - for standard input")
+    parser.add_argument("files", nargs="*", metavar="FILE.json", help="of `snug independence --json`; - for standard input")
     parser.add_argument("--self-test", action="store_true", help="check that this check can fail")
     arguments = parser.parse_args()
     if arguments.self_test:
