@@ -872,14 +872,18 @@ def check_case(scheme, record):
     if steps:
         check_closed(case, steps, rank, root, p)
 
+    check_upper(case, certificate, rank, root, p)
+
+
+def check_upper(case, certificate, rank, root, p):
     bound = field(certificate, "bound", str)
     need(bound in ("full", "count", "kernel"), f"bound {bound:.20} is not known")
     if bound == "kernel":
         check_kernel(case, certificate, rank, root, p)
     else:
         need(not certificate.get("kernel") and not certificate.get("left_out"), f"a bound by {bound} has no kernel")
-        need(bound == "count" or rank == dimension, f"{rank} of {dimension} functions are not full")
-        need(bound == "full" or case.kind not in ("omega", "global"), f"{domain} has no count of rows")
+        need(bound == "count" or rank == case.dimension, f"{rank} of {case.dimension} functions are not full")
+        need(bound == "full" or case.kind not in ("omega", "global"), "this domain has no count of rows")
         need(bound == "full" or rank == case.row_count(), f"the domain has not {rank} rows")
 
 
@@ -1096,6 +1100,8 @@ def spoiled_kernels(record):
     if len(rest) > 1 and all(type(x) is str for v in vectors for x in v.values()):
         total = {k: str(Fraction(first.get(k, 0)) + Fraction(rest[0].get(k, 0))) for k in first | rest[0]}
         yield "a sum in place of another", put(first, rest[0], total, *rest[2:])
+    for key in [key for key in map(str, range(1, size + 1)) if key not in first][:1]:
+        yield "an entry without coefficients", put({**first, key: []}, *rest)
     for key in ("0", "-1", "01", "1.0", "x", "", str(size + 1)):
         yield f"an entry of {key!r}", put({**first, key: "1"}, *rest)
     for bad in (1, 0.5, None, True, "", "1/0", "0.5", "1e3", " 1", "1/-2", "--1", "٣", [], ["x"], [1], [["1"]], {}):
@@ -1196,6 +1202,25 @@ def spoiled(record, scheme, truth):
     for what, bad in itertools.chain(spoiled_cases(record), spoiled_certificates(record, count), spoiled_primes(record),
                                      spoiled_kernels(record) if certificate["bound"] == "kernel" else ()):
         yield what, scheme, bad
+
+
+def too_low(case, record, kernels):
+    """Pairs (rank, certificate) that claim less than the right rank, as an unlucky prime would allow: no upper bound may hold."""
+    constant = {str(i + 1): "1" for i in range(case.dimension)}
+    steps = case.number if case.kind in ("ring", "rings") else 1
+    tried = [([constant], "1"), ([constant] + record["certificate"].get("kernel", []), "1/4")]
+    tried += [(kernel, factor) for kernel in kernels for factor in ("0", "1/4")]
+    if case.kind not in ("global", "omega") and case.corner.own:
+        vectors = null_space(rational_rows(case, steps, case.corner.own), case.dimension)
+        tried.append((list(map(sparse_vector, vectors)), "0"))
+    for kernel, factor in tried:
+        for left_out in range(4):
+            rank = case.dimension - len(kernel) + left_out
+            if rank < record["rank"]:
+                certificate = {**record["certificate"], "bound": "kernel", "kernel": kernel, "left_out": left_out}
+                yield rank, {**certificate, "factor": factor}
+    for bound in ("full", "count"):
+        yield record["rank"] - 1, {**record["certificate"], "bound": bound, "kernel": []}
 
 
 def also_right(record):
@@ -1366,6 +1391,16 @@ def self_test():
             count += 1
             if not fault_of(s, json.loads(json.dumps(other))):
                 wrong.append(f"{where}, {what}: accepted")
+        kernels = [r["certificate"]["kernel"] for s, r in right if r["certificate"]["bound"] == "kernel" and s == scheme
+                   and (r["dimension"], r.get("rule")) == (record["dimension"], record.get("rule"))]
+        case, p_root = Case(scheme, record["valence"], record.get("rule"), record["domain"]), own_prime(record["valence"], 0)
+        for rank, certificate in too_low(case, record, kernels):
+            count += 1
+            try:
+                check_upper(case, certificate, rank, *p_root[::-1])
+                wrong.append(f"{where}: accepted as a proof that the rank is {rank}: {certificate}")
+            except Fault:
+                pass
     wrong += self_test_files(next(r for s, r in right if s == "loop" and r["valence"] == 7 and r["domain"] == "piece:1"))
     return wrong, f"{len(right)} certificates accepted, {count} spoiled ones rejected"
 
