@@ -70,6 +70,7 @@ check: test  ## every gate that a commit must pass
 	@scripts/check_docs.py
 	@scripts/check_package
 	@scripts/check_tables
+	@scripts/check_certificates
 	@$(MAKE) asan
 	@$(MAKE) tsan
 	@FUZZ_SECONDS=5 $(MAKE) fuzz

@@ -29,6 +29,7 @@ LIBRARIES = {
     "patch": ("hwy/",),
     "bounds": ("hwy/",),
     "bvh": ("hwy/",),
+    "independence": ("flint/", "gmpxx.h"),
 }
 POSIX = ("fcntl.h", "unistd.h", "sys/")
 # Folders outside src/snug, and the layers they may include: those that must not lean on what they are there to check, and

@@ -124,6 +124,7 @@ class Report {
 [[nodiscard]] Command bound_command();
 [[nodiscard]] Command eval_command();
 [[nodiscard]] Command fit_command();
+[[nodiscard]] Command independence_command();
 [[nodiscard]] Command subdivide_command();
 [[nodiscard]] Command tessellate_command();
 [[nodiscard]] Command hull_command();

@@ -1,0 +1,315 @@
+#include <snug/independence/cases.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include <fmt/core.h>
+#include <snug/base/names.h>
+#include <snug/base/parallel.h>
+#include <snug/independence/mesh_kernel.h>
+#include <snug/independence/piece_step.h>
+
+#include "common.h"
+#include "kernel_json.h"
+#include "progress_bar.h"
+
+namespace snug::command {
+namespace {
+
+constexpr std::uint32_t least_valence = 3, largest_valence = 200;
+constexpr std::size_t named_vertices = 6;
+
+struct Options : CommonOptions {
+  std::string valence, mesh;
+  std::vector<std::string> domains;
+  bool older = false, matrices = false;
+};
+
+struct Range {
+  std::uint32_t first, last;
+};
+
+// "7" or "3..30".
+Range parse_valences(const std::string& text) {
+  const auto refuse = [&](const char* why) {
+    throw UsageError(fmt::format("--valence: '{}' {}; give a number or a range from {} to {}, such as 3..30",
+                                 text, why, least_valence, largest_valence));
+  };
+  const std::size_t dots = text.find("..");
+  const auto number = [&](const std::string& word) {
+    std::uint32_t value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (word.empty() || error != std::errc() || end != word.data() + word.size()) refuse("is no valence");
+    if (value < least_valence || value > largest_valence) refuse("goes beyond what is looked at");
+    return value;
+  };
+  const Range range{number(text.substr(0, dots)),
+                    number(dots == std::string::npos ? text : text.substr(dots + 2))};
+  if (range.first > range.last) refuse("ends before it begins");
+  return range;
+}
+
+ExactScheme exact_scheme(const Options& options) {
+  ExactScheme scheme;
+  scheme.older_vertices = options.older;
+  // auto is Loop: the dissertation's first.
+  if (options.scheme != "auto") scheme.scheme = choose_scheme(options.scheme, {});
+  if (scheme.scheme == Scheme::bilinear || scheme.scheme == Scheme::flat) {
+    throw UsageError("--scheme: nodal functions are those of loop, catmark, doo-sabin and midedge");
+  }
+  if (options.older && scheme.scheme != Scheme::catmark)
+    throw UsageError("--older-rule needs --scheme catmark");
+  return scheme;
+}
+
+// The domains asked for; those of the chapter where there are none.
+std::vector<IndependenceRequest> requests_for(const Options& options, const ExactScheme& scheme,
+                                              std::uint32_t valence) {
+  const std::vector<IndependenceRequest> chapter = chapter_requests(scheme, valence);
+  if (options.domains.empty()) return chapter;
+  std::vector<IndependenceRequest> requests;
+  for (const std::string& text : options.domains) {
+    if (text == "conjecture") {
+      const auto halves = conjecture_requests(scheme, valence);
+      requests.insert(requests.end(), halves.begin(), halves.end());
+      continue;
+    }
+    const auto domain = parse_domain(text);
+    if (!domain || domain->first > 10'000) {
+      throw UsageError(fmt::format(
+          "--domain: '{}' is not piece:I, pieces:I,J (1 to 3), ring:K, rings:K, omega, annulus, global or "
+          "conjecture",
+          text));
+    }
+    const auto known = std::find_if(chapter.begin(), chapter.end(), [&](const IndependenceRequest& request) {
+      return request.domain == *domain;
+    });
+    requests.push_back(known == chapter.end() ? IndependenceRequest{*domain, "", std::nullopt} : *known);
+  }
+  return requests;
+}
+
+const char* word(bool independent) { return independent ? "independent" : "dependent"; }
+
+void write_entries(JsonWriter& json, const std::vector<mpq_class>& polynomial) {
+  if (polynomial.size() == 1) {
+    json.value(polynomial[0].get_str());
+    return;
+  }
+  json.begin_array();
+  for (const mpq_class& x : polynomial) json.value(x.get_str());
+  json.end_array();
+}
+
+void write_certificate(JsonWriter& json, const RankCertificate& why) {
+  json.key("certificate").begin_object().field("prime", why.prime).field("root", why.root);
+  if (why.rings) json.field("rings", *why.rings);
+  if (why.steps) json.field("steps", *why.steps);
+  constexpr auto bounds =
+      std::to_array<Named<RankCertificate::Bound>>({{"full", RankCertificate::Bound::full},
+                                                    {"count", RankCertificate::Bound::count},
+                                                    {"kernel", RankCertificate::Bound::kernel}});
+  json.field("bound", name_in(bounds, why.bound));
+  if (why.bound == RankCertificate::Bound::kernel) {
+    json.field("left_out", why.left_out);
+    if (why.factor) json.field("factor", why.factor->get_str());
+    json.key("kernel").begin_array();
+    for (const PolynomialVector& v : why.kernel) {
+      json.begin_object();
+      for (const auto& [point, entry] : v) {
+        json.key(std::to_string(point + 1));
+        write_entries(json, entry);
+      }
+      json.end_object();
+    }
+    json.end_array();
+  }
+  json.end_object();
+}
+
+void write_case(JsonWriter& json, const IndependenceCase& found, bool older) {
+  json.begin_object().field("valence", found.valence).field("domain", name_of(found.domain));
+  json.field("dimension", found.dimension)
+      .field("rank", found.rank)
+      .field("independent", found.independent());
+  json.key("statement");
+  if (found.statement.empty()) {
+    json.null();
+  } else {
+    json.value(found.statement);
+  }
+  json.key("text");
+  if (found.text) {
+    json.value(word(*found.text));
+  } else {
+    json.null();
+  }
+  if (older) json.field("rule", "older");
+  write_certificate(json, found.certificate);
+  json.end_object();
+}
+
+std::string text_of(const IndependenceCase& found) {
+  std::string line = fmt::format("{:>4}  {:<11} {:>4} of {:<4} {:<11}", found.valence, name_of(found.domain),
+                                 found.rank, found.dimension, word(found.independent()));
+  if (!found.text) return line;
+  line += "  " + found.statement;
+  if (*found.text != found.independent()) line += fmt::format(", which says {}", word(*found.text));
+  return line;
+}
+
+// Entries that are not zero, as {"column": "3/8"}, or {"rational": ..., "cosines": {"i": factor of 2cos(2 pi i/n)}}.
+void write_row(JsonWriter& json, const WeightRow& row) {
+  json.begin_object();
+  for (const auto& [point, w] : row) {
+    json.key(std::to_string(point + 1));
+    if (w.is_rational()) {
+      json.value(w.rational.get_str());
+      continue;
+    }
+    json.begin_object().field("rational", w.rational.get_str()).key("cosines").begin_object();
+    for (const auto& [index, factor] : w.cosines) json.field(std::to_string(index), factor.get_str());
+    json.end_object().end_object();
+  }
+  json.end_object();
+}
+
+void write_matrices(JsonWriter& json, const ExactScheme& scheme, std::uint32_t valence) {
+  const PieceStep step = piece_step(scheme, valence);
+  json.begin_object()
+      .field("valence", valence)
+      .field("rows", step.rows.size())
+      .field("columns", step.dimension);
+  json.field("kept", step.kept).key("matrix").begin_array();
+  for (const WeightRow& row : step.rows) write_row(json, row);
+  json.end_array().key("pieces").begin_array();
+  for (const auto& piece : step.pieces) {
+    json.begin_array();
+    for (const Functional& functional : piece) {
+      json.begin_array();
+      for (const auto& [row, sign] : functional) json.value(sign * static_cast<int>(row + 1));
+      json.end_array();
+    }
+    json.end_array();
+  }
+  json.end_array().end_object();
+}
+
+ExitStatus run_on_valences(const Options& options) {
+  const Range range = parse_valences(options.valence);
+  const ExactScheme scheme = exact_scheme(options);
+  if (options.matrices && !options.json) throw UsageError("--matrices needs --json");
+  const std::size_t count = range.last - range.first + 1;
+  std::vector<std::vector<IndependenceCase>> found(count);
+  Report report("independence", options);
+  {
+    ProgressBar bar("ranks", options.quiet);
+    const WorkMonitor monitor = bar.monitor();
+    std::atomic<std::size_t> done = 0;
+    for (const std::string& text : options.domains) {  // refused before work begins
+      Options one = options;
+      one.domains = {text};
+      requests_for(one, scheme, range.first);
+    }
+    // The largest first: it takes longest.
+    parallel_for(count, options.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto valence = range.last - static_cast<std::uint32_t>(i);
+        found[count - 1 - i] =
+            independence_cases(scheme, valence, requests_for(options, scheme, valence), monitor);
+        monitor.report(static_cast<double>(++done) / static_cast<double>(count));
+      }
+    });
+  }
+  if (report.json()) {
+    JsonWriter& json = report.write();
+    json.field("scheme", name_of(scheme.scheme)).key("cases").begin_array();
+    for (const auto& cases : found) {
+      for (const IndependenceCase& each : cases) write_case(json, each, scheme.older_vertices);
+    }
+    json.end_array();
+    if (options.matrices) {
+      json.key("matrices").begin_array();
+      for (std::uint32_t n = range.first; n <= range.last; ++n) write_matrices(json, scheme, n);
+      json.end_array();
+    }
+  }
+  for (const auto& cases : found) {
+    for (const IndependenceCase& each : cases) report.text(text_of(each));
+  }
+  return report.finish();
+}
+
+ExitStatus run_on_mesh(const Options& options) {
+  const ControlMesh mesh = load_mesh(options.mesh, options);
+  const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
+  Report report("independence", options);
+  MeshKernel kernel;
+  {
+    ProgressBar bar("kernel", options.quiet);
+    const WorkMonitor monitor = bar.monitor();
+    naming(options.mesh, [&] { kernel = mesh_kernel(mesh, rules, monitor); });
+  }
+  report.heads({options.mesh}, {name_of(rules.scheme)});
+  const std::size_t dimension = mesh.vertex_count();
+  if (report.json()) {
+    JsonWriter& json = report.write();
+    json.field("dimension", dimension).field("rank", dimension - kernel.dimension());
+    json.field("independent", kernel.dimension() == 0);
+    write_kernel(json, kernel);
+  }
+  report.text(fmt::format("{}: {} nodal functions, rank {}: {}", options.mesh, dimension,
+                          dimension - kernel.dimension(), word(kernel.dimension() == 0)));
+  for (const KernelVector& v : kernel.vectors) {
+    std::string names;
+    for (std::size_t i = 0; i < std::min(named_vertices, v.vertices.size()); ++i) {
+      names += fmt::format(" {}{}", v.signs[i] > 0 ? '+' : '-', v.vertices[i].index());
+    }
+    report.text(fmt::format("  vanishes: {} vertices with signs in turn:{}{}", v.vertices.size(), names,
+                            v.vertices.size() > named_vertices ? " ..." : ""));
+  }
+  return report.finish();
+}
+
+ExitStatus run(const Options& options) {
+  if (options.mesh.empty() == options.valence.empty()) {
+    throw UsageError(
+        "independence: give --valence A..B for pieces with one extraordinary corner, or --mesh FILE");
+  }
+  return options.mesh.empty() ? run_on_valences(options) : run_on_mesh(options);
+}
+
+}  // namespace
+
+Command independence_command() {
+  auto options = std::make_shared<Options>();
+  OptionList list;
+  list.add(Group::own, "--valence RANGE", &options->valence,
+           "Pieces with one extraordinary corner of these valences (dual schemes: corners of a face), such "
+           "as 3..30");
+  list.add(Group::own, "--domain DOMAIN", &options->domains,
+           "Where functions are looked at: piece:I, pieces:I,J, ring:K, rings:K, omega, annulus, global, "
+           "conjecture; several "
+           "times for several. Without: all that chapter 3 speaks of, and all numbers of rings")
+      .needs("--valence");
+  list.add(Group::own, "--older-rule", &options->older,
+           "Catmull-Clark with the vertex points (Q + R + 2S)/4 of an early version")
+      .needs("--valence");
+  list.add(Group::own, "--matrices", &options->matrices,
+           "With the exact matrices of a step, and what pieces pick of them")
+      .needs("--valence");
+  list.add(Group::own, "--mesh FILE", &options->mesh,
+           "A whole mesh: which control values leave its surface as it is")
+      .excludes("--valence");
+  add_common_options(list, *options);
+  return {"independence",
+          Topic::one_surface,
+          "Which nodal functions are linearly independent, and where, by exact arithmetic",
+          {"snug independence --scheme loop --valence 3..30 --json -o loop.json",
+           "snug independence --scheme catmark --valence 100 --domain conjecture",
+           "snug independence --mesh cube.obj"},
+          std::move(list),
+          [options] { return run(*options); }};
+}
+
+}  // namespace snug::command

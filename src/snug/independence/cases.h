@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gmpxx.h>
+
+#include <snug/independence/control_net.h>
+#include <snug/monitor.h>
+
+namespace snug {
+
+/// Where nodal functions are looked at: parts of a piece with one extraordinary corner, or of what is around the corner.
+/// Rings are counted from 1; ring k + 1 is the half of ring k in size, nearer to the corner.
+struct IndependenceDomain {
+  enum class Kind {
+    piece,    ///< polynomial piece `first` of ring 1, 1 to 3
+    pieces,   ///< two of them
+    ring,     ///< ring `first` alone
+    rings,    ///< rings 1 to `first`
+    omega,    ///< the whole piece: all rings
+    annulus,  ///< ring 1 of all pieces around the corner
+    global,   ///< a closed mesh with two corners of this valence, see closed_net()
+  };
+  Kind kind = Kind::omega;
+  std::uint32_t first = 0, second = 0;
+  friend bool operator==(const IndependenceDomain&, const IndependenceDomain&) = default;
+};
+[[nodiscard]] std::string name_of(const IndependenceDomain& domain);
+/// Nothing for a text that names no domain.
+[[nodiscard]] std::optional<IndependenceDomain> parse_domain(const std::string& text);
+
+/// Entries that are not zero, by point from 0: coefficients of a polynomial in 2 cos(2 pi / n).
+using PolynomialVector = std::map<std::uint32_t, std::vector<mpq_class>>;
+
+/// Why the rank is what it is; docs/independence.md says how each is checked.
+struct RankCertificate {
+  enum class Bound { full, count, kernel };
+  std::uint32_t prime = 0, root = 0;   ///< the rank modulo this prime is that of the domain
+  std::optional<std::uint32_t> rings;  ///< omega: so many are enough for it
+  std::optional<std::uint32_t> steps;  ///< global: after so many steps
+  Bound bound = Bound::full;           ///< why it is no greater
+  std::uint32_t left_out = 0;          ///< irrational rows that the kernel is not asked about
+  std::optional<mpq_class> factor;     ///< omega: a step maps each vector to this multiple of itself
+  std::vector<PolynomialVector> kernel;
+};
+
+/// The rank of the nodal functions of K control points on a domain.
+struct IndependenceCase {
+  std::uint32_t valence = 0;
+  IndependenceDomain domain;
+  std::uint32_t dimension = 0, rank = 0;
+  RankCertificate certificate;
+  std::string statement;     ///< of [Wu05, ch. 3]; empty for none
+  std::optional<bool> text;  ///< what that says: independent?
+
+  [[nodiscard]] bool independent() const { return rank == dimension; }
+};
+
+/// What is asked about, and what the dissertation says of it.
+struct IndependenceRequest {
+  IndependenceDomain domain;
+  std::string statement;
+  std::optional<bool> text;
+};
+
+/// Every statement of chapter 3 about this valence, and all numbers of rings up to the one that adds nothing.
+[[nodiscard]] std::vector<IndependenceRequest> chapter_requests(const ExactScheme& scheme,
+                                                                std::uint32_t valence);
+/// The two halves of conjectures 1 and 2: enough rings, and one too few.
+/// Requires:  Loop with valence 8 and more, Catmull-Clark with 5 and more; nothing else has any.
+[[nodiscard]] std::vector<IndependenceRequest> conjecture_requests(const ExactScheme& scheme,
+                                                                   std::uint32_t valence);
+
+/// Exact ranks with certificates.
+///
+/// Guarantee: ranks are those of the functions, in exact arithmetic.
+/// Requires:  valence >= 3.
+/// Errors:    Interrupted.
+/// Cost:      grows as the cube of the valence times the rings; kernels with the fourth power.
+/// Source:    [Wu05, ch. 3]; docs/derivations/independence.md.
+[[nodiscard]] std::vector<IndependenceCase> independence_cases(
+    const ExactScheme& scheme, std::uint32_t valence, const std::vector<IndependenceRequest>& requests,
+    const WorkMonitor& monitor = {});
+
+}  // namespace snug

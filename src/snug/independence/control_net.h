@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <snug/independence/weight.h>
+#include <snug/mesh.h>
+
+namespace snug {
+
+/// A part of an oriented control mesh: its faces, counterclockwise. Points are 0 to points - 1.
+struct ControlNet {
+  std::uint32_t points = 0;
+  std::vector<std::vector<std::uint32_t>> faces;
+};
+
+/// Rules of refinement that chapter 3 of the dissertation tells apart.
+struct ExactScheme {
+  Scheme scheme = Scheme::loop;
+  bool older_vertices = false;  ///< Catmull-Clark with vertex points (Q + R + 2S)/4, R the mean of neighbours
+
+  [[nodiscard]] bool dual() const { return scheme == Scheme::doo_sabin || scheme == Scheme::midedge; }
+};
+
+/// A net one step finer: the points whose masks have all their points, and the faces of those.
+struct RefinedNet {
+  ControlNet net;
+  std::vector<WeightRow> rows;  ///< a point
+  std::vector<std::optional<std::uint32_t>> of_vertex, of_face;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> of_edge;  ///< the smaller end first
+  /// Primal schemes: the fine face, dual ones: the fine point, at (face, its corner); with Loop corner 3 is the middle.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> child;
+};
+
+/// One step by exact masks.
+///
+/// Requires:  a scheme of the four; triangles for Loop; manifold edges; the valence of each irrational mask divides `order`.
+/// Source:    [Wu05, sec. 2.2 to 2.5].
+[[nodiscard]] RefinedNet refine(const ControlNet& net, const ExactScheme& scheme, std::uint32_t order);
+
+/// Where the points of a net are in another one that contains it, given an edge of a face of each, in the direction of the
+/// face.
+/// Requires:  that it does.
+[[nodiscard]] std::vector<std::uint32_t> embedded(const ControlNet& net, std::array<std::uint32_t, 2> edge,
+                                                  const ControlNet& larger,
+                                                  std::array<std::uint32_t, 2> larger_edge);
+
+/// The control points of a piece with one extraordinary corner of valence n >= 3, as docs/independence.md numbers them, less
+/// one: n + 6 (Loop), 2 n + 8 (Catmull-Clark), n + 5 (dual schemes).
+[[nodiscard]] ControlNet piece_net(const ExactScheme& scheme, std::uint32_t n);
+/// Those of the n pieces around the corner.
+[[nodiscard]] ControlNet annulus_net(const ExactScheme& scheme, std::uint32_t n);
+/// A closed mesh with corners of valence n: the bipyramid (Loop), the trapezohedron (Catmull-Clark; the cube for n = 3), the
+/// prism (dual schemes).
+[[nodiscard]] ControlNet closed_net(const ExactScheme& scheme, std::uint32_t n);
+
+}  // namespace snug

@@ -1,0 +1,113 @@
+#include <snug/independence/piece_step.h>
+
+#include <algorithm>
+#include <set>
+
+#include <snug/base/contract.h>
+
+namespace snug {
+namespace {
+
+bool shares_vertex(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+  return std::any_of(a.begin(), a.end(),
+                     [&](std::uint32_t v) { return std::find(b.begin(), b.end(), v) != b.end(); });
+}
+
+// Each control point of a regular piece: of its face (primal) and the faces around; with Loop's valence 3 one comes twice.
+std::vector<Functional> primal_functionals(const ControlNet& net, std::uint32_t face) {
+  std::set<std::uint32_t> points;
+  for (const auto& other : net.faces) {
+    if (shares_vertex(other, net.faces[face])) points.insert(other.begin(), other.end());
+  }
+  SNUG_EXPECT(points.size() >= (net.faces[face].size() == 3 ? 11U : 16U));
+  std::vector<Functional> all;
+  for (const std::uint32_t p : points) all.push_back({{p, 1}});
+  return all;
+}
+
+std::vector<Functional> dual_functionals(const ControlNet& net, std::uint32_t vertex, bool midedge) {
+  std::set<std::uint32_t> beside, diagonal;
+  for (const auto& face : net.faces) {
+    const auto at = std::find(face.begin(), face.end(), vertex);
+    if (at == face.end()) continue;
+    SNUG_EXPECT(face.size() == 4);
+    const auto i = static_cast<std::size_t>(at - face.begin());
+    beside.insert({face[(i + 1) % 4], face[(i + 3) % 4]});
+    diagonal.insert(face[(i + 2) % 4]);
+  }
+  SNUG_EXPECT(beside.size() == 4 && diagonal.size() == 4);
+  std::vector<Functional> all;
+  if (!midedge) all.push_back({{vertex, 1}});
+  for (const std::uint32_t p : beside)
+    all.push_back(midedge ? Functional{{vertex, 1}, {p, 1}} : Functional{{p, 1}});
+  for (const std::uint32_t p : diagonal)
+    all.push_back(midedge ? Functional{{vertex, 1}, {p, -1}} : Functional{{p, 1}});
+  return all;
+}
+
+std::vector<Functional> functionals(const ExactScheme& scheme, const ControlNet& net, std::uint32_t child) {
+  return scheme.dual() ? dual_functionals(net, child, scheme.scheme == Scheme::midedge)
+                       : primal_functionals(net, child);
+}
+
+}  // namespace
+
+PieceStep piece_step(const ExactScheme& scheme, std::uint32_t n) {
+  const ControlNet net = piece_net(scheme, n);
+  const RefinedNet fine = refine(net, scheme, n);
+  const std::array<std::uint32_t, 2> edge = scheme.dual()
+                                                ? std::array{fine.child.at({0, 0}), fine.child.at({0, 1})}
+                                                : std::array{*fine.of_vertex[0], fine.of_edge.at({0, 1})};
+  const std::vector<std::uint32_t> kept = embedded(net, {0, 1}, fine.net, edge);
+
+  // Kept rows first, in the order of the net.
+  PieceStep step;
+  step.dimension = step.kept = net.points;
+  std::vector<std::uint32_t> number(fine.rows.size(), UINT32_MAX);
+  for (const std::uint32_t p : kept) {
+    number[p] = static_cast<std::uint32_t>(step.rows.size());
+    step.rows.push_back(fine.rows[p]);
+  }
+  for (std::uint32_t p = 0; p < fine.rows.size(); ++p) {
+    if (number[p] != UINT32_MAX) continue;
+    number[p] = static_cast<std::uint32_t>(step.rows.size());
+    step.rows.push_back(fine.rows[p]);
+  }
+  std::array<std::pair<std::uint32_t, std::uint32_t>, 3> children{{{1, 1}, {1, 2}, {1, 3}}};  // Catmull-Clark
+  if (scheme.scheme == Scheme::loop) children = {{{n - 1, 2}, {n - 1, 3}, {n - 1, 1}}};
+  if (scheme.dual()) children = {{{1, 1}, {2, 0}, {3, 0}}};
+  for (const auto& child : children) {
+    step.pieces.push_back(functionals(scheme, fine.net, fine.child.at(child)));
+    for (Functional& functional : step.pieces.back()) {
+      for (auto& [row, sign] : functional) row = number[row];
+    }
+  }
+  return step;
+}
+
+PieceStep annulus_step(const ExactScheme& scheme, std::uint32_t n) {
+  const ControlNet net = annulus_net(scheme, n);
+  RefinedNet fine = refine(net, scheme, n);
+  PieceStep step;
+  step.dimension = net.points;
+  for (const auto& [at, child] : fine.child) {
+    const auto [face, corner] = at;
+    const std::vector<std::uint32_t>& corners = net.faces[face];
+    bool regular;  // a part of a piece at the corner, but not its part there
+    if (scheme.dual()) {
+      regular = face != 0 && corners[corner] < n;
+    } else {
+      regular = corners[0] == 0 && corner != 0;
+    }
+    if (regular) step.pieces.push_back(functionals(scheme, fine.net, child));
+  }
+  SNUG_EXPECT(step.pieces.size() == 3 * n);
+  step.rows = std::move(fine.rows);
+  return step;
+}
+
+PieceStep mesh_step(const RefinedNet& refined, std::uint32_t points) {
+  return {points, refined.rows, {}, refined.net.points};
+}
+
+}  // namespace snug

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <snug/independence/control_net.h>
+
+namespace snug {
+
+/// A control point of a regular piece, or with Midedge a sum of two that is zero on the dependent combination of its nine
+/// functions: pairs of a row of a step and its sign. The function is zero on the piece iff all of its are.
+using Functional = std::vector<std::pair<std::uint32_t, int>>;
+
+/// One step of refinement of a net, and the regular pieces that come of it.
+struct PieceStep {
+  std::uint32_t dimension = 0;                  ///< points of the net: K
+  std::vector<WeightRow> rows;                  ///< of the finer net
+  std::vector<std::vector<Functional>> pieces;  ///< the regular ones
+  std::uint32_t kept = 0;  ///< how many rows begin the finer net of the part that is not regular
+};
+
+/// The step of a piece with one extraordinary corner: its rows are the dissertation's A (M by K), the first K of them A',
+/// and its three pieces are what P_1, P_2 and P_3 pick.
+///
+/// Source:    [Wu05, sec. 3.3 and 3.5], whose numbers are kept.
+[[nodiscard]] PieceStep piece_step(const ExactScheme& scheme, std::uint32_t n);
+
+/// The step of the n pieces around a corner: 3 n regular pieces, nothing kept.
+[[nodiscard]] PieceStep annulus_step(const ExactScheme& scheme, std::uint32_t n);
+
+/// A step of a whole mesh: no pieces; all rows are kept.
+[[nodiscard]] PieceStep mesh_step(const RefinedNet& refined, std::uint32_t points);
+
+}  // namespace snug

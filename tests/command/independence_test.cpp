@@ -1,0 +1,117 @@
+// independence, as people script it.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "run_snug.h"
+
+namespace snug::testing {
+namespace {
+
+using nlohmann::json;
+
+class independence_command : public ::testing::Test {
+ protected:
+  static json answer(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "independence");
+    arguments.emplace_back("--json");
+    const Outcome outcome = run_snug(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out, nullptr, false);
+  }
+  static void expect_refused(std::vector<std::string> arguments, const std::string& why) {
+    arguments.insert(arguments.begin(), "independence");
+    const Outcome outcome = run_snug(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_NE(outcome.err.find(why), std::string::npos) << outcome.err;
+  }
+  std::string write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_.file(name)) << text;
+    return folder_.file(name);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(independence_command, gives_ranks_with_certificates) {
+  const json found =
+      answer({"--scheme", "loop", "--valence", "7..9", "--domain", "rings:1", "--domain", "omega"});
+  EXPECT_EQ(found["scheme"], "loop");
+  ASSERT_EQ(found["cases"].size(), 6);
+  const json& eight = found["cases"][2];
+  EXPECT_EQ(eight["valence"], 8);
+  EXPECT_EQ(eight["domain"], "rings:1");
+  EXPECT_EQ(eight["dimension"], 14);
+  EXPECT_EQ(eight["rank"], 13);
+  EXPECT_EQ(eight["independent"], false);
+  EXPECT_EQ(eight["text"], "dependent");
+  EXPECT_EQ(eight["certificate"]["bound"], "kernel");
+  // The two neighbours of the corner that a ring does not see, against each other.
+  ASSERT_EQ(eight["certificate"]["kernel"].size(), 1);
+  EXPECT_EQ(eight["certificate"]["kernel"][0], json::parse(R"({"5": "-1", "6": "1"})"));
+  EXPECT_EQ(found["cases"][3]["certificate"]["bound"], "full");
+  EXPECT_EQ(found["cases"][3]["certificate"]["rings"], 2);
+}
+
+TEST_F(independence_command, does_not_depend_on_threads) {
+  json one = answer({"--scheme", "catmark", "--valence", "3..12", "--threads", "1"});
+  json four = answer({"--scheme", "catmark", "--valence", "3..12", "--threads", "4"});
+  one.erase("seconds");
+  four.erase("seconds");
+  EXPECT_EQ(one, four);
+}
+
+TEST_F(independence_command, prints_the_matrices_of_a_step) {
+  const json found = answer({"--scheme", "loop", "--valence", "5", "--domain", "omega", "--matrices"});
+  ASSERT_EQ(found["matrices"].size(), 1);
+  const json& step = found["matrices"][0];
+  EXPECT_EQ(step["rows"], 17);
+  EXPECT_EQ(step["columns"], 11);
+  EXPECT_EQ(step["kept"], 11);
+  ASSERT_EQ(step["matrix"].size(), 17);
+  // The corner: 1 - 5/8 + (3 + 2cos(2 pi/5))^2/64 of itself, where 2cos(2 pi/5)^2 is one with 2cos(4 pi/5).
+  EXPECT_EQ(step["matrix"][0]["1"],
+            json::parse(R"({"rational": "35/64", "cosines": {"1": "3/32", "2": "1/64"}})"));
+  EXPECT_EQ(step["matrix"][1]["2"], "3/8");
+  EXPECT_EQ(step["pieces"].size(), 3);
+  EXPECT_EQ(step["pieces"][0].size(), 12);
+}
+
+TEST_F(independence_command, names_the_kernel_of_a_mesh) {
+  const std::string cube = write("cube.obj",
+                                 "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
+                                 "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+  const json found = answer({"--mesh", cube});
+  EXPECT_EQ(found["dimension"], 8);
+  EXPECT_EQ(found["rank"], 7);
+  EXPECT_EQ(found["independent"], false);
+  ASSERT_EQ(found["kernel"].size(), 1);
+  EXPECT_EQ(found["kernel"][0]["signs"], json::parse("[1, -1, -1, 1, -1, 1, 1, -1]"));
+  EXPECT_EQ(answer({"--mesh", cube, "--scheme", "doo-sabin"})["independent"], true);
+  const Outcome text = run_snug({"independence", "--mesh", cube});
+  EXPECT_NE(text.out.find("8 vertices with signs in turn: +0 -1 -2 +3"), std::string::npos) << text.out;
+}
+
+TEST_F(independence_command, refuses_what_is_no_question) {
+  expect_refused({}, "give --valence A..B");
+  expect_refused({"--valence", "2"}, "from 3 to 200");
+  expect_refused({"--valence", "30..3"}, "ends before it begins");
+  expect_refused({"--valence", "3..1000000000"}, "from 3 to 200");
+  expect_refused({"--valence", "3..1e9"}, "is no valence");
+  expect_refused({"--valence", "..7"}, "is no valence");
+  expect_refused({"--valence", "7", "--domain", "ring:0"}, "--domain: 'ring:0'");
+  expect_refused({"--valence", "7", "--scheme", "flat"}, "loop, catmark, doo-sabin and midedge");
+  expect_refused({"--valence", "7", "--older-rule"}, "needs --scheme catmark");
+  expect_refused({"--valence", "7", "--matrices"}, "needs --json");
+  const std::string points = write("points.obj", "v 0 0 0\nv 1 0 0\n");
+  const Outcome empty = run_snug({"independence", "--mesh", points});
+  EXPECT_NE(empty.status, 0);
+  EXPECT_FALSE(empty.err.empty());
+}
+
+}  // namespace
+}  // namespace snug::testing
