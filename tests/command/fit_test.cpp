@@ -137,6 +137,14 @@ TEST_F(fit_command, comes_nearer_from_round_to_round) {
   EXPECT_LT(farthest(read_mesh(pawn), read_mesh(fitted)), 0.05);
 }
 
+TEST_F(fit_command, ends_where_the_residual_no_longer_falls) {
+  const std::string box = write("cube.obj", cube);
+  const json found = answer(
+      {box, "--scheme", "doo-sabin", "--points", points_of(box, "doo-sabin", 2, false), "--rounds", "60"});
+  EXPECT_LT(found["rounds"], 60);
+  EXPECT_LT(found["residual"]["max"], 1e-5);
+}
+
 // The numbers are those of the mesh that was written.
 TEST_F(fit_command, tells_the_residual_of_what_it_wrote) {
   const std::string pawn = model("pawn.obj");
