@@ -216,6 +216,53 @@ TEST(mesh_kernel, of_random_open_and_creased_meshes) {
   EXPECT_EQ(refused, 0);
 }
 
+// Dual schemes on what is left of a mesh when faces are taken away.
+TEST(mesh_kernel, of_random_open_meshes_of_dual_schemes) {
+  const char* const wanted = std::getenv("SNUG_KERNELS");
+  const std::size_t trials = wanted ? std::strtoull(wanted, nullptr, 10) : 120;
+  std::mt19937_64 random(20240603);
+  const std::vector<ClosedMesh> all = families();
+  std::array<std::size_t, 4> sum{}, refused{};
+  for (std::size_t trial = 0; trial < trials; ++trial) {
+    ClosedMesh mesh = all[random() % all.size()];
+    for (std::size_t k = random() % 4; k > 0; --k) mesh = changed(mesh, random);
+    if (mesh.vertices > 30) continue;
+    KernelMesh twin{mesh.vertices, mesh.faces};
+    for (std::size_t k = 1 + random() % 4; k > 0 && twin.faces.size() > 2; --k) {
+      KernelMesh fewer = twin;
+      fewer.faces.erase(fewer.faces.begin() + static_cast<std::ptrdiff_t>(random() % fewer.faces.size()));
+      if (Topology(mesh_of(fewer)).is_manifold()) twin = std::move(fewer);
+    }
+    for (const std::size_t s : {std::size_t{2}, std::size_t{3}}) {
+      try {
+        sum[s] += expect_exact(twin, schemes[s].first, schemes[s].second, mesh.name + " opened");
+      } catch (const InputError& error) {
+        ++refused[s];
+        EXPECT_NE(std::string(error.what()).find("corners"), std::string::npos) << error.what();
+      }
+    }
+  }
+  EXPECT_GT(sum[2], 0);
+  EXPECT_GT(sum[3], sum[2]);
+  EXPECT_LT(refused[2], trials / 10);
+  EXPECT_EQ(refused[3], 0);
+}
+
+// One vertex inside, of a face of n corners and two quads: three corners of the face show. Modes 2 to n - 2 of it are n - 3.
+TEST(mesh_kernel, of_a_large_face_at_the_boundary) {
+  for (const std::uint32_t n : {4, 5, 6, 7, 8}) {
+    KernelMesh twin{n + 3, {{}, {0, n - 1, n, n + 1}, {0, n + 1, n + 2, 1}}};
+    for (std::uint32_t i = 0; i < n; ++i) twin.faces[0].push_back(i);
+    EXPECT_EQ(expect_exact(twin, Scheme::midedge, KernelScheme::midedge, "fan"), n % 2 == 0 ? 1 : 0);
+    if (n <= 6) {
+      EXPECT_EQ(expect_exact(twin, Scheme::doo_sabin, KernelScheme::doo_sabin, "fan"), 0);
+    } else {
+      EXPECT_EQ(nullity_of_limits(twin, KernelScheme::doo_sabin, 3), n - 6);
+      EXPECT_THROW(static_cast<void>(mesh_kernel(mesh_of(twin), {.scheme = Scheme::doo_sabin})), InputError);
+    }
+  }
+}
+
 // A cube keeps its kernel with darts, and loses it to a crease through a vertex, a corner or a hole's edge.
 TEST(mesh_kernel, of_a_cube_with_tags) {
   const ClosedMesh cube = testing::prism(4);
@@ -330,9 +377,12 @@ TEST(mesh_kernel, refuses_what_is_not_decided) {
   ClosedMesh open = testing::prism(4);
   open.faces.pop_back();
   const ControlMesh box = testing::control_mesh_of(open, random);
-  for (const Scheme scheme : {Scheme::doo_sabin, Scheme::midedge}) {
-    has(message(box, {.scheme = scheme}), "on the boundary, and the scheme is dual");
-  }
+  // A face of eight corners, one of them inside.
+  const ControlMesh large =
+      testing::control_mesh_of({"", 11, {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 7, 8, 9}, {0, 9, 10, 1}}}, random);
+  has(message(large, {.scheme = Scheme::doo_sabin}),
+      "face 0 has 8 corners, 5 of them beside no vertex inside");
+  EXPECT_EQ(message(large, {.scheme = Scheme::midedge}), "decided");
   has(message(box, {.scheme = Scheme::catmark, .boundary = BoundaryRule::none}), "face 0 has no surface");
   ControlMesh hole = cube;
   hole.tags.holes.emplace_back(4);

@@ -108,11 +108,19 @@ class Step {
     return scheme_ == KernelScheme::loop || scheme_ == KernelScheme::catmark ? refined_primal()
                                                                              : refined_dual();
   }
+  // Is a part of it on the surface? With dual schemes, where a corner of it is inside.
+  [[nodiscard]] bool has_surface(std::size_t f) const {
+    const auto& face = mesh_.faces[f];
+    return scheme_ == KernelScheme::loop || scheme_ == KernelScheme::catmark ||
+           std::any_of(face.begin(), face.end(), [&](std::uint32_t v) { return inside(v); });
+  }
   // Of vertices, or of faces.
   [[nodiscard]] std::vector<Row> limits() const {
     std::vector<Row> rows;
     if (scheme_ == KernelScheme::doo_sabin || scheme_ == KernelScheme::midedge) {
-      for (std::size_t f = 0; f < mesh_.faces.size(); ++f) rows.push_back(mean(f));
+      for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
+        if (has_surface(f)) rows.push_back(mean(f));
+      }
       return rows;
     }
     for (std::uint32_t v = 0; v < mesh_.vertices; ++v) add_limit(v, rows);
@@ -277,7 +285,13 @@ class Step {
     mask[0] = f_.add(f_.ratio(1, 4), f_.ratio(5, 4 * n));
     return mask;
   }
-  // Of closed meshes.
+  // Has it faces all around?
+  [[nodiscard]] bool inside(std::uint32_t v) const {
+    const auto& ends = near_.ends[v];
+    return !ends.empty() && std::all_of(ends.begin(), ends.end(), [&](std::uint32_t w) {
+      return near_.edges.at(edge_of(v, w)).size() == 2;
+    });
+  }
   [[nodiscard]] Net refined_dual() const {
     Net result;
     std::vector<std::uint32_t> begins;
@@ -298,11 +312,12 @@ class Step {
       return begins[side.face] + static_cast<std::uint32_t>((side.corner + further) % n);
     };
     for (const auto& [edge, sides] : near_.edges) {
+      if (sides.size() != 2) continue;
       const auto one = near_.from.at(edge), other = near_.from.at({edge.second, edge.first});
       result.mesh.faces.push_back({corner(one, 1), corner(one, 0), corner(other, 1), corner(other, 0)});
     }
     for (std::uint32_t v = 0; v < mesh_.vertices; ++v) {
-      if (near_.ends[v].empty()) continue;
+      if (!inside(v)) continue;
       std::vector<std::uint32_t> around;
       const std::uint32_t first = *near_.ends[v].begin();
       std::uint32_t end = first;
@@ -411,10 +426,15 @@ bool vanishes(const KernelMesh& mesh, KernelScheme scheme, const std::vector<std
   Net net{mesh, {}};
   for (const std::int8_t x : values) net.rows.push_back({field.ratio(x, 1)});
   const Net refined = Step(field, net, scheme).refined();
-  // Isolated vertices stay, and have no limit.
-  std::set<std::uint32_t> used;
-  for (const auto& face : refined.mesh.faces) used.insert(face.begin(), face.end());
-  return std::all_of(used.begin(), used.end(), [&](std::uint32_t v) { return refined.rows[v][0] == 0; });
+  const Step next(field, refined, scheme);
+  // What supports the surface: neither isolated vertices nor faces at the boundary of a dual scheme's.
+  for (std::size_t f = 0; f < refined.mesh.faces.size(); ++f) {
+    if (!next.has_surface(f)) continue;
+    for (const std::uint32_t v : refined.mesh.faces[f]) {
+      if (refined.rows[v][0] != 0) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace oracle

@@ -22,8 +22,8 @@ struct KernelMesh {
   bool smooth_triangles = false;
 };
 
-/// The control values whose limit is 0 at all vertices (dual schemes: the middles of all faces) of the mesh after `steps` steps,
-/// but for darts and what is not at rest: their dimension, in exact arithmetic modulo a prime.
+/// The control values whose limit is 0 at all vertices (dual schemes: the middles of all faces with a corner inside) of the mesh
+/// after `steps` steps, but for darts and what is not at rest: their dimension, in exact arithmetic modulo a prime.
 ///
 /// Guarantee: at least the dimension of the values whose limit is 0 everywhere. The prime is 1 modulo all valences' common
 ///            multiple: cosines are elements of the field, masks are images of the exact ones, and a rank never grows.
@@ -31,7 +31,7 @@ struct KernelMesh {
 ///            [DeRose98]. A face's mean is kept by the dual masks.
 [[nodiscard]] std::size_t nullity_of_limits(const KernelMesh& mesh, KernelScheme scheme, int steps);
 
-/// Is every vertex 0 after one step from these values? In the same arithmetic.
+/// Is every vertex of a face with a surface 0 after one step from these values? In the same arithmetic.
 [[nodiscard]] bool vanishes(const KernelMesh& mesh, KernelScheme scheme,
                             const std::vector<std::int8_t>& values);
 

@@ -16,29 +16,40 @@ namespace {
   throw InputError(InputProblem::refused, "the kernel of the mesh is not decided: " + why);
 }
 
-std::string name_of_edge(const Topology& topology, EdgeId e) {
-  const HalfEdge h = topology.half_of(e);
-  const auto [a, b] = std::minmax({topology.from(h).index(), topology.to(h).index()});
-  return "edge (" + std::to_string(a) + ", " + std::to_string(b) + ")";
-}
-
-// Has a face no surface?
+// Faces without a surface; with a dual scheme those without a vertex inside, which support no patch.
 std::vector<bool> bare_faces(const ControlMesh& mesh, const RuledMesh& ruled) {
+  const Topology& topology = ruled.topology;
   std::vector<bool> bare(mesh.face_count(), false);
+  if (!rules_of(ruled.options.scheme).primal) {
+    for (std::size_t f = 0; f < bare.size(); ++f) {
+      const auto face = topology.face(FaceId(f));
+      bare[f] = std::all_of(face.begin(), face.end(), [&](VertexId v) { return topology.on_boundary(v); });
+    }
+    return bare;
+  }
   for (const FaceId f : mesh.tags.holes) bare[f.index()] = true;
   if (ruled.options.boundary == BoundaryRule::none) {
     for (std::size_t f = 0; f < bare.size(); ++f) {
-      bare[f] = bare[f] || loses_surface(ruled.topology, ruled.sharpness, FaceId(f));
+      bare[f] = bare[f] || loses_surface(topology, ruled.sharpness, FaceId(f));
     }
   }
   return bare;
 }
 
-void require_closed(const Topology& topology) {
-  for (std::size_t e = 0; e < topology.edge_count(); ++e) {
-    if (!topology.ends_fans(EdgeId(e))) continue;
-    refuse(name_of_edge(topology, EdgeId(e)) +
-           " is on the boundary, and the scheme is dual; close the mesh, or take loop or catmark");
+// With Doo-Sabin, all modes of a face show at its corners inside and beside these: there are enough of them.
+void require_small_faces(const Topology& topology, const std::vector<bool>& bare) {
+  for (std::size_t f = 0; f < bare.size(); ++f) {
+    if (bare[f]) continue;
+    const auto face = topology.face(FaceId(f));
+    const std::size_t n = face.size();
+    std::size_t shown = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto inside = [&](std::size_t k) { return !topology.on_boundary(face[k % n]); };
+      shown += inside(i) || inside(i + 1) || inside(i + n - 1) ? 1 : 0;
+    }
+    if (n <= shown + 3) continue;
+    refuse("face " + std::to_string(f) + " has " + std::to_string(n) + " corners, " +
+           std::to_string(n - shown) + " of them beside no vertex inside; split it, or close the mesh");
   }
 }
 
@@ -71,8 +82,11 @@ struct Colouring {
   VertexId unknown;
 };
 
-// Colours the component of `first` by 1 and -1 in `signs`, where 0 is not yet met.
-Colouring colour(const RuledMesh& ruled, VertexId first, std::vector<std::int8_t>& signs) {
+// Colours the component of `first`, along edges of faces that are not bare, by 1 and -1 in `signs`, where 0 is
+// not yet met.
+Colouring colour(const RuledMesh& ruled, const std::vector<bool>& bare, VertexId first,
+                 std::vector<std::int8_t>& signs) {
+  const Topology& topology = ruled.topology;
   Colouring result;
   Star star;
   signs[first.index()] = 1;
@@ -80,7 +94,7 @@ Colouring colour(const RuledMesh& ruled, VertexId first, std::vector<std::int8_t
   for (std::size_t next = 0; next < result.vertices.size(); ++next) {
     const VertexId v = result.vertices[next];
     const std::int8_t sign = signs[v.index()];
-    walk_edges(ruled.topology, v, [&](EdgeId, VertexId end) {
+    const auto meet = [&](VertexId end) {
       std::int8_t& other = signs[end.index()];
       if (other == 0) {
         other = static_cast<std::int8_t>(-sign);
@@ -88,6 +102,11 @@ Colouring colour(const RuledMesh& ruled, VertexId first, std::vector<std::int8_t
       } else if (other == sign) {
         result.two_colours = false;
       }
+    };
+    walk_fans(topology, v, [&](HalfEdge h) {
+      if (bare[topology.face_of(h).index()]) return;
+      meet(topology.to(h));
+      meet(topology.from(topology.prev(h)));
     });
     if (!result.vanishes || !result.two_colours) continue;
     const Alternating fate = fate_at(ruled, v, star);
@@ -97,14 +116,24 @@ Colouring colour(const RuledMesh& ruled, VertexId first, std::vector<std::int8_t
   return result;
 }
 
+// Vertices of faces that are not bare.
+std::vector<bool> used_vertices(const Topology& topology, const std::vector<bool>& bare) {
+  std::vector<bool> used(topology.vertex_count(), false);
+  for (std::size_t f = 0; f < bare.size(); ++f) {
+    if (bare[f]) continue;
+    for (const VertexId v : topology.face(FaceId(f))) used[v.index()] = true;
+  }
+  return used;
+}
+
 // Adds a vector for each component whose alternating values vanish.
-void add_alternating(const RuledMesh& ruled, const WorkMonitor& monitor, std::vector<KernelVector>& out) {
-  const std::size_t count = ruled.topology.vertex_count();
-  std::vector<std::int8_t> signs(count, 0);
-  for (std::size_t v = 0; v < count; ++v) {
+void add_alternating(const RuledMesh& ruled, const std::vector<bool>& bare, const std::vector<bool>& used,
+                     const WorkMonitor& monitor, std::vector<KernelVector>& out) {
+  std::vector<std::int8_t> signs(used.size(), 0);
+  for (std::size_t v = 0; v < used.size(); ++v) {
     monitor.checkpoint();
-    if (signs[v] != 0 || ruled.topology.isolated(VertexId(v))) continue;
-    Colouring found = colour(ruled, VertexId(v), signs);
+    if (signs[v] != 0 || !used[v]) continue;
+    Colouring found = colour(ruled, bare, VertexId(v), signs);
     if (!found.two_colours || !found.vanishes) continue;
     if (found.unknown.valid()) {
       refuse("vertex " + std::to_string(found.unknown.index()) +
@@ -117,18 +146,6 @@ void add_alternating(const RuledMesh& ruled, const WorkMonitor& monitor, std::ve
   }
 }
 
-// Adds a vector for each vertex that no face with a surface uses.
-void add_unused(const ControlMesh& mesh, const std::vector<bool>& bare, std::vector<KernelVector>& out) {
-  std::vector<bool> used(mesh.vertex_count(), false);
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    if (!bare.empty() && bare[f]) continue;
-    for (const VertexId v : mesh.face(FaceId(f))) used[v.index()] = true;
-  }
-  for (std::size_t v = 0; v < used.size(); ++v) {
-    if (!used[v]) out.push_back({{VertexId(v)}, {1}});
-  }
-}
-
 }  // namespace
 
 MeshKernel mesh_kernel(const ControlMesh& mesh, const SchemeOptions& options, const WorkMonitor& monitor) {
@@ -137,18 +154,17 @@ MeshKernel mesh_kernel(const ControlMesh& mesh, const SchemeOptions& options, co
   const Topology topology = require_surface(mesh, how);
   const Sharpness sharpness = rules.primal ? sharpness_of(mesh, topology) : Sharpness{};
   const RuledMesh ruled{topology, how, sharpness};
-  const std::vector<bool> bare = rules.primal ? bare_faces(mesh, ruled) : std::vector<bool>{};
+  const std::vector<bool> bare = bare_faces(mesh, ruled), used = used_vertices(topology, bare);
 
   MeshKernel kernel;
-  add_unused(mesh, bare, kernel.vectors);
-  if (rules.local) return kernel;
-  if (rules.primal) {
-    require_manifold_with_surfaces(topology, bare);
-  } else {
-    require_closed(topology);
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (!used[v]) kernel.vectors.push_back({{VertexId(v)}, {1}});
   }
+  if (rules.local) return kernel;
+  if (rules.primal) require_manifold_with_surfaces(topology, bare);
+  if (how.scheme == Scheme::doo_sabin) require_small_faces(topology, bare);
   if (how.scheme == Scheme::catmark || how.scheme == Scheme::midedge) {
-    add_alternating(ruled, monitor, kernel.vectors);
+    add_alternating(ruled, bare, used, monitor, kernel.vectors);
   }
   std::sort(kernel.vectors.begin(), kernel.vectors.end(), [](const KernelVector& a, const KernelVector& b) {
     return a.vertices.front() < b.vertices.front();

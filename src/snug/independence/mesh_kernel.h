@@ -25,18 +25,19 @@ struct MeshKernel {
 
 /// The kernel of a mesh.
 ///
-/// Each isolated vertex is a vector of its own; so is, with Bilinear and flat, a vertex whose faces have no
-/// surface. Besides, Loop and Doo-Sabin have none. Midedge has one for each component whose edges join
-/// vertices of two colours: 1 at the one colour, -1 at the other. Catmull-Clark has the same where moreover
-/// all vertices of the component are smooth, inside, and of valence 3, such as a cube.
+/// Each vertex that supports no surface is a vector of its own: isolated ones; with a dual scheme those whose
+/// faces have no vertex inside; with Bilinear and flat those whose faces have no surface. Besides, Loop and
+/// Doo-Sabin have none. Midedge has one for each component whose edges join vertices of two colours: 1 at the
+/// one colour, -1 at the other. Catmull-Clark has the same where moreover all vertices of the component are
+/// smooth, inside, and of valence 3, such as a cube's.
 ///
 /// Guarantee: exact, from connectivity and tags alone; positions do not matter.
-/// Decided:   dual schemes: closed meshes. Loop and Catmull-Clark: manifold meshes, closed or open, all faces
-///            with a surface, with any tags; but for Catmull-Clark components where all hangs on vertices of
-///            valence 2 at semi-sharp edges.
+/// Decided:   manifold meshes, closed or open, with any tags, all faces with a surface; but for Catmull-Clark
+///            components where all hangs on vertices of valence 2 at semi-sharp edges, and for Doo-Sabin with
+///            faces of seven corners or more at a boundary.
 /// Errors:    InputError (refused): those of require_surface(), and what is not decided, naming an element and
 ///            the next step. Interrupted.
-/// Cost:      linear; 0.3 seconds for a million vertices (tests/independence).
+/// Cost:      linear; 0.3 seconds for a million quads.
 /// Source:    derivations/independence_of_meshes.md.
 [[nodiscard]] MeshKernel mesh_kernel(const ControlMesh& mesh, const SchemeOptions& options,
                                      const WorkMonitor& monitor = {});
