@@ -94,7 +94,10 @@ Colouring colour(const RuledMesh& ruled, const std::vector<bool>& bare, VertexId
   for (std::size_t next = 0; next < result.vertices.size(); ++next) {
     const VertexId v = result.vertices[next];
     const std::int8_t sign = signs[v.index()];
-    const auto meet = [&](VertexId end) {
+    // Faces are cycles: edges that leave vertices lead everywhere.
+    walk_fans(topology, v, [&](HalfEdge h) {
+      if (bare[topology.face_of(h).index()]) return;
+      const VertexId end = topology.to(h);
       std::int8_t& other = signs[end.index()];
       if (other == 0) {
         other = static_cast<std::int8_t>(-sign);
@@ -102,11 +105,6 @@ Colouring colour(const RuledMesh& ruled, const std::vector<bool>& bare, VertexId
       } else if (other == sign) {
         result.two_colours = false;
       }
-    };
-    walk_fans(topology, v, [&](HalfEdge h) {
-      if (bare[topology.face_of(h).index()]) return;
-      meet(topology.to(h));
-      meet(topology.from(topology.prev(h)));
     });
     if (!result.vanishes || !result.two_colours) continue;
     const Alternating fate = fate_at(ruled, v, star);
