@@ -68,15 +68,17 @@ struct Residual {
 
 Residual residual_of(const LimitSurface& surface, const Samples& samples, int threads) {
   Residual result;
-  double sum = 0;
+  std::vector<double> distances;
   const std::vector<SurfacePoint> reached = evaluate(surface, samples.at, threads);
   for (std::size_t i = 0; i < reached.size(); ++i) {
     const Vector3 gap = samples.points[i] - reached[i].position;
-    const double distance = std::hypot(gap.x, gap.y, gap.z);
-    result.max = std::max(result.max, distance);
-    sum += distance * distance;
+    distances.push_back(std::hypot(gap.x, gap.y, gap.z));
+    result.max = std::max(result.max, distances.back());
   }
-  result.rms = std::sqrt(sum / static_cast<double>(reached.size()));
+  if (result.max == 0) return result;
+  double sum = 0;
+  for (const double d : distances) sum += (d / result.max) * (d / result.max);  // nothing overflows
+  result.rms = result.max * std::sqrt(sum / static_cast<double>(distances.size()));
   return result;
 }
 

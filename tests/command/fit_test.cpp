@@ -122,6 +122,19 @@ TEST_F(fit_command, finds_the_control_points_of_given_places) {
   }
 }
 
+TEST_F(fit_command, does_not_mind_the_size) {
+  for (const double scale : {1e-200, 1e-5, 1e200}) {
+    ControlMesh mesh = read_mesh(model("bracket.obj"));
+    for (Point3& p : mesh.points) p = {scale * p.x, scale * p.y, scale * p.z};
+    const std::string path = folder_.file("scaled.obj");
+    write_mesh(mesh, path);
+    const json found = answer({moved(path, 0.1 * scale), "--points", points_of(path, "catmark", 3, true)});
+    EXPECT_EQ(found["rounds"], 1);
+    EXPECT_LT(found["residual"]["rms"], 1e-12 * scale);
+    EXPECT_LT(farthest(mesh, read_mesh(output())), 1e-9 * scale);
+  }
+}
+
 TEST_F(fit_command, comes_nearer_from_round_to_round) {
   const std::string pawn = model("pawn.obj"), points = points_of(pawn, "loop", 3, false),
                     begin = moved(pawn, 0.003);
