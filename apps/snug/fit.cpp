@@ -13,6 +13,7 @@
 #include <snug/surface/unscale.h>
 
 #include "common.h"
+#include "kernel_json.h"
 #include "least_squares.h"
 #include "limit_weights.h"
 #include "places.h"
@@ -215,20 +216,12 @@ void write_json(JsonWriter& json, const Fit& found, const std::optional<MeshKern
   json.field("points", found.samples.points.size()).key("residual").begin_object();
   json.field("rms", found.residual.rms).field("max", found.residual.max).end_object();
   json.field("rounds", found.rounds).field("rank", found.rank);
-  json.field("dimension", found.surface.mesh().vertex_count()).key("kernel");
-  if (!kernel) {
-    json.null();
-    return;
+  json.field("dimension", found.surface.mesh().vertex_count());
+  if (kernel) {
+    write_kernel(json, *kernel);
+  } else {
+    json.key("kernel").null();
   }
-  json.begin_array();
-  for (const KernelVector& vector : kernel->vectors) {
-    json.begin_object().key("vertices").begin_array();
-    for (const VertexId v : vector.vertices) json.value(v.index());
-    json.end_array().key("signs").begin_array();
-    for (const std::int8_t sign : vector.signs) json.value(int{sign});
-    json.end_array().end_object();
-  }
-  json.end_array();
 }
 
 // Empty where it is not decided.
