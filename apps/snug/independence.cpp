@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 #include <snug/base/names.h>
 #include <snug/base/parallel.h>
+#include <snug/independence/eigenvalues.h>
 #include <snug/independence/mesh_kernel.h>
 #include <snug/independence/piece_step.h>
 
@@ -22,7 +23,7 @@ constexpr std::size_t named_vertices = 6;
 struct Options : CommonOptions {
   std::string valence, mesh;
   std::vector<std::string> domains;
-  bool older = false, matrices = false;
+  bool older = false, matrices = false, eigenvalues = false;
 };
 
 struct Range {
@@ -195,12 +196,39 @@ void write_matrices(JsonWriter& json, const ExactScheme& scheme, std::uint32_t v
   json.end_array().end_object();
 }
 
+void write_eigenvalues(JsonWriter& json, const CornerEigenvalues& found, std::uint32_t valence) {
+  json.begin_object()
+      .field("valence", valence)
+      .field("as_stated", found.as_stated)
+      .key("repeated")
+      .begin_array();
+  for (const RationalEigenvalue& each : found.repeated) {
+    json.begin_object().field("value", each.value.get_str()).field("algebraic", each.algebraic);
+    json.field("geometric", each.geometric).end_object();
+  }
+  json.end_array().end_object();
+}
+
+std::string text_of(const CornerEigenvalues& found, std::uint32_t valence) {
+  std::string line =
+      fmt::format("{:>4}  eigenvalues {}", valence, found.as_stated ? "as stated" : "not as stated");
+  for (const RationalEigenvalue& each : found.repeated) {
+    line += fmt::format(", {} {} times", each.value.get_str(), each.algebraic);
+    if (each.geometric < each.algebraic) line += fmt::format(" with {} eigenvectors", each.geometric);
+  }
+  return line;
+}
+
 ExitStatus run_on_valences(const Options& options) {
   const Range range = parse_valences(options.valence);
   const ExactScheme scheme = exact_scheme(options);
+  if (options.eigenvalues && (scheme.dual() || scheme.older_vertices)) {
+    throw UsageError("--eigenvalues: the dissertation lists those of loop and catmark");
+  }
   if (options.matrices && !options.json) throw UsageError("--matrices needs --json");
   const std::size_t count = range.last - range.first + 1;
   std::vector<std::vector<IndependenceCase>> found(count);
+  std::vector<CornerEigenvalues> eigenvalues(options.eigenvalues ? count : 0);
   Report report("independence", options);
   {
     ProgressBar bar("ranks", options.quiet);
@@ -217,6 +245,7 @@ ExitStatus run_on_valences(const Options& options) {
         const auto valence = range.last - static_cast<std::uint32_t>(i);
         found[count - 1 - i] =
             independence_cases(scheme, valence, requests_for(options, scheme, valence), monitor);
+        if (options.eigenvalues) eigenvalues[count - 1 - i] = corner_eigenvalues(scheme, valence);
         monitor.report(static_cast<double>(++done) / static_cast<double>(count));
       }
     });
@@ -228,6 +257,12 @@ ExitStatus run_on_valences(const Options& options) {
       for (const IndependenceCase& each : cases) write_case(json, each, scheme.older_vertices);
     }
     json.end_array();
+    if (options.eigenvalues) {
+      json.key("eigenvalues").begin_array();
+      for (std::uint32_t n = range.first; n <= range.last; ++n)
+        write_eigenvalues(json, eigenvalues[n - range.first], n);
+      json.end_array();
+    }
     if (options.matrices) {
       json.key("matrices").begin_array();
       for (std::uint32_t n = range.first; n <= range.last; ++n) write_matrices(json, scheme, n);
@@ -236,6 +271,9 @@ ExitStatus run_on_valences(const Options& options) {
   }
   for (const auto& cases : found) {
     for (const IndependenceCase& each : cases) report.text(text_of(each));
+  }
+  for (std::uint32_t n = range.first; options.eigenvalues && n <= range.last; ++n) {
+    report.text(text_of(eigenvalues[n - range.first], n));
   }
   return report.finish();
 }
@@ -294,6 +332,9 @@ Command independence_command() {
       .needs("--valence");
   list.add(Group::own, "--older-rule", &options->older,
            "Catmull-Clark with the vertex points (Q + R + 2S)/4 of an early version")
+      .needs("--valence");
+  list.add(Group::own, "--eigenvalues", &options->eigenvalues,
+           "Loop and Catmull-Clark: with the eigenvalues of a step, against those of the dissertation")
       .needs("--valence");
   list.add(Group::own, "--matrices", &options->matrices,
            "With the exact matrices of a step, and what pieces pick of them")

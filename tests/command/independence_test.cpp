@@ -81,6 +81,16 @@ TEST_F(independence_command, prints_the_matrices_of_a_step) {
   EXPECT_EQ(step["pieces"][0].size(), 12);
 }
 
+TEST_F(independence_command, tells_eigenvalues) {
+  const json found = answer({"--scheme", "loop", "--valence", "3..4", "--domain", "omega", "--eigenvalues"});
+  ASSERT_EQ(found["eigenvalues"].size(), 2);
+  EXPECT_EQ(found["eigenvalues"][0]["as_stated"], true);
+  EXPECT_EQ(found["eigenvalues"][0]["repeated"][2],
+            json::parse(R"({"value": "1/16", "algebraic": 3, "geometric": 2})"));
+  EXPECT_EQ(found["eigenvalues"][1]["valence"], 4);
+  expect_refused({"--valence", "5", "--scheme", "midedge", "--eigenvalues"}, "loop and catmark");
+}
+
 TEST_F(independence_command, names_the_kernel_of_a_mesh) {
   const std::string cube = write("cube.obj",
                                  "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <gmpxx.h>
+
+#include <snug/independence/control_net.h>
+
+namespace snug {
+
+/// A rational eigenvalue, how often it is a root, and how many independent eigenvectors it has.
+struct RationalEigenvalue {
+  mpq_class value;
+  std::uint32_t algebraic = 0, geometric = 0;
+};
+
+/// What is known of the eigenvalues of A', the step to the part of a piece that keeps its corner.
+struct CornerEigenvalues {
+  /// Is the characteristic polynomial the one whose roots the dissertation lists? Exact.
+  bool as_stated = false;
+  /// The rational ones that are several times roots, largest first; others are single, or have two eigenvectors for two:
+  /// cosine and sine of one frequency.
+  std::vector<RationalEigenvalue> repeated;
+};
+
+/// The eigenvalues of the step at a corner of valence n >= 3, by exact arithmetic.
+///
+/// Requires:  Loop, or Catmull-Clark without the older rule.
+/// Cost:      a characteristic polynomial of K by K; a second for n = 100.
+/// Source:    [Wu05, sec. 3.4 and 3.6].
+[[nodiscard]] CornerEigenvalues corner_eigenvalues(const ExactScheme& scheme, std::uint32_t n);
+
+}  // namespace snug

@@ -1,0 +1,64 @@
+#include <snug/independence/eigenvalues.h>
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace snug {
+namespace {
+
+constexpr ExactScheme loop{Scheme::loop}, catmark{Scheme::catmark};
+
+// "1/8 4 4; ..."
+std::string repeated(const ExactScheme& scheme, std::uint32_t n) {
+  std::string text;
+  for (const RationalEigenvalue& each : corner_eigenvalues(scheme, n).repeated) {
+    if (!text.empty()) text += "; ";
+    text +=
+        each.value.get_str() + " " + std::to_string(each.algebraic) + " " + std::to_string(each.geometric);
+  }
+  return text;
+}
+
+TEST(eigenvalues, are_those_that_the_text_lists) {
+  for (std::uint32_t n = 3; n <= 30; ++n) {
+    EXPECT_TRUE(corner_eigenvalues(loop, n).as_stated) << n;
+    EXPECT_TRUE(corner_eigenvalues(catmark, n).as_stated) << n;
+  }
+}
+
+TEST(eigenvalues, of_regular_corners_are_those_of_polynomials) {
+  EXPECT_EQ(repeated(loop, 6), "1/2 2 2; 1/4 3 3; 1/8 4 4; 1/16 2 2");
+  EXPECT_EQ(repeated(catmark, 4), "1/2 2 2; 1/4 3 3; 1/8 4 4; 1/16 3 3; 1/32 2 2");
+}
+
+TEST(eigenvalues, of_loops_valence_3_lack_an_eigenvector) {
+  EXPECT_EQ(repeated(loop, 3), "1/4 2 2; 1/8 3 3; 1/16 3 2");
+}
+
+TEST(eigenvalues, have_all_eigenvectors_otherwise) {
+  for (std::uint32_t n = 4; n <= 24; ++n) {
+    for (const ExactScheme& scheme : {loop, catmark}) {
+      for (const RationalEigenvalue& each : corner_eigenvalues(scheme, n).repeated) {
+        EXPECT_EQ(each.algebraic, each.geometric) << n << " " << each.value.get_str();
+      }
+    }
+  }
+}
+
+// Lemma 9 says two, and forgets the corner's own where 4 divides the valence; of Loop they are three, or four.
+TEST(eigenvalues, one_eighth_comes_two_to_four_times) {
+  for (std::uint32_t n = 5; n <= 24; ++n) {
+    for (const RationalEigenvalue& each : corner_eigenvalues(catmark, n).repeated) {
+      if (each.value != mpq_class(1, 8)) continue;
+      EXPECT_EQ(each.algebraic, n % 4 == 0 ? 4 : 2) << n;
+    }
+    for (const RationalEigenvalue& each : corner_eigenvalues(loop, n).repeated) {
+      if (each.value != mpq_class(1, 8)) continue;
+      EXPECT_EQ(each.algebraic, n % 2 == 0 ? 4 : 3) << n;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace snug
