@@ -135,5 +135,6 @@ class Report {
 [[nodiscard]] Command closest_command();
 [[nodiscard]] Command deviation_command();
 [[nodiscard]] Command render_command();
+[[nodiscard]] Command table_command();
 
 }  // namespace snug::command

@@ -12,7 +12,8 @@ Program snug_program() {
           "snug collide pawn.obj bust.obj --move-b \"3 0 0\"",
           {collide_command(), distance_command(), deviation_command(), closest_command(), bound_command(),
            eval_command(), info_command(), measure_command(), subdivide_command(), tessellate_command(),
-           hull_command(), envelope_command(), fit_command(), independence_command(), render_command()}};
+           hull_command(), envelope_command(), fit_command(), independence_command(), render_command(),
+           table_command()}};
 }
 
 }  // namespace
