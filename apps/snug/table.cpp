@@ -1,3 +1,6 @@
+#include <array>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
