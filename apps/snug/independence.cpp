@@ -22,6 +22,8 @@ constexpr std::size_t named_vertices = 6;
 
 struct Options : CommonOptions {
   std::string valence, mesh;
+  std::optional<std::uint64_t> second;
+  bool opposite = false;
   std::vector<std::string> domains;
   bool older = false, matrices = false, eigenvalues = false;
 };
@@ -63,15 +65,22 @@ ExactScheme exact_scheme(const Options& options) {
   return scheme;
 }
 
+PieceCorners corners_of(const Options& options, std::uint32_t valence) {
+  PieceCorners corners{valence, {}, options.opposite};
+  if (options.second) corners.second = static_cast<std::uint32_t>(*options.second);
+  return corners;
+}
+
 // The domains asked for; those of the chapter where there are none.
 std::vector<IndependenceRequest> requests_for(const Options& options, const ExactScheme& scheme,
-                                              std::uint32_t valence) {
-  const std::vector<IndependenceRequest> chapter = chapter_requests(scheme, valence);
+                                              const PieceCorners& corners) {
+  const std::vector<IndependenceRequest> chapter =
+      corners.second ? two_corner_requests(scheme, corners) : chapter_requests(scheme, corners.valence);
   if (options.domains.empty()) return chapter;
   std::vector<IndependenceRequest> requests;
   for (const std::string& text : options.domains) {
-    if (text == "conjecture") {
-      const auto halves = conjecture_requests(scheme, valence);
+    if (text == "conjecture" && !corners.second) {
+      const auto halves = conjecture_requests(scheme, corners.valence);
       requests.insert(requests.end(), halves.begin(), halves.end());
       continue;
     }
@@ -81,6 +90,10 @@ std::vector<IndependenceRequest> requests_for(const Options& options, const Exac
           "--domain: '{}' is not piece:I, pieces:I,J (1 to 3), ring:K, rings:K, omega, annulus, global or "
           "conjecture",
           text));
+    }
+    if (corners.second && domain->kind != IndependenceDomain::Kind::rings &&
+        domain->kind != IndependenceDomain::Kind::omega) {
+      throw UsageError("--domain: with --second, only rings:K and omega");
     }
     const auto known = std::find_if(chapter.begin(), chapter.end(), [&](const IndependenceRequest& request) {
       return request.domain == *domain;
@@ -129,7 +142,11 @@ void write_certificate(JsonWriter& json, const RankCertificate& why) {
 }
 
 void write_case(JsonWriter& json, const IndependenceCase& found, bool older) {
-  json.begin_object().field("valence", found.valence).field("domain", name_of(found.domain));
+  json.begin_object().field("valence", found.corners.valence);
+  if (found.corners.second) {
+    json.field("second", *found.corners.second).field("place", found.corners.opposite ? "opposite" : "edge");
+  }
+  json.field("domain", name_of(found.domain));
   json.field("dimension", found.dimension)
       .field("rank", found.rank)
       .field("independent", found.independent());
@@ -151,8 +168,10 @@ void write_case(JsonWriter& json, const IndependenceCase& found, bool older) {
 }
 
 std::string text_of(const IndependenceCase& found) {
-  std::string line = fmt::format("{:>4}  {:<11} {:>4} of {:<4} {:<11}", found.valence, name_of(found.domain),
-                                 found.rank, found.dimension, word(found.independent()));
+  std::string line =
+      fmt::format("{:>4}{}  {:<11} {:>4} of {:<4} {:<11}", found.corners.valence,
+                  found.corners.second ? fmt::format(" {:>4}", *found.corners.second) : "",
+                  name_of(found.domain), found.rank, found.dimension, word(found.independent()));
   if (!found.text) return line;
   line += "  " + found.statement;
   if (*found.text != found.independent()) line += fmt::format(", which says {}", word(*found.text));
@@ -225,6 +244,12 @@ ExitStatus run_on_valences(const Options& options) {
   if (options.eigenvalues && (scheme.dual() || scheme.older_vertices)) {
     throw UsageError("--eigenvalues: the dissertation lists those of loop and catmark");
   }
+  if (options.second && scheme.scheme == Scheme::loop &&
+      (options.opposite || range.first + *options.second < 7)) {
+    throw UsageError(options.opposite
+                         ? "--opposite: a triangle has no opposite corners"
+                         : "--second: two corners of valence 3 at an edge are a mesh of four triangles");
+  }
   if (options.matrices && !options.json) throw UsageError("--matrices needs --json");
   const std::size_t count = range.last - range.first + 1;
   std::vector<std::vector<IndependenceCase>> found(count);
@@ -237,14 +262,15 @@ ExitStatus run_on_valences(const Options& options) {
     for (const std::string& text : options.domains) {  // refused before work begins
       Options one = options;
       one.domains = {text};
-      requests_for(one, scheme, range.first);
+      requests_for(one, scheme, corners_of(options, range.first));
     }
     // The largest first: it takes longest.
     parallel_for(count, options.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const auto valence = range.last - static_cast<std::uint32_t>(i);
+        const PieceCorners corners = corners_of(options, valence);
         found[count - 1 - i] =
-            independence_cases(scheme, valence, requests_for(options, scheme, valence), monitor);
+            independence_cases(scheme, corners, requests_for(options, scheme, corners), monitor);
         if (options.eigenvalues) eigenvalues[count - 1 - i] = corner_eigenvalues(scheme, valence);
         monitor.report(static_cast<double>(++done) / static_cast<double>(count));
       }
@@ -330,6 +356,13 @@ Command independence_command() {
            "conjecture; several "
            "times for several. Without: all that chapter 3 speaks of, and all numbers of rings")
       .needs("--valence");
+  list.add(Group::own, "--second N", &options->second,
+           "A second extraordinary corner of this valence, at the other end of an edge of the piece")
+      .needs("--valence")
+      .between(least_valence, largest_valence);
+  list.add(Group::own, "--opposite", &options->opposite,
+           "The second corner across the quad (dual schemes: the vertex)")
+      .needs("--second");
   list.add(Group::own, "--older-rule", &options->older,
            "Catmull-Clark with the vertex points (Q + R + 2S)/4 of an early version")
       .needs("--valence");

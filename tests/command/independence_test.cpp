@@ -106,6 +106,23 @@ TEST_F(independence_command, names_the_kernel_of_a_mesh) {
   EXPECT_NE(text.out.find("8 vertices with signs in turn: +0 -1 -2 +3"), std::string::npos) << text.out;
 }
 
+TEST_F(independence_command, of_two_corners) {
+  const json found = answer({"--scheme", "catmark", "--valence", "5", "--second", "7", "--opposite"});
+  ASSERT_EQ(found["cases"].size(), 4);
+  const json& last = found["cases"][3];
+  EXPECT_EQ(last["valence"], 5);
+  EXPECT_EQ(last["second"], 7);
+  EXPECT_EQ(last["place"], "opposite");
+  EXPECT_EQ(last["domain"], "omega");
+  EXPECT_EQ(last["dimension"], 24);
+  EXPECT_EQ(last["rank"], 24);
+  EXPECT_EQ(last["certificate"]["rings"], 3);
+  expect_refused({"--valence", "5", "--second", "7", "--opposite"}, "no opposite corners");
+  expect_refused({"--valence", "3..5", "--second", "3"}, "two corners of valence 3");
+  expect_refused({"--valence", "5", "--second", "2"}, "from 3 to 200");
+  expect_refused({"--valence", "5", "--second", "7", "--domain", "annulus"}, "only rings:K and omega");
+}
+
 TEST_F(independence_command, refuses_what_is_no_question) {
   expect_refused({}, "give --valence A..B");
   expect_refused({"--valence", "2"}, "from 3 to 200");

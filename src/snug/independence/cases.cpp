@@ -2,22 +2,21 @@
 
 #include <algorithm>
 #include <charconv>
+#include <deque>
+#include <numeric>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include <snug/base/contract.h>
 #include <snug/base/names.h>
-#include <snug/independence/modular.h>
 #include <snug/independence/null_space.h>
-#include <snug/independence/piece_step.h>
+#include <snug/independence/steps.h>
 
 namespace snug {
 namespace {
 
 using Kind = IndependenceDomain::Kind;
-using ModularRow = std::vector<std::uint32_t>;
-using ExactVector = std::vector<mpq_class>;
-
 constexpr auto kind_names = std::to_array<Named<Kind>>({
     {"piece", Kind::piece},
     {"pieces", Kind::pieces},
@@ -28,41 +27,6 @@ constexpr auto kind_names = std::to_array<Named<Kind>>({
     {"global", Kind::global},
 });
 
-// A function of the domain: a functional of the regular pieces after so many steps, from 0.
-struct Function {
-  std::uint32_t steps;
-  Functional functional;
-};
-
-// A row of weights times a vector, where no irrational part is left.
-std::optional<mpq_class> rational_product(const WeightRow& row, const ExactVector& v) {
-  mpq_class result;
-  std::map<std::uint32_t, mpq_class> cosines;
-  for (const auto& [point, w] : row) {
-    if (v[point] == 0) continue;
-    result += w.rational * v[point];
-    for (const auto& [index, factor] : w.cosines) cosines[index] += factor * v[point];
-  }
-  if (std::any_of(cosines.begin(), cosines.end(), [](const auto& c) { return c.second != 0; }))
-    return std::nullopt;
-  return result;
-}
-
-std::optional<ExactVector> rational_product(const std::vector<WeightRow>& rows, std::size_t count,
-                                            const ExactVector& v) {
-  ExactVector result(count);
-  for (std::size_t r = 0; r < count; ++r) {
-    const auto value = rational_product(rows[r], v);
-    if (!value) return std::nullopt;
-    result[r] = *value;
-  }
-  return result;
-}
-
-bool is_rational(const WeightRow& row) {
-  return std::all_of(row.begin(), row.end(), [](const auto& entry) { return entry.second.is_rational(); });
-}
-
 PolynomialVector sparse(const ExactVector& v) {
   PolynomialVector result;
   for (std::uint32_t i = 0; i < v.size(); ++i) {
@@ -71,206 +35,120 @@ PolynomialVector sparse(const ExactVector& v) {
   return result;
 }
 
-// Powers of a step, modulo a prime and exactly.
-class Steps {
- public:
-  Steps(const ExactScheme& scheme, const PieceStep& step, const ModularField& field)
-      : scheme_(scheme), step_(step), field_(field) {
-    for (const WeightRow& row : step.rows) {
-      images_.emplace_back();
-      for (const auto& [point, w] : row) images_.back().emplace_back(point, field.image(w));
-    }
-    powers_.emplace_back();
-    for (std::uint32_t i = 0; i < step.dimension; ++i) {
-      powers_[0].emplace_back(step.dimension);
-      powers_[0][i][i] = 1;
-    }
-    rational_ = std::all_of(step.rows.begin(), step.rows.end(), is_rational);
-  }
-
-  [[nodiscard]] const PieceStep& step() const { return step_; }
-  [[nodiscard]] const ModularField& field() const { return field_; }
-  [[nodiscard]] std::uint32_t dimension() const { return step_.dimension; }
-  [[nodiscard]] bool rational() const { return rational_; }
-
-  [[nodiscard]] ModularRow image(const Function& f) {
-    while (powers_.size() <= f.steps) {
-      std::vector<ModularRow> next;
-      for (std::uint32_t r = 0; r < step_.kept; ++r) next.push_back(times(images_[r], powers_.back()));
-      powers_.push_back(std::move(next));
-    }
-    ModularRow result(dimension());
-    for (const auto& [row, sign] : f.functional) {
-      const ModularRow part = times(images_[row], powers_[f.steps]);
-      for (std::size_t c = 0; c < result.size(); ++c) {
-        result[c] = field_.sum(result[c], sign > 0 || part[c] == 0 ? part[c] : field_.prime - part[c]);
-      }
-    }
-    return result;
-  }
-
-  // The row of a function, rational parts of weights alone: right for vectors that have no irrational ones.
-  [[nodiscard]] ExactVector exact(const Function& f) const {
-    ExactVector row(dimension());
-    for (const auto& [r, sign] : f.functional) {
-      for (const auto& [point, w] : step_.rows[r]) row[point] += sign * w.rational;
-    }
-    for (std::uint32_t i = 0; i < f.steps; ++i) {
-      ExactVector before(dimension());
-      for (std::uint32_t r = 0; r < step_.kept; ++r) {
-        if (row[r] == 0) continue;
-        for (const auto& [point, w] : step_.rows[r]) before[point] += row[r] * w.rational;
-      }
-      row = std::move(before);
-    }
-    return row;
-  }
-
-  // Is the vector's function zero in all of these? Exact; false also where irrational parts are left.
-  [[nodiscard]] bool vanishes(ExactVector v, const std::vector<Function>& functions) const {
-    std::uint32_t steps = 0;
-    std::optional<ExactVector> fine;
-    for (const Function& f : functions) {  // in the order of steps
-      for (; steps < f.steps; ++steps, fine.reset()) {
-        auto next = rational_product(step_.rows, step_.kept, v);
-        if (!next) return false;
-        v = std::move(*next);
-      }
-      mpq_class value;
-      for (const auto& [row, sign] : f.functional) {
-        const auto product = rational_product(step_.rows[row], v);
-        if (!product) return false;
-        value += sign * *product;
-      }
-      if (value != 0) return false;
-    }
-    return true;
-  }
-
-  // The number that a step multiplies the vector by, if there is one.
-  [[nodiscard]] std::optional<mpq_class> factor(const ExactVector& v) const {
-    const auto image = rational_product(step_.rows, step_.kept, v);
-    if (!image) return std::nullopt;
-    std::optional<mpq_class> result;
-    for (std::size_t i = 0; i < v.size(); ++i) {
-      if (v[i] == 0) {
-        if ((*image)[i] != 0) return std::nullopt;
-        continue;
-      }
-      const mpq_class ratio = (*image)[i] / v[i];
-      if (result && *result != ratio) return std::nullopt;
-      result = ratio;
-    }
-    return result;
-  }
-
-  // What makes Loop's irrational mask vanish: the vertex, and the sum of its neighbours.
-  [[nodiscard]] std::vector<ExactVector> gauges() const {
-    std::vector<ExactVector> rows;
-    if (scheme_.scheme != Scheme::loop) return rows;
-    for (const WeightRow& row : step_.rows) {
-      if (is_rational(row)) continue;
-      ExactVector own(dimension()), others(dimension());
-      own[row.front().first] = 1;
-      for (std::size_t i = 1; i < row.size(); ++i) others[row[i].first] = 1;
-      rows.push_back(std::move(own));
-      rows.push_back(std::move(others));
-    }
-    return rows;
-  }
-
- private:
-  using ImageRow = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
-
-  [[nodiscard]] ModularRow times(const ImageRow& row, const std::vector<ModularRow>& matrix) const {
-    ModularRow result(dimension());
-    for (const auto& [r, w] : row) {
-      for (std::size_t c = 0; c < result.size(); ++c) {
-        result[c] = static_cast<std::uint32_t>((result[c] + std::uint64_t{w} * matrix[r][c]) % field_.prime);
-      }
-    }
-    return result;
-  }
-
-  const ExactScheme& scheme_;
-  const PieceStep& step_;
-  const ModularField& field_;
-  std::vector<ImageRow> images_;
-  std::vector<std::vector<ModularRow>> powers_;  // of the rows that are kept
-  bool rational_ = false;
-};
-
 // The rank on a domain as functions are added.
 class DomainRank {
  public:
-  explicit DomainRank(Steps& steps) : steps_(steps), rank_(steps.field(), steps.dimension()) {}
+  DomainRank(const ModularField& field, std::uint32_t columns) : rank_(field, columns) {}
 
-  void add(const std::vector<Functional>& functionals, std::uint32_t after) {
+  void add(Steps& part, const std::vector<Functional>& functionals, std::uint32_t before) {
     for (const Functional& functional : functionals) {
-      functions_.push_back({after, functional});
+      functions_.push_back({&part, before, functional});
       // Common points of two pieces.
-      if (!known_.emplace(after, functional).second) continue;
-      if (rank_.add(steps_.image(functions_.back()))) independent_.push_back(functions_.back());
+      if (!known_.emplace(&part, before, functional).second) continue;
+      if (rank_.add(part.image(functional, before))) independent_.push_back(functions_.back());
     }
   }
-  void add_ring(std::uint32_t after) {
-    for (const auto& piece : steps_.step().pieces) add(piece, after);
+  void add_ring(Steps& part, std::uint32_t before) {
+    for (const auto& piece : part.step().pieces) add(part, piece, before);
   }
 
   [[nodiscard]] std::uint32_t rank() const { return rank_.rank(); }
   [[nodiscard]] std::size_t count() const { return known_.size(); }
-  [[nodiscard]] const std::vector<Function>& functions() const { return functions_; }
-  [[nodiscard]] const std::vector<Function>& independent() const { return independent_; }
+  [[nodiscard]] const std::vector<DomainFunction>& functions() const { return functions_; }
+  [[nodiscard]] const std::vector<DomainFunction>& independent() const { return independent_; }
 
  private:
-  Steps& steps_;
   ModularRank rank_;
-  std::vector<Function> functions_, independent_;
-  std::set<std::pair<std::uint32_t, Functional>> known_;
+  std::vector<DomainFunction> functions_, independent_;
+  std::set<std::tuple<const Steps*, std::uint32_t, Functional>> known_;
 };
 
-std::vector<ExactVector> exact_kernel(const Steps& steps, const std::vector<Function>& functions,
-                                      std::vector<ExactVector> rows) {
-  for (const Function& f : functions) rows.push_back(steps.exact(f));
-  return null_space(rows, steps.dimension());
+std::vector<ExactVector> exact_kernel(const std::vector<DomainFunction>& functions,
+                                      std::vector<ExactVector> rows, std::size_t columns) {
+  for (const DomainFunction& f : functions) rows.push_back(f.part->exact(f.functional, f.before));
+  return null_space(rows, columns);
 }
 
-// Doo-Sabin: the vertices of the face that the piece does not see, in combinations that have no mean and no first
-// harmonic: those of (z - 1)(z^2 - t z + 1), t = 2 cos(2 pi / n). A step multiplies them by 1/4.
-std::vector<PolynomialVector> unseen_combinations(std::uint32_t n) {
-  std::vector<PolynomialVector> kernel;
-  for (std::uint32_t j = 2; j + 5 <= n; ++j) {
-    kernel.push_back({{j, {-1}}, {j + 1, {1, 1}}, {j + 2, {-1, -1}}, {j + 3, {1}}});
+// 2 cos(2 pi j / n) as a polynomial in t = 2 cos(2 pi / n): Dickson's.
+std::vector<mpq_class> cosine_polynomial(std::uint32_t j) {
+  std::vector<mpq_class> before{2}, now{0, 1};
+  if (j == 0) return before;
+  for (std::uint32_t i = 1; i < j; ++i) {
+    std::vector<mpq_class> next(now.size() + 1);
+    for (std::size_t k = 0; k < now.size(); ++k) next[k + 1] = now[k];
+    for (std::size_t k = 0; k < before.size(); ++k) next[k] -= before[k];
+    before = std::exchange(now, std::move(next));
   }
-  return kernel;
+  return now;
 }
 
+// Doo-Sabin: vertices of a face that the piece does not see, in combinations that have no mean and no first harmonic:
+// those of (z - 1)(z^2 - t z + 1), t = 2 cos(2 pi / n). A step multiplies them by 1/4.
+void add_unseen_combinations(const std::vector<std::uint32_t>& unseen, const std::vector<mpq_class>& t,
+                             std::vector<PolynomialVector>& kernel) {
+  std::vector<mpq_class> one_and_t = t, opposite;
+  one_and_t[0] += 1;
+  for (const mpq_class& x : one_and_t) opposite.push_back(-x);
+  for (std::size_t i = 0; i + 3 < unseen.size(); ++i) {
+    kernel.push_back(
+        {{unseen[i], {-1}}, {unseen[i + 1], one_and_t}, {unseen[i + 2], opposite}, {unseen[i + 3], {1}}});
+  }
+}
+
+std::vector<std::uint32_t> range(std::uint32_t begin, std::uint32_t end) {
+  std::vector<std::uint32_t> numbers;
+  for (std::uint32_t i = begin; i < end; ++i) numbers.push_back(i);
+  return numbers;
+}
+
+// All domains of a piece with these corners.
 class PieceCases {
  public:
-  PieceCases(const ExactScheme& scheme, std::uint32_t n, WorkMonitor monitor)
+  PieceCases(const ExactScheme& scheme, const PieceCorners& corners, WorkMonitor monitor)
       : scheme_(scheme),
-        n_(n),
+        corners_(corners),
         monitor_(std::move(monitor)),
-        field_(modular_field(n)),
-        step_(piece_step(scheme, n)),
-        steps_(scheme_, step_, field_),
-        rings_(steps_) {}
+        field_(modular_field(corners.second ? std::lcm(corners.valence, *corners.second) : corners.valence)) {
+    if (!corners_.second) {
+      parts_.emplace_back(piece_step(scheme_, corners_.valence), field_);
+    } else {
+      TwoCornerStep split = two_corner_step(scheme_, corners_, field_.order);
+      const std::uint32_t columns = split.step.dimension;
+      parts_.emplace_back(std::move(split.step), field_);
+      for (TwoCornerStep::Part& part : split.parts) {
+        parts_.emplace_back(piece_step(scheme_, part.valence, field_.order), field_, std::move(part.net),
+                            columns);
+      }
+    }
+    rings_.emplace(field_, columns());
+  }
 
   IndependenceCase answer(const IndependenceRequest& request) {
     monitor_.checkpoint();
     IndependenceCase found;
-    found.valence = n_;
+    found.corners = corners_;
     found.domain = request.domain;
     found.statement = request.statement;
     found.text = request.text;
     found.certificate.prime = field_.prime;
     found.certificate.root = field_.root;
-    switch (request.domain.kind) {
-      case Kind::omega:
-        whole(found);
+    DomainRank domain(field_, columns());
+    const auto [kind, first, second] = request.domain;
+    switch (kind) {
+      case Kind::omega: {
+        const std::uint32_t k = rings_that_count();
+        for (std::uint32_t ring = 1; ring <= k; ++ring) add_ring(domain, ring);
+        conclude(found, domain);
+        conclude_for_all_rings(found, k);
         break;
+      }
       case Kind::rings:
-        first_rings(found);
+        for (std::uint32_t ring = 1; ring <= first; ++ring) add_ring(domain, ring);
+        conclude(found, domain);
+        break;
+      case Kind::ring:
+        add_ring(domain, first);
+        conclude(found, domain);
         break;
       case Kind::annulus:
         around(found);
@@ -278,135 +156,163 @@ class PieceCases {
       case Kind::global:
         closed(found);
         break;
-      default: {
-        DomainRank domain(steps_);
-        const auto [kind, first, second] = request.domain;
-        if (kind == Kind::ring) {
-          domain.add_ring(first - 1);
-        } else {
-          domain.add(step_.pieces[first - 1], 0);
-          if (kind == Kind::pieces) domain.add(step_.pieces[second - 1], 0);
-        }
-        conclude(found, steps_, domain);
-      }
+      default:
+        domain.add(parts_[0], parts_[0].step().pieces[first - 1], 0);
+        if (kind == Kind::pieces) domain.add(parts_[0], parts_[0].step().pieces[second - 1], 0);
+        conclude(found, domain);
     }
     return found;
   }
 
-  // The rank on rings 1 to k; of a number that adds nothing no more are looked at.
-  std::uint32_t rank_of_rings(std::uint32_t k) {
-    while (ranks_.size() < k && !(ranks_.size() > 1 && ranks_.back() == ranks_[ranks_.size() - 2])) {
-      monitor_.checkpoint();
-      rings_.add_ring(static_cast<std::uint32_t>(ranks_.size()));
-      ranks_.push_back(rings_.rank());
+  // So many rings have the rank of all. With one corner: once the next adds nothing, no more does. With two: no more than
+  // tell both parts apart, each alone.
+  std::uint32_t rings_that_count() {
+    std::uint32_t k = 1;
+    if (!corners_.second) {
+      while (rank_of_rings(k + 1) != rank_of_rings(k)) ++k;
+      return k;
     }
-    return k <= ranks_.size() ? ranks_[k - 1] : ranks_.back();
+    std::uint32_t last = 1;
+    for (const std::uint32_t n : {corners_.valence, *corners_.second}) {
+      last = std::max(last, 1 + PieceCases(scheme_, {n}, monitor_).rings_that_count());
+    }
+    while (rank_of_rings(k) != rank_of_rings(last)) ++k;
+    return k;
   }
 
  private:
-  // Fewer functions, as many as the dimension, or a kernel.
-  void conclude(IndependenceCase& found, const Steps& steps, const DomainRank& domain) {
-    found.dimension = steps.dimension();
+  [[nodiscard]] std::uint32_t columns() const { return parts_[0].columns(); }
+
+  // Of two corners ring 1 is that of the piece, ring k + 1 is ring k of both parts.
+  void add_ring(DomainRank& domain, std::uint32_t k) {
+    if (!corners_.second) {
+      domain.add_ring(parts_[0], k - 1);
+    } else if (k == 1) {
+      domain.add_ring(parts_[0], 0);
+    } else {
+      domain.add_ring(parts_[1], k - 2);
+      domain.add_ring(parts_[2], k - 2);
+    }
+  }
+  std::uint32_t rank_of_rings(std::uint32_t k) {
+    while (ranks_.size() < k) {
+      monitor_.checkpoint();
+      add_ring(*rings_, static_cast<std::uint32_t>(ranks_.size()) + 1);
+      ranks_.push_back(rings_->rank());
+    }
+    return ranks_[k - 1];
+  }
+
+  // Vectors that are as many as is missing, and whose functions vanish. Those of one part together, by steps.
+  bool accept(IndependenceCase& found, const std::vector<ExactVector>& vectors,
+              std::vector<DomainFunction> functions, std::uint32_t left_out) {
+    if (vectors.size() != found.dimension - found.rank + left_out) return false;
+    std::stable_sort(functions.begin(), functions.end(),
+                     [](const DomainFunction& a, const DomainFunction& b) {
+                       return std::pair(a.part, a.before) < std::pair(b.part, b.before);
+                     });
+    for (const ExactVector& v : vectors) {
+      monitor_.checkpoint();
+      if (!vanishes(v, functions)) return false;
+    }
+    found.certificate.left_out = left_out;
+    for (const ExactVector& v : vectors) found.certificate.kernel.push_back(sparse(v));
+    return true;
+  }
+
+  // Why the rank is no greater: it is full, there are no more functions, or there is a kernel.
+  void conclude(IndependenceCase& found, const DomainRank& domain) {
+    found.dimension = domain.functions().front().part->columns();
     found.rank = domain.rank();
     RankCertificate& why = found.certificate;
     if (found.independent()) return;
     const std::size_t count = scheme_.scheme == Scheme::midedge ? domain.functions().size() : domain.count();
-    if (found.rank == count) {
+    if (found.rank == count && !corners_.second) {
       why.bound = RankCertificate::Bound::count;
       return;
     }
     why.bound = RankCertificate::Bound::kernel;
-    const std::size_t nullity = found.dimension - found.rank;
-    const auto accept = [&](const std::vector<ExactVector>& vectors, const std::vector<Function>& functions,
-                            std::uint32_t left_out) {
-      if (vectors.size() != nullity + left_out) return false;
-      for (const ExactVector& v : vectors) {
-        monitor_.checkpoint();
-        if (!steps.vanishes(v, functions)) return false;
-      }
-      why.left_out = left_out;
-      for (const ExactVector& v : vectors) why.kernel.push_back(sparse(v));
-      return true;
-    };
-    if (accept(exact_kernel(steps, domain.independent(), steps.gauges()), domain.functions(), 0)) return;
+    std::vector<ExactVector> gauges;
+    if (scheme_.scheme == Scheme::loop) gauges = loop_gauges(parts_[0].step());
+    if (accept(found, exact_kernel(domain.independent(), gauges, found.dimension), domain.functions(), 0))
+      return;
     // Without the rows that are irrational, where all are of the first step.
-    std::vector<Function> rational;
+    std::vector<DomainFunction> rational;
     std::set<Functional> others;
-    for (const Function& f : domain.functions()) {
-      const bool exact = std::all_of(f.functional.begin(), f.functional.end(), [&](const auto& part) {
-        return is_rational(steps.step().rows[part.first]);
-      });
-      if (exact && f.steps == 0) {
+    for (const DomainFunction& f : domain.functions()) {
+      const auto& rows = f.part->step().rows;
+      if (std::all_of(f.functional.begin(), f.functional.end(),
+                      [&](const auto& x) { return is_rational(rows[x.first]); })) {
         rational.push_back(f);
       } else {
         others.insert(f.functional);
       }
     }
-    const bool first_only = domain.functions().back().steps == 0;
-    if (first_only &&
-        accept(exact_kernel(steps, rational, {}), rational, static_cast<std::uint32_t>(others.size()))) {
+    const DomainFunction& last = domain.functions().back();
+    if (last.before == 0 && last.part == domain.functions().front().part &&
+        accept(found, exact_kernel(rational, {}, found.dimension), rational,
+               static_cast<std::uint32_t>(others.size()))) {
       return;
     }
-    why.kernel = unseen_combinations(n_);
-    SNUG_EXPECT(scheme_.scheme == Scheme::doo_sabin && why.kernel.size() == nullity);
+    add_unseen(why.kernel);
+    SNUG_EXPECT(why.kernel.size() == found.dimension - found.rank);
+  }
+  void add_unseen(std::vector<PolynomialVector>& kernel) const {
+    SNUG_EXPECT(scheme_.scheme == Scheme::doo_sabin);
+    const std::uint32_t n = corners_.valence;
+    if (!corners_.second) {
+      add_unseen_combinations(range(2, n - 1), cosine_polynomial(1), kernel);
+      return;
+    }
+    // After the vertex and its neighbours, face by face; regular faces have one point each.
+    const std::uint32_t m = *corners_.second, first = 5, second = first + n - 3 + (corners_.opposite ? 1 : 0);
+    add_unseen_combinations(range(first, first + n - 3), cosine_polynomial(field_.order / n), kernel);
+    add_unseen_combinations(range(second, second + m - 3), cosine_polynomial(field_.order / m), kernel);
   }
 
-  void first_rings(IndependenceCase& found) {
-    DomainRank domain(steps_);
-    std::uint32_t k = 0;
-    // A ring that adds nothing is followed by none that does.
-    for (std::uint32_t before = 0; k < found.domain.first; ++k) {
-      if (rank_of_rings(k + 1) == before) break;
-      before = rank_of_rings(k + 1);
-      domain.add_ring(k);
-    }
-    for (; k < found.domain.first; ++k) domain.add_ring(k);
-    conclude(found, steps_, domain);
-  }
-
-  void whole(IndependenceCase& found) {
-    DomainRank domain(steps_);
-    std::uint32_t k = 0, before = 0;
-    for (;; ++k) {
-      if (rank_of_rings(k + 1) == before) break;
-      before = rank_of_rings(k + 1);
-      domain.add_ring(k);
-    }
-    conclude(found, steps_, domain);
+  void conclude_for_all_rings(IndependenceCase& found, std::uint32_t rings) {
     RankCertificate& why = found.certificate;
-    why.rings = k;
+    why.rings = rings;
     if (found.independent()) return;
     if (scheme_.scheme == Scheme::doo_sabin) {
       why.bound = RankCertificate::Bound::kernel;
       why.left_out = 0;
-      why.kernel = unseen_combinations(n_);
+      why.kernel.clear();
+      add_unseen(why.kernel);
       why.factor = mpq_class(1, 4);
       return;
     }
-    SNUG_EXPECT(why.kernel.size() == 1);
-    ExactVector v(found.dimension);
-    for (const auto& [point, value] : why.kernel[0]) v[point] = value[0];
-    why.factor = steps_.factor(v);
-    SNUG_EXPECT(why.factor);
+    for (const PolynomialVector& sparse_vector : why.kernel) {
+      ExactVector v(found.dimension);
+      for (const auto& [point, value] : sparse_vector) v[point] = value[0];
+      for (std::size_t part = corners_.second ? 1 : 0; part < parts_.size(); ++part) {
+        const auto values = parts_[part].at_base(v);
+        SNUG_EXPECT(values);
+        if (std::all_of(values->begin(), values->end(), [](const mpq_class& x) { return x == 0; })) continue;
+        const auto factor = parts_[part].factor(*values);
+        SNUG_EXPECT(factor && (!why.factor || why.factor == factor));
+        why.factor = factor;
+      }
+    }
+    if (!why.factor) why.factor = 0;
   }
 
   void around(IndependenceCase& found) {
-    const PieceStep step = annulus_step(scheme_, n_);
-    Steps steps(scheme_, step, field_);
-    DomainRank domain(steps);
-    domain.add_ring(0);
-    conclude(found, steps, domain);
+    Steps steps(annulus_step(scheme_, corners_.valence), field_);
+    DomainRank domain(field_, steps.columns());
+    domain.add_ring(steps, 0);
+    conclude(found, domain);
   }
 
   void closed(IndependenceCase& found) {
-    const ControlNet net = closed_net(scheme_, n_);
-    const RefinedNet once = refine(net, scheme_, n_), twice = refine(once.net, scheme_, n_);
-    const PieceStep first = mesh_step(once, net.points);
-    Steps steps(scheme_, first, field_);
+    const std::uint32_t n = corners_.valence;
+    const ControlNet net = closed_net(scheme_, n);
+    const RefinedNet once = refine(net, scheme_, n), twice = refine(once.net, scheme_, n);
+    Steps steps(mesh_step(once, net.points), field_);
     // Points of the second step as combinations of the first one's.
     ModularRank rank(field_, net.points);
     std::vector<ModularRow> fine;
-    for (std::uint32_t p = 0; p < once.net.points; ++p) fine.push_back(steps.image({0, {{p, 1}}}));
+    for (std::uint32_t p = 0; p < once.net.points; ++p) fine.push_back(steps.image({{p, 1}}, 0));
     for (const WeightRow& row : twice.rows) {
       ModularRow image(net.points);
       for (const auto& [p, w] : row) {
@@ -423,18 +329,17 @@ class PieceCases {
     if (found.independent()) return;
     why.bound = RankCertificate::Bound::kernel;
     std::vector<ExactVector> rows;
-    for (std::uint32_t p = 0; p < once.net.points; ++p) rows.push_back(steps.exact({0, {{p, 1}}}));
+    for (std::uint32_t p = 0; p < once.net.points; ++p) rows.push_back(steps.exact({{p, 1}}, 0));
     for (const ExactVector& v : null_space(rows, net.points)) why.kernel.push_back(sparse(v));
     SNUG_EXPECT(steps.rational() && why.kernel.size() == found.dimension - found.rank);
   }
 
   ExactScheme scheme_;
-  std::uint32_t n_;
+  PieceCorners corners_;
   WorkMonitor monitor_;
   ModularField field_;
-  PieceStep step_;
-  Steps steps_;
-  DomainRank rings_;
+  std::deque<Steps> parts_;  // the piece; with two corners also what the first step leaves at each
+  std::optional<DomainRank> rings_;
   std::vector<std::uint32_t> ranks_;  // on rings 1 to k + 1
 };
 
@@ -524,11 +429,8 @@ std::vector<IndependenceRequest> chapter_requests(const ExactScheme& scheme, std
   if (older && n == 3) say(Kind::ring, 2, 0, "p. 33", true);
 
   const std::vector<IndependenceRequest> conjecture = conjecture_requests(scheme, n);
-  PieceCases ranks(scheme, n, {});
-  for (std::uint32_t k = 1, before = 0;; ++k) {
-    const std::uint32_t rank = ranks.rank_of_rings(k);
-    if (rank == before) break;
-    before = rank;
+  const std::uint32_t rings = PieceCases(scheme, {n}, {}).rings_that_count();
+  for (std::uint32_t k = 1; k <= rings; ++k) {
     IndependenceRequest request{{Kind::rings, k}, "", std::nullopt};
     if (k == 1 && loop && n <= 7) request = {request.domain, n == 7 ? "p. 24" : "lemma 3", true};
     if (k == 1 && loop && n > 7) request = {request.domain, "lemma 2", false};
@@ -557,11 +459,19 @@ std::vector<IndependenceRequest> chapter_requests(const ExactScheme& scheme, std
   return all;
 }
 
-std::vector<IndependenceCase> independence_cases(const ExactScheme& scheme, std::uint32_t valence,
+std::vector<IndependenceRequest> two_corner_requests(const ExactScheme& scheme, const PieceCorners& corners) {
+  std::vector<IndependenceRequest> all;
+  const std::uint32_t rings = PieceCases(scheme, corners, {}).rings_that_count();
+  for (std::uint32_t k = 1; k <= rings; ++k) all.push_back({{Kind::rings, k}, "", std::nullopt});
+  all.push_back({{Kind::omega}, "", std::nullopt});
+  return all;
+}
+
+std::vector<IndependenceCase> independence_cases(const ExactScheme& scheme, const PieceCorners& corners,
                                                  const std::vector<IndependenceRequest>& requests,
                                                  const WorkMonitor& monitor) {
-  SNUG_EXPECT(valence >= 3);
-  PieceCases all(scheme, valence, monitor);
+  SNUG_EXPECT(corners.valence >= 3);
+  PieceCases all(scheme, corners, monitor);
   std::vector<IndependenceCase> cases;
   cases.reserve(requests.size());
   for (const IndependenceRequest& request : requests) cases.push_back(all.answer(request));

@@ -8,7 +8,7 @@
 
 #include <gmpxx.h>
 
-#include <snug/independence/control_net.h>
+#include <snug/independence/piece_step.h>
 #include <snug/monitor.h>
 
 namespace snug {
@@ -50,7 +50,7 @@ struct RankCertificate {
 
 /// The rank of the nodal functions of K control points on a domain.
 struct IndependenceCase {
-  std::uint32_t valence = 0;
+  PieceCorners corners;
   IndependenceDomain domain;
   std::uint32_t dimension = 0, rank = 0;
   RankCertificate certificate;
@@ -75,15 +75,19 @@ struct IndependenceRequest {
 [[nodiscard]] std::vector<IndependenceRequest> conjecture_requests(const ExactScheme& scheme,
                                                                    std::uint32_t valence);
 
+/// All numbers of rings up to the last that adds something, and the whole piece.
+[[nodiscard]] std::vector<IndependenceRequest> two_corner_requests(const ExactScheme& scheme,
+                                                                   const PieceCorners& corners);
+
 /// Exact ranks with certificates.
 ///
 /// Guarantee: ranks are those of the functions, in exact arithmetic.
-/// Requires:  valence >= 3.
+/// Requires:  corners that two_corner_step() takes; with two of them `rings` and `omega` alone.
 /// Errors:    Interrupted.
 /// Cost:      grows as the cube of the valence times the rings; kernels with the fourth power.
 /// Source:    [Wu05, ch. 3]; docs/derivations/independence.md.
 [[nodiscard]] std::vector<IndependenceCase> independence_cases(
-    const ExactScheme& scheme, std::uint32_t valence, const std::vector<IndependenceRequest>& requests,
+    const ExactScheme& scheme, const PieceCorners& corners, const std::vector<IndependenceRequest>& requests,
     const WorkMonitor& monitor = {});
 
 }  // namespace snug

@@ -248,6 +248,60 @@ class Refinement {
   RefinedNet result_;
 };
 
+// A triangle and all triangles at its corners; points as two_corner_net() has them.
+ControlNet triangle_with_ring(const std::vector<std::uint32_t>& valences) {
+  ControlNet net;
+  net.faces.push_back({0, 1, 2});
+  net.points = 4;
+  const std::uint32_t first = 3;
+  for (std::uint32_t i = 0, begin = first; i < 3; ++i) {
+    // From the last edge to the next, counterclockwise.
+    std::vector<std::uint32_t> around{(i + 2) % 3, begin};
+    while (around.size() + 1 < valences[i]) {
+      const bool closing = i == 2 && around.size() + 2 == valences[i];
+      around.push_back(closing ? first : net.points++);
+    }
+    begin = around.back();
+    around.push_back((i + 1) % 3);
+    for (std::size_t k = 1; k + 1 < around.size(); ++k) net.faces.push_back({i, around[k], around[k + 1]});
+  }
+  return net;
+}
+
+ControlNet quad_with_ring(const std::vector<std::uint32_t>& valences) {
+  ControlNet net;
+  net.faces.push_back({0, 1, 2, 3});
+  net.points = 4;
+  std::vector<std::vector<std::uint32_t>> ends(4),
+      diagonals(4);  // of edges and faces at a corner, beyond the piece's
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    for (std::uint32_t k = 0; k + 2 < valences[i]; ++k) {
+      if (k > 0) diagonals[i].push_back(net.points++);
+      ends[i].push_back(net.points++);
+    }
+  }
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const std::uint32_t next = (i + 1) % 4;
+    for (std::size_t k = 0; k < diagonals[i].size(); ++k) {
+      net.faces.push_back({i, ends[i][k], diagonals[i][k], ends[i][k + 1]});
+    }
+    net.faces.push_back({i, ends[i].back(), ends[next].front(), next});
+  }
+  return net;
+}
+
+ControlNet dual_fan(const std::vector<std::uint32_t>& sizes) {
+  ControlNet net;
+  net.points = 5;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    std::vector<std::uint32_t> face{0, 1 + i};
+    while (face.size() + 1 < sizes[i]) face.push_back(net.points++);
+    face.push_back(1 + (i + 1) % 4);
+    net.faces.push_back(std::move(face));
+  }
+  return net;
+}
+
 }  // namespace
 
 Weight twice_cosine(std::uint32_t j, std::uint32_t m, std::uint32_t order) {
@@ -345,6 +399,15 @@ ControlNet piece_net(const ExactScheme& scheme, std::uint32_t n) {
   std::iota(polygon.begin(), polygon.end(), 0U);
   net.faces = {polygon, {1, 0, w(2), w(1)}, {0, w(4), w(3), w(2)}, {0, n - 1, w(5), w(4)}};
   return net;
+}
+
+ControlNet two_corner_net(const ExactScheme& scheme, const PieceCorners& corners) {
+  const bool loop = scheme.scheme == Scheme::loop;
+  std::vector<std::uint32_t> valences(loop ? 3 : 4, loop ? 6 : 4);
+  valences[0] = corners.valence;
+  valences[corners.opposite ? 2 : 1] = *corners.second;
+  if (scheme.dual()) return dual_fan(valences);
+  return loop ? triangle_with_ring(valences) : quad_with_ring(valences);
 }
 
 ControlNet annulus_net(const ExactScheme& scheme, std::uint32_t n) {

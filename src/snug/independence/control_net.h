@@ -26,6 +26,13 @@ struct ExactScheme {
   [[nodiscard]] bool dual() const { return scheme == Scheme::doo_sabin || scheme == Scheme::midedge; }
 };
 
+/// The extraordinary corners of a piece (dual schemes: faces at a vertex): one, or two at the ends of an edge or opposite.
+struct PieceCorners {
+  std::uint32_t valence = 3;
+  std::optional<std::uint32_t> second = {};
+  bool opposite = false;  ///< across the quad, or the vertex; not with Loop
+};
+
 /// A net one step finer: the points whose masks have all their points, and the faces of those.
 struct RefinedNet {
   ControlNet net;
@@ -52,6 +59,9 @@ struct RefinedNet {
 /// The control points of a piece with one extraordinary corner of valence n >= 3, as docs/independence.md numbers them, less
 /// one: n + 6 (Loop), 2 n + 8 (Catmull-Clark), n + 5 (dual schemes).
 [[nodiscard]] ControlNet piece_net(const ExactScheme& scheme, std::uint32_t n);
+/// Those of a piece with two extraordinary corners: the piece's own, counterclockwise, then around them; with dual schemes
+/// the vertex, its neighbours, then face by face.
+[[nodiscard]] ControlNet two_corner_net(const ExactScheme& scheme, const PieceCorners& corners);
 /// Those of the n pieces around the corner.
 [[nodiscard]] ControlNet annulus_net(const ExactScheme& scheme, std::uint32_t n);
 /// A closed mesh with corners of valence n: the bipyramid (Loop), the trapezohedron (Catmull-Clark; the cube for n = 3), the

@@ -52,9 +52,9 @@ std::vector<Functional> functionals(const ExactScheme& scheme, const ControlNet&
 
 }  // namespace
 
-PieceStep piece_step(const ExactScheme& scheme, std::uint32_t n) {
+PieceStep piece_step(const ExactScheme& scheme, std::uint32_t n, std::uint32_t order) {
   const ControlNet net = piece_net(scheme, n);
-  const RefinedNet fine = refine(net, scheme, n);
+  const RefinedNet fine = refine(net, scheme, order == 0 ? n : order);
   const std::array<std::uint32_t, 2> edge = scheme.dual()
                                                 ? std::array{fine.child.at({0, 0}), fine.child.at({0, 1})}
                                                 : std::array{*fine.of_vertex[0], fine.of_edge.at({0, 1})};
@@ -83,6 +83,38 @@ PieceStep piece_step(const ExactScheme& scheme, std::uint32_t n) {
     }
   }
   return step;
+}
+
+TwoCornerStep two_corner_step(const ExactScheme& scheme, const PieceCorners& corners, std::uint32_t order) {
+  const bool loop = scheme.scheme == Scheme::loop;
+  SNUG_EXPECT(corners.second && !(loop && (corners.opposite || corners.valence + *corners.second < 7)));
+  const ControlNet net = two_corner_net(scheme, corners);
+  const RefinedNet fine = refine(net, scheme, order);
+  // Dual: at the vertex in each of its faces, where it is the first corner; primal: at the corners of the face.
+  const auto child = [&](std::uint32_t i) {
+    return fine.child.at(scheme.dual() ? std::pair{i, 0U} : std::pair{0U, i});
+  };
+  const std::uint32_t second = corners.opposite ? 2 : 1;
+  TwoCornerStep result;
+  result.step.dimension = net.points;
+  result.step.rows = fine.rows;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    if (i != 0 && i != second) result.step.pieces.push_back(functionals(scheme, fine.net, child(i)));
+  }
+  for (const std::uint32_t i : {0U, second}) {
+    TwoCornerStep::Part& part = result.parts[i == 0 ? 0 : 1];
+    part.valence = i == 0 ? corners.valence : *corners.second;
+    // An edge of each net from the corner along the piece, or around the face.
+    const std::uint32_t next = (i + 1) % (loop ? 3 : 4);
+    const ControlNet own = piece_net(scheme, part.valence);
+    const std::array<std::uint32_t, 2> edge{0, scheme.dual() ? 1 : loop ? part.valence : 3};
+    const std::array<std::uint32_t, 2> fine_edge =
+        scheme.dual()
+            ? std::array{fine.child.at({i, 0}), fine.child.at({i, 1})}
+            : std::array{*fine.of_vertex[i], fine.of_edge.at({std::min(i, next), std::max(i, next)})};
+    for (const std::uint32_t p : embedded(own, edge, fine.net, fine_edge)) part.net.push_back(fine.rows[p]);
+  }
+  return result;
 }
 
 PieceStep annulus_step(const ExactScheme& scheme, std::uint32_t n) {

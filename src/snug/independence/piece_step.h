@@ -24,7 +24,22 @@ struct PieceStep {
 /// and its three pieces are what P_1, P_2 and P_3 pick.
 ///
 /// Source:    [Wu05, sec. 3.3 and 3.5], whose numbers are kept.
-[[nodiscard]] PieceStep piece_step(const ExactScheme& scheme, std::uint32_t n);
+/// `order`: a multiple of n, of which weights are cosines; 0 for n.
+[[nodiscard]] PieceStep piece_step(const ExactScheme& scheme, std::uint32_t n, std::uint32_t order = 0);
+
+/// The first step of a piece with two extraordinary corners: two regular pieces, and a part with one corner at each.
+struct TwoCornerStep {
+  struct Part {
+    std::uint32_t valence = 0;
+    std::vector<WeightRow> net;  ///< its control points, as piece_net() has them
+  };
+  PieceStep step;
+  std::array<Part, 2> parts;
+};
+
+/// Requires:  valences of 3 and more, not both 3 with Loop; opposite corners not with Loop; a common multiple of both.
+[[nodiscard]] TwoCornerStep two_corner_step(const ExactScheme& scheme, const PieceCorners& corners,
+                                            std::uint32_t order);
 
 /// The step of the n pieces around a corner: 3 n regular pieces, nothing kept.
 [[nodiscard]] PieceStep annulus_step(const ExactScheme& scheme, std::uint32_t n);
