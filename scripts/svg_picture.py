@@ -47,3 +47,16 @@ class Picture:
 
     def save(self, path):
         path.write_text("\n".join(self.parts + ["</svg>", ""]), encoding="utf-8")
+
+
+class Panel:
+    """Part of a picture with coordinates of its own; y grows upwards."""
+
+    def __init__(self, picture, left, top, scale, origin=(0, 0)):
+        self.picture, self.left, self.top, self.scale, self.origin = picture, left, top, scale, origin
+
+    def at(self, p):
+        return self.left + self.scale * (p[0] - self.origin[0]), self.top - self.scale * (p[1] - self.origin[1])
+
+    def all(self, points):
+        return [self.at(p) for p in points]
