@@ -35,6 +35,7 @@ struct Samples {
   std::vector<Point3> points;
   std::vector<SurfaceParameter> at;
   bool given = false;
+  bool reached = true;  // are closest ones as near as they get, or did the budget end some?
 };
 
 // Lines "x y z", or all "x y z face u v".
@@ -59,7 +60,8 @@ Samples read_samples(const std::string& path, const LimitSurface& surface) {
     samples.points.push_back(p);
     if (given) samples.at.push_back(read_place(line, surface, where, with_place));
   });
-  if (samples.points.empty()) throw InputError(InputProblem::unreadable, path + ": there are no points");
+  if (samples.points.empty())
+    throw InputError(InputProblem::unreadable, path + ": there are no points; give lines 'x y z'");
   return samples;
 }
 
@@ -86,6 +88,7 @@ Residual residual_of(const LimitSurface& surface, const Samples& samples, int th
 // The place of each point that is closest to it.
 void assign(const LimitSurface& surface, Samples& samples, const Options& options,
             const WorkMonitor& monitor) {
+  samples.reached = true;
   ClosestOptions wanted;
   wanted.absolute = 1e-6 * surface.size();
   wanted.budget = options.budget;
@@ -93,6 +96,7 @@ void assign(const LimitSurface& surface, Samples& samples, const Options& option
   samples.at.clear();
   for (const ClosestPoint& found : closest_points(model, samples.points, wanted, options.threads, monitor)) {
     samples.at.push_back(found.at);
+    samples.reached &= found.reached;
   }
 }
 
@@ -215,7 +219,7 @@ Fit fit(LimitSurface surface, Samples samples, const std::optional<MeshKernel>& 
 void write_json(JsonWriter& json, const Fit& found, const std::optional<MeshKernel>& kernel) {
   json.field("points", found.samples.points.size()).key("residual").begin_object();
   json.field("rms", found.residual.rms).field("max", found.residual.max).end_object();
-  json.field("rounds", found.rounds).field("rank", found.rank);
+  json.field("reached", found.samples.reached).field("rounds", found.rounds).field("rank", found.rank);
   json.field("dimension", found.surface.mesh().vertex_count());
   if (kernel) {
     write_kernel(json, *kernel);
@@ -235,6 +239,10 @@ std::optional<MeshKernel> kernel_of(const LimitSurface& surface, const WorkMonit
 
 ExitStatus run(const Options& options) {
   if (options.output.empty()) throw UsageError("fit: -o FILE is missing: where the fitted mesh goes");
+  if (options.mesh == "-" && options.points == "-") {
+    throw UsageError(
+        "fit: MESH and --points are both -, and there is one standard input; give a file for one");
+  }
   if (options.json && options.output == "-")
     throw UsageError("fit: --json and -o - both want standard output");
   LimitSurface surface = load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
@@ -263,7 +271,8 @@ ExitStatus run(const Options& options) {
                     options.output, mesh.vertex_count(), found->samples.points.size(), found->residual.rms,
                     found->residual.max, found->rounds, found->rounds == 1 ? "" : "s"));
   }
-  return report.finish(true, {&file});
+  if (!found->samples.reached) report.text("the budget ended some closest points; give a larger --budget");
+  return report.finish(found->samples.reached, {&file});
 }
 
 }  // namespace
@@ -285,7 +294,7 @@ Command fit_command() {
   list.add(Group::own, "--least-change", &options->least_change,
            "Where points do not determine control points, take those that move least");
   list.add(Group::effort, "--budget N", &options->budget, "Split at most N pieces for each closest point")
-      .between(0, std::uint64_t{1} << 40);
+      .between(1, std::uint64_t{1} << 40);
   add_common_options(list, *options);
   return {"fit",
           Topic::files,

@@ -11,13 +11,14 @@
 #include <snug/independence/piece_step.h>
 
 #include "common.h"
+#include "curve.h"
 #include "kernel_json.h"
 #include "progress_bar.h"
 
 namespace snug::command {
 namespace {
 
-constexpr std::uint32_t least_valence = 3, largest_valence = 200;
+constexpr std::uint32_t least_valence = 3, largest_valence = 200, most_rings = 256;
 constexpr std::size_t named_vertices = 6;
 
 struct Options : CommonOptions {
@@ -57,7 +58,7 @@ ExactScheme exact_scheme(const Options& options) {
   scheme.older_vertices = options.older;
   // auto is Loop: the dissertation's first.
   if (options.scheme != "auto") scheme.scheme = choose_scheme(options.scheme, {});
-  if (scheme.scheme == Scheme::bilinear || scheme.scheme == Scheme::flat) {
+  if (options.scheme == "curve" || scheme.scheme == Scheme::bilinear || scheme.scheme == Scheme::flat) {
     throw UsageError("--scheme: nodal functions are those of loop, catmark, doo-sabin and midedge");
   }
   if (options.older && scheme.scheme != Scheme::catmark)
@@ -71,34 +72,54 @@ PieceCorners corners_of(const Options& options, std::uint32_t valence) {
   return corners;
 }
 
-// The domains asked for; those of the chapter where there are none.
-std::vector<IndependenceRequest> requests_for(const Options& options, const ExactScheme& scheme,
-                                              const PieceCorners& corners) {
-  const std::vector<IndependenceRequest> chapter =
-      corners.second ? two_corner_requests(scheme, corners) : chapter_requests(scheme, corners.valence);
-  if (options.domains.empty()) return chapter;
-  std::vector<IndependenceRequest> requests;
+// What --domain names.
+struct Domains {
+  std::vector<IndependenceDomain> named;
+  bool conjecture = false;
+  [[nodiscard]] bool empty() const { return named.empty() && !conjecture; }
+};
+
+Domains parse_domains(const Options& options) {
+  Domains domains;
   for (const std::string& text : options.domains) {
-    if (text == "conjecture" && !corners.second) {
-      const auto halves = conjecture_requests(scheme, corners.valence);
-      requests.insert(requests.end(), halves.begin(), halves.end());
+    if (text == "conjecture" && !options.second) {
+      domains.conjecture = true;
       continue;
     }
     const auto domain = parse_domain(text);
-    if (!domain || domain->first > 10'000) {
+    if (!domain) {
       throw UsageError(fmt::format(
-          "--domain: '{}' is not piece:I, pieces:I,J (1 to 3), ring:K, rings:K, omega, annulus, global or "
-          "conjecture",
+          "--domain: '{}' is not piece:I, pieces:I,J (1 to 3), ring:K, rings:K, omega, annulus, global "
+          "or conjecture",
           text));
     }
-    if (corners.second && domain->kind != IndependenceDomain::Kind::rings &&
+    if (domain->first > most_rings) {
+      throw UsageError(fmt::format("--domain: '{}': K goes from 1 to {}", text, most_rings));
+    }
+    if (options.second && domain->kind != IndependenceDomain::Kind::rings &&
         domain->kind != IndependenceDomain::Kind::omega) {
       throw UsageError("--domain: with --second, only rings:K and omega");
     }
-    const auto known = std::find_if(chapter.begin(), chapter.end(), [&](const IndependenceRequest& request) {
-      return request.domain == *domain;
-    });
-    requests.push_back(known == chapter.end() ? IndependenceRequest{*domain, "", std::nullopt} : *known);
+    domains.named.push_back(*domain);
+  }
+  return domains;
+}
+
+// Those asked for; all that the chapter speaks of where there are none.
+std::vector<IndependenceRequest> requests_for(const Domains& asked, const ExactScheme& scheme,
+                                              const PieceCorners& corners) {
+  std::vector<IndependenceDomain> domains = asked.named;
+  if (asked.empty()) {
+    domains = corners.second ? two_corner_domains(scheme, corners) : chapter_domains(scheme, corners.valence);
+  }
+  if (const std::uint32_t k = conjectured_rings(scheme, corners.valence); asked.conjecture && k > 0) {
+    domains.push_back({IndependenceDomain::Kind::rings, k - 1});
+    domains.push_back({IndependenceDomain::Kind::rings, k});
+  }
+  std::vector<IndependenceRequest> requests;
+  for (const IndependenceDomain& domain : domains) {
+    requests.push_back(corners.second ? IndependenceRequest{domain, "", std::nullopt}
+                                      : chapter_request(scheme, corners.valence, domain));
   }
   return requests;
 }
@@ -251,6 +272,13 @@ ExitStatus run_on_valences(const Options& options) {
                          : "--second: two corners of valence 3 at an edge are a mesh of four triangles");
   }
   if (options.matrices && !options.json) throw UsageError("--matrices needs --json");
+  const Domains domains = parse_domains(options);
+  if (domains.conjecture && domains.named.empty() && conjectured_rings(scheme, range.last) == 0) {
+    throw UsageError(
+        "--domain conjecture: the dissertation has one for loop with valence 8 and more, and one for catmark "
+        "with 6 "
+        "and more");
+  }
   const std::size_t count = range.last - range.first + 1;
   std::vector<std::vector<IndependenceCase>> found(count);
   std::vector<CornerEigenvalues> eigenvalues(options.eigenvalues ? count : 0);
@@ -259,18 +287,13 @@ ExitStatus run_on_valences(const Options& options) {
     ProgressBar bar("ranks", options.quiet);
     const WorkMonitor monitor = bar.monitor();
     std::atomic<std::size_t> done = 0;
-    for (const std::string& text : options.domains) {  // refused before work begins
-      Options one = options;
-      one.domains = {text};
-      requests_for(one, scheme, corners_of(options, range.first));
-    }
     // The largest first: it takes longest.
     parallel_for(count, options.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const auto valence = range.last - static_cast<std::uint32_t>(i);
         const PieceCorners corners = corners_of(options, valence);
         found[count - 1 - i] =
-            independence_cases(scheme, corners, requests_for(options, scheme, corners), monitor);
+            independence_cases(scheme, corners, requests_for(domains, scheme, corners), monitor);
         if (options.eigenvalues) eigenvalues[count - 1 - i] = corner_eigenvalues(scheme, valence);
         monitor.report(static_cast<double>(++done) / static_cast<double>(count));
       }
@@ -306,6 +329,7 @@ ExitStatus run_on_valences(const Options& options) {
 
 ExitStatus run_on_mesh(const Options& options) {
   const ControlMesh mesh = load_mesh(options.mesh, options);
+  refuse_curves(mesh, options.scheme, options.mesh);
   const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
   Report report("independence", options);
   MeshKernel kernel;
@@ -340,7 +364,11 @@ ExitStatus run(const Options& options) {
     throw UsageError(
         "independence: give --valence A..B for pieces with one extraordinary corner, or --mesh FILE");
   }
-  return options.mesh.empty() ? run_on_valences(options) : run_on_mesh(options);
+  if (!options.mesh.empty()) return run_on_mesh(options);
+  if (!options.weld.empty() || !options.sharp.empty() || !options.boundary.empty()) {
+    throw UsageError("--weld, --sharp and --boundary need --mesh");
+  }
+  return run_on_valences(options);
 }
 
 }  // namespace
@@ -350,7 +378,7 @@ Command independence_command() {
   OptionList list;
   list.add(Group::own, "--valence RANGE", &options->valence,
            "Pieces with one extraordinary corner of these valences (dual schemes: corners of a face), such "
-           "as 3..30");
+           "as 3..30; --scheme auto is loop then");
   list.add(Group::own, "--domain DOMAIN", &options->domains,
            "Where functions are looked at: piece:I, pieces:I,J, ring:K, rings:K, omega, annulus, global, "
            "conjecture; several "

@@ -5,6 +5,8 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 
+#include <snug/base/error.h>
+
 namespace snug::command {
 namespace {
 
@@ -39,12 +41,13 @@ struct LeastSquares::Matrices {
   // Sylvester: as many eigenvalues above a shift as positive pivots.
   [[nodiscard]] std::size_t rank() const {
     constexpr double share = 1e-13;
-    for (const double factor : {1.0, 1.1, 1.2}) {
+    for (const double factor : {1.0, 1.1, 1.2, 1.4, 1.7, 2.0}) {
       const Factors factors(shifted(-factor * share * norm));
       if (factors.info() != Eigen::Success) continue;  // a pivot of exactly 0
       return static_cast<std::size_t>((factors.vectorD().array() > 0).count());
     }
-    return 0;
+    throw InputError(InputProblem::refused,
+                     "fit: how many directions the points tell could not be computed; give --smooth WEIGHT");
   }
   // Takes away what inverse iteration finds of the kernel in x.
   void remove_kernel(Columns& x) const {

@@ -14,6 +14,9 @@
 namespace snug::command {
 namespace {
 
+// Beyond, planes above and below a function of Midedge are farther apart than functions are high.
+constexpr std::uint64_t most_of_midedge = 20;
+
 struct Options : CommonOptions {
   std::optional<std::uint64_t> valence;
 };
@@ -176,6 +179,10 @@ void write_text(Report& report, const LaidOut& found) {
 
 ExitStatus run(const Options& options) {
   const SchemeRules& rules = *scheme_named(options.scheme);
+  if (rules.scheme == Scheme::midedge && *options.valence > most_of_midedge) {
+    throw UsageError(fmt::format(
+        "table: planes of midedge are of no use beyond {} corners; bound has tighter sets", most_of_midedge));
+  }
   BoundsCache cache;
   const LaidOut found = lay_out(cache, rules, *options.valence);
   Report report("table", options);
@@ -200,7 +207,8 @@ Command table_command() {
     for (const char* other : rules->other_names) scheme.alias(other, rules->name);
   }
   list.add(Group::own, "--valence N", &options->valence,
-           "Valence of the extraordinary vertex, 3 to 200; with a dual scheme, corners of the face")
+           "Valence of the extraordinary vertex, 3 to 200; with a dual scheme, corners of the face, with "
+           "midedge up to 20")
       .between(3, 200)
       .required();
   add_output_options(list, *options);

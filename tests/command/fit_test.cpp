@@ -150,6 +150,15 @@ TEST_F(fit_command, comes_nearer_from_round_to_round) {
   EXPECT_LT(farthest(read_mesh(pawn), read_mesh(fitted)), 0.05);
 }
 
+TEST_F(fit_command, says_where_a_budget_ended_closest_points) {
+  const std::string pawn = model("pawn.obj"), points = points_of(pawn, "loop", 3, false);
+  const Outcome outcome =
+      run_snug({"fit", moved(pawn, 0.003), "--points", points, "--budget", "1", "-o", output(), "--json"});
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  EXPECT_EQ(json::parse(outcome.out)["reached"], false);
+  EXPECT_EQ(answer({moved(pawn, 0.003), "--points", points})["reached"], true);
+}
+
 TEST_F(fit_command, ends_where_the_residual_no_longer_falls) {
   const std::string box = write("cube.obj", cube);
   const json found = answer(
@@ -265,6 +274,9 @@ TEST_F(fit_command, refuses_words_and_files_that_do_not_fit) {
   EXPECT_EQ(run_snug({"fit", pawn, "--points", points, "-o", output(), "--rounds", "0"}).status, 2);
   EXPECT_EQ(run_snug({"fit", pawn, "--points", points, "-o", folder_.file("out.json")}).status, 3);
   EXPECT_EQ(run_snug({"fit", pawn, "--points", "nowhere.txt", "-o", output()}).status, 3);
+  EXPECT_EQ(run_snug({"fit", pawn, "--points", points, "-o", output(), "--budget", "0"}).status, 2);
+  EXPECT_NE(run_snug({"fit", "-", "--points", "-", "-o", output()}).err.find("one standard input"),
+            std::string::npos);
   const std::string curve = write("curve.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\n");
   EXPECT_EQ(run_snug({"fit", curve, "--points", points, "-o", output()}).status, 4);
 }

@@ -123,6 +123,23 @@ TEST_F(independence_command, of_two_corners) {
   expect_refused({"--valence", "5", "--second", "7", "--domain", "annulus"}, "only rings:K and omega");
 }
 
+TEST_F(independence_command, of_the_largest_valence_and_other_rules) {
+  for (const char* scheme : {"loop", "catmark", "doo-sabin", "midedge"}) {
+    const json found = answer({"--scheme", scheme, "--valence", "200", "--domain", "piece:1"});
+    ASSERT_EQ(found["cases"].size(), 1) << scheme;
+    EXPECT_EQ(found["cases"][0]["independent"], false);
+  }
+  const json older = answer({"--scheme", "catmark", "--older-rule", "--valence", "3", "--domain", "ring:2"});
+  EXPECT_EQ(older["cases"][0]["rule"], "older");
+  EXPECT_EQ(older["cases"][0]["independent"], true);
+  const json halves = answer({"--scheme", "catmark", "--valence", "5..7", "--domain", "conjecture"});
+  ASSERT_EQ(halves["cases"].size(), 4);
+  EXPECT_EQ(halves["cases"][1]["domain"], "rings:2");
+  EXPECT_EQ(halves["cases"][1]["independent"], true);
+  const json dual = answer({"--scheme", "midedge", "--valence", "6", "--domain", "omega", "--matrices"});
+  EXPECT_EQ(dual["matrices"][0]["pieces"][0][0].size(), 2);
+}
+
 TEST_F(independence_command, refuses_what_is_no_question) {
   expect_refused({}, "give --valence A..B");
   expect_refused({"--valence", "2"}, "from 3 to 200");
@@ -131,6 +148,10 @@ TEST_F(independence_command, refuses_what_is_no_question) {
   expect_refused({"--valence", "3..1e9"}, "is no valence");
   expect_refused({"--valence", "..7"}, "is no valence");
   expect_refused({"--valence", "7", "--domain", "ring:0"}, "--domain: 'ring:0'");
+  expect_refused({"--valence", "7", "--domain", "rings:257"}, "K goes from 1 to 256");
+  expect_refused({"--valence", "3..7", "--domain", "conjecture"}, "loop with valence 8 and more");
+  expect_refused({"--valence", "7", "--sharp", "30"}, "need --mesh");
+  expect_refused({"--valence", "7", "--scheme", "curve"}, "loop, catmark, doo-sabin and midedge");
   expect_refused({"--valence", "7", "--scheme", "flat"}, "loop, catmark, doo-sabin and midedge");
   expect_refused({"--valence", "7", "--older-rule"}, "needs --scheme catmark");
   expect_refused({"--valence", "7", "--matrices"}, "needs --json");

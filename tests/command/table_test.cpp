@@ -266,9 +266,15 @@ class PatchSamples {
 
 class table_command : public ::testing::TestWithParam<const char*> {};
 
+// The largest valence asked for that the scheme has a table of.
+int at_most(const std::string& scheme, int valence) {
+  return scheme == "midedge" ? std::min(valence, 20) : valence;
+}
+
 TEST_P(table_command, bounds_patches_from_its_json_alone) {
   const std::string scheme = GetParam();
-  for (const int valence : {3, 4, 5, 6, 7, 12, 30}) {
+  for (const int wanted : {3, 4, 5, 6, 7, 12, 30}) {
+    const int valence = at_most(scheme, wanted);
     const json table = table_of(scheme, static_cast<std::size_t>(valence));
     const Rings rings(scheme, valence);
     for (const bool mirrored : {false, true}) {
@@ -284,7 +290,8 @@ TEST_P(table_command, bounds_patches_from_its_json_alone) {
 
 TEST_P(table_command, numbers_faces_and_rings_alike) {
   const std::string scheme = GetParam();
-  for (const int valence : {3, 5, 6, 200}) {
+  for (const int wanted : {3, 5, 6, 200}) {
+    const int valence = at_most(scheme, wanted);
     const json table = table_of(scheme, static_cast<std::size_t>(valence));
     const Rings rings(scheme, valence);
     const auto turned = [](std::vector<std::uint32_t> face) {
@@ -304,7 +311,8 @@ TEST_P(table_command, numbers_faces_and_rings_alike) {
 TEST_P(table_command, has_the_counts_of_its_scheme) {
   const std::string scheme = GetParam();
   const bool loop = scheme == "loop", catmark = scheme == "catmark";
-  for (const std::size_t n : {3u, 7u, 200u}) {
+  for (const int wanted : {3, 7, 200}) {
+    const auto n = static_cast<std::size_t>(at_most(scheme, wanted));
     const json table = table_of(scheme, n);
     const std::size_t count = loop ? n + 6 : catmark ? 2 * n + 8 : n + 5, first = loop ? 3 : 0;
     EXPECT_EQ(table["command"], "table");
@@ -327,6 +335,29 @@ TEST_P(table_command, has_the_counts_of_its_scheme) {
       EXPECT_NEAR(limit[0], k == 1, loop ? 0.3 : 1e-9);
       EXPECT_NEAR(limit[1], k == 2, loop ? 0.3 : 1e-9);
       EXPECT_NEAR(limit[2], 1, 1e-12);
+    }
+  }
+}
+
+// Where the patch is, two planes are not farther apart than functions are high, or nearly.
+TEST_P(table_command, has_planes_that_are_of_use) {
+  const std::string scheme = GetParam();
+  for (const int wanted : {3, 4, 5, 6, 8, 10, 13, 16, 20, 40, 80, 200}) {
+    const json table = table_of(scheme, static_cast<std::size_t>(at_most(scheme, wanted)));
+    const auto corner = [&](std::size_t k, std::size_t axis) {
+      return table["triangle"][k][axis].get<double>();
+    };
+    for (std::size_t i = 0; i < table["below"].size(); ++i) {
+      for (const auto& [x, y] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}, {1.0 / 3, 1.0 / 3}}) {
+        const double b = (x - corner(0, 0)) / (corner(1, 0) - corner(0, 0)),
+                     c = (y - corner(0, 1)) / (corner(2, 1) - corner(0, 1));
+        const auto at = [&](const char* plane) {
+          const json& values = table[plane][i];
+          return (1 - b - c) * values[0].get<double>() + b * values[1].get<double>() +
+                 c * values[2].get<double>();
+        };
+        ASSERT_LE(at("above") - at("below"), 1.5) << wanted << " " << i;
+      }
     }
   }
 }
@@ -372,6 +403,9 @@ TEST(table_usage, is_refused_in_one_line) {
     EXPECT_EQ(outcome.status, 2) << bad;
     EXPECT_NE(outcome.err.find("midedge"), std::string::npos) << outcome.err;
   }
+  const Outcome wide = run_snug({"table", "--scheme", "midedge", "--valence", "21"});
+  EXPECT_EQ(wide.status, 2);
+  EXPECT_NE(wide.err.find("beyond 20 corners"), std::string::npos) << wide.err;
   EXPECT_EQ(run_snug({"table", "--scheme", "loop"}).status, 2);
   EXPECT_EQ(run_snug({"table", "--valence", "5"}).status, 2);
   EXPECT_EQ(run_snug({"table", "--scheme", "loop", "--valence", "5", "mesh.obj"}).status, 2);

@@ -22,6 +22,13 @@ std::uint32_t rank(const ExactScheme& scheme, std::uint32_t n, const Independenc
   return one(scheme, n, domain).rank;
 }
 
+std::vector<IndependenceCase> chapter(const ExactScheme& scheme, std::uint32_t n) {
+  std::vector<IndependenceRequest> requests;
+  for (const IndependenceDomain& domain : chapter_domains(scheme, n))
+    requests.push_back(chapter_request(scheme, n, domain));
+  return independence_cases(scheme, {n}, requests);
+}
+
 // The formulas that docs/derivations/independence.md proves for all valences.
 std::uint32_t proved_rank(const ExactScheme& scheme, std::uint32_t n, std::uint32_t k) {
   switch (scheme.scheme) {
@@ -45,26 +52,39 @@ TEST(independence, ranks_on_rings_are_those_of_the_proof) {
       }
     }
   }
+  for (const std::uint32_t n : {3U, 4U}) {
+    for (const std::uint32_t k : {1U, 2U}) {
+      EXPECT_EQ(rank(midedge, n, {Kind::rings, k}), proved_rank(midedge, n, k));
+      EXPECT_EQ(rank(doo_sabin, n, {Kind::rings, k}), n + 5);
+      EXPECT_EQ(rank(loop, n, {Kind::rings, k}), n + 6);
+      EXPECT_EQ(rank(catmark, n, {Kind::rings, k}), 2 * n + 8);
+    }
+  }
 }
 
 TEST(independence, the_conjectures_hold) {
   for (const ExactScheme& scheme : {loop, catmark}) {
     for (const std::uint32_t n : {8U, 9U, 20U, 30U}) {
-      const auto cases = independence_cases(scheme, {n}, conjecture_requests(scheme, n));
-      ASSERT_EQ(cases.size(), 2);
-      for (const IndependenceCase& found : cases) ASSERT_EQ(found.independent(), *found.text);
-      EXPECT_EQ(cases[0].domain.first + 1, cases[1].domain.first);
+      const std::uint32_t k = conjectured_rings(scheme, n);
+      for (const std::uint32_t rings : {k - 1, k}) {
+        const IndependenceRequest request = chapter_request(scheme, n, {Kind::rings, rings});
+        ASSERT_EQ(request.text, rings == k) << n;
+        ASSERT_EQ(one(scheme, n, request.domain).independent(), rings == k) << n;
+      }
     }
   }
-  EXPECT_TRUE(conjecture_requests(loop, 7).empty());
-  EXPECT_TRUE(conjecture_requests(doo_sabin, 20).empty());
+  EXPECT_EQ(conjectured_rings(loop, 7), 0);
+  EXPECT_EQ(conjectured_rings(catmark, 5), 0);
+  EXPECT_EQ(conjectured_rings(older, 20), 0);
+  EXPECT_EQ(conjectured_rings(doo_sabin, 20), 0);
+  EXPECT_EQ(chapter_request(loop, 8, {Kind::rings, 1}).statement, "lemma 2, conjecture 1");
 }
 
 TEST(independence, the_text_is_wrong_in_two_places_and_nowhere_else) {
   std::set<std::string> wrong;
   for (const ExactScheme& scheme : {loop, catmark, older}) {
     for (std::uint32_t n = 3; n <= 14; ++n) {
-      for (const IndependenceCase& found : independence_cases(scheme, {n}, chapter_requests(scheme, n))) {
+      for (const IndependenceCase& found : chapter(scheme, n)) {
         if (found.text && *found.text != found.independent())
           wrong.insert(std::to_string(n) + " " + name_of(found.domain) + " " + std::to_string(found.rank));
       }
@@ -138,7 +158,7 @@ TEST(two_corner_step, keeps_the_matrices_of_one_corner_where_the_other_is_regula
 TEST(independence, a_kernel_vanishes_on_the_domain_and_spans_what_is_missing) {
   for (const ExactScheme& scheme : schemes) {
     for (std::uint32_t n = 3; n <= 12; ++n) {
-      for (const IndependenceCase& found : independence_cases(scheme, {n}, chapter_requests(scheme, n))) {
+      for (const IndependenceCase& found : chapter(scheme, n)) {
         const RankCertificate& why = found.certificate;
         ASSERT_EQ(why.bound == RankCertificate::Bound::full, found.independent());
         if (why.bound != RankCertificate::Bound::kernel) continue;

@@ -36,6 +36,11 @@ TEST(eigenvalues, of_loops_valence_3_lack_an_eigenvector) {
   EXPECT_EQ(repeated(loop, 3), "1/4 2 2; 1/8 3 3; 1/16 3 2");
 }
 
+TEST(eigenvalues, are_twice_those_of_two_frequencies) {
+  EXPECT_EQ(repeated(loop, 8), "3/8 2 2; 1/8 4 4; 1/16 2 2");
+  EXPECT_EQ(repeated(loop, 12), "1/2 2 2; 3/8 2 2; 1/4 2 2; 1/8 4 4; 1/16 2 2");
+}
+
 TEST(eigenvalues, have_all_eigenvectors_otherwise) {
   for (std::uint32_t n = 4; n <= 24; ++n) {
     for (const ExactScheme& scheme : {loop, catmark}) {

@@ -51,7 +51,9 @@ TEST(piece_step, has_weights_that_add_up_to_1) {
 // The one thing that the proof of docs/derivations/independence.md computes.
 TEST(piece_step, masks_of_near_points_tell_them) {
   for (const ExactScheme& scheme : {loop, catmark, doo_sabin}) {
-    for (const std::uint32_t n : {7U, 9U, 12U}) {
+    // From where the near points are distinct.
+    const std::uint32_t least = scheme.scheme == Scheme::loop ? 5 : scheme.scheme == Scheme::catmark ? 4 : 3;
+    for (std::uint32_t n = least; n <= 12; ++n) {
       const PieceStep step = piece_step(scheme, n);
       const std::uint32_t around = scheme.scheme == Scheme::loop      ? n + 1
                                    : scheme.scheme == Scheme::catmark ? 2 * n + 1
@@ -75,7 +77,7 @@ TEST(piece_step, masks_of_near_points_tell_them) {
       }
       const bool is_loop = scheme.scheme == Scheme::loop;
       EXPECT_EQ(near.size(), is_loop ? 10 : scheme.dual() ? 8 : 15);
-      EXPECT_EQ(masks.size(), is_loop ? 13 : scheme.dual() ? 12 : 21);
+      EXPECT_GE(masks.size(), is_loop ? 13 : scheme.dual() ? 12 : 21);
       EXPECT_EQ(step.dimension - null_space(masks, step.dimension).size(), near.size()) << n;
     }
   }

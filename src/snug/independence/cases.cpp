@@ -5,6 +5,7 @@
 #include <deque>
 #include <numeric>
 #include <set>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -143,7 +144,8 @@ class PieceCases {
         break;
       }
       case Kind::rings:
-        for (std::uint32_t ring = 1; ring <= first; ++ring) add_ring(domain, ring);
+        for (std::uint32_t ring = 1; ring <= first && domain.rank() < columns(); ++ring)
+          add_ring(domain, ring);
         conclude(found, domain);
         break;
       case Kind::ring:
@@ -232,9 +234,9 @@ class PieceCases {
       return;
     }
     why.bound = RankCertificate::Bound::kernel;
-    std::vector<ExactVector> gauges;
-    if (scheme_.scheme == Scheme::loop) gauges = loop_gauges(parts_[0].step());
-    if (accept(found, exact_kernel(domain.independent(), gauges, found.dimension), domain.functions(), 0))
+    std::vector<ExactVector> conditions;
+    if (scheme_.scheme == Scheme::loop) conditions = corner_conditions(parts_[0].step());
+    if (accept(found, exact_kernel(domain.independent(), conditions, found.dimension), domain.functions(), 0))
       return;
     // Without the rows that are irrational, where all are of the first step.
     std::vector<DomainFunction> rational;
@@ -381,89 +383,89 @@ std::optional<IndependenceDomain> parse_domain(const std::string& text) {
   return domain;
 }
 
-std::vector<IndependenceRequest> conjecture_requests(const ExactScheme& scheme, std::uint32_t n) {
-  std::vector<IndependenceRequest> requests;
-  if (scheme.older_vertices) return requests;
-  const auto halves = [&](std::uint32_t k, const char* name) {
-    requests.push_back({{Kind::rings, k - 1}, name, false});
-    requests.push_back({{Kind::rings, k}, name, true});
+IndependenceRequest chapter_request(const ExactScheme& scheme, std::uint32_t n,
+                                    const IndependenceDomain& domain) {
+  // n from `from` to `to`; first, second: of the domain, 0 for any.
+  struct Statement {
+    Kind kind;
+    std::uint32_t first, from, to;
+    const char* name;
+    bool independent;
   };
-  if (scheme.scheme == Scheme::loop && n >= 8) halves((n - 6) / 2 + 1, "conjecture 1");
-  if (scheme.scheme == Scheme::catmark && n >= 6) halves(n - 4, "conjecture 2");
-  return requests;
+  constexpr std::uint32_t any = UINT32_MAX;
+  static constexpr auto of_loop = std::to_array<Statement>({
+      {Kind::piece, 0, 3, 6, "lemma 3", true},
+      {Kind::piece, 0, 7, 7, "p. 24", false},
+      {Kind::pieces, 0, 7, 7, "p. 24", false},
+      {Kind::rings, 1, 3, 6, "lemma 3", true},
+      {Kind::rings, 1, 7, 7, "p. 24", true},
+      {Kind::rings, 1, 8, any, "lemma 2", false},
+      {Kind::omega, 0, 3, any, "theorem 1", true},
+      {Kind::annulus, 0, 3, any, "lemma 1", true},
+      {Kind::global, 0, 3, any, "corollary 1", true},
+  });
+  static constexpr auto of_catmark = std::to_array<Statement>({
+      {Kind::piece, 0, 4, 4, "lemma 8", true},
+      {Kind::piece, 0, 5, 5, "lemma 8", false},
+      {Kind::pieces, 0, 5, 5, "lemma 8", true},
+      {Kind::ring, 2, 3, 3, "lemma 8", false},
+      {Kind::rings, 1, 3, 5, "lemma 8", true},
+      {Kind::rings, 1, 6, any, "lemma 8", false},
+      {Kind::omega, 0, 3, any, "theorem 2", true},
+      {Kind::annulus, 0, 3, any, "lemma 7", true},
+      {Kind::global, 0, 3, 3, "lemma 6", false},
+      {Kind::global, 0, 4, any, "p. 32", true},
+  });
+  static constexpr auto of_older = std::to_array<Statement>({
+      {Kind::piece, 0, 3, 3, "p. 33", true},
+      {Kind::ring, 2, 3, 3, "p. 33", true},
+      {Kind::rings, 1, 3, 3, "p. 33", true},
+  });
+  std::span<const Statement> statements;
+  if (scheme.scheme == Scheme::loop) statements = of_loop;
+  if (scheme.scheme == Scheme::catmark) statements = of_catmark;
+  if (scheme.older_vertices) statements = of_older;
+
+  IndependenceRequest request{domain, "", std::nullopt};
+  const auto add = [&](const char* name, bool independent) {
+    if (!request.statement.empty()) request.statement += ", ";
+    request.statement += name;
+    request.text = independent;
+  };
+  for (const Statement& each : statements) {
+    if (each.kind == domain.kind && (each.first == 0 || each.first == domain.first) && each.from <= n &&
+        n <= each.to) {
+      add(each.name, each.independent);
+    }
+  }
+  if (const std::uint32_t k = conjectured_rings(scheme, n); k > 0 && domain.kind == Kind::rings) {
+    const char* name = scheme.scheme == Scheme::loop ? "conjecture 1" : "conjecture 2";
+    if (domain.first == k - 1) add(name, false);
+    if (domain.first == k) add(name, true);
+  }
+  return request;
 }
 
-std::vector<IndependenceRequest> chapter_requests(const ExactScheme& scheme, std::uint32_t n) {
-  const bool loop = scheme.scheme == Scheme::loop;
-  const bool catmark = scheme.scheme == Scheme::catmark && !scheme.older_vertices;
-  const bool older = scheme.older_vertices;
-  std::vector<IndependenceRequest> all;
-  const auto say = [&](Kind kind, std::uint32_t first, std::uint32_t second, const char* statement,
-                       std::optional<bool> text) {
-    all.push_back({{kind, first, second}, statement, text});
-  };
+std::uint32_t conjectured_rings(const ExactScheme& scheme, std::uint32_t n) {
+  if (scheme.scheme == Scheme::loop && n >= 8) return (n - 6) / 2 + 1;
+  return scheme.scheme == Scheme::catmark && !scheme.older_vertices && n >= 6 ? n - 4 : 0;
+}
 
-  for (std::uint32_t i = 1; i <= 3; ++i) {
-    if (loop && n <= 6)
-      say(Kind::piece, i, 0, "lemma 3", true);
-    else if (loop && n == 7)
-      say(Kind::piece, i, 0, "p. 24", false);
-    else if (catmark && n == 4)
-      say(Kind::piece, i, 0, "lemma 8", true);
-    else if (catmark && n == 5)
-      say(Kind::piece, i, 0, "lemma 8", false);
-    else if (older && n == 3)
-      say(Kind::piece, i, 0, "p. 33", true);
-    else
-      say(Kind::piece, i, 0, "", std::nullopt);
-  }
-  for (const auto& [i, j] : {std::pair{1U, 2U}, {1U, 3U}, {2U, 3U}}) {
-    if (loop && n == 7)
-      say(Kind::pieces, i, j, "p. 24", false);
-    else if (catmark && n == 5)
-      say(Kind::pieces, i, j, "lemma 8", true);
-    else
-      say(Kind::pieces, i, j, "", std::nullopt);
-  }
-  if (catmark && n == 3) say(Kind::ring, 2, 0, "lemma 8", false);
-  if (older && n == 3) say(Kind::ring, 2, 0, "p. 33", true);
-
-  const std::vector<IndependenceRequest> conjecture = conjecture_requests(scheme, n);
+std::vector<IndependenceDomain> chapter_domains(const ExactScheme& scheme, std::uint32_t n) {
+  std::vector<IndependenceDomain> all{{Kind::piece, 1},     {Kind::piece, 2},     {Kind::piece, 3},
+                                      {Kind::pieces, 1, 2}, {Kind::pieces, 1, 3}, {Kind::pieces, 2, 3}};
+  if (scheme.scheme == Scheme::catmark && n == 3) all.push_back({Kind::ring, 2});
   const std::uint32_t rings = PieceCases(scheme, {n}, {}).rings_that_count();
-  for (std::uint32_t k = 1; k <= rings; ++k) {
-    IndependenceRequest request{{Kind::rings, k}, "", std::nullopt};
-    if (k == 1 && loop && n <= 7) request = {request.domain, n == 7 ? "p. 24" : "lemma 3", true};
-    if (k == 1 && loop && n > 7) request = {request.domain, "lemma 2", false};
-    if (k == 1 && catmark) request = {request.domain, "lemma 8", n <= 5};
-    if (k == 1 && older && n == 3) request = {request.domain, "p. 33", true};
-    for (const IndependenceRequest& half : conjecture) {
-      if (half.domain.first == k) request = half;
-    }
-    all.push_back(request);
-  }
-  say(Kind::omega, 0, 0,
-      loop      ? "theorem 1"
-      : catmark ? "theorem 2"
-                : "",
-      loop || catmark ? std::optional(true) : std::nullopt);
-  say(Kind::annulus, 0, 0,
-      loop      ? "lemma 1"
-      : catmark ? "lemma 7"
-                : "",
-      loop || catmark ? std::optional(true) : std::nullopt);
-  say(Kind::global, 0, 0,
-      loop      ? "corollary 1"
-      : catmark ? (n == 3 ? "lemma 6" : "p. 32")
-                : "",
-      loop || catmark ? std::optional(!(catmark && n == 3)) : std::nullopt);
+  for (std::uint32_t k = 1; k <= rings; ++k) all.push_back({Kind::rings, k});
+  all.insert(all.end(), {{Kind::omega}, {Kind::annulus}, {Kind::global}});
   return all;
 }
 
-std::vector<IndependenceRequest> two_corner_requests(const ExactScheme& scheme, const PieceCorners& corners) {
-  std::vector<IndependenceRequest> all;
+std::vector<IndependenceDomain> two_corner_domains(const ExactScheme& scheme, const PieceCorners& corners) {
+  std::vector<IndependenceDomain> all;
   const std::uint32_t rings = PieceCases(scheme, corners, {}).rings_that_count();
-  for (std::uint32_t k = 1; k <= rings; ++k) all.push_back({{Kind::rings, k}, "", std::nullopt});
-  all.push_back({{Kind::omega}, "", std::nullopt});
+  for (std::uint32_t k = 1; k <= rings; ++k) all.push_back({Kind::rings, k});
+  all.push_back({Kind::omega});
   return all;
 }
 

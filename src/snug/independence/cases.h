@@ -67,24 +67,25 @@ struct IndependenceRequest {
   std::optional<bool> text;
 };
 
-/// Every statement of chapter 3 about this valence, and all numbers of rings up to the one that adds nothing.
-[[nodiscard]] std::vector<IndependenceRequest> chapter_requests(const ExactScheme& scheme,
-                                                                std::uint32_t valence);
-/// The two halves of conjectures 1 and 2: enough rings, and one too few.
-/// Requires:  Loop with valence 8 and more, Catmull-Clark with 5 and more; nothing else has any.
-[[nodiscard]] std::vector<IndependenceRequest> conjecture_requests(const ExactScheme& scheme,
-                                                                   std::uint32_t valence);
-
+/// This domain with what chapter 3 says of it.
+[[nodiscard]] IndependenceRequest chapter_request(const ExactScheme& scheme, std::uint32_t valence,
+                                                  const IndependenceDomain& domain);
+/// All that chapter 3 speaks of, and all numbers of rings up to the last that adds something.
+[[nodiscard]] std::vector<IndependenceDomain> chapter_domains(const ExactScheme& scheme,
+                                                              std::uint32_t valence);
+/// So many rings are enough, and one less is not, say conjectures 1 and 2; 0 where they say nothing: other schemes, Loop below
+/// 8, Catmull-Clark below 6.
+[[nodiscard]] std::uint32_t conjectured_rings(const ExactScheme& scheme, std::uint32_t valence);
 /// All numbers of rings up to the last that adds something, and the whole piece.
-[[nodiscard]] std::vector<IndependenceRequest> two_corner_requests(const ExactScheme& scheme,
-                                                                   const PieceCorners& corners);
+[[nodiscard]] std::vector<IndependenceDomain> two_corner_domains(const ExactScheme& scheme,
+                                                                 const PieceCorners& corners);
 
 /// Exact ranks with certificates.
 ///
 /// Guarantee: ranks are those of the functions, in exact arithmetic.
 /// Requires:  corners that two_corner_step() takes; with two of them `rings` and `omega` alone.
 /// Errors:    Interrupted.
-/// Cost:      grows as the cube of the valence times the rings; kernels with the fourth power.
+/// Cost:      grows as the cube of the valence times the rings, kernels with its fourth power; K^2 numbers are kept a ring.
 /// Source:    [Wu05, ch. 3]; docs/derivations/independence.md.
 [[nodiscard]] std::vector<IndependenceCase> independence_cases(
     const ExactScheme& scheme, const PieceCorners& corners, const std::vector<IndependenceRequest>& requests,

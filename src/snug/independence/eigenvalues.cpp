@@ -105,7 +105,7 @@ Polynomial characteristic_polynomial(const Matrix& matrix) {
   return result;
 }
 
-// A' with the neighbours' share s of the corner's mask: Loop's is 5/8 - (3 + 2cos(2 pi/n))^2/64.
+// A', rational parts of weights alone.
 Matrix kept_rows(const PieceStep& step) {
   Matrix rows(step.kept, std::vector<mpq_class>(step.dimension));
   for (std::uint32_t r = 0; r < step.kept; ++r) {
@@ -113,6 +113,7 @@ Matrix kept_rows(const PieceStep& step) {
   }
   return rows;
 }
+// The neighbours' share s of the corner's mask: Loop's is 5/8 - (3 + 2cos(2 pi/n))^2/64.
 void set_share(Matrix& rows, std::uint32_t n, const mpq_class& s) {
   rows[0][0] = 1 - s;
   for (std::uint32_t j = 1; j <= n; ++j) rows[0][j] = s / n;
@@ -124,14 +125,17 @@ std::uint32_t multiplicity(Polynomial p, const mpq_class& value) {
   return times;
 }
 
-std::vector<RationalEigenvalue> repeated_ones(const Polynomial& p, const Matrix& rows, const Matrix& gauges) {
+std::vector<RationalEigenvalue> repeated_ones(const Polynomial& p, const Matrix& rows,
+                                              const Matrix& conditions) {
   std::vector<RationalEigenvalue> found;
-  for (mpq_class value = 1; value >= mpq_class(1, 64); value /= 2) {
+  for (const int of_64 : {64, 32, 24, 16, 8, 4, 2, 1}) {
+    mpq_class value(of_64, 64);
+    value.canonicalize();
     const std::uint32_t times = multiplicity(p, value);
     if (times < 2) continue;
     Matrix shifted = rows;
     for (std::size_t i = 0; i < shifted.size(); ++i) shifted[i][i] -= value;
-    shifted.insert(shifted.end(), gauges.begin(), gauges.end());
+    shifted.insert(shifted.end(), conditions.begin(), conditions.end());
     found.push_back({value, times, static_cast<std::uint32_t>(null_space(shifted, rows.size()).size())});
   }
   return found;
@@ -155,16 +159,16 @@ CornerEigenvalues loop_eigenvalues(const PieceStep& step, std::uint32_t n) {
   // Of an irrational share only eigenvectors with 0 at the corner and no mean around it are not its own.
   const Weight& own = step.rows[0][0].second;
   Polynomial all = around * root(1);
-  Matrix gauges;
+  Matrix conditions;
   if (own.is_rational()) {
     set_share(rows, n, 1 - own.rational);
     all = all * root(own.rational - mpq_class(3, 8));
   } else {
-    gauges.assign(2, std::vector<mpq_class>(rows.size()));
-    gauges[0][0] = 1;
-    for (std::uint32_t j = 1; j <= n; ++j) gauges[1][j] = 1;
+    conditions.assign(2, std::vector<mpq_class>(rows.size()));
+    conditions[0][0] = 1;
+    for (std::uint32_t j = 1; j <= n; ++j) conditions[1][j] = 1;
   }
-  found.repeated = repeated_ones(all, rows, gauges);
+  found.repeated = repeated_ones(all, rows, conditions);
   return found;
 }
 

@@ -19,8 +19,7 @@ struct RationalEigenvalue {
 struct CornerEigenvalues {
   /// Is the characteristic polynomial the one whose roots the dissertation lists? Exact.
   bool as_stated = false;
-  /// The rational ones that are several times roots, largest first; others are single, or have two eigenvectors for two:
-  /// cosine and sine of one frequency.
+  /// Of 3/8 and the powers of 1/2 from 1 to 1/64 those that are several times roots, largest first.
   std::vector<RationalEigenvalue> repeated;
 };
 

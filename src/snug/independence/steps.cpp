@@ -152,7 +152,7 @@ bool vanishes(const ExactVector& v, const std::vector<DomainFunction>& functions
   return true;
 }
 
-std::vector<ExactVector> loop_gauges(const PieceStep& step) {
+std::vector<ExactVector> corner_conditions(const PieceStep& step) {
   std::vector<ExactVector> rows;
   for (const WeightRow& row : step.rows) {
     if (is_rational(row)) continue;

@@ -73,7 +73,8 @@ struct DomainFunction {
 /// Requires:  functions of one part follow each other, in the order of steps.
 [[nodiscard]] bool vanishes(const ExactVector& v, const std::vector<DomainFunction>& functions);
 
-/// What makes Loop's irrational masks of a step vanish: the vertex, and the sum of its neighbours.
-[[nodiscard]] std::vector<ExactVector> loop_gauges(const PieceStep& step);
+/// Conditions under which Loop's irrational rows are 0, so that what is left is rational: 0 at the vertex of each, and for
+/// the sum of its neighbours.
+[[nodiscard]] std::vector<ExactVector> corner_conditions(const PieceStep& step);
 
 }  // namespace snug
