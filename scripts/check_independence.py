@@ -8,6 +8,8 @@ a corner of some valence, span a space of dimension `rank`. Shown here without a
 Meshes and masks are built here from the rules of the schemes. `--self-test` makes right certificates, spoils each in every
 way that it knows, and expects the right ones accepted and all others rejected.
 
+A piece may have a second extraordinary corner; then n above is the order, the least common multiple of both valences.
+
 Exact numbers are polynomials in t = 2 cos(2 pi / n), lowest degree first, modulo the minimal polynomial of t. Vectors are
 lists of planes, plane i having the coefficients of t^i of all entries, times a common denominator where only zero matters.
 """
@@ -28,7 +30,9 @@ SCHEMES = ("loop", "catmark", "doo-sabin", "midedge")
 DUAL = ("doo-sabin", "midedge")
 REGULAR_POINTS = {"loop": 12, "catmark": 16, "doo-sabin": 9, "midedge": 9}
 RATIONAL = re.compile(r"-?[0-9]+(/[1-9][0-9]*)?")
+PLACES = ("edge", "opposite")
 MOST_STEPS = 2
+MOST_ORDER = 10000
 
 
 class Fault(Exception):
@@ -116,9 +120,14 @@ def reduced(a, n):
 
 @functools.cache
 def cosines(n, m):
-    """2 cos(2 pi i / m) for i = 0..m-1 as polynomials in 2 cos(2 pi / n); m is n, or has rational cosines."""
-    if m == n:
-        return [reduced(c, n) for c in chebyshev(m)[:m]]
+    """2 cos(2 pi i / m) for i = 0..m-1 as polynomials in 2 cos(2 pi / n); m divides n, or has rational cosines."""
+    if n % m == 0:
+        found, last, this = [], [0, 1], [2]
+        for i in range(n):
+            if i % (n // m) == 0:
+                found.append(this)
+            last, this = this, reduced(poly_add([0] + this, poly_scale(last, -1)), n)
+        return found
     assert len(minimal(m)) == 2
     t = -minimal(m)[0]
     return [[sum(x * t**k for k, x in enumerate(c))] for c in chebyshev(m)[:m]]
@@ -227,6 +236,47 @@ def catmark_mesh(n):
 def dual_mesh(n):
     w = [n + i for i in range(6)]
     return [tuple(range(1, n + 1)), (1, 2, w[1], w[2]), (1, w[2], w[3], w[4]), (1, w[4], w[5], n)]
+
+
+def loop_pair(n, m):
+    """Corners of valences n and m at an edge of a triangle."""
+    faces, beyond, count = {frozenset((1, 2, 3)): (1, 2, 3)}, [4], 4
+    for i, valence in enumerate((n, m, 6)):
+        ring = beyond[-1:]
+        while len(ring) < valence - 2:
+            count += 1
+            ring.append(count)
+        if i == 2:
+            count -= 1
+            ring[-1] = beyond[0]
+        beyond += ring
+        around = [1 + (i + 2) % 3, *ring, 1 + (i + 1) % 3]
+        faces.update((frozenset((1 + i, *pair)), (1 + i, *pair)) for pair in zip(around, around[1:]))
+    return list(faces.values())
+
+
+def catmark_pair(valences):
+    """Corners of these valences in a quad."""
+    outer, count = [], 5
+    for valence in valences:
+        outer.append(list(range(count, count + 2 * valence - 5)))
+        count += 2 * valence - 5
+    faces = {frozenset((1, 2, 3, 4)): (1, 2, 3, 4)}
+    for i, ring in enumerate(outer):
+        before, after = (i + 3) % 4, (i + 1) % 4
+        spokes, diagonals = [1 + before, *ring[::2], 1 + after], [outer[before][-1], *ring[1::2], outer[after][0]]
+        for a, d, b in zip(spokes, diagonals, spokes[1:]):
+            faces[frozenset((1 + i, a, d, b))] = (1 + i, a, d, b)
+    return list(faces.values())
+
+
+def dual_pair(valences):
+    """A vertex whose faces have these numbers of corners."""
+    faces, count = [], 6
+    for i, corners in enumerate(valences):
+        faces.append((1, 2 + i, *range(count, count + corners - 3), 2 + (i + 1) % 4))
+        count += corners - 3
+    return faces
 
 
 def loop_annulus(n):
@@ -432,41 +482,66 @@ def primitive(planes):
     return tuple(tuple(x // divisor for x in plane) for plane in planes)
 
 
-class Corner:
-    """The step at one corner: the points of its regular pieces, and of the part left.
+class Net:
+    """The step of a net: the points of its regular pieces, and of the parts left.
 
-    Functions are zero on a piece where all its tests are zero, a test being the sum of one or two points.
-    own: points made by the corner's own irrational mask.
+    names pick the regular pieces; seeds are pairs of the net that a part left is like, and where the first face of it lies;
+    n is the order of the exact numbers. Functions are zero on a piece where all its tests are zero, a test being the sum of one
+    or two points.
     """
 
-    def __init__(self, scheme, n, rule, annulus):
-        mesh = self.mesh(scheme, n, annulus)
+    def __init__(self, scheme, mesh, n, rule, names, seeds, threes):
         masks, faces = step_of(scheme, mesh, n, rule)
         by_vertex = faces_by_vertex(faces)
         patches = []
-        for name in self.piece_names(scheme, n, mesh, annulus):
+        for name in names:
             seen = [name] if scheme in DUAL else next(f for f in faces if set(name) <= set(f))
             around = {f for v in seen for f in by_vertex[v]}
             points = {v for f in around for v in faces[f]}
-            # At valence 3 two of the 12 points of Loop's middle piece are one.
-            assert len(points) == REGULAR_POINTS[scheme] - (scheme == "loop" and n == 3 and name[0][0] == "edge")
+            # For each corner of valence 3, two of the 12 points of Loop's middle piece are one.
+            middle = scheme == "loop" and name[0][0] == "edge"
+            assert len(points) == REGULAR_POINTS[scheme] - (threes if middle else 0)
             sums = {e for f in around for e in edges_of(faces[f])} if scheme == "midedge" else {frozenset([v]) for v in points}
             patches.append(sums)
-        place = {} if annulus else embed(mesh, faces, self.seed(scheme, n, mesh))
-        needed = {v for sums in patches for e in sums for v in e} | set(place.values())
+        places = [embed(pattern, faces, seed) for pattern, seed in seeds]
+        needed = {v for sums in patches for e in sums for v in e}.union(*(place.values() for place in places))
         assert needed <= masks.keys()
-        names = [v for v in masks if v in needed]
-        index = {v: i for i, v in enumerate(names)}
-        self.count = len(faces_by_vertex(mesh))
-        self.step = Step([masks[v] for v in names], {v: v - 1 for v in range(1, self.count + 1)}, n)
-        self.part = [index[place[v]] for v in sorted(place)]
+        self.names = [v for v in masks if v in needed]
+        index = {v: i for i, v in enumerate(self.names)}
+        self.faces, self.count = mesh, len(faces_by_vertex(mesh))
+        self.step = Step([masks[v] for v in self.names], {v: v - 1 for v in range(1, self.count + 1)}, n)
+        self.parts = [[index[place[v]] for v in sorted(place)] for place in places]
         self.pieces = [frozenset(tuple(sorted(index[v] for v in e)) for e in sums) for sums in patches]
-        if scheme == "loop":
-            self.own = {(index["vertex", 1],)}
-        else:
-            self.own = {(i,) for v, i in index.items() if v[0] == 0} if scheme == "doo-sabin" else set()
+        self.own = set()
         self.next = {}
         self.ranks = {}
+
+    def tests(self, pieces):
+        return frozenset().union(*(self.pieces[i] for i in pieces))
+
+    def advance(self, vector):
+        """The nonzero tests of ring 1 and the parts left, of a primitive vector."""
+        if vector not in self.next:
+            if len(self.next) > 1000:
+                self.next.clear()
+            points = self.step.apply(vector)
+            wrong = {test for test in self.tests(range(len(self.pieces)))
+                     if any(sum(plane[i] for i in test) for plane in points)}
+            self.next[vector] = wrong, [primitive([[plane[i] for i in part] for plane in points]) for part in self.parts]
+        return self.next[vector]
+
+
+class Corner(Net):
+    """The net of one extraordinary corner. own: tests of points made by the corner's own irrational mask."""
+
+    def __init__(self, scheme, n, rule, annulus, order):
+        mesh = self.mesh(scheme, n, annulus)
+        seeds = [] if annulus else [(mesh, seed_at(scheme, mesh, mesh, 0))]
+        super().__init__(scheme, mesh, order, rule, self.piece_names(scheme, n, mesh, annulus), seeds, int(n == 3))
+        if scheme == "loop":
+            self.own = {(self.names.index(("vertex", 1)),)}
+        elif scheme == "doo-sabin":
+            self.own = {(i,) for i, v in enumerate(self.names) if v[0] == 0}
 
     @staticmethod
     def mesh(scheme, n, annulus):
@@ -495,34 +570,53 @@ class Corner:
                     names += [(("vertex", face[k]), ("face", i)) for k in (1, 2, 3)]
         return names
 
-    @staticmethod
-    def seed(scheme, n, mesh):
-        """Where the first face of the part left lies."""
+
+class Pair(Net):
+    """The net of two extraordinary corners; each of the parts left has one of them."""
+
+    def __init__(self, scheme, n, m, place, rule):
+        order, where = math.lcm(n, m), 1 + PLACES.index(place)
+        mesh, sides = self.mesh(scheme, n, m, where), 3 if scheme == "loop" else 4
+        regular = [i for i in range(sides) if i not in (0, where)]
         if scheme in DUAL:
-            return {v: (0, v) for v in range(1, n + 1)}
-        sides = [("edge", e) for e in edges_of(mesh[0])]
+            names = [(i, 1) for i in regular]
+        elif scheme == "loop":
+            edges = [("edge", e) for e in edges_of(mesh[0])]
+            names = [tuple(edges), (("vertex", 3), *edges[1:])]
+        else:
+            names = [(("vertex", 1 + i), ("face", 0)) for i in regular]
+        seeds = []
+        for i, valence in ((0, n), (where, m)):
+            pattern = Corner.mesh(scheme, valence, False)
+            seeds.append((pattern, seed_at(scheme, pattern, mesh, i)))
+        super().__init__(scheme, mesh, order, rule, names, seeds, (n, m).count(3))
+        self.corners = [corner(scheme, valence, rule, False, order) for valence in (n, m)]
+
+    @staticmethod
+    def mesh(scheme, n, m, where):
         if scheme == "loop":
-            return dict(zip(mesh[0], (("vertex", 1), sides[0], sides[2])))
-        return dict(zip(mesh[0], (("vertex", 1), sides[0], ("face", 0), sides[3])))
+            return loop_pair(n, m)
+        valences = [n if i == 0 else m if i == where else 4 for i in range(4)]
+        return (dual_pair if scheme in DUAL else catmark_pair)(valences)
 
-    def tests(self, pieces):
-        return frozenset().union(*(self.pieces[i] for i in pieces))
 
-    def advance(self, vector):
-        """The nonzero tests of ring 1 and the part left, of a primitive vector."""
-        if vector not in self.next:
-            if len(self.next) > 1000:
-                self.next.clear()
-            points = self.step.apply(vector)
-            wrong = {test for test in self.tests(range(len(self.pieces)))
-                     if any(sum(plane[i] for i in test) for plane in points)}
-            self.next[vector] = wrong, primitive([[plane[i] for i in self.part] for plane in points])
-        return self.next[vector]
+def seed_at(scheme, pattern, mesh, i):
+    """Where the first face of a corner's net lies after a step of a mesh: at corner i of face 0, or (dual) in face i."""
+    if scheme in DUAL:
+        return dict(zip(pattern[0], ((i, v) for v in mesh[i])))
+    sides = [("edge", e) for e in edges_of(mesh[0])]
+    ends = [sides[i], sides[i - 1]] if scheme == "loop" else [sides[i], ("face", 0), sides[i - 1]]
+    return dict(zip(pattern[0], [("vertex", mesh[0][i]), *ends]))
 
 
 @functools.cache
-def corner(scheme, n, rule, annulus=False):
-    return Corner(scheme, n, rule, annulus)
+def corner(scheme, n, rule, annulus=False, order=None):
+    return Corner(scheme, n, rule, annulus, order or n)
+
+
+@functools.cache
+def pair(scheme, n, m, place, rule):
+    return Pair(scheme, n, m, place, rule)
 
 
 @functools.cache
@@ -609,19 +703,24 @@ class Rings:
 
     def __init__(self, where, t, p):
         sparse = where.step.modulo(t, p)
-        self.size, self.p, self.part = where.count, p, [sparse[i] for i in where.part]
+        self.size, self.p, self.part = where.count, p, [sparse[i] for i in where.parts[0]]
         first = test_rows(where.tests(range(3)), sparse, self.size, p)
         self.basis, self.alone = {}, {}
-        self.new = [row for r in first if (row := extend(self.basis, r, p))]
+        self.levels = [[row for r in first if (row := extend(self.basis, r, p))]]
         self.alone = dict(self.basis)
         self.together_ranks, self.alone_ranks = [len(self.basis)], [len(self.basis)]
 
     def together(self, k):
-        while len(self.together_ranks) < k and self.new:
-            moved = [times(row, self.part, self.size, self.p) for row in self.new]
-            self.new = [row for r in moved if (row := extend(self.basis, r, self.p))]
+        while len(self.together_ranks) < k and self.levels[-1]:
+            moved = [times(row, self.part, self.size, self.p) for row in self.levels[-1]]
+            self.levels.append([row for r in moved if (row := extend(self.basis, r, self.p))])
             self.together_ranks.append(len(self.basis))
         return self.together_ranks[min(k, len(self.together_ranks)) - 1]
+
+    def brought(self, k):
+        """The rows that ring k adds to those of rings 1 to k - 1."""
+        self.together(k)
+        return self.levels[k - 1] if k <= len(self.levels) else []
 
     def only(self, k):
         while len(self.alone_ranks) < k:
@@ -633,9 +732,35 @@ class Rings:
         return self.alone_ranks[k - 1]
 
 
+class PairRings:
+    """Ranks modulo p of rings 1 to k of a piece with two extraordinary corners.
+
+    Their rows span those of ring 1, and those of rings 1 to k - 1 of both parts times the step.
+    """
+
+    def __init__(self, where, t, p):
+        sparse = where.step.modulo(t, p)
+        self.size, self.p = where.count, p
+        self.parts = [(rings_modulo(c, t, p), [sparse[i] for i in part]) for c, part in zip(where.corners, where.parts)]
+        self.basis = {}
+        for row in test_rows(where.tests(range(len(where.pieces))), sparse, self.size, p):
+            extend(self.basis, row, p)
+        self.ranks = [len(self.basis)]
+
+    def together(self, k):
+        while len(self.ranks) < k:
+            more = [(row, part) for rings, part in self.parts for row in rings.brought(len(self.ranks))]
+            if not more:
+                break
+            for row, part in more:
+                extend(self.basis, times(row, part, self.size, self.p), self.p)
+            self.ranks.append(len(self.basis))
+        return self.ranks[min(k, len(self.ranks)) - 1]
+
+
 def rings_modulo(where, t, p):
     if (t, p) not in where.ranks:
-        where.ranks[t, p] = Rings(where, t, p)
+        where.ranks[t, p] = (PairRings if isinstance(where, Pair) else Rings)(where, t, p)
     return where.ranks[t, p]
 
 
@@ -665,12 +790,17 @@ def parse_domain(name):
 
 
 class Case:
-    """A scheme, a valence, a rule and a domain."""
+    """A scheme, a valence, a rule and a domain; and where there is a second extraordinary corner, its valence and place."""
 
-    def __init__(self, scheme, n, rule, domain):
-        self.scheme, self.n, self.rule = scheme, n, rule
+    def __init__(self, scheme, n, rule, domain, second=None, place=None):
+        self.scheme, self.n, self.rule, self.second = scheme, n, rule, second
         self.kind, self.number = parse_domain(domain)
-        self.corner = None if self.kind == "global" else corner(scheme, n, rule, self.kind == "annulus")
+        self.order = math.lcm(n, second or n)
+        if second:
+            need(self.kind in ("rings", "omega"), "this domain is not known of two extraordinary corners")
+            self.corner = pair(scheme, n, second, place, rule)
+        else:
+            self.corner = None if self.kind == "global" else corner(scheme, n, rule, self.kind == "annulus")
         self.dimension = closed_steps(scheme, n, rule)[0][0].size if self.kind == "global" else self.corner.count
 
     def first_tests(self):
@@ -804,12 +934,12 @@ def annulus_determines(scheme, m, rule):
 
 def check_kernel(case, certificate, rank, root, p):
     entries, left_out = field(certificate, "kernel", list), field(certificate, "left_out", (int,)) or 0
-    vectors = [parse_vector(entry, case.dimension, case.n) for entry in entries]
+    vectors = [parse_vector(entry, case.dimension, case.order) for entry in entries]
     allowed = case.own_tests() if case.kind != "global" else frozenset()
     need(left_out in (0, len(allowed)), f"left_out is {left_out}; {len(allowed)} rows may be left out")
     bound = case.dimension - len(vectors) + left_out
     need(bound == rank, f"the kernel shows at most {bound}, not {rank}")
-    need(independent_vectors(vectors, case.n, root, p), "the vectors of the kernel are not shown to be independent")
+    need(independent_vectors(vectors, case.order, root, p), "the vectors of the kernel are not shown to be independent")
     factor = rational(field(certificate, "factor", str)) if case.kind == "omega" else None
     for number, vector in enumerate(vectors, 1):
         if why := nonzero(case, vector, allowed if left_out else frozenset(), certificate, factor):
@@ -826,13 +956,26 @@ def nonzero(case, vector, left_out, certificate, factor):
         points = case.corner.step.apply(vector)
         tests = case.first_tests() - left_out
         return "is not 0 on the domain" if any(sum(plane[i] for i in e) for e in tests for plane in points) else None
-    if case.kind == "omega":
-        if case.corner.advance(vector)[0]:
+    if not case.second:
+        return nonzero_rings(case.corner, vector, left_out, case.number, case.kind == "ring", factor)
+    wrong, parts = case.corner.advance(vector)
+    if wrong:
+        return "is not 0 on ring 1"
+    for number, (where, part) in enumerate(zip(case.corner.corners, parts), 1):
+        if case.number != 1 and (why := nonzero_rings(where, part, left_out, (case.number or 0) - 1, False, factor)):
+            return f"leaves a part {number} that {why}"
+    return None
+
+
+def nonzero_rings(where, vector, left_out, count, alone, factor):
+    """Why a vector does not give zero on rings 1 to count of a corner, on ring count alone, or, with a factor, on all rings."""
+    if factor is not None:
+        if where.advance(vector)[0]:
             return "is not 0 on ring 1"
-        return None if multiplied(case.corner, vector, factor) else "is not multiplied by factor"
-    for k in range(1, case.number + 1):
-        wrong, part = case.corner.advance(vector)
-        if wrong - left_out and (case.kind == "rings" or k == case.number):
+        return None if multiplied(where, vector, factor) else "is not multiplied by factor"
+    for k in range(1, count + 1):
+        wrong, (part,) = where.advance(vector)
+        if wrong - left_out and (not alone or k == count):
             return f"is not 0 on ring {k}"
         if part == vector and not wrong:
             return None  # and so on all further rings
@@ -844,7 +987,7 @@ def multiplied(where, vector, factor):
     """Does a step map the vector to factor times itself?"""
     points, factor = where.step.apply(vector), factor * where.step.scale
     length = max(len(points), len(vector))
-    left = [[plane[i] for i in where.part] for plane in points] + [[0] * where.count] * (length - len(points))
+    left = [[plane[i] for i in where.parts[0]] for plane in points] + [[0] * where.count] * (length - len(points))
     right = list(vector) + [[0] * where.count] * (length - len(vector))
     return all(x == factor * y for a, b in zip(left, right) for x, y in zip(a, b))
 
@@ -856,13 +999,16 @@ def check_case(scheme, record):
     dimension, rank = field(record, "dimension", int), field(record, "rank", int)
     for name in ("statement", "text"):
         field(record, name, (str,))
+    second, place = field(record, "second", (int,)), field(record, "place", (str,))
     need(3 <= n <= 1000, "the valence is not in 3..1000")
+    if second is not None or place is not None:
+        check_second(scheme, n, second, place)
     need(rule is None or (rule == "older" and scheme == "catmark"), f"{scheme} has no rule {rule}")
-    case = Case(scheme, n, rule, domain)
+    case = Case(scheme, n, rule, domain, second, place)
     need(dimension == case.dimension, f"the dimension is {case.dimension}, not {dimension}")
     need(field(record, "independent", bool) == (rank == dimension), "`independent` contradicts rank and dimension")
 
-    p, root = check_prime(n, certificate)
+    p, root = check_prime(case.order, certificate)
     rings = field(certificate, "rings", int) if case.kind == "omega" else None
     steps = field(certificate, "steps", int) if case.kind == "global" else None
     need(rings is None or 1 <= rings <= 9999, "rings is not in 1..9999")
@@ -875,6 +1021,15 @@ def check_case(scheme, record):
     check_upper(case, certificate, rank, root, p)
 
 
+def check_second(scheme, n, second, place):
+    need(second is not None and place is not None, "second and place go together")
+    need(3 <= second <= 1000, "the second valence is not in 3..1000")
+    need(place in PLACES, f"the place {place:.20} is not known")
+    need(scheme != "loop" or place == "edge", "a triangle has no opposite corners")
+    need(scheme != "loop" or (n, second) != (3, 3), "two corners of valence 3 at an edge of a triangle make no net")
+    need(math.lcm(n, second) <= MOST_ORDER, f"the least common multiple of the valences is above {MOST_ORDER}")
+
+
 def check_upper(case, certificate, rank, root, p):
     bound = field(certificate, "bound", str)
     need(bound in ("full", "count", "kernel"), f"bound {bound:.20} is not known")
@@ -883,7 +1038,7 @@ def check_upper(case, certificate, rank, root, p):
     else:
         need(not certificate.get("kernel") and not certificate.get("left_out"), f"a bound by {bound} has no kernel")
         need(bound == "count" or rank == case.dimension, f"{rank} of {case.dimension} functions are not full")
-        need(bound == "full" or case.kind not in ("omega", "global"), "this domain has no count of rows")
+        need(bound == "full" or not (case.second or case.kind in ("omega", "global")), "this domain has no count of rows")
         need(bound == "full" or rank == case.row_count(), f"the domain has not {rank} rows")
 
 
@@ -926,6 +1081,10 @@ def read(name):
     return document["scheme"], document["cases"]
 
 
+def second_corner(record):
+    return f" with {record['second']} ({record.get('place')})" if record.get("second") is not None else ""
+
+
 def check_file(name):
     """Lines to print, and whether all cases hold."""
     scheme, cases = read(name)
@@ -934,7 +1093,7 @@ def check_file(name):
     for i, record in enumerate(cases, 1):
         if why := fault_of(scheme, record):
             known = type(record) is dict and {"valence", "domain"} <= record.keys()
-            where = f"valence {record['valence']}, {record['domain']}" if known else f"case {i}"
+            where = f"valence {record['valence']}{second_corner(record)}, {record['domain']}" if known else f"case {i}"
             lines.append(f"{shown}: {where}: {why}")
     if lines:
         return lines, False
@@ -979,7 +1138,7 @@ def rational_rows(case, steps, without):
             if case.kind != "ring" or ring == case.number - 1:
                 column.append({(test, d): sum(plane[j] for j in test) for test in case.first_tests() - without
                                for d, plane in enumerate(points)})
-            vector = [[plane[j] for j in case.corner.part] for plane in points] if case.corner.part else []
+            vector = [[plane[j] for j in case.corner.parts[0]] for plane in points] if case.corner.parts else []
         columns.append({(i, *key): x for i, values in enumerate(column) for key, x in values.items()})
     keys = sorted(set().union(*columns))
     return [[column.get(key, 0) for column in columns] for key in keys]
@@ -999,10 +1158,75 @@ def shifts(case):
             for start in range(3, case.n - 3)]
 
 
-def certify(scheme, n, domain, rule):
+def pair_shifts(case):
+    """The same at two corners: in each face the points beyond the neighbours of vertex 1."""
+    vectors = []
+    for face in case.corner.faces:
+        t = cosines(case.order, len(face))[1]
+        entries = ("-1", entry_of(poly_add([Fraction(1)], t)), entry_of(poly_add([Fraction(-1)], poly_scale(t, -1))), "1")
+        inner = face[2:-1]
+        vectors += [{str(v): x for v, x in zip(inner[i:], entries)} for i in range(len(inner) - 3)]
+    return vectors
+
+
+@functools.cache
+def large_prime(n):
+    """A number of 400 bits that is 1 modulo n and most likely a prime, and a root of order n."""
+    p = next(p for p in itertools.count(2**400 - 2**400 % n + 1, n) if all(pow(g, p - 1, p) == 1 for g in (2, 3, 5)))
+    return p, next(z for g in itertools.count(2) if has_order(z := pow(g, (p - 1) // n, p), n, p))
+
+
+def null_modulo(basis, size, p):
+    """Vectors that an echelon basis modulo p sends to 0, each 1 at one of the columns without a pivot and 0 at the others."""
+    vectors = []
+    for free in [c for c in range(size) if c not in basis]:
+        vector = [int(c == free) for c in range(size)]
+        for pivot in sorted(basis, reverse=True):
+            vector[pivot] = -sum(x * y for x, y in zip(basis[pivot][pivot + 1:], vector[pivot + 1:])) % p
+        vectors.append(vector)
+    return vectors
+
+
+def interpolated(points, values, p):
+    """Coefficients modulo p of the polynomial that has these values."""
+    total = [0] * len(points)
+    for i, (x, value) in enumerate(zip(points, values)):
+        others = points[:i] + points[i + 1:]
+        factor = value * pow(math.prod(x - y for y in others), -1, p)
+        term = functools.reduce(lambda a, y: poly_mul(a, [-y, 1]), others, [factor])
+        total = [(a + b) % p for a, b in zip(total, term)]
+    return total
+
+
+def fraction_modulo(x, p):
+    """The simplest fraction that is x modulo p."""
+    (a, u), (b, v) = (p, 0), (x, 1)
+    while b * b * 2 > p:
+        q = a // b
+        (a, u), (b, v) = (b, v), (a - q * b, u - q * v)
+    return Fraction(b, v)
+
+
+def pair_kernel(case, rings):
+    """Basis of the kernel of rings 1 to `rings`: from those modulo a large prime for all values of t there."""
+    p, root = large_prime(case.order)
+    values = [t_modulo(pow(root, k, p), p) for k in range(1, case.order // 2 + 1) if math.gcd(k, case.order) == 1]
+    kernels = []
+    for t in values:
+        found = PairRings(case.corner, t, p)
+        found.together(rings)
+        kernels.append(null_modulo(found.basis, case.dimension, p))
+    vectors = []
+    for images in zip(*kernels):
+        columns = [[fraction_modulo(x, p) for x in interpolated(values, column, p)] for column in zip(*images)]
+        vectors.append({str(i + 1): entry_of(x[0] if not any(x[1:]) else x) for i, x in enumerate(columns) if any(x)})
+    return vectors
+
+
+def certify(scheme, n, domain, rule, second=None, place=None):
     """A right case, or None where only a kernel with t would do that is not known here."""
-    case = Case(scheme, n, rule, domain)
-    p, root = own_prime(n, 0)
+    case = Case(scheme, n, rule, domain, second, place)
+    p, root = own_prime(case.order, 0)
     certificate = {"prime": p, "root": root, "bound": "full"}
     steps = case.number if case.kind in ("ring", "rings") else 1
     if case.kind == "global":
@@ -1011,7 +1235,11 @@ def certify(scheme, n, domain, rule):
         last = case.rank_modulo(root, p, 2 * case.dimension)
         certificate["rings"] = next(k for k in itertools.count(1) if case.rank_modulo(root, p, k) == last)
     rank = case.rank_modulo(root, p, certificate.get("rings"), steps)
-    if rank < case.dimension and case.kind not in ("omega", "global") and rank == case.row_count():
+    if rank < case.dimension and second:
+        factor = {"factor": "1/4" if scheme == "doo-sabin" else "0"} if case.kind == "omega" else {}
+        kernel = pair_kernel(case, certificate.get("rings", case.number))
+        certificate.update({"bound": "kernel", "left_out": 0, "kernel": kernel, **factor})
+    elif rank < case.dimension and case.kind not in ("omega", "global") and rank == case.row_count():
         certificate["bound"] = "count"
     elif rank < case.dimension:
         certificate.update(kernel_of(case, rank, certificate))
@@ -1019,7 +1247,15 @@ def certify(scheme, n, domain, rule):
             return None
     record = {"valence": n, "domain": domain, "dimension": case.dimension, "rank": rank, "independent": rank == case.dimension,
               "statement": None, "text": None, "certificate": certificate}
-    return {**record, "rule": rule} if rule else record
+    return {**record, **({"rule": rule} if rule else {}), **({"second": second, "place": place} if second else {})}
+
+
+def order_of(record):
+    return math.lcm(record["valence"], record.get("second") or 1)
+
+
+def case_of(scheme, record):
+    return Case(scheme, record["valence"], record.get("rule"), record["domain"], record.get("second"), record.get("place"))
 
 
 def kernel_of(case, rank, certificate):
@@ -1071,7 +1307,7 @@ def span_misses(vectors, size, n):
 
 def spoiled_kernels(record):
     """Pairs (what, record)."""
-    n, size, certificate = record["valence"], record["dimension"], record["certificate"]
+    n, size, certificate = order_of(record), record["dimension"], record["certificate"]
     vectors = certificate["kernel"]
     first, rest = vectors[0], vectors[1:]
 
@@ -1115,12 +1351,15 @@ def spoiled_kernels(record):
     for bad in ("0", 0.0, False, []):
         yield f"left_out {bad!r}", recertified(record, left_out=bad)
     if "factor" in certificate:
-        for bad in ("1/2", "-1/4", "1", "1/5", "", "0.25", 0, 0.25, None, ["1/4"]):
+        for bad in ("", "0.25", 0, 0.25, None, ["1/4"]):
             yield f"factor {bad!r}", recertified(record, factor=bad)
+        # Of a pair, midedge's chess board is 0 after the step, and any factor holds.
+        for bad in ("1/2", "-1/4", "1", "1/5") if certificate["factor"] != "0" or "second" not in record else ():
+            yield f"factor {bad}", recertified(record, factor=bad)
 
 
 def spoiled_primes(record):
-    n, certificate = record["valence"], record["certificate"]
+    n, certificate = order_of(record), record["certificate"]
     p, root = certificate["prime"], certificate["root"]
     modulus, z = composite_modulus(n)
     yield "a composite modulus", recertified(record, prime=modulus, root=z)
@@ -1164,6 +1403,18 @@ def spoiled_cases(record):
         yield f"domain {bad!r}", changed(record, domain=bad)
     for m in (n - 1, n + 1, 2 * n, -n, 0, 2, 1001):
         yield f"valence {m}", changed(record, valence=m)
+    if "second" in record:
+        yield "another sum of valences", changed(record, valence=n + 1, second=record["second"] + 1)
+        for m in (record["second"] - 1, record["second"] + 1, 2 * record["second"], -record["second"], 0, 2, 1001):
+            yield f"second {m}", changed(record, second=m)
+        for bad in ("Edge", "corner", 0, True, ["edge"]):
+            yield f"place {bad!r}", changed(record, place=bad)
+        for bad in ("piece:1", "piece:2", "pieces:1,2", "ring:1", "ring:2", "annulus", "global"):
+            yield f"domain {bad}", changed(record, domain=bad)
+    else:
+        yield "a second corner without a place", changed(record, second=5)
+        yield "a place without a second corner", changed(record, place="edge")
+        yield "a second corner", changed(record, second=5, place="edge")
 
 
 def spoiled_certificates(record, count):
@@ -1190,15 +1441,22 @@ def spoiled_certificates(record, count):
 
 
 def spoiled(record, scheme, truth):
-    """Triples (what, scheme, record); `truth` has (rank, dimension) by (scheme, valence, domain, rule)."""
+    """Triples (what, scheme, record); `truth` has (rank, dimension) by (scheme, valence, domain, rule, second, place)."""
     certificate, n, domain, rule = record["certificate"], record["valence"], record["domain"], record.get("rule")
     fields = {"rings": certificate.get("rings", 9), "steps": certificate.get("steps", 1)}
-    for (s, m, d, r), found in truth.items():
+    for (s, m, d, r, second, place), found in truth.items():
         if m == n and (s == scheme or d == domain) and found != (record["rank"], record["dimension"]):
-            yield f"{s}, {d}, rule {r}", s, changed(recertified(record, **fields), domain=d, rule=r)
+            other = changed(recertified(record, **fields), domain=d, rule=r, second=second, place=place)
+            yield f"{s}, {d}, rule {r}, {second} {place}", s, other
     if scheme != "catmark":
         yield "rule older", scheme, changed(record, rule="older")
-    count = Case(scheme, n, rule, domain).row_count() if domain not in ("global", "omega") else None
+    if record.get("second") not in (None, 6 if scheme == "loop" else 4):
+        yield "no second corner", scheme, changed(record, second=None, place=None)
+    if scheme == "loop" and "second" in record:
+        yield "opposite corners of a triangle", scheme, changed(record, place="opposite")
+        yield "valences 3 and 3", scheme, changed(record, valence=3, second=3)
+    counted = domain not in ("global", "omega") and "second" not in record
+    count = Case(scheme, n, rule, domain).row_count() if counted else None
     for what, bad in itertools.chain(spoiled_cases(record), spoiled_certificates(record, count), spoiled_primes(record),
                                      spoiled_kernels(record) if certificate["bound"] == "kernel" else ()):
         yield what, scheme, bad
@@ -1219,16 +1477,17 @@ def too_low(case, record, kernels):
     for kernel, factor in tried:
         for left_out in range(4):
             rank = case.dimension - len(kernel) + left_out
-            if rank < record["rank"] or (left_out and re.fullmatch("rings?:[23]|omega|global", record["domain"])):
+            never = case.second or re.fullmatch("rings?:[23]|omega|global", record["domain"])
+            if rank < record["rank"] or (left_out and never):
                 certificate = {**record["certificate"], "bound": "kernel", "kernel": kernel, "left_out": left_out}
                 yield rank, {**certificate, "factor": factor}
     for bound in ("full", "count"):
         yield record["rank"] - 1, {**record["certificate"], "bound": bound, "kernel": []}
 
 
-def also_right(record):
+def also_right(scheme, record):
     """Other certificates of the same case that hold."""
-    n, certificate = record["valence"], record["certificate"]
+    n, certificate = order_of(record), record["certificate"]
     p, root = own_prime(n, 1)
     yield "another prime", recertified(record, prime=p, root=root)
     yield "another root", recertified(record, root=pow(certificate["root"], n - 1, certificate["prime"]))
@@ -1236,8 +1495,12 @@ def also_right(record):
         yield "more rings", recertified(record, rings=certificate["rings"] + 3)
     if certificate["bound"] != "kernel":
         yield "an empty kernel", recertified(record, kernel=[], left_out=0)
+        if "second" in record:
+            yield "the corners swapped", changed(record, valence=record["second"], second=record["valence"])
         return
     vectors = certificate["kernel"]
+    if scheme == "doo-sabin" and "second" in record and len(shifts := pair_shifts(case_of(scheme, record))) == len(vectors):
+        yield "shifts", recertified(record, kernel=shifts)
     yield "vectors in another order", recertified(record, kernel=vectors[::-1])
     if not certificate["left_out"]:
         yield "no left_out", recertified(record, left_out=None)
@@ -1274,13 +1537,30 @@ def known_results():
                [(scheme, n, "global", size(n)) for n in range(3, 13)])
 
 
-def rank_of(scheme, n, domain):
-    p, root = own_prime(n, 0)
-    return Case(scheme, n, None, domain).rank_modulo(root, p, None, MOST_STEPS)
+def known_pairs():
+    """Ranks of pieces with two corners, in the same form, where the second is regular or a symmetry knows them."""
+    for scheme, place in PAIRS:
+        regular = 6 if scheme == "loop" else 4
+        # A function that is zero on a part of a regular piece is zero on it, but for midedge, where the piece is no polynomial.
+        rings = [] if scheme == "midedge" else ["rings:2", "rings:3", "rings:4"]
+        cases = [(scheme, n, domain, rank_of(scheme, n, domain), regular, place)
+                 for n in range(3, 13) for domain in (*rings, "omega")]
+        yield f"{scheme}, {place}, a regular second corner: as one corner", cases
+        cases = [(scheme, m, f"rings:{k}", rank_of(scheme, n, f"rings:{k}", m, place), n, place)
+                 for n in range(3, 9) for m in range(max(4, n), 9) for k in range(1, 6)]
+        yield f"{scheme}, {place}, rings:k: corners may be swapped", cases
+
+
+def rank_of(scheme, n, domain, second=None, place=None):
+    case = Case(scheme, n, None, domain, second, place)
+    p, root = own_prime(case.order, 0)
+    return case.rank_modulo(root, p, 2 * case.dimension, MOST_STEPS)
 
 
 SELF_TEST_DOMAINS = ["piece:1", "piece:2", "piece:3", "pieces:1,2", "pieces:1,3", "pieces:2,3", "rings:1", "rings:2",
                      "rings:3", "ring:1", "ring:2", "ring:3", "omega", "annulus", "global"]
+PAIRS = [(scheme, place) for scheme in SCHEMES for place in PLACES if (scheme, place) != ("loop", "opposite")]
+SELF_TEST_PAIRS = [(3, 3), (3, 4), (5, 3), (4, 4), (5, 5), (6, 4), (5, 6), (6, 6), (8, 6), (7, 5), (8, 8)]
 
 
 def self_test_files(record):
@@ -1332,10 +1612,39 @@ def self_test_geometry(scheme):
     where = corner(scheme, n, None)
     points = list(zip(*(where.step.apply([list(axis)])[0] for axis in zip(*places))))
     doubled = [tuple(Fraction(2 * x, where.step.scale) for x in point) for point in points]
-    wrong = [] if [doubled[i] for i in where.part] == places else [f"{scheme}: the part left is not at the corner"]
+    wrong = [] if [doubled[i] for i in where.parts[0]] == places else [f"{scheme}: the part left is not at the corner"]
     for i, (tests, drawn) in enumerate(zip(where.pieces, expected), 1):
         if {doubled[v] for test in tests for v in test} != drawn:
             wrong.append(f"{scheme}: piece {i} is elsewhere")
+    return wrong
+
+
+def self_test_pair_geometry(scheme, place):
+    """The same of a regular piece, seen as one with two corners."""
+    net, where = pair(scheme, *([6, 6] if scheme == "loop" else [4, 4]), place, None), 1 + PLACES.index(place)
+    corners = [(0, 0), (1, 0), (1, 1), (0, 1)]
+    if scheme in DUAL:
+        corners = [(1, 1), (-1, 1), (-1, -1), (1, -1)]
+        places = [(0, 0), (2, 0), (0, 2), (-2, 0), (0, -2)] + [(2 * x, 2 * y) for x, y in corners]
+        drawn = [{(x + 2 * a, y + 2 * b) for a, b in itertools.product((-1, 0, 1), repeat=2)} for x, y in corners]
+    elif scheme == "catmark":
+        outside = [(-1, 0), (-1, -1), (0, -1), (1, -1), (2, -1), (2, 0), (2, 1), (2, 2), (1, 2), (0, 2), (-1, 2), (-1, 1)]
+        places, drawn = corners + outside, [set(itertools.product(range(-1, 3), repeat=2)), *flat_corner(scheme)[1]]
+    else:
+        places = [(0, 0), (1, 0), (0, 1), (-1, 1), (-1, 0), (0, -1), (1, -1), (2, -1), (2, 0), (1, 1), (0, 2), (-1, 2)]
+        at_corner, middle, at_third = flat_corner(scheme)[1]
+        drawn = [set(flat_corner(scheme)[0]), at_corner, middle, at_third]
+    step = net.step
+    points = list(zip(*(step.apply([list(axis)])[0] for axis in zip(*places))))
+    doubled = [tuple(Fraction(2 * x, step.scale) for x in point) for point in points]
+    wrong = []
+    for i, part in zip((0, where), net.parts):
+        first = corners[i] if scheme in DUAL else tuple(2 * x for x in corners[i])
+        if {doubled[v] for v in part} != drawn[i] or doubled[part[0]] != first:
+            wrong.append(f"{scheme}, {place}: part {i} is not at its corner")
+    rest = [points for i, points in enumerate(drawn) if i not in (0, where)]
+    if [{doubled[v] for test in tests for v in test} for tests in net.pieces] != rest:
+        wrong.append(f"{scheme}, {place}: the regular pieces are elsewhere")
     return wrong
 
 
@@ -1364,7 +1673,7 @@ def self_test_masks(n):
         size, sparse = where.count, where.step.modulo(t, p)
         if any(sum(w for _, w in row) % p != 1 for row in sparse):
             wrong.append(f"{scheme} {n}: weights do not sum to 1")
-        own = [dict(sparse[i]).get(k, 0) for i in where.part[:1] for k in range(size)]
+        own = [dict(sparse[i]).get(k, 0) for i in where.parts[0][:1] for k in range(size)]
         if scheme == "loop" and own != [(1 - n * loop) % p] + [loop % p] * n + [0] * (size - n - 1):
             wrong.append(f"{scheme} {n}: the vertex mask is wrong")
         if scheme == "catmark" and own != [value_modulo([x], t, p) for x in vertex[rule][:1] + vertex[rule][1:] * n] + [0] * 7:
@@ -1373,7 +1682,7 @@ def self_test_masks(n):
         total = [[0] * size for _ in range(size)]
         for x in spectra[scheme] if not rule else ():
             total = [[(a + x * b) % p for a, b in zip(r, q)] for r, q in zip(total, power)]
-            power = [times(row, [sparse[i] for i in where.part], size, p) for row in power]
+            power = [times(row, [sparse[i] for i in where.parts[0]], size, p) for row in power]
         if not rule and rank_modulo(total, p, size) > size - 2 * (len(spectra[scheme]) - 1):
             wrong.append(f"{scheme} {n}: the second eigenvalues are wrong")
     return wrong
@@ -1382,23 +1691,28 @@ def self_test_masks(n):
 def self_test():
     """Faults of this check, and what was tried."""
     wrong, right, truth, count = [], [], {}, 0
-    wrong += itertools.chain(self_test_forms(), *map(self_test_geometry, SCHEMES), *map(self_test_masks, range(3, 13)))
-    for name, cases in known_results():
-        off = [f"{n} {domain}: {found}, not {rank}"
-               for s, n, domain, rank in cases if (found := rank_of(s, n, domain)) != rank]
+    wrong += itertools.chain(self_test_forms(), *map(self_test_geometry, SCHEMES), *map(self_test_masks, range(3, 13)),
+                             *itertools.starmap(self_test_pair_geometry, PAIRS))
+    for name, cases in itertools.chain(known_results(), known_pairs()):
+        off = [f"{n} {domain} {second}: {found}, not {rank}"
+               for s, n, domain, rank, *second in cases if (found := rank_of(s, n, domain, *second)) != rank]
         print(f"  {name}: {f'WRONG at {off}' if off else f'{len(cases)} ranks agree'}")
         wrong += off
-    for scheme, n, domain in itertools.product(SCHEMES, range(3, 9), SELF_TEST_DOMAINS):
+    tried = [(*case, None, None) for case in itertools.product(SCHEMES, range(3, 9), SELF_TEST_DOMAINS)]
+    tried += [(scheme, n, domain, m, place) for (scheme, place), (n, m), domain in
+              itertools.product(PAIRS, SELF_TEST_PAIRS, ["rings:1", "rings:2", "rings:3", "omega"])
+              if (scheme, n, m) != ("loop", 3, 3)]
+    for scheme, n, domain, *second in tried:
         for rule in (None, "older") if scheme == "catmark" else (None,):
-            record = certify(scheme, n, domain, rule)
+            record = certify(scheme, n, domain, rule, *second)
             if record is None:
                 wrong.append(f"no certificate of {scheme} {n} {domain} {rule}")
                 continue
             right.append((scheme, record))
-            truth[scheme, n, domain, rule] = record["rank"], record["dimension"]
+            truth[scheme, n, domain, rule, *second] = record["rank"], record["dimension"]
     for scheme, record in right:
-        where = f"{scheme} {record['valence']} {record['domain']} {record.get('rule', '')}"
-        for what, other in [("as made", record), *also_right(record)]:
+        where = f"{scheme} {record['valence']}{second_corner(record)} {record['domain']} {record.get('rule', '')}"
+        for what, other in [("as made", record), *also_right(scheme, record)]:
             if why := fault_of(scheme, json.loads(json.dumps(other))):
                 wrong.append(f"{where}, {what}: rejected: {why}")
         for what, s, other in spoiled(record, scheme, truth):
@@ -1407,7 +1721,7 @@ def self_test():
                 wrong.append(f"{where}, {what}: accepted")
         kernels = [r["certificate"]["kernel"] for s, r in right if r["certificate"]["bound"] == "kernel" and s == scheme
                    and (r["dimension"], r.get("rule")) == (record["dimension"], record.get("rule"))]
-        case, p_root = Case(scheme, record["valence"], record.get("rule"), record["domain"]), own_prime(record["valence"], 0)
+        case, p_root = case_of(scheme, record), own_prime(order_of(record), 0)
         for rank, certificate in too_low(case, record, kernels):
             count += 1
             try:
