@@ -15,7 +15,6 @@ lists of planes, plane i having the coefficients of t^i of all entries, times a 
 """
 
 import argparse
-import copy
 import functools
 import itertools
 import json
@@ -590,7 +589,7 @@ class Pair(Net):
             pattern = Corner.mesh(scheme, valence, False)
             seeds.append((pattern, seed_at(scheme, pattern, mesh, i)))
         super().__init__(scheme, mesh, order, rule, names, seeds, (n, m).count(3))
-        self.corners = [corner(scheme, valence, rule, False, order) for valence in (n, m)]
+        self.corners = [Corner(scheme, valence, rule, False, order) for valence in (n, m)]
 
     @staticmethod
     def mesh(scheme, n, m, where):
@@ -610,11 +609,11 @@ def seed_at(scheme, pattern, mesh, i):
 
 
 @functools.cache
-def corner(scheme, n, rule, annulus=False, order=None):
-    return Corner(scheme, n, rule, annulus, order or n)
+def corner(scheme, n, rule, annulus=False):
+    return Corner(scheme, n, rule, annulus, n)
 
 
-@functools.cache
+@functools.lru_cache(maxsize=100)
 def pair(scheme, n, m, place, rule):
     return Pair(scheme, n, m, place, rule)
 
@@ -1207,13 +1206,17 @@ def fraction_modulo(x, p):
     return Fraction(b, v)
 
 
-def pair_kernel(case, rings):
-    """Basis of the kernel of rings 1 to `rings`: from those modulo a large prime for all values of t there."""
+def pair_kernel(case, rings, parts=(0, 1)):
+    """Basis of the kernel of ring 1 of a pair, and of its rings 2 to `rings` in some parts.
+
+    It is made from those modulo a large prime for all values of t there.
+    """
     p, root = large_prime(case.order)
     values = [t_modulo(pow(root, k, p), p) for k in range(1, case.order // 2 + 1) if math.gcd(k, case.order) == 1]
     kernels = []
     for t in values:
         found = PairRings(case.corner, t, p)
+        found.parts = [found.parts[i] for i in parts]
         found.together(rings)
         kernels.append(null_modulo(found.basis, case.dimension, p))
     vectors = []
@@ -1276,12 +1279,12 @@ def kernel_of(case, rank, certificate):
 
 def changed(record, **fields):
     """A copy with fields of the case changed."""
-    return {**copy.deepcopy(record), **fields}
+    return {**record, **fields}
 
 
 def recertified(record, **fields):
     """A copy with fields of the certificate changed; None takes a field out."""
-    certificate = {**copy.deepcopy(record["certificate"]), **fields}
+    certificate = {**record["certificate"], **fields}
     return changed(record, certificate={k: x for k, x in certificate.items() if x is not None})
 
 
@@ -1471,6 +1474,13 @@ def too_low(case, record, kernels):
     steps = case.number if case.kind in ("ring", "rings") else 1
     tried = [([constant], "1"), ([constant] + record["certificate"].get("kernel", []), "1/4")]
     tried += [(kernel, factor) for kernel in kernels for factor in ("0", "1/4")]
+    if case.second and case.number != 1:
+        for parts in ((0,), (1,)):  # not zero on the other one
+            vectors = pair_kernel(case, record["certificate"].get("rings", case.number), parts)
+            tried += [(vectors, "0"), (vectors, "1/4")]
+        if case.number:
+            vectors = pair_kernel(case, case.number - 1)  # not zero on the last ring
+            tried.append((vectors, "0"))
     if case.kind not in ("global", "omega") and case.corner.own:
         vectors = null_space(rational_rows(case, steps, case.corner.own), case.dimension)
         tried.append((list(map(sparse_vector, vectors)), "0"))
@@ -1547,7 +1557,7 @@ def known_pairs():
                  for n in range(3, 13) for domain in (*rings, "omega")]
         yield f"{scheme}, {place}, a regular second corner: as one corner", cases
         cases = [(scheme, m, f"rings:{k}", rank_of(scheme, n, f"rings:{k}", m, place), n, place)
-                 for n in range(3, 9) for m in range(max(4, n), 9) for k in range(1, 6)]
+                 for n in range(3, 9) for m in range(n + 1, 9) for k in range(1, 5)]
         yield f"{scheme}, {place}, rings:k: corners may be swapped", cases
 
 
@@ -1560,7 +1570,7 @@ def rank_of(scheme, n, domain, second=None, place=None):
 SELF_TEST_DOMAINS = ["piece:1", "piece:2", "piece:3", "pieces:1,2", "pieces:1,3", "pieces:2,3", "rings:1", "rings:2",
                      "rings:3", "ring:1", "ring:2", "ring:3", "omega", "annulus", "global"]
 PAIRS = [(scheme, place) for scheme in SCHEMES for place in PLACES if (scheme, place) != ("loop", "opposite")]
-SELF_TEST_PAIRS = [(3, 3), (3, 4), (5, 3), (4, 4), (5, 5), (6, 4), (5, 6), (6, 6), (8, 6), (7, 5), (8, 8)]
+SELF_TEST_PAIRS = [(3, 3), (3, 4), (5, 3), (4, 4), (5, 6), (8, 6), (7, 3), (8, 8)]
 
 
 def self_test_files(record):
