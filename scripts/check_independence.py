@@ -613,7 +613,7 @@ def corner(scheme, n, rule, annulus=False):
     return Corner(scheme, n, rule, annulus, n)
 
 
-@functools.lru_cache(maxsize=100)
+@functools.lru_cache(maxsize=400)
 def pair(scheme, n, m, place, rule):
     return Pair(scheme, n, m, place, rule)
 
@@ -1570,7 +1570,7 @@ def rank_of(scheme, n, domain, second=None, place=None):
 SELF_TEST_DOMAINS = ["piece:1", "piece:2", "piece:3", "pieces:1,2", "pieces:1,3", "pieces:2,3", "rings:1", "rings:2",
                      "rings:3", "ring:1", "ring:2", "ring:3", "omega", "annulus", "global"]
 PAIRS = [(scheme, place) for scheme in SCHEMES for place in PLACES if (scheme, place) != ("loop", "opposite")]
-SELF_TEST_PAIRS = [(3, 3), (3, 4), (5, 3), (4, 4), (5, 6), (8, 6), (7, 3), (8, 8)]
+SELF_TEST_PAIRS = [(3, 3), (3, 4), (4, 4), (5, 6), (8, 6), (7, 3), (8, 8)]
 
 
 def self_test_files(record):
@@ -1710,7 +1710,7 @@ def self_test():
         wrong += off
     tried = [(*case, None, None) for case in itertools.product(SCHEMES, range(3, 9), SELF_TEST_DOMAINS)]
     tried += [(scheme, n, domain, m, place) for (scheme, place), (n, m), domain in
-              itertools.product(PAIRS, SELF_TEST_PAIRS, ["rings:1", "rings:2", "rings:3", "omega"])
+              itertools.product(PAIRS, SELF_TEST_PAIRS, ["rings:1", "rings:3", "omega"])
               if (scheme, n, m) != ("loop", 3, 3)]
     for scheme, n, domain, *second in tried:
         for rule in (None, "older") if scheme == "catmark" else (None,):
