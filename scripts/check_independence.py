@@ -590,6 +590,9 @@ class Pair(Net):
             seeds.append((pattern, seed_at(scheme, pattern, mesh, i)))
         super().__init__(scheme, mesh, order, rule, names, seeds, (n, m).count(3))
         self.corners = [Corner(scheme, valence, rule, False, order) for valence in (n, m)]
+        if scheme == "doo-sabin":  # irrational masks
+            faces = [i for i, valence in ((0, n), (where, m)) if valence not in (3, 4, 6)]
+            self.own = {(i,) for i, v in enumerate(self.names) if v[0] in faces}
 
     @staticmethod
     def mesh(scheme, n, m, where):
@@ -958,7 +961,7 @@ def nonzero(case, vector, left_out, certificate, factor):
     if not case.second:
         return nonzero_rings(case.corner, vector, left_out, case.number, case.kind == "ring", factor)
     wrong, parts = case.corner.advance(vector)
-    if wrong:
+    if wrong - left_out:
         return "is not 0 on ring 1"
     for number, (where, part) in enumerate(zip(case.corner.corners, parts), 1):
         if case.number != 1 and (why := nonzero_rings(where, part, left_out, (case.number or 0) - 1, False, factor)):
@@ -1481,13 +1484,13 @@ def too_low(case, record, kernels):
         if case.number:
             vectors = pair_kernel(case, case.number - 1)  # not zero on the last ring
             tried.append((vectors, "0"))
-    if case.kind not in ("global", "omega") and case.corner.own:
+    if case.kind not in ("global", "omega") and not case.second and case.corner.own:
         vectors = null_space(rational_rows(case, steps, case.corner.own), case.dimension)
         tried.append((list(map(sparse_vector, vectors)), "0"))
     for kernel, factor in tried:
         for left_out in range(4):
             rank = case.dimension - len(kernel) + left_out
-            never = case.second or re.fullmatch("rings?:[23]|omega|global", record["domain"])
+            never = (case.second and case.number != 1) or re.fullmatch("rings?:[23]|omega|global", record["domain"])
             if rank < record["rank"] or (left_out and never):
                 certificate = {**record["certificate"], "bound": "kernel", "kernel": kernel, "left_out": left_out}
                 yield rank, {**certificate, "factor": factor}
