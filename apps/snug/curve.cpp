@@ -23,14 +23,14 @@ void refuse_curves(const ControlMesh& mesh, const std::string& scheme, const std
   if (scheme == "curve") {
     throw InputError(
         InputProblem::refused,
-        path + ": --scheme curve is answered by bound, eval and subdivide only; give another scheme");
+        path + ": --scheme curve is answered by bound, eval, render and subdivide only; give another scheme");
   }
   if (only_polylines) {
     throw InputError(
         InputProblem::refused,
         path +
-            ": it has polylines and no faces; curves are answered by bound, eval and subdivide only, "
-            "with --scheme curve or auto");
+            ": it has polylines and no faces; curves are answered by bound, eval, render and subdivide "
+            "only, with --scheme curve or auto");
   }
 }
 

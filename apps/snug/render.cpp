@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <variant>
 
 #include <fmt/core.h>
 #include <snug/base/parallel.h>
@@ -14,6 +17,8 @@
 #include <snug/io/number.h>
 
 #include "common.h"
+#include "curve.h"
+#include "drawn_curves.h"
 #include "numbers.h"
 #include "pose.h"
 #include "progress_bar.h"
@@ -26,6 +31,16 @@ namespace {
 // unless there would be too many triangles.
 constexpr double usual_edge = 3, longest_edge = 6;
 constexpr double most_surface_triangles = 2e6;
+// Curves: how far their chords are from them, and the sides of tubes from circles, in pixels; unless there
+// would be too many of them.
+constexpr double curve_deviation = 0.1;
+constexpr double most_chords = 200'000;
+constexpr std::size_t most_tube_triangles = 2'000'000;
+constexpr unsigned fewest_sides = 6, most_sides = 256;
+// The radius of tubes, in the longest side of the scene. Where there is much to draw, tubes side by side would
+// cover this share of its face.
+constexpr double usual_radius = 0.006, least_radius = 0.0015, covered_share = 0.5;
+constexpr double share_in_enclosures = 1.0 / 3;  // which would be inside of wider ones
 constexpr std::uint64_t most_enclosures = 200'000;
 constexpr int largest_side = 16'384;
 // A three-quarter view from above, of models whose front is towards +z.
@@ -35,6 +50,7 @@ constexpr Vector3 default_up{0, 1, 0};
 struct Options : CommonOptions {
   std::vector<std::string> meshes, poses, witnesses;
   bool nearest_rigid = false;
+  Degree degree;
   std::string size = "1000x1000", view, up;
   int samples = 3;
   bool cage = false, enclosures = false;
@@ -106,47 +122,117 @@ Colours colours_of_part(std::size_t part) {
   return {palette::clay, palette::amber, palette::amber_edge};
 }
 
-// What encloses the surfaces, in mesh units, for each part.
+// What a file is answered as, and where it stands.
+struct Part {
+  std::string path;
+  std::variant<LimitSurface, CurveSet> shape;
+  Motion pose;
+
+  [[nodiscard]] const LimitSurface* surface() const { return std::get_if<LimitSurface>(&shape); }
+  [[nodiscard]] const CurveSet* curves() const { return std::get_if<CurveSet>(&shape); }
+};
+
+std::vector<Part> load_parts(const Options& options, const std::vector<Motion>& poses) {
+  const auto library = std::make_shared<BoundsCache>();
+  std::vector<Part> parts;
+  for (std::size_t part = 0; part < options.meshes.size(); ++part) {
+    const std::string& path = options.meshes[part];
+    ControlMesh mesh = load_mesh(path, options);
+    if (is_curve(mesh, options.scheme)) {
+      parts.push_back({path, make_curves(std::move(mesh), path, curve_degree(options.degree)), poses[part]});
+    } else {
+      parts.push_back(
+          {path, make_surface(std::move(mesh), path, options, options.scheme, library), poses[part]});
+    }
+  }
+  return parts;
+}
+
+// Errors:    UsageError for options that would change nothing.
+void require_of_use(const Options& options, const std::vector<Part>& parts) {
+  const bool surfaces = std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.surface(); });
+  const bool curves = std::any_of(parts.begin(), parts.end(), [](const Part& p) { return p.curves(); });
+  const std::string which =
+      parts.size() > 1 ? "all meshes are answered as " : parts[0].path + " is answered as ";
+  if (!curves && options.degree) {
+    throw UsageError("render: --degree is for curves; " + which +
+                     (parts.size() > 1 ? "surfaces" : "a surface"));
+  }
+  if (!surfaces && !options.boundary.empty()) {
+    throw UsageError("render: --boundary is for surfaces; " + which + "curves");
+  }
+  if (!surfaces && bound_method(options) == BoundMethod::table) {
+    throw UsageError("render: --bounds table is for surfaces; " + which + "curves");
+  }
+}
+
+// What encloses the surfaces and curves, in mesh units, for each part; a segment as a triangle that ends at
+// one of its corners twice.
 struct Enclosures {
   std::vector<std::vector<IntervalTriangle>> of_part;
   std::size_t count = 0;
   bool reached = true;
 };
 
-// The budget of splits that keeps the enclosures drawable. Refuses what is too much without any split, or at
-// a fixed level.
-std::uint64_t drawable_budget(const Options& options, const std::vector<LimitSurface>& surfaces) {
-  std::uint64_t pieces = 0;
-  for (const LimitSurface& surface : surfaces) {
-    for (std::size_t p = 0; p < surface.patch_count(); ++p) pieces += surface.has_patch(PatchId(p)) ? 1 : 0;
+// The patches or edges of a part, which are split into how many pieces?
+struct Pieces {
+  std::uint64_t count, children;
+};
+
+Pieces pieces_of(const Part& part) {
+  if (const CurveSet* curves = part.curves()) return {curves->edge_count(), 2};
+  const LimitSurface& surface = *part.surface();
+  std::uint64_t count = 0;
+  for (std::size_t p = 0; p < surface.patch_count(); ++p) count += surface.has_patch(PatchId(p)) ? 1 : 0;
+  return {count, 4};
+}
+
+// How many more enclosures than those without any split can be drawn. Refuses what is too much without a
+// split, or at a fixed level.
+std::uint64_t room_for_splits(const Options& options, const std::vector<Part>& parts) {
+  std::uint64_t count = 0, at_level = 0;
+  for (const Part& part : parts) {
+    const Pieces pieces = pieces_of(part);
+    count += pieces.count;
+    at_level += pieces.count << (pieces.children == 4 ? 2 * options.level : options.level);
   }
-  if (pieces > most_enclosures >> (2 * options.level)) {
+  if (at_level > most_enclosures) {
     throw InputError(
         InputProblem::refused,
         fmt::format(
-            "render: {} patches at level {} have more than {} enclosures, too many to draw; give a lower "
-            "--level, or leave out --enclosures",
-            pieces, options.level, most_enclosures));
+            "render: {} patches and edges at level {} have more than {} enclosures, too many to draw; "
+            "give a lower --level, or leave out --enclosures",
+            count, options.level, most_enclosures));
   }
-  return std::min(options.budget, (most_enclosures - pieces) / 3);
+  return most_enclosures - count;
 }
 
 Enclosures enclose(const Options& options, const std::optional<Length>& tolerance,
-                   const std::vector<LimitSurface>& surfaces) {
+                   const std::vector<Part>& parts) {
   Enclosures result;
   if (!options.enclosures) return result;
   BoundOptions how;
   how.level = options.level;
-  how.budget = drawable_budget(options, surfaces);
   how.threads = options.threads;
-  for (std::size_t part = 0; part < surfaces.size(); ++part) {
+  std::uint64_t room = room_for_splits(options, parts), budget = options.budget;
+  for (const Part& part : parts) {
     std::vector<IntervalTriangle>& pieces = result.of_part.emplace_back();
     const auto keep = [&](const PieceEnclosure& piece) { pieces.push_back(piece.interval); };
-    naming(options.meshes[part], [&] {
-      if (tolerance) how.tolerance = tolerance->in_mesh_units(surfaces[part].size());
-      ProgressBar bar("bounding " + options.meshes[part], options.quiet);
-      const BoundSummary summary = bound(surfaces[part], how, keep, bar.monitor(), bound_method(options));
-      how.budget -= summary.splits;
+    const auto keep_curve = [&](const CurveEnclosure& piece) {
+      const auto& ends = piece.interval.corner;
+      pieces.push_back({{ends[0], ends[1], ends[1]}});
+    };
+    naming(part.path, [&] {
+      const LimitSurface* surface = part.surface();
+      const CurveSet* curves = part.curves();
+      const std::uint64_t more_a_split = pieces_of(part).children - 1;
+      if (tolerance) how.tolerance = tolerance->in_mesh_units(curves ? curves->size() : surface->size());
+      how.budget = std::min(budget, room / more_a_split);
+      ProgressBar bar("bounding " + part.path, options.quiet);
+      const BoundSummary summary = curves ? bound(*curves, how, keep_curve, bar.monitor())
+                                          : bound(*surface, how, keep, bar.monitor(), bound_method(options));
+      budget -= summary.splits;
+      room -= summary.splits * more_a_split;
       result.count += pieces.size();
       result.reached = result.reached && summary.reached;
     });
@@ -154,30 +240,41 @@ Enclosures enclose(const Options& options, const std::optional<Length>& toleranc
   return result;
 }
 
-// The surfaces on the finest lattice that is of use in this picture.
-std::vector<Tessellation> tessellate(const Options& options, std::span<const PlacedSurface> parts,
+// A surface as triangles, and which part it is.
+struct DrawnSurface {
+  std::size_t part;
+  Tessellation triangles;
+};
+
+// The surfaces on the finest lattice that is of use in this picture, which shows `other` points as well.
+std::vector<DrawnSurface> tessellate(const Options& options, std::span<const Part> parts,
                                      const PictureUnits& units, const Size& size, const View& view,
-                                     const WorkMonitor& monitor) {
+                                     std::span<const Point3> other, const WorkMonitor& monitor) {
   const auto on_lattice = [&](std::uint32_t steps) {
-    std::vector<Tessellation> result;
+    std::vector<DrawnSurface> result;
     for (std::size_t part = 0; part < parts.size(); ++part) {
-      naming(options.meshes[part],
-             [&] { result.emplace_back(parts[part], units, steps, options.threads, monitor); });
+      const LimitSurface* surface = parts[part].surface();
+      if (!surface) continue;
+      naming(parts[part].path, [&] {
+        const PlacedSurface placed{surface, parts[part].pose};
+        result.push_back({part, Tessellation(placed, units, steps, options.threads, monitor)});
+      });
     }
     return result;
   };
-  const std::vector<Tessellation> coarse = on_lattice(2);
+  std::vector<DrawnSurface> coarse = on_lattice(2);
   std::vector<Point3> points;
   double faces = 0;
-  for (const Tessellation& part : coarse) {
-    points.insert(points.end(), part.points().begin(), part.points().end());
-    faces += static_cast<double>(part.triangle_count()) / 4;
+  for (const auto& [part, triangles] : coarse) {
+    points.insert(points.end(), triangles.points().begin(), triangles.points().end());
+    faces += static_cast<double>(triangles.triangle_count()) / 4;
   }
   if (points.empty()) return coarse;
+  points.insert(points.end(), other.begin(), other.end());
   const Camera camera = frame(points, view.direction, view.up, static_cast<double>(size.width) / size.height);
   std::vector<double> edges;
-  for (const Tessellation& part : coarse) {
-    const std::vector<double> of_part = part.longest_edges(camera, size.height);
+  for (const auto& [part, triangles] : coarse) {
+    const std::vector<double> of_part = triangles.longest_edges(camera, size.height);
     edges.insert(edges.end(), of_part.begin(), of_part.end());
   }
   std::sort(edges.begin(), edges.end());
@@ -185,6 +282,84 @@ std::vector<Tessellation> tessellate(const Options& options, std::span<const Pla
       std::ceil(std::max(edges[edges.size() * 9 / 10] / usual_edge, edges.back() / longest_edge));
   const double most = std::max(1.0, std::floor(std::sqrt(most_surface_triangles / faces)));
   return on_lattice(static_cast<std::uint32_t>(std::clamp(wanted, 1.0, most)));
+}
+
+// The curves of a part, and which it is.
+struct PartCurves {
+  std::size_t part;
+  DrawnCurves curves;
+};
+
+std::vector<PartCurves> place_curves(std::span<const Part> parts, const PictureUnits& units) {
+  std::vector<PartCurves> result;
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    if (const CurveSet* curves = parts[part].curves()) {
+      result.push_back({part, DrawnCurves(*curves, parts[part].pose, units)});
+    }
+  }
+  return result;
+}
+
+// A radius that suits how much there is to draw.
+double radius_of_tubes(const Options& options, std::span<const PartCurves> drawn) {
+  double polygons = 0;
+  for (const auto& [part, curves] : drawn) polygons += curves.polygon_length();
+  const double suited = covered_share / (2 * std::max(polygons, 1.0));
+  return std::clamp(suited, least_radius, usual_radius) * (options.enclosures ? share_in_enclosures : 1);
+}
+
+// A tube around a curve, and which part that is of.
+struct PartTube {
+  std::size_t part;
+  Tube tube;
+};
+
+std::vector<PartTube> make_tubes(std::span<const Part> parts, std::span<const PartCurves> drawn,
+                                 double deviation, double radius, const WorkMonitor& monitor) {
+  std::vector<PartTube> result;
+  for (const auto& [part, curves] : drawn) {
+    naming(parts[part].path, [&, part = part, &curves = curves] {
+      for (Tube& tube : curves.tubes(deviation, radius, monitor)) result.push_back({part, std::move(tube)});
+    });
+  }
+  return result;
+}
+
+std::vector<Point3> outline(std::span<const PartTube> tubes) {
+  std::vector<Point3> points;
+  for (const auto& [part, tube] : tubes) tube.add_outline(points);
+  return points;
+}
+
+// Pixels a unit where the picture is nearest to the eye.
+double largest_scale(std::span<const Point3> points, const Camera& camera, int height) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Point3& p : points) nearest = std::min(nearest, dot(p - camera.eye, camera.forward));
+  return 0.5 * height / (camera.tangent * nearest);
+}
+
+// How far chords may be from curves so that it does not show, where a unit is `scale` pixels long.
+double useful_deviation(std::span<const PartCurves> drawn, double scale) {
+  const double deviation = curve_deviation / scale;
+  double chords = 0;
+  for (const auto& [part, curves] : drawn) chords += curves.chord_count(deviation);
+  return deviation * std::pow(std::max(1.0, chords / most_chords), 2);
+}
+
+void add_tubes(Scene& scene, std::span<const PartTube> tubes, double radius_in_pixels) {
+  const double side = 2 * std::acos(std::max(0.5, 1 - curve_deviation / radius_in_pixels));
+  auto sides = static_cast<unsigned>(
+      std::clamp(std::ceil(2 * std::numbers::pi / side), double{fewest_sides}, double{most_sides}));
+  const auto triangles = [&] {
+    std::size_t count = 0;
+    for (const auto& [part, tube] : tubes) count += tube.triangle_count(sides);
+    return count;
+  };
+  while (sides > fewest_sides && triangles() > most_tube_triangles) {
+    sides = std::max(fewest_sides, sides - sides / 6);
+  }
+  scene.triangles.reserve(scene.triangles.size() + triangles());
+  for (const auto& [part, tube] : tubes) tube.add_to(scene, sides, static_cast<std::uint32_t>(2 * part));
 }
 
 void require_sound(const Options& options) {
@@ -206,23 +381,48 @@ struct Shot {
   Camera camera;
 };
 
-Shot compose(const Options& options, std::span<const PlacedSurface> parts, const Enclosures& enclosures,
+PictureUnits units_of(std::span<const Part> parts) {
+  std::vector<PlacedMesh> placed;
+  for (const Part& part : parts) {
+    const ControlMesh& mesh = part.curves() ? part.curves()->mesh() : part.surface()->mesh();
+    placed.push_back({&mesh, part.curves() ? mesh.polyline_vertices : mesh.face_vertices, part.pose});
+  }
+  return PictureUnits(placed);
+}
+
+Shot compose(const Options& options, std::span<const Part> parts, const Enclosures& enclosures,
              const Size& size, const View& view, const WorkMonitor& monitor) {
-  const PictureUnits units(parts);
+  const PictureUnits units = units_of(parts);
   const double line_scale = std::min(size.width, size.height) / 1000.0;
+  const double aspect = static_cast<double>(size.width) / size.height;
   Shot shot;
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    shot.scene.materials.push_back(palette::surface(colours_of_part(part).surface));
+    shot.scene.materials.push_back(palette::enclosure(colours_of_part(part).enclosure));
+  }
+  const std::vector<PartCurves> curves = place_curves(parts, units);
+  const double radius = radius_of_tubes(options, curves);
+  const auto tubes = [&](double deviation) { return make_tubes(parts, curves, deviation, radius, monitor); };
+  const std::vector<Point3> coarse = outline(tubes(std::numeric_limits<double>::infinity()));
   std::vector<Point3> visible;
-  for (const Tessellation& part : tessellate(options, parts, units, size, view, monitor)) {
-    const Colours colours = colours_of_part(shot.scene.materials.size() / 2);
-    part.add_to(shot.scene, static_cast<std::uint32_t>(shot.scene.materials.size()), options.threads);
-    shot.scene.materials.push_back(palette::surface(colours.surface));
-    shot.scene.materials.push_back(palette::enclosure(colours.enclosure));
-    visible.insert(visible.end(), part.points().begin(), part.points().end());
+  for (const auto& [part, triangles] : tessellate(options, parts, units, size, view, coarse, monitor)) {
+    triangles.add_to(shot.scene, static_cast<std::uint32_t>(2 * part), options.threads);
+    visible.insert(visible.end(), triangles.points().begin(), triangles.points().end());
+  }
+  if (!curves.empty()) {
+    visible.insert(visible.end(), coarse.begin(), coarse.end());
+    const double scale = largest_scale(visible, frame(visible, view.direction, view.up, aspect), size.height);
+    const std::vector<PartTube> fine = tubes(useful_deviation(curves, scale));
+    add_tubes(shot.scene, fine, radius * scale);
+    const std::vector<Point3> around = outline(fine);
+    visible.insert(visible.end(), around.begin(), around.end());
   }
   if (options.cage) {
-    for (const PlacedSurface& part : parts) {
-      add_cage(shot.scene, part, units, palette::cage_width * line_scale, palette::ink);
+    const double width = palette::cage_width * line_scale;
+    for (const Part& part : parts) {
+      if (part.surface()) add_cage(shot.scene, {part.surface(), part.pose}, units, width, palette::ink);
     }
+    for (const auto& [part, drawn] : curves) drawn.add_polygons(shot.scene, width, palette::ink);
     for (const Line& line : shot.scene.lines) visible.insert(visible.end(), {line.a, line.b});
   }
   for (const std::string& text : options.witnesses) {
@@ -238,7 +438,7 @@ Shot compose(const Options& options, std::span<const PlacedSurface> parts, const
       visible.insert(visible.end(), solid.points.begin(), solid.points.end());
   }
   if (visible.empty()) return shot;
-  shot.camera = frame(visible, view.direction, view.up, static_cast<double>(size.width) / size.height);
+  shot.camera = frame(visible, view.direction, view.up, aspect);
   for (std::size_t part = 0; part < solids.size(); ++part) {
     const SolidStyle style{static_cast<std::uint32_t>(2 * part + 1), palette::outline_width * line_scale,
                            colours_of_part(part).outline};
@@ -261,17 +461,17 @@ ExitStatus run(const Options& options) {
   to_standard_output.output.clear();
   Report report("render", to_standard_output);
 
-  const auto library = std::make_shared<BoundsCache>();
-  std::vector<LimitSurface> surfaces;
+  const std::vector<Part> parts = load_parts(options, poses);
+  require_of_use(options, parts);
   std::vector<std::string> schemes;
-  for (const std::string& mesh : options.meshes) {
-    surfaces.push_back(load_surface(mesh, options, options.scheme, library));
-    schemes.emplace_back(name_of(surfaces.back().options().scheme));
+  bool curves = false;
+  for (const Part& part : parts) {
+    schemes.emplace_back(part.curves() ? "curve" : name_of(part.surface()->options().scheme));
+    curves = curves || part.curves();
   }
   report.heads(options.meshes, schemes);
-  std::vector<PlacedSurface> parts;
-  for (std::size_t part = 0; part < surfaces.size(); ++part) parts.push_back({&surfaces[part], poses[part]});
-  const Enclosures enclosures = enclose(options, tolerance, surfaces);
+  if (curves && report.json()) report.write().field("degree", static_cast<int>(curve_degree(options.degree)));
+  const Enclosures enclosures = enclose(options, tolerance, parts);
 
   AtomicFile file(options.output);
   ProgressBar bar("rendering", options.quiet);
@@ -323,17 +523,17 @@ Command render_command() {
            "Control meshes (OBJ, OFF, PLY or STL; - for standard input)");
   list.add(Group::own, "--size WxH", &options->size, "Pixels: WxH, or one number");
   list.add(Group::own, "--samples N", &options->samples, "N * N rays a pixel, N from 1 to 16").between(1, 16);
-  list.add(Group::own, "--cage", &options->cage, "Draw the edges of the control meshes");
+  list.add(Group::own, "--cage", &options->cage, "Draw the edges of the control meshes and polygons");
   list.add(
       Group::own, "--witness \"X Y Z  X Y Z\"", &options->witnesses,
       "Draw two points, such as the witnesses of collide and distance, and the segment between them; may be "
       "repeated");
   list.add(Group::own, "--enclosures", &options->enclosures,
-           "Draw the enclosures of the surfaces, half transparent");
+           "Draw the enclosures of the surfaces and curves, half transparent");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Split enclosures until each radius is at most half of this; mesh units or percent (1%)")
       .needs("--enclosures");
-  list.add(Group::own, "--level N", &options->level, "Split every patch N times, 0 to 12")
+  list.add(Group::own, "--level N", &options->level, "Split every patch or edge N times, 0 to 12")
       .between(0, 12)
       .excludes("--tolerance")
       .needs("--enclosures");
@@ -343,11 +543,12 @@ Command render_command() {
   list.add(Group::placement, "--place \"NUMBERS\"", &options->poses,
            "Pose of a mesh: a rigid transform as a row-major 3x4 or 4x4 matrix; one for each mesh, in order");
   add_nearest_rigid_option(list, options->nearest_rigid).needs("--place");
+  add_degree_option(list, options->degree);
   add_common_options(list, *options);
   for (Option* option : add_bound_options(list, *options)) option->needs("--enclosures");
   return {"render",
           Topic::files,
-          "Draw a shaded picture of limit surfaces",
+          "Draw a shaded picture of limit surfaces and curves",
           {"snug render pawn.obj -o pawn.png",
            "snug render pawn.obj --enclosures --cage --size 1200x900 -o pawn.png"},
           std::move(list),

@@ -25,22 +25,20 @@ double distance(const Pixel& a, const Pixel& b) { return std::hypot(a.x - b.x, a
 
 }  // namespace
 
-PictureUnits::PictureUnits(std::span<const PlacedSurface> parts) {
+PictureUnits::PictureUnits(std::span<const PlacedMesh> parts) {
   double largest = 0;
-  for (const PlacedSurface& part : parts) {
-    const Box3 box = used_box(part.surface->mesh());
-    if (box.empty()) continue;
-    largest = std::max(
-        {largest, max_abs(box.lower - Point3{}), max_abs(box.upper - Point3{}), max_abs(part.pose.offset())});
+  for (const PlacedMesh& part : parts) {
+    if (part.used.empty()) continue;
+    largest = std::max(largest, max_abs(part.pose.offset()));
+    for (const VertexId v : part.used) {
+      largest = std::max(largest, max_abs(part.mesh->points[v.index()] - Point3{}));
+    }
   }
   // Two halvings: sums of a rotated point and a translation stay small.
   scale_ = PowerOfTwo::normalising(largest) * PowerOfTwo(-2);
   Box3 box;
-  for (const PlacedSurface& part : parts) {
-    const ControlMesh& mesh = part.surface->mesh();
-    for (const VertexId v : mesh.face_vertices) {
-      box.add(placed(part.pose, scale_.apply(mesh.points[v.index()])));
-    }
+  for (const PlacedMesh& part : parts) {
+    for (const VertexId v : part.used) box.add(placed(part.pose, scale_.apply(part.mesh->points[v.index()])));
   }
   if (box.empty()) return;
   centre_ = box.lower + 0.5 * (box.upper - box.lower);

@@ -22,11 +22,19 @@ struct PlacedSurface {
   Motion pose;
 };
 
+/// A control mesh where it stands in the picture, and those of its vertices that count.
+/// Requires:  the mesh outlives it.
+struct PlacedMesh {
+  const ControlMesh* mesh;
+  std::span<const VertexId> used;
+  Motion pose;
+};
+
 /// The coordinates of a picture: the box of the placed control meshes, whatever its size and place, is
 /// brought to the origin and to a longest side of 1.
 class PictureUnits {
  public:
-  explicit PictureUnits(std::span<const PlacedSurface> parts);
+  explicit PictureUnits(std::span<const PlacedMesh> parts);
 
   /// From mesh units, before the pose, to the picture.
   [[nodiscard]] Point3 operator()(const Motion& pose, Point3 p) const {
