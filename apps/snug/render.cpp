@@ -34,7 +34,8 @@ constexpr double most_surface_triangles = 2e6;
 // Curves: how far their chords are from them, and the sides of tubes from circles, in pixels; unless there
 // would be too many of them.
 constexpr double curve_deviation = 0.1;
-constexpr double most_chords = 200'000;
+constexpr double most_chords = 100'000;
+constexpr std::size_t most_curve_edges = 50'000;
 constexpr std::size_t most_tube_triangles = 2'000'000;
 constexpr unsigned fewest_sides = 6, most_sides = 256;
 // The radius of tubes, in the longest side of the scene. Where there is much to draw, tubes side by side would
@@ -132,6 +133,14 @@ struct Part {
   [[nodiscard]] const CurveSet* curves() const { return std::get_if<CurveSet>(&shape); }
 };
 
+void require_drawable(const CurveSet& curves, const std::string& path) {
+  if (curves.edge_count() <= most_curve_edges) return;
+  throw InputError(InputProblem::refused,
+                   fmt::format("{}: its polylines have {} edges, and curves of more than {} are too many to "
+                               "draw; draw a part of them",
+                               path, curves.edge_count(), most_curve_edges));
+}
+
 std::vector<Part> load_parts(const Options& options, const std::vector<Motion>& poses) {
   const auto library = std::make_shared<BoundsCache>();
   std::vector<Part> parts;
@@ -139,7 +148,9 @@ std::vector<Part> load_parts(const Options& options, const std::vector<Motion>& 
     const std::string& path = options.meshes[part];
     ControlMesh mesh = load_mesh(path, options);
     if (is_curve(mesh, options.scheme)) {
-      parts.push_back({path, make_curves(std::move(mesh), path, curve_degree(options.degree)), poses[part]});
+      CurveSet curves = make_curves(std::move(mesh), path, curve_degree(options.degree));
+      require_drawable(curves, path);
+      parts.push_back({path, std::move(curves), poses[part]});
     } else {
       parts.push_back(
           {path, make_surface(std::move(mesh), path, options, options.scheme, library), poses[part]});

@@ -155,13 +155,124 @@ TEST(curve, other_commands_refuse_in_one_sentence) {
   const std::string about = mesh + ": it has polylines and no faces";
   expect_refused({"info", mesh}, "", 4, about);
   expect_refused({"collide", mesh, model("star.obj"), "--tolerance", "1%"}, "", 4, about);
-  expect_refused({"render", mesh, "-o", folder.file("a.png")}, "", 4, about);
+  expect_refused({"render", mesh, "--scheme", "loop", "-o", folder.file("a.png")}, "", 4, about);
   expect_refused({"bound", mesh, "--scheme", "loop"}, "", 4, about);
   expect_refused({"bound", mesh, "--bounds", "table"}, "", 2, "--bounds table is for surfaces");
   expect_refused({"bound", mesh, "--polyhedra", folder.file("a.obj")}, "", 2, "--polyhedra is for surfaces");
   expect_refused({"bound", mesh, "--degree", "4"}, "", 2, "--degree");
   expect_refused({"collide", model("star.obj"), model("star.obj"), "--tolerance", "1%", "--scheme", "curve"},
                  "", 4, "--scheme curve");
+}
+
+// The picture of a file by options, and its bytes.
+std::string drawn(const std::string& mesh, const std::vector<std::string>& more, json* said = nullptr) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("picture.png");
+  std::vector<std::string> arguments{"render", mesh, "--size", "80", "--samples", "1", "-o", file};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const json document = answer(arguments, "");
+  if (said) *said = document;
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(curve, render_draws_curves_cages_and_enclosures) {
+  const TemporaryFolder folder;
+  const std::string mesh = folder.file("curve.obj");
+  std::ofstream(mesh) << closed_line;
+  json said;
+  const std::string bare = drawn(mesh, {}, &said);
+  EXPECT_EQ(said["scheme"], "curve");
+  EXPECT_EQ(said["degree"], 3);
+  EXPECT_EQ(said["enclosures"], 0);
+  EXPECT_GT(said["hits"].get<int>(), 50);
+  EXPECT_LT(said["hits"].get<int>(), 1000);  // of 6400: a line
+  EXPECT_NE(drawn(mesh, {"--degree", "2"}, &said), bare);
+  EXPECT_EQ(said["degree"], 2);
+  EXPECT_NE(drawn(mesh, {"--cage"}), bare);
+  EXPECT_NE(drawn(mesh, {"--enclosures", "--level", "2"}, &said), bare);
+  EXPECT_EQ(said["enclosures"], 16);
+  drawn(mesh, {"--enclosures", "--tolerance", "1%"}, &said);
+  EXPECT_EQ(said["enclosures"], answer({"bound", mesh, "--tolerance", "1%"}, "")["count"]);
+  // More pixels: more chords and sides.
+  json coarse, fine;
+  drawn(mesh, {"--size", "40"}, &coarse);
+  drawn(mesh, {"--size", "800"}, &fine);
+  EXPECT_GT(fine["triangles"].get<int>(), 2 * coarse["triangles"].get<int>());
+}
+
+TEST(curve, render_draws_curves_beside_surfaces) {
+  const TemporaryFolder folder;
+  const std::string mesh = folder.file("curve.obj"), far = "1 0 0 0  0 1 0 3  0 0 1 0",
+                    here = "1 0 0 0  0 1 0 0  0 0 1 0";
+  std::ofstream(mesh) << open_line;
+  json said;
+  const std::string both = drawn(mesh, {model("star.obj")}, &said);
+  EXPECT_EQ(said["scheme"], json({"curve", "loop"}));
+  EXPECT_NE(drawn(model("star.obj"), {mesh}), both);  // in other colours
+  EXPECT_NE(drawn(mesh, {model("star.obj"), "--place", far}), both);
+  EXPECT_EQ(drawn(mesh, {model("star.obj"), "--place", here}), both);
+  drawn(mesh, {model("star.obj"), "--enclosures", "--level", "1", "--boundary", "none", "--degree", "2"},
+        &said);
+  EXPECT_EQ(said["enclosures"], 24 * 4 + 3 * 2);
+}
+
+TEST(curve, render_does_not_care_for_size_or_place) {
+  const TemporaryFolder folder;
+  const std::string mesh = folder.file("curve.obj");
+  const auto scaled = [&](const std::string& unit) {
+    std::ofstream(mesh) << "v 0 0 0\nv " << unit << " 0 0\nv " << unit << ' ' << unit << " 0\nl 1 2 3 1\n";
+    return drawn(mesh, {"--cage"});
+  };
+  const std::string bare = scaled("1");
+  for (const char* power : {"0.0009765625", "1024", "1099511627776"}) EXPECT_EQ(scaled(power), bare) << power;
+  for (const char* unit : {"1e300", "1e-300", "1e-320"}) {
+    std::ofstream(mesh) << "v 0 0 0\nv " << unit << " 0 0\nv " << unit << ' ' << unit << " 0\nl 1 2 3 1\n";
+    json said;
+    drawn(mesh, {"--cage"}, &said);
+    EXPECT_GT(said["hits"].get<int>(), 50) << unit;
+  }
+  std::ofstream(mesh) << "v 1e9 1e9 0\nv 1000000001 1e9 0\nv 1e9 1000000001 0\nl 1 2 3 1\n";
+  EXPECT_GT(drawn(mesh, {}).size(), 100u);
+}
+
+TEST(curve, render_draws_what_is_degenerate) {
+  const TemporaryFolder folder;
+  const std::string mesh = folder.file("curve.obj");
+  for (const char* line : {"l 1 1\n", "l 1 1 1 1\n", "l 1 2 1\n", "l 1 2 2 2 2 1\n", "l 1 2 2 2 3 3 3 4 1\n",
+                           "l 1 2 1 2\nl 3 3\n"}) {
+    std::ofstream(mesh) << points << line;
+    for (const std::vector<std::string>& more :
+         {std::vector<std::string>{}, {"--cage"}, {"--degree", "2"}, {"--enclosures", "--level", "1"}}) {
+      json said;
+      drawn(mesh, more, &said);
+      EXPECT_GT(said["hits"].get<int>(), 0) << line;
+    }
+  }
+}
+
+TEST(curve, render_refuses_in_one_sentence) {
+  const TemporaryFolder folder;
+  const std::string picture = folder.file("a.png"), mesh = folder.file("curve.obj");
+  const auto refused = [&](std::vector<std::string> more, const std::string& input, int status,
+                           const std::string& about) {
+    std::ofstream(mesh) << input;
+    more.insert(more.begin(), {"render", mesh, "-o", picture, "--quiet"});
+    expect_refused(more, "", status, about);
+  };
+  refused({"--boundary", "none"}, open_line, 2, "--boundary is for surfaces; " + mesh);
+  refused({"--bounds", "table", "--enclosures"}, open_line, 2, "--bounds table is for surfaces");
+  refused({mesh, "--boundary", "none"}, open_line, 2, "all meshes are answered as curves");
+  refused({"--degree", "2"}, points + "f 1 2 3\n", 2, "--degree is for curves; " + mesh);
+  refused({"--scheme", "curve"}, points + "f 1 2 3\n", 4, "the mesh has no polylines");
+  refused({}, "v 0 nan 0\nv 1 0 0\nl 1 2\n", 3, "vertex 0");
+  refused({}, "v -1.7e308 0 0\nv 1.7e308 0 0\nl 1 2\n", 4, "no longer fits a double");
+  std::string many = points + "l";
+  for (int i = 0; i < 50'002; ++i) many += i % 2 == 0 ? " 1" : " 2";
+  refused({}, many + "\n", 4, "50001 edges");
+  refused({"--enclosures", "--level", "12"}, points + many.substr(points.size(), 201) + "\n", 4,
+          "too many to draw");
+  EXPECT_FALSE(std::ifstream(picture).good());
 }
 
 TEST(curve, polylines_beside_faces_are_answered_on_request) {
