@@ -165,10 +165,11 @@ TEST(curve, other_commands_refuse_in_one_sentence) {
 }
 
 // The picture of a file by options, and its bytes.
-std::string drawn(const std::string& mesh, const std::vector<std::string>& more, json* said = nullptr) {
+std::string drawn(const std::string& mesh, const std::vector<std::string>& more, json* said = nullptr,
+                  const char* size = "80") {
   const TemporaryFolder folder;
   const std::string file = folder.file("picture.png");
-  std::vector<std::string> arguments{"render", mesh, "--size", "80", "--samples", "1", "-o", file};
+  std::vector<std::string> arguments{"render", mesh, "--size", size, "--samples", "1", "-o", file};
   arguments.insert(arguments.end(), more.begin(), more.end());
   const json document = answer(arguments, "");
   if (said) *said = document;
@@ -196,8 +197,8 @@ TEST(curve, render_draws_curves_cages_and_enclosures) {
   EXPECT_EQ(said["enclosures"], answer({"bound", mesh, "--tolerance", "1%"}, "")["count"]);
   // More pixels: more chords and sides.
   json coarse, fine;
-  drawn(mesh, {"--size", "40"}, &coarse);
-  drawn(mesh, {"--size", "800"}, &fine);
+  drawn(mesh, {}, &coarse, "40");
+  drawn(mesh, {}, &fine, "800");
   EXPECT_GT(fine["triangles"].get<int>(), 2 * coarse["triangles"].get<int>());
 }
 
