@@ -200,6 +200,9 @@ TEST(curve, render_draws_curves_cages_and_enclosures) {
   drawn(mesh, {}, &coarse, "40");
   drawn(mesh, {}, &fine, "800");
   EXPECT_GT(fine["triangles"].get<int>(), 2 * coarse["triangles"].get<int>());
+  EXPECT_GT(fine["triangles"].get<int>(), 3000);  // 1296 with a chord an edge
+  drawn(mesh, {"--enclosures", "--level", "12"}, &said, "20");
+  EXPECT_EQ(said["enclosures"], 4 << 12);
 }
 
 TEST(curve, render_draws_curves_beside_surfaces) {
