@@ -1,4 +1,5 @@
 #include <cmath>
+#include <map>
 
 #include <fmt/core.h>
 #include <snug/io/read_file.h>
@@ -6,6 +7,7 @@
 
 #include "common.h"
 #include "curve.h"
+#include "limit_weights.h"
 #include "places.h"
 #include "progress_bar.h"
 #include "words.h"
@@ -18,6 +20,7 @@ struct Options : CommonOptions {
   Degree degree;
   unsigned samples = 4;
   std::string at;
+  bool weights = false;
 };
 
 // Lines "face u v"; blank lines and those that begin with # are skipped.
@@ -31,8 +34,19 @@ std::vector<SurfaceParameter> read_requests(const std::string& path, const Limit
   return requests;
 }
 
-void write_point(Report& report, const LimitSurface& surface, const SurfaceParameter& at,
-                 const SurfacePoint& point) {
+// Of control points, by vertex: the values of their nodal functions there.
+void write_weights(JsonWriter& json, const LimitSurface& surface, const SurfaceParameter& at) {
+  const Stencils rows = limit_weights(surface, {&at, 1});
+  const Stencils::Row row = rows.row(0);
+  std::map<std::uint32_t, double> sums;  // a vertex may come twice
+  for (std::size_t i = 0; i < row.sources.size(); ++i) sums[row.sources[i]] += row.weights[i];
+  json.key("weights").begin_object();
+  for (const auto& [vertex, weight] : sums) json.field(std::to_string(vertex), weight);
+  json.end_object();
+}
+
+void write_point(Report& report, const Options& options, const LimitSurface& surface,
+                 const SurfaceParameter& at, const SurfacePoint& point) {
   const SchemeRules& rules = surface.rules();
   if (!report.json()) {
     report.text(fmt::format("{} {} {}{}  {} {} {}", at.owner, at.u, at.v,
@@ -46,7 +60,9 @@ void write_point(Report& report, const LimitSurface& surface, const SurfaceParam
   json.field("position", point.position).field("error", point.error).key("normal");
   point.normal ? json.value(*point.normal) : json.null();
   json.key("tangents").begin_array().value(point.tangents[0]).value(point.tangents[1]).end_array();
-  json.field("differentiable", point.differentiable).end_object();
+  json.field("differentiable", point.differentiable);
+  if (options.weights) write_weights(json, surface, at);
+  json.end_object();
 }
 
 // Calls visit(place) for a lattice of `steps` on a face, or on each quad of its first split.
@@ -74,12 +90,13 @@ void for_each_place(const LimitSurface& surface, std::uint32_t owner, unsigned s
 }
 
 // Writes the points of a lattice on an owner; returns how many.
-std::size_t write_lattice(Report& report, const LimitSurface& surface, std::uint32_t owner, unsigned steps) {
+std::size_t write_lattice(Report& report, const Options& options, const LimitSurface& surface,
+                          std::uint32_t owner) {
   SurfaceEvaluator evaluator(surface);
   std::size_t count = 0;
-  for_each_place(surface, owner, steps, [&](const SurfaceParameter& at) {
+  for_each_place(surface, owner, options.samples, [&](const SurfaceParameter& at) {
     if (!patch_at(surface, at)) return;
-    write_point(report, surface, at, evaluator(at));
+    write_point(report, options, surface, at, evaluator(at));
     ++count;
   });
   return count;
@@ -117,7 +134,8 @@ std::vector<CurveParameter> read_requests(const std::string& path, const CurveSe
   return requests;
 }
 
-void write_point(Report& report, const CurveSet&, const CurveParameter& at, const CurveSetPoint& point) {
+void write_point(Report& report, const Options&, const CurveSet&, const CurveParameter& at,
+                 const CurveSetPoint& point) {
   const auto& [x, y, z] = point.position;
   if (!report.json()) return report.text(fmt::format("{} {}  {} {} {}", at.edge, at.t, x, y, z));
   JsonWriter& json = report.write();
@@ -125,10 +143,12 @@ void write_point(Report& report, const CurveSet&, const CurveParameter& at, cons
   json.field("error", point.error).field("tangent", point.tangent).end_object();
 }
 
-std::size_t write_lattice(Report& report, const CurveSet& curves, std::uint32_t edge, unsigned steps) {
+std::size_t write_lattice(Report& report, const Options& options, const CurveSet& curves,
+                          std::uint32_t edge) {
+  const unsigned steps = options.samples;
   for (unsigned i = 0; i <= steps; ++i) {
     const CurveParameter at{edge, i / static_cast<double>(steps)};
-    write_point(report, curves, at, evaluate(curves, at));
+    write_point(report, options, curves, at, evaluate(curves, at));
   }
   return steps + 1;
 }
@@ -144,12 +164,12 @@ ExitStatus answer(const Options& options, const Source& source, std::size_t owne
   if (report.json()) report.write().key("points").begin_array();
   std::size_t count = requests.size();
   naming(options.mesh, [&] {
-    for (const auto& at : requests) write_point(report, source, at, evaluate(source, at));
+    for (const auto& at : requests) write_point(report, options, source, at, evaluate(source, at));
     if (!options.at.empty()) return;
     ProgressBar bar("evaluating " + options.mesh, options.quiet);
     const WorkMonitor monitor = bar.monitor();
     for (std::uint32_t owner = 0; owner < owners; ++owner) {
-      count += write_lattice(report, source, owner, options.samples);
+      count += write_lattice(report, options, source, owner);
       monitor.report(static_cast<double>(owner + 1) / static_cast<double>(owners));
     }
   });
@@ -160,6 +180,7 @@ ExitStatus answer(const Options& options, const Source& source, std::size_t owne
 ExitStatus run(const Options& options) {
   ControlMesh mesh = load_mesh(options.mesh, options);
   if (asks_for_curves("eval", mesh, options.mesh, options, options.degree)) {
+    if (options.weights) throw UsageError("eval: --weights are those of surfaces");
     const CurveSet curves = make_curves(std::move(mesh), options.mesh, curve_degree(options.degree));
     return answer(options, curves, curves.edge_count(), [&](Report& report) {
       curve_heads(report, options.mesh, curves.degree());
@@ -189,6 +210,9 @@ Command eval_command() {
            "File with lines 'face u v' (triangles: (1-u-v) c0 + u c1 + v c2; quads: u from c0 towards c1), "
            "'face u v corner' for faces that are not quads, or 'edge t' for curves")
       .excludes("--samples");
+  list.add(Group::own, "--weights", &options->weights,
+           "With the weights of control points, which are the values of their nodal functions; surfaces only")
+      .needs("--json");
   add_degree_option(list, options->degree);
   add_common_options(list, *options);
   return {"eval",

@@ -122,6 +122,33 @@ TEST_F(fit_command, finds_the_control_points_of_given_places) {
   }
 }
 
+// The weights of eval: positions are sums by them, and they add up to 1.
+TEST_F(fit_command, evaluates_nodal_functions) {
+  for (const auto& [mesh, scheme] : {std::pair{model("pawn.obj"), "loop"},
+                                     {write("cube.obj", cube), "catmark"},
+                                     {write("box.obj", cube), "midedge"}}) {
+    const Outcome outcome =
+        run_snug({"eval", mesh, "--scheme", scheme, "--samples", "2", "--weights", "--json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const ControlMesh control = read_mesh(mesh);
+    for (const json& point : json::parse(outcome.out)["points"]) {
+      Vector3 sum{};
+      double one = 0;
+      for (const auto& [vertex, weight] : point["weights"].items()) {
+        sum = sum + weight.get<double>() * (control.points[std::stoul(vertex)] - Point3{});
+        one += weight.get<double>();
+      }
+      ASSERT_NEAR(one, 1, 1e-14);
+      for (std::size_t a = 0; a < 3; ++a) ASSERT_NEAR(sum[a], point["position"][a].get<double>(), 1e-13);
+    }
+  }
+  EXPECT_EQ(run_snug({"eval", model("pawn.obj"), "--weights"}).status, 2);
+  EXPECT_EQ(
+      run_snug({"eval", write("curve.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\n"), "--weights", "--json"})
+          .status,
+      2);
+}
+
 TEST_F(fit_command, does_not_mind_the_size) {
   for (const double scale : {1e-200, 1e-5, 1e200}) {
     ControlMesh mesh = read_mesh(model("bracket.obj"));
