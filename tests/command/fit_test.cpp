@@ -131,7 +131,8 @@ TEST_F(fit_command, evaluates_nodal_functions) {
         run_snug({"eval", mesh, "--scheme", scheme, "--samples", "2", "--weights", "--json"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     const ControlMesh control = read_mesh(mesh);
-    for (const json& point : json::parse(outcome.out)["points"]) {
+    const json found = json::parse(outcome.out);
+    for (const json& point : found["points"]) {
       Vector3 sum{};
       double one = 0;
       for (const auto& [vertex, weight] : point["weights"].items()) {

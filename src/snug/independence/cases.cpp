@@ -11,6 +11,7 @@
 
 #include <snug/base/contract.h>
 #include <snug/base/names.h>
+#include <snug/independence/flint_memory.h>
 #include <snug/independence/null_space.h>
 #include <snug/independence/steps.h>
 
@@ -473,6 +474,7 @@ std::vector<IndependenceCase> independence_cases(const ExactScheme& scheme, cons
                                                  const std::vector<IndependenceRequest>& requests,
                                                  const WorkMonitor& monitor) {
   SNUG_EXPECT(corners.valence >= 3);
+  const FlintMemory memory;
   PieceCases all(scheme, corners, monitor);
   std::vector<IndependenceCase> cases;
   cases.reserve(requests.size());

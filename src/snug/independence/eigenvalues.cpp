@@ -8,6 +8,7 @@
 #include <flint/fmpq_mat.h>
 #include <flint/fmpq_poly.h>
 #include <snug/base/contract.h>
+#include <snug/independence/flint_memory.h>
 #include <snug/independence/null_space.h>
 #include <snug/independence/piece_step.h>
 
@@ -190,6 +191,7 @@ CornerEigenvalues catmark_eigenvalues(const PieceStep& step, std::uint32_t n) {
 CornerEigenvalues corner_eigenvalues(const ExactScheme& scheme, std::uint32_t n) {
   SNUG_EXPECT((scheme.scheme == Scheme::loop || scheme.scheme == Scheme::catmark) && !scheme.older_vertices &&
               n >= 3);
+  const FlintMemory memory;
   const PieceStep step = piece_step(scheme, n);
   return scheme.scheme == Scheme::loop ? loop_eigenvalues(step, n) : catmark_eigenvalues(step, n);
 }
