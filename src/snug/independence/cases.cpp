@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <snug/base/contract.h>
+#include <snug/base/error.h>
 #include <snug/base/names.h>
 #include <snug/independence/flint_memory.h>
 #include <snug/independence/null_space.h>
@@ -103,14 +104,15 @@ std::vector<std::uint32_t> range(std::uint32_t begin, std::uint32_t end) {
   return numbers;
 }
 
+std::uint32_t order_of(const PieceCorners& corners) {
+  return corners.second ? std::lcm(corners.valence, *corners.second) : corners.valence;
+}
+
 // All domains of a piece with these corners.
 class PieceCases {
  public:
-  PieceCases(const ExactScheme& scheme, const PieceCorners& corners, WorkMonitor monitor)
-      : scheme_(scheme),
-        corners_(corners),
-        monitor_(std::move(monitor)),
-        field_(modular_field(corners.second ? std::lcm(corners.valence, *corners.second) : corners.valence)) {
+  PieceCases(const ExactScheme& scheme, const PieceCorners& corners, ModularField field, WorkMonitor monitor)
+      : scheme_(scheme), corners_(corners), monitor_(std::move(monitor)), field_(std::move(field)) {
     if (!corners_.second) {
       parts_.emplace_back(piece_step(scheme_, corners_.valence), field_);
     } else {
@@ -125,7 +127,8 @@ class PieceCases {
     rings_.emplace(field_, columns());
   }
 
-  IndependenceCase answer(const IndependenceRequest& request) {
+  // Nothing where no kernel meets the rank: modulo an unlucky prime that is too low.
+  std::optional<IndependenceCase> answer(const IndependenceRequest& request) {
     monitor_.checkpoint();
     IndependenceCase found;
     found.corners = corners_;
@@ -134,36 +137,7 @@ class PieceCases {
     found.text = request.text;
     found.certificate.prime = field_.prime;
     found.certificate.root = field_.root;
-    DomainRank domain(field_, columns());
-    const auto [kind, first, second] = request.domain;
-    switch (kind) {
-      case Kind::omega: {
-        const std::uint32_t k = rings_that_count();
-        for (std::uint32_t ring = 1; ring <= k; ++ring) add_ring(domain, ring);
-        conclude(found, domain);
-        conclude_for_all_rings(found, k);
-        break;
-      }
-      case Kind::rings:
-        for (std::uint32_t ring = 1; ring <= first && domain.rank() < columns(); ++ring)
-          add_ring(domain, ring);
-        conclude(found, domain);
-        break;
-      case Kind::ring:
-        add_ring(domain, first);
-        conclude(found, domain);
-        break;
-      case Kind::annulus:
-        around(found);
-        break;
-      case Kind::global:
-        closed(found);
-        break;
-      default:
-        domain.add(parts_[0], parts_[0].step().pieces[first - 1], 0);
-        if (kind == Kind::pieces) domain.add(parts_[0], parts_[0].step().pieces[second - 1], 0);
-        conclude(found, domain);
-    }
+    if (!conclude_on(request.domain, found)) return std::nullopt;
     return found;
   }
 
@@ -177,7 +151,7 @@ class PieceCases {
     }
     std::uint32_t last = 1;
     for (const std::uint32_t n : {corners_.valence, *corners_.second}) {
-      last = std::max(last, 1 + PieceCases(scheme_, {n}, monitor_).rings_that_count());
+      last = std::max(last, 1 + PieceCases(scheme_, {n}, modular_field(n), monitor_).rings_that_count());
     }
     while (rank_of_rings(k) != rank_of_rings(last)) ++k;
     return k;
@@ -185,6 +159,30 @@ class PieceCases {
 
  private:
   [[nodiscard]] std::uint32_t columns() const { return parts_[0].columns(); }
+
+  bool conclude_on(const IndependenceDomain& asked, IndependenceCase& found) {
+    if (asked.kind == Kind::annulus) return around(found);
+    if (asked.kind == Kind::global) return closed(found);
+    DomainRank domain(field_, columns());
+    switch (asked.kind) {
+      case Kind::omega: {
+        const std::uint32_t k = rings_that_count();
+        for (std::uint32_t ring = 1; ring <= k; ++ring) add_ring(domain, ring);
+        return conclude(found, domain) && conclude_for_all_rings(found, k);
+      }
+      case Kind::rings:
+        for (std::uint32_t ring = 1; ring <= asked.first && domain.rank() < columns(); ++ring)
+          add_ring(domain, ring);
+        break;
+      case Kind::ring:
+        add_ring(domain, asked.first);
+        break;
+      default:
+        domain.add(parts_[0], parts_[0].step().pieces[asked.first - 1], 0);
+        if (asked.kind == Kind::pieces) domain.add(parts_[0], parts_[0].step().pieces[asked.second - 1], 0);
+    }
+    return conclude(found, domain);
+  }
 
   // Of two corners ring 1 is that of the piece, ring k + 1 is ring k of both parts.
   void add_ring(DomainRank& domain, std::uint32_t k) {
@@ -224,21 +222,21 @@ class PieceCases {
   }
 
   // Why the rank is no greater: it is full, there are no more functions, or there is a kernel.
-  void conclude(IndependenceCase& found, const DomainRank& domain) {
+  bool conclude(IndependenceCase& found, const DomainRank& domain) {
     found.dimension = domain.functions().front().part->columns();
     found.rank = domain.rank();
     RankCertificate& why = found.certificate;
-    if (found.independent()) return;
+    if (found.independent()) return true;
     const std::size_t count = scheme_.scheme == Scheme::midedge ? domain.functions().size() : domain.count();
     if (found.rank == count && !corners_.second) {
       why.bound = RankCertificate::Bound::count;
-      return;
+      return true;
     }
     why.bound = RankCertificate::Bound::kernel;
     std::vector<ExactVector> conditions;
-    if (scheme_.scheme == Scheme::loop) conditions = corner_conditions(parts_[0].step());
+    if (scheme_.scheme == Scheme::loop) conditions = domain.functions().front().part->corner_conditions();
     if (accept(found, exact_kernel(domain.independent(), conditions, found.dimension), domain.functions(), 0))
-      return;
+      return true;
     // Without the rows that are irrational, where all are of the first step.
     std::vector<DomainFunction> rational;
     std::set<Functional> others;
@@ -255,86 +253,74 @@ class PieceCases {
     if (last.before == 0 && last.part == domain.functions().front().part &&
         accept(found, exact_kernel(rational, {}, found.dimension), rational,
                static_cast<std::uint32_t>(others.size()))) {
-      return;
+      return true;
     }
-    add_unseen(why.kernel);
-    SNUG_EXPECT(why.kernel.size() == found.dimension - found.rank);
+    return scheme_.scheme == Scheme::doo_sabin && add_unseen(found);
   }
-  void add_unseen(std::vector<PolynomialVector>& kernel) const {
-    SNUG_EXPECT(scheme_.scheme == Scheme::doo_sabin);
+  // Doo-Sabin's kernel on all rings; false where more than it vanishes.
+  bool add_unseen(IndependenceCase& found) const {
+    std::vector<PolynomialVector>& kernel = found.certificate.kernel;
+    kernel.clear();
     const std::uint32_t n = corners_.valence;
     if (!corners_.second) {
       add_unseen_combinations(range(2, n - 1), cosine_polynomial(1), kernel);
-      return;
+    } else {
+      // After the vertex and its neighbours, face by face; regular faces have one point each.
+      const std::uint32_t m = *corners_.second, first = 5,
+                          second = first + n - 3 + (corners_.opposite ? 1 : 0);
+      add_unseen_combinations(range(first, first + n - 3), cosine_polynomial(field_.order / n), kernel);
+      add_unseen_combinations(range(second, second + m - 3), cosine_polynomial(field_.order / m), kernel);
     }
-    // After the vertex and its neighbours, face by face; regular faces have one point each.
-    const std::uint32_t m = *corners_.second, first = 5, second = first + n - 3 + (corners_.opposite ? 1 : 0);
-    add_unseen_combinations(range(first, first + n - 3), cosine_polynomial(field_.order / n), kernel);
-    add_unseen_combinations(range(second, second + m - 3), cosine_polynomial(field_.order / m), kernel);
+    found.certificate.left_out = 0;
+    return kernel.size() == found.dimension - found.rank;
   }
 
-  void conclude_for_all_rings(IndependenceCase& found, std::uint32_t rings) {
+  // What vanishes on all rings: each vector is multiplied by a number at each step, of each part.
+  bool conclude_for_all_rings(IndependenceCase& found, std::uint32_t rings) {
     RankCertificate& why = found.certificate;
     why.rings = rings;
-    if (found.independent()) return;
+    if (found.independent()) return true;
+    why.bound = RankCertificate::Bound::kernel;
     if (scheme_.scheme == Scheme::doo_sabin) {
-      why.bound = RankCertificate::Bound::kernel;
-      why.left_out = 0;
-      why.kernel.clear();
-      add_unseen(why.kernel);
       why.factor = mpq_class(1, 4);
-      return;
+      return add_unseen(found);
     }
     for (const PolynomialVector& sparse_vector : why.kernel) {
       ExactVector v(found.dimension);
       for (const auto& [point, value] : sparse_vector) v[point] = value[0];
       for (std::size_t part = corners_.second ? 1 : 0; part < parts_.size(); ++part) {
         const auto values = parts_[part].at_base(v);
-        SNUG_EXPECT(values);
+        if (!values) return false;
         if (std::all_of(values->begin(), values->end(), [](const mpq_class& x) { return x == 0; })) continue;
         const auto factor = parts_[part].factor(*values);
-        SNUG_EXPECT(factor && (!why.factor || why.factor == factor));
+        if (!factor || (why.factor && why.factor != factor)) return false;
         why.factor = factor;
       }
     }
     if (!why.factor) why.factor = 0;
+    return !why.kernel.empty();
   }
 
-  void around(IndependenceCase& found) {
+  bool around(IndependenceCase& found) {
     Steps steps(annulus_step(scheme_, corners_.valence), field_);
     DomainRank domain(field_, steps.columns());
     domain.add_ring(steps, 0);
-    conclude(found, domain);
+    return conclude(found, domain);
   }
 
-  void closed(IndependenceCase& found) {
+  // All control points after two steps.
+  bool closed(IndependenceCase& found) {
     const std::uint32_t n = corners_.valence;
     const ControlNet net = closed_net(scheme_, n);
-    const RefinedNet once = refine(net, scheme_, n), twice = refine(once.net, scheme_, n);
-    Steps steps(mesh_step(once, net.points), field_);
-    // Points of the second step as combinations of the first one's.
-    ModularRank rank(field_, net.points);
-    std::vector<ModularRow> fine;
-    for (std::uint32_t p = 0; p < once.net.points; ++p) fine.push_back(steps.image({{p, 1}}, 0));
-    for (const WeightRow& row : twice.rows) {
-      ModularRow image(net.points);
-      for (const auto& [p, w] : row) {
-        const std::uint32_t weight = field_.image(w);
-        for (std::size_t c = 0; c < image.size(); ++c)
-          image[c] = field_.sum(image[c], field_.product(weight, fine[p][c]));
-      }
-      rank.add(std::move(image));
-    }
-    found.dimension = net.points;
-    found.rank = rank.rank();
-    RankCertificate& why = found.certificate;
-    why.steps = 2;
-    if (found.independent()) return;
-    why.bound = RankCertificate::Bound::kernel;
-    std::vector<ExactVector> rows;
-    for (std::uint32_t p = 0; p < once.net.points; ++p) rows.push_back(steps.exact({{p, 1}}, 0));
-    for (const ExactVector& v : null_space(rows, net.points)) why.kernel.push_back(sparse(v));
-    SNUG_EXPECT(steps.rational() && why.kernel.size() == found.dimension - found.rank);
+    RefinedNet once = refine(net, scheme_, n);
+    Steps steps(mesh_step(refine(once.net, scheme_, n), once.net.points), field_, std::move(once.rows),
+                net.points);
+    std::vector<Functional> points;
+    for (std::uint32_t p = 0; p < steps.step().rows.size(); ++p) points.push_back({{p, 1}});
+    DomainRank domain(field_, net.points);
+    domain.add(steps, points, 0);
+    found.certificate.steps = 2;
+    return conclude(found, domain);
   }
 
   ExactScheme scheme_;
@@ -456,7 +442,7 @@ std::vector<IndependenceDomain> chapter_domains(const ExactScheme& scheme, std::
   std::vector<IndependenceDomain> all{{Kind::piece, 1},     {Kind::piece, 2},     {Kind::piece, 3},
                                       {Kind::pieces, 1, 2}, {Kind::pieces, 1, 3}, {Kind::pieces, 2, 3}};
   if (scheme.scheme == Scheme::catmark && n == 3) all.push_back({Kind::ring, 2});
-  const std::uint32_t rings = PieceCases(scheme, {n}, {}).rings_that_count();
+  const std::uint32_t rings = PieceCases(scheme, {n}, modular_field(n), {}).rings_that_count();
   for (std::uint32_t k = 1; k <= rings; ++k) all.push_back({Kind::rings, k});
   all.insert(all.end(), {{Kind::omega}, {Kind::annulus}, {Kind::global}});
   return all;
@@ -464,7 +450,8 @@ std::vector<IndependenceDomain> chapter_domains(const ExactScheme& scheme, std::
 
 std::vector<IndependenceDomain> two_corner_domains(const ExactScheme& scheme, const PieceCorners& corners) {
   std::vector<IndependenceDomain> all;
-  const std::uint32_t rings = PieceCases(scheme, corners, {}).rings_that_count();
+  const std::uint32_t rings =
+      PieceCases(scheme, corners, modular_field(order_of(corners)), {}).rings_that_count();
   for (std::uint32_t k = 1; k <= rings; ++k) all.push_back({Kind::rings, k});
   all.push_back({Kind::omega});
   return all;
@@ -472,13 +459,31 @@ std::vector<IndependenceDomain> two_corner_domains(const ExactScheme& scheme, co
 
 std::vector<IndependenceCase> independence_cases(const ExactScheme& scheme, const PieceCorners& corners,
                                                  const std::vector<IndependenceRequest>& requests,
-                                                 const WorkMonitor& monitor) {
+                                                 const WorkMonitor& monitor, std::uint32_t least_prime) {
   SNUG_EXPECT(corners.valence >= 3);
   const FlintMemory memory;
-  PieceCases all(scheme, corners, monitor);
+  constexpr int most_primes = 20;
+  std::uint32_t above = least_prime;
+  std::optional<PieceCases> all;
   std::vector<IndependenceCase> cases;
   cases.reserve(requests.size());
-  for (const IndependenceRequest& request : requests) cases.push_back(all.answer(request));
+  for (const IndependenceRequest& request : requests) {
+    std::optional<IndependenceCase> found;
+    for (int primes = 0; !found; ++primes) {
+      if (primes == most_primes) {
+        throw InputError(InputProblem::refused,
+                         "independence: no certificate was found for " + name_of(request.domain) +
+                             " at valence " + std::to_string(corners.valence) + "; ask about another domain");
+      }
+      if (primes > 0 || !all) {
+        ModularField field = modular_field(order_of(corners), above);
+        above = field.prime;
+        all.emplace(scheme, corners, std::move(field), monitor);
+      }
+      found = all->answer(request);
+    }
+    cases.push_back(std::move(*found));
+  }
   return cases;
 }
 

@@ -84,11 +84,12 @@ struct IndependenceRequest {
 ///
 /// Guarantee: ranks are those of the functions, in exact arithmetic.
 /// Requires:  corners that two_corner_step() takes; with two of them `rings` and `omega` alone.
-/// Errors:    Interrupted.
+/// Errors:    Interrupted; InputError (refused) where no certificate is found, which is not known to happen: an unlucky prime,
+///            whose ranks are too low for any kernel, is followed by the next one.
 /// Cost:      grows as the cube of the valence times the rings, kernels with its fourth power; K^2 numbers are kept a ring.
 /// Source:    [Wu05, ch. 3]; docs/derivations/independence.md.
 [[nodiscard]] std::vector<IndependenceCase> independence_cases(
     const ExactScheme& scheme, const PieceCorners& corners, const std::vector<IndependenceRequest>& requests,
-    const WorkMonitor& monitor = {});
+    const WorkMonitor& monitor = {}, std::uint32_t least_prime = std::uint32_t{1} << 30);
 
 }  // namespace snug

@@ -50,12 +50,11 @@ std::uint32_t ModularField::image(const Weight& w) const {
   return result;
 }
 
-ModularField modular_field(std::uint32_t order) {
+ModularField modular_field(std::uint32_t order, std::uint32_t above) {
   ModularField field;
   field.order = order;
-  std::uint32_t p = (std::uint32_t{1} << 30) / order * order + 1;
-  do p += order;
-  while (!is_prime(p));
+  std::uint32_t p = above / order * order + 1;
+  while (p <= above || p == 2 || !is_prime(p)) p += order;  // 2 divides denominators
   field.prime = p;
   for (std::uint32_t g = 2;; ++g) {
     field.root = power(g, (p - 1) / order, p);

@@ -25,8 +25,11 @@ struct ModularField {
   [[nodiscard]] std::uint32_t image(const Weight& w) const;
 };
 
-/// The field of the least suitable prime above 2^30, shown prime by trial division.
-[[nodiscard]] ModularField modular_field(std::uint32_t order);
+/// The field of the least suitable prime above this number, shown prime by trial division. Small ones are more often unlucky:
+/// ranks are lower there.
+///
+/// Requires:  `above` at most 2^30, or the prime of a field that came of such.
+[[nodiscard]] ModularField modular_field(std::uint32_t order, std::uint32_t above = std::uint32_t{1} << 30);
 
 /// The rank of rows that come one by one.
 class ModularRank {

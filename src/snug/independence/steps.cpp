@@ -1,6 +1,7 @@
 #include <snug/independence/steps.h>
 
 #include <algorithm>
+#include <map>
 
 #include <snug/base/contract.h>
 
@@ -21,6 +22,18 @@ std::optional<mpq_class> rational_product(const WeightRow& row, const ExactVecto
   return result;
 }
 
+// The first `count` rows times a vector, likewise.
+std::optional<ExactVector> rational_product(const std::vector<WeightRow>& rows, std::size_t count,
+                                            const ExactVector& v) {
+  ExactVector result(count);
+  for (std::size_t r = 0; r < count; ++r) {
+    const auto value = rational_product(rows[r], v);
+    if (!value) return std::nullopt;
+    result[r] = *value;
+  }
+  return result;
+}
+
 // A row of the first rows' points as one of those that these are combinations of; rational parts alone.
 ExactVector pulled_back(const ExactVector& row, const std::vector<WeightRow>& rows, std::size_t columns) {
   ExactVector result(columns);
@@ -35,17 +48,6 @@ ExactVector pulled_back(const ExactVector& row, const std::vector<WeightRow>& ro
 
 bool is_rational(const WeightRow& row) {
   return std::all_of(row.begin(), row.end(), [](const auto& entry) { return entry.second.is_rational(); });
-}
-
-std::optional<ExactVector> rational_product(const std::vector<WeightRow>& rows, std::size_t count,
-                                            const ExactVector& v) {
-  ExactVector result(count);
-  for (std::size_t r = 0; r < count; ++r) {
-    const auto value = rational_product(rows[r], v);
-    if (!value) return std::nullopt;
-    result[r] = *value;
-  }
-  return result;
 }
 
 Steps::Steps(PieceStep step, const ModularField& field, std::vector<WeightRow> base, std::uint32_t columns)
@@ -152,17 +154,20 @@ bool vanishes(const ExactVector& v, const std::vector<DomainFunction>& functions
   return true;
 }
 
-std::vector<ExactVector> corner_conditions(const PieceStep& step) {
-  std::vector<ExactVector> rows;
-  for (const WeightRow& row : step.rows) {
+std::vector<ExactVector> Steps::corner_conditions() const {
+  std::vector<ExactVector> conditions;
+  const auto add = [&](const ExactVector& row) {
+    conditions.push_back(base_.empty() ? row : pulled_back(row, base_, columns_));
+  };
+  for (const WeightRow& row : step_.rows) {
     if (is_rational(row)) continue;
-    ExactVector own(step.dimension), others(step.dimension);
+    ExactVector own(step_.dimension), others(step_.dimension);
     own[row.front().first] = 1;
     for (std::size_t i = 1; i < row.size(); ++i) others[row[i].first] = 1;
-    rows.push_back(std::move(own));
-    rows.push_back(std::move(others));
+    add(own);
+    add(others);
   }
-  return rows;
+  return conditions;
 }
 
 }  // namespace snug

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -17,10 +16,6 @@ using ModularRow = std::vector<std::uint32_t>;
 using ExactVector = std::vector<mpq_class>;
 
 [[nodiscard]] bool is_rational(const WeightRow& row);
-
-/// The first `count` rows times a vector; nothing where an irrational part is left.
-[[nodiscard]] std::optional<ExactVector> rational_product(const std::vector<WeightRow>& rows,
-                                                          std::size_t count, const ExactVector& v);
 
 /// A step that is taken again and again, modulo a prime and exactly.
 class Steps {
@@ -43,6 +38,9 @@ class Steps {
   [[nodiscard]] ExactVector exact(const Functional& functional, std::uint32_t before) const;
   /// Control values of the net of the step; nothing where they are not rational.
   [[nodiscard]] std::optional<ExactVector> at_base(const ExactVector& v) const;
+  /// Conditions under which Loop's irrational rows are 0, so that what is left is rational: 0 at the vertex of each, and for
+  /// the sum of its neighbours.
+  [[nodiscard]] std::vector<ExactVector> corner_conditions() const;
   /// The number that a step multiplies these values of its net by, if there is one.
   [[nodiscard]] std::optional<mpq_class> factor(const ExactVector& at_base) const;
 
@@ -72,9 +70,5 @@ struct DomainFunction {
 ///
 /// Requires:  functions of one part follow each other, in the order of steps.
 [[nodiscard]] bool vanishes(const ExactVector& v, const std::vector<DomainFunction>& functions);
-
-/// Conditions under which Loop's irrational rows are 0, so that what is left is rational: 0 at the vertex of each, and for
-/// the sum of its neighbours.
-[[nodiscard]] std::vector<ExactVector> corner_conditions(const PieceStep& step);
 
 }  // namespace snug
