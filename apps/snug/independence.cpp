@@ -95,7 +95,10 @@ struct Domains {
 Domains parse_domains(const Options& options) {
   Domains domains;
   for (const std::string& text : options.domains) {
-    if (text == "conjecture" && !options.second && options.border.empty()) {
+    if (text == "conjecture") {
+      if (options.second || !options.border.empty())
+        throw UsageError(
+            "--domain conjecture: not with --second or --border; the dissertation has none for these");
       domains.conjecture = true;
       continue;
     }
