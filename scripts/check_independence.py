@@ -9,6 +9,7 @@ Meshes and masks are built here from the rules of the schemes. `--self-test` mak
 way that it knows, and expects the right ones accepted and all others rejected.
 
 A piece may have a second extraordinary corner; then n above is the order, the least common multiple of both valences.
+A piece may lie in a fan at a boundary; then all masks are rational and certificates have no root.
 
 Exact numbers are polynomials in t = 2 cos(2 pi / n), lowest degree first, modulo the minimal polynomial of t. Vectors are
 lists of planes, plane i having the coefficients of t^i of all entries, times a common denominator where only zero matters.
@@ -32,6 +33,7 @@ RATIONAL = re.compile(r"-?[0-9]+(/[1-9][0-9]*)?")
 PLACES = ("edge", "opposite")
 MOST_STEPS = 2
 MOST_ORDER = 10000
+RATIONAL_ORDER = 3  # t = -1: the numbers of fans
 
 
 class Fault(Exception):
@@ -278,6 +280,37 @@ def dual_pair(valences):
     return faces
 
 
+def loop_fan(n, i):
+    """Face i of a fan of n faces at a boundary, its one-ring, and the edges of the boundary in it."""
+    p, s, count = [2 + j for j in range(n + 1)], {}, n + 3
+    for k in range(max(2 * i - 3, 0), min(2 * i + 1, 2 * n) + 1):
+        s[k], count = count, count + 1
+    fan = [(1, p[j], p[j + 1]) for j in range(n)]
+    outer = [face for j in range(n + 1) for face in
+             [(p[j], s.get(2 * j - 1), s.get(2 * j)), (p[j], s.get(2 * j), s.get(2 * j + 1)),
+              (p[j], s.get(2 * j + 1), p[j + 1] if j < n else None)]]
+    rim = [(1, p[0]), (1, p[n]), (p[0], s.get(0)), (p[n], s.get(2 * n))]
+    return [fan[i - 1]] + fan[:i - 1] + fan[i:] + known(outer), frozenset(map(frozenset, known(rim)))
+
+
+def catmark_fan(n, i):
+    """The same of quads."""
+    e, f, o, count = [2 + 2 * j for j in range(n + 1)], [3 + 2 * j for j in range(n)], {}, 2 * n + 3
+    for k in range(max(4 * i - 5, 0), min(4 * i + 1, 4 * n) + 1):
+        o[k], count = count, count + 1
+    fan = [(1, e[j], f[j], e[j + 1]) for j in range(n)]
+    outer = [face for j in range(n) for face in
+             [(f[j], e[j], o.get(4 * j), o.get(4 * j + 1)), (f[j], *(o.get(4 * j + k) for k in (1, 2, 3))),
+              (f[j], o.get(4 * j + 3), o.get(4 * j + 4), e[j + 1])]]
+    rim = [(1, e[0]), (1, e[n]), (e[0], o.get(0)), (e[n], o.get(4 * n))]
+    return [fan[i - 1]] + fan[:i - 1] + fan[i:] + known(outer), frozenset(map(frozenset, known(rim)))
+
+
+def known(tuples):
+    """Those without a vertex that is absent."""
+    return [vertices for vertices in tuples if None not in vertices]
+
+
 def loop_annulus(n):
     u, a, b = ([first + step * (j % n) for j in range(-1, n + 1)] for first, step in ((2, 1), (n + 2, 2), (n + 3, 2)))
     return [face for j in range(1, n + 1) for face in
@@ -404,6 +437,17 @@ def step_of(scheme, faces, n, rule):
     return (loop_step if scheme == "loop" else catmark_step)(faces, n, rule)
 
 
+def rim_masks(rim, sharp):
+    """Masks at the boundary: of its edges, and of the vertices between two of them; a sharp one stays."""
+    masks = {("edge", edge): {v: [Fraction(1, 2)] for v in edge} for edge in rim}
+    for v in frozenset().union(*rim):
+        ends = [w for edge in rim if v in edge for w in edge - {v}]
+        if len(ends) == 2:
+            smooth = {v: [Fraction(3, 4)], **{w: [Fraction(1, 8)] for w in ends}}
+            masks["vertex", v] = {v: [Fraction(1)]} if v in sharp else smooth
+    return masks
+
+
 def embed(pattern, mesh, seed):
     """Where the vertices of a pattern lie in a mesh: `seed` has those of its first face, the others follow over edges."""
     by_edge, by_edge_there = faces_by_edge(pattern), faces_by_edge(mesh)
@@ -485,21 +529,21 @@ class Net:
     """The step of a net: the points of its regular pieces, and of the parts left.
 
     names pick the regular pieces; seeds are pairs of the net that a part left is like, and where the first face of it lies;
-    n is the order of the exact numbers. Functions are zero on a piece where all its tests are zero, a test being the sum of one
-    or two points.
+    n is the order of the exact numbers; fewer has, for each piece, the points that it lacks of a regular one; rim and sharp are
+    the edges of a boundary and the vertices of it that stay. Functions are zero on a piece where all its tests are zero, a test
+    being the sum of one or two points.
     """
 
-    def __init__(self, scheme, mesh, n, rule, names, seeds, threes):
+    def __init__(self, scheme, mesh, n, rule, names, seeds, fewer, rim=frozenset(), sharp=frozenset()):
         masks, faces = step_of(scheme, mesh, n, rule)
+        masks.update(rim_masks(rim, sharp))
         by_vertex = faces_by_vertex(faces)
         patches = []
-        for name in names:
+        for name, lacks in zip(names, fewer, strict=True):
             seen = [name] if scheme in DUAL else next(f for f in faces if set(name) <= set(f))
             around = {f for v in seen for f in by_vertex[v]}
             points = {v for f in around for v in faces[f]}
-            # For each corner of valence 3, two of the 12 points of Loop's middle piece are one.
-            middle = scheme == "loop" and name[0][0] == "edge"
-            assert len(points) == REGULAR_POINTS[scheme] - (threes if middle else 0)
+            assert len(points) == REGULAR_POINTS[scheme] - lacks
             sums = {e for f in around for e in edges_of(faces[f])} if scheme == "midedge" else {frozenset([v]) for v in points}
             patches.append(sums)
         places = [embed(pattern, faces, seed) for pattern, seed in seeds]
@@ -530,13 +574,19 @@ class Net:
         return self.next[vector]
 
 
+def lacking(scheme, names, threes):
+    """Points that pieces lack: for each corner of valence 3, two of the 12 of Loop's middle piece are one."""
+    return [threes if scheme == "loop" and name[0][0] == "edge" else 0 for name in names]
+
+
 class Corner(Net):
     """The net of one extraordinary corner. own: tests of points made by the corner's own irrational mask."""
 
     def __init__(self, scheme, n, rule, annulus, order):
         mesh = self.mesh(scheme, n, annulus)
         seeds = [] if annulus else [(mesh, seed_at(scheme, mesh, mesh, 0))]
-        super().__init__(scheme, mesh, order, rule, self.piece_names(scheme, n, mesh, annulus), seeds, int(n == 3))
+        names = self.piece_names(scheme, n, mesh, annulus)
+        super().__init__(scheme, mesh, order, rule, names, seeds, lacking(scheme, names, int(n == 3)))
         if scheme == "loop":
             self.own = {(self.names.index(("vertex", 1)),)}
         elif scheme == "doo-sabin":
@@ -588,7 +638,7 @@ class Pair(Net):
         for i, valence in ((0, n), (where, m)):
             pattern = Corner.mesh(scheme, valence, False)
             seeds.append((pattern, seed_at(scheme, pattern, mesh, i)))
-        super().__init__(scheme, mesh, order, rule, names, seeds, (n, m).count(3))
+        super().__init__(scheme, mesh, order, rule, names, seeds, lacking(scheme, names, (n, m).count(3)))
         self.corners = [Corner(scheme, valence, rule, False, order) for valence in (n, m)]
         if scheme == "doo-sabin":  # irrational masks
             faces = [i for i, valence in ((0, n), (where, m)) if valence not in (3, 4, 6)]
@@ -600,6 +650,21 @@ class Pair(Net):
             return loop_pair(n, m)
         valences = [n if i == 0 else m if i == where else 4 for i in range(4)]
         return (dual_pair if scheme in DUAL else catmark_pair)(valences)
+
+
+class Fan(Net):
+    """The net of face i of a fan of n faces around a vertex of a boundary, sharp or not.
+
+    A piece with a vertex at a boundary has regular points beyond it (Loop: a + b - c beyond an edge a b of a triangle a b c,
+    Catmull-Clark: 2 a - c), which are zero where its others are: the masks at the boundary are the regular ones with those.
+    """
+
+    def __init__(self, scheme, n, i, sharp):
+        mesh, rim = (loop_fan if scheme == "loop" else catmark_fan)(n, i)
+        beyond = [[3, 2, 0], [0, 2, 3]] if scheme == "loop" else [[4, 0, 0], [0, 0, 4]]  # of pieces 1 to 3
+        fewer = [(i == 1) * a + (i == n) * b for a, b in zip(*beyond)]
+        super().__init__(scheme, mesh, RATIONAL_ORDER, None, Corner.piece_names(scheme, n, mesh, False),
+                         [(mesh, seed_at(scheme, mesh, mesh, 0))], fewer, rim, {1} if sharp else frozenset())
 
 
 def seed_at(scheme, pattern, mesh, i):
@@ -614,6 +679,11 @@ def seed_at(scheme, pattern, mesh, i):
 @functools.cache
 def corner(scheme, n, rule, annulus=False):
     return Corner(scheme, n, rule, annulus, n)
+
+
+@functools.cache
+def fan(scheme, n, i, sharp):
+    return Fan(scheme, n, i, sharp)
 
 
 @functools.lru_cache(maxsize=400)
@@ -792,13 +862,19 @@ def parse_domain(name):
 
 
 class Case:
-    """A scheme, a valence, a rule and a domain; and where there is a second extraordinary corner, its valence and place."""
+    """A scheme, a valence, a rule and a domain; and where there is a second extraordinary corner, its valence and place.
 
-    def __init__(self, scheme, n, rule, domain, second=None, place=None):
-        self.scheme, self.n, self.rule, self.second = scheme, n, rule, second
+    In a fan at a boundary, the valence is its number of faces, `border` the number of the face, and `sharp` tells of the vertex.
+    """
+
+    def __init__(self, scheme, n, rule, domain, second=None, place=None, border=None, sharp=None):
+        self.scheme, self.n, self.rule, self.second, self.border = scheme, n, rule, second, border
         self.kind, self.number = parse_domain(domain)
-        self.order = math.lcm(n, second or n)
-        if second:
+        self.order = RATIONAL_ORDER if border else math.lcm(n, second or n)
+        if border:
+            need(self.kind not in ("annulus", "global"), "this domain is not known at a boundary")
+            self.corner = fan(scheme, n, border, bool(sharp))
+        elif second:
             need(self.kind in ("rings", "omega"), "this domain is not known of two extraordinary corners")
             self.corner = pair(scheme, n, second, place, rule)
         else:
@@ -899,6 +975,13 @@ def independent_vectors(vectors, n, root, p):
     return False
 
 
+def check_rational_prime(certificate):
+    p = field(certificate, "prime", int)
+    need(2 < p < 2**31 and is_prime(p), f"{p} is no odd prime below 2^31")
+    need(certificate.get("root") is None, "a fan has no root")
+    return p, 1  # no row has a t
+
+
 def check_prime(n, certificate):
     p, root = field(certificate, "prime", int), field(certificate, "root", int)
     need(1 < p < 2**31 and is_prime(p), f"{p} is no prime below 2^31")
@@ -937,6 +1020,7 @@ def annulus_determines(scheme, m, rule):
 def check_kernel(case, certificate, rank, root, p):
     entries, left_out = field(certificate, "kernel", list), field(certificate, "left_out", (int,)) or 0
     vectors = [parse_vector(entry, case.dimension, case.order) for entry in entries]
+    need(not case.border or all(type(x) is str for entry in entries for x in entry.values()), "an entry of a fan is not rational")
     allowed = case.own_tests() if case.kind != "global" else frozenset()
     need(left_out in (0, len(allowed)), f"left_out is {left_out}; {len(allowed)} rows may be left out")
     bound = case.dimension - len(vectors) + left_out
@@ -1002,15 +1086,19 @@ def check_case(scheme, record):
     for name in ("statement", "text"):
         field(record, name, (str,))
     second, place = field(record, "second", (int,)), field(record, "place", (str,))
-    need(3 <= n <= 1000, "the valence is not in 3..1000")
+    border, sharp = field(record, "border", (int,)), field(record, "corner", (bool,))
+    need((3 if border is None else 1) <= n <= 1000, f"the valence is not in {3 if border is None else 1}..1000")
     if second is not None or place is not None:
         check_second(scheme, n, second, place)
     need(rule is None or (rule == "older" and scheme == "catmark"), f"{scheme} has no rule {rule}")
-    case = Case(scheme, n, rule, domain, second, place)
+    if border is not None or sharp is not None:
+        check_border(scheme, n, border)
+        need(second is None and rule is None, "a fan has no second corner and no other rule")
+    case = Case(scheme, n, rule, domain, second, place, border, sharp)
     need(dimension == case.dimension, f"the dimension is {case.dimension}, not {dimension}")
     need(field(record, "independent", bool) == (rank == dimension), "`independent` contradicts rank and dimension")
 
-    p, root = check_prime(case.order, certificate)
+    p, root = check_rational_prime(certificate) if border else check_prime(case.order, certificate)
     rings = field(certificate, "rings", int) if case.kind == "omega" else None
     steps = field(certificate, "steps", int) if case.kind == "global" else None
     need(rings is None or 1 <= rings <= 9999, "rings is not in 1..9999")
@@ -1030,6 +1118,12 @@ def check_second(scheme, n, second, place):
     need(scheme != "loop" or place == "edge", "a triangle has no opposite corners")
     need(scheme != "loop" or (n, second) != (3, 3), "two corners of valence 3 at an edge of a triangle make no net")
     need(math.lcm(n, second) <= MOST_ORDER, f"the least common multiple of the valences is above {MOST_ORDER}")
+
+
+def check_border(scheme, n, border):
+    need(border is not None, "corner goes with border")
+    need(scheme not in DUAL, f"fans of {scheme} are not known")
+    need(1 <= border <= n, f"the border is not in 1..{n}")
 
 
 def check_upper(case, certificate, rank, root, p):
@@ -1083,7 +1177,10 @@ def read(name):
     return document["scheme"], document["cases"]
 
 
-def second_corner(record):
+def surroundings(record):
+    """What to add to the valence, to name a case."""
+    if record.get("border") is not None:
+        return f" at a {'corner of a ' if record.get('corner') else ''}boundary, face {record['border']}"
     return f" with {record['second']} ({record.get('place')})" if record.get("second") is not None else ""
 
 
@@ -1095,7 +1192,7 @@ def check_file(name):
     for i, record in enumerate(cases, 1):
         if why := fault_of(scheme, record):
             known = type(record) is dict and {"valence", "domain"} <= record.keys()
-            where = f"valence {record['valence']}{second_corner(record)}, {record['domain']}" if known else f"case {i}"
+            where = f"valence {record['valence']}{surroundings(record)}, {record['domain']}" if known else f"case {i}"
             lines.append(f"{shown}: {where}: {why}")
     if lines:
         return lines, False
@@ -1724,7 +1821,7 @@ def self_test():
             right.append((scheme, record))
             truth[scheme, n, domain, rule, *second] = record["rank"], record["dimension"]
     for scheme, record in right:
-        where = f"{scheme} {record['valence']}{second_corner(record)} {record['domain']} {record.get('rule', '')}"
+        where = f"{scheme} {record['valence']}{surroundings(record)} {record['domain']} {record.get('rule', '')}"
         for what, other in [("as made", record), *also_right(scheme, record)]:
             if why := fault_of(scheme, json.loads(json.dumps(other))):
                 wrong.append(f"{where}, {what}: rejected: {why}")
