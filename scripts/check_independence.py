@@ -1326,11 +1326,28 @@ def pair_kernel(case, rings, parts=(0, 1)):
     return vectors
 
 
-def certify(scheme, n, domain, rule, second=None, place=None):
+def fan_kernel(case):
+    """Basis of the kernel of a piece at a boundary, made from that modulo a large prime."""
+    p, root = large_prime(case.order)
+    t = t_modulo(root, p)
+    found = Rings(case.corner, t, p)
+    if case.kind == "pieces":
+        found.basis = {}
+        for row in test_rows(case.first_tests(), case.corner.step.modulo(t, p), case.dimension, p):
+            extend(found.basis, row, p)
+    elif case.kind == "ring":
+        found.only(case.number)
+        found.basis = found.alone
+    else:
+        found.together(case.number)
+    return [sparse_vector([fraction_modulo(x, p) for x in vector]) for vector in null_modulo(found.basis, case.dimension, p)]
+
+
+def certify(scheme, n, domain, rule, second=None, place=None, border=None, sharp=None):
     """A right case, or None where only a kernel with t would do that is not known here."""
-    case = Case(scheme, n, rule, domain, second, place)
+    case = Case(scheme, n, rule, domain, second, place, border, sharp)
     p, root = own_prime(case.order, 0)
-    certificate = {"prime": p, "root": root, "bound": "full"}
+    certificate = {"prime": p, **({} if border else {"root": root}), "bound": "full"}
     steps = case.number if case.kind in ("ring", "rings") else 1
     if case.kind == "global":
         certificate["steps"] = steps = 1 if case.n % 2 else MOST_STEPS
@@ -1342,6 +1359,8 @@ def certify(scheme, n, domain, rule, second=None, place=None):
         factor = {"factor": "1/4" if scheme == "doo-sabin" else "0"} if case.kind == "omega" else {}
         kernel = pair_kernel(case, certificate.get("rings", case.number))
         certificate.update({"bound": "kernel", "left_out": 0, "kernel": kernel, **factor})
+    elif rank < case.dimension and border:
+        certificate.update({"bound": "kernel", "left_out": 0, "kernel": fan_kernel(case)})
     elif rank < case.dimension and case.kind not in ("omega", "global") and rank == case.row_count():
         certificate["bound"] = "count"
     elif rank < case.dimension:
@@ -1350,15 +1369,17 @@ def certify(scheme, n, domain, rule, second=None, place=None):
             return None
     record = {"valence": n, "domain": domain, "dimension": case.dimension, "rank": rank, "independent": rank == case.dimension,
               "statement": None, "text": None, "certificate": certificate}
-    return {**record, **({"rule": rule} if rule else {}), **({"second": second, "place": place} if second else {})}
+    more = {"rule": rule, "second": second, "place": place, "border": border, "corner": sharp}
+    return {**record, **{name: x for name, x in more.items() if x}}
 
 
 def order_of(record):
-    return math.lcm(record["valence"], record.get("second") or 1)
+    return RATIONAL_ORDER if "border" in record else math.lcm(record["valence"], record.get("second") or 1)
 
 
 def case_of(scheme, record):
-    return Case(scheme, record["valence"], record.get("rule"), record["domain"], record.get("second"), record.get("place"))
+    return Case(scheme, record["valence"], record.get("rule"), record["domain"], record.get("second"), record.get("place"),
+                record.get("border"), record.get("corner"))
 
 
 def kernel_of(case, rank, certificate):
@@ -1491,7 +1512,7 @@ def spoiled_cases(record):
         yield f"dimension {other}", changed(record, dimension=other, independent=rank == other)
     yield "independent flipped", changed(record, independent=not record["independent"])
     yield "independent 1", changed(record, independent=int(record["independent"]))
-    for name in set(record) - {"statement", "text", "rule"}:
+    for name in set(record) - {"statement", "text", "rule", "corner"}:
         yield f"without {name}", {k: x for k, x in record.items() if k != name}
         for bad in (None, "", str(record[name]), [record[name]], {}, 1.5, float(rank)):
             if type(bad) is not type(record[name]):
@@ -1504,7 +1525,7 @@ def spoiled_cases(record):
     for bad in ("piece:0", "piece:4", "piece:1,2", "pieces:2,1", "pieces:1,1", "pieces:1", "rings:0", "ring:01", "rings:",
                 "Omega", "omega ", "rings:-1", "ring:1\n", "rings:99999"):
         yield f"domain {bad!r}", changed(record, domain=bad)
-    for m in (n - 1, n + 1, 2 * n, -n, 0, 2, 1001):
+    for m in {n - 1, n + 1, 2 * n, -n, 0, 2, 1001} - {n}:
         yield f"valence {m}", changed(record, valence=m)
     if "second" in record:
         yield "another sum of valences", changed(record, valence=n + 1, second=record["second"] + 1)
@@ -1563,6 +1584,94 @@ def spoiled(record, scheme, truth):
     for what, bad in itertools.chain(spoiled_cases(record), spoiled_certificates(record, count), spoiled_primes(record),
                                      spoiled_kernels(record) if certificate["bound"] == "kernel" else ()):
         yield what, scheme, bad
+
+
+def other_fans(record, scheme, fans):
+    """Triples (what, scheme, record) of certificates of a piece at a boundary as those of another piece, vertex or domain;
+    `fans` has the right records by (scheme, n, i, sharp, domain)."""
+    n, i, sharp, domain = record["valence"], record["border"], "corner" in record, record["domain"]
+    others = [(scheme, n, j, s, domain) for j in range(1, n + 1) for s in (False, True)]
+    others += [(s, n, i, sharp, d) for s in FAN_SCHEMES for d in FAN_DOMAINS if s == scheme or d == domain]
+    for s, _, j, flag, d in others:
+        if not covers(record, fans[s, n, j, flag, d]):
+            other = recertified(record, rings=record["certificate"].get("rings", 9))
+            yield f"{s}, {d}, face {j}, corner {flag}", s, changed(other, domain=d, border=j, corner=flag)
+
+
+def spoiled_fan(record, scheme):
+    """Triples of a piece at a boundary with a field spoiled."""
+    n, i, domain, certificate = record["valence"], record["border"], record["domain"], record["certificate"]
+    for bad in (0, n + 1, -i, -1, "", str(i), float(i), True, [i], {}):
+        yield f"border {bad!r}", scheme, changed(record, border=bad)
+    for bad in (0, 1, "", "true", [], [True], {}):
+        yield f"corner {bad!r}", scheme, changed(record, corner=bad)
+    yield "a corner without border", scheme, changed(record, border=None, corner=True)
+    for bad in ("annulus", "global"):
+        yield f"domain {bad}", scheme, changed(recertified(record, steps=1), domain=bad)
+    for s in DUAL:
+        yield f"scheme {s}", s, record
+    yield "a second corner", scheme, changed(record, second=4, place="edge")
+    yield "another rule", scheme, changed(record, rule="older")
+    p = certificate["prime"]
+    for bad in (2, 4, 9, 1, 0, -p, p + 1, p * 3, 2**31 + 11, 2**61 - 1):  # the last two are primes
+        yield f"prime {bad}", scheme, recertified(record, prime=bad)
+    yield "a composite modulus", scheme, recertified(record, prime=32749 * 32719)
+    for bad in (1, p - 1, own_prime(RATIONAL_ORDER, 0)[1], 0, "", [], False):
+        yield f"root {bad!r}", scheme, recertified(record, root=bad)
+    count = case_of(scheme, record).row_count() if domain != "omega" else None
+    for what, bad in itertools.chain(spoiled_cases(record), spoiled_certificates(record, count),
+                                     spoiled_kernels(record) if certificate["bound"] == "kernel" else ()):
+        yield what, scheme, bad
+
+
+def covers(record, other):
+    """Does a certificate of a fan hold of the case of another record too? Kernels are in their one reduced form."""
+    a, b = record["certificate"], other["certificate"]
+    return ((record["rank"], record["dimension"]) == (other["rank"], other["dimension"])
+            and a.get("kernel") == b.get("kernel") and a.get("rings", 9) >= b.get("rings", 1))
+
+
+def too_low_fan(case, record, fans):
+    """As too_low, of a piece at a boundary: with the kernels of other domains, and of the vertex sharp or not."""
+    found = [fans[case.scheme, case.n, case.border, sharp, domain]["certificate"].get("kernel", [])
+             for sharp in (False, True) for domain in FAN_DOMAINS]
+    constant = {str(i + 1): "1" for i in range(case.dimension)}
+    kernels = [[constant]] + [kernel for i, kernel in enumerate(found) if kernel and kernel not in found[:i]]
+    for kernel, factor, left_out in [(k, f, 0) for k in kernels for f in ("0", "1")] + [(k, "0", 1) for k in kernels]:
+        rank = case.dimension - len(kernel) + left_out
+        if rank < record["rank"] or left_out:
+            certificate = {**record["certificate"], "bound": "kernel", "kernel": kernel, "left_out": left_out}
+            yield rank, {**certificate, "factor": factor}
+    for bound in ("full", "count"):
+        yield record["rank"] - 1, {**record["certificate"], "bound": bound, "kernel": []}
+
+
+def also_right_fan(scheme, record):
+    """Other certificates of the same piece at a boundary, or of its mirror image, that hold."""
+    n, certificate = record["valence"], record["certificate"]
+    kernel = certificate.get("kernel", [])
+    yield "another prime", recertified(record, prime=next(p for p in itertools.count(2**30) if p % 3 == 2 and is_prime(p)))
+    yield "root null", changed(record, certificate={**certificate, "root": None})
+    if "corner" not in record:
+        yield "corner false", changed(record, corner=False)
+    if "rings" in certificate:
+        yield "more rings", recertified(record, rings=certificate["rings"] + 3)
+    inner, last = (n + 4, n + 2) if scheme == "loop" else (2 * n + 4, 2 * n + 2)
+    turned = [{k if k == "1" else str(inner - int(k) if int(k) <= last else record["dimension"] + last + 1 - int(k)): x
+               for k, x in vector.items()} for vector in kernel]
+    swapped = {"piece:1": "piece:3", "piece:3": "piece:1", "pieces:1,2": "pieces:2,3", "pieces:2,3": "pieces:1,2"}
+    yield "the mirror image", changed(recertified(record, kernel=turned or None), border=n + 1 - record["border"],
+                                      domain=swapped.get(record["domain"], record["domain"]))
+    if not kernel:
+        yield "an empty kernel", recertified(record, kernel=[], left_out=0)
+        return
+    if record["domain"] != "omega" and case_of(scheme, record).row_count() == record["rank"]:
+        yield "a count", recertified(record, bound="count", kernel=None, left_out=None)
+    yield "vectors in another order", recertified(record, kernel=kernel[::-1])
+    yield "no left_out", recertified(record, left_out=None)
+    total = {k: str(Fraction(-7, 3) * sum(Fraction(v.get(k, 0)) for v in kernel)) for k in set().union(*kernel)}
+    yield "their sum in place of the first", recertified(record, kernel=[total] + kernel[1:])
+    yield "entries that are 0", recertified(record, kernel=[{**{"1": "0", "2": "-0/3"}, **v} for v in kernel])
 
 
 def too_low(case, record, kernels):
@@ -1647,6 +1756,27 @@ def known_results():
                [(scheme, n, "global", size(n)) for n in range(3, 13)])
 
 
+def known_fans():
+    """Ranks of pieces at a boundary, in the same form.
+
+    Beyond the control points that ring 1 has, a ring shows one more on each side. The smooth mask of the vertex shows the sum
+    of its neighbours on the boundary.
+    """
+    tried = [(n, i) for n in range(1, 13) for i in range(1, n + 1)]
+    for scheme, each in (("loop", 1), ("catmark", 2)):
+        for sharp in (True, False):
+            cases = []
+            for (n, i), k in itertools.product(tried, range(1, 9)):
+                size = (n + 7 if scheme == "loop" else 2 * n + 9) - (i == 1) - (i == n)
+                rank = size - sum(max(0, each * (there - 1) - k) for there in (i - 1, n - i)) + (not sharp)
+                cases.append((scheme, n, f"rings:{k}", min(size, rank), None, None, i, sharp))
+            yield f"{scheme}, {'corner' if sharp else 'boundary'}, rings:k: one more on each side", cases
+    for scheme, regular in FANS_REGULAR:
+        cases = [(scheme, n, domain, fan(scheme, n, i, sharp).count, None, None, i, sharp)
+                 for n, sharp in regular for i in range(1, n + 1) for domain in FAN_DOMAINS]
+        yield f"{scheme}, a regular boundary, any domain: all", cases
+
+
 def known_pairs():
     """Ranks of pieces with two corners, in the same form, where the second is regular or a symmetry knows them."""
     for scheme, place in PAIRS:
@@ -1661,8 +1791,8 @@ def known_pairs():
         yield f"{scheme}, {place}, rings:k: corners may be swapped", cases
 
 
-def rank_of(scheme, n, domain, second=None, place=None):
-    case = Case(scheme, n, None, domain, second, place)
+def rank_of(scheme, n, domain, *others):
+    case = Case(scheme, n, None, domain, *others)
     p, root = own_prime(case.order, 0)
     return case.rank_modulo(root, p, 2 * case.dimension, MOST_STEPS)
 
@@ -1670,6 +1800,10 @@ def rank_of(scheme, n, domain, second=None, place=None):
 SELF_TEST_DOMAINS = ["piece:1", "piece:2", "piece:3", "pieces:1,2", "pieces:1,3", "pieces:2,3", "rings:1", "rings:2",
                      "rings:3", "ring:1", "ring:2", "ring:3", "omega", "annulus", "global"]
 PAIRS = [(scheme, place) for scheme in SCHEMES for place in PLACES if (scheme, place) != ("loop", "opposite")]
+FAN_SCHEMES = ("loop", "catmark")
+FAN_DOMAINS = SELF_TEST_DOMAINS[:-2]
+FANS_REGULAR = [("loop", [(3, False), (1, True)]), ("catmark", [(2, False), (1, True)])]  # (n, sharp)
+SELF_TEST_FANS = [(n, i, sharp) for n in range(1, 9) for i in range(1, n + 1) for sharp in (False, True)]
 SELF_TEST_PAIRS = [(3, 3), (3, 4), (4, 4), (5, 6), (8, 6), (7, 3), (8, 8)]
 
 
@@ -1758,6 +1892,161 @@ def self_test_pair_geometry(scheme, place):
     return wrong
 
 
+def lattice(scheme):
+    """Edge neighbours of the origin in cyclic order."""
+    return [(1, 0), (0, 1), (-1, 1), (-1, 0), (0, -1), (1, -1)] if scheme == "loop" else [(1, 0), (0, 1), (-1, 0), (0, -1)]
+
+
+def at(*terms):
+    """Sum of factors times places."""
+    return tuple(sum(factor * place[axis] for factor, place in terms) for axis in (0, 1))
+
+
+def flat_fan(scheme, n, i):
+    """Face i of a fan drawn in the plane: places of the control points, and the vertices of the three pieces, doubled."""
+    spokes = [lattice(scheme)[j % len(lattice(scheme))] for j in range(n + 1)]
+    a, b = spokes[i - 1], spokes[i]
+    pairs = list(zip(spokes, spokes[1:]))
+    if scheme == "loop":
+        ring = [at((2, spokes[0]))] + [place for c, d in pairs for place in (at((1, c), (1, d)), at((2, d)))]
+        places = [(0, 0), *spokes, *ring[max(0, 2 * i - 3):2 * i + 2]]
+        middle = at((1, a), (1, b))
+        return places, [(at((2, a)), a, middle), (a, middle, b), (at((2, b)), b, middle)]
+    ring = [at((2, spokes[0]))] + [at((x, c), (y, d)) for c, d in pairs for x, y in ((2, 1), (2, 2), (1, 2), (0, 2))]
+    places = [(0, 0), spokes[0], *(place for c, d in pairs for place in (at((1, c), (1, d)), d)),
+              *ring[max(0, 4 * i - 5):4 * i + 2]]
+    squares = [[at((x + u, a), (y + v, b)) for u, v in ((0, 0), (1, 0), (1, 1), (0, 1))] for x, y in ((1, 0), (1, 1), (0, 1))]
+    return places, squares
+
+
+def around(scheme, vertices):
+    """Places of a regular piece's points."""
+    square = list(itertools.product((-1, 0, 1), repeat=2))
+    steps = square if scheme == "catmark" else lattice(scheme) + [(0, 0)]
+    return {at((1, v), (1, step)) for v in vertices for step in steps}
+
+
+def self_test_fan(scheme, n, i):
+    """Faults of a fan: of its masks; and whether, around a sharp vertex, it halves a drawing in the plane."""
+    where, smooth = fan(scheme, n, i, True), fan(scheme, n, i, False)
+    places, pieces = flat_fan(scheme, n, i)
+    wrong, name = [], f"{scheme}, face {i} of {n}"
+    if where.count != (n + 7 if scheme == "loop" else 2 * n + 9) - (i == 1) - (i == n) or where.count != len(places):
+        wrong.append(f"{name}: {where.count} control points")
+        return wrong
+    drawn = list(zip(*(where.step.apply([list(axis)])[0] for axis in zip(*places))))
+    doubled = [tuple(Fraction(2 * x, where.step.scale) for x in point) for point in drawn]
+    if [doubled[v] for v in where.parts[0]] != places:
+        wrong.append(f"{name}: the part left is not at the corner")
+    for piece, vertices in zip(where.pieces, pieces, strict=True):
+        found, whole = {doubled[v] for v, in piece}, around(scheme, vertices)
+        if not (found == whole if len(piece) == REGULAR_POINTS[scheme] else set(vertices) <= found < whole):
+            wrong.append(f"{name}: a piece is elsewhere")
+    eighth, own = Fraction(1, 8), where.names.index(("vertex", 1))
+    last = n + 1 if scheme == "loop" else 2 * n + 1
+    if where.step.rows[own] != {0: [1]} or smooth.step.rows[own] != {0: [6 * eighth], 1: [eighth], last: [eighth]}:
+        wrong.append(f"{name}: the mask of the vertex is wrong")
+    if any(a != b for k, (a, b) in enumerate(zip(where.step.rows, smooth.step.rows)) if k != own):
+        wrong.append(f"{name}: other masks know whether the vertex is sharp")
+    masks = {"loop": {(4, 4), (6, 1, 1), (3, 3, 1, 1), (5, *[Fraction(1, 2)] * 6)},
+             "catmark": {(4, 4), (6, 1, 1), (2, 2, 2, 2), (3, 3, *[Fraction(1, 2)] * 4),
+                         (Fraction(9, 2), *[Fraction(3, 4)] * 4, *[eighth] * 4)}}[scheme]
+    for row in where.step.rows[:own] + where.step.rows[own + 1:]:
+        if tuple(sorted((8 * x for x, in row.values()), reverse=True)) not in masks:
+            wrong.append(f"{name}: a mask is unknown")
+    return wrong
+
+
+class Lattice:
+    """Values at places of the plane, refined by regular masks where all points of a mask are there."""
+
+    def __init__(self, scheme, values):
+        self.scheme, self.values = scheme, values
+
+    def mean(self, terms):
+        """Of pairs (weight, place); None where a place has no value."""
+        known = all(place in self.values for _, place in terms)
+        return sum(weight * self.values[place] for weight, place in terms) if known else None
+
+    def mask(self, place):
+        """The mask of a place of the finer lattice: a product of curves' masks, or Loop's."""
+        if self.scheme == "catmark":
+            curve = [[(Fraction(w, 8), x // 2 + d) for w, d in (((1, -1), (6, 0), (1, 1)) if x % 2 == 0 else ((4, 0), (4, 1)))]
+                     for x in place]
+            return [(u * v, (x, y)) for u, x in curve[0] for v, y in curve[1]]
+        if place[0] % 2 == place[1] % 2 == 0:
+            own = (place[0] // 2, place[1] // 2)
+            return [(Fraction(5, 8), own)] + [(Fraction(1, 16), at((1, own), (1, d))) for d in lattice("loop")]
+        k = next(k for k, d in enumerate(lattice("loop")) if all((x - y) % 2 == 0 for x, y in zip(place, d)))
+        before, d, after = (lattice("loop")[(k + j) % 6] for j in (-1, 0, 1))
+        a = ((place[0] - d[0]) // 2, (place[1] - d[1]) // 2)
+        return [(Fraction(3, 8), a), (Fraction(3, 8), at((1, a), (1, d)))] + [(Fraction(1, 8), at((1, a), (1, w)))
+                                                                             for w in (before, after)]
+
+    def finer(self):
+        places = {at((2, place), (1, d)) for place in self.values for d in [(0, 0)] + lattice(self.scheme)}
+        places |= {at((2, place), (1, d)) for place in self.values for d in itertools.product((-1, 1), repeat=2)}
+        found = {place: self.mean(self.mask(place)) for place in places}
+        return Lattice(self.scheme, {place: x for place, x in found.items() if x is not None})
+
+    def limit(self, place):
+        """The limit at a place."""
+        if self.scheme == "loop":
+            return self.mean([(Fraction(1, 2), place)] + [(Fraction(1, 12), at((1, place), (1, d))) for d in lattice("loop")])
+        weights = {0: Fraction(2, 3), -1: Fraction(1, 6), 1: Fraction(1, 6)}
+        return self.mean([(weights[x] * weights[y], at((1, place), (1, (x, y)))) for x in weights for y in weights])
+
+    def extended(self, wanted, sharp):
+        """With the wanted points beyond the line y = 0, and beyond x = 0 of a sharp vertex of one face."""
+        axes, grid = [1] + [0] * sharp, dict(self.values)
+
+        def value(place):
+            if place not in grid:
+                axis = next(k for k in axes if place[k] < 0)
+                across, origin = (1, 0) if axis == 1 else (0, 1), (0, 0)
+                inward = (across[1], across[0])
+                if self.scheme == "catmark" or (sharp and place in ((-1, 0), (0, -1))):
+                    grid[place] = 2 * value(at((1, place), (1, inward))) - value(at((1, place), (2, inward)))
+                else:  # the triangle on the other side of the boundary's edge
+                    a, b = at((1, place), (1, inward)), at((1, place), (1, inward), (-1, across))
+                    grid[place] = value(a) + value(b) - value(at((1, a), (1, b), (-1, place)))
+                assert place != origin
+            return grid[place]
+
+        return Lattice(self.scheme, {place: value(place) for place in wanted})
+
+
+def self_test_regular_fan(scheme, n, i, sharp):
+    """Faults of a fan at a regular boundary: each function is the same polynomial on the piece and on the three of ring 1.
+
+    A polynomial on a piece is known from its values at the corners of 16 parts.
+    """
+    where = fan(scheme, n, i, sharp)
+    places, pieces = flat_fan(scheme, n, i)
+    doubled = [tuple(Fraction(2 * x, where.step.scale) for x in point)
+               for point in zip(*(fan(scheme, n, i, True).step.apply([list(axis)])[0] for axis in zip(*places)))]
+    whole = [(0, 0), *flat_spokes(scheme, i)]
+    wrong = []
+    for b in range(where.count):
+        points = where.step.apply([[int(b == j) for j in range(where.count)]])[0]
+        parent = Lattice(scheme, {place: int(b == j) for j, place in enumerate(places)})
+        parent = parent.extended(around(scheme, whole), sharp).finer().finer().finer()
+        for k, (piece, vertices) in enumerate(zip(where.pieces, pieces), 1):
+            part = Lattice(scheme, {doubled[v]: Fraction(points[v], where.step.scale) for v, in piece})
+            part = part.extended(around(scheme, vertices), sharp).finer().finer()
+            nodes = [at((4 - x - y, vertices[0]), (x, vertices[1]), (y, vertices[-1])) for x in range(5) for y in range(5)
+                     if scheme == "catmark" or x + y <= 4]
+            if any(part.limit(node) is None or part.limit(node) != parent.limit(node) for node in nodes):
+                wrong.append(f"{scheme}, face {i} of {n}, piece {k}: function {b + 1} is another polynomial")
+    return wrong
+
+
+def flat_spokes(scheme, i):
+    """The other vertices of face i of a fan drawn in the plane."""
+    a, b = lattice(scheme)[i - 1], lattice(scheme)[i]
+    return [a, b] if scheme == "loop" else [a, at((1, a), (1, b)), b]
+
+
 def self_test_forms():
     """Faults of the counts of midedge's rows, against the rank of sums of two points."""
     wrong = []
@@ -1798,12 +2087,65 @@ def self_test_masks(n):
     return wrong
 
 
+def misjudged(where, right, bad):
+    """Faults of judging triples (what, scheme, record) that are right or bad; and the number of bad ones."""
+    wrong, count = [], 0
+    for what, scheme, record in right:
+        if why := fault_of(scheme, json.loads(json.dumps(record))):
+            wrong.append(f"{where}, {what}: rejected: {why}")
+    for what, scheme, record in bad:
+        count += 1
+        if not fault_of(scheme, json.loads(json.dumps(record))):
+            wrong.append(f"{where}, {what}: accepted")
+    return wrong, count
+
+
+def misjudged_bounds(where, case, record, bounds):
+    """Faults of judging pairs (rank, certificate) whose upper bound must not hold; and their number."""
+    wrong, count, (p, root) = [], 0, own_prime(order_of(record), 0)
+    for rank, certificate in bounds:
+        count += 1
+        try:
+            check_upper(case, certificate, rank, root, p)
+            wrong.append(f"{where}: accepted as a proof that the rank is {rank}: {certificate}")
+        except Fault:
+            pass
+    return wrong, count
+
+
+def self_test_fans():
+    """Faults of pieces at a boundary; the numbers of certificates accepted and rejected. Each spoils a part of the cases."""
+    wrong, count = [], 0
+    for scheme, n in itertools.product(FAN_SCHEMES, range(1, 13)):
+        wrong += itertools.chain(*(self_test_fan(scheme, n, i) for i in range(1, n + 1)))
+    for scheme, regular in FANS_REGULAR:
+        wrong += itertools.chain(*(self_test_regular_fan(scheme, n, i, sharp) for n, sharp in regular for i in range(1, n + 1)))
+    fans = {(scheme, n, i, sharp, domain): certify(scheme, n, domain, None, border=i, sharp=sharp) for scheme in FAN_SCHEMES
+            for n, i, sharp in SELF_TEST_FANS for domain in FAN_DOMAINS}
+    for number, ((scheme, *_), record) in enumerate(fans.items()):
+        where = f"{scheme} {record['valence']}{surroundings(record)} {record['domain']}"
+        right, bad = [("as made", scheme, record)], other_fans(record, scheme, fans)
+        if number % 3 == 0:
+            right += [(what, scheme, other) for what, other in also_right_fan(scheme, record)]
+        if number % 10 == 0:
+            bad = itertools.chain(bad, spoiled_fan(record, scheme))
+        found = [misjudged(where, right, bad)]
+        if number % 5 == 0:
+            case = case_of(scheme, record)
+            found.append(misjudged_bounds(where, case, record, too_low_fan(case, record, fans)))
+        for faults, tried in found:
+            wrong += faults
+            count += tried
+    return wrong, len(fans), count
+
+
 def self_test():
     """Faults of this check, and what was tried."""
-    wrong, right, truth, count = [], [], {}, 0
+    wrong, accepted, count = self_test_fans()
+    right, truth = [], {}
     wrong += itertools.chain(self_test_forms(), *map(self_test_geometry, SCHEMES), *map(self_test_masks, range(3, 13)),
                              *itertools.starmap(self_test_pair_geometry, PAIRS))
-    for name, cases in itertools.chain(known_results(), known_pairs()):
+    for name, cases in itertools.chain(known_results(), known_pairs(), known_fans()):
         off = [f"{n} {domain} {second}: {found}, not {rank}"
                for s, n, domain, rank, *second in cases if (found := rank_of(s, n, domain, *second)) != rank]
         print(f"  {name}: {f'WRONG at {off}' if off else f'{len(cases)} ranks agree'}")
@@ -1822,25 +2164,16 @@ def self_test():
             truth[scheme, n, domain, rule, *second] = record["rank"], record["dimension"]
     for scheme, record in right:
         where = f"{scheme} {record['valence']}{surroundings(record)} {record['domain']} {record.get('rule', '')}"
-        for what, other in [("as made", record), *also_right(scheme, record)]:
-            if why := fault_of(scheme, json.loads(json.dumps(other))):
-                wrong.append(f"{where}, {what}: rejected: {why}")
-        for what, s, other in spoiled(record, scheme, truth):
-            count += 1
-            if not fault_of(s, json.loads(json.dumps(other))):
-                wrong.append(f"{where}, {what}: accepted")
         kernels = [r["certificate"]["kernel"] for s, r in right if r["certificate"]["bound"] == "kernel" and s == scheme
                    and (r["dimension"], r.get("rule")) == (record["dimension"], record.get("rule"))]
-        case, p_root = case_of(scheme, record), own_prime(order_of(record), 0)
-        for rank, certificate in too_low(case, record, kernels):
-            count += 1
-            try:
-                check_upper(case, certificate, rank, *p_root[::-1])
-                wrong.append(f"{where}: accepted as a proof that the rank is {rank}: {certificate}")
-            except Fault:
-                pass
+        good = [(what, scheme, other) for what, other in [("as made", record), *also_right(scheme, record)]]
+        case = case_of(scheme, record)
+        for faults, tried in (misjudged(where, good, spoiled(record, scheme, truth)),
+                              misjudged_bounds(where, case, record, too_low(case, record, kernels))):
+            wrong += faults
+            count += tried
     wrong += self_test_files(next(r for s, r in right if s == "loop" and r["valence"] == 7 and r["domain"] == "piece:1"))
-    return wrong, f"{len(right)} certificates accepted, {count} spoiled ones rejected"
+    return wrong, f"{len(right) + accepted} certificates accepted, {count} spoiled ones rejected"
 
 
 def check_files(names):
