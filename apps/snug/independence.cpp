@@ -276,7 +276,15 @@ void write_eigenvalues(JsonWriter& json, const CornerEigenvalues& found, std::ui
       .begin_array();
   for (const RationalEigenvalue& each : found.repeated) {
     json.begin_object().field("value", each.value.get_str()).field("algebraic", each.algebraic);
-    json.field("geometric", each.geometric).end_object();
+    json.field("geometric", each.geometric()).key("span").begin_array();
+    for (const std::vector<mpq_class>& vector : each.span) {
+      json.begin_object();
+      for (std::size_t i = 0; i < vector.size(); ++i) {
+        if (vector[i] != 0) json.field(std::to_string(i + 1), vector[i].get_str());
+      }
+      json.end_object();
+    }
+    json.end_array().end_object();
   }
   json.end_array().end_object();
 }
@@ -286,7 +294,7 @@ std::string text_of(const CornerEigenvalues& found, std::uint32_t valence) {
       fmt::format("{:>4}  eigenvalues {}", valence, found.as_stated ? "as stated" : "not as stated");
   for (const RationalEigenvalue& each : found.repeated) {
     line += fmt::format(", {} {} times", each.value.get_str(), each.algebraic);
-    if (each.geometric < each.algebraic) line += fmt::format(" with {} eigenvectors", each.geometric);
+    if (each.geometric() < each.algebraic) line += fmt::format(" with {} eigenvectors", each.geometric());
   }
   return line;
 }
