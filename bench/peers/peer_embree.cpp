@@ -1,6 +1,9 @@
 #include "peer_embree.h"
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <stdexcept>
 
@@ -57,10 +60,19 @@ bool compare(RTCPointQueryFunctionArguments* arguments) {
 }  // namespace
 
 struct EmbreeMesh::Impl {
+  std::atomic<std::ptrdiff_t> bytes{0};
   RTCDevice device = rtcNewDevice("threads=1");
-  RTCScene scene = rtcNewScene(device);
+  RTCScene scene = watched_scene();
   Buffers buffers{};
 
+  RTCScene watched_scene() {
+    const auto watch = [](void* impl, ssize_t change, bool) {
+      static_cast<Impl*>(impl)->bytes += change;
+      return true;
+    };
+    rtcSetDeviceMemoryMonitorFunction(device, watch, this);
+    return rtcNewScene(device);
+  }
   ~Impl() {
     rtcReleaseScene(scene);
     rtcReleaseDevice(device);
@@ -101,5 +113,61 @@ double EmbreeMesh::distance(const Point3& to) const {
   rtcPointQuery(impl_->scene, &query, &context, compare, &impl_->buffers);
   return static_cast<double>(query.radius);
 }
+
+namespace {
+
+RTCIntersectContext coherent() {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  return context;
+}
+
+}  // namespace
+
+void EmbreeMesh::first_hits(const Point3& eye, std::span<const Vector3> directions,
+                            std::span<float> out) const {
+  RTCIntersectContext context = coherent();
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    RTCRayHit ray{};
+    ray.ray.org_x = static_cast<float>(eye.x);
+    ray.ray.org_y = static_cast<float>(eye.y);
+    ray.ray.org_z = static_cast<float>(eye.z);
+    ray.ray.dir_x = static_cast<float>(directions[i].x);
+    ray.ray.dir_y = static_cast<float>(directions[i].y);
+    ray.ray.dir_z = static_cast<float>(directions[i].z);
+    ray.ray.tfar = std::numeric_limits<float>::infinity();
+    ray.ray.mask = ~0u;
+    ray.hit.geomID = ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(impl_->scene, &context, &ray);
+    out[i] = ray.ray.tfar;
+  }
+}
+
+void EmbreeMesh::first_hits_by_eights(const Point3& eye, std::span<const Vector3> directions,
+                                      std::span<float> out) const {
+  RTCIntersectContext context = coherent();
+  for (std::size_t first = 0; first < directions.size(); first += 8) {
+    RTCRayHit8 rays{};
+    alignas(32) int valid[8];
+    for (std::size_t l = 0; l < 8; ++l) {
+      valid[l] = first + l < directions.size() ? -1 : 0;
+      const Vector3& direction = directions[std::min(first + l, directions.size() - 1)];
+      rays.ray.org_x[l] = static_cast<float>(eye.x);
+      rays.ray.org_y[l] = static_cast<float>(eye.y);
+      rays.ray.org_z[l] = static_cast<float>(eye.z);
+      rays.ray.dir_x[l] = static_cast<float>(direction.x);
+      rays.ray.dir_y[l] = static_cast<float>(direction.y);
+      rays.ray.dir_z[l] = static_cast<float>(direction.z);
+      rays.ray.tfar[l] = std::numeric_limits<float>::infinity();
+      rays.ray.mask[l] = ~0u;
+      rays.hit.geomID[l] = rays.hit.instID[0][l] = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect8(valid, impl_->scene, &context, &rays);
+    for (std::size_t l = 0; l < 8 && first + l < directions.size(); ++l) out[first + l] = rays.ray.tfar[l];
+  }
+}
+
+std::size_t EmbreeMesh::bytes() const { return static_cast<std::size_t>(impl_->bytes.load()); }
 
 }  // namespace snug::bench

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <span>
 
 #include "triangle_mesh.h"
 
@@ -17,6 +19,14 @@ class EmbreeMesh {
   /// Distance of the closest point of the mesh: rtcPointQuery with a callback that compares a triangle, as in
   /// Embree's tutorial closest_point.
   [[nodiscard]] double distance(const Point3& to) const;
+
+  /// Where each ray of an eye first meets the mesh, in lengths of its direction; infinite: nowhere. One call of
+  /// rtcIntersect1 a ray, or of rtcIntersect8 for eight, with the flag for coherent rays.
+  void first_hits(const Point3& eye, std::span<const Vector3> directions, std::span<float> out) const;
+  void first_hits_by_eights(const Point3& eye, std::span<const Vector3> directions,
+                            std::span<float> out) const;
+  /// What Embree has allocated, the mesh's buffers included.
+  [[nodiscard]] std::size_t bytes() const;
 
  private:
   struct Impl;

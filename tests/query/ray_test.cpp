@@ -2,8 +2,13 @@
 
 #include <snug/snug.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <snug/base/error.h>
@@ -132,6 +137,94 @@ TEST(trace, answers_the_same_for_any_threads_and_order) {
     ASSERT_EQ(alone.hits.size(), same.hits.size());
     for (std::size_t k = 0; k < one[i].hits.size(); ++k) EXPECT_EQ(one[i].hits[k].t, two[i].hits[k].t);
     for (std::size_t k = 0; k < alone.hits.size(); ++k) EXPECT_EQ(alone.hits[k].t, same.hits[k].t);
+  }
+}
+
+// Rays from all around towards places in and near the model's box.
+std::vector<Ray> rays_around(const Surface& surface, std::size_t count) {
+  Box3 box;
+  for (const Point3& p : surface.mesh().points) box.add(p);
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::vector<Ray> rays;
+  while (rays.size() < count) {
+    const double a = 2 * std::numbers::pi * share(random), z = 2 * share(random) - 1,
+                 r = std::sqrt(1 - z * z);
+    const Point3 from{3 * surface.size() * r * std::cos(a), 3 * surface.size() * r * std::sin(a),
+                      3 * surface.size() * z};
+    Point3 to;
+    for (std::size_t k = 0; k < 3; ++k) to[k] = box.lower[k] + share(random) * (box.upper[k] - box.lower[k]);
+    // Some alone, some with neighbours.
+    const std::size_t together = rays.size() % 3 == 0 ? 1 : 9;
+    for (std::size_t i = 0; i < together && rays.size() < count; ++i) {
+      const double by = 1e-3 * surface.size() * static_cast<double>(i);
+      rays.push_back({from, {to.x + by - from.x, to.y - from.y, to.z - by - from.z}});
+    }
+  }
+  return rays;
+}
+
+TEST(ray_caster, finds_what_is_proved_to_be_hit) {
+  for (const char* name : {"bust.obj", "pawn.obj", "bracket.obj", "ring.obj"}) {
+    const Surface surface = load(model(name));
+    const double tolerance = 1e-3 * surface.size();
+    const RayCaster caster(surface, tolerance);
+    const std::vector<Ray> rays = rays_around(surface, 4000);
+    std::vector<QuickHit> quick(rays.size());
+    caster.cast(rays, quick);
+    const std::vector<RayHits> proved =
+        trace(surface, rays, {.query = RayQuery::all, .precision = tolerance / 100});
+    std::size_t missed = 0, others = 0, hits = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const QuickHit alone = caster.cast(rays[i]);
+      EXPECT_EQ(std::isfinite(alone.t), std::isfinite(quick[i].t)) << name << " " << i;
+      hits += proved[i].certain_hit();
+      missed += proved[i].certain_hit() && !std::isfinite(quick[i].t);
+      if (!std::isfinite(quick[i].t)) continue;
+      // Its place on the surface is near its place on the ray.
+      const Ray& ray = rays[i];
+      const Point3 p = evaluate(surface, quick[i].at).position;
+      const Vector3 off{ray.origin.x + quick[i].t * ray.direction.x - p.x,
+                        ray.origin.y + quick[i].t * ray.direction.y - p.y,
+                        ray.origin.z + quick[i].t * ray.direction.z - p.z};
+      ASSERT_LE(std::hypot(off.x, off.y, off.z), 1.01 * tolerance) << name << " " << i;
+      others += !proved[i].certain_hit() || std::fabs(quick[i].t - proved[i].hits.front().t.lower) > 0.01;
+    }
+    EXPECT_GT(hits, 500u) << name;
+    // Where rays graze the surface the tolerance may hide or show it.
+    EXPECT_LE(missed, 2 + hits / 500) << name;
+    EXPECT_LE(others, 10 + hits / 50) << name;
+  }
+}
+
+TEST(ray_caster, keeps_to_segments_and_refuses_what_is_none) {
+  const Surface surface = sharp_cube();
+  const RayCaster caster(surface, 1e-4);
+  EXPECT_NEAR(caster.cast({{0.3, 0.4, 5}, {0, 0, -2}}).t, 2, 1e-4);
+  EXPECT_NEAR(caster.cast({{0.3, 0.4, 5}, {0, 0, -2}, 2.1, 3}).t, 2.5, 1e-4);
+  EXPECT_EQ(caster.cast({{0.3, 0.4, 5}, {0, 0, -2}, 0, 1.9}).t, infinity);
+  EXPECT_EQ(caster.cast({{0.3, 0.4, 5}, {0, 0, 2}}).t, infinity);
+  EXPECT_NEAR(caster.cast({{0.3, 0.4, 5}, {0, 0, -2}}).normal.z, 1, 1e-6);
+  EXPECT_THROW(static_cast<void>(caster.cast({{0, 0, 0}, {0, 0, 0}})), InputError);
+  for (const double bad : {0.0, -1.0, infinity, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(RayCaster(surface, bad), InputError);
+  }
+}
+
+TEST(ray_caster, withstands_every_size) {
+  for (const double size : {1e-200, 1e-3, 1e9, 1e200}) {
+    ControlMesh mesh = cube();
+    for (Point3& p : mesh.points) p = {size * p.x, size * p.y, size * p.z};
+    static_cast<void>(sharpen(mesh, 30));
+    const Surface surface(std::move(mesh));
+    const RayCaster caster(surface, 1e-3 * size);
+    for (const double speed : {1e-90, 1.0, 1e90}) {
+      const Ray ray{{0.3 * size, 0.4 * size, 5 * size}, {0, 0, -speed}};
+      EXPECT_NEAR(caster.cast(ray).t * speed / size, 4, 1e-3) << size << " " << speed;
+      const RayHits found = trace(surface, ray);
+      ASSERT_TRUE(found.certain_hit()) << size << " " << speed;
+      EXPECT_NEAR(found.hits[0].t.lower * speed / size, 4, 1e-5);
+    }
   }
 }
 

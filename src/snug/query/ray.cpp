@@ -8,6 +8,7 @@
 #include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/search/precision.h>
+#include <snug/search/ray_scale.h>
 #include <snug/search/ray_walk.h>
 #include <snug/surface/evaluate.h>
 #include <snug/surface/unscale.h>
@@ -19,29 +20,17 @@ namespace {
 double lowered(double x) { return x - (16 * unit_roundoff * std::fabs(x) + underflow_error); }
 double raised(double x) { return x + (16 * unit_roundoff * std::fabs(x) + underflow_error); }
 
-// Between parameters of a ray and lengths along it in scaled units.
-class RayScale {
- public:
-  RayScale(const Vector3& direction, PowerOfTwo surface)
-      : turn_(PowerOfTwo::normalising(max_abs(direction))),
-        length_(snug::length(turn_.apply(direction))),
-        to_scaled_(surface * turn_.inverse()) {}
-  [[nodiscard]] double to_scaled(double t) const { return to_scaled_.apply(t) * length_; }
-  [[nodiscard]] double to_parameter(double s) const { return to_scaled_.inverse().apply(s / length_); }
+}  // namespace
 
- private:
-  PowerOfTwo turn_;
-  double length_;
-  PowerOfTwo to_scaled_;
-};
-
-void check(const Ray& ray) {
+void require_ray(const Ray& ray) {
   require_value(is_finite(ray.origin), "ray: a coordinate of the origin is not finite; give three numbers");
   require_value(is_finite(ray.direction) && !(ray.direction == Vector3{}),
                 "ray: the direction must be three finite numbers, not all 0");
   require_value(ray.from <= ray.to && std::isfinite(ray.from),
                 "ray: 'from' must be finite and not above 'to'");
 }
+
+namespace {
 
 class RayQuestion {
  public:
@@ -52,7 +41,7 @@ class RayQuestion {
   }
 
   RayHits ask(SurfaceWorkspace& workspace, const Ray& ray, const WorkMonitor& monitor) const {
-    check(ray);
+    require_ray(ray);
     const PowerOfTwo scale = surface_.scale();
     const RayScale lengths(ray.direction, scale);
     const Point3 origin = scale.apply(ray.origin);

@@ -9,6 +9,9 @@
 /// The questions of ray.h about a surface whose tree and workspace are at hand.
 namespace snug {
 
+/// Throws InputError (value) unless these are a ray.
+void require_ray(const Ray& ray);
+
 [[nodiscard]] RayHits trace(SurfaceWorkspace& workspace, const Ray& ray, const RayOptions& options,
                             const WorkMonitor& monitor = {});
 [[nodiscard]] std::vector<RayHits> trace(const SurfaceBvh& model, std::span<const Ray> rays,

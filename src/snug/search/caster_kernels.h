@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+/// One ray against eight boxes or eight quadratic triangles, in single precision, on the widest vectors that the
+/// processor has. The same bits on every instruction set.
+namespace snug::kernels {
+
+/// Boxes of a node, and quadratic triangles of a block.
+inline constexpr std::size_t caster_width = 8;
+
+struct CasterRay {
+  std::array<float, 3> origin, direction,
+      inverse;  ///< direction of length 1; 1 over its coordinates, none infinite
+  std::array<std::array<float, 3>, 2> across;  ///< of length 1, at right angles with it and each other
+  float rounding;                              ///< what places across the ray may be off by
+};
+/// Rays close to a first one, coordinate by coordinate.
+struct alignas(32) CasterRays {
+  std::array<std::array<float, caster_width>, 3> origin, direction;
+  std::array<std::array<std::array<float, caster_width>, 3>, 2> across;
+};
+
+/// Axis-aligned boxes.
+struct alignas(32) CasterBoxes {
+  std::array<std::array<float, caster_width>, 3> lower, upper;
+};
+/// A bit for each box that the ray meets before `to`, when it is larger by `grown` on each side, and where it enters
+/// these, not before `from`.
+std::uint32_t enter_boxes(const CasterBoxes& boxes, const CasterRay& ray, float grown, float from, float to,
+                          float* enter);
+
+/// Quadratic triangles near each other: their Bezier points, coordinate by coordinate, are origin + step net; corners,
+/// then middles of the edges 01, 12, 20.
+struct CasterBlock {
+  std::array<std::array<std::array<std::int16_t, caster_width>, 3>, 6> net;
+  std::array<float, 3> origin;
+  float step;
+  float error;          ///< how far any may be off
+  std::uint32_t taken;  ///< a bit each
+};
+/// A bit for each triangle that is within the error and `grown` of the ray.
+std::uint32_t near_ray(const CasterBlock& block, const CasterRay& ray, float grown);
+
+/// Where a ray meets a triangle; `place` is which of a block.
+struct CasterHit {
+  std::uint32_t place = caster_width;  ///< caster_width: none
+  float t = 0, u = 0, v = 0;
+};
+/// The first place, of `from` to `to` along the ray, where it comes within the error of a triangle.
+CasterHit hit_block(const CasterBlock& block, const CasterRay& ray, float from, float to);
+/// One triangle of a block and several rays: where these come within its error, if not behind `to`, which becomes
+/// nearer. Returns a bit for each ray that does so.
+std::uint32_t hit_piece(const CasterBlock& block, std::size_t place, const CasterRays& rays, float rounding,
+                        const float* from, float* to, float* u, float* v);
+
+}  // namespace snug::kernels

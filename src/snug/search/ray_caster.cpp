@@ -1,0 +1,432 @@
+#include <snug/search/ray_caster.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include <snug/geometry/direction.h>
+#include <snug/geometry/rounding.h>
+#include <snug/patch/piece_path.h>
+#include <snug/search/ray_scale.h>
+#include <snug/surface/evaluate.h>
+#include <snug/surface/quadratic_pieces.h>
+
+namespace snug {
+namespace {
+
+using kernels::caster_width;
+
+// A path of so many digits at most, in four bits and two for each, the first one lowest, above its patch.
+constexpr unsigned most_digits = 14;
+
+std::uint64_t packed(const PiecePath& path, PatchId root) {
+  const unsigned level = std::min(path.level(), most_digits);
+  std::uint64_t digits = 0;
+  for (unsigned d = 0; d < level; ++d) digits |= std::uint64_t{path.digit(d)} << 2 * d;
+  return (digits << 4 | level) << 32 | root.value();
+}
+
+PiecePath path_of(std::uint64_t place) {
+  PiecePath path;
+  for (const unsigned level = place >> 32 & 15u; path.level() < level;) {
+    path = path.child(static_cast<unsigned>(place >> (36 + 2 * path.level()) & 3u));
+  }
+  return path;
+}
+PatchId patch_of(std::uint64_t place) { return PatchId(static_cast<std::uint32_t>(place)); }
+
+// Widest group of rays that is searched as one, as a share of the surface.
+constexpr double widest_beam = 0.1;
+// Where single precision alone, of coordinates up to about 2, moves a triangle.
+constexpr double single_error = 0x1p-21;
+
+Box3 box_of(const QuadraticPiece& piece) {
+  Box3 box;
+  for (const Point3& p : piece.quadratic.corners) box.add(p);
+  for (const Point3& p : piece.quadratic.middles) box.add(p);
+  const double wider = 2 * piece.quadratic.error + single_error;
+  const Vector3 by{wider, wider, wider};
+  return {box.lower - by, box.upper + by};
+}
+
+Box3 merged(const Box3& a, const Box3& b) {
+  Box3 box = a;
+  box.add(b);
+  return box;
+}
+
+}  // namespace
+
+// A tree by medians: eight ranges a node, whole blocks each, cut across the longest side of their centres.
+struct CasterTree::Builder {
+  CasterTree& tree;
+  std::span<const QuadraticPiece> pieces;
+  std::vector<Box3> boxes;
+  std::vector<std::uint32_t> order;
+
+  // Sorts a range so that its first `count` come before the others.
+  void cut(std::size_t begin, std::size_t count, std::size_t end) {
+    Box3 centres;
+    for (std::size_t i = begin; i < end; ++i) centres.add(centre(order[i]));
+    const Vector3 sides = centres.upper - centres.lower;
+    const std::size_t axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
+    const auto first = order.begin();
+    std::nth_element(first + static_cast<std::ptrdiff_t>(begin),
+                     first + static_cast<std::ptrdiff_t>(begin + count),
+                     first + static_cast<std::ptrdiff_t>(end), [&](std::uint32_t a, std::uint32_t b) {
+                       const double x = centre(a)[axis], y = centre(b)[axis];
+                       return x != y ? x < y : a < b;
+                     });
+  }
+  [[nodiscard]] Point3 centre(std::uint32_t piece) const {
+    const Box3& box = boxes[piece];
+    return box.lower + 0.5 * (box.upper - box.lower);
+  }
+
+  // Appends the ends of up to `parts` ranges that [begin, end) is cut into, whole blocks each.
+  void divide(std::size_t begin, std::size_t end, std::size_t parts, std::size_t unit,
+              std::vector<std::size_t>& ends) {
+    const std::size_t units = (end - begin + unit - 1) / unit;
+    if (parts == 1 || units <= 1) {
+      ends.push_back(end);
+      return;
+    }
+    const std::size_t count = std::min(end - begin - 1, (units + 1) / 2 * unit);
+    cut(begin, count, end);
+    divide(begin, begin + count, parts / 2, unit, ends);
+    divide(begin + count, end, parts / 2, unit, ends);
+  }
+
+  Box3 fill(std::size_t begin, std::size_t end, std::uint32_t& name) {
+    if (end - begin <= caster_width) return fill_block(begin, end, name);
+    std::size_t unit = caster_width;
+    while (unit * caster_width < end - begin) unit *= caster_width;
+    std::vector<std::size_t> ends;
+    divide(begin, end, caster_width, unit, ends);
+    name = static_cast<std::uint32_t>(tree.nodes_.size());
+    tree.nodes_.emplace_back();
+    Node node{};
+    Box3 all;
+    for (std::size_t i = 0; i < caster_width; ++i) {
+      Box3 box;
+      if (i < ends.size()) {
+        box = fill(i == 0 ? begin : ends[i - 1], ends[i], node.children[i]);
+        all = merged(all, box);
+        node.taken |= 1u << i;
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        node.boxes.lower[k][i] = static_cast<float>(box.lower[k]);
+        node.boxes.upper[k][i] = static_cast<float>(box.upper[k]);
+      }
+    }
+    tree.nodes_[name] = node;
+    return all;
+  }
+
+  Box3 fill_block(std::size_t begin, std::size_t end, std::uint32_t& name) {
+    name = static_cast<std::uint32_t>(tree.blocks_.size()) | leaf_bit;
+    kernels::CasterBlock block{};
+    Box3 all, points;
+    double error = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const QuadraticTriangle& quadratic = pieces[order[i]].quadratic;
+      for (std::size_t k = 0; k < 3; ++k) {
+        points.add(quadratic.corners[k]);
+        points.add(quadratic.middles[k]);
+      }
+      error = std::max(error, quadratic.error);
+      all.add(boxes[order[i]]);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      block.origin[k] = static_cast<float>(points.lower[k] + (points.upper[k] - points.lower[k]) / 2);
+    }
+    block.step = static_cast<float>(longest_side(points) / 2 / 32766 + 1e-30);
+    block.error = static_cast<float>(error + static_cast<double>(block.step) + single_error);
+    block.taken = (1u << (end - begin)) - 1;
+    for (std::size_t l = 0; l < caster_width; ++l) {
+      const QuadraticPiece& piece = pieces[order[std::min(begin + l, end - 1)]];
+      for (std::size_t k = 0; k < 6; ++k) {
+        const Point3& p = k < 3 ? piece.quadratic.corners[k] : piece.quadratic.middles[k - 3];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const double from = p[axis] - static_cast<double>(block.origin[axis]);
+          block.net[k][axis][l] = static_cast<std::int16_t>(
+              std::clamp(std::nearbyint(from / static_cast<double>(block.step)), -32767.0, 32767.0));
+        }
+      }
+      tree.places_.push_back(packed(piece.path, piece.root));
+    }
+    tree.blocks_.push_back(block);
+    return all;
+  }
+};
+
+CasterTree::CasterTree(const LimitSurface& surface, double tolerance, int threads, const WorkMonitor& monitor)
+    : surface_(&surface) {
+  const std::vector<QuadraticPiece> pieces = quadratic_pieces(surface, tolerance / 2, threads, monitor);
+  Builder builder{*this, pieces, {}, {}};
+  builder.boxes.reserve(pieces.size());
+  Box3 all;
+  for (const QuadraticPiece& piece : pieces) {
+    builder.boxes.push_back(box_of(piece));
+    builder.order.push_back(static_cast<std::uint32_t>(builder.order.size()));
+    all.add(builder.boxes.back());
+  }
+  centre_ = all.lower + 0.5 * (all.upper - all.lower);
+  radius_ = length(all.upper - centre_);
+  rounding_ = static_cast<float>(single_error * (1 + radius_));
+  std::uint32_t name = 0;
+  // A root of one block is a node with one child.
+  if (pieces.size() <= caster_width) {
+    nodes_.emplace_back();
+    Node node{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      node.boxes.lower[k].fill(INFINITY);
+      node.boxes.upper[k].fill(-INFINITY);
+    }
+    const Box3 box = builder.fill_block(0, pieces.size(), name);
+    for (std::size_t k = 0; k < 3; ++k) {
+      node.boxes.lower[k][0] = static_cast<float>(box.lower[k]);
+      node.boxes.upper[k][0] = static_cast<float>(box.upper[k]);
+    }
+    node.children[0] = name;
+    node.taken = 1;
+    nodes_[0] = node;
+  } else {
+    static_cast<void>(builder.fill(0, pieces.size(), name));
+  }
+  nodes_.shrink_to_fit();
+  blocks_.shrink_to_fit();
+  places_.shrink_to_fit();
+}
+
+std::size_t CasterTree::bytes() const {
+  return nodes_.capacity() * sizeof(Node) + blocks_.capacity() * sizeof(kernels::CasterBlock) +
+         places_.capacity() * sizeof(std::uint64_t);
+}
+
+// A ray from where it comes near, so that single precision will do.
+struct CasterTree::Approach {
+  Approach(const CasterTree& tree, const Ray& ray)
+      : lengths(ray.direction, tree.surface_->scale()), direction(normalized(ray.direction)) {
+    const Point3 origin = tree.surface_->scale().apply(ray.origin);
+    const Vector3 ahead = tree.centre_ - origin;
+    const double middle = dot(direction, ahead);
+    skipped = std::max(0.0, middle - tree.radius_);
+    start = origin + skipped * direction;
+    from = static_cast<float>(std::max(lengths.to_scaled(ray.from) - skipped, -1e30));
+    to = static_cast<float>(std::min(lengths.to_scaled(ray.to) - skipped, 2.01 * tree.radius_));
+    passes = !(to >= from) || length_sq(ahead) - middle * middle > 1.001 * tree.radius_ * tree.radius_;
+  }
+  RayScale lengths;
+  Vector3 direction;
+  double skipped;
+  Point3 start;
+  float from, to;
+  bool passes;  // by everything
+};
+
+namespace {
+
+std::size_t shortest_axis(const Vector3& v) {
+  const Vector3 size{std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)};
+  return size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2;
+}
+
+// Two directions across a ray, from an axis that is not along it.
+std::array<Vector3, 2> across(const Vector3& direction, std::size_t axis) {
+  Vector3 other;
+  other[axis] = 1;
+  const Vector3 product = cross(other, direction);
+  const Vector3 first = (1 / length(product)) * product;
+  return {first, cross(direction, first)};
+}
+
+// Nodes still to be visited, the nearest last.
+class OpenNodes {
+ public:
+  struct Item {
+    std::uint32_t name;
+    float enter;
+  };
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+  Item take() { return items_[--count_]; }
+  void add(std::uint32_t name, float enter) { items_[count_++] = {name, enter}; }
+  // Adds children, sorted.
+  void add(std::span<const std::uint32_t> names, std::uint32_t which, std::span<const float> enter) {
+    const std::size_t first = count_;
+    for (; which != 0; which &= which - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(which));
+      std::size_t at = count_++;
+      for (; at > first && items_[at - 1].enter < enter[i]; --at) items_[at] = items_[at - 1];
+      items_[at] = {names[i], enter[i]};
+    }
+  }
+
+ private:
+  std::array<Item, 128> items_;  // a tree of 2^31 leaves has eleven levels
+  std::size_t count_ = 0;
+};
+
+}  // namespace
+
+kernels::CasterRay CasterTree::seen(const Approach& approach) const {
+  kernels::CasterRay ray{};
+  const std::array<Vector3, 2> sides = across(approach.direction, shortest_axis(approach.direction));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double d = approach.direction[k];
+    ray.origin[k] = static_cast<float>(approach.start[k]);
+    ray.direction[k] = static_cast<float>(d);
+    ray.inverse[k] = static_cast<float>(1 / (std::fabs(d) > 1e-20 ? d : std::copysign(1e-20, d)));
+    for (std::size_t a = 0; a < 2; ++a) ray.across[a][k] = static_cast<float>(sides[a][k]);
+  }
+  ray.rounding = rounding_;
+  return ray;
+}
+
+// Calls visit(block) for the blocks whose boxes, grown on each side, the ray meets before `last`, the nearest
+// first; the call returns what `last` has become.
+template <class Visit>
+void CasterTree::walk(const kernels::CasterRay& ray, float grown, float first, float last,
+                      const Visit& visit) const {
+  OpenNodes open;
+  open.add(0, first);
+  while (!open.empty()) {
+    const OpenNodes::Item top = open.take();
+    if (top.enter > last) continue;
+    if ((top.name & leaf_bit) != 0) {
+      last = visit(top.name & ~leaf_bit);
+      continue;
+    }
+    const Node& node = nodes_[top.name];
+    std::array<float, caster_width> enter;
+    const std::uint32_t met = kernels::enter_boxes(node.boxes, ray, grown, first, last, enter.data());
+    open.add(node.children, met & node.taken, enter);
+  }
+}
+
+// Up to eight rays that lie close together, searched as one thick ray.
+struct CasterTree::Beam {
+  Beam(const CasterTree& in, std::span<const Approach> group, double apart, double spreading)
+      : tree(in), middle(in.seen(group[group.size() / 2])), count(group.size()) {
+    const std::size_t axis = shortest_axis(group[group.size() / 2].direction);
+    for (std::size_t i = 0; i < caster_width; ++i) {
+      const Approach& ray = group[std::min(i, count - 1)];
+      const std::array<Vector3, 2> sides = across(ray.direction, axis);
+      for (std::size_t k = 0; k < 3; ++k) {
+        rays.origin[k][i] = static_cast<float>(ray.start[k]);
+        rays.direction[k][i] = static_cast<float>(ray.direction[k]);
+        for (std::size_t a = 0; a < 2; ++a) rays.across[a][k][i] = static_cast<float>(sides[a][k]);
+      }
+      from[i] = ray.from;
+      to[i] = ray.to;
+    }
+    first = *std::min_element(from.begin(), from.end());
+    grown = static_cast<float>(apart + 2 * tree.radius_ * spreading) + tree.rounding_;
+  }
+
+  void search() {
+    tree.walk(middle, grown, first, last(), [&](std::uint32_t block) {
+      const kernels::CasterBlock& triangles = tree.blocks_[block];
+      std::uint32_t near = kernels::near_ray(triangles, middle, grown);
+      for (; near != 0; near &= near - 1) {
+        const auto place = static_cast<std::uint32_t>(std::countr_zero(near));
+        std::uint32_t met = kernels::hit_piece(triangles, place, rays, tree.rounding_, from.data(), to.data(),
+                                               u.data(), v.data());
+        for (; met != 0; met &= met - 1) {
+          const auto i = static_cast<std::size_t>(std::countr_zero(met));
+          hits[i] = {place, to[i], u[i], v[i]};
+          blocks[i] = block;
+        }
+      }
+      return last();
+    });
+  }
+  [[nodiscard]] float last() const { return *std::max_element(to.begin(), to.end()); }
+
+  const CasterTree& tree;
+  kernels::CasterRay middle;
+  std::size_t count;
+  kernels::CasterRays rays{};
+  float first, grown;
+  alignas(32) std::array<float, caster_width> from, to, u{}, v{};
+  std::array<kernels::CasterHit, caster_width> hits;
+  std::array<std::uint32_t, caster_width> blocks{};
+};
+
+QuickHit CasterTree::cast(const Ray& ray) const {
+  const Approach approach(*this, ray);
+  if (approach.passes) return {};
+  const kernels::CasterRay one = seen(approach);
+  kernels::CasterHit best;
+  std::uint32_t best_block = 0;
+  float last = approach.to;
+  walk(one, 0, approach.from, last, [&](std::uint32_t b) {
+    const kernels::CasterHit hit = kernels::hit_block(blocks_[b], one, approach.from, last);
+    if (hit.place != caster_width) {
+      best = hit;
+      best_block = b;
+      last = hit.t;
+    }
+    return last;
+  });
+  return best.place == caster_width ? QuickHit{} : finished(approach, best_block, best);
+}
+
+void CasterTree::cast(std::span<const Ray> rays, std::span<QuickHit> out) const {
+  std::vector<Approach> group;
+  std::array<std::size_t, caster_width> which{};
+  for (std::size_t begin = 0; begin < rays.size(); begin += caster_width) {
+    group.clear();
+    for (std::size_t i = begin; i < std::min(begin + caster_width, rays.size()); ++i) {
+      out[i] = {};
+      const Approach approach(*this, rays[i]);
+      if (approach.passes) continue;
+      which[group.size()] = i;
+      group.push_back(approach);
+    }
+    if (group.empty()) continue;
+    // How far rays may be from the middle one, at the start and by what they gain a unit.
+    const Approach& middle = group[group.size() / 2];
+    double apart = 0, spreading = 0;
+    for (const Approach& approach : group) {
+      apart = std::max(apart, length(approach.start - middle.start));
+      spreading = std::max(spreading, length(approach.direction - middle.direction));
+    }
+    if (group.size() < 3 || apart + 2 * radius_ * spreading > widest_beam * radius_) {
+      for (std::size_t i = 0; i < group.size(); ++i) out[which[i]] = cast(rays[which[i]]);
+      continue;
+    }
+    Beam beam(*this, group, apart, spreading);
+    beam.search();
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      if (beam.hits[i].place != caster_width) {
+        out[which[i]] = finished(group[i], beam.blocks[i], beam.hits[i]);
+      }
+    }
+  }
+}
+
+QuickHit CasterTree::finished(const Approach& approach, std::uint32_t block,
+                              const kernels::CasterHit& hit) const {
+  const std::uint64_t place = places_[block * caster_width + hit.place];
+  const TriangleParameter at{static_cast<double>(hit.u), static_cast<double>(hit.v)};
+  QuickHit answer;
+  answer.t = approach.lengths.to_parameter(static_cast<double>(hit.t) + approach.skipped);
+  answer.at = place_of(*surface_, patch_of(place), to_face(path_of(place), at));
+  // Of the quadratic.
+  const auto& net = blocks_[block].net;
+  const auto difference = [&](std::size_t from, std::size_t to) {
+    const auto coordinate = [&](std::size_t axis) {
+      return static_cast<double>(net[to][axis][hit.place] - net[from][axis][hit.place]);
+    };
+    return Vector3{coordinate(0), coordinate(1), coordinate(2)};
+  };
+  const double rest = 1 - at.u - at.v;
+  const Vector3 du = rest * difference(0, 3) + at.u * difference(3, 1) + at.v * difference(5, 4);
+  const Vector3 dv = rest * difference(0, 5) + at.u * difference(3, 4) + at.v * difference(5, 2);
+  answer.normal = normalized(cross(du, dv));
+  return answer;
+}
+
+}  // namespace snug

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <snug/ray.h>
+#include <snug/search/caster_kernels.h>
+#include <snug/surface/limit_surface.h>
+
+namespace snug {
+
+/// What RayCaster of ray.h holds: quadratic triangles near all pieces of a surface, under boxes.
+/// Immutable; may be read by many threads.
+/// Cost:      about 100 bytes a triangle.
+class CasterTree {
+ public:
+  /// Requires:  the surface outlives it; tolerance > 0, in scaled units.
+  /// Errors:    InputError (refused) if no face has a limit surface. Interrupted.
+  CasterTree(const LimitSurface& surface, double tolerance, int threads, const WorkMonitor& monitor);
+
+  /// Requires:  a ray that ray.h allows.
+  [[nodiscard]] QuickHit cast(const Ray& ray) const;
+  /// The same for many; those that follow one another and lie close together are searched at once.
+  void cast(std::span<const Ray> rays, std::span<QuickHit> out) const;
+  [[nodiscard]] std::size_t triangle_count() const { return places_.size(); }
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  static constexpr std::uint32_t leaf_bit = 0x80000000u;
+  struct Node {
+    kernels::CasterBoxes boxes;
+    std::array<std::uint32_t, kernels::caster_width> children;  // nodes, or blocks with leaf_bit
+    std::uint32_t taken;                                        // a bit for each
+  };
+  struct Builder;
+  struct Approach;
+  struct Beam;
+  [[nodiscard]] kernels::CasterRay seen(const Approach& approach) const;
+  template <class Visit>
+  void walk(const kernels::CasterRay& ray, float grown, float first, float last, const Visit& visit) const;
+  [[nodiscard]] QuickHit finished(const Approach& approach, std::uint32_t block,
+                                  const kernels::CasterHit& hit) const;
+
+  const LimitSurface* surface_;
+  std::vector<Node> nodes_;  // the root first
+  std::vector<kernels::CasterBlock> blocks_;
+  std::vector<std::uint64_t> places_;  // caster_width a block
+  Point3 centre_;
+  double radius_ = 0;   // around everything
+  float rounding_ = 0;  // of places across a ray
+};
+
+}  // namespace snug

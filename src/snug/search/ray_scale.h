@@ -1,0 +1,29 @@
+#pragma once
+
+#include <snug/geometry/direction.h>
+#include <snug/geometry/point.h>
+#include <snug/geometry/scaling.h>
+
+namespace snug {
+
+/// Between parameters of a ray and lengths along it in scaled units; off by some roundings.
+class RayScale {
+ public:
+  /// Requires:  direction finite and not 0.
+  RayScale(const Vector3& direction, PowerOfTwo surface)
+      : length_(snug::length(direction)), to_scaled_(surface) {
+    if (length_ >= 0x1p-400 && length_ <= 0x1p400) return;
+    // Squares underflow or overflow.
+    const PowerOfTwo turn = PowerOfTwo::normalising(max_abs(direction));
+    length_ = snug::length(turn.apply(direction));
+    to_scaled_ = surface * turn.inverse();
+  }
+  [[nodiscard]] double to_scaled(double t) const { return to_scaled_.apply(t) * length_; }
+  [[nodiscard]] double to_parameter(double s) const { return to_scaled_.inverse().apply(s / length_); }
+
+ private:
+  double length_;
+  PowerOfTwo to_scaled_;
+};
+
+}  // namespace snug
