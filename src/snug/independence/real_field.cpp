@@ -1,6 +1,6 @@
 #include <snug/independence/real_field.h>
 
-#include <flint/arith.h>
+#include <flint/fmpz_poly.h>
 
 #include <snug/base/contract.h>
 
@@ -15,7 +15,7 @@ FieldNumber::FieldNumber(const std::vector<mpq_class>& coefficients) : FieldNumb
 RealField::RealField(std::uint32_t order) : order_(order) {
   fmpz_poly_t minimal;
   fmpz_poly_init(minimal);
-  arith_cos_minpoly(minimal, order);
+  fmpz_poly_cos_minpoly(minimal, order);
   fmpq_poly_set_fmpz_poly(modulus_.get(), minimal);
   fmpz_poly_clear(minimal);
   // 2 cos((i + 1) x) = 2 cos(x) 2 cos(i x) - 2 cos((i - 1) x)
