@@ -24,11 +24,9 @@ constexpr int max_primes = 48;
 
 [[noreturn]] void refuse(const std::string& why) { throw InputError(InputProblem::refused, why); }
 
-void require_size(const Topology& topology) {
-  std::size_t used = 0;
-  for (std::size_t v = 0; v < topology.vertex_count(); ++v) used += topology.isolated(VertexId(v)) ? 0 : 1;
-  if (used <= max_ranked_vertices) return;
-  refuse("the rank of a mesh of " + std::to_string(used) + " control points is not computed: " +
+void require_size(std::size_t count) {
+  if (count <= max_ranked_vertices) return;
+  refuse("the rank of a mesh of " + std::to_string(count) + " control points is not computed: " +
          std::to_string(max_ranked_vertices) + " are the most; give a part of it");
 }
 
@@ -314,8 +312,8 @@ MeshRank mesh_rank(const ControlMesh& mesh, const SchemeOptions& options, const 
   const SchemeOptions how = with_tags(options, mesh.tags);
   const SchemeRules& rules = rules_of(how.scheme);
   SNUG_EXPECT(!rules.local);
+  require_size(mesh.vertex_count());
   const Topology topology = require_surface(mesh, how);
-  require_size(topology);
   const Sharpness sharpness = rules.primal ? sharpness_of(mesh, topology) : Sharpness{};
   const RuledMesh ruled{topology, how, sharpness};
   const std::uint32_t order = order_of_masks(ruled, 1, max_order);

@@ -38,8 +38,8 @@ struct MeshRank {
 /// Guarantee: exact. No less: rank, modulo a prime, of some exact functionals of the surface. No more: each vector is shown to
 ///            make the function 0 on all patches, by exact arithmetic. Positions do not matter. Not decided is what no prime of
 ///            a few dozens leads to such vectors for, or an order of cosines is too high.
-/// Errors:    InputError (refused): those of require_surface(); more than max_ranked_vertices control points that a patch
-///            uses; valences whose least common multiple exceeds a million, with Loop and Doo-Sabin. Interrupted.
+/// Errors:    InputError (refused): those of require_surface(); more than max_ranked_vertices control points; valences
+///            whose least common multiple exceeds a million, with Loop and Doo-Sabin. Interrupted.
 /// Cost:      a millisecond for each patch topology, and elimination of a sparse matrix; seconds for 2000 control points.
 /// Source:    derivations/independence_of_meshes.md, "By elimination".
 [[nodiscard]] MeshRank mesh_rank(const ControlMesh& mesh, const SchemeOptions& options,
