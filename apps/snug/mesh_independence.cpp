@@ -44,7 +44,7 @@ int sign_of(const std::vector<mpq_class>& value) {
 }
 
 bool has_signs(const ExactKernelVector& vector) {
-  return std::all_of(vector.begin(), vector.end(), [](const auto& entry) { return sign_of(entry.second) != 0; });
+  return std::all_of(vector.entries.begin(), vector.entries.end(), [](const auto& entry) { return sign_of(entry.second) != 0; });
 }
 
 void write_weight(JsonWriter& json, const std::vector<mpq_class>& value) {
@@ -61,18 +61,20 @@ void write_vectors(JsonWriter& json, const MeshRank& rank) {
   json.key("kernel").begin_array();
   for (const ExactKernelVector& vector : rank.vectors) {
     json.begin_object().key("vertices").begin_array();
-    for (const auto& [v, value] : vector) json.value(v.index());
+    for (const auto& [v, value] : vector.entries) json.value(v.index());
     json.end_array();
     const bool signs = has_signs(vector);
     json.key(signs ? "signs" : "weights").begin_array();
-    for (const auto& [v, value] : vector) {
+    for (const auto& [v, value] : vector.entries) {
       if (signs) {
         json.value(sign_of(value));
       } else {
         write_weight(json, value);
       }
     }
-    json.end_array().end_object();
+    json.end_array();
+    if (vector.order > 1) json.field("order", vector.order);
+    json.end_object();
   }
   json.end_array();
 }
@@ -93,7 +95,6 @@ void write_rank(JsonWriter& json, const MeshRank& rank) {
   } else {
     json.key("independent").null();
   }
-  json.field("order", rank.order);
   write_vectors(json, rank);
   json.key("certificate").begin_object().field("prime", rank.prime).field("root", rank.root);
   json.field("root_order", rank.root_order).end_object();
@@ -122,17 +123,15 @@ std::string text_of(const std::vector<mpq_class>& value) {
   return text;
 }
 
-std::string line_of(const ExactKernelVector& vector, std::uint32_t order) {
+std::string line_of(const ExactKernelVector& vector) {
   std::string names;
-  bool irrational = false;
-  for (std::size_t i = 0; i < std::min(named_vertices, vector.size()); ++i) {
-    const auto& [v, value] = vector[i];
-    irrational = irrational || value.size() > 1;
+  for (std::size_t i = 0; i < std::min(named_vertices, vector.entries.size()); ++i) {
+    const auto& [v, value] = vector.entries[i];
     names += fmt::format("{} {}: {}", i == 0 ? "" : ",", v.index(), text_of(value));
   }
-  return fmt::format("  vanishes: {} vertices with weights{}{}{}", vector.size(), names,
-                     vector.size() > named_vertices ? " ..." : "",
-                     irrational ? fmt::format("; t = 2cos(2 pi/{})", order) : "");
+  return fmt::format("  vanishes: {} vertices with weights{}{}{}", vector.entries.size(), names,
+                     vector.entries.size() > named_vertices ? " ..." : "",
+                     vector.order > 1 ? fmt::format("; t = 2cos(2 pi/{})", vector.order) : "");
 }
 
 std::string verdict_of(const MeshRank& rank) {
@@ -174,7 +173,7 @@ ExitStatus independence_of_mesh(const std::string& path, const CommonOptions& op
                                      : fmt::format("rank {}: {}", rank, independent ? "independent" : "dependent")));
   for (const KernelVector& vector : found.kernel.vectors) report.text(line_of(vector));
   if (!found.rank) return report.finish();
-  for (const ExactKernelVector& vector : found.rank->vectors) report.text(line_of(vector, found.rank->order));
+  for (const ExactKernelVector& vector : found.rank->vectors) report.text(line_of(vector));
   return report.finish(found.rank->decided());
 }
 

@@ -23,6 +23,9 @@ struct ExactKind {
   std::vector<Child> children;
 };
 
+/// Stands for a control value that is 0.
+inline constexpr std::uint32_t no_column = UINT32_MAX;
+
 /// A limit surface as the patches of its owners, and the patches that these split into, each kind once.
 struct ExactSurface {
   struct Patch {

@@ -21,6 +21,8 @@ namespace {
 constexpr std::uint32_t max_order = 1'000'000;  // of roots of unity
 constexpr std::size_t max_degree = 48;          // of the field of exact arithmetic
 constexpr int max_primes = 48;
+constexpr std::uint32_t first_prime_above = std::uint32_t{1} << 30;
+constexpr std::uint32_t none = UINT32_MAX;
 
 [[noreturn]] void refuse(const std::string& why) { throw InputError(InputProblem::refused, why); }
 
@@ -69,38 +71,94 @@ std::size_t degree_of(std::uint32_t order) {
   return coprime / 2;
 }
 
-// The order of the cosines that these kernel vectors meet.
-std::uint32_t order_met(const ExactSurface& surface, const ModularKernel& kernel, std::size_t columns) {
-  std::vector<bool> met(columns, false), reached(surface.kinds.size(), false);
-  for (const auto& vector : kernel.vectors) {
-    for (const auto& [c, x] : vector) met[c] = true;
-  }
-  std::vector<std::uint32_t> waiting;
-  const auto reach = [&](std::uint32_t kind) {
-    if (!reached[kind]) waiting.push_back(kind);
-    reached[kind] = true;
-  };
-  for (const ExactSurface::Patch& patch : surface.patches) {
-    if (std::any_of(patch.control.begin(), patch.control.end(), [&](std::uint32_t c) { return met[c]; })) {
-      reach(patch.kind);
+// The kinds that these patches are made of, renumbered, with cosines of the least order that they need.
+void keep_kinds_of_patches(ExactSurface& part, const ExactSurface& whole) {
+  std::vector<std::uint32_t> names(whole.kinds.size(), none), kept;
+  const auto keep = [&](std::uint32_t& kind) {
+    std::uint32_t& name = names[kind];
+    if (name == none) {
+      name = static_cast<std::uint32_t>(kept.size());
+      kept.push_back(kind);
     }
+    kind = name;
+  };
+  for (ExactSurface::Patch& patch : part.patches) keep(patch.kind);
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    part.kinds.push_back(whole.kinds[kept[k]]);
+    for (ExactKind::Child& child : part.kinds[k].children) keep(child.kind);
   }
-  std::uint32_t order = 1;
-  while (!waiting.empty()) {
-    const ExactKind& kind = surface.kinds[waiting.back()];
-    waiting.pop_back();
-    for (const ExactKind::Child& child : kind.children) {
-      reach(child.kind);
-      for (const WeightRow& row : child.rows) {
-        for (const auto& [i, weight] : row) {
-          for (const auto& [index, factor] : weight.cosines) {
-            order = std::lcm(order, surface.order / std::gcd(index, surface.order));
+  const auto for_cosines = [&](const auto& visit) {
+    for (ExactKind& kind : part.kinds) {
+      for (ExactKind::Child& child : kind.children) {
+        for (WeightRow& row : child.rows) {
+          for (auto& [i, weight] : row) {
+            for (auto& [index, factor] : weight.cosines) visit(index);
           }
         }
       }
     }
+  };
+  part.order = 1;
+  for_cosines([&](std::uint32_t index) {
+    part.order = std::lcm(part.order, whole.order / std::gcd(index, whole.order));
+  });
+  for_cosines([&](std::uint32_t& index) { index /= whole.order / part.order; });
+}
+
+// The patches that use these columns, by their new numbers; others are taken as 0.
+ExactSurface part_of(const ExactSurface& whole, const std::vector<std::uint32_t>& columns) {
+  ExactSurface part{1, {}, {}};
+  for (const ExactSurface::Patch& patch : whole.patches) {
+    ExactSurface::Patch own{patch.kind, {}};
+    bool any = false;
+    for (const std::uint32_t c : patch.control) {
+      const auto at = std::lower_bound(columns.begin(), columns.end(), c);
+      const bool there = at != columns.end() && *at == c;
+      own.control.push_back(there ? static_cast<std::uint32_t>(at - columns.begin()) : no_column);
+      any = any || there;
+    }
+    if (any) part.patches.push_back(std::move(own));
   }
-  return order;
+  keep_kinds_of_patches(part, whole);
+  return part;
+}
+
+// Vectors that patches connect, each as the numbers of vectors and all columns they use.
+struct Block {
+  std::vector<std::size_t> vectors;
+  std::vector<std::uint32_t> columns;  // in rising order
+};
+
+std::vector<Block> blocks_of(const ExactSurface& surface, const ModularKernel& kernel, std::size_t columns) {
+  std::vector<std::uint32_t> parent(columns, none);
+  const auto root = [&](std::uint32_t c) {
+    while (parent[c] != c) c = parent[c] = parent[parent[c]];
+    return c;
+  };
+  for (const auto& vector : kernel.vectors) {
+    for (const auto& [c, x] : vector) parent[c] = c;
+  }
+  for (const auto& vector : kernel.vectors) {
+    for (const auto& [c, x] : vector) parent[root(c)] = root(vector.front().first);
+  }
+  for (const ExactSurface::Patch& patch : surface.patches) {
+    std::uint32_t first = none;
+    for (const std::uint32_t c : patch.control) {
+      if (parent[c] == none) continue;
+      if (first == none) first = c;
+      parent[root(c)] = root(first);
+    }
+  }
+  std::map<std::uint32_t, Block> blocks;
+  for (std::uint32_t c = 0; c < columns; ++c) {
+    if (parent[c] != none) blocks[root(c)].columns.push_back(c);
+  }
+  for (std::size_t k = 0; k < kernel.vectors.size(); ++k) {
+    blocks[root(kernel.free_columns[k])].vectors.push_back(k);
+  }
+  std::vector<Block> result;
+  for (auto& [c, block] : blocks) result.push_back(std::move(block));
+  return result;
 }
 
 // Numbers known modulo a product of primes: polynomials' coefficients, by vector and column.
@@ -132,8 +190,8 @@ class Residues {
   }
 
   // The vector of least numerators and denominators; empty where some are not much smaller than the modulus.
-  [[nodiscard]] ExactKernelVector lifted(std::size_t k) const {
-    ExactKernelVector vector;
+  [[nodiscard]] ExactKernelVector::Entries lifted(std::size_t k) const {
+    ExactKernelVector::Entries vector;
     for (const auto& [c, numbers] : vectors_[k]) {
       std::vector<mpq_class> value;
       for (const mpz_class& x : numbers) {
@@ -200,110 +258,162 @@ class Interpolation {
   std::vector<std::vector<std::uint32_t>> bases_;
 };
 
+// Entries by free column; none: not yet shown to vanish.
+using Shown = std::vector<ExactKernelVector::Entries>;
+
+// Lifts vectors, and keeps those that vanish.
+void show(const Residues& residues, ZeroProof& proof, const WorkMonitor& monitor, Shown& shown) {
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    if (!shown[k].empty()) continue;
+    ExactKernelVector::Entries vector = residues.lifted(k);
+    ZeroProof::Values values;
+    for (const auto& [v, value] : vector) values.emplace_back(v.value(), FieldNumber(value));
+    if (!vector.empty() && proof.vanishes(values, monitor)) shown[k] = std::move(vector);
+  }
+}
+
+bool all_shown(const Shown& shown) {
+  return std::none_of(shown.begin(), shown.end(), [](const auto& vector) { return vector.empty(); });
+}
+
+Residues::Vectors numbers_of(const ModularKernel& kernel) {
+  Residues::Vectors vectors;
+  for (const auto& entries : kernel.vectors) {
+    auto& vector = vectors.emplace_back();
+    for (const auto& [c, x] : entries) vector[c] = {x};
+  }
+  return vectors;
+}
+
+// The kernel of a small part, of as many primes as it takes.
 class Search {
  public:
   Search(const ExactSurface& surface, std::size_t columns, const WorkMonitor& monitor)
-      : surface_(surface), monitor_(monitor) {
-    result_.dimension = columns;
-    result_.root_order = surface.order;
-  }
+      : surface_(surface),
+        columns_(columns),
+        monitor_(monitor),
+        field_(degree_of(surface.order) <= max_degree ? surface.order : 1),
+        proof_(surface, field_) {}
 
-  MeshRank run() {
-    std::uint32_t above = std::uint32_t{1} << 30;
+  Shown run() {
+    std::uint32_t above = first_prime_above;
     for (int attempt = 0; attempt < max_primes; ++attempt) {
       const ModularField field = modular_field(surface_.order, above);
       above = field.prime;
-      const ModularKernel kernel = modular_kernel(surface_, result_.dimension, field, monitor_);
-      if (attempt == 0 || kernel.rank > result_.least) begin_anew(kernel, field);
-      if (kernel.rank < result_.least || kernel.free_columns != free_columns_) continue;  // an unlucky prime
-      if (all_shown() || try_numbers(kernel, field) || try_polynomials(kernel, field)) break;
-      monitor_.report(static_cast<double>(attempt + 1) / max_primes);
+      const ModularKernel kernel = modular_kernel(surface_, columns_, field, monitor_);
+      if (attempt == 0 || kernel.rank > rank_) begin_anew(kernel);
+      if (kernel.rank < rank_ || kernel.free_columns != free_columns_) continue;  // an unlucky prime
+      numbers_.add(numbers_of(kernel), field.prime);
+      show(numbers_, proof_, monitor_, shown_);
+      if (all_shown(shown_)) break;
+      if (field_.degree() > 1) try_polynomials(kernel.vectors.size(), field);
+      if (all_shown(shown_)) break;
     }
-    for (ExactKernelVector& vector : shown_) {
-      if (!vector.empty()) result_.vectors.push_back(std::move(vector));
-    }
-    result_.most = result_.dimension - result_.vectors.size();
-    const bool rational = std::all_of(result_.vectors.begin(), result_.vectors.end(), [](const auto& vector) {
-      return std::all_of(vector.begin(), vector.end(), [](const auto& entry) { return entry.second.size() == 1; });
-    });
-    if (!rational) result_.order = exact_->order();
-    return std::move(result_);
+    return std::move(shown_);
   }
+  [[nodiscard]] std::uint32_t order() const { return field_.order(); }
 
  private:
-  void begin_anew(const ModularKernel& kernel, const ModularField& field) {
-    result_.least = kernel.rank;
-    result_.prime = field.prime;
-    result_.root = field.root;
+  void begin_anew(const ModularKernel& kernel) {
+    rank_ = kernel.rank;
     free_columns_ = kernel.free_columns;
     shown_.assign(kernel.vectors.size(), {});
     numbers_ = polynomials_ = {};
-    const std::uint32_t order = order_met(surface_, kernel, result_.dimension);
-    proof_.reset();
-    exact_.emplace(degree_of(order) <= max_degree ? order : 1);
-    proof_.emplace(surface_, *exact_);
-  }
-  [[nodiscard]] bool all_shown() const {
-    return std::none_of(shown_.begin(), shown_.end(), [](const auto& vector) { return vector.empty(); });
-  }
-
-  // Are all vectors shown to vanish, with these?
-  bool show(const Residues& residues) {
-    for (std::size_t k = 0; k < shown_.size(); ++k) {
-      if (!shown_[k].empty()) continue;
-      ExactKernelVector vector = residues.lifted(k);
-      ZeroProof::Values values;
-      for (const auto& [v, value] : vector) values.emplace_back(v.value(), FieldNumber(value));
-      if (!vector.empty() && proof_->vanishes(values, monitor_)) shown_[k] = std::move(vector);
-    }
-    return all_shown();
-  }
-
-  bool try_numbers(const ModularKernel& kernel, const ModularField& field) {
-    Residues::Vectors vectors;
-    for (const auto& entries : kernel.vectors) {
-      auto& vector = vectors.emplace_back();
-      for (const auto& [c, x] : entries) vector[c] = {x};
-    }
-    numbers_.add(vectors, field.prime);
-    return show(numbers_);
   }
 
   // Each root of unity gives one conjugate of each entry.
-  bool try_polynomials(const ModularKernel& kernel, const ModularField& field) {
-    const std::uint32_t own = exact_->order(), all = surface_.order;
-    const std::size_t degree = exact_->degree();
-    if (degree == 1) return false;
-    std::vector<std::uint32_t> powers, points, met;
-    for (std::uint32_t a = 1; points.size() < degree; ++a) {
-      const std::uint32_t name = folded(a, own);
-      if (std::gcd(a, all) != 1 || std::find(met.begin(), met.end(), name) != met.end()) continue;
-      met.push_back(name);
+  void try_polynomials(std::size_t count, const ModularField& field) {
+    std::vector<std::uint32_t> powers, points;
+    for (std::uint32_t a = 1; 2 * a < field.order; ++a) {
+      if (std::gcd(a, field.order) != 1) continue;
       powers.push_back(a);
-      points.push_back(field.twice_cosines[folded(std::uint64_t{a} * (all / own), all)]);
+      points.push_back(field.twice_cosines[a]);
     }
     const Interpolation interpolation(field, points);
-    Residues::Vectors vectors(kernel.vectors.size());
-    for (std::size_t i = 0; i < degree; ++i) {
-      const ModularKernel other = modular_kernel(surface_, result_.dimension, conjugate(field, powers[i]), monitor_);
-      if (other.free_columns != free_columns_) return false;
-      for (std::size_t k = 0; k < other.vectors.size(); ++k) {
+    Residues::Vectors vectors(count);
+    for (std::size_t i = 0; i < powers.size(); ++i) {
+      const ModularKernel other = modular_kernel(surface_, columns_, conjugate(field, powers[i]), monitor_);
+      if (other.free_columns != free_columns_) return;
+      for (std::size_t k = 0; k < count; ++k) {
         for (const auto& [c, x] : other.vectors[k]) interpolation.add(i, x, vectors[k][c]);
       }
     }
     polynomials_.add(vectors, field.prime);
-    return show(polynomials_);
+    show(polynomials_, proof_, monitor_, shown_);
   }
 
   const ExactSurface& surface_;
+  std::size_t columns_;
   const WorkMonitor& monitor_;
-  MeshRank result_;
+  std::size_t rank_ = 0;
   std::vector<std::uint32_t> free_columns_;
-  std::vector<ExactKernelVector> shown_;  // by free column; empty: not yet
+  Shown shown_;
   Residues numbers_, polynomials_;
-  std::optional<RealField> exact_;
-  std::optional<ZeroProof> proof_;
+  RealField field_;
+  ZeroProof proof_;
 };
+
+// What is shown of the kernel that a prime has; nothing where a part shows that the prime is unlucky.
+std::optional<std::vector<ExactKernelVector>> lifted(const ExactSurface& surface, const ModularKernel& kernel,
+                                                     std::uint32_t prime, std::size_t columns,
+                                                     const WorkMonitor& monitor) {
+  const RealField rational(1);
+  ZeroProof proof(surface, rational);
+  Shown shown(kernel.vectors.size());
+  Residues numbers;
+  numbers.add(numbers_of(kernel), prime);
+  show(numbers, proof, monitor, shown);
+  std::vector<std::uint32_t> orders(shown.size(), 1);
+  const std::vector<Block> blocks = blocks_of(surface, kernel, columns);
+  std::size_t done = 0;
+  for (const Block& block : blocks) {
+    monitor.report(static_cast<double>(++done) / static_cast<double>(blocks.size()));
+    if (std::none_of(block.vectors.begin(), block.vectors.end(), [&](std::size_t k) { return shown[k].empty(); })) {
+      continue;
+    }
+    const ExactSurface part = part_of(surface, block.columns);
+    Search search(part, block.columns.size(), monitor);
+    Shown found = search.run();
+    if (found.size() < block.vectors.size()) return {};
+    // All of them or none: only vectors of one prime are independent by their form.
+    if (found.size() > block.vectors.size() || !all_shown(found)) continue;
+    for (std::size_t k = 0; k < block.vectors.size(); ++k) {
+      for (auto& [v, value] : found[k]) v = VertexId(block.columns[v.index()]);
+      shown[block.vectors[k]] = std::move(found[k]);
+      orders[block.vectors[k]] = search.order();
+    }
+  }
+  std::vector<ExactKernelVector> result;
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    if (shown[k].empty()) continue;
+    const bool numbers_alone = std::all_of(shown[k].begin(), shown[k].end(),
+                                           [](const auto& entry) { return entry.second.size() == 1; });
+    result.push_back({numbers_alone ? 1 : orders[k], std::move(shown[k])});
+  }
+  return result;
+}
+
+MeshRank rank_of(const ExactSurface& surface, std::size_t columns, const WorkMonitor& monitor) {
+  MeshRank result;
+  result.dimension = columns;
+  result.root_order = surface.order;
+  std::uint32_t above = first_prime_above;
+  for (int attempt = 0; attempt < max_primes; ++attempt) {
+    const ModularField field = modular_field(surface.order, above);
+    above = field.prime;
+    const ModularKernel kernel = modular_kernel(surface, columns, field, monitor);
+    if (attempt > 0 && kernel.rank <= result.least) continue;
+    result.least = kernel.rank;
+    result.prime = field.prime;
+    result.root = field.root;
+    auto vectors = lifted(surface, kernel, field.prime, columns, monitor);
+    if (!vectors) continue;
+    result.vectors = std::move(*vectors);
+    break;
+  }
+  result.most = columns - result.vectors.size();
+  return result;
+}
 
 }  // namespace
 
@@ -321,7 +431,7 @@ MeshRank mesh_rank(const ControlMesh& mesh, const SchemeOptions& options, const 
     refuse("the rank of the mesh is not computed: the least common multiple of its valences exceeds a million; give a part of it");
   }
   const ExactSurface surface = exact_surface(ruled, bare_owners(mesh, ruled), order, monitor);
-  return Search(surface, mesh.vertex_count(), monitor).run();
+  return rank_of(surface, mesh.vertex_count(), monitor);
 }
 
 }  // namespace snug

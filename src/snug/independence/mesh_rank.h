@@ -14,11 +14,15 @@
 namespace snug {
 
 /// Most control points of a mesh whose rank is computed.
-inline constexpr std::size_t max_ranked_vertices = 2000;
+inline constexpr std::size_t max_ranked_vertices = 20000;
 
-/// Control values that leave the limit surface as it is: entries other than 0, in the order of vertices. An entry is a
-/// polynomial in 2 cos(2 pi/order), by coefficients; of order 1 a number.
-using ExactKernelVector = std::vector<std::pair<VertexId, std::vector<mpq_class>>>;
+/// Control values that leave the limit surface as it is.
+struct ExactKernelVector {
+  /// Those that are not 0, by vertex: polynomials in 2 cos(2 pi/order), by coefficients.
+  using Entries = std::vector<std::pair<VertexId, std::vector<mpq_class>>>;
+  std::uint32_t order = 1;  ///< 1: all are numbers
+  Entries entries;
+};
 
 /// The rank of the map from control values to limit functions: at least `least`, at most `most`.
 struct MeshRank {
@@ -27,7 +31,6 @@ struct MeshRank {
   /// dimension - most independent elements of the kernel; if the rank is decided a basis, in reduced echelon form: each
   /// has the entry 1 at a vertex of its own.
   std::vector<ExactKernelVector> vectors;
-  std::uint32_t order = 1;  ///< of their polynomials
   /// The rank modulo this prime is `least`, if 2 cos(2 pi i/root_order) is root^i + root^-i.
   std::uint32_t prime = 0, root = 0, root_order = 1;
   [[nodiscard]] bool decided() const { return least == most; }

@@ -186,16 +186,17 @@ class SparseElimination {
   // Leaves `work` 0.
   void eliminate(const SparseRow& row, Row& work) {
     for (const auto& [c, x] : row) work[c] = x;
-    std::size_t c = row.front().first;
-    for (; c < work.size(); ++c) {
+    std::size_t c = row.front().first, end = row.back().first + std::size_t{1};
+    for (; c < end; ++c) {
       if (work[c] == 0) continue;
       if (pivots_[c].empty()) break;
+      end = std::max(end, pivots_[c].back().first + std::size_t{1});
       subtract(work[c], pivots_[c], work);
     }
-    if (c == work.size()) return;
+    if (c == end) return;
     const std::uint32_t scale = field_.inverse(work[c]);
     SparseRow& pivot = pivots_[c];
-    for (std::size_t k = c; k < work.size(); ++k) {
+    for (std::size_t k = c; k < end; ++k) {
       if (work[k] == 0) continue;
       pivot.emplace_back(static_cast<std::uint32_t>(k), field_.product(work[k], scale));
       work[k] = 0;
@@ -218,15 +219,18 @@ class SparseElimination {
     for (std::size_t c = zero_.size(); c-- > 0;) {
       if (pivots_[c].empty()) continue;
       monitor.checkpoint();
-      for (const auto& [k, x] : pivots_[c]) work[k] = x;
-      SparseRow left{{static_cast<std::uint32_t>(c), 1}};
-      for (std::size_t k = c + 1; k < work.size(); ++k) {
-        if (work[k] == 0) continue;
-        if (!pivots_[k].empty()) {
-          subtract(work[k], pivots_[k], work);  // which holds free columns alone beside its own
-        }
+      std::size_t end = 0;
+      for (const auto& [k, x] : pivots_[c]) {
+        work[k] = x;
+        end = std::max(end, k + std::size_t{1});
       }
-      for (std::size_t k = c + 1; k < work.size(); ++k) {
+      SparseRow left{{static_cast<std::uint32_t>(c), 1}};
+      for (std::size_t k = c + 1; k < end; ++k) {
+        if (work[k] == 0 || pivots_[k].empty()) continue;
+        end = std::max(end, pivots_[k].back().first + std::size_t{1});
+        subtract(work[k], pivots_[k], work);  // which holds free columns alone beside its own
+      }
+      for (std::size_t k = c + 1; k < end; ++k) {
         if (work[k] == 0) continue;
         left.emplace_back(static_cast<std::uint32_t>(k), work[k]);
         result.vectors[place[k]].emplace_back(static_cast<std::uint32_t>(c), field_.prime - work[k]);
@@ -260,6 +264,7 @@ ModularKernel modular_kernel(const ExactSurface& surface, std::size_t columns, c
     for (const SparseRow& functional : it->second) {
       std::map<std::uint32_t, std::uint32_t> row;
       for (const auto& [i, x] : functional) {
+        if (patch.control[i] == no_column) continue;
         std::uint32_t& sum = row[patch.control[i]];
         sum = field.sum(sum, x);
       }

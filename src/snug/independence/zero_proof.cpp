@@ -1,11 +1,20 @@
 #include <snug/independence/zero_proof.h>
 
 #include <algorithm>
+#include <set>
 
 namespace snug {
 
 ZeroProof::ZeroProof(const ExactSurface& surface, const RealField& field)
-    : surface_(surface), field_(field), spaces_(surface.kinds.size()), images_(surface.kinds.size()) {}
+    : surface_(surface), field_(field), spaces_(surface.kinds.size()), images_(surface.kinds.size()) {
+  for (std::uint32_t p = 0; p < surface.patches.size(); ++p) {
+    for (const std::uint32_t c : surface.patches[p].control) {
+      if (c == no_column) continue;
+      if (users_.size() <= c) users_.resize(c + std::size_t{1});
+      users_[c].push_back(p);
+    }
+  }
+}
 
 bool ZeroProof::join(Space& space, Vector v) const {
   const auto subtract = [&](const Vector& row, std::size_t pivot) {
@@ -66,7 +75,12 @@ bool ZeroProof::vanishes(const Values& values, const WorkMonitor& monitor) {
       waiting.emplace_back(kind, std::move(v));
     }
   };
-  for (const ExactSurface::Patch& patch : surface_.patches) {
+  std::set<std::uint32_t> users;
+  for (const auto& [vertex, value] : values) {
+    if (vertex < users_.size()) users.insert(users_[vertex].begin(), users_[vertex].end());
+  }
+  for (const std::uint32_t p : users) {
+    const ExactSurface::Patch& patch = surface_.patches[p];
     Vector v;
     for (const std::uint32_t c : patch.control) {
       const auto at = std::lower_bound(values.begin(), values.end(), c,

@@ -42,6 +42,7 @@ class ZeroProof {
 
   const ExactSurface& surface_;
   const RealField& field_;
+  std::vector<std::vector<std::uint32_t>> users_;  // patches, by vertex
   std::vector<Space> spaces_;
   std::vector<std::vector<Image>> images_;  // of children; empty until asked for
 };
