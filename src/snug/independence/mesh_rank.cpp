@@ -19,7 +19,7 @@ namespace snug {
 namespace {
 
 constexpr std::uint32_t max_order = 1'000'000;  // of roots of unity
-constexpr std::size_t max_degree = 48;          // of the field of exact arithmetic
+constexpr std::size_t max_degree = 64;          // of the field of exact arithmetic
 constexpr int max_primes = 48;
 constexpr std::uint32_t first_prime_above = std::uint32_t{1} << 30;
 constexpr std::uint32_t none = UINT32_MAX;
