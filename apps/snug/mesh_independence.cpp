@@ -29,9 +29,10 @@ Answer answer(const ControlMesh& mesh, const SchemeOptions& rules, const WorkMon
     result.kernel = mesh_kernel(mesh, rules, monitor);
   } catch (const NotDecided& reason) {
     if (mesh.vertex_count() > max_ranked_vertices) {
-      throw InputError(InputProblem::refused,
-                       fmt::format("{}. Ranks are computed of meshes of {} control points and less; this one has {}",
-                                   reason.what(), max_ranked_vertices, mesh.vertex_count()));
+      throw InputError(
+          InputProblem::refused,
+          fmt::format("{}. Ranks are computed of meshes of {} control points and less; this one has {}",
+                      reason.what(), max_ranked_vertices, mesh.vertex_count()));
     }
     result.rank = mesh_rank(mesh, rules, monitor);
   }
@@ -44,7 +45,8 @@ int sign_of(const std::vector<mpq_class>& value) {
 }
 
 bool has_signs(const ExactKernelVector& vector) {
-  return std::all_of(vector.entries.begin(), vector.entries.end(), [](const auto& entry) { return sign_of(entry.second) != 0; });
+  return std::all_of(vector.entries.begin(), vector.entries.end(),
+                     [](const auto& entry) { return sign_of(entry.second) != 0; });
 }
 
 void write_weight(JsonWriter& json, const std::vector<mpq_class>& value) {
@@ -135,7 +137,7 @@ std::string line_of(const ExactKernelVector& vector) {
 }
 
 std::string verdict_of(const MeshRank& rank) {
-  const char* const word = rank.least == rank.dimension  ? "independent"
+  const char* const word = rank.least == rank.dimension ? "independent"
                            : rank.most < rank.dimension ? "dependent"
                                                         : "undecided";
   if (rank.decided()) return fmt::format("rank {}: {}", rank.least, word);
@@ -169,8 +171,9 @@ ExitStatus independence_of_mesh(const std::string& path, const CommonOptions& op
     }
   }
   report.text(fmt::format("{}: {} nodal functions, {}", path, dimension,
-                          found.rank ? verdict_of(*found.rank)
-                                     : fmt::format("rank {}: {}", rank, independent ? "independent" : "dependent")));
+                          found.rank
+                              ? verdict_of(*found.rank)
+                              : fmt::format("rank {}: {}", rank, independent ? "independent" : "dependent")));
   for (const KernelVector& vector : found.kernel.vectors) report.text(line_of(vector));
   if (!found.rank) return report.finish();
   for (const ExactKernelVector& vector : found.rank->vectors) report.text(line_of(vector));

@@ -10,10 +10,10 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
-#include <numeric>
-#include <optional>
 #include <map>
 #include <memory>
+#include <numeric>
+#include <optional>
 
 #include <snug/error.h>
 #include <snug/independence/exact_step.h>
@@ -56,7 +56,8 @@ ControlMesh control_mesh_of(const Shape& shape) {
   for (const auto& crease : shape.mesh.creases) {
     mesh.tags.creases.push_back({VertexId(crease.a), VertexId(crease.b), crease.sharpness});
   }
-  for (const auto& corner : shape.mesh.corners) mesh.tags.corners.push_back({VertexId(corner.vertex), corner.sharpness});
+  for (const auto& corner : shape.mesh.corners)
+    mesh.tags.corners.push_back({VertexId(corner.vertex), corner.sharpness});
   for (const std::uint32_t hole : shape.mesh.holes) mesh.tags.holes.emplace_back(hole);
   if (shape.smooth_triangles) mesh.tags.smooth_triangles = SmoothTriangles::smooth;
   if (shape.chaikin) mesh.tags.crease_method = CreaseMethod::chaikin;
@@ -107,7 +108,8 @@ Columns sampled(const Shape& shape, Scheme scheme) {
         }
       }
     } else {
-      const auto own = scheme == Scheme::doo_sabin ? oracle::DualScheme::doo_sabin : oracle::DualScheme::midedge;
+      const auto own =
+          scheme == Scheme::doo_sabin ? oracle::DualScheme::doo_sabin : oracle::DualScheme::midedge;
       for (const auto& sample : oracle::sample_dual(mesh, own, 4)) add(sample.position);
     }
   }
@@ -116,7 +118,9 @@ Columns sampled(const Shape& shape, Scheme scheme) {
 
 // Gram and Schmidt, the longest column first; nothing where lengths leave no gap.
 std::optional<std::size_t> numerical_rank(Columns columns) {
-  const auto dot = [](const auto& a, const auto& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); };
+  const auto dot = [](const auto& a, const auto& b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+  };
   for (std::size_t rank = 0; rank < columns.size(); ++rank) {
     std::size_t longest = rank;
     for (std::size_t c = rank; c < columns.size(); ++c) {
@@ -164,7 +168,8 @@ MeshRank rank_of(const Shape& shape, Scheme scheme) {
 }
 
 struct Tally {
-  std::size_t compared = 0, unclear = 0, refused = 0, undecided = 0, dependent = 0, irrational = 0, beyond = 0;
+  std::size_t compared = 0, unclear = 0, refused = 0, undecided = 0, dependent = 0, irrational = 0,
+              beyond = 0;
 };
 
 void compare(const Shape& shape, Scheme scheme, Tally& tally) {
@@ -204,7 +209,9 @@ void compare(const Shape& shape, Scheme scheme, Tally& tally) {
 // What the theorem leaves out, and what is beside it.
 using Feature = std::pair<const char*, std::function<void(Shape&, std::mt19937_64&)>>;
 
-std::uint32_t below(std::size_t n, std::mt19937_64& random) { return static_cast<std::uint32_t>(random() % n); }
+std::uint32_t below(std::size_t n, std::mt19937_64& random) {
+  return static_cast<std::uint32_t>(random() % n);
+}
 
 std::pair<std::uint32_t, std::uint32_t> some_edge(const Shape& shape, std::mt19937_64& random) {
   const auto& face = shape.mesh.polygons[below(shape.mesh.polygons.size(), random)];
@@ -274,7 +281,8 @@ std::vector<Feature> features() {
          }
        }},
       {"large face at the boundary",
-       [](Shape& shape, std::mt19937_64& random) {  // two faces of eight or nine corners share a vertex inside
+       [](Shape& shape,
+          std::mt19937_64& random) {  // two faces of eight or nine corners share a vertex inside
          const std::uint32_t n = 7 + below(3, random), first = count(shape);
          for (std::uint32_t i = 0; i < n + 3; ++i) new_vertex(shape);
          std::vector<std::uint32_t> large;
@@ -320,7 +328,8 @@ Shape triangulated(const Shape& shape) {
   result.mesh.holes.clear();
   for (std::uint32_t f = 0; f < shape.mesh.polygons.size(); ++f) {
     const auto& face = shape.mesh.polygons[f];
-    const bool hole = std::find(shape.mesh.holes.begin(), shape.mesh.holes.end(), f) != shape.mesh.holes.end();
+    const bool hole =
+        std::find(shape.mesh.holes.begin(), shape.mesh.holes.end(), f) != shape.mesh.holes.end();
     const auto add = [&](std::vector<std::uint32_t> triangle) {
       if (hole) result.mesh.holes.push_back(static_cast<std::uint32_t>(result.mesh.polygons.size()));
       result.mesh.polygons.push_back(std::move(triangle));
@@ -337,7 +346,8 @@ Shape triangulated(const Shape& shape) {
 
 std::vector<ClosedMesh> small_meshes() {
   using namespace testing;
-  return {tetrahedron(), prism(3), prism(4), prism(5), torus(3, 3), trapezohedron(3), trapezohedron(5), bipyramid(4)};
+  return {tetrahedron(), prism(3),         prism(4),         prism(5),
+          torus(3, 3),   trapezohedron(3), trapezohedron(5), bipyramid(4)};
 }
 
 Tally tally_of_pairs(Scheme scheme, int rounds, std::size_t most_vertices) {
@@ -474,7 +484,8 @@ TEST(mesh_rank, of_small_closed_meshes_is_the_theorems) {
   using namespace testing;
   std::vector<ClosedMesh> meshes = small_meshes();
   for (std::uint32_t n = 6; n <= 9; ++n) {
-    for (const ClosedMesh& mesh : {prism(n), antiprism(n), bipyramid(n), trapezohedron(n)}) meshes.push_back(mesh);
+    for (const ClosedMesh& mesh : {prism(n), antiprism(n), bipyramid(n), trapezohedron(n)})
+      meshes.push_back(mesh);
   }
   for (const ClosedMesh& mesh :
        {truncated(tetrahedron()), torus(4, 4), torus(5, 4), dual(torus(3, 3, true)), dual(torus(4, 4, true)),
@@ -559,7 +570,8 @@ TEST(mesh_rank, of_long_fractions) {
   }
   for (const double s : {0.1, 0.3, 0.5, 0.7}) {
     shape.mesh.creases = {{0, a, s}, {a, b, s}, {b, 1, s}};
-    for (const std::vector<std::uint32_t>& holes : {std::vector<std::uint32_t>{}, {0}, {0, 2}, {2, 3, 4}, {1, 2, 3, 4, 5}}) {
+    for (const std::vector<std::uint32_t>& holes :
+         {std::vector<std::uint32_t>{}, {0}, {0, 2}, {2, 3, 4}, {1, 2, 3, 4, 5}}) {
       shape.mesh.holes = holes;
       Tally tally;
       compare(shape, Scheme::catmark, tally);
@@ -585,7 +597,8 @@ TEST(mesh_rank, refuses_what_is_too_large) {
   EXPECT_NE(message_of(large, {.scheme = Scheme::catmark}).find("20200 control points"), std::string::npos);
   // 11 * 13 * 17 * 19 * 23 exceeds a million.
   const ControlMesh mixed = control_mesh_of(fan({11, 13, 17, 19, 23}));
-  EXPECT_NE(message_of(mixed, {.scheme = Scheme::doo_sabin}).find("least common multiple"), std::string::npos);
+  EXPECT_NE(message_of(mixed, {.scheme = Scheme::doo_sabin}).find("least common multiple"),
+            std::string::npos);
   EXPECT_EQ(message_of(mixed, {.scheme = Scheme::midedge}), "ranked");
 }
 
@@ -593,8 +606,9 @@ TEST(mesh_rank, stops_when_asked) {
   const std::atomic<bool> stop = true;
   WorkMonitor monitor;
   monitor.stop = &stop;
-  EXPECT_THROW(static_cast<void>(mesh_rank(control_mesh_of(fan({31})), {.scheme = Scheme::doo_sabin}, monitor)),
-               Interrupted);
+  EXPECT_THROW(
+      static_cast<void>(mesh_rank(control_mesh_of(fan({31})), {.scheme = Scheme::doo_sabin}, monitor)),
+      Interrupted);
 }
 
 // A torus with every third face a hole.

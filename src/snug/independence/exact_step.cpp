@@ -28,7 +28,8 @@ std::uint32_t order_of_masks(const RuledMesh& mesh, std::uint32_t order, std::ui
     if (all > most) all = 0;
   };
   for (std::size_t v = 0; v < topology.vertex_count(); ++v) {
-    const bool counts = scheme == Scheme::doo_sabin || (scheme == Scheme::loop && topology.is_manifold(VertexId(v)));
+    const bool counts =
+        scheme == Scheme::doo_sabin || (scheme == Scheme::loop && topology.is_manifold(VertexId(v)));
     if (counts && !topology.isolated(VertexId(v)) && !topology.on_boundary(VertexId(v))) {
       include(topology.face_valence(VertexId(v)));
     }
@@ -187,7 +188,8 @@ void ExactStep::add_dual(HalfEdge h, Sum& sum) const {
   sum.add(topology.from(h), fraction(1, 4));
   for (std::size_t i = 0; i < n; ++i, h = topology.next(h)) {
     sum.add(topology.from(h), fraction(3, 4 * n));
-    sum.add(topology.from(h), twice_cosine(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(n), order_),
+    sum.add(topology.from(h),
+            twice_cosine(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(n), order_),
             fraction(1, 4 * n));
   }
 }

@@ -44,7 +44,8 @@ std::vector<bool> bare_owners(const ControlMesh& mesh, const RuledMesh& ruled) {
   }
   std::vector<bool> bare(topology.face_count());
   for (std::size_t f = 0; f < bare.size(); ++f) {
-    bare[f] = ruled.options.boundary == BoundaryRule::none && loses_surface(topology, ruled.sharpness, FaceId(f));
+    bare[f] =
+        ruled.options.boundary == BoundaryRule::none && loses_surface(topology, ruled.sharpness, FaceId(f));
   }
   for (const FaceId f : mesh.tags.holes) bare[f.index()] = true;
   return bare;
@@ -232,11 +233,13 @@ class Interpolation {
     std::vector<std::uint32_t> all{1};  // the product of x - points, the highest power first
     for (const std::uint32_t t : points) {
       all.push_back(0);
-      for (std::size_t i = all.size() - 1; i > 0; --i) all[i] = field.sum(all[i], field.product(minus(t), all[i - 1]));
+      for (std::size_t i = all.size() - 1; i > 0; --i)
+        all[i] = field.sum(all[i], field.product(minus(t), all[i - 1]));
     }
     for (const std::uint32_t t : points) {
       std::vector<std::uint32_t> quotient{1};
-      for (std::size_t i = 1; i < n; ++i) quotient.push_back(field.sum(all[i], field.product(t, quotient.back())));
+      for (std::size_t i = 1; i < n; ++i)
+        quotient.push_back(field.sum(all[i], field.product(t, quotient.back())));
       std::uint32_t at = 0;
       for (const std::uint32_t x : quotient) at = field.sum(field.product(at, t), x);
       const std::uint32_t scale = field.inverse(at);
@@ -368,7 +371,8 @@ std::optional<std::vector<ExactKernelVector>> lifted(const ExactSurface& surface
   std::size_t done = 0;
   for (const Block& block : blocks) {
     monitor.report(static_cast<double>(++done) / static_cast<double>(blocks.size()));
-    if (std::none_of(block.vectors.begin(), block.vectors.end(), [&](std::size_t k) { return shown[k].empty(); })) {
+    if (std::none_of(block.vectors.begin(), block.vectors.end(),
+                     [&](std::size_t k) { return shown[k].empty(); })) {
       continue;
     }
     const ExactSurface part = part_of(surface, block.columns);
@@ -428,7 +432,9 @@ MeshRank mesh_rank(const ControlMesh& mesh, const SchemeOptions& options, const 
   const RuledMesh ruled{topology, how, sharpness};
   const std::uint32_t order = order_of_masks(ruled, 1, max_order);
   if (order == 0) {
-    refuse("the rank of the mesh is not computed: the least common multiple of its valences exceeds a million; give a part of it");
+    refuse(
+        "the rank of the mesh is not computed: the least common multiple of its valences exceeds a million; "
+        "give a part of it");
   }
   const ExactSurface surface = exact_surface(ruled, bare_owners(mesh, ruled), order, monitor);
   return rank_of(surface, mesh.vertex_count(), monitor);

@@ -85,8 +85,8 @@ class Functionals {
       for (const auto& functional : surface_.kinds[k].functionals) {
         Row row(surface_.kinds[k].control_count, 0);
         for (const auto& [i, weight] : functional) {
-          const std::uint32_t image =
-              weight >= 0 ? static_cast<std::uint32_t>(weight) : field_.prime - static_cast<std::uint32_t>(-weight);
+          const std::uint32_t image = weight >= 0 ? static_cast<std::uint32_t>(weight)
+                                                  : field_.prime - static_cast<std::uint32_t>(-weight);
           row[i] = field_.sum(row[i], image);
         }
         spaces_[k].add(field_, std::move(row));
@@ -153,8 +153,9 @@ class SparseElimination {
 
   ModularKernel run(const WorkMonitor& monitor) {
     remove_zero_columns();
-    std::sort(rows_.begin(), rows_.end(),
-              [](const SparseRow& a, const SparseRow& b) { return a.size() != b.size() ? a.size() < b.size() : a < b; });
+    std::sort(rows_.begin(), rows_.end(), [](const SparseRow& a, const SparseRow& b) {
+      return a.size() != b.size() ? a.size() < b.size() : a < b;
+    });
     rows_.erase(std::unique(rows_.begin(), rows_.end()), rows_.end());
     Row work(zero_.size(), 0);
     for (const SparseRow& row : rows_) {
@@ -180,7 +181,8 @@ class SparseElimination {
 
   void subtract(std::uint32_t factor, const SparseRow& row, Row& work) const {
     const std::uint64_t negative = field_.prime - factor;
-    for (const auto& [c, x] : row) work[c] = static_cast<std::uint32_t>((work[c] + negative * x) % field_.prime);
+    for (const auto& [c, x] : row)
+      work[c] = static_cast<std::uint32_t>((work[c] + negative * x) % field_.prime);
   }
 
   // Leaves `work` 0.

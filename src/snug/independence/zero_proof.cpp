@@ -83,8 +83,9 @@ bool ZeroProof::vanishes(const Values& values, const WorkMonitor& monitor) {
     const ExactSurface::Patch& patch = surface_.patches[p];
     Vector v;
     for (const std::uint32_t c : patch.control) {
-      const auto at = std::lower_bound(values.begin(), values.end(), c,
-                                       [](const auto& entry, std::uint32_t vertex) { return entry.first < vertex; });
+      const auto at =
+          std::lower_bound(values.begin(), values.end(), c,
+                           [](const auto& entry, std::uint32_t vertex) { return entry.first < vertex; });
       v.push_back(at != values.end() && at->first == c ? at->second : FieldNumber());
     }
     ask(patch.kind, std::move(v));
