@@ -656,7 +656,7 @@ TEST(mesh_rank, of_long_entries) {
       for (const mpq_class& x : polynomial) largest = std::max(largest, mpq_class(abs(x)));
     }
   }
-  EXPECT_GT(largest, 1 << 24);
+  EXPECT_GT(largest, 1 << 21);
 }
 
 std::string message_of(const ControlMesh& mesh, const SchemeOptions& options) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 #include <unordered_map>
 
+#include <snug/error.h>
 #include <snug/independence/exact_step.h>
 #include <snug/patch/neighbourhood.h>
 #include <snug/scheme/refine.h>
@@ -125,7 +127,19 @@ ExactSurface exact_surface(const RuledMesh& mesh, const std::vector<bool>& bare,
     auto& patch = surface.patches.emplace_back(ExactSurface::Patch{kind, {}});
     for (const VertexId v : control) patch.control.push_back(v.value());
   }
-  while (builder.finish_next()) monitor.checkpoint();
+  double done = 0;
+  for (std::size_t finished = 0; builder.finish_next(); ++finished) {
+    monitor.checkpoint();
+    if (surface.kinds.size() > max_exact_kinds) {
+      throw InputError(InputProblem::refused,
+                       "the rank of the mesh is not computed: its patches have more than " +
+                           std::to_string(max_exact_kinds) +
+                           " different surroundings; give fewer different sharpnesses, or a part of it");
+    }
+    if (finished % 64 != 0) continue;
+    done = std::max(done, 0.5 * static_cast<double>(finished) / static_cast<double>(surface.kinds.size()));
+    monitor.report(done);
+  }
   return surface;
 }
 

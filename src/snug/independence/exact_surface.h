@@ -23,6 +23,9 @@ struct ExactKind {
   std::vector<Child> children;
 };
 
+/// Most kinds of a surface; they take up to 100 kilobytes each.
+inline constexpr std::size_t max_exact_kinds = 20000;
+
 /// Stands for a control value that is 0.
 inline constexpr std::uint32_t no_column = UINT32_MAX;
 
@@ -41,6 +44,7 @@ struct ExactSurface {
 ///
 /// Requires:  Loop, Catmull-Clark, Doo-Sabin or Midedge; a surface for each owner that is not `bare`: faces, of dual schemes
 ///            vertices; a multiple of order_of_masks().
+/// Errors:    InputError (refused): more than max_exact_kinds. Interrupted.
 /// Cost:      up to a millisecond a kind.
 [[nodiscard]] ExactSurface exact_surface(const RuledMesh& mesh, const std::vector<bool>& bare,
                                          std::uint32_t order, const WorkMonitor& monitor);

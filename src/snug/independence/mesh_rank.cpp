@@ -370,7 +370,7 @@ std::optional<std::vector<ExactKernelVector>> lifted(const ExactSurface& surface
   const std::vector<Block> blocks = blocks_of(surface, kernel, columns);
   std::size_t done = 0;
   for (const Block& block : blocks) {
-    monitor.report(static_cast<double>(++done) / static_cast<double>(blocks.size()));
+    monitor.report(0.5 + 0.5 * static_cast<double>(++done) / static_cast<double>(blocks.size()));
     if (std::none_of(block.vectors.begin(), block.vectors.end(),
                      [&](std::size_t k) { return shown[k].empty(); })) {
       continue;

@@ -41,7 +41,8 @@ struct MeshRank {
 /// Guarantee: exact. No less: rank, modulo a prime, of some exact functionals of the surface. No more: each vector is shown to
 ///            make the function 0 on all patches, by exact arithmetic. Positions do not matter. Not decided are some
 ///            meshes whose kernel needs cosines of degree above 64, or entries too long for 48 primes.
-/// Errors:    InputError (refused): those of require_surface(); more than max_ranked_vertices control points; with Loop
+/// Errors:    InputError (refused): those of require_surface(); more than max_ranked_vertices control points, or
+///            max_exact_kinds different surroundings of patches, as many different sharpnesses make; with Loop
 ///            and Doo-Sabin valences whose least common multiple exceeds a million. Interrupted.
 /// Requires:  Loop, Catmull-Clark, Doo-Sabin or Midedge.
 /// Cost:      a millisecond for each patch topology, and elimination of a sparse matrix: a second for 10,000 control
