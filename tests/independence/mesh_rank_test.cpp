@@ -18,6 +18,7 @@
 #include <snug/error.h>
 #include <snug/independence/exact_step.h>
 #include <snug/independence/exact_surface.h>
+#include <snug/independence/flint_memory.h>
 #include <snug/independence/mesh_kernel.h>
 #include <snug/independence/zero_proof.h>
 #include <snug/mesh/topology.h>
@@ -571,6 +572,7 @@ TEST(mesh_rank, says_what_it_does_not_decide) {
 TEST(mesh_rank, proves_only_what_vanishes) {
   const auto proves = [](const Shape& shape, Scheme scheme, const std::vector<bool>& bare,
                          std::uint32_t order, const std::vector<std::vector<mpq_class>>& entries) {
+    const FlintMemory memory;
     const ControlMesh mesh = control_mesh_of(shape);
     const Topology topology(mesh);
     const SchemeOptions options{.scheme = scheme};
