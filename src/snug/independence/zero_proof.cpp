@@ -100,7 +100,8 @@ bool ZeroProof::vanishes(const Values& values, const WorkMonitor& monitor) {
   };
   while (!waiting.empty()) {
     monitor.checkpoint();
-    const auto [kind, v] = std::move(waiting.back());
+    const std::uint32_t kind = waiting.back().first;
+    const Vector v = std::move(waiting.back().second);
     waiting.pop_back();
     if (surface_.kinds[kind].children.empty()) {
       if (!is_zero_on(surface_.kinds[kind], v)) return undo();
