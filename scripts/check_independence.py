@@ -9,6 +9,7 @@ Meshes and masks are built here from the rules of the schemes. `--self-test` mak
 way that it knows, and expects the right ones accepted and all others rejected.
 
 A piece may have a second extraordinary corner; then n above is the order, the least common multiple of both valences.
+A piece may lie in a fan at a boundary; then all masks are rational and certificates have no root.
 
 Exact numbers are polynomials in t = 2 cos(2 pi / n), lowest degree first, modulo the minimal polynomial of t. Vectors are
 lists of planes, plane i having the coefficients of t^i of all entries, times a common denominator where only zero matters.
@@ -32,6 +33,7 @@ RATIONAL = re.compile(r"-?[0-9]+(/[1-9][0-9]*)?")
 PLACES = ("edge", "opposite")
 MOST_STEPS = 2
 MOST_ORDER = 10000
+RATIONAL_ORDER = 3  # t = -1: the numbers of fans
 
 
 class Fault(Exception):
@@ -278,6 +280,37 @@ def dual_pair(valences):
     return faces
 
 
+def loop_fan(n, i):
+    """Face i of a fan of n faces at a boundary, its one-ring, and the edges of the boundary in it."""
+    p, s, count = [2 + j for j in range(n + 1)], {}, n + 3
+    for k in range(max(2 * i - 3, 0), min(2 * i + 1, 2 * n) + 1):
+        s[k], count = count, count + 1
+    fan = [(1, p[j], p[j + 1]) for j in range(n)]
+    outer = [face for j in range(n + 1) for face in
+             [(p[j], s.get(2 * j - 1), s.get(2 * j)), (p[j], s.get(2 * j), s.get(2 * j + 1)),
+              (p[j], s.get(2 * j + 1), p[j + 1] if j < n else None)]]
+    rim = [(1, p[0]), (1, p[n]), (p[0], s.get(0)), (p[n], s.get(2 * n))]
+    return [fan[i - 1]] + fan[:i - 1] + fan[i:] + known(outer), frozenset(map(frozenset, known(rim)))
+
+
+def catmark_fan(n, i):
+    """The same of quads."""
+    e, f, o, count = [2 + 2 * j for j in range(n + 1)], [3 + 2 * j for j in range(n)], {}, 2 * n + 3
+    for k in range(max(4 * i - 5, 0), min(4 * i + 1, 4 * n) + 1):
+        o[k], count = count, count + 1
+    fan = [(1, e[j], f[j], e[j + 1]) for j in range(n)]
+    outer = [face for j in range(n) for face in
+             [(f[j], e[j], o.get(4 * j), o.get(4 * j + 1)), (f[j], *(o.get(4 * j + k) for k in (1, 2, 3))),
+              (f[j], o.get(4 * j + 3), o.get(4 * j + 4), e[j + 1])]]
+    rim = [(1, e[0]), (1, e[n]), (e[0], o.get(0)), (e[n], o.get(4 * n))]
+    return [fan[i - 1]] + fan[:i - 1] + fan[i:] + known(outer), frozenset(map(frozenset, known(rim)))
+
+
+def known(tuples):
+    """Those without a vertex that is absent."""
+    return [vertices for vertices in tuples if None not in vertices]
+
+
 def loop_annulus(n):
     u, a, b = ([first + step * (j % n) for j in range(-1, n + 1)] for first, step in ((2, 1), (n + 2, 2), (n + 3, 2)))
     return [face for j in range(1, n + 1) for face in
@@ -404,6 +437,17 @@ def step_of(scheme, faces, n, rule):
     return (loop_step if scheme == "loop" else catmark_step)(faces, n, rule)
 
 
+def rim_masks(rim, sharp):
+    """Masks at the boundary: of its edges, and of the vertices between two of them; a sharp one stays."""
+    masks = {("edge", edge): {v: [Fraction(1, 2)] for v in edge} for edge in rim}
+    for v in frozenset().union(*rim):
+        ends = [w for edge in rim if v in edge for w in edge - {v}]
+        if len(ends) == 2:
+            smooth = {v: [Fraction(3, 4)], **{w: [Fraction(1, 8)] for w in ends}}
+            masks["vertex", v] = {v: [Fraction(1)]} if v in sharp else smooth
+    return masks
+
+
 def embed(pattern, mesh, seed):
     """Where the vertices of a pattern lie in a mesh: `seed` has those of its first face, the others follow over edges."""
     by_edge, by_edge_there = faces_by_edge(pattern), faces_by_edge(mesh)
@@ -485,21 +529,21 @@ class Net:
     """The step of a net: the points of its regular pieces, and of the parts left.
 
     names pick the regular pieces; seeds are pairs of the net that a part left is like, and where the first face of it lies;
-    n is the order of the exact numbers. Functions are zero on a piece where all its tests are zero, a test being the sum of one
-    or two points.
+    n is the order of the exact numbers; fewer has, for each piece, the points that it lacks of a regular one; rim and sharp are
+    the edges of a boundary and the vertices of it that stay. Functions are zero on a piece where all its tests are zero, a test
+    being the sum of one or two points.
     """
 
-    def __init__(self, scheme, mesh, n, rule, names, seeds, threes):
+    def __init__(self, scheme, mesh, n, rule, names, seeds, fewer, rim=frozenset(), sharp=frozenset()):
         masks, faces = step_of(scheme, mesh, n, rule)
+        masks.update(rim_masks(rim, sharp))
         by_vertex = faces_by_vertex(faces)
         patches = []
-        for name in names:
+        for name, lacks in zip(names, fewer, strict=True):
             seen = [name] if scheme in DUAL else next(f for f in faces if set(name) <= set(f))
             around = {f for v in seen for f in by_vertex[v]}
             points = {v for f in around for v in faces[f]}
-            # For each corner of valence 3, two of the 12 points of Loop's middle piece are one.
-            middle = scheme == "loop" and name[0][0] == "edge"
-            assert len(points) == REGULAR_POINTS[scheme] - (threes if middle else 0)
+            assert len(points) == REGULAR_POINTS[scheme] - lacks
             sums = {e for f in around for e in edges_of(faces[f])} if scheme == "midedge" else {frozenset([v]) for v in points}
             patches.append(sums)
         places = [embed(pattern, faces, seed) for pattern, seed in seeds]
@@ -530,13 +574,19 @@ class Net:
         return self.next[vector]
 
 
+def lacking(scheme, names, threes):
+    """Points that pieces lack: for each corner of valence 3, two of the 12 of Loop's middle piece are one."""
+    return [threes if scheme == "loop" and name[0][0] == "edge" else 0 for name in names]
+
+
 class Corner(Net):
     """The net of one extraordinary corner. own: tests of points made by the corner's own irrational mask."""
 
     def __init__(self, scheme, n, rule, annulus, order):
         mesh = self.mesh(scheme, n, annulus)
         seeds = [] if annulus else [(mesh, seed_at(scheme, mesh, mesh, 0))]
-        super().__init__(scheme, mesh, order, rule, self.piece_names(scheme, n, mesh, annulus), seeds, int(n == 3))
+        names = self.piece_names(scheme, n, mesh, annulus)
+        super().__init__(scheme, mesh, order, rule, names, seeds, lacking(scheme, names, int(n == 3)))
         if scheme == "loop":
             self.own = {(self.names.index(("vertex", 1)),)}
         elif scheme == "doo-sabin":
@@ -588,7 +638,7 @@ class Pair(Net):
         for i, valence in ((0, n), (where, m)):
             pattern = Corner.mesh(scheme, valence, False)
             seeds.append((pattern, seed_at(scheme, pattern, mesh, i)))
-        super().__init__(scheme, mesh, order, rule, names, seeds, (n, m).count(3))
+        super().__init__(scheme, mesh, order, rule, names, seeds, lacking(scheme, names, (n, m).count(3)))
         self.corners = [Corner(scheme, valence, rule, False, order) for valence in (n, m)]
         if scheme == "doo-sabin":  # irrational masks
             faces = [i for i, valence in ((0, n), (where, m)) if valence not in (3, 4, 6)]
@@ -600,6 +650,21 @@ class Pair(Net):
             return loop_pair(n, m)
         valences = [n if i == 0 else m if i == where else 4 for i in range(4)]
         return (dual_pair if scheme in DUAL else catmark_pair)(valences)
+
+
+class Fan(Net):
+    """The net of face i of a fan of n faces around a vertex of a boundary, sharp or not.
+
+    A piece with a vertex at a boundary has regular points beyond it (Loop: a + b - c beyond an edge a b of a triangle a b c,
+    Catmull-Clark: 2 a - c), which are zero where its others are: the masks at the boundary are the regular ones with those.
+    """
+
+    def __init__(self, scheme, n, i, sharp):
+        mesh, rim = (loop_fan if scheme == "loop" else catmark_fan)(n, i)
+        beyond = [[3, 2, 0], [0, 2, 3]] if scheme == "loop" else [[4, 0, 0], [0, 0, 4]]  # of pieces 1 to 3
+        fewer = [(i == 1) * a + (i == n) * b for a, b in zip(*beyond)]
+        super().__init__(scheme, mesh, RATIONAL_ORDER, None, Corner.piece_names(scheme, n, mesh, False),
+                         [(mesh, seed_at(scheme, mesh, mesh, 0))], fewer, rim, {1} if sharp else frozenset())
 
 
 def seed_at(scheme, pattern, mesh, i):
@@ -614,6 +679,11 @@ def seed_at(scheme, pattern, mesh, i):
 @functools.cache
 def corner(scheme, n, rule, annulus=False):
     return Corner(scheme, n, rule, annulus, n)
+
+
+@functools.cache
+def fan(scheme, n, i, sharp):
+    return Fan(scheme, n, i, sharp)
 
 
 @functools.lru_cache(maxsize=400)
@@ -792,13 +862,19 @@ def parse_domain(name):
 
 
 class Case:
-    """A scheme, a valence, a rule and a domain; and where there is a second extraordinary corner, its valence and place."""
+    """A scheme, a valence, a rule and a domain; and where there is a second extraordinary corner, its valence and place.
 
-    def __init__(self, scheme, n, rule, domain, second=None, place=None):
-        self.scheme, self.n, self.rule, self.second = scheme, n, rule, second
+    In a fan at a boundary, the valence is its number of faces, `border` the number of the face, and `sharp` tells of the vertex.
+    """
+
+    def __init__(self, scheme, n, rule, domain, second=None, place=None, border=None, sharp=None):
+        self.scheme, self.n, self.rule, self.second, self.border = scheme, n, rule, second, border
         self.kind, self.number = parse_domain(domain)
-        self.order = math.lcm(n, second or n)
-        if second:
+        self.order = RATIONAL_ORDER if border else math.lcm(n, second or n)
+        if border:
+            need(self.kind not in ("annulus", "global"), "this domain is not known at a boundary")
+            self.corner = fan(scheme, n, border, bool(sharp))
+        elif second:
             need(self.kind in ("rings", "omega"), "this domain is not known of two extraordinary corners")
             self.corner = pair(scheme, n, second, place, rule)
         else:
@@ -899,6 +975,13 @@ def independent_vectors(vectors, n, root, p):
     return False
 
 
+def check_rational_prime(certificate):
+    p = field(certificate, "prime", int)
+    need(2 < p < 2**31 and is_prime(p), f"{p} is no odd prime below 2^31")
+    need(certificate.get("root") is None, "a fan has no root")
+    return p, 1  # no row has a t
+
+
 def check_prime(n, certificate):
     p, root = field(certificate, "prime", int), field(certificate, "root", int)
     need(1 < p < 2**31 and is_prime(p), f"{p} is no prime below 2^31")
@@ -937,6 +1020,7 @@ def annulus_determines(scheme, m, rule):
 def check_kernel(case, certificate, rank, root, p):
     entries, left_out = field(certificate, "kernel", list), field(certificate, "left_out", (int,)) or 0
     vectors = [parse_vector(entry, case.dimension, case.order) for entry in entries]
+    need(not case.border or all(type(x) is str for entry in entries for x in entry.values()), "an entry of a fan is not rational")
     allowed = case.own_tests() if case.kind != "global" else frozenset()
     need(left_out in (0, len(allowed)), f"left_out is {left_out}; {len(allowed)} rows may be left out")
     bound = case.dimension - len(vectors) + left_out
@@ -1002,15 +1086,19 @@ def check_case(scheme, record):
     for name in ("statement", "text"):
         field(record, name, (str,))
     second, place = field(record, "second", (int,)), field(record, "place", (str,))
-    need(3 <= n <= 1000, "the valence is not in 3..1000")
+    border, sharp = field(record, "border", (int,)), field(record, "corner", (bool,))
+    need((3 if border is None else 1) <= n <= 1000, f"the valence is not in {3 if border is None else 1}..1000")
     if second is not None or place is not None:
         check_second(scheme, n, second, place)
     need(rule is None or (rule == "older" and scheme == "catmark"), f"{scheme} has no rule {rule}")
-    case = Case(scheme, n, rule, domain, second, place)
+    if border is not None or sharp is not None:
+        check_border(scheme, n, border)
+        need(second is None and rule is None, "a fan has no second corner and no other rule")
+    case = Case(scheme, n, rule, domain, second, place, border, sharp)
     need(dimension == case.dimension, f"the dimension is {case.dimension}, not {dimension}")
     need(field(record, "independent", bool) == (rank == dimension), "`independent` contradicts rank and dimension")
 
-    p, root = check_prime(case.order, certificate)
+    p, root = check_rational_prime(certificate) if border else check_prime(case.order, certificate)
     rings = field(certificate, "rings", int) if case.kind == "omega" else None
     steps = field(certificate, "steps", int) if case.kind == "global" else None
     need(rings is None or 1 <= rings <= 9999, "rings is not in 1..9999")
@@ -1030,6 +1118,12 @@ def check_second(scheme, n, second, place):
     need(scheme != "loop" or place == "edge", "a triangle has no opposite corners")
     need(scheme != "loop" or (n, second) != (3, 3), "two corners of valence 3 at an edge of a triangle make no net")
     need(math.lcm(n, second) <= MOST_ORDER, f"the least common multiple of the valences is above {MOST_ORDER}")
+
+
+def check_border(scheme, n, border):
+    need(border is not None, "corner goes with border")
+    need(scheme not in DUAL, f"fans of {scheme} are not known")
+    need(1 <= border <= n, f"the border is not in 1..{n}")
 
 
 def check_upper(case, certificate, rank, root, p):
@@ -1083,7 +1177,10 @@ def read(name):
     return document["scheme"], document["cases"]
 
 
-def second_corner(record):
+def surroundings(record):
+    """What to add to the valence, to name a case."""
+    if record.get("border") is not None:
+        return f" at a {'corner of a ' if record.get('corner') else ''}boundary, face {record['border']}"
     return f" with {record['second']} ({record.get('place')})" if record.get("second") is not None else ""
 
 
@@ -1095,7 +1192,7 @@ def check_file(name):
     for i, record in enumerate(cases, 1):
         if why := fault_of(scheme, record):
             known = type(record) is dict and {"valence", "domain"} <= record.keys()
-            where = f"valence {record['valence']}{second_corner(record)}, {record['domain']}" if known else f"case {i}"
+            where = f"valence {record['valence']}{surroundings(record)}, {record['domain']}" if known else f"case {i}"
             lines.append(f"{shown}: {where}: {why}")
     if lines:
         return lines, False
@@ -1229,11 +1326,28 @@ def pair_kernel(case, rings, parts=(0, 1)):
     return vectors
 
 
-def certify(scheme, n, domain, rule, second=None, place=None):
+def fan_kernel(case):
+    """Basis of the kernel of a piece at a boundary, made from that modulo a large prime."""
+    p, root = large_prime(case.order)
+    t = t_modulo(root, p)
+    found = Rings(case.corner, t, p)
+    if case.kind == "pieces":
+        found.basis = {}
+        for row in test_rows(case.first_tests(), case.corner.step.modulo(t, p), case.dimension, p):
+            extend(found.basis, row, p)
+    elif case.kind == "ring":
+        found.only(case.number)
+        found.basis = found.alone
+    else:
+        found.together(case.number)
+    return [sparse_vector([fraction_modulo(x, p) for x in vector]) for vector in null_modulo(found.basis, case.dimension, p)]
+
+
+def certify(scheme, n, domain, rule, second=None, place=None, border=None, sharp=None):
     """A right case, or None where only a kernel with t would do that is not known here."""
-    case = Case(scheme, n, rule, domain, second, place)
+    case = Case(scheme, n, rule, domain, second, place, border, sharp)
     p, root = own_prime(case.order, 0)
-    certificate = {"prime": p, "root": root, "bound": "full"}
+    certificate = {"prime": p, **({} if border else {"root": root}), "bound": "full"}
     steps = case.number if case.kind in ("ring", "rings") else 1
     if case.kind == "global":
         certificate["steps"] = steps = 1 if case.n % 2 else MOST_STEPS
@@ -1245,6 +1359,8 @@ def certify(scheme, n, domain, rule, second=None, place=None):
         factor = {"factor": "1/4" if scheme == "doo-sabin" else "0"} if case.kind == "omega" else {}
         kernel = pair_kernel(case, certificate.get("rings", case.number))
         certificate.update({"bound": "kernel", "left_out": 0, "kernel": kernel, **factor})
+    elif rank < case.dimension and border:
+        certificate.update({"bound": "kernel", "left_out": 0, "kernel": fan_kernel(case)})
     elif rank < case.dimension and case.kind not in ("omega", "global") and rank == case.row_count():
         certificate["bound"] = "count"
     elif rank < case.dimension:
@@ -1253,15 +1369,17 @@ def certify(scheme, n, domain, rule, second=None, place=None):
             return None
     record = {"valence": n, "domain": domain, "dimension": case.dimension, "rank": rank, "independent": rank == case.dimension,
               "statement": None, "text": None, "certificate": certificate}
-    return {**record, **({"rule": rule} if rule else {}), **({"second": second, "place": place} if second else {})}
+    more = {"rule": rule, "second": second, "place": place, "border": border, "corner": sharp}
+    return {**record, **{name: x for name, x in more.items() if x}}
 
 
 def order_of(record):
-    return math.lcm(record["valence"], record.get("second") or 1)
+    return RATIONAL_ORDER if "border" in record else math.lcm(record["valence"], record.get("second") or 1)
 
 
 def case_of(scheme, record):
-    return Case(scheme, record["valence"], record.get("rule"), record["domain"], record.get("second"), record.get("place"))
+    return Case(scheme, record["valence"], record.get("rule"), record["domain"], record.get("second"), record.get("place"),
+                record.get("border"), record.get("corner"))
 
 
 def kernel_of(case, rank, certificate):
@@ -1394,7 +1512,7 @@ def spoiled_cases(record):
         yield f"dimension {other}", changed(record, dimension=other, independent=rank == other)
     yield "independent flipped", changed(record, independent=not record["independent"])
     yield "independent 1", changed(record, independent=int(record["independent"]))
-    for name in set(record) - {"statement", "text", "rule"}:
+    for name in set(record) - {"statement", "text", "rule", "corner"}:
         yield f"without {name}", {k: x for k, x in record.items() if k != name}
         for bad in (None, "", str(record[name]), [record[name]], {}, 1.5, float(rank)):
             if type(bad) is not type(record[name]):
@@ -1407,7 +1525,7 @@ def spoiled_cases(record):
     for bad in ("piece:0", "piece:4", "piece:1,2", "pieces:2,1", "pieces:1,1", "pieces:1", "rings:0", "ring:01", "rings:",
                 "Omega", "omega ", "rings:-1", "ring:1\n", "rings:99999"):
         yield f"domain {bad!r}", changed(record, domain=bad)
-    for m in (n - 1, n + 1, 2 * n, -n, 0, 2, 1001):
+    for m in {n - 1, n + 1, 2 * n, -n, 0, 2, 1001} - {n}:
         yield f"valence {m}", changed(record, valence=m)
     if "second" in record:
         yield "another sum of valences", changed(record, valence=n + 1, second=record["second"] + 1)
@@ -1421,6 +1539,10 @@ def spoiled_cases(record):
         yield "a second corner without a place", changed(record, second=5)
         yield "a place without a second corner", changed(record, place="edge")
         yield "a second corner", changed(record, second=5, place="edge")
+    if "border" not in record:
+        for sharp in (False, True):
+            yield f"corner {sharp} without border", changed(record, corner=sharp)
+        yield "a border", changed(record, border=1)
 
 
 def spoiled_certificates(record, count):
@@ -1466,6 +1588,99 @@ def spoiled(record, scheme, truth):
     for what, bad in itertools.chain(spoiled_cases(record), spoiled_certificates(record, count), spoiled_primes(record),
                                      spoiled_kernels(record) if certificate["bound"] == "kernel" else ()):
         yield what, scheme, bad
+
+
+def other_fans(record, scheme, fans):
+    """Triples (what, scheme, record) of certificates of a piece at a boundary as those of another piece, vertex or domain;
+    `fans` has the right records by (scheme, n, i, sharp, domain)."""
+    n, i, sharp, domain = record["valence"], record["border"], "corner" in record, record["domain"]
+    others = [(scheme, n, j, s, domain) for j in range(1, n + 1) for s in (False, True)]
+    others += [(s, n, i, sharp, d) for s in FAN_SCHEMES for d in FAN_DOMAINS if s == scheme or d == domain]
+    for s, _, j, flag, d in others:
+        if not covers(record, fans[s, n, j, flag, d]):
+            other = recertified(record, rings=record["certificate"].get("rings", 9))
+            yield f"{s}, {d}, face {j}, corner {flag}", s, changed(other, domain=d, border=j, corner=flag)
+
+
+def spoiled_fan(record, scheme):
+    """Triples of a piece at a boundary with a field spoiled."""
+    n, i, domain, certificate = record["valence"], record["border"], record["domain"], record["certificate"]
+    for bad in (0, n + 1, -i, -1, "", str(i), float(i), True, [i], {}):
+        yield f"border {bad!r}", scheme, changed(record, border=bad)
+    for bad in (0, 1, "", "true", [], [True], {}):
+        yield f"corner {bad!r}", scheme, changed(record, corner=bad)
+    yield "a corner without border", scheme, changed(record, border=None, corner=True)
+    for bad in ("annulus", "global"):
+        yield f"domain {bad}", scheme, changed(recertified(record, steps=1), domain=bad)
+    for s in DUAL:
+        yield f"scheme {s}", s, record
+    yield "a second corner", scheme, changed(record, second=4, place="edge")
+    yield "another rule", scheme, changed(record, rule="older")
+    p = certificate["prime"]
+    for bad in (2, 4, 9, 1, 0, -p, p + 1, p * 3, 2**31 + 11, 2**61 - 1):  # the last two are primes
+        yield f"prime {bad}", scheme, recertified(record, prime=bad)
+    yield "a composite modulus", scheme, recertified(record, prime=32749 * 32719)
+    for bad in (1, p - 1, own_prime(RATIONAL_ORDER, 0)[1], 0, "", [], False):
+        yield f"root {bad!r}", scheme, recertified(record, root=bad)
+    if certificate["bound"] == "kernel":
+        first, *rest = certificate["kernel"]
+        for more in ([], ["0"]):
+            listed = {k: [x, *more] for k, x in first.items()}
+            yield f"entries as lists of {1 + len(more)}", scheme, recertified(record, kernel=[listed, *rest])
+    count = case_of(scheme, record).row_count() if domain != "omega" else None
+    for what, bad in itertools.chain(spoiled_cases(record), spoiled_certificates(record, count),
+                                     spoiled_kernels(record) if certificate["bound"] == "kernel" else ()):
+        yield what, scheme, bad
+
+
+def covers(record, other):
+    """Does a certificate of a fan hold of the case of another record too? Kernels are in their one reduced form."""
+    a, b = record["certificate"], other["certificate"]
+    return ((record["rank"], record["dimension"]) == (other["rank"], other["dimension"])
+            and a.get("kernel") == b.get("kernel") and a.get("rings", 9) >= b.get("rings", 1))
+
+
+def too_low_fan(case, record, fans):
+    """As too_low, of a piece at a boundary: with the kernels of other domains, and of the vertex sharp or not."""
+    found = [fans[case.scheme, case.n, case.border, sharp, domain]["certificate"].get("kernel", [])
+             for sharp in (False, True) for domain in FAN_DOMAINS]
+    constant = {str(i + 1): "1" for i in range(case.dimension)}
+    kernels = [[constant]] + [kernel for i, kernel in enumerate(found) if kernel and kernel not in found[:i]]
+    for kernel, factor, left_out in [(k, f, 0) for k in kernels for f in ("0", "1")] + [(k, "0", 1) for k in kernels]:
+        rank = case.dimension - len(kernel) + left_out
+        if rank < record["rank"] or left_out:
+            certificate = {**record["certificate"], "bound": "kernel", "kernel": kernel, "left_out": left_out}
+            yield rank, {**certificate, "factor": factor}
+    for bound in ("full", "count"):
+        yield record["rank"] - 1, {**record["certificate"], "bound": bound, "kernel": []}
+
+
+def also_right_fan(scheme, record):
+    """Other certificates of the same piece at a boundary, or of its mirror image, that hold."""
+    n, certificate = record["valence"], record["certificate"]
+    kernel = certificate.get("kernel", [])
+    yield "another prime", recertified(record, prime=next(p for p in itertools.count(2**30) if p % 3 == 2 and is_prime(p)))
+    yield "root null", changed(record, certificate={**certificate, "root": None})
+    if "corner" not in record:
+        yield "corner false", changed(record, corner=False)
+    if "rings" in certificate:
+        yield "more rings", recertified(record, rings=certificate["rings"] + 3)
+    inner, last = (n + 4, n + 2) if scheme == "loop" else (2 * n + 4, 2 * n + 2)
+    turned = [{k if k == "1" else str(inner - int(k) if int(k) <= last else record["dimension"] + last + 1 - int(k)): x
+               for k, x in vector.items()} for vector in kernel]
+    swapped = {"piece:1": "piece:3", "piece:3": "piece:1", "pieces:1,2": "pieces:2,3", "pieces:2,3": "pieces:1,2"}
+    yield "the mirror image", changed(recertified(record, kernel=turned or None), border=n + 1 - record["border"],
+                                      domain=swapped.get(record["domain"], record["domain"]))
+    if not kernel:
+        yield "an empty kernel", recertified(record, kernel=[], left_out=0)
+        return
+    if record["domain"] != "omega" and case_of(scheme, record).row_count() == record["rank"]:
+        yield "a count", recertified(record, bound="count", kernel=None, left_out=None)
+    yield "vectors in another order", recertified(record, kernel=kernel[::-1])
+    yield "no left_out", recertified(record, left_out=None)
+    total = {k: str(Fraction(-7, 3) * sum(Fraction(v.get(k, 0)) for v in kernel)) for k in set().union(*kernel)}
+    yield "their sum in place of the first", recertified(record, kernel=[total] + kernel[1:])
+    yield "entries that are 0", recertified(record, kernel=[{**{"1": "0", "2": "-0/3"}, **v} for v in kernel])
 
 
 def too_low(case, record, kernels):
@@ -1550,6 +1765,31 @@ def known_results():
                [(scheme, n, "global", size(n)) for n in range(3, 13)])
 
 
+def known_fans():
+    """Ranks of pieces at a boundary, in the same form.
+
+    Beyond the control points that ring 1 has, a ring shows one more on each side. The smooth mask of the vertex shows the sum
+    of its neighbours on the boundary.
+    """
+    tried = [(n, i) for n in range(1, 13) for i in range(1, n + 1)]
+    for scheme, each in (("loop", 1), ("catmark", 2)):
+        for sharp in (True, False):
+            cases = []
+            for (n, i), k in itertools.product(tried, range(1, 9)):
+                size = (n + 7 if scheme == "loop" else 2 * n + 9) - (i == 1) - (i == n)
+                rank = size - sum(max(0, each * (there - 1) - k) for there in (i - 1, n - i)) + (not sharp)
+                cases.append((scheme, n, f"rings:{k}", min(size, rank), None, None, i, sharp))
+            yield f"{scheme}, {'corner' if sharp else 'boundary'}, rings:k: one more on each side", cases
+    for scheme, along, away in (("loop", 9, 10), ("catmark", 12, 14)):
+        cases = [(scheme, n, f"piece:{piece}", along if first == (piece == 1) else away, None, None, 1 if first else n, False)
+                 for n in range(4, 13) for piece in (1, 3) for first in (True, False)]
+        yield f"{scheme}, boundary, first and last face: {along} on the piece along the boundary, {away} on that away", cases
+    for scheme, regular in FANS_REGULAR:
+        cases = [(scheme, n, domain, fan(scheme, n, i, sharp).count, None, None, i, sharp)
+                 for n, sharp in regular for i in range(1, n + 1) for domain in FAN_DOMAINS]
+        yield f"{scheme}, a regular boundary, any domain: all", cases
+
+
 def known_pairs():
     """Ranks of pieces with two corners, in the same form, where the second is regular or a symmetry knows them."""
     for scheme, place in PAIRS:
@@ -1564,8 +1804,8 @@ def known_pairs():
         yield f"{scheme}, {place}, rings:k: corners may be swapped", cases
 
 
-def rank_of(scheme, n, domain, second=None, place=None):
-    case = Case(scheme, n, None, domain, second, place)
+def rank_of(scheme, n, domain, *others):
+    case = Case(scheme, n, None, domain, *others)
     p, root = own_prime(case.order, 0)
     return case.rank_modulo(root, p, 2 * case.dimension, MOST_STEPS)
 
@@ -1573,6 +1813,10 @@ def rank_of(scheme, n, domain, second=None, place=None):
 SELF_TEST_DOMAINS = ["piece:1", "piece:2", "piece:3", "pieces:1,2", "pieces:1,3", "pieces:2,3", "rings:1", "rings:2",
                      "rings:3", "ring:1", "ring:2", "ring:3", "omega", "annulus", "global"]
 PAIRS = [(scheme, place) for scheme in SCHEMES for place in PLACES if (scheme, place) != ("loop", "opposite")]
+FAN_SCHEMES = ("loop", "catmark")
+FAN_DOMAINS = SELF_TEST_DOMAINS[:-2]
+FANS_REGULAR = [("loop", [(3, False), (1, True)]), ("catmark", [(2, False), (1, True)])]  # (n, sharp)
+SELF_TEST_FANS = [(n, i, sharp) for n in range(1, 9) for i in range(1, n + 1) for sharp in (False, True)]
 SELF_TEST_PAIRS = [(3, 3), (3, 4), (4, 4), (5, 6), (8, 6), (7, 3), (8, 8)]
 
 
@@ -1661,6 +1905,159 @@ def self_test_pair_geometry(scheme, place):
     return wrong
 
 
+def lattice(scheme):
+    """Edge neighbours of the origin in cyclic order."""
+    return [(1, 0), (0, 1), (-1, 1), (-1, 0), (0, -1), (1, -1)] if scheme == "loop" else [(1, 0), (0, 1), (-1, 0), (0, -1)]
+
+
+def at(*terms):
+    """Sum of factors times places."""
+    return tuple(sum(factor * place[axis] for factor, place in terms) for axis in (0, 1))
+
+
+def flat_fan(scheme, n, i):
+    """Face i of a fan drawn in the plane: places of the control points, and the vertices of the three pieces, doubled."""
+    spokes = [lattice(scheme)[j % len(lattice(scheme))] for j in range(n + 1)]
+    a, b = spokes[i - 1], spokes[i]
+    pairs = list(zip(spokes, spokes[1:]))
+    if scheme == "loop":
+        ring = [at((2, spokes[0]))] + [place for c, d in pairs for place in (at((1, c), (1, d)), at((2, d)))]
+        places = [(0, 0), *spokes, *ring[max(0, 2 * i - 3):2 * i + 2]]
+        middle = at((1, a), (1, b))
+        return places, [(at((2, a)), a, middle), (a, middle, b), (at((2, b)), b, middle)]
+    ring = [at((2, spokes[0]))] + [at((x, c), (y, d)) for c, d in pairs for x, y in ((2, 1), (2, 2), (1, 2), (0, 2))]
+    places = [(0, 0), spokes[0], *(place for c, d in pairs for place in (at((1, c), (1, d)), d)),
+              *ring[max(0, 4 * i - 5):4 * i + 2]]
+    squares = [[at((x + u, a), (y + v, b)) for u, v in ((0, 0), (1, 0), (1, 1), (0, 1))] for x, y in ((1, 0), (1, 1), (0, 1))]
+    return places, squares
+
+
+def around(scheme, vertices):
+    """Places of a regular piece's points."""
+    square = list(itertools.product((-1, 0, 1), repeat=2))
+    steps = square if scheme == "catmark" else lattice(scheme) + [(0, 0)]
+    return {at((1, v), (1, step)) for v in vertices for step in steps}
+
+
+def self_test_fan(scheme, n, i):
+    """Faults of a fan: of its masks; and whether, around a sharp vertex, it halves a drawing in the plane."""
+    where, smooth = fan(scheme, n, i, True), fan(scheme, n, i, False)
+    places, pieces = flat_fan(scheme, n, i)
+    wrong, name = [], f"{scheme}, face {i} of {n}"
+    if where.count != (n + 7 if scheme == "loop" else 2 * n + 9) - (i == 1) - (i == n) or where.count != len(places):
+        wrong.append(f"{name}: {where.count} control points")
+        return wrong
+    drawn = list(zip(*(where.step.apply([list(axis)])[0] for axis in zip(*places))))
+    doubled = [tuple(Fraction(2 * x, where.step.scale) for x in point) for point in drawn]
+    if [doubled[v] for v in where.parts[0]] != places:
+        wrong.append(f"{name}: the part left is not at the corner")
+    for piece, vertices in zip(where.pieces, pieces, strict=True):
+        found, whole = {doubled[v] for v, in piece}, around(scheme, vertices)
+        if not (found == whole if len(piece) == REGULAR_POINTS[scheme] else set(vertices) <= found < whole):
+            wrong.append(f"{name}: a piece is elsewhere")
+    eighth, own = Fraction(1, 8), where.names.index(("vertex", 1))
+    last = n + 1 if scheme == "loop" else 2 * n + 1
+    if where.step.rows[own] != {0: [1]} or smooth.step.rows[own] != {0: [6 * eighth], 1: [eighth], last: [eighth]}:
+        wrong.append(f"{name}: the mask of the vertex is wrong")
+    if any(a != b for k, (a, b) in enumerate(zip(where.step.rows, smooth.step.rows)) if k != own):
+        wrong.append(f"{name}: other masks know whether the vertex is sharp")
+    masks = {"loop": {(4, 4), (6, 1, 1), (3, 3, 1, 1), (5, *[Fraction(1, 2)] * 6)},
+             "catmark": {(4, 4), (6, 1, 1), (2, 2, 2, 2), (3, 3, *[Fraction(1, 2)] * 4),
+                         (Fraction(9, 2), *[Fraction(3, 4)] * 4, *[eighth] * 4)}}[scheme]
+    for row in where.step.rows[:own] + where.step.rows[own + 1:]:
+        if tuple(sorted((8 * x for x, in row.values()), reverse=True)) not in masks:
+            wrong.append(f"{name}: a mask is unknown")
+    return wrong
+
+
+class Lattice:
+    """Values at places of the plane, times scale, refined by regular masks where all points of a mask are there."""
+
+    def __init__(self, scheme, values, scale=1):
+        self.scheme, self.values, self.scale = scheme, values, scale
+
+    def total(self, terms):
+        """Of pairs (weight, place); None where a place has no value."""
+        known = all(place in self.values for _, place in terms)
+        return sum(weight * self.values[place] for weight, place in terms) if known else None
+
+    def mask(self, place):
+        """The mask, times 64, of a place of the finer lattice: a product of curves' masks, or Loop's."""
+        x, y = place
+        if self.scheme == "catmark":
+            curves = [((1, c // 2 - 1), (6, c // 2), (1, c // 2 + 1)) if c % 2 == 0 else ((4, c // 2), (4, c // 2 + 1))
+                      for c in place]
+            return [(u * v, (c, d)) for u, c in curves[0] for v, d in curves[1]]
+        if x % 2 == y % 2 == 0:
+            return [(40, (x // 2, y // 2))] + [(4, (x // 2 + c, y // 2 + d)) for c, d in lattice("loop")]
+        k = next(k for k, (c, d) in enumerate(lattice("loop")) if (x - c) % 2 == (y - d) % 2 == 0)
+        before, along, after = (lattice("loop")[(k + j) % 6] for j in (-1, 0, 1))
+        start = (x - along[0]) // 2, (y - along[1]) // 2
+        return [(w, at((1, start), (1, d))) for w, d in ((24, (0, 0)), (24, along), (8, before), (8, after))]
+
+    def finer(self):
+        near = list(itertools.product((-1, 0, 1), repeat=2))
+        found = {place: self.total(self.mask(place))
+                 for place in {(2 * x + c, 2 * y + d) for x, y in self.values for c, d in near}}
+        return Lattice(self.scheme, {place: x for place, x in found.items() if x is not None}, 64 * self.scale)
+
+    def limit(self, place):
+        """The limit at a place; None if its neighbours are not all there."""
+        own, side, diagonal = (6, 1, 0) if self.scheme == "loop" else (16, 4, 1)
+        weights = {(c, d): diagonal for c in (-1, 1) for d in (-1, 1)} if diagonal else {}
+        weights |= {(0, 0): own, **{d: side for d in lattice(self.scheme)}}
+        total = self.total([(w, at((1, place), (1, d))) for d, w in weights.items()])
+        return None if total is None else Fraction(total, sum(weights.values()) * self.scale)
+
+    def extended(self, wanted, sharp):
+        """With the wanted points beyond the line y = 0, and beyond x = 0 of a sharp vertex of one face."""
+        grid = dict(self.values)
+
+        def value(place):
+            if place not in grid:
+                inward, across = ((0, 1), (1, 0)) if place[1] < 0 else ((1, 0), (0, 1))
+                assert place[1] < 0 or (sharp and place[0] < 0)
+                if self.scheme == "catmark" or (sharp and place in ((-1, 0), (0, -1))):
+                    grid[place] = 2 * value(at((1, place), (1, inward))) - value(at((1, place), (2, inward)))
+                else:  # the triangle on the other side of the boundary's edge
+                    a, b = at((1, place), (1, inward)), at((1, place), (1, inward), (-1, across))
+                    grid[place] = value(a) + value(b) - value(at((1, a), (1, b), (-1, place)))
+            return grid[place]
+
+        return Lattice(self.scheme, {place: value(place) for place in wanted}, self.scale)
+
+
+def self_test_regular_fan(scheme, n, i, sharp):
+    """Faults of a fan at a regular boundary: each function is the same polynomial on the piece and on the three of ring 1.
+
+    A polynomial on a piece is known from its values at the corners of 16 parts.
+    """
+    where = fan(scheme, n, i, sharp)
+    places, pieces = flat_fan(scheme, n, i)
+    doubled = [tuple(Fraction(2 * x, where.step.scale) for x in point)
+               for point in zip(*(fan(scheme, n, i, True).step.apply([list(axis)])[0] for axis in zip(*places)))]
+    whole = [(0, 0), *flat_spokes(scheme, i)]
+    wrong = []
+    for b in range(where.count):
+        points = where.step.apply([[int(b == j) for j in range(where.count)]])[0]
+        parent = Lattice(scheme, {place: int(b == j) for j, place in enumerate(places)})
+        parent = parent.extended(around(scheme, whole), sharp).finer().finer().finer()
+        for k, (piece, vertices) in enumerate(zip(where.pieces, pieces), 1):
+            part = Lattice(scheme, {doubled[v]: points[v] for v, in piece}, where.step.scale)
+            part = part.extended(around(scheme, vertices), sharp).finer().finer()
+            nodes = [at((4 - x - y, vertices[0]), (x, vertices[1]), (y, vertices[-1])) for x in range(5) for y in range(5)
+                     if scheme == "catmark" or x + y <= 4]
+            if any(part.limit(node) is None or part.limit(node) != parent.limit(node) for node in nodes):
+                wrong.append(f"{scheme}, face {i} of {n}, piece {k}: function {b + 1} is another polynomial")
+    return wrong
+
+
+def flat_spokes(scheme, i):
+    """The other vertices of face i of a fan drawn in the plane."""
+    a, b = lattice(scheme)[i - 1], lattice(scheme)[i]
+    return [a, b] if scheme == "loop" else [a, at((1, a), (1, b)), b]
+
+
 def self_test_forms():
     """Faults of the counts of midedge's rows, against the rank of sums of two points."""
     wrong = []
@@ -1701,12 +2098,65 @@ def self_test_masks(n):
     return wrong
 
 
+def misjudged(where, right, bad):
+    """Faults of judging triples (what, scheme, record) that are right or bad; and the number of bad ones."""
+    wrong, count = [], 0
+    for what, scheme, record in right:
+        if why := fault_of(scheme, json.loads(json.dumps(record))):
+            wrong.append(f"{where}, {what}: rejected: {why}")
+    for what, scheme, record in bad:
+        count += 1
+        if not fault_of(scheme, json.loads(json.dumps(record))):
+            wrong.append(f"{where}, {what}: accepted")
+    return wrong, count
+
+
+def misjudged_bounds(where, case, record, bounds):
+    """Faults of judging pairs (rank, certificate) whose upper bound must not hold; and their number."""
+    wrong, count, (p, root) = [], 0, own_prime(order_of(record), 0)
+    for rank, certificate in bounds:
+        count += 1
+        try:
+            check_upper(case, certificate, rank, root, p)
+            wrong.append(f"{where}: accepted as a proof that the rank is {rank}: {certificate}")
+        except Fault:
+            pass
+    return wrong, count
+
+
+def self_test_fans():
+    """Faults of pieces at a boundary; the numbers of certificates accepted and rejected. Each spoils a part of the cases."""
+    wrong, count = [], 0
+    for scheme, n in itertools.product(FAN_SCHEMES, range(1, 13)):
+        wrong += itertools.chain(*(self_test_fan(scheme, n, i) for i in range(1, n + 1)))
+    for scheme, regular in FANS_REGULAR:
+        wrong += itertools.chain(*(self_test_regular_fan(scheme, n, i, sharp) for n, sharp in regular for i in range(1, n + 1)))
+    fans = {(scheme, n, i, sharp, domain): certify(scheme, n, domain, None, border=i, sharp=sharp) for scheme in FAN_SCHEMES
+            for n, i, sharp in SELF_TEST_FANS for domain in FAN_DOMAINS}
+    for number, ((scheme, *_), record) in enumerate(fans.items()):
+        where = f"{scheme} {record['valence']}{surroundings(record)} {record['domain']}"
+        right, bad = [("as made", scheme, record)], other_fans(record, scheme, fans) if number % 2 == 0 else []
+        if number % 4 == 0:
+            right += [(what, scheme, other) for what, other in also_right_fan(scheme, record)]
+        if number % 12 == 0:
+            bad = itertools.chain(bad, spoiled_fan(record, scheme))
+        found = [misjudged(where, right, bad)]
+        if number % 7 == 0:
+            case = case_of(scheme, record)
+            found.append(misjudged_bounds(where, case, record, too_low_fan(case, record, fans)))
+        for faults, tried in found:
+            wrong += faults
+            count += tried
+    return wrong, len(fans), count
+
+
 def self_test():
     """Faults of this check, and what was tried."""
-    wrong, right, truth, count = [], [], {}, 0
+    wrong, accepted, count = self_test_fans()
+    right, truth = [], {}
     wrong += itertools.chain(self_test_forms(), *map(self_test_geometry, SCHEMES), *map(self_test_masks, range(3, 13)),
                              *itertools.starmap(self_test_pair_geometry, PAIRS))
-    for name, cases in itertools.chain(known_results(), known_pairs()):
+    for name, cases in itertools.chain(known_results(), known_pairs(), known_fans()):
         off = [f"{n} {domain} {second}: {found}, not {rank}"
                for s, n, domain, rank, *second in cases if (found := rank_of(s, n, domain, *second)) != rank]
         print(f"  {name}: {f'WRONG at {off}' if off else f'{len(cases)} ranks agree'}")
@@ -1724,26 +2174,17 @@ def self_test():
             right.append((scheme, record))
             truth[scheme, n, domain, rule, *second] = record["rank"], record["dimension"]
     for scheme, record in right:
-        where = f"{scheme} {record['valence']}{second_corner(record)} {record['domain']} {record.get('rule', '')}"
-        for what, other in [("as made", record), *also_right(scheme, record)]:
-            if why := fault_of(scheme, json.loads(json.dumps(other))):
-                wrong.append(f"{where}, {what}: rejected: {why}")
-        for what, s, other in spoiled(record, scheme, truth):
-            count += 1
-            if not fault_of(s, json.loads(json.dumps(other))):
-                wrong.append(f"{where}, {what}: accepted")
+        where = f"{scheme} {record['valence']}{surroundings(record)} {record['domain']} {record.get('rule', '')}"
         kernels = [r["certificate"]["kernel"] for s, r in right if r["certificate"]["bound"] == "kernel" and s == scheme
                    and (r["dimension"], r.get("rule")) == (record["dimension"], record.get("rule"))]
-        case, p_root = case_of(scheme, record), own_prime(order_of(record), 0)
-        for rank, certificate in too_low(case, record, kernels):
-            count += 1
-            try:
-                check_upper(case, certificate, rank, *p_root[::-1])
-                wrong.append(f"{where}: accepted as a proof that the rank is {rank}: {certificate}")
-            except Fault:
-                pass
+        good = [(what, scheme, other) for what, other in [("as made", record), *also_right(scheme, record)]]
+        case = case_of(scheme, record)
+        for faults, tried in (misjudged(where, good, spoiled(record, scheme, truth)),
+                              misjudged_bounds(where, case, record, too_low(case, record, kernels))):
+            wrong += faults
+            count += tried
     wrong += self_test_files(next(r for s, r in right if s == "loop" and r["valence"] == 7 and r["domain"] == "piece:1"))
-    return wrong, f"{len(right)} certificates accepted, {count} spoiled ones rejected"
+    return wrong, f"{len(right) + accepted} certificates accepted, {count} spoiled ones rejected"
 
 
 def check_files(names):

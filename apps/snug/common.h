@@ -133,6 +133,7 @@ class Report {
 [[nodiscard]] Command distance_command();
 [[nodiscard]] Command measure_command();
 [[nodiscard]] Command closest_command();
+[[nodiscard]] Command ray_command();
 [[nodiscard]] Command deviation_command();
 [[nodiscard]] Command render_command();
 [[nodiscard]] Command table_command();

@@ -16,11 +16,11 @@
 namespace snug::command {
 namespace {
 
-constexpr std::uint32_t least_valence = 3, largest_valence = 200, most_rings = 256;
+constexpr std::uint32_t least_valence = 3, least_boundary_faces = 1, largest_valence = 200, most_rings = 256;
 
 struct Options : CommonOptions {
-  std::string valence, mesh;
-  std::optional<std::uint64_t> second;
+  std::string valence, border, mesh;
+  std::optional<std::uint64_t> second, face;
   bool opposite = false;
   std::vector<std::string> domains;
   bool older = false, matrices = false, eigenvalues = false;
@@ -31,17 +31,17 @@ struct Range {
 };
 
 // "7" or "3..30".
-Range parse_valences(const std::string& text) {
+Range parse_valences(const std::string& text, std::uint32_t least) {
   const auto refuse = [&](const char* why) {
     throw UsageError(fmt::format("--valence: '{}' {}; give a number or a range from {} to {}, such as 3..30",
-                                 text, why, least_valence, largest_valence));
+                                 text, why, least, largest_valence));
   };
   const std::size_t dots = text.find("..");
   const auto number = [&](const std::string& word) {
     std::uint32_t value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (word.empty() || error != std::errc() || end != word.data() + word.size()) refuse("is no valence");
-    if (value < least_valence || value > largest_valence) refuse("goes beyond what is looked at");
+    if (value < least || value > largest_valence) refuse("goes beyond what is looked at");
     return value;
   };
   const Range range{number(text.substr(0, dots)),
@@ -63,10 +63,23 @@ ExactScheme exact_scheme(const Options& options) {
   return scheme;
 }
 
-PieceCorners corners_of(const Options& options, std::uint32_t valence) {
-  PieceCorners corners{valence, {}, options.opposite};
-  if (options.second) corners.second = static_cast<std::uint32_t>(*options.second);
-  return corners;
+// All pieces asked about; at a boundary vertex one face of each two that are mirror images.
+std::vector<PieceCorners> pieces_of(const Options& options, Range valences) {
+  std::vector<PieceCorners> pieces;
+  for (std::uint32_t n = valences.first; n <= valences.last; ++n) {
+    PieceCorners corners{n, {}, options.opposite};
+    if (options.second) corners.second = static_cast<std::uint32_t>(*options.second);
+    if (options.border.empty()) {
+      pieces.push_back(corners);
+      continue;
+    }
+    const std::uint32_t face = static_cast<std::uint32_t>(options.face.value_or(0));
+    for (std::uint32_t i = face == 0 ? 1 : face; i <= (face == 0 ? (n + 1) / 2 : face); ++i) {
+      corners.boundary = BoundaryFace{i, options.border == "corner"};
+      pieces.push_back(corners);
+    }
+  }
+  return pieces;
 }
 
 // What --domain names.
@@ -79,7 +92,10 @@ struct Domains {
 Domains parse_domains(const Options& options) {
   Domains domains;
   for (const std::string& text : options.domains) {
-    if (text == "conjecture" && !options.second) {
+    if (text == "conjecture") {
+      if (options.second || !options.border.empty())
+        throw UsageError(
+            "--domain conjecture: not with --second or --border; the dissertation has none for these");
       domains.conjecture = true;
       continue;
     }
@@ -97,6 +113,10 @@ Domains parse_domains(const Options& options) {
         domain->kind != IndependenceDomain::Kind::omega) {
       throw UsageError("--domain: with --second, only rings:K and omega");
     }
+    if (!options.border.empty() && domain->kind > IndependenceDomain::Kind::omega) {
+      throw UsageError(fmt::format(
+          "--domain: '{}': with --border, only piece:I, pieces:I,J, ring:K, rings:K and omega", text));
+    }
     domains.named.push_back(*domain);
   }
   return domains;
@@ -107,7 +127,9 @@ std::vector<IndependenceRequest> requests_for(const Domains& asked, const ExactS
                                               const PieceCorners& corners) {
   std::vector<IndependenceDomain> domains = asked.named;
   if (asked.empty()) {
-    domains = corners.second ? two_corner_domains(scheme, corners) : chapter_domains(scheme, corners.valence);
+    domains = corners.boundary ? boundary_domains(scheme, corners)
+              : corners.second ? two_corner_domains(scheme, corners)
+                               : chapter_domains(scheme, corners.valence);
   }
   if (const std::uint32_t k = conjectured_rings(scheme, corners.valence); asked.conjecture && k > 0) {
     domains.push_back({IndependenceDomain::Kind::rings, k - 1});
@@ -115,8 +137,8 @@ std::vector<IndependenceRequest> requests_for(const Domains& asked, const ExactS
   }
   std::vector<IndependenceRequest> requests;
   for (const IndependenceDomain& domain : domains) {
-    requests.push_back(corners.second ? IndependenceRequest{domain, "", std::nullopt}
-                                      : chapter_request(scheme, corners.valence, domain));
+    requests.push_back(corners.second || corners.boundary ? IndependenceRequest{domain, "", std::nullopt}
+                                                          : chapter_request(scheme, corners.valence, domain));
   }
   return requests;
 }
@@ -134,7 +156,8 @@ void write_entries(JsonWriter& json, const std::vector<mpq_class>& polynomial) {
 }
 
 void write_certificate(JsonWriter& json, const RankCertificate& why) {
-  json.key("certificate").begin_object().field("prime", why.prime).field("root", why.root);
+  json.key("certificate").begin_object().field("prime", why.prime);
+  if (why.root != 0) json.field("root", why.root);
   if (why.rings) json.field("rings", *why.rings);
   if (why.steps) json.field("steps", *why.steps);
   constexpr auto bounds =
@@ -159,11 +182,18 @@ void write_certificate(JsonWriter& json, const RankCertificate& why) {
   json.end_object();
 }
 
+void write_boundary(JsonWriter& json, const PieceCorners& corners) {
+  if (!corners.boundary) return;
+  json.field("border", corners.boundary->face);
+  if (corners.boundary->corner) json.field("corner", true);
+}
+
 void write_case(JsonWriter& json, const IndependenceCase& found, bool older) {
   json.begin_object().field("valence", found.corners.valence);
   if (found.corners.second) {
     json.field("second", *found.corners.second).field("place", found.corners.opposite ? "opposite" : "edge");
   }
+  write_boundary(json, found.corners);
   json.field("domain", name_of(found.domain));
   json.field("dimension", found.dimension)
       .field("rank", found.rank)
@@ -186,9 +216,11 @@ void write_case(JsonWriter& json, const IndependenceCase& found, bool older) {
 }
 
 std::string text_of(const IndependenceCase& found) {
+  std::string beside;
+  if (found.corners.second) beside = fmt::format(" {:>4}", *found.corners.second);
+  if (found.corners.boundary) beside = fmt::format(" {:>4}", found.corners.boundary->face);
   std::string line =
-      fmt::format("{:>4}{}  {:<11} {:>4} of {:<4} {:<11}", found.corners.valence,
-                  found.corners.second ? fmt::format(" {:>4}", *found.corners.second) : "",
+      fmt::format("{:>4}{}  {:<11} {:>4} of {:<4} {:<11}", found.corners.valence, beside,
                   name_of(found.domain), found.rank, found.dimension, word(found.independent()));
   if (!found.text) return line;
   line += "  " + found.statement;
@@ -212,12 +244,12 @@ void write_row(JsonWriter& json, const WeightRow& row) {
   json.end_object();
 }
 
-void write_matrices(JsonWriter& json, const ExactScheme& scheme, std::uint32_t valence) {
-  const PieceStep step = piece_step(scheme, valence);
-  json.begin_object()
-      .field("valence", valence)
-      .field("rows", step.rows.size())
-      .field("columns", step.dimension);
+void write_matrices(JsonWriter& json, const ExactScheme& scheme, const PieceCorners& corners) {
+  const PieceStep step = corners.boundary ? boundary_step(scheme, corners.valence, *corners.boundary)
+                                          : piece_step(scheme, corners.valence);
+  json.begin_object().field("valence", corners.valence);
+  write_boundary(json, corners);
+  json.field("rows", step.rows.size()).field("columns", step.dimension);
   json.field("kept", step.kept).key("matrix").begin_array();
   for (const WeightRow& row : step.rows) write_row(json, row);
   json.end_array().key("pieces").begin_array();
@@ -241,7 +273,15 @@ void write_eigenvalues(JsonWriter& json, const CornerEigenvalues& found, std::ui
       .begin_array();
   for (const RationalEigenvalue& each : found.repeated) {
     json.begin_object().field("value", each.value.get_str()).field("algebraic", each.algebraic);
-    json.field("geometric", each.geometric).end_object();
+    json.field("geometric", each.geometric()).key("span").begin_array();
+    for (const std::vector<mpq_class>& vector : each.span) {
+      json.begin_object();
+      for (std::size_t i = 0; i < vector.size(); ++i) {
+        if (vector[i] != 0) json.field(std::to_string(i + 1), vector[i].get_str());
+      }
+      json.end_object();
+    }
+    json.end_array().end_object();
   }
   json.end_array().end_object();
 }
@@ -251,14 +291,27 @@ std::string text_of(const CornerEigenvalues& found, std::uint32_t valence) {
       fmt::format("{:>4}  eigenvalues {}", valence, found.as_stated ? "as stated" : "not as stated");
   for (const RationalEigenvalue& each : found.repeated) {
     line += fmt::format(", {} {} times", each.value.get_str(), each.algebraic);
-    if (each.geometric < each.algebraic) line += fmt::format(" with {} eigenvectors", each.geometric);
+    if (each.geometric() < each.algebraic) line += fmt::format(" with {} eigenvectors", each.geometric());
   }
   return line;
 }
 
 ExitStatus run_on_valences(const Options& options) {
-  const Range range = parse_valences(options.valence);
+  const Range range =
+      parse_valences(options.valence, options.border.empty() ? least_valence : least_boundary_faces);
   const ExactScheme scheme = exact_scheme(options);
+  if (!options.border.empty() && scheme.dual()) {
+    throw UsageError(
+        fmt::format("--border: with {} the surface ends inside the control mesh, so no piece of it is at the "
+                    "boundary: each has all faces "
+                    "around its vertex, and is one that --valence gives without --border",
+                    name_of(scheme.scheme)));
+  }
+  if (options.face && *options.face > range.first) {
+    throw UsageError(
+        fmt::format("--face: a boundary vertex with {} faces has no face {}; let --valence begin at {}",
+                    range.first, *options.face, *options.face));
+  }
   if (options.eigenvalues && (scheme.dual() || scheme.older_vertices)) {
     throw UsageError("--eigenvalues: the dissertation lists those of loop and catmark");
   }
@@ -276,7 +329,8 @@ ExitStatus run_on_valences(const Options& options) {
         "with 6 "
         "and more");
   }
-  const std::size_t count = range.last - range.first + 1;
+  const std::vector<PieceCorners> pieces = pieces_of(options, range);
+  const std::size_t count = pieces.size();
   std::vector<std::vector<IndependenceCase>> found(count);
   std::vector<CornerEigenvalues> eigenvalues(options.eigenvalues ? count : 0);
   Report report("independence", options);
@@ -287,11 +341,10 @@ ExitStatus run_on_valences(const Options& options) {
     // The largest first: it takes longest.
     parallel_for(count, options.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const auto valence = range.last - static_cast<std::uint32_t>(i);
-        const PieceCorners corners = corners_of(options, valence);
+        const PieceCorners& corners = pieces[count - 1 - i];
         found[count - 1 - i] =
             independence_cases(scheme, corners, requests_for(domains, scheme, corners), monitor);
-        if (options.eigenvalues) eigenvalues[count - 1 - i] = corner_eigenvalues(scheme, valence);
+        if (options.eigenvalues) eigenvalues[count - 1 - i] = corner_eigenvalues(scheme, corners.valence);
         monitor.report(static_cast<double>(++done) / static_cast<double>(count));
       }
     });
@@ -311,7 +364,7 @@ ExitStatus run_on_valences(const Options& options) {
     }
     if (options.matrices) {
       json.key("matrices").begin_array();
-      for (std::uint32_t n = range.first; n <= range.last; ++n) write_matrices(json, scheme, n);
+      for (const PieceCorners& corners : pieces) write_matrices(json, scheme, corners);
       json.end_array();
     }
   }
@@ -356,6 +409,18 @@ Command independence_command() {
   list.add(Group::own, "--opposite", &options->opposite,
            "The second corner across the quad (dual schemes: the vertex)")
       .needs("--second");
+  list.add(Group::own, "--border KIND", &options->border,
+           "Loop and Catmull-Clark: faces at a boundary vertex instead, which has as many faces as --valence "
+           "says, 1 and "
+           "more, and is smooth or a sharp corner; of two faces that are mirror images the first")
+      .needs("--valence")
+      .one_of({"smooth", "corner"})
+      .excludes("--second")
+      .excludes("--older-rule")
+      .excludes("--eigenvalues");
+  list.add(Group::own, "--face I", &options->face, "One of them, counted from a boundary edge to the other")
+      .needs("--border")
+      .between(least_boundary_faces, largest_valence);
   list.add(Group::own, "--older-rule", &options->older,
            "Catmull-Clark with the vertex points (Q + R + 2S)/4 of an early version")
       .needs("--valence");

@@ -12,5 +12,6 @@
 #include <snug/measure.h>
 #include <snug/mesh.h>
 #include <snug/motion.h>
+#include <snug/ray.h>
 #include <snug/surface.h>
 #include <snug/tessellate.h>

@@ -170,6 +170,59 @@ TEST_F(independence_command, of_two_corners) {
   expect_refused({"--valence", "5", "--second", "7", "--domain", "annulus"}, "only rings:K and omega");
 }
 
+TEST_F(independence_command, of_faces_at_a_boundary) {
+  const json found =
+      answer({"--scheme", "catmark", "--border", "smooth", "--valence", "1..4", "--domain", "rings:1"});
+  // Of mirror images one: 1, 1, 1 and 2, 1 and 2.
+  ASSERT_EQ(found["cases"].size(), 6);
+  const json& last = found["cases"][4];
+  EXPECT_EQ(last["valence"], 4);
+  EXPECT_EQ(last["border"], 1);
+  EXPECT_FALSE(last.contains("corner"));
+  EXPECT_EQ(last["dimension"], 16);
+  EXPECT_EQ(last["rank"], 14);
+  EXPECT_EQ(last["certificate"]["bound"], "kernel");
+  EXPECT_EQ(last["certificate"]["left_out"], 0);
+  EXPECT_FALSE(last["certificate"].contains("root"));
+  const json corner = answer({"--border", "corner", "--valence", "8", "--face", "4", "--matrices"});
+  ASSERT_EQ(corner["cases"].size(),
+            10);  // three polynomials, their pairs, three numbers of rings, the whole piece
+  for (const json& each : corner["cases"]) {
+    EXPECT_EQ(each["border"], 4);
+    EXPECT_EQ(each["corner"], true);
+  }
+  EXPECT_EQ(corner["cases"][7]["rank"], 14);
+  EXPECT_EQ(corner["cases"][9]["certificate"]["rings"], 3);
+  EXPECT_EQ(corner["matrices"][0]["corner"], true);
+  EXPECT_EQ(corner["matrices"][0]["matrix"][0], json::parse(R"({"1": "1"})"));
+  EXPECT_EQ(corner["matrices"][0]["matrix"][1], json::parse(R"({"1": "1/2", "2": "1/2"})"));
+  const Outcome text =
+      run_snug({"independence", "--border", "smooth", "--valence", "6", "--domain", "rings:1"});
+  EXPECT_NE(text.out.find("   6    2  rings:1       12 of 13   dependent"), std::string::npos) << text.out;
+}
+
+TEST_F(independence_command, refuses_what_boundaries_do_not_have) {
+  for (const char* scheme : {"doo-sabin", "midedge"})
+    expect_refused({"--border", "smooth", "--valence", "5", "--scheme", scheme},
+                   "ends inside the control mesh");
+  const std::vector<std::string> asked{"--border", "smooth", "--valence", "5"};
+  const auto expect_refused_with = [&](std::vector<std::string> more, const std::string& why) {
+    more.insert(more.begin(), asked.begin(), asked.end());
+    expect_refused(more, why);
+  };
+  expect_refused_with({"--second", "5"}, "exclude each other");
+  expect_refused_with({"--scheme", "catmark", "--older-rule"}, "exclude each other");
+  expect_refused_with({"--eigenvalues"}, "exclude each other");
+  expect_refused_with({"--domain", "annulus"}, "with --border, only");
+  expect_refused_with({"--domain", "conjecture"}, "not with --second or --border");
+  expect_refused_with({"--face", "6"}, "has no face 6");
+  expect_refused_with({"--face", "0"}, "from 1 to 200");
+  expect_refused({"--border", "sharp", "--valence", "5"}, "smooth or corner");
+  expect_refused({"--border", "smooth", "--valence", "0"}, "from 1 to 200");
+  expect_refused({"--border", "smooth", "--mesh", "mesh.obj"}, "needs --valence");
+  expect_refused({"--face", "1", "--valence", "5"}, "needs --border");
+}
+
 TEST_F(independence_command, of_the_largest_valence_and_other_rules) {
   for (const char* scheme : {"loop", "catmark", "doo-sabin", "midedge"}) {
     const json found = answer({"--scheme", scheme, "--valence", "200", "--domain", "piece:1"});

@@ -1,8 +1,11 @@
 #include <snug/independence/eigenvalues.h>
 
 #include <gtest/gtest.h>
+#include <snug/independence/piece_step.h>
 
+#include <map>
 #include <string>
+#include <vector>
 
 namespace snug {
 namespace {
@@ -15,7 +18,7 @@ std::string repeated(const ExactScheme& scheme, std::uint32_t n) {
   for (const RationalEigenvalue& each : corner_eigenvalues(scheme, n).repeated) {
     if (!text.empty()) text += "; ";
     text +=
-        each.value.get_str() + " " + std::to_string(each.algebraic) + " " + std::to_string(each.geometric);
+        each.value.get_str() + " " + std::to_string(each.algebraic) + " " + std::to_string(each.geometric());
   }
   return text;
 }
@@ -45,7 +48,31 @@ TEST(eigenvalues, have_all_eigenvectors_otherwise) {
   for (std::uint32_t n = 4; n <= 24; ++n) {
     for (const ExactScheme& scheme : {loop, catmark}) {
       for (const RationalEigenvalue& each : corner_eigenvalues(scheme, n).repeated) {
-        EXPECT_EQ(each.algebraic, each.geometric) << n << " " << each.value.get_str();
+        EXPECT_EQ(each.algebraic, each.geometric()) << n << " " << each.value.get_str();
+      }
+    }
+  }
+}
+
+// Rows with irrational weights are the corner's own: a span has 0 there, and no mean around it.
+TEST(eigenvalues, have_spans_that_a_step_multiplies) {
+  for (std::uint32_t n = 3; n <= 12; ++n) {
+    for (const ExactScheme& scheme : {loop, catmark}) {
+      const PieceStep step = piece_step(scheme, n);
+      for (const RationalEigenvalue& each : corner_eigenvalues(scheme, n).repeated) {
+        for (const std::vector<mpq_class>& vector : each.span) {
+          ASSERT_EQ(vector.size(), step.dimension);
+          for (std::uint32_t r = 0; r < step.kept; ++r) {
+            mpq_class rational = 0;
+            std::map<std::uint32_t, mpq_class> cosines;
+            for (const auto& [point, w] : step.rows[r]) {
+              rational += w.rational * vector[point];
+              for (const auto& [index, factor] : w.cosines) cosines[index] += factor * vector[point];
+            }
+            EXPECT_EQ(rational, each.value * vector[r]) << n << " row " << r;
+            for (const auto& [index, sum] : cosines) EXPECT_EQ(sum, 0) << n << " row " << r;
+          }
+        }
       }
     }
   }

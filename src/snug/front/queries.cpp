@@ -9,6 +9,7 @@
 #include <snug/query/hull.h>
 #include <snug/query/measure.h>
 #include <snug/query/pairs.h>
+#include <snug/query/ray.h>
 #include <snug/query/subdivide.h>
 #include <snug/query/tessellate.h>
 #include <snug/surface/evaluate.h>
@@ -84,6 +85,16 @@ std::vector<SignedDistance> signed_distances(const Surface& surface, std::span<c
                                              const ClosestOptions& options, int threads,
                                              const WorkMonitor& monitor) {
   return signed_distances(bvh(surface), points, options, threads, monitor);
+}
+
+RayHits trace(const Surface& surface, const Ray& ray, const RayOptions& options, const WorkMonitor& monitor,
+              Workspace& workspace) {
+  return trace(workspace.pieces().of(surface), ray, options, monitor);
+}
+
+std::vector<RayHits> trace(const Surface& surface, std::span<const Ray> rays, const RayOptions& options,
+                           int threads, const WorkMonitor& monitor) {
+  return trace(bvh(surface), rays, options, threads, monitor);
 }
 
 Deviation deviation(const Surface& surface, std::span<const Triangle> candidate,

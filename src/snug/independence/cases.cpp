@@ -104,8 +104,15 @@ std::vector<std::uint32_t> range(std::uint32_t begin, std::uint32_t end) {
   return numbers;
 }
 
+// At a boundary all weights are rational.
 std::uint32_t order_of(const PieceCorners& corners) {
+  if (corners.boundary) return 1;
   return corners.second ? std::lcm(corners.valence, *corners.second) : corners.valence;
+}
+
+std::vector<IndependenceDomain> domains_of_ring_1() {
+  return {{Kind::piece, 1},     {Kind::piece, 2},     {Kind::piece, 3},
+          {Kind::pieces, 1, 2}, {Kind::pieces, 1, 3}, {Kind::pieces, 2, 3}};
 }
 
 // All domains of a piece with these corners.
@@ -113,7 +120,9 @@ class PieceCases {
  public:
   PieceCases(const ExactScheme& scheme, const PieceCorners& corners, ModularField field, WorkMonitor monitor)
       : scheme_(scheme), corners_(corners), monitor_(std::move(monitor)), field_(std::move(field)) {
-    if (!corners_.second) {
+    if (corners_.boundary) {
+      parts_.emplace_back(boundary_step(scheme_, corners_.valence, *corners_.boundary), field_);
+    } else if (!corners_.second) {
       parts_.emplace_back(piece_step(scheme_, corners_.valence), field_);
     } else {
       TwoCornerStep split = two_corner_step(scheme_, corners_, field_.order);
@@ -136,7 +145,7 @@ class PieceCases {
     found.statement = request.statement;
     found.text = request.text;
     found.certificate.prime = field_.prime;
-    found.certificate.root = field_.root;
+    if (!corners_.boundary) found.certificate.root = field_.root;
     if (!conclude_on(request.domain, found)) return std::nullopt;
     return found;
   }
@@ -439,12 +448,19 @@ std::uint32_t conjectured_rings(const ExactScheme& scheme, std::uint32_t n) {
 }
 
 std::vector<IndependenceDomain> chapter_domains(const ExactScheme& scheme, std::uint32_t n) {
-  std::vector<IndependenceDomain> all{{Kind::piece, 1},     {Kind::piece, 2},     {Kind::piece, 3},
-                                      {Kind::pieces, 1, 2}, {Kind::pieces, 1, 3}, {Kind::pieces, 2, 3}};
+  std::vector<IndependenceDomain> all = domains_of_ring_1();
   if (scheme.scheme == Scheme::catmark && n == 3) all.push_back({Kind::ring, 2});
   const std::uint32_t rings = PieceCases(scheme, {n}, modular_field(n), {}).rings_that_count();
   for (std::uint32_t k = 1; k <= rings; ++k) all.push_back({Kind::rings, k});
   all.insert(all.end(), {{Kind::omega}, {Kind::annulus}, {Kind::global}});
+  return all;
+}
+
+std::vector<IndependenceDomain> boundary_domains(const ExactScheme& scheme, const PieceCorners& corners) {
+  std::vector<IndependenceDomain> all = domains_of_ring_1();
+  const std::uint32_t rings = PieceCases(scheme, corners, modular_field(1), {}).rings_that_count();
+  for (std::uint32_t k = 1; k <= rings; ++k) all.push_back({Kind::rings, k});
+  all.push_back({Kind::omega});
   return all;
 }
 
@@ -460,7 +476,7 @@ std::vector<IndependenceDomain> two_corner_domains(const ExactScheme& scheme, co
 std::vector<IndependenceCase> independence_cases(const ExactScheme& scheme, const PieceCorners& corners,
                                                  const std::vector<IndependenceRequest>& requests,
                                                  const WorkMonitor& monitor, std::uint32_t least_prime) {
-  SNUG_EXPECT(corners.valence >= 3);
+  SNUG_EXPECT(corners.boundary || corners.valence >= 3);
   const FlintMemory memory;
   constexpr int most_primes = 20;
   std::uint32_t above = least_prime;

@@ -39,7 +39,8 @@ using PolynomialVector = std::map<std::uint32_t, std::vector<mpq_class>>;
 /// Why the rank is what it is; docs/independence.md says how each is checked.
 struct RankCertificate {
   enum class Bound { full, count, kernel };
-  std::uint32_t prime = 0, root = 0;   ///< the rank modulo this prime is that of the domain
+  std::uint32_t prime = 0,
+                root = 0;  ///< the rank modulo this prime is that of the domain; root 0 at a boundary
   std::optional<std::uint32_t> rings;  ///< omega: so many are enough for it
   std::optional<std::uint32_t> steps;  ///< global: after so many steps
   Bound bound = Bound::full;           ///< why it is no greater
@@ -80,10 +81,16 @@ struct IndependenceRequest {
 [[nodiscard]] std::vector<IndependenceDomain> two_corner_domains(const ExactScheme& scheme,
                                                                  const PieceCorners& corners);
 
+/// Those of a face at a boundary vertex: polynomial pieces of ring 1, all numbers of rings up to the last that adds something,
+/// and the whole piece.
+[[nodiscard]] std::vector<IndependenceDomain> boundary_domains(const ExactScheme& scheme,
+                                                               const PieceCorners& corners);
+
 /// Exact ranks with certificates.
 ///
 /// Guarantee: ranks are those of the functions, in exact arithmetic.
-/// Requires:  corners that two_corner_step() takes; with two of them `rings` and `omega` alone.
+/// Requires:  corners that boundary_step() or two_corner_step() takes; with two of them `rings` and `omega` alone, at a
+///            boundary neither `annulus` nor `global`.
 /// Errors:    Interrupted; InputError (refused) where no certificate is found, which is not known to happen: an unlucky prime,
 ///            whose ranks are too low for any kernel, is followed by the next one.
 /// Cost:      grows as the cube of the valence times the rings, kernels with its fourth power; K^2 numbers are kept a ring.

@@ -88,7 +88,7 @@ class Refinement {
     result_.rows.push_back(std::move(row));
     return static_cast<std::uint32_t>(result_.rows.size() - 1);
   }
-  // Neighbours of a vertex that faces surround, counterclockwise; nothing at a border.
+  // Neighbours of a vertex that faces surround, counterclockwise; nothing at a boundary.
   [[nodiscard]] std::vector<std::uint32_t> around(std::uint32_t v) const {
     std::vector<std::uint32_t> ring;
     if (out_[v].empty()) return ring;
@@ -104,6 +104,14 @@ class Refinement {
     return ring;
   }
 
+  [[nodiscard]] std::vector<std::uint32_t> along_boundary(std::uint32_t v) const {
+    std::vector<std::uint32_t> ends;
+    for (const auto& [a, b] : net_.boundary) {
+      if (a == v || b == v) ends.push_back(a == v ? b : a);
+    }
+    return ends;
+  }
+
   void add_primal() {
     const bool loop = scheme_.scheme == Scheme::loop;
     for (std::uint32_t f = 0; f < net_.faces.size() && !loop; ++f) {
@@ -116,12 +124,32 @@ class Refinement {
       if (edge.first > edge.second || !edges_.contains({edge.second, edge.first})) continue;
       result_.of_edge[edge] = add_point(loop ? loop_edge(edge) : catmark_edge(edge));
     }
+    for (const Edge& edge : net_.boundary) {
+      result_.of_edge[edge] =
+          add_point({{edge.first, {fraction(1, 2), {}}}, {edge.second, {fraction(1, 2), {}}}});
+    }
     for (std::uint32_t v = 0; v < net_.points; ++v) {
-      const std::vector<std::uint32_t> ring = around(v);
-      if (!ring.empty())
+      if (const std::vector<std::uint32_t> ring = around(v); !ring.empty()) {
         result_.of_vertex[v] = add_point(loop ? loop_vertex(v, ring) : catmark_vertex(v, ring));
+      } else if (const std::vector<std::uint32_t> ends = along_boundary(v); ends.size() == 2) {
+        result_.of_vertex[v] = add_point(boundary_vertex(v, ends));
+      }
     }
     for (std::uint32_t f = 0; f < net_.faces.size(); ++f) add_children(f, loop);
+    add_boundary();
+  }
+  [[nodiscard]] WeightRow boundary_vertex(std::uint32_t v, const std::vector<std::uint32_t>& ends) const {
+    if (net_.corners.contains(v)) return {{v, {1, {}}}};
+    return {{v, {fraction(6, 8), {}}}, {ends[0], {fraction(1, 8), {}}}, {ends[1], {fraction(1, 8), {}}}};
+  }
+  void add_boundary() {
+    for (const auto& [a, b] : net_.boundary) {
+      const std::uint32_t middle = result_.of_edge.at({a, b});
+      for (const auto& end : {result_.of_vertex[a], result_.of_vertex[b]}) {
+        if (end) result_.net.boundary.insert(undirected(*end, middle));
+      }
+    }
+    for (const std::uint32_t v : net_.corners) result_.net.corners.insert(*result_.of_vertex[v]);
   }
   WeightRow loop_edge(Edge edge) const {
     RowBuilder row;
@@ -199,6 +227,7 @@ class Refinement {
   }
 
   void add_dual() {
+    SNUG_EXPECT(net_.boundary.empty());
     for (std::uint32_t f = 0; f < net_.faces.size(); ++f) {
       std::vector<std::uint32_t> fine;
       for (std::uint32_t i = 0; i < net_.faces[f].size(); ++i) {
@@ -398,6 +427,47 @@ ControlNet piece_net(const ExactScheme& scheme, std::uint32_t n) {
   std::vector<std::uint32_t> polygon(n);
   std::iota(polygon.begin(), polygon.end(), 0U);
   net.faces = {polygon, {1, 0, w(2), w(1)}, {0, w(4), w(3), w(2)}, {0, n - 1, w(5), w(4)}};
+  return net;
+}
+
+ControlNet boundary_net(const ExactScheme& scheme, std::uint32_t n, const BoundaryFace& at) {
+  SNUG_EXPECT(!scheme.dual() && at.face >= 1 && at.face <= n);
+  const bool loop = scheme.scheme == Scheme::loop, first = at.face == 1, last = at.face == n;
+  ControlNet net;
+  // The end of edge j of the fan, and with Catmull-Clark the far corner of the face after it.
+  const auto e = [&](std::uint32_t j) { return loop ? 1 + j : 1 + 2 * j; };
+  const auto f = [](std::uint32_t j) { return 2 + 2 * j; };
+  for (std::uint32_t j = 0; j < n; ++j) {
+    net.faces.push_back(loop ? std::vector{0U, e(j), e(j + 1)} : std::vector{0U, e(j), f(j), e(j + 1)});
+  }
+  // Beyond the face, from the fan's first side to its last: outer(0) lies straight beyond the end of the face's first edge.
+  const std::uint32_t begin = e(n) + 1 + (first ? 0 : 1), left = at.face - 1, right = at.face;
+  const auto outer = [&](std::uint32_t i) { return begin + i; };
+  const auto before = begin - 1;  // beyond the face before, if there is one
+  if (loop) {
+    if (!first) {
+      net.faces.push_back({e(left), e(left - 1), before});
+      net.faces.push_back({e(left), before, outer(0)});
+    }
+    net.faces.push_back({e(left), outer(0), outer(1)});
+    net.faces.push_back({e(right), e(left), outer(1)});
+    net.faces.push_back({e(right), outer(1), outer(2)});
+    if (!last) {
+      net.faces.push_back({e(right), outer(2), outer(3)});
+      net.faces.push_back({e(right), outer(3), e(right + 1)});
+    }
+  } else {
+    if (!first) net.faces.push_back({f(left - 1), before, outer(0), e(left)});
+    net.faces.push_back({f(left), e(left), outer(0), outer(1)});
+    net.faces.push_back({f(left), outer(1), outer(2), outer(3)});
+    net.faces.push_back({f(left), outer(3), outer(4), e(right)});
+    if (!last) net.faces.push_back({f(right), e(right), outer(4), outer(5)});
+  }
+  net.points = begin + (loop ? 3 : 5) + (last ? 0 : 1);
+  net.boundary = {{0, e(0)}, {0, e(n)}};
+  if (first) net.boundary.emplace(e(0), outer(0));
+  if (last) net.boundary.emplace(e(n), outer(loop ? 2 : 4));
+  if (at.corner) net.corners = {0};
   return net;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -12,10 +13,13 @@
 
 namespace snug {
 
-/// A part of an oriented control mesh: its faces, counterclockwise. Points are 0 to points - 1.
+/// A part of an oriented control mesh: its faces, counterclockwise. Points are 0 to points - 1. Edges of one face are where the
+/// part ends, or boundary edges of the mesh.
 struct ControlNet {
   std::uint32_t points = 0;
   std::vector<std::vector<std::uint32_t>> faces;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> boundary = {};  ///< edges, the smaller end first
+  std::set<std::uint32_t> corners = {};                             ///< sharp boundary vertices: they stay
 };
 
 /// Rules of refinement that chapter 3 of the dissertation tells apart.
@@ -26,11 +30,18 @@ struct ExactScheme {
   [[nodiscard]] bool dual() const { return scheme == Scheme::doo_sabin || scheme == Scheme::midedge; }
 };
 
+/// A face at a boundary vertex.
+struct BoundaryFace {
+  std::uint32_t face = 1;  ///< from 1, of the fan of faces from one boundary edge to the other
+  bool corner = false;     ///< the vertex is sharp
+};
+
 /// The extraordinary corners of a piece (dual schemes: faces at a vertex): one, or two at the ends of an edge or opposite.
 struct PieceCorners {
-  std::uint32_t valence = 3;
+  std::uint32_t valence = 3;  ///< at a boundary vertex: how many faces it has
   std::optional<std::uint32_t> second = {};
-  bool opposite = false;  ///< across the quad, or the vertex; not with Loop
+  bool opposite = false;                      ///< across the quad, or the vertex; not with Loop
+  std::optional<BoundaryFace> boundary = {};  ///< the only corner is a boundary vertex
 };
 
 /// A net one step finer: the points whose masks have all their points, and the faces of those.
@@ -45,7 +56,8 @@ struct RefinedNet {
 
 /// One step by exact masks.
 ///
-/// Requires:  a scheme of the four; triangles for Loop; manifold edges; the valence of each irrational mask divides `order`.
+/// Requires:  a scheme of the four; triangles for Loop; manifold edges; the valence of each irrational mask divides `order`; no
+///            boundary with dual schemes.
 /// Source:    [Wu05, sec. 2.2 to 2.5].
 [[nodiscard]] RefinedNet refine(const ControlNet& net, const ExactScheme& scheme, std::uint32_t order);
 
@@ -59,6 +71,11 @@ struct RefinedNet {
 /// The control points of a piece with one extraordinary corner of valence n >= 3, as docs/independence.md numbers them, less
 /// one: n + 6 (Loop), 2 n + 8 (Catmull-Clark), n + 5 (dual schemes).
 [[nodiscard]] ControlNet piece_net(const ExactScheme& scheme, std::uint32_t n);
+/// Those of a face at a boundary vertex with `faces` faces, all else regular: faces + 7 (Loop), 2 faces + 9 (Catmull-Clark), one
+/// less for each of its edges at the vertex that is a boundary edge.
+///
+/// Requires:  a primal scheme; 1 <= at.face <= faces.
+[[nodiscard]] ControlNet boundary_net(const ExactScheme& scheme, std::uint32_t faces, const BoundaryFace& at);
 /// Those of a piece with two extraordinary corners: the piece's own, counterclockwise, then around them; with dual schemes
 /// the vertex, its neighbours, then face by face.
 [[nodiscard]] ControlNet two_corner_net(const ExactScheme& scheme, const PieceCorners& corners);

@@ -137,7 +137,7 @@ std::vector<RationalEigenvalue> repeated_ones(const Polynomial& p, const Matrix&
     Matrix shifted = rows;
     for (std::size_t i = 0; i < shifted.size(); ++i) shifted[i][i] -= value;
     shifted.insert(shifted.end(), conditions.begin(), conditions.end());
-    found.push_back({value, times, static_cast<std::uint32_t>(null_space(shifted, rows.size()).size())});
+    found.push_back({value, times, null_space(shifted, rows.size())});
   }
   return found;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -9,10 +10,13 @@
 
 namespace snug {
 
-/// A rational eigenvalue, how often it is a root, and how many independent eigenvectors it has.
+/// A rational eigenvalue, how often it is a root, and its eigenvectors: control points 1 to K, a basis.
 struct RationalEigenvalue {
   mpq_class value;
-  std::uint32_t algebraic = 0, geometric = 0;
+  std::uint32_t algebraic = 0;
+  std::vector<std::vector<mpq_class>> span;
+
+  [[nodiscard]] std::size_t geometric() const { return span.size(); }
 };
 
 /// What is known of the eigenvalues of A', the step to the part of a piece that keeps its corner.

@@ -13,13 +13,32 @@ bool shares_vertex(const std::vector<std::uint32_t>& a, const std::vector<std::u
                      [&](std::uint32_t v) { return std::find(b.begin(), b.end(), v) != b.end(); });
 }
 
-// Each control point of a regular piece: of its face (primal) and the faces around; with Loop's valence 3 one comes twice.
+// Are all faces around the corners of a face there? Those at a boundary have two boundary edges.
+bool surrounded(const ControlNet& net, const std::vector<std::uint32_t>& corners,
+                const std::vector<std::vector<std::uint32_t>>& around) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (const auto& face : around) {
+    for (std::size_t i = 0; i < face.size(); ++i) edges.emplace(face[i], face[(i + 1) % face.size()]);
+  }
+  return std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
+    const auto [a, b] = edge;
+    return !shares_vertex({a, b}, corners) || edges.contains({b, a}) ||
+           net.boundary.contains(std::minmax(a, b));
+  });
+}
+
+// Each control point of a regular piece: of its face (primal) and the faces around; with Loop's valence 3 one comes twice. At
+// a boundary those that are there: what else the polynomial has are combinations of them.
 std::vector<Functional> primal_functionals(const ControlNet& net, std::uint32_t face) {
+  std::vector<std::vector<std::uint32_t>> around;
   std::set<std::uint32_t> points;
   for (const auto& other : net.faces) {
-    if (shares_vertex(other, net.faces[face])) points.insert(other.begin(), other.end());
+    if (!shares_vertex(other, net.faces[face])) continue;
+    around.push_back(other);
+    points.insert(other.begin(), other.end());
   }
-  SNUG_EXPECT(points.size() >= (net.faces[face].size() == 3 ? 11U : 16U));
+  SNUG_EXPECT(surrounded(net, net.faces[face], around));
+  SNUG_EXPECT(!net.boundary.empty() || points.size() >= (net.faces[face].size() == 3 ? 11U : 16U));
   std::vector<Functional> all;
   for (const std::uint32_t p : points) all.push_back({{p, 1}});
   return all;
@@ -50,16 +69,11 @@ std::vector<Functional> functionals(const ExactScheme& scheme, const ControlNet&
                        : primal_functionals(net, child);
 }
 
-}  // namespace
-
-PieceStep piece_step(const ExactScheme& scheme, std::uint32_t n, std::uint32_t order) {
-  const ControlNet net = piece_net(scheme, n);
-  const RefinedNet fine = refine(net, scheme, order == 0 ? n : order);
-  const std::array<std::uint32_t, 2> edge = scheme.dual()
-                                                ? std::array{fine.child.at({0, 0}), fine.child.at({0, 1})}
-                                                : std::array{*fine.of_vertex[0], fine.of_edge.at({0, 1})};
+// `edge`: where the net's edge (0, 1) is in the finer one; `children`: the regular pieces.
+PieceStep kept_step(const ExactScheme& scheme, const ControlNet& net, const RefinedNet& fine,
+                    std::array<std::uint32_t, 2> edge,
+                    const std::array<std::pair<std::uint32_t, std::uint32_t>, 3>& children) {
   const std::vector<std::uint32_t> kept = embedded(net, {0, 1}, fine.net, edge);
-
   // Kept rows first, in the order of the net.
   PieceStep step;
   step.dimension = step.kept = net.points;
@@ -73,9 +87,6 @@ PieceStep piece_step(const ExactScheme& scheme, std::uint32_t n, std::uint32_t o
     number[p] = static_cast<std::uint32_t>(step.rows.size());
     step.rows.push_back(fine.rows[p]);
   }
-  std::array<std::pair<std::uint32_t, std::uint32_t>, 3> children{{{1, 1}, {1, 2}, {1, 3}}};  // Catmull-Clark
-  if (scheme.scheme == Scheme::loop) children = {{{n - 1, 2}, {n - 1, 3}, {n - 1, 1}}};
-  if (scheme.dual()) children = {{{1, 1}, {2, 0}, {3, 0}}};
   for (const auto& child : children) {
     step.pieces.push_back(functionals(scheme, fine.net, fine.child.at(child)));
     for (Functional& functional : step.pieces.back()) {
@@ -83,6 +94,30 @@ PieceStep piece_step(const ExactScheme& scheme, std::uint32_t n, std::uint32_t o
     }
   }
   return step;
+}
+
+}  // namespace
+
+PieceStep piece_step(const ExactScheme& scheme, std::uint32_t n, std::uint32_t order) {
+  using Children = std::array<std::pair<std::uint32_t, std::uint32_t>, 3>;
+  const ControlNet net = piece_net(scheme, n);
+  const RefinedNet fine = refine(net, scheme, order == 0 ? n : order);
+  if (scheme.dual())
+    return kept_step(scheme, net, fine, {fine.child.at({0, 0}), fine.child.at({0, 1})},
+                     {{{1, 1}, {2, 0}, {3, 0}}});
+  const Children children = scheme.scheme == Scheme::loop ? Children{{{n - 1, 2}, {n - 1, 3}, {n - 1, 1}}}
+                                                          : Children{{{1, 1}, {1, 2}, {1, 3}}};
+  return kept_step(scheme, net, fine, {*fine.of_vertex[0], fine.of_edge.at({0, 1})}, children);
+}
+
+PieceStep boundary_step(const ExactScheme& scheme, std::uint32_t faces, const BoundaryFace& at) {
+  const ControlNet net = boundary_net(scheme, faces, at);
+  const RefinedNet fine = refine(net, scheme, 1);
+  const std::uint32_t face = at.face - 1;
+  const std::uint32_t middle = scheme.scheme == Scheme::loop ? 3 : 2,
+                      last = scheme.scheme == Scheme::loop ? 2 : 3;
+  return kept_step(scheme, net, fine, {*fine.of_vertex[0], fine.of_edge.at({0, 1})},
+                   {{{face, 1}, {face, middle}, {face, last}}});
 }
 
 TwoCornerStep two_corner_step(const ExactScheme& scheme, const PieceCorners& corners, std::uint32_t order) {

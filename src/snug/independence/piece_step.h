@@ -27,6 +27,12 @@ struct PieceStep {
 /// `order`: a multiple of n, of which weights are cosines; 0 for n.
 [[nodiscard]] PieceStep piece_step(const ExactScheme& scheme, std::uint32_t n, std::uint32_t order = 0);
 
+/// The step of a face at a boundary vertex with `faces` faces: likewise; its regular pieces may lie at the boundary, and have
+/// then the control points that are in the mesh.
+///
+/// Requires:  that boundary_net() takes it.
+[[nodiscard]] PieceStep boundary_step(const ExactScheme& scheme, std::uint32_t faces, const BoundaryFace& at);
+
 /// The first step of a piece with two extraordinary corners: two regular pieces, and a part with one corner at each.
 struct TwoCornerStep {
   struct Part {

@@ -1,0 +1,154 @@
+#include <snug/query/ray.h>
+
+#include <string_view>
+
+#include <fmt/core.h>
+#include <snug/io/read_file.h>
+
+#include "common.h"
+#include "length.h"
+#include "placed_pair.h"
+#include "progress_bar.h"
+#include "witness.h"
+#include "words.h"
+
+namespace snug::command {
+namespace {
+
+struct Options : CommonOptions {
+  std::string mesh, rays;
+  std::string precision = "0.0001%";
+  bool any = false, all = false;
+};
+
+// Lines "ox oy oz dx dy dz", and for a segment "from to".
+std::vector<Ray> read_rays(const std::string& path) {
+  const std::string text = read_file(path, stopped_by_interrupts());
+  std::vector<Ray> rays;
+  for_each_line(text, [&](std::string_view line, std::size_t number) {
+    Ray ray;
+    bool good = true;
+    for (std::size_t k = 0; k < 3; ++k) good = good && parse(next_word(line), ray.origin[k]);
+    for (std::size_t k = 0; k < 3; ++k) good = good && parse(next_word(line), ray.direction[k]);
+    if (const std::string_view from = next_word(line); !from.empty()) {
+      good = good && parse(from, ray.from) && parse(next_word(line), ray.to) && next_word(line).empty();
+    }
+    good = good && is_finite(ray.origin) && is_finite(ray.direction) && !(ray.direction == Vector3{}) &&
+           std::isfinite(ray.from) && ray.from <= ray.to;
+    if (!good) {
+      throw InputError(InputProblem::unreadable,
+                       path + ":" + std::to_string(number) +
+                           ": a line is 'ox oy oz dx dy dz', or with 'from to' after it: finite numbers, a "
+                           "direction that is not 0 0 0, and from <= to");
+    }
+    rays.push_back(ray);
+  });
+  return rays;
+}
+
+void write_hit(JsonWriter& json, const LimitSurface& surface, const RayHit& hit) {
+  json.begin_object()
+      .key("t")
+      .begin_array()
+      .value(hit.t.lower)
+      .value(hit.t.upper)
+      .end_array()
+      .field("certified", hit.certified);
+  json.key("side");
+  hit.side == 0 ? json.null() : json.value(hit.side);
+  json.field("position", hit.point).field("error", hit.point_error);
+  write_place(json, surface, hit.at);
+  json.end_object();
+}
+
+std::string line_of(std::size_t ray, const LimitSurface& surface, const RayHit& hit) {
+  const std::string corner = surface.rules().triangular() ? "" : fmt::format(" {}", hit.at.corner);
+  return fmt::format("{}  {} {}  {}  {} {} {}  {} {} {}{}", ray, hit.t.lower, hit.t.upper,
+                     hit.certified ? "certified" : "uncertified", hit.point.x, hit.point.y, hit.point.z,
+                     hit.at.owner, hit.at.u, hit.at.v, corner);
+}
+
+void write_answer(Report& report, const LimitSurface& surface, std::size_t ray, const RayHits& answer) {
+  if (report.json()) {
+    JsonWriter& json = report.write();
+    json.begin_object().field("complete", answer.complete).key("hits").begin_array();
+    for (const RayHit& hit : answer.hits) write_hit(json, surface, hit);
+    json.end_array().end_object();
+    return;
+  }
+  for (const RayHit& hit : answer.hits) report.text(line_of(ray, surface, hit));
+  if (answer.certain_miss()) report.text(fmt::format("{}  no hit", ray));
+  if (!answer.complete) {
+    report.text(fmt::format("{}  the budget ended: there may be more; give a larger --budget", ray));
+  }
+}
+
+// Nothing about the ray is left open.
+bool decided(const RayHits& answer) {
+  if (!answer.complete) return false;
+  for (const RayHit& hit : answer.hits) {
+    if (!hit.certified) return false;
+  }
+  return true;
+}
+
+ExitStatus run(const Options& options) {
+  const Length precision = parse_length(options.precision, "--precision", true);
+  const std::vector<Ray> rays = read_rays(options.rays);
+  const SurfaceBvhOptions how = model_options(options);
+  const LimitSurface surface =
+      load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  RayOptions wanted;
+  wanted.query = options.all ? RayQuery::all : options.any ? RayQuery::any : RayQuery::nearest;
+  wanted.precision = precision.in_mesh_units(surface.size());
+  wanted.budget = options.budget;
+  std::vector<RayHits> answers;
+  {
+    ProgressBar bar("rays", options.quiet);
+    const WorkMonitor monitor = bar.monitor();
+    naming(options.mesh, [&] {
+      const SurfaceBvh model(surface, how, monitor);
+      answers = trace(model, rays, wanted, options.threads, monitor);
+    });
+  }
+  Report report("ray", options);
+  report.heads({options.mesh}, {name_of(surface.options().scheme)});
+  if (report.json()) report.write().field("precision", *wanted.precision).key("results").begin_array();
+  report.text(fmt::format("# ray  t: lower upper  proof  x y z  {} u v{}", surface.rules().owner(),
+                          surface.rules().triangular() ? "" : " corner"));
+  bool all_decided = true;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    write_answer(report, surface, i, answers[i]);
+    all_decided = all_decided && decided(answers[i]);
+  }
+  if (report.json()) report.write().end_array();
+  return report.finish(all_decided);
+}
+
+}  // namespace
+
+Command ray_command() {
+  auto options = std::make_shared<Options>();
+  options->budget = RayOptions().budget;
+  OptionList list;
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL)");
+  list.add(Group::own, "--rays FILE", &options->rays,
+           "File with one ray per line, 'ox oy oz dx dy dz', for a segment with 'from to' after it; - for "
+           "standard input")
+      .required();
+  list.add(Group::own, "--all", &options->all, "All hits, not only the nearest one");
+  list.add(Group::own, "--any", &options->any,
+           "Some hit, not always the nearest one: is anything in the way?");
+  list.add(Group::own, "--precision LENGTH", &options->precision,
+           "Aimed-at length of a hit's interval; mesh units, or percent of the mesh");
+  add_common_options(list, *options);
+  add_bound_options(list, *options);
+  return {"ray",
+          Topic::one_surface,
+          "Find where rays hit a limit surface",
+          {"snug ray bust.obj --rays rays.txt --all", "echo \"0 0 9 0 0 -1\" | snug ray bust.obj --rays -"},
+          std::move(list),
+          [options] { return run(*options); }};
+}
+
+}  // namespace snug::command

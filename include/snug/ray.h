@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <snug/surface.h>
+
+namespace snug {
+
+/// The points origin + t direction with from <= t <= to: a ray, or a segment.
+struct Ray {
+  Point3 origin;
+  Vector3 direction;  ///< of any length but 0; t counts in its lengths
+  double from = 0;
+  double to = std::numeric_limits<double>::infinity();
+};
+
+/// Which hits are looked for.
+enum class RayQuery : std::uint8_t {
+  nearest,  ///< the first one
+  any,      ///< some one: is anything in the way?
+  all,
+};
+
+struct RayOptions {
+  RayQuery query = RayQuery::nearest;
+  /// Aimed-at length of a hit's interval, in mesh units; default: 1e-6 of the surface's size.
+  std::optional<double> precision{};
+  std::uint64_t budget = 100'000;  ///< most splits for each ray
+};
+
+/// A place where a ray meets a limit surface, or may do so.
+struct RayHit {
+  Interval t;
+  /// Is it proved that the ray meets the surface within `t`? Else it may touch it there: it is tangent, passes
+  /// the border of an open surface, or begins or ends, as nearly as can be told.
+  bool certified = false;
+  /// +1 where the ray passes to the side that the normal shows, -1 against it; 0 where that is not known.
+  int side = 0;
+  Point3 point;            ///< in the middle of `t`
+  double point_error = 0;  ///< upper bound, per coordinate, of |point - p| for the ray's points p in `t`
+  SurfaceParameter at;     ///< close to where it is on the surface; no bound is proved
+  std::optional<Vector3> normal;  ///< of the surface at `at`, of length 1; empty where there is none
+};
+
+/// The hits of one ray, by t.
+struct RayHits {
+  /// With RayQuery::nearest the last one is certified, if any is: those before it may be hits. With `any`, one
+  /// that is certified, or all that are not.
+  std::vector<RayHit> hits;
+  /// False where the budget ended first: then there may be hits elsewhere, too.
+  bool complete = true;
+
+  /// Is it proved that there is a hit; that there is none? Neither where it cannot be told.
+  [[nodiscard]] bool certain_hit() const { return !hits.empty() && hits.back().certified; }
+  [[nodiscard]] bool certain_miss() const { return hits.empty() && complete; }
+};
+
+/// Where a ray meets a limit surface: the surface itself, not triangles near it.
+///
+/// Guarantee: if `complete`, every hit on [from, to] that the query is about lies in the `t` of one of the
+///            answers; in particular nothing slips through between faces. In the interval of a certified
+///            answer there is a hit. With `all`, certified answers of a surface have as many signs as the ray
+///            crosses it, but for even numbers of crossings nearer to each other than they can be told apart.
+///            The result depends on the input alone.
+/// Errors:    InputError: (value) for a number that is not finite where it must be, a direction of length 0,
+///            from > to, a precision that is negative or not finite; (refused) if no face of the mesh has a
+///            limit surface; (unrepresentable) for a result that does not fit a double. Interrupted.
+/// Cost:      some microseconds; ten times that where a ray is aimed at an edge or a vertex
+///            (bench/results/rays.txt).
+/// Source:    derivations/rays.md.
+[[nodiscard]] SNUG_API RayHits trace(const Surface& surface, const Ray& ray, const RayOptions& options = {},
+                                     const WorkMonitor& monitor = {},
+                                     Workspace& workspace = Workspace::of_this_thread());
+/// The same for many rays, in the same order; results do not depend on threads. Faster where rays that follow
+/// one another are close.
+[[nodiscard]] SNUG_API std::vector<RayHits> trace(const Surface& surface, std::span<const Ray> rays,
+                                                  const RayOptions& options = {}, int threads = 0,
+                                                  const WorkMonitor& monitor = {});
+
+}  // namespace snug

@@ -1,0 +1,120 @@
+#include <snug/query/ray.h>
+
+#include <atomic>
+#include <cmath>
+
+#include <snug/base/error.h>
+#include <snug/base/parallel.h>
+#include <snug/geometry/direction.h>
+#include <snug/geometry/rounding.h>
+#include <snug/search/precision.h>
+#include <snug/search/ray_walk.h>
+#include <snug/surface/evaluate.h>
+#include <snug/surface/unscale.h>
+
+namespace snug {
+namespace {
+
+// A rounding more or less on a number of some roundings.
+double lowered(double x) { return x - (16 * unit_roundoff * std::fabs(x) + underflow_error); }
+double raised(double x) { return x + (16 * unit_roundoff * std::fabs(x) + underflow_error); }
+
+// Between parameters of a ray and lengths along it in scaled units.
+class RayScale {
+ public:
+  RayScale(const Vector3& direction, PowerOfTwo surface)
+      : turn_(PowerOfTwo::normalising(max_abs(direction))),
+        length_(snug::length(turn_.apply(direction))),
+        to_scaled_(surface * turn_.inverse()) {}
+  [[nodiscard]] double to_scaled(double t) const { return to_scaled_.apply(t) * length_; }
+  [[nodiscard]] double to_parameter(double s) const { return to_scaled_.inverse().apply(s / length_); }
+
+ private:
+  PowerOfTwo turn_;
+  double length_;
+  PowerOfTwo to_scaled_;
+};
+
+void check(const Ray& ray) {
+  require_value(is_finite(ray.origin), "ray: a coordinate of the origin is not finite; give three numbers");
+  require_value(is_finite(ray.direction) && !(ray.direction == Vector3{}),
+                "ray: the direction must be three finite numbers, not all 0");
+  require_value(ray.from <= ray.to && std::isfinite(ray.from),
+                "ray: 'from' must be finite and not above 'to'");
+}
+
+class RayQuestion {
+ public:
+  RayQuestion(const LimitSurface& surface, const RayOptions& options) : surface_(surface), options_(options) {
+    const double precision = options.precision.value_or(share_of_size(1e-6, surface.size()));
+    require_length(precision, "the precision of rays");
+    precision_ = surface.scale().apply(precision);
+  }
+
+  RayHits ask(SurfaceWorkspace& workspace, const Ray& ray, const WorkMonitor& monitor) const {
+    check(ray);
+    const PowerOfTwo scale = surface_.scale();
+    const RayScale lengths(ray.direction, scale);
+    const Point3 origin = scale.apply(ray.origin);
+    require_value(max_abs(origin - Point3{}) <= 0x1p40,
+                  "ray: an origin is more than 10^12 sizes of the surface away; give one that is closer");
+    const double from = lengths.to_scaled(ray.from), to = lengths.to_scaled(ray.to);
+    const RayTask task{RayFrame(origin, normalized(ray.direction)),
+                       {ray.from == 0 ? 0 : lowered(from), raised(to)},
+                       {ray.from == 0 ? 0 : raised(from), ray.to == INFINITY ? INFINITY : lowered(to)},
+                       options_.query,
+                       precision_,
+                       options_.budget};
+    const FoundHits found = walk_ray(workspace, task, monitor);
+    RayHits answer;
+    answer.complete = found.complete;
+    answer.hits.reserve(found.hits.size());
+    for (const FoundHit& hit : found.hits) answer.hits.push_back(finished(hit, task.ray, lengths));
+    return answer;
+  }
+
+ private:
+  [[nodiscard]] RayHit finished(const FoundHit& found, const RayFrame& ray, const RayScale& lengths) const {
+    RayHit hit;
+    hit.t = {require_representable(lowered(lengths.to_parameter(found.along.lower))),
+             require_representable(raised(lengths.to_parameter(found.along.upper)))};
+    hit.certified = found.certified;
+    hit.side = found.side;
+    const double half = (found.along.upper - found.along.lower) / 2, middle = found.along.lower + half;
+    const double rounding = 16 * unit_roundoff * (max_abs(ray.origin - Point3{}) + std::fabs(middle) + half);
+    const BoundedPoint point = unscaled(
+        BoundedPoint{ray.origin + middle * ray.along, enlarged(half) + rounding}, surface_.scale().inverse());
+    hit.point = require_representable(point.position);
+    hit.point_error = require_representable(point.error);
+    hit.at = place_of(surface_, found.root, to_face(found.path, found.at));
+    hit.normal = evaluate(surface_, hit.at).normal;
+    return hit;
+  }
+
+  const LimitSurface& surface_;
+  const RayOptions& options_;
+  double precision_;
+};
+
+}  // namespace
+
+RayHits trace(SurfaceWorkspace& workspace, const Ray& ray, const RayOptions& options,
+              const WorkMonitor& monitor) {
+  return RayQuestion(workspace.model().surface(), options).ask(workspace, ray, monitor);
+}
+
+std::vector<RayHits> trace(const SurfaceBvh& model, std::span<const Ray> rays, const RayOptions& options,
+                           int threads, const WorkMonitor& monitor) {
+  const RayQuestion question(model.surface(), options);
+  std::vector<RayHits> answers(rays.size());
+  std::atomic<std::size_t> done{0};
+  parallel_for_with(
+      rays.size(), threads, [&] { return SurfaceWorkspace(model); },
+      [&](SurfaceWorkspace& workspace, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) answers[i] = question.ask(workspace, rays[i], monitor);
+        monitor.report(static_cast<double>(done += end - begin) / static_cast<double>(rays.size()));
+      });
+  return answers;
+}
+
+}  // namespace snug

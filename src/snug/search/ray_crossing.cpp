@@ -1,0 +1,214 @@
+#include <snug/search/ray_crossing.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include <snug/geometry/direction.h>
+#include <snug/geometry/rounding.h>
+
+namespace snug {
+namespace {
+
+// Newton steps that are tried: each is a proof of its own, and the error of the one is squared by the next.
+constexpr unsigned max_steps = 4;
+// Share of a step that bending may take or add.
+constexpr double most_bent = 0.8;
+// What a few roundings may add to a bound.
+constexpr double safely = 1 + 0x1p-40;
+
+double cross2(const Offset2& a, const Offset2& b) { return a.x * b.y - a.y * b.x; }
+
+// A matrix of two rows.
+struct Matrix2 {
+  double a, b, c, d;
+  [[nodiscard]] Offset2 operator()(const Vector3& v) const { return {a * v.x + b * v.y, c * v.x + d * v.y}; }
+  [[nodiscard]] double norm() const {
+    return std::max(std::fabs(a) + std::fabs(b), std::fabs(c) + std::fabs(d));
+  }
+};
+
+double max_abs2(const Vector3& v) { return std::max(std::fabs(v.x), std::fabs(v.y)); }
+double max_abs(const Offset2& v) { return std::max(std::fabs(v.x), std::fabs(v.y)); }
+
+TriangleParameter clamped(double u, double v) {
+  if (!(u >= 0)) u = 0;
+  if (!(v >= 0)) v = 0;
+  if (const double sum = u + v; sum > 1) {
+    // The nearest point of the far edge.
+    const double excess = (sum - 1) / 2;
+    u = std::clamp(u - excess, 0.0, 1.0);
+    v = 1 - u;
+  }
+  return {u, v};
+}
+
+// Is the hull of points farther than `reach` from the line through `place`, on the side that w shows?
+bool beyond(std::span<const Vector3> points, const Offset2& place, const Offset2& w, double reach) {
+  const double size = std::hypot(w.x, w.y);
+  if (!(size > 0)) return false;
+  const double least = reach * size * safely;
+  double largest = 0;
+  for (const Vector3& p : points) {
+    const double x = p.x - place.x, y = p.y - place.y;
+    largest = std::max(largest, std::fabs(w.x * x) + std::fabs(w.y * y));
+    if (!(w.x * x + w.y * y > least + 8 * unit_roundoff * largest)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+RayFrame::RayFrame(const Point3& from, const Vector3& direction) : origin(from), along(direction) {
+  const Vector3 size{std::fabs(along.x), std::fabs(along.y), std::fabs(along.z)};
+  const std::size_t axis = size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2;
+  Vector3 other;
+  other[axis] = 1;
+  across[0] = normalized(snug::cross(other, along));
+  across[1] = snug::cross(along, across[0]);
+}
+
+SeenPiece::SeenPiece(const RayFrame& ray, const PieceRecord& record, const Point3& origin) {
+  const auto seen = [&](const Vector3& v) {
+    return Vector3{dot(ray.across[0], v), dot(ray.across[1], v), dot(ray.along, v)};
+  };
+  std::array<Vector3, 6> local;
+  double largest = 0;
+  for (std::size_t k = 0; k < 6; ++k) {
+    local[k] = seen(record.bezier_point(k));
+    largest = std::max(largest, max_abs(local[k]));
+  }
+  along_u_ = 2 * (local[3] - local[0]);
+  along_v_ = 2 * (local[5] - local[0]);
+  uu_ = local[0] + local[1] - 2 * local[3];
+  vv_ = local[0] + local[2] - 2 * local[5];
+  uv_ = 2 * (local[0] - local[3] - local[5] + local[4]);
+  const Vector3 offset = origin - ray.origin, from = seen(offset);
+  for (std::size_t k = 0; k < 6; ++k) net_[k] = from + local[k];
+  // Axes are off by some roundings in length and angle, as is the ray's direction: that moves by as many
+  // roundings of the distance. Values below are sums of a dozen products.
+  error_ = enlarged(record.error() + 64 * unit_roundoff * (max_abs(offset) + largest) + 64 * underflow_error);
+  if (!(error_ < INFINITY)) error_ = INFINITY;
+}
+
+Crossing SeenPiece::crossing(const Offset2& place, double reach) const {
+  Crossing result;
+  const double off = (error_ + reach) * safely;
+  if (!(off < INFINITY)) {
+    result.along = unbounded;
+    return result;
+  }
+  TriangleParameter at{1.0 / 3, 1.0 / 3};
+  double farthest = 2.0 / 3 * safely;  // a zero is no farther from `at`
+  const double curve = max_abs2(uu_) + max_abs2(uv_) + max_abs2(vv_);
+  for (unsigned step = 0; step < max_steps; ++step) {
+    const auto [u, v] = at;
+    const Vector3 value = net_[0] + u * (along_u_ + u * uu_ + v * uv_) + v * (along_v_ + v * vv_);
+    const Vector3 du = along_u_ + (2 * u) * uu_ + v * uv_, dv = along_v_ + u * uv_ + (2 * v) * vv_;
+    const double determinant = du.x * dv.y - du.y * dv.x;
+    const Matrix2 inverse{dv.y / determinant, -dv.x / determinant, -du.y / determinant, du.x / determinant};
+    const double norm = inverse.norm();
+    const auto bend = [&](const Vector3& second) { return inverse(second); };
+    const Offset2 b_uu = bend(uu_), b_uv = bend(uv_), b_vv = bend(vv_);
+    // The inverse times the derivative is off from 1 by this.
+    const double doubt = 32 * unit_roundoff * norm * (max_abs2(along_u_) + max_abs2(along_v_) + 2 * curve);
+    const double bent = safely * (std::max(std::fabs(b_uu.x) + std::fabs(b_uv.x) + std::fabs(b_vv.x),
+                                           std::fabs(b_uu.y) + std::fabs(b_uv.y) + std::fabs(b_vv.y)) +
+                                  doubt);
+    const double share = safely * (bent * farthest + doubt);
+    if (!(share < most_bent)) break;  // of what is not a number, too
+    const Offset2 newton = inverse({value.x - place.x, value.y - place.y, 0});
+    const double blur = norm * off + 32 * unit_roundoff * max_abs(newton);
+    // Zeros are at most so far from `at`, then this far from the next place.
+    const double far = std::min(farthest, safely * (max_abs(newton) + blur) / (1 - share));
+    const double radius = safely * (blur + (doubt + bent * far) * far);
+    const double next_u = u - newton.x, next_v = v - newton.y, rest = 1 - next_u - next_v;
+    const double above = radius + 0x1p-50 * (1 + max_abs(newton));
+    if (next_u < -above || next_v < -above || rest < -2 * above) {
+      result.state = Crossing::State::none;
+      return result;
+    }
+    const double middle = value.z - newton.x * du.z - newton.y * dv.z;
+    const double spread = safely * ((std::fabs(du.z) + std::fabs(dv.z)) * radius +
+                                    (std::fabs(uu_.z) + std::fabs(uv_.z) + std::fabs(vv_.z)) * far * far +
+                                    error_ + 16 * unit_roundoff * (std::fabs(value.z) + std::fabs(middle)));
+    const Extent along{middle - spread, middle + spread};
+    if (step == 0) {
+      result.along = along;
+    } else {  // both hold
+      result.along.lower = std::max(result.along.lower, along.lower);
+      result.along.upper = std::min(result.along.upper, along.upper);
+    }
+    const bool inside =
+        next_u > above && next_v > above && rest > 2 * above && safely * (max_abs(newton) + radius) <= far;
+    result.at = clamped(next_u, next_v);
+    if (inside) {
+      result.state = Crossing::State::one;
+      result.side = determinant > 0 ? 1 : -1;
+    } else if (result.state != Crossing::State::one) {
+      result.state = Crossing::State::unsure;
+    }
+    // Nothing is left to be gained where errors are most of the radius.
+    if (radius < 2 * blur) return result;
+    at = result.at;
+    farthest = std::min(1.0, safely * (std::max(std::fabs(next_u - at.u), std::fabs(next_v - at.v)) + above));
+  }
+  if (result.state != Crossing::State::bent) return result;
+  // By lines between the piece and the ray: across its edges, and from its corners.
+  Offset2 middle;
+  result.along = {};
+  double nearest = INFINITY;
+  for (std::size_t k = 0; k < 6; ++k) {
+    result.along.add(net_[k].z);
+    middle.x += net_[k].x / 6 - place.x / 6;
+    middle.y += net_[k].y / 6 - place.y / 6;
+  }
+  result.along.lower -= error_ * safely + 4 * unit_roundoff * std::fabs(result.along.lower);
+  result.along.upper += error_ * safely + 4 * unit_roundoff * std::fabs(result.along.upper);
+  bool none = beyond(net_, place, middle, off);
+  for (std::size_t k = 0; k < 3 && !none; ++k) {
+    const Vector3 &p = net_[k], &q = net_[(k + 1) % 3];
+    const Offset2 corner{p.x - place.x, p.y - place.y}, normal{p.y - q.y, q.x - p.x};
+    const double distance = std::hypot(corner.x, corner.y);
+    if (distance < nearest) {
+      nearest = distance;
+      result.at = {k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
+    }
+    none = beyond(net_, place, corner, off) || beyond(net_, place, normal, off) ||
+           beyond(net_, place, {-normal.x, -normal.y}, off);
+  }
+  if (none) result.state = Crossing::State::none;
+  return result;
+}
+
+bool SeenPiece::passes_side(std::size_t k, const Offset2& place, double reach) const {
+  const std::size_t next = (k + 1) % 3;
+  const std::array<Vector3, 3> side{net_[k], net_[3 + k], net_[next]};
+  const double off = (error_ + reach) * safely;
+  const Offset2 normal{side[0].y - side[2].y, side[2].x - side[0].x};
+  if (beyond(side, place, normal, off) || beyond(side, place, {-normal.x, -normal.y}, off)) return true;
+  for (const Vector3& p : side) {
+    if (beyond(side, place, {p.x - place.x, p.y - place.y}, off)) return true;
+  }
+  return false;
+}
+
+double SeenPiece::width() const {
+  double least = INFINITY;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3 &p = net_[k], &q = net_[(k + 1) % 3];
+    const Offset2 side{q.x - p.x, q.y - p.y};
+    const double size = std::hypot(side.x, side.y);
+    double lower = 0, upper = 0;
+    for (const Vector3& r : net_) {
+      const Offset2 from{r.x - p.x, r.y - p.y};
+      const double height = size > 0 ? cross2(side, from) / size : std::hypot(from.x, from.y);
+      lower = std::min(lower, height);
+      upper = std::max(upper, height);
+    }
+    least = std::min(least, upper - lower);
+  }
+  return least;
+}
+
+}  // namespace snug

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+
+#include <snug/geometry/point.h>
+#include <snug/geometry/triangle.h>
+#include <snug/search/piece_node.h>
+
+namespace snug {
+
+/// A line, and axes across it: points are told by how far they are along it and where it passes them.
+struct RayFrame {
+  /// Requires:  direction of length 1, up to some roundings.
+  RayFrame(const Point3& from, const Vector3& direction);
+  Point3 origin;
+  Vector3 along;
+  std::array<Vector3, 2> across;
+};
+
+/// A place across a ray, relative to it.
+struct Offset2 {
+  double x = 0, y = 0;
+};
+
+/// Does a line near a ray meet a piece? Where it does so, and on which side.
+struct Crossing {
+  enum class State : std::uint8_t {
+    none,    ///< the piece is not met
+    one,     ///< it is met, and its border, seen along the line, winds around that once
+    unsure,  ///< met near its border, or next to it
+    bent,    ///< the piece bends too much as seen along the line, or lies along it
+  };
+  State state = State::bent;
+  int side = 0;          ///< of `one`: +1 where the line leaves to the side of the normal, else -1
+  TriangleParameter at;  ///< close to the place, on the triangle; but for `none`
+  Extent along;          ///< holds all of the piece that the line meets, as distances from the ray's origin
+};
+
+/// A piece as it is seen from a ray: the quadratic triangle near it, and how near it is.
+///
+/// Guarantee: what is told of the piece holds for the limit surface; rounding included.
+/// Source:    derivations/rays.md.
+class SeenPiece {
+ public:
+  SeenPiece() = default;
+  SeenPiece(const RayFrame& ray, const PieceRecord& record, const Point3& origin);
+
+  /// How the line through `place`, parallel to the ray, and all lines within `reach` of it meet the piece: with a
+  /// reach of zero that line alone, else `none` and `along` are about all of these lines.
+  [[nodiscard]] Crossing crossing(const Offset2& place, double reach) const;
+  /// Upper bound of how far the limit surface is from the quadratic, a length, rounding included.
+  [[nodiscard]] double error() const { return error_; }
+  /// Does the line through `place` pass the side from corner k to the next one with more than `reach`?
+  [[nodiscard]] bool passes_side(std::size_t k, const Offset2& place, double reach) const;
+  /// Width of the narrowest strip along a side, or between sides, that the piece is seen in.
+  [[nodiscard]] double width() const;
+
+ private:
+  // Bezier points as (across, across, along): corners, then middles of the edges 01, 12, 20.
+  std::array<Vector3, 6> net_;
+  double error_ = INFINITY;
+  // The quadratic is net_[0] + u along_u_ + v along_v_ + u^2 uu_ + u v uv_ + v^2 vv_.
+  Vector3 along_u_, along_v_, uu_, uv_, vv_;
+};
+
+}  // namespace snug

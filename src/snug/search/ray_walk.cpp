@@ -1,0 +1,354 @@
+#include <snug/search/ray_walk.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include <snug/geometry/rounding.h>
+#include <snug/search/precision.h>
+#include <snug/surface/patch_sides.h>
+
+namespace snug {
+namespace {
+
+using State = Crossing::State;
+
+// Splits after which a ray that meets no border should have been decided.
+constexpr std::uint64_t quick_splits = 256;
+// Share of a tube's radius that pieces in it may be off by. Tubes that are tried later are narrower, and their
+// pieces smaller even for that: around a vertex of many needles there is little room between their edges.
+constexpr double first_share = 0x1p-5, smaller_share = 0x1p-4;
+constexpr double narrowing = 0x1p-10;
+constexpr unsigned tubes = 3;
+
+// Lines beside the ray that are tried, on a spiral across the tube.
+constexpr unsigned trials = 160;
+
+class Spiral {
+ public:
+  explicit Spiral(double radius) : radius_(radius) {}
+  // From the middle outwards, as the seeds of a sunflower lie.
+  [[nodiscard]] Offset2 next() {
+    const double size = 0.95 * radius_ * std::sqrt(static_cast<double>(taken_++) / trials);
+    const Offset2 place{size * turn_.x, size * turn_.y};
+    turn_ = {-0.7373688780783197 * turn_.x - 0.6754902942615238 * turn_.y,
+             0.6754902942615238 * turn_.x - 0.7373688780783197 * turn_.y};
+    return place;
+  }
+
+ private:
+  double radius_;
+  unsigned taken_ = 0;
+  Offset2 turn_{1, 0};
+};
+
+// A piece in the tube around a ray that is not split further.
+struct Leaf {
+  SeenPiece seen;
+  Crossing crossing;  // of the ray itself
+  Extent along;       // of all of the piece in the tube
+  Node node;
+};
+
+class RayWalk {
+ public:
+  RayWalk(SurfaceWorkspace& workspace, const RayTask& task, const WorkMonitor& monitor)
+      : workspace_(workspace), surface_(workspace.model().surface()), task_(task), monitor_(monitor) {}
+
+  FoundHits run() {
+    workspace_.begin();
+    if (!clip()) return {};
+    if (quick()) return std::move(found_);
+    FoundHits best;
+    best.complete = false;
+    double reach = std::clamp(task_.precision / 8, 0x1p-34, 0x1p-10);
+    const double least = 0x1p-42 * (1 + far_);
+    reach = std::max(reach, least);
+    double share = first_share;
+    for (unsigned i = 0; i < tubes; ++i, reach *= narrowing, share *= smaller_share) {
+      if (reach < least) break;
+      const bool settled = search_tube(reach, share * reach);
+      if (i == 0 || found_.complete) best = std::move(found_);
+      if (settled || !best.complete) break;
+    }
+    return best;
+  }
+
+ private:
+  // The part of the ray that comes near the surface; false if there is none.
+  bool clip() {
+    const Ball& ball = workspace_.model().tree().ball();
+    const Vector3 from = ball.centre - task_.ray.origin;
+    const double middle = dot(task_.ray.along, from);
+    far_ = max_abs(from);
+    const double reach = 1.001 * ball.radius + 0x1p-40 * (1 + far_);
+    lower_ = std::max(task_.outer.lower, middle - reach);
+    upper_ = std::min(task_.outer.upper, middle + reach);
+    if (!(upper_ >= lower_)) return !(upper_ < lower_);
+    const double half = (upper_ - lower_) / 2, centre = lower_ + half;
+    segment_.centre = task_.ray.origin + centre * task_.ray.along;
+    segment_.box = {};
+    segment_.box.half[0] = float_up(half * (1 + 0x1p-20));
+    for (std::size_t k = 0; k < 3; ++k) segment_.box.axes[0][k] = static_cast<float>(task_.ray.along[k]);
+    rounding_ = 0x1p-48 * (1 + far_);
+    return true;
+  }
+
+  void start() {
+    open_.start({workspace_.root(), -INFINITY});
+    found_ = {};
+    splits_ = 0;
+  }
+
+  // Adds what a node opens to, unless it is farther than `reach` from the line or behind `end`.
+  void open(const Node& node, double reach, double end) {
+    const SurfaceWorkspace::Opened opened = workspace_.open(node);
+    WideNode::Distances gaps, ahead;
+    opened.boxes->distances(segment_, rounding_, 0, gaps);
+    opened.boxes->extents(-task_.ray.along, ahead);
+    const double from = dot(task_.ray.along, opened.boxes->origin() - task_.ray.origin);
+    for (std::size_t i = 0; i < opened.count(); ++i) {
+      if (static_cast<double>(gaps[i]) > reach) continue;
+      const double begin = from - static_cast<double>(ahead[i]) - reach - rounding_;
+      if (begin > end) continue;
+      // Rounded down, whatever its sign.
+      open_.add({opened.child(i), static_cast<float>(begin - 0x1p-22 * std::fabs(begin))});
+    }
+  }
+
+  [[nodiscard]] bool outside(const Extent& along, double end) const {
+    return along.lower > end || along.upper < task_.outer.lower;
+  }
+  [[nodiscard]] bool within(const Extent& along) const {
+    return along.lower >= task_.inner.lower && along.upper <= task_.inner.upper;
+  }
+
+  [[nodiscard]] SeenPiece seen(const Node& node) const {
+    return {task_.ray, SurfaceWorkspace::record(node), node.boxes->origin()};
+  }
+
+  void add_hit(const Node& node, const Extent& along, bool certified, int side, TriangleParameter at) {
+    found_.hits.push_back(
+        {along, certified, side, workspace_.root_of(node), workspace_.patch(node).path, at});
+  }
+
+  // Hits that pieces prove each by itself. False where that is not enough.
+  bool quick() {
+    start();
+    double end = upper_;
+    while (!open_.empty()) {
+      const auto [node, begin] = open_.take();
+      if (static_cast<double>(begin) > end) break;
+      if (node.bounded()) {
+        monitor_.checkpoint();
+        const SeenPiece piece = seen(node);
+        const Crossing crossing = piece.crossing({}, 0);
+        if (crossing.state == State::none || outside(crossing.along, end)) continue;
+        const bool hit = crossing.state == State::one && within(crossing.along);
+        if (hit) {
+          const bool narrow = crossing.along.upper - crossing.along.lower <= task_.precision;
+          if (narrow || task_.query == RayQuery::any) {
+            add_hit(node, crossing.along, true, crossing.side, crossing.at);
+          }
+          if (task_.query == RayQuery::any) return true;
+          if (task_.query == RayQuery::nearest) end = std::min(end, crossing.along.upper);
+          if (narrow) continue;
+        }
+        const double off = crossing.state == State::bent ? piece.width() : piece.error();
+        const bool small = !hit && off <= first_share / 8 * task_.precision;
+        if (small || !SurfaceWorkspace::can_open(node) || ++splits_ > quick_splits) return false;
+      }
+      open(node, 0, end);
+    }
+    if (task_.query == RayQuery::nearest) keep_nearest(end);
+    sort_hits();
+    return true;
+  }
+
+  // Of hits that may all be the nearest one, leaves that which ends first, at `end`.
+  void keep_nearest(double end) {
+    auto& hits = found_.hits;
+    if (hits.empty()) return;
+    double begin = INFINITY;
+    for (const FoundHit& hit : hits) {
+      if (hit.along.lower <= end) begin = std::min(begin, hit.along.lower);
+    }
+    const auto first = std::min_element(hits.begin(), hits.end(), [](const FoundHit& x, const FoundHit& y) {
+      return x.along.upper < y.along.upper;
+    });
+    FoundHit nearest = *first;
+    nearest.along.lower = begin;
+    hits.assign(1, nearest);
+  }
+
+  void sort_hits() {
+    std::sort(found_.hits.begin(), found_.hits.end(),
+              [](const FoundHit& x, const FoundHit& y) { return x.along.lower < y.along.lower; });
+  }
+
+  // All that is within `reach` of the line, in pieces known up to `fine` or thinner than that, in groups that are
+  // apart along it. True if each group is crossed for certain.
+  bool search_tube(double reach, double fine) {
+    start();
+    leaves_.clear();
+    settled_ = true;
+    done_ = false;
+    double end_of_group = -INFINITY;
+    while (!open_.empty() && !done_) {
+      if (!leaves_.empty() && static_cast<double>(open_.nearest().gap) > end_of_group) {
+        settle_leaves(reach);
+        end_of_group = -INFINITY;
+        continue;
+      }
+      const auto [node, begin] = open_.take();
+      if (static_cast<double>(begin) > upper_ + reach) break;
+      if (node.bounded()) {
+        monitor_.checkpoint();
+        const SeenPiece piece = seen(node);
+        const Crossing near = piece.crossing({}, reach);
+        if (near.state == State::none || outside(near.along, upper_ + reach)) continue;
+        const bool bent = near.state == State::bent;
+        const double off = bent ? piece.width() + 2 * piece.error() : piece.error();
+        const bool out_of_budget = splits_ >= task_.budget || workspace_.full();
+        if (out_of_budget) found_.complete = false;
+        if (out_of_budget || off <= fine || !SurfaceWorkspace::can_open(node)) {
+          leaves_.push_back({piece, piece.crossing({}, 0), near.along, node});
+          end_of_group = std::max(end_of_group, near.along.upper);
+          if (out_of_budget) break;
+          continue;
+        }
+        ++splits_;
+      }
+      open(node, reach, upper_ + reach);
+    }
+    if (!done_) settle_leaves(reach);
+    if (task_.query == RayQuery::any) keep_certified();
+    return settled_;
+  }
+
+  void keep_certified() {
+    auto& hits = found_.hits;
+    const auto certified =
+        std::find_if(hits.begin(), hits.end(), [](const FoundHit& hit) { return hit.certified; });
+    if (certified != hits.end()) hits.assign(1, FoundHit(*certified));
+  }
+
+  void settle_leaves(double reach) {
+    std::sort(leaves_.begin(), leaves_.end(),
+              [](const Leaf& x, const Leaf& y) { return x.along.lower < y.along.lower; });
+    for (std::size_t begin = 0, end; begin < leaves_.size() && !done_; begin = end) {
+      Extent along = leaves_[begin].along;
+      for (end = begin + 1; end < leaves_.size() && !(leaves_[end].along.lower > along.upper); ++end) {
+        along.add(leaves_[end].along);
+      }
+      settle(std::span(leaves_).subspan(begin, end - begin), along, reach);
+    }
+    leaves_.clear();
+  }
+
+  // One group. Its border, but for that of an open surface, belongs to pieces that no line in the tube meets: so
+  // each of these crosses the group equally often, signs counted.
+  void settle(std::span<const Leaf> group, const Extent& along, double reach) {
+    if (outside(along, task_.outer.upper)) return;
+    const bool whole = found_.complete && within(along) &&
+                       std::none_of(group.begin(), group.end(),
+                                    [&](const Leaf& leaf) { return near_open_side(leaf, reach); });
+    const Leaf* at = &group.front();
+    TriangleParameter place = at->crossing.at;
+    int number = 0;
+    if (whole) {
+      Spiral spiral(reach);
+      for (unsigned i = 0; i < trials; ++i) {
+        const auto counted = count(group, spiral.next());
+        if (!counted) continue;
+        number = counted->number;
+        if (counted->leaf != nullptr) {
+          at = counted->leaf;
+          place = counted->at;
+        }
+        break;
+      }
+    }
+    add_hit(at->node, along, number != 0, std::clamp(number, -1, 1), place);
+    settled_ = settled_ && number != 0;
+    done_ = number != 0 && task_.query != RayQuery::all;
+  }
+
+  struct Count {
+    int number = 0;
+    const Leaf* leaf = nullptr;  // one that is crossed
+    TriangleParameter at;
+  };
+  [[nodiscard]] static std::optional<Count> count(std::span<const Leaf> group, const Offset2& place) {
+    Count result;
+    for (const Leaf& leaf : group) {
+      const Crossing crossing = leaf.seen.crossing(place, 0);
+      if (crossing.state == State::none) continue;
+      if (crossing.state != State::one) return std::nullopt;
+      result.number += crossing.side;
+      result.leaf = &leaf;
+      result.at = crossing.at;
+    }
+    return result;
+  }
+
+  [[nodiscard]] bool near_open_side(const Leaf& leaf, double reach) {
+    const PatchId root = workspace_.root_of(leaf.node);
+    unsigned sides = open_sides(root);
+    if (sides == 0) return false;
+    const PiecePath& path = workspace_.patch(leaf.node).path;
+    for (unsigned level = 0; level < path.level(); ++level) {
+      const unsigned child = path.digit(level);
+      sides &= child == 3 ? 0u : 1u << child | 1u << (child + 2) % 3;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      if ((sides >> k & 1u) != 0 && !leaf.seen.passes_side(k, {}, reach)) return true;
+    }
+    return false;
+  }
+
+  // The sides of a patch beyond which there is no other, or more than one: a bit each.
+  [[nodiscard]] unsigned open_sides(PatchId root) const {
+    const Topology& topology = surface_.topology();
+    const auto bare = [&](std::size_t owner) {
+      const auto [begin, end] = surface_.patches_of(owner);
+      return begin == end || !surface_.has_patch(PatchId(begin));
+    };
+    const std::array<PatchSide, 3> sides = sides_of(surface_, root);
+    unsigned open = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (sides[k].part == PatchSide::Part::inside) continue;
+      const EdgeId edge(sides[k].number);
+      const HalfEdge half = topology.half_of(edge);
+      const bool ends =
+          topology.ends_fans(edge) ||
+          (surface_.rules().primal
+               ? bare(topology.face_of(half).index()) || bare(topology.face_of(topology.twin(half)).index())
+               : bare(topology.from(half).index()) || bare(topology.to(half).index()));
+      open |= static_cast<unsigned>(ends) << k;
+    }
+    return open;
+  }
+
+  SurfaceWorkspace& workspace_;
+  const LimitSurface& surface_;
+  const RayTask& task_;
+  const WorkMonitor& monitor_;
+  double lower_ = 0, upper_ = 0, far_ = 0, rounding_ = 0;
+  PlacedBox segment_{};
+  NearestFirst<NodeGap> open_;
+  std::vector<Leaf> leaves_;
+  FoundHits found_;
+  std::uint64_t splits_ = 0;
+  bool settled_ = true, done_ = false;
+};
+
+}  // namespace
+
+FoundHits walk_ray(SurfaceWorkspace& workspace, const RayTask& task, const WorkMonitor& monitor) {
+  return RayWalk(workspace, task, monitor).run();
+}
+
+}  // namespace snug

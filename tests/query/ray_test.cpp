@@ -1,0 +1,139 @@
+// Rays against limit surfaces: what trace() promises, on small models.
+
+#include <snug/snug.h>
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <snug/base/error.h>
+
+namespace snug {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+std::string model(const char* name) { return std::string(SNUG_MODELS_DIR) + "/" + name; }
+
+// The unit cube with sharp edges: its limit surface is itself.
+ControlMesh cube() {
+  ControlMesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.points.push_back(
+        {static_cast<double>(i & 1), static_cast<double>(i >> 1 & 1), static_cast<double>(i >> 2)});
+  }
+  for (const auto& face : {std::array<std::uint32_t, 4>{0, 2, 3, 1},
+                           {4, 5, 7, 6},
+                           {0, 1, 5, 4},
+                           {2, 6, 7, 3},
+                           {0, 4, 6, 2},
+                           {1, 3, 7, 5}}) {
+    std::array<VertexId, 4> ids{VertexId(face[0]), VertexId(face[1]), VertexId(face[2]), VertexId(face[3])};
+    mesh.add_face(ids);
+  }
+  return mesh;
+}
+Surface sharp_cube() {
+  ControlMesh mesh = cube();
+  static_cast<void>(sharpen(mesh, 30));
+  return Surface(std::move(mesh));
+}
+
+TEST(trace, finds_both_sides_of_a_cube) {
+  const Surface surface = sharp_cube();
+  const RayHits all = trace(surface, {{0.3, 0.4, 5}, {0, 0, -2}}, {.query = RayQuery::all});
+  ASSERT_EQ(all.hits.size(), 2u);
+  EXPECT_TRUE(all.complete);
+  EXPECT_TRUE(all.hits[0].t.contains(2) && all.hits[1].t.contains(2.5));
+  EXPECT_EQ(all.hits[0].side, -1);
+  EXPECT_EQ(all.hits[1].side, 1);
+  for (const RayHit& hit : all.hits) {
+    EXPECT_TRUE(hit.certified);
+    EXPECT_LE(hit.t.upper - hit.t.lower, 1e-6);
+    const SurfacePoint there = evaluate(surface, hit.at);
+    EXPECT_NEAR(there.position.x, 0.3, 1e-9);
+    EXPECT_NEAR(there.position.z, hit.point.z, 1e-9);
+  }
+  const RayHits nearest = trace(surface, {{0.3, 0.4, 5}, {0, 0, -2}});
+  ASSERT_EQ(nearest.hits.size(), 1u);
+  EXPECT_TRUE(nearest.hits[0].t.contains(2));
+}
+
+TEST(trace, passes_no_edge_and_no_vertex) {
+  const Surface surface = sharp_cube();
+  const Point3 inside{0.3125, 0.4375, 0.28125};
+  for (int i = 0; i < 27; ++i) {
+    const Point3 to{0.5 * (i % 3), 0.5 * (i / 3 % 3), 0.5 * (i / 9)};
+    if (i == 13) continue;
+    const Ray ray{inside, {to.x - inside.x, to.y - inside.y, to.z - inside.z}};
+    for (const RayQuery query : {RayQuery::nearest, RayQuery::any, RayQuery::all}) {
+      const RayHits found = trace(surface, ray, {.query = query});
+      ASSERT_EQ(found.hits.size(), 1u) << i;
+      EXPECT_TRUE(found.hits[0].certified && found.hits[0].t.contains(1)) << i;
+      EXPECT_EQ(found.hits[0].side, 1) << i;
+    }
+  }
+}
+
+TEST(trace, says_where_it_cannot_tell) {
+  const Surface surface = sharp_cube();
+  // Along an edge's line, touching it, and in the plane of a face.
+  for (const Ray& ray :
+       {Ray{{-1, -1, 0}, {1, 1, 0}}, Ray{{-1, 1, 0.5}, {1, -1, 0}}, Ray{{-1, 0.5, 1}, {1, 0, 0}}}) {
+    const RayHits found = trace(surface, ray, {.query = RayQuery::all});
+    EXPECT_FALSE(found.certain_miss());
+  }
+  const RayHits touching = trace(surface, {{-0.5, 0.5, 0.5}, {1, -1, 0}});
+  ASSERT_FALSE(touching.hits.empty());
+  EXPECT_FALSE(touching.certain_hit());
+  EXPECT_TRUE(touching.hits[0].t.contains(0.5));
+}
+
+TEST(trace, knows_the_ends_of_segments) {
+  const Surface surface = sharp_cube();
+  const auto hits = [&](double from, double to) {
+    return trace(surface, {{0.3, 0.4, 5}, {0, 0, -1}, from, to}, {.query = RayQuery::all});
+  };
+  EXPECT_TRUE(hits(0, 3.9).certain_miss());
+  EXPECT_EQ(hits(0, 4.1).hits.size(), 1u);
+  EXPECT_EQ(hits(4.1, 4.9).hits.size(), 0u);
+  EXPECT_EQ(hits(4.1, infinity).hits.size(), 1u);
+  EXPECT_EQ(hits(-10, 10).hits.size(), 2u);
+  const RayHits at_the_end = hits(0, 4);
+  ASSERT_EQ(at_the_end.hits.size(), 1u);
+  EXPECT_FALSE(at_the_end.hits[0].certified);
+}
+
+TEST(trace, refuses_what_is_no_ray) {
+  const Surface surface = sharp_cube();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Ray& ray :
+       {Ray{{nan, 0, 0}, {1, 0, 0}}, Ray{{0, 0, 0}, {0, 0, 0}}, Ray{{0, 0, 0}, {infinity, 0, 0}},
+        Ray{{0, 0, 0}, {1, 0, 0}, 2, 1}, Ray{{0, 0, 0}, {1, 0, 0}, nan, 1},
+        Ray{{0, 0, 0}, {1, 0, 0}, -infinity, 1}, Ray{{1e30, 0, 0}, {1, 0, 0}}}) {
+    EXPECT_THROW(static_cast<void>(trace(surface, ray)), InputError);
+  }
+  EXPECT_THROW(static_cast<void>(trace(surface, Ray{{0, 0, 5}, {0, 0, -1}}, {.precision = -1})), InputError);
+}
+
+TEST(trace, answers_the_same_for_any_threads_and_order) {
+  const Surface surface = load(model("bust.obj"));
+  std::vector<Ray> rays;
+  for (int i = 0; i < 400; ++i) {
+    const double a = 0.37 * i, b = 0.11 * i;
+    const Point3 from{5 * std::cos(a), 5 * std::sin(a), std::sin(b)};
+    rays.push_back({from, {0.3 * std::sin(b) - from.x, 0.2 * std::cos(b) - from.y, -from.z}});
+  }
+  const std::vector<RayHits> one = trace(surface, rays, {}, 1), two = trace(surface, rays, {}, 2);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const RayHits alone = trace(surface, rays[rays.size() - 1 - i]);
+    const RayHits& same = one[rays.size() - 1 - i];
+    ASSERT_EQ(one[i].hits.size(), two[i].hits.size());
+    ASSERT_EQ(alone.hits.size(), same.hits.size());
+    for (std::size_t k = 0; k < one[i].hits.size(); ++k) EXPECT_EQ(one[i].hits[k].t, two[i].hits[k].t);
+    for (std::size_t k = 0; k < alone.hits.size(); ++k) EXPECT_EQ(alone.hits[k].t, same.hits[k].t);
+  }
+}
+
+}  // namespace
+}  // namespace snug
