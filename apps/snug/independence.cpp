@@ -7,19 +7,16 @@
 #include <snug/base/names.h>
 #include <snug/base/parallel.h>
 #include <snug/independence/eigenvalues.h>
-#include <snug/independence/mesh_kernel.h>
 #include <snug/independence/piece_step.h>
 
 #include "common.h"
-#include "curve.h"
-#include "kernel_json.h"
+#include "mesh_independence.h"
 #include "progress_bar.h"
 
 namespace snug::command {
 namespace {
 
 constexpr std::uint32_t least_valence = 3, least_boundary_faces = 1, largest_valence = 200, most_rings = 256;
-constexpr std::size_t named_vertices = 6;
 
 struct Options : CommonOptions {
   std::string valence, border, mesh;
@@ -380,44 +377,12 @@ ExitStatus run_on_valences(const Options& options) {
   return report.finish();
 }
 
-ExitStatus run_on_mesh(const Options& options) {
-  const ControlMesh mesh = load_mesh(options.mesh, options);
-  refuse_curves(mesh, options.scheme, options.mesh);
-  const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
-  Report report("independence", options);
-  MeshKernel kernel;
-  {
-    ProgressBar bar("kernel", options.quiet);
-    const WorkMonitor monitor = bar.monitor();
-    naming(options.mesh, [&] { kernel = mesh_kernel(mesh, rules, monitor); });
-  }
-  report.heads({options.mesh}, {name_of(rules.scheme)});
-  const std::size_t dimension = mesh.vertex_count();
-  if (report.json()) {
-    JsonWriter& json = report.write();
-    json.field("dimension", dimension).field("rank", dimension - kernel.dimension());
-    json.field("independent", kernel.dimension() == 0);
-    write_kernel(json, kernel);
-  }
-  report.text(fmt::format("{}: {} nodal functions, rank {}: {}", options.mesh, dimension,
-                          dimension - kernel.dimension(), word(kernel.dimension() == 0)));
-  for (const KernelVector& v : kernel.vectors) {
-    std::string names;
-    for (std::size_t i = 0; i < std::min(named_vertices, v.vertices.size()); ++i) {
-      names += fmt::format(" {}{}", v.signs[i] > 0 ? '+' : '-', v.vertices[i].index());
-    }
-    report.text(fmt::format("  vanishes: {} vertices with signs in turn:{}{}", v.vertices.size(), names,
-                            v.vertices.size() > named_vertices ? " ..." : ""));
-  }
-  return report.finish();
-}
-
 ExitStatus run(const Options& options) {
   if (options.mesh.empty() == options.valence.empty()) {
     throw UsageError(
         "independence: give --valence A..B for pieces with one extraordinary corner, or --mesh FILE");
   }
-  if (!options.mesh.empty()) return run_on_mesh(options);
+  if (!options.mesh.empty()) return independence_of_mesh(options.mesh, options);
   if (!options.weld.empty() || !options.sharp.empty() || !options.boundary.empty()) {
     throw UsageError("--weld, --sharp and --boundary need --mesh");
   }

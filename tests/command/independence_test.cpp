@@ -96,6 +96,7 @@ TEST_F(independence_command, names_the_kernel_of_a_mesh) {
                                  "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
                                  "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
   const json found = answer({"--mesh", cube});
+  EXPECT_EQ(found["method"], "theorem");
   EXPECT_EQ(found["dimension"], 8);
   EXPECT_EQ(found["rank"], 7);
   EXPECT_EQ(found["independent"], false);
@@ -104,6 +105,52 @@ TEST_F(independence_command, names_the_kernel_of_a_mesh) {
   EXPECT_EQ(answer({"--mesh", cube, "--scheme", "doo-sabin"})["independent"], true);
   const Outcome text = run_snug({"independence", "--mesh", cube});
   EXPECT_NE(text.out.find("8 vertices with signs in turn: +0 -1 -2 +3"), std::string::npos) << text.out;
+}
+
+TEST_F(independence_command, ranks_what_the_theorem_leaves_out) {
+  std::string fan;  // a face of seven corners and two quads around a vertex
+  for (int v = 0; v < 10; ++v) fan += "v " + std::to_string(v) + " 0 1\n";
+  fan += "f 1 2 3 4 5 6 7\nf 1 7 8 9\nf 1 9 10 2\n";
+  const std::string file = write("fan.obj", fan);
+  const json found = answer({"--mesh", file, "--scheme", "doo-sabin"});
+  EXPECT_EQ(found["method"], "rank");
+  EXPECT_EQ(found["dimension"], 10);
+  EXPECT_EQ(found["rank"], 9);
+  EXPECT_EQ(found["rank_interval"], json::parse("[9, 9]"));
+  EXPECT_EQ(found["independent"], false);
+  EXPECT_EQ(found["certificate"]["root_order"], 7);
+  ASSERT_EQ(found["kernel"].size(), 1);
+  EXPECT_EQ(found["kernel"][0], json::parse(R"({"vertices": [2, 3, 4, 5], "order": 7,
+                                                "weights": ["-1", ["1", "1"], ["-1", "-1"], "1"]})"));
+  const Outcome text = run_snug({"independence", "--mesh", file, "--scheme", "doo-sabin"});
+  EXPECT_NE(text.out.find("2: -1, 3: 1 + t, 4: -1 - t, 5: 1; t = 2cos(2 pi/7)"), std::string::npos)
+      << text.out;
+  // A cube with a hole keeps its kernel: the hole's corners support other faces.
+  const std::string cube = write("hole.obj",
+                                 "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n"
+                                 "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n"
+                                 "t hole 1/0/0 2\n");
+  const json hole = answer({"--mesh", cube});
+  EXPECT_EQ(hole["method"], "rank");
+  EXPECT_EQ(hole["rank"], 7);
+  EXPECT_EQ(hole["kernel"][0]["signs"].size(), 8);
+}
+
+TEST_F(independence_command, says_where_a_rank_is_undecided) {
+  constexpr int n = 131;
+  std::string fan;
+  for (int v = 0; v < n + 3; ++v) fan += "v " + std::to_string(v) + " 0 1\n";
+  fan += "f";
+  for (int v = 1; v <= n; ++v) fan += " " + std::to_string(v);
+  const auto at = [](int v) { return " " + std::to_string(v); };
+  fan += "\nf 1" + at(n) + at(n + 1) + at(n + 2) + "\nf 1" + at(n + 2) + at(n + 3) + " 2\n";
+  const Outcome outcome =
+      run_snug({"independence", "--mesh", write("large.obj", fan), "--scheme", "doo-sabin", "--json"});
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  const json found = json::parse(outcome.out);
+  EXPECT_TRUE(found["rank"].is_null());
+  EXPECT_TRUE(found["independent"].is_null());
+  EXPECT_EQ(found["rank_interval"], json::parse("[9, 134]"));
 }
 
 TEST_F(independence_command, of_two_corners) {

@@ -4,7 +4,6 @@
 #include <string>
 #include <utility>
 
-#include <snug/error.h>
 #include <snug/mesh/topology.h>
 #include <snug/scheme/creases.h>
 #include <snug/scheme/rules.h>
@@ -13,7 +12,7 @@ namespace snug {
 namespace {
 
 [[noreturn]] void refuse(const std::string& why) {
-  throw InputError(InputProblem::refused, "the kernel of the mesh is not decided: " + why);
+  throw NotDecided(InputProblem::refused, "the kernel of the mesh is not decided: " + why);
 }
 
 // Faces without a surface; with a dual scheme those without a vertex inside, which support no patch.

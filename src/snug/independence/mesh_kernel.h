@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <snug/error.h>
 #include <snug/mesh/control_mesh.h>
 #include <snug/monitor.h>
 #include <snug/scheme/scheme.h>
@@ -23,6 +24,11 @@ struct MeshKernel {
   [[nodiscard]] std::size_t dimension() const { return vectors.size(); }
 };
 
+/// What mesh_kernel() does not decide; mesh_rank() may.
+class NotDecided : public InputError {
+  using InputError::InputError;
+};
+
 /// The kernel of a mesh.
 ///
 /// Each vertex that supports no surface is a vector of its own: isolated ones; with a dual scheme those whose
@@ -35,8 +41,8 @@ struct MeshKernel {
 /// Decided:   manifold meshes, closed or open, with any tags, all faces with a surface; but for Catmull-Clark
 ///            components where all hangs on vertices of valence 2 at semi-sharp edges, and for Doo-Sabin with
 ///            faces of seven corners or more at a boundary.
-/// Errors:    InputError (refused): those of require_surface(), and what is not decided, naming an element and
-///            the next step. Interrupted.
+/// Errors:    InputError (refused): those of require_surface(). NotDecided (refused): the others, naming an element
+///            and the next step. Interrupted.
 /// Cost:      linear; 0.3 seconds for a million quads.
 /// Source:    derivations/independence_of_meshes.md.
 [[nodiscard]] MeshKernel mesh_kernel(const ControlMesh& mesh, const SchemeOptions& options,
