@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 #include <span>
 
@@ -271,7 +272,11 @@ class RayWalk {
         break;
       }
     }
-    add_hit(at->node, along, number != 0, std::clamp(number, -1, 1), place);
+    // An answer for each crossing that is left, where all are wanted.
+    const int answers = task_.query == RayQuery::all ? std::max(1, std::abs(number)) : 1;
+    for (int i = 0; i < answers; ++i) {
+      add_hit(at->node, along, number != 0, std::clamp(number, -1, 1), place);
+    }
     settled_ = settled_ && number != 0;
     done_ = number != 0 && task_.query != RayQuery::all;
   }
