@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -19,6 +20,7 @@
 #include "common.h"
 #include "curve.h"
 #include "drawn_curves.h"
+#include "field_colours.h"
 #include "numbers.h"
 #include "pose.h"
 #include "progress_bar.h"
@@ -27,10 +29,11 @@
 namespace snug::command {
 namespace {
 
-// Edges of surface triangles on the picture, in pixels: at most this in nine faces of ten, and in the rest;
-// unless there would be too many triangles.
-constexpr double usual_edge = 3, longest_edge = 6;
-constexpr double most_surface_triangles = 2e6;
+// How far a ray's hit may be from the surface, in pixels; points that the camera is placed by, at most about.
+constexpr double surface_pixels = 0.2;
+constexpr std::size_t framing_points = 1'000'000;
+// In units of the picture: single precision is what rays are traced in.
+constexpr double least_tolerance = 1e-6;
 // Curves: how far their chords are from them, and the sides of tubes from circles, in pixels; unless there
 // would be too many of them.
 constexpr double curve_deviation = 0.1;
@@ -54,8 +57,11 @@ struct Options : CommonOptions {
   Degree degree;
   std::string size = "1000x1000", view, up;
   int samples = 3;
-  bool cage = false, enclosures = false;
-  std::string tolerance;
+  bool cage = false, enclosures = false, no_shadows = false;
+  std::string tolerance, cut;
+  std::string colour = "plain";
+  double zoom = 1;
+  std::vector<std::string> opacities;
   unsigned level = 0;
 };
 
@@ -91,14 +97,22 @@ Vector3 parse_direction(const std::string& text, const std::string& option) {
 // Two points, one on each surface.
 using Witness = std::array<Point3, 2>;
 
-Witness parse_witness(const std::string& text) {
+Witness parse_witness(const std::string& text, const std::string& option = "--witness") {
   const auto numbers = parse_numbers<6>(text);
   if (!numbers) {
-    throw UsageError("--witness: '" + text +
+    throw UsageError(option + ": '" + text +
                      "' is not two points; give six numbers, as collide and distance print them");
   }
   const auto& n = *numbers;
   return {Point3{n[0], n[1], n[2]}, Point3{n[3], n[4], n[5]}};
+}
+
+double parse_opacity(const std::string& text) {
+  const auto number = parse_numbers<1>(text);
+  if (!number || !((*number)[0] >= 0 && (*number)[0] <= 1)) {
+    throw UsageError("--opacity: '" + text + "' is not a number from 0 to 1");
+  }
+  return (*number)[0];
 }
 
 struct View {
@@ -251,48 +265,37 @@ Enclosures enclose(const Options& options, const std::optional<Length>& toleranc
   return result;
 }
 
-// A surface as triangles, and which part it is.
-struct DrawnSurface {
-  std::size_t part;
-  Tessellation triangles;
-};
-
-// The surfaces on the finest lattice that is of use in this picture, which shows `other` points as well.
-std::vector<DrawnSurface> tessellate(const Options& options, std::span<const Part> parts,
-                                     const PictureUnits& units, const Size& size, const View& view,
-                                     std::span<const Point3> other, const WorkMonitor& monitor) {
-  const auto on_lattice = [&](std::uint32_t steps) {
-    std::vector<DrawnSurface> result;
-    for (std::size_t part = 0; part < parts.size(); ++part) {
-      const LimitSurface* surface = parts[part].surface();
-      if (!surface) continue;
-      naming(parts[part].path, [&] {
-        const PlacedSurface placed{surface, parts[part].pose};
-        result.push_back({part, Tessellation(placed, units, steps, options.threads, monitor)});
-      });
-    }
-    return result;
-  };
-  std::vector<DrawnSurface> coarse = on_lattice(2);
+// Points of all surfaces, dense enough to place the camera.
+std::vector<Point3> surface_points(const Options& options, std::span<const Part> parts,
+                                   const PictureUnits& units, const WorkMonitor& monitor) {
+  std::size_t patches = 0;
+  for (const Part& part : parts) patches += part.surface() ? part.surface()->patch_count() : 0;
+  const std::uint32_t steps = patches > framing_points / 10 ? 1 : patches > framing_points / 150 ? 4 : 16;
   std::vector<Point3> points;
-  double faces = 0;
-  for (const auto& [part, triangles] : coarse) {
-    points.insert(points.end(), triangles.points().begin(), triangles.points().end());
-    faces += static_cast<double>(triangles.triangle_count()) / 4;
+  for (const Part& part : parts) {
+    if (!part.surface()) continue;
+    naming(part.path, [&] {
+      const PlacedSurface placed{part.surface(), part.pose};
+      const std::vector<Point3> more = limit_points(placed, units, steps, options.threads, monitor);
+      points.insert(points.end(), more.begin(), more.end());
+    });
   }
-  if (points.empty()) return coarse;
-  points.insert(points.end(), other.begin(), other.end());
-  const Camera camera = frame(points, view.direction, view.up, static_cast<double>(size.width) / size.height);
-  std::vector<double> edges;
-  for (const auto& [part, triangles] : coarse) {
-    const std::vector<double> of_part = triangles.longest_edges(camera, size.height);
-    edges.insert(edges.end(), of_part.begin(), of_part.end());
+  return points;
+}
+
+// The surfaces of the parts, made ready for rays.
+std::vector<std::unique_ptr<CasterTree>> caster_trees(const Options& options, std::span<const Part> parts,
+                                                      double tolerance, const WorkMonitor& monitor) {
+  std::vector<std::unique_ptr<CasterTree>> trees;
+  for (const Part& part : parts) {
+    std::unique_ptr<CasterTree>& tree = trees.emplace_back();
+    if (!part.surface()) continue;
+    naming(part.path, [&] {
+      tree = std::make_unique<CasterTree>(*part.surface(), part.surface()->scale().apply(tolerance),
+                                          options.threads, monitor);
+    });
   }
-  std::sort(edges.begin(), edges.end());
-  const double wanted =
-      std::ceil(std::max(edges[edges.size() * 9 / 10] / usual_edge, edges.back() / longest_edge));
-  const double most = std::max(1.0, std::floor(std::sqrt(most_surface_triangles / faces)));
-  return on_lattice(static_cast<std::uint32_t>(std::clamp(wanted, 1.0, most)));
+  return trees;
 }
 
 // The curves of a part, and which it is.
@@ -385,12 +388,46 @@ void require_sound(const Options& options) {
         fmt::format("render: {} times --place, but {} meshes", options.poses.size(), options.meshes.size()));
   }
   for (const std::string& text : options.witnesses) parse_witness(text);
+  if (!options.cut.empty()) {
+    const Witness cut = parse_witness(options.cut, "--cut");
+    if (cut[0] == cut[1])
+      throw UsageError("--cut: the two points are the same; the plane lies across from one to the other");
+  }
+  for (const std::string& text : options.opacities) parse_opacity(text);
+  if (options.opacities.size() > options.meshes.size()) {
+    throw UsageError(fmt::format("render: {} times --opacity, but {} meshes", options.opacities.size(),
+                                 options.meshes.size()));
+  }
+  if (options.colour == "distance" && options.meshes.size() != 2) {
+    throw UsageError("render: --colour distance is for two meshes: each shows how far the other one is");
+  }
 }
 
 struct Shot {
+  std::vector<std::unique_ptr<CasterTree>> trees;  // of the surfaces in the scene
   Scene scene;
   Camera camera;
+  double tolerance = 0;  // of these, in units of the picture
 };
+
+// Adds the surfaces, as fine as the camera shows them.
+void add_surfaces(Shot& shot, const Options& options, std::span<const Part> parts, const PictureUnits& units,
+                  double pixels_a_unit, const WorkMonitor& monitor) {
+  shot.tolerance = std::max(surface_pixels / pixels_a_unit, least_tolerance);
+  shot.trees = caster_trees(options, parts, units.to_mesh(shot.tolerance), monitor);
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    if (!shot.trees[part]) continue;
+    shot.scene.surfaces.push_back(
+        scene_surface(*shot.trees[part], parts[part].pose, units, static_cast<std::uint32_t>(2 * part)));
+    if (options.colour == "plain") continue;
+    const Part& other = parts[part == 0 ? parts.size() - 1 : 0];
+    naming(parts[part].path, [&] {
+      shot.scene.surfaces.back().colour =
+          colours_by(options.colour, {parts[part].surface(), parts[part].pose}, {other.surface(), other.pose},
+                     options.threads, monitor);
+    });
+  }
+}
 
 PictureUnits units_of(std::span<const Part> parts) {
   std::vector<PlacedMesh> placed;
@@ -409,17 +446,16 @@ Shot compose(const Options& options, std::span<const Part> parts, const Enclosur
   Shot shot;
   for (std::size_t part = 0; part < parts.size(); ++part) {
     shot.scene.materials.push_back(palette::surface(colours_of_part(part).surface));
+    if (part < options.opacities.size()) {
+      shot.scene.materials.back().opacity = parse_opacity(options.opacities[part]);
+    }
     shot.scene.materials.push_back(palette::enclosure(colours_of_part(part).enclosure));
   }
   const std::vector<PartCurves> curves = place_curves(parts, units);
   const double radius = radius_of_tubes(options, curves);
   const auto tubes = [&](double deviation) { return make_tubes(parts, curves, deviation, radius, monitor); };
   const std::vector<Point3> coarse = outline(tubes(std::numeric_limits<double>::infinity()));
-  std::vector<Point3> visible;
-  for (const auto& [part, triangles] : tessellate(options, parts, units, size, view, coarse, monitor)) {
-    triangles.add_to(shot.scene, static_cast<std::uint32_t>(2 * part), options.threads);
-    visible.insert(visible.end(), triangles.points().begin(), triangles.points().end());
-  }
+  std::vector<Point3> visible = surface_points(options, parts, units, monitor);
   if (!curves.empty()) {
     visible.insert(visible.end(), coarse.begin(), coarse.end());
     const double scale = largest_scale(visible, frame(visible, view.direction, view.up, aspect), size.height);
@@ -450,6 +486,9 @@ Shot compose(const Options& options, std::span<const Part> parts, const Enclosur
   }
   if (visible.empty()) return shot;
   shot.camera = frame(visible, view.direction, view.up, aspect);
+  shot.camera.tangent /= options.zoom;
+  add_surfaces(shot, options, parts, units, largest_scale(visible, shot.camera, size.height), monitor);
+  if (!options.cut.empty()) shot.scene.cut = cut_plane(parse_witness(options.cut, "--cut"), units);
   for (std::size_t part = 0; part < solids.size(); ++part) {
     const SolidStyle style{static_cast<std::uint32_t>(2 * part + 1), palette::outline_width * line_scale,
                            colours_of_part(part).outline};
@@ -492,6 +531,8 @@ ExitStatus run(const Options& options) {
   how.width = size.width;
   how.height = size.height;
   how.samples = options.samples;
+  how.shadows = !options.no_shadows;
+  how.surface_tolerance = shot.tolerance;
   how.parallel_for = [&](std::size_t count, const std::function<void(std::size_t, std::size_t)>& body) {
     parallel_for(count, options.threads, body);
   };
@@ -548,6 +589,19 @@ Command render_command() {
       .between(0, 12)
       .excludes("--tolerance")
       .needs("--enclosures");
+  list.add(Group::own, "--colour NAME", &options->colour,
+           "Colours of surfaces: plain; kind: grey where they are polynomials of the regular sort; level: "
+           "how often "
+           "patches were split; curvature: the mean one; distance: of two meshes, to the other one")
+      .one_of({"plain", "kind", "level", "curvature", "distance"});
+  list.add(Group::own, "--opacity SHARE", &options->opacities,
+           "How much of the light from behind a mesh stops, from 0 to 1; one for each mesh, in order");
+  list.add(
+      Group::own, "--cut \"X Y Z  X Y Z\"", &options->cut,
+      "Leave out of surfaces what is beyond a plane through the first point, across from it to the second");
+  list.add(Group::own, "--no-shadows", &options->no_shadows, "Light surfaces as if each place were alone");
+  list.add(Group::own, "--zoom FACTOR", &options->zoom, "Show the middle this much larger, 0.01 to 1000")
+      .between(0.01, 1000);
   list.add(Group::own, "--view \"X Y Z\"", &options->view,
            "Viewing direction; default: a three-quarter view from above");
   list.add(Group::own, "--up \"X Y Z\"", &options->up, "Up direction; default: y");

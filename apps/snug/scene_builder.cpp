@@ -5,26 +5,10 @@
 
 #include <picture/palette.h>
 #include <snug/base/parallel.h>
+#include <snug/geometry/direction.h>
 #include <snug/surface/evaluate.h>
 
 namespace snug::command {
-namespace {
-
-// A point as the camera sees it, in pixels from the middle of the picture.
-struct Pixel {
-  double x, y;
-};
-
-Pixel seen(const Camera& camera, int height, Point3 p) {
-  const Vector3 v = p - camera.eye;
-  const double pixels = 0.5 * height / (camera.tangent * dot(v, camera.forward));
-  return {dot(v, camera.right) * pixels, dot(v, camera.up) * pixels};
-}
-
-double distance(const Pixel& a, const Pixel& b) { return std::hypot(a.x - b.x, a.y - b.y); }
-
-}  // namespace
-
 PictureUnits::PictureUnits(std::span<const PlacedMesh> parts) {
   double largest = 0;
   for (const PlacedMesh& part : parts) {
@@ -45,124 +29,56 @@ PictureUnits::PictureUnits(std::span<const PlacedMesh> parts) {
   if (const double zoom = 1 / longest_side(box); std::isfinite(zoom)) zoom_ = zoom;
 }
 
-Tessellation::Tessellation(const PlacedSurface& part, const PictureUnits& units, std::uint32_t steps,
-                           int threads, const WorkMonitor& monitor)
-    : steps_(steps), points_a_patch_(std::size_t{steps + 1} * (steps + 2) / 2) {
+namespace {
+
+Rows3 rows_of(const Motion& pose) { return {pose.row(0), pose.row(1), pose.row(2)}; }
+
+}  // namespace
+
+// The turn's inverse is its transpose: it is rigid but for what a picture does not show.
+Rows3 PictureUnits::to_mesh(const Motion& pose) const {
+  const Rows3 turn = rows_of(pose);
+  Rows3 rows;
+  for (std::size_t k = 0; k < 3; ++k)
+    rows[k] = {to_mesh(turn[0][k]), to_mesh(turn[1][k]), to_mesh(turn[2][k])};
+  return rows;
+}
+
+Point3 PictureUnits::origin_in_mesh(const Motion& pose) const {
+  const Vector3 from = centre_ - (Point3{} + scale_.apply(pose.offset()));
+  return Point3{} + scale_.inverse().apply(transposed_times(rows_of(pose), from));
+}
+
+std::vector<Point3> limit_points(const PlacedSurface& part, const PictureUnits& units, std::uint32_t steps,
+                                 int threads, const WorkMonitor& monitor) {
   const LimitSurface& surface = *part.surface;
-  std::vector<std::uint32_t> offsets{0};
-  std::vector<VertexId> corners;
+  std::vector<PatchId> patches;
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
-    if (!surface.has_patch(PatchId(p))) continue;
-    patches_.emplace_back(p);
-    for (const std::uint32_t name : surface.corner_names(PatchId(p))) corners.emplace_back(name);
-    offsets.push_back(static_cast<std::uint32_t>(corners.size()));
+    if (surface.has_patch(PatchId(p))) patches.emplace_back(p);
   }
-  topology_ = Topology(std::move(offsets), std::move(corners), surface.corner_name_count());
-  vertex_owner_.assign(topology_.vertex_count(), no_half_edge);
-  for (HalfEdge h = 0; h < topology_.half_edge_count(); ++h) {
-    HalfEdge& owner = vertex_owner_[topology_.from(h).index()];
-    if (owner == no_half_edge) owner = h;
-  }
-  positions_.resize(patches_.size() * points_a_patch_);
-  normals_.resize(patches_.size() * points_a_patch_);
-  parallel_for(patches_.size(), threads, [&](std::size_t begin, std::size_t end) {
+  const std::size_t points_a_patch = std::size_t{steps + 1} * (steps + 2) / 2;
+  std::vector<Point3> points(patches.size() * points_a_patch);
+  parallel_for(patches.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t rank = begin; rank < end; ++rank) {
       monitor.checkpoint();
-      const PatchEvaluator evaluate_at(surface, patches_[rank]);
-      std::size_t at = rank * points_a_patch_;
-      for (std::uint32_t j = 0; j <= steps_; ++j) {
-        for (std::uint32_t i = 0; i + j <= steps_; ++i, ++at) {
+      const PatchEvaluator evaluate_at(surface, patches[rank]);
+      std::size_t at = rank * points_a_patch;
+      for (std::uint32_t j = 0; j <= steps; ++j) {
+        for (std::uint32_t i = 0; i + j <= steps; ++i, ++at) {
           // The far edge is met exactly: u + v rounds to at most 1.
-          const double v = static_cast<double>(j) / steps_,
-                       u = std::fmin(static_cast<double>(i) / steps_, 1 - v);
-          const SurfacePoint point = evaluate_at(TriangleParameter{u, v});
-          positions_[at] = units(part.pose, point.position);
-          if (point.normal) normals_[at] = units(part.pose, *point.normal);
+          const double v = static_cast<double>(j) / steps,
+                       u = std::fmin(static_cast<double>(i) / steps, 1 - v);
+          points[at] = units(part.pose, evaluate_at(TriangleParameter{u, v}).position);
         }
       }
     }
   });
+  return points;
 }
 
-std::vector<double> Tessellation::longest_edges(const Camera& camera, int height) const {
-  std::vector<double> longest(patches_.size(), 0);
-  for (std::size_t rank = 0; rank < patches_.size(); ++rank) {
-    for (std::size_t side = 0; side < 3; ++side) {
-      double sum = 0;
-      Pixel last{};
-      for (std::uint32_t along = 0; along <= steps_; ++along) {
-        const Pixel next =
-            seen(camera, height, positions_[rank * points_a_patch_ + number(on_side(side, along))]);
-        if (along > 0) sum += distance(last, next);
-        last = next;
-      }
-      longest[rank] = std::max(longest[rank], sum);
-    }
-  }
-  return longest;
-}
-
-//                  2
-//                 / \        side s runs from corner s to corner s + 1,
-//            2   /   \   1   i grows from corner 0 to corner 1,
-//               /     \      j from corner 0 to corner 2
-//              0-------1
-//                  0
-Tessellation::LatticePoint Tessellation::on_side(std::size_t side, std::uint32_t steps_along) const {
-  switch (side) {
-    case 0:
-      return {steps_along, 0};
-    case 1:
-      return {steps_ - steps_along, steps_along};
-    default:
-      return {0, steps_ - steps_along};
-  }
-}
-
-Point3 Tessellation::shared_position(std::size_t rank, LatticePoint p) const {
-  const auto lent_by = [&](HalfEdge h, std::uint32_t steps_along) {
-    const FaceId f = topology_.face_of(h);
-    return positions_[f.index() * points_a_patch_ + number(on_side(h - topology_.first_of(f), steps_along))];
-  };
-  const HalfEdge first = topology_.first_of(FaceId(rank));
-  for (std::uint32_t side = 0; side < 3; ++side) {
-    const std::uint32_t k = steps_ - p.i - p.j;
-    const std::uint32_t across = side == 0 ? p.j : side == 1 ? k : p.i;
-    if (across > 0) continue;
-    const std::uint32_t along = side == 0 ? p.i : side == 1 ? p.j : k;
-    const HalfEdge h = first + side;
-    if (along == 0) return lent_by(vertex_owner_[topology_.from(h).index()], 0);
-    if (along == steps_) return lent_by(vertex_owner_[topology_.to(h).index()], 0);
-    const HalfEdge twin = topology_.twin(h);
-    const bool twin_lends = twin != no_half_edge && twin < h;
-    return twin_lends ? lent_by(twin, steps_ - along) : lent_by(h, along);
-  }
-  return positions_[rank * points_a_patch_ + number(p)];
-}
-
-void Tessellation::add_to(Scene& scene, std::uint32_t material, int threads) const {
-  const std::size_t before = scene.triangles.size(), triangles_a_face = std::size_t{steps_} * steps_;
-  scene.triangles.resize(before + triangle_count());
-  parallel_for(patches_.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t rank = begin; rank < end; ++rank) {
-      std::size_t next = before + rank * triangles_a_face;
-      const auto add = [&](LatticePoint a, LatticePoint b, LatticePoint c) {
-        ShadedTriangle& triangle = scene.triangles[next++];
-        triangle.material = material;
-        std::size_t corner = 0;
-        for (const LatticePoint p : {a, b, c}) {
-          triangle.corner[corner] = shared_position(rank, p);
-          triangle.normal[corner++] = normals_[rank * points_a_patch_ + number(p)];
-        }
-      };
-      for (std::uint32_t j = 0; j < steps_; ++j) {
-        for (std::uint32_t i = 0; i + j < steps_; ++i) {
-          add({i, j}, {i + 1, j}, {i, j + 1});
-          if (i + j + 1 < steps_) add({i + 1, j + 1}, {i, j + 1}, {i + 1, j});
-        }
-      }
-    }
-  });
+SceneSurface scene_surface(const CasterTree& tree, const Motion& pose, const PictureUnits& units,
+                           std::uint32_t material) {
+  return {&tree, units.to_mesh(pose), units.origin_in_mesh(pose), rows_of(pose), material, {}};
 }
 
 std::vector<Polyhedron> enclosure_hulls(std::span<const IntervalTriangle> enclosures, const Motion& pose,
@@ -223,6 +139,13 @@ void add_witness(Scene& scene, const std::array<Point3, 2>& points, const Pictur
   }
   scene.lines.push_back({drawn[0], drawn[1], palette::witness_width * scale, palette::signal});
   for (const Point3& p : drawn) scene.lines.push_back({p, p, palette::witness_dot * scale, palette::signal});
+}
+
+CutPlane cut_plane(const std::array<Point3, 2>& points, const PictureUnits& units) {
+  const auto place = [&](const Point3& p) { return units.from_scaled(Motion{}, units.scale().apply(p)); };
+  const Point3 from = place(points[0]);
+  const Vector3 normal = normalized(place(points[1]) - from);
+  return {normal, dot(normal, from - Point3{})};
 }
 
 void add_cage(Scene& scene, const PlacedSurface& part, const PictureUnits& units, double line_width,

@@ -47,6 +47,11 @@ class PictureUnits {
   [[nodiscard]] Point3 from_scaled(const Motion& pose, Point3 p) const {
     return Point3{} + zoom_ * (placed(pose, p) - centre_);
   }
+  /// From displacements of the picture to mesh units, before the pose; where the picture's origin is there.
+  [[nodiscard]] Rows3 to_mesh(const Motion& pose) const;
+  [[nodiscard]] Point3 origin_in_mesh(const Motion& pose) const;
+  /// A length of the picture in mesh units.
+  [[nodiscard]] double to_mesh(double length) const { return scale_.inverse().apply(length / zoom_); }
   /// A first step that brings the largest coordinate to about 1, without rounding.
   [[nodiscard]] PowerOfTwo scale() const { return scale_; }
 
@@ -60,43 +65,16 @@ class PictureUnits {
   double zoom_ = 1;
 };
 
-/// Limit points of every patch on the same lattice. Points on edges and at corners are taken from one of the
-/// patches there, so that triangles of neighbours share them exactly; not beside polygons that split first.
-class Tessellation {
- public:
-  /// Errors:    InputError if a coordinate does not fit a double; Interrupted.
-  /// Cost:      steps^2 / 2 evaluations a patch; 48 bytes each.
-  Tessellation(const PlacedSurface& part, const PictureUnits& units, std::uint32_t steps, int threads,
-               const WorkMonitor& monitor);
+/// Limit points of every patch on a lattice of so many steps a side, in picture units: what a picture must hold.
+/// Errors:    InputError if a coordinate does not fit a double; Interrupted.
+/// Cost:      steps^2 / 2 evaluations a patch.
+[[nodiscard]] std::vector<Point3> limit_points(const PlacedSurface& part, const PictureUnits& units,
+                                               std::uint32_t steps, int threads, const WorkMonitor& monitor);
 
-  /// All the points, patch by patch, in picture units.
-  [[nodiscard]] std::span<const Point3> points() const { return positions_; }
-  [[nodiscard]] std::size_t triangle_count() const { return patches_.size() * steps_ * steps_; }
-  /// Of each patch, the length on the picture of its longest edge, in pixels.
-  [[nodiscard]] std::vector<double> longest_edges(const Camera& camera, int height) const;
-  /// Adds its triangles to the scene.
-  void add_to(Scene& scene, std::uint32_t material, int threads) const;
-
- private:
-  // Point (i, j) has the parameters u = i / steps, v = j / steps.
-  struct LatticePoint {
-    std::uint32_t i, j;
-  };
-
-  [[nodiscard]] std::size_t number(LatticePoint p) const {
-    return p.j * (steps_ + 1) - std::size_t{p.j} * (p.j - std::size_t{1}) / 2 + p.i;
-  }
-  [[nodiscard]] LatticePoint on_side(std::size_t side, std::uint32_t steps_along) const;
-  [[nodiscard]] Point3 shared_position(std::size_t rank, LatticePoint p) const;
-
-  std::uint32_t steps_;
-  std::size_t points_a_patch_;
-  std::vector<PatchId> patches_;        // those that are there
-  Topology topology_;                   // their corners, a triangle each
-  std::vector<HalfEdge> vertex_owner_;  // the corner of a patch that lends a name its point
-  std::vector<Point3> positions_;
-  std::vector<Vector3> normals_;
-};
+/// A surface in a picture.
+/// Requires:  the tree outlives it.
+[[nodiscard]] SceneSurface scene_surface(const CasterTree& tree, const Motion& pose,
+                                         const PictureUnits& units, std::uint32_t material);
 
 /// The hull of each enclosure, in picture units.
 [[nodiscard]] std::vector<Polyhedron> enclosure_hulls(std::span<const IntervalTriangle> enclosures,
@@ -117,6 +95,9 @@ void add_polyhedron(Scene& scene, const Polyhedron& solid, Point3 eye, const Sol
 /// thousand pixels.
 /// Errors:    InputError (value) for points so far away that the picture cannot hold them.
 void add_witness(Scene& scene, const std::array<Point3, 2>& points, const PictureUnits& units, double scale);
+
+/// The plane through the first of two points of the world, across from it to the second one.
+[[nodiscard]] CutPlane cut_plane(const std::array<Point3, 2>& points, const PictureUnits& units);
 
 /// Adds the edges of the control mesh.
 void add_cage(Scene& scene, const PlacedSurface& part, const PictureUnits& units, double line_width,

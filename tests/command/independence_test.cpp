@@ -85,8 +85,9 @@ TEST_F(independence_command, tells_eigenvalues) {
   const json found = answer({"--scheme", "loop", "--valence", "3..4", "--domain", "omega", "--eigenvalues"});
   ASSERT_EQ(found["eigenvalues"].size(), 2);
   EXPECT_EQ(found["eigenvalues"][0]["as_stated"], true);
-  EXPECT_EQ(found["eigenvalues"][0]["repeated"][2],
-            json::parse(R"({"value": "1/16", "algebraic": 3, "geometric": 2, "span": [{"6": "1"}, {"8": "1"}]})"));
+  EXPECT_EQ(
+      found["eigenvalues"][0]["repeated"][2],
+      json::parse(R"({"value": "1/16", "algebraic": 3, "geometric": 2, "span": [{"6": "1"}, {"8": "1"}]})"));
   EXPECT_EQ(found["eigenvalues"][1]["valence"], 4);
   expect_refused({"--valence", "5", "--scheme", "midedge", "--eigenvalues"}, "loop and catmark");
 }

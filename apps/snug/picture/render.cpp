@@ -1,9 +1,12 @@
 #include <picture/render.h>
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <numbers>
+#include <optional>
 
 #include <picture/hierarchy.h>
 #include <picture/shading.h>
@@ -15,11 +18,17 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Point3 origin;
+// Of a surface that lets light through.
+constexpr int most_layers = 24;
+// Rays for the light from all around, of each sample, and how far they go, in units of the picture; the least share
+// of that light; how wide the key light is, as a tangent.
+constexpr int ambient_rays = 2;
+constexpr double ambient_reach = 0.5, darkest = 0.25, key_radius = 0.12;
 
-// Everything below is in camera coordinates: x right, y up, z the depth, the eye at the origin. A ray is a
+// Everything below is in camera coordinates: x right, y up, z the depth, the eye at the origin. A sight is a
 // point (x, y) of the plane z = 1, and a position on it is its depth.
 
-struct Ray {
+struct Sight {
   double x, y;
 };
 
@@ -41,11 +50,17 @@ struct Stroke {
 };
 
 struct Hit {
+  enum class Kind : std::uint8_t { face, line, surface };
   std::uint32_t sample;
-  std::uint32_t object;
-  bool is_line;
+  std::uint32_t object;  // of a surface, among Scratch::surface_hits
+  Kind kind;
   double depth;
-  double weight_a, weight_b;  // of the first two corners
+  double weight_a, weight_b;  // of the first two corners of a face
+};
+
+struct SurfaceHit {
+  std::uint32_t surface;
+  PatchHit hit;
 };
 
 struct Layer {
@@ -98,7 +113,7 @@ struct Crossing {
 // Sheared so that the ray is the z axis, the corners are points of the plane and the ray is its origin. The
 // value of an edge changes only its sign when the neighbour computes it, so no ray passes between two
 // triangles [Woop13].
-bool crosses(const Ray& ray, const Face& face, Crossing& crossing) {
+bool crosses(const Sight& ray, const Face& face, Crossing& crossing) {
   const Vector3 &p = face.corner[0], &q = face.corner[1], &r = face.corner[2];
   const double px = p.x - ray.x * p.z, py = p.y - ray.y * p.z;
   const double qx = q.x - ray.x * q.z, qy = q.y - ray.y * q.z;
@@ -126,9 +141,14 @@ class Renderer {
   // Scratch memory of one thread.
   struct Scratch {
     BeamHierarchy::Stack stack;
-    std::vector<Ray> rays;
+    std::vector<Sight> rays;
     std::vector<double> opaque_depth;  // of the nearest opaque hit of each sample
     std::vector<Hit> hits;
+    std::vector<SurfaceHit> surface_hits;
+    std::vector<snug::Ray> mesh_rays;
+    std::vector<PatchHit> quick_hits;
+    std::array<double, 2> light_offset{};  // of this pixel
+    unsigned light_rays = 0;               // sent so far in this pixel
     std::vector<Layer> layers;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> strokes;  // (column, stroke) of one row
     std::uint64_t rays_that_hit = 0;                               // so far
@@ -149,8 +169,12 @@ class Renderer {
   [[nodiscard]] double ray_y(double row) const { return (options_.height - 2 * row) * half_pixel_; }
   void gather_strokes(int row, Scratch& scratch) const;
   void hit_faces(int column, int row, Scratch& scratch) const;
+  void hit_surface(std::uint32_t index, Scratch& scratch) const;
   void hit_stroke(std::uint32_t index, int column, int row, Scratch& scratch) const;
-  [[nodiscard]] Layer layer_of(const Hit& hit, const Ray& ray) const;
+  [[nodiscard]] Layer layer_of(const Hit& hit, const Sight& ray, Scratch& scratch) const;
+  [[nodiscard]] Layer layer_of_surface(const Hit& hit, const Sight& ray, Scratch& scratch) const;
+  [[nodiscard]] bool blocked(Point3 from, Vector3 direction, double reach) const;
+  [[nodiscard]] Reached light_reaching(Point3 at, Vector3 normal, Scratch& scratch) const;
   [[nodiscard]] Radiance composite(const Radiance& background, Scratch& scratch) const;
 
   const Scene& scene_;
@@ -278,7 +302,8 @@ void Renderer::hit_faces(int column, int row, Scratch& scratch) const {
       if (!crosses(scratch.rays[sample], face, crossing)) continue;
       if (crossing.depth > scratch.opaque_depth[sample]) continue;
       if (!crossing.counterclockwise && !material.two_sided) continue;
-      scratch.hits.push_back({sample, index, false, crossing.depth, crossing.weight_a, crossing.weight_b});
+      scratch.hits.push_back(
+          {sample, index, Hit::Kind::face, crossing.depth, crossing.weight_a, crossing.weight_b});
       if (material.opacity < 1) continue;
       scratch.opaque_depth[sample] = crossing.depth;
       nearer = true;
@@ -286,6 +311,149 @@ void Renderer::hit_faces(int column, int row, Scratch& scratch) const {
     if (nearer) limit = farthest();
     return limit;
   });
+}
+
+// Two fractions that have nothing to do with those of the pixels around.
+std::array<double, 2> scattered(int column, int row) {
+  std::array<double, 2> result{};
+  auto bits = static_cast<std::uint64_t>(row) << 32 | static_cast<std::uint32_t>(column);
+  for (double& share : result) {
+    // The finaliser of SplitMix64.
+    bits += 0x9e3779b97f4a7c15u;
+    std::uint64_t z = bits;
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    share = static_cast<double>((z ^ z >> 31) >> 11) * 0x1p-53;
+  }
+  return result;
+}
+
+// What lies under a displacement of the picture, seen from a surface.
+Vector3 in_mesh(const SceneSurface& surface, Vector3 displacement) {
+  return times(surface.to_mesh, displacement);
+}
+
+// A ray of the picture as one of a surface, with the same parameter; without what is cut away, and empty where
+// nothing is left.
+std::optional<snug::Ray> ray_of(const SceneSurface& surface, const std::optional<CutPlane>& cut, Point3 from,
+                                Vector3 direction, double begin, double end) {
+  if (cut) {
+    const double height = dot(cut->normal, from - origin) - cut->offset, slope = dot(cut->normal, direction);
+    if (slope > 0) end = std::min(end, -height / slope);
+    if (slope < 0) begin = std::max(begin, -height / slope);
+    if (slope == 0 && height > 0) return std::nullopt;
+  }
+  if (!(begin <= end)) return std::nullopt;
+  return snug::Ray{surface.origin + in_mesh(surface, from - origin), in_mesh(surface, direction), begin, end};
+}
+
+// All hits that no opaque one hides; of a surface that lets light through also those behind.
+void Renderer::hit_surface(std::uint32_t index, Scratch& scratch) const {
+  const SceneSurface& surface = scene_.surfaces[index];
+  const bool opaque = scene_.materials[surface.material].opacity >= 1;
+  std::vector<std::uint32_t> samples(scratch.rays.size());
+  std::vector<double> begins(scratch.rays.size(), 0);
+  for (std::uint32_t i = 0; i < samples.size(); ++i) samples[i] = i;
+  for (int layer = 0; !samples.empty() && layer < most_layers; ++layer) {
+    scratch.mesh_rays.clear();
+    std::vector<std::uint32_t> asked;
+    for (const std::uint32_t sample : samples) {
+      const Sight& sight = scratch.rays[sample];
+      const Vector3 direction = camera_.forward + sight.x * camera_.right + sight.y * camera_.up;
+      const auto ray =
+          ray_of(surface, scene_.cut, camera_.eye, direction, begins[sample], scratch.opaque_depth[sample]);
+      if (!ray) continue;
+      scratch.mesh_rays.push_back(*ray);
+      asked.push_back(sample);
+    }
+    scratch.quick_hits.resize(scratch.mesh_rays.size());
+    surface.surface->cast(scratch.mesh_rays, scratch.quick_hits);
+    samples.clear();
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      const PatchHit& hit = scratch.quick_hits[i];
+      if (!std::isfinite(hit.t)) continue;
+      const std::uint32_t sample = asked[i];
+      scratch.hits.push_back(
+          {sample, static_cast<std::uint32_t>(scratch.surface_hits.size()), Hit::Kind::surface, hit.t, 0, 0});
+      scratch.surface_hits.push_back({index, hit});
+      if (opaque) {
+        scratch.opaque_depth[sample] = hit.t;
+      } else {
+        begins[sample] = hit.t * (1 + 1e-9) + 2 * options_.surface_tolerance;
+        samples.push_back(sample);
+      }
+    }
+  }
+}
+
+bool Renderer::blocked(Point3 from, Vector3 direction, double reach) const {
+  for (const SceneSurface& surface : scene_.surfaces) {
+    if (scene_.materials[surface.material].opacity < 1) continue;
+    const auto ray = ray_of(surface, scene_.cut, from, direction, 0, reach);
+    if (ray && std::isfinite(surface.surface->cast(*ray).t)) return true;
+  }
+  return false;
+}
+
+// By rays from a place towards the key light, which is large, and to all sides; which ones they are depends on the
+// place in the picture alone.
+Reached Renderer::light_reaching(Point3 at, Vector3 normal, Scratch& scratch) const {
+  const Point3 from = at + (4 * options_.surface_tolerance + 1e-4) * normal;
+  const Vector3 side = normalized(
+                    cross(std::fabs(normal.x) < 0.6 ? Vector3{1, 0, 0} : Vector3{0, 1, 0}, normal)),
+                other = cross(normal, side);
+  const auto next = [&] {
+    // Places that fill the square evenly, one after the other, each pixel's from another one on.
+    const auto n = static_cast<double>(++scratch.light_rays);
+    const double u = scratch.light_offset[0] + 0.7548776662466927 * n,
+                 v = scratch.light_offset[1] + 0.5698402909980532 * n;
+    return std::pair(u - std::floor(u), 2 * std::numbers::pi * (v - std::floor(v)));
+  };
+  Reached reached;
+  reached.traced = true;
+  int open = 0;
+  for (int i = 0; i < ambient_rays; ++i) {
+    const auto [share, angle] = next();
+    const double across = std::sqrt(share);
+    const Vector3 direction = std::sqrt(1 - share) * normal + (across * std::cos(angle)) * side +
+                              (across * std::sin(angle)) * other;
+    open += !blocked(from, direction, ambient_reach);
+  }
+  reached.ambient = darkest + (1 - darkest) * open / ambient_rays;
+  const Vector3 light = key_direction();
+  const Vector3 towards = light.x * camera_.right + light.y * camera_.up + light.z * camera_.forward;
+  if (dot(towards, normal) > 0) {
+    const auto [share, angle] = next();
+    const Vector3 first =
+        normalized(cross(towards, std::fabs(towards.x) < 0.6 ? Vector3{1, 0, 0} : Vector3{0, 1, 0}));
+    const double across = key_radius * std::sqrt(share);
+    const Vector3 direction =
+        towards + (across * std::cos(angle)) * first + (across * std::sin(angle)) * cross(towards, first);
+    if (blocked(from, direction, infinity)) reached.key = 0;
+  }
+  return reached;
+}
+
+Layer Renderer::layer_of_surface(const Hit& hit, const Sight& ray, Scratch& scratch) const {
+  const auto& [index, found] = scratch.surface_hits[hit.object];
+  const SceneSurface& surface = scene_.surfaces[index];
+  const Material& material = scene_.materials[surface.material];
+  Finish finish = finishes_[surface.material];
+  if (surface.colour) finish.albedo = light_of(surface.colour(found));
+  if (!finish.lit) return {hit.depth, finish.albedo, material.opacity};
+  const Vector3 direction = camera_.forward + ray.x * camera_.right + ray.y * camera_.up;
+  const Vector3 to_eye = -normalized(Vector3{ray.x, ray.y, 1});
+  Vector3 normal = normalized(times(surface.turn, found.normal));
+  if (dot(normal, direction) > 0) normal = -normal;
+  const Reached reached = options_.shadows && material.opacity >= 1
+                              ? light_reaching(camera_.eye + hit.depth * direction, normal, scratch)
+                              : Reached{};
+  Vector3 seen = turned(normal);
+  if (const double facing = dot(seen, to_eye); facing < 0) {
+    const Vector3 edge_on = seen - facing * to_eye;
+    seen = length_sq(edge_on) > 0 ? normalized(edge_on) : to_eye;
+  }
+  return {hit.depth, shade(finish, seen, to_eye, reached), material.opacity};
 }
 
 void Renderer::hit_stroke(std::uint32_t index, int column, int row, Scratch& scratch) const {
@@ -298,13 +466,14 @@ void Renderer::hit_stroke(std::uint32_t index, int column, int row, Scratch& scr
     if (ex * ex + ey * ey > s.half_width * s.half_width) continue;
     const double depth = s.pull / (s.a_nearness + t * (s.b_nearness - s.a_nearness));
     if (depth > scratch.opaque_depth[sample]) continue;
-    scratch.hits.push_back({sample, index, true, depth, 0, 0});
+    scratch.hits.push_back({sample, index, Hit::Kind::line, depth, 0, 0});
     scratch.opaque_depth[sample] = depth;
   }
 }
 
-Layer Renderer::layer_of(const Hit& hit, const Ray& ray) const {
-  if (hit.is_line) return {hit.depth, strokes_[hit.object].colour, 1};
+Layer Renderer::layer_of(const Hit& hit, const Sight& ray, Scratch& scratch) const {
+  if (hit.kind == Hit::Kind::line) return {hit.depth, strokes_[hit.object].colour, 1};
+  if (hit.kind == Hit::Kind::surface) return layer_of_surface(hit, ray, scratch);
   const Face& face = faces_[hit.object];
   const Finish& finish = finishes_[face.material];
   const double opacity = scene_.materials[face.material].opacity;
@@ -341,7 +510,7 @@ Radiance Renderer::composite(const Radiance& background, Scratch& scratch) const
   for (std::uint32_t sample = 0; sample < samples_.size(); ++sample) {
     scratch.layers.clear();
     for (; hit != hits.end() && hit->sample == sample; ++hit)
-      scratch.layers.push_back(layer_of(*hit, scratch.rays[sample]));
+      scratch.layers.push_back(layer_of(*hit, scratch.rays[sample], scratch));
     std::sort(scratch.layers.begin(), scratch.layers.end(),
               [](const Layer& a, const Layer& b) { return (a <=> b) == std::partial_ordering::less; });
     if (!scratch.layers.empty()) ++scratch.rays_that_hit;
@@ -365,11 +534,15 @@ void Renderer::draw_row(int row, Scratch& scratch, std::uint8_t* out) const {
   auto stroke = scratch.strokes.begin();
   for (int column = 0; column < options_.width; ++column) {
     scratch.hits.clear();
+    scratch.surface_hits.clear();
+    scratch.light_rays = 0;
+    scratch.light_offset = scattered(column, row);
     scratch.opaque_depth.assign(samples_.size(), infinity);
     scratch.rays.clear();
     for (const Sample& s : samples_) scratch.rays.push_back({ray_x(column + s.x), ray_y(row + s.y)});
     for (; stroke != scratch.strokes.end() && stroke->first == static_cast<std::uint32_t>(column); ++stroke)
       hit_stroke(stroke->second, column, row, scratch);
+    for (std::uint32_t i = 0; i < scene_.surfaces.size(); ++i) hit_surface(i, scratch);
     hit_faces(column, row, scratch);
     const Radiance mean = composite(background, scratch);
     for (const double light : {mean.red, mean.green, mean.blue})

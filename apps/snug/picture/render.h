@@ -20,6 +20,8 @@ struct RenderOptions {
   int width = 1000, height = 1000;
   int samples = 3;  ///< a pixel is the mean of samples * samples rays; 1 to 16
   Background background;
+  bool shadows = true;           ///< cast by opaque surfaces on surfaces
+  double surface_tolerance = 0;  ///< of the scene's surfaces, in its units
   /// Calls body(begin, end) on ranges that cover [0, count) once, at the same time if it likes; returns when
   /// all are done. Empty: one thread.
   std::function<void(std::size_t count, const std::function<void(std::size_t, std::size_t)>& body)>

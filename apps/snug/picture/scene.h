@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include <picture/colour.h>
 #include <snug/geometry/point.h>
+#include <snug/search/ray_caster.h>
 
 namespace snug {
 
@@ -31,11 +34,29 @@ struct Line {
   Colour colour;
 };
 
+/// A limit surface that rays meet by itself, and its place in the picture: a similarity.
+struct SceneSurface {
+  const CasterTree* surface;  ///< outlives the scene
+  Rows3 to_mesh;              ///< of displacements, into mesh units
+  Point3 origin;              ///< the picture's, in mesh units
+  Rows3 turn;                 ///< of directions, into the picture
+  std::uint32_t material = 0;
+  std::function<Colour(const PatchHit&)> colour{};  ///< in place of the material's, where given
+};
+
+/// Of surfaces all is left out where dot(normal, p) is more than `offset`.
+struct CutPlane {
+  Vector3 normal;
+  double offset;
+};
+
 /// What is drawn. Triangles that share an edge share its end points exactly, or the seam may show.
 struct Scene {
   std::vector<Material> materials;
   std::vector<ShadedTriangle> triangles;
   std::vector<Line> lines;
+  std::vector<SceneSurface> surfaces{};
+  std::optional<CutPlane> cut{};
 };
 
 }  // namespace snug

@@ -31,13 +31,17 @@ Finish finish_of(const Material& material) {
   return {light_of(material.colour), material.gloss, std::exp2(3.5 + 5.5 * material.gloss), material.lit};
 }
 
-Radiance shade(const Finish& finish, Vector3 normal, Vector3 to_eye) {
+Vector3 key_direction() { return key; }
+
+Radiance shade(const Finish& finish, Vector3 normal, Vector3 to_eye, const Reached& reached) {
   if (!finish.lit) return finish.albedo;
   const double above = 0.5 + 0.5 * normal.y;
   const double facing = dot(normal, to_eye);
   const double grazing = (1 - facing) * (1 - facing) * (1 - facing);
-  const Radiance diffuse = above * sky + (1 - above) * ground + wrapped(dot(normal, key)) * key_light +
-                           wrapped(dot(normal, fill)) * fill_light;
+  const Radiance around = above * sky + (1 - above) * ground + wrapped(dot(normal, fill)) * fill_light;
+  const double towards_key = dot(normal, key);
+  const double lit = reached.traced ? reached.key * std::max(0.0, towards_key) : wrapped(towards_key);
+  const Radiance diffuse = reached.ambient * around + lit * key_light;
   const double behind = grazing * std::max(0.0, dot(normal, rim));
   Radiance light = finish.albedo * diffuse + behind * rim_light;
   if (finish.gloss > 0) {
@@ -45,7 +49,7 @@ Radiance shade(const Finish& finish, Vector3 normal, Vector3 to_eye) {
     const double towards = std::max(0.0, dot(normal, halfway));
     const double mirrored =
         0.6 * finish.gloss * std::pow(towards, finish.exponent) + 0.15 * finish.gloss * grazing;
-    light = light + mirrored * glint;
+    light = light + (reached.key * mirrored) * glint;
   }
   return {shoulder(light.red), shoulder(light.green), shoulder(light.blue)};
 }

@@ -9,7 +9,6 @@
 #include <snug/geometry/rounding.h>
 #include <snug/patch/piece_path.h>
 #include <snug/search/ray_scale.h>
-#include <snug/surface/evaluate.h>
 #include <snug/surface/quadratic_pieces.h>
 
 namespace snug {
@@ -172,6 +171,7 @@ CasterTree::CasterTree(const LimitSurface& surface, double tolerance, int thread
     builder.order.push_back(static_cast<std::uint32_t>(builder.order.size()));
     all.add(builder.boxes.back());
   }
+  piece_count_ = pieces.size();
   centre_ = all.lower + 0.5 * (all.upper - all.lower);
   radius_ = length(all.upper - centre_);
   rounding_ = static_cast<float>(single_error * (1 + radius_));
@@ -354,7 +354,7 @@ struct CasterTree::Beam {
   std::array<std::uint32_t, caster_width> blocks{};
 };
 
-QuickHit CasterTree::cast(const Ray& ray) const {
+PatchHit CasterTree::cast(const Ray& ray) const {
   const Approach approach(*this, ray);
   if (approach.passes) return {};
   const kernels::CasterRay one = seen(approach);
@@ -370,10 +370,10 @@ QuickHit CasterTree::cast(const Ray& ray) const {
     }
     return last;
   });
-  return best.place == caster_width ? QuickHit{} : finished(approach, best_block, best);
+  return best.place == caster_width ? PatchHit{} : finished(approach, best_block, best);
 }
 
-void CasterTree::cast(std::span<const Ray> rays, std::span<QuickHit> out) const {
+void CasterTree::cast(std::span<const Ray> rays, std::span<PatchHit> out) const {
   std::vector<Approach> group;
   std::array<std::size_t, caster_width> which{};
   for (std::size_t begin = 0; begin < rays.size(); begin += caster_width) {
@@ -407,13 +407,16 @@ void CasterTree::cast(std::span<const Ray> rays, std::span<QuickHit> out) const 
   }
 }
 
-QuickHit CasterTree::finished(const Approach& approach, std::uint32_t block,
+PatchHit CasterTree::finished(const Approach& approach, std::uint32_t block,
                               const kernels::CasterHit& hit) const {
   const std::uint64_t place = places_[block * caster_width + hit.place];
   const TriangleParameter at{static_cast<double>(hit.u), static_cast<double>(hit.v)};
-  QuickHit answer;
+  PatchHit answer;
   answer.t = approach.lengths.to_parameter(static_cast<double>(hit.t) + approach.skipped);
-  answer.at = place_of(*surface_, patch_of(place), to_face(path_of(place), at));
+  const PiecePath path = path_of(place);
+  answer.patch = patch_of(place);
+  answer.at = to_face(path, at);
+  answer.level = path.level();
   // Of the quadratic.
   const auto& net = blocks_[block].net;
   const auto difference = [&](std::size_t from, std::size_t to) {

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+#include <picture/scene.h>
+#include <snug/monitor.h>
+
+#include "scene_builder.h"
+
+namespace snug::command {
+
+/// Colours of a surface that show a number over it: by its place in the number's range light or dark, blue to yellow,
+/// or a colour for each kind of patch.
+///
+///   level      how often a patch was split, as the picture needs it
+///   kind       grey where the patch is a polynomial, else a colour for each kind
+///   curvature  mean curvature: from -k to k, where k is exceeded by a twentieth of the surface
+///   distance   to the other surface: from the least to the largest that is met
+///
+/// Requires:  one of these names; the surfaces outlive the result.
+/// Cost:      curvature 15 evaluations a patch, distance 45 queries a patch; between these it is linear.
+[[nodiscard]] std::function<Colour(const PatchHit&)> colours_by(std::string_view name,
+                                                                const PlacedSurface& surface,
+                                                                const PlacedSurface& other, int threads,
+                                                                const WorkMonitor& monitor);
+
+}  // namespace snug::command
