@@ -171,8 +171,11 @@ void add_parts(BoundsCache& library, const Patch& patch, unsigned level, std::sp
 void hull_points(BoundsCache& library, const Patch& patch, HullPoints& out) {
   if (!patch.kind->shared()) {
     thread_local std::array<Patch, crowded_levels> scratch;
+    thread_local Patch whole;
+    whole = patch;
+    whole.path = {};  // a path may have no room for so many more digits
     out.restart(patch.origin);
-    return add_parts(library, patch, 0, scratch, out);
+    return add_parts(library, whole, 0, scratch, out);
   }
   out.restart(patch.origin);
   out.add_with_tips(library, patch);
