@@ -5,20 +5,24 @@
 //
 // asks so many rays; SNUG_FIRST=N begins with case N.
 
+#include <snug/query/closest.h>
 #include <snug/query/ray.h>
 
 #include <gtest/gtest.h>
 #include <oracle/ray_twin.h>
 #include <oracle/tagged_shapes.h>
 #include <snug/base/error.h>
+#include <snug/surface/evaluate.h>
 #include <testing/solid_cases.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <map>
 #include <numeric>
 #include <set>
+#include <sstream>
 
 namespace snug {
 namespace {
@@ -338,7 +342,8 @@ class FlatTrials {
       RayOptions options{.query = static_cast<RayQuery>(random_() % 4 == 0 ? random_() % 3 : 2)};
       if (random_() % 8 == 0)
         options.precision = std::array{0.0, 1e-9, 1e-3, 10.0, 1e5}[random_() % 5] * surface_.size();
-      options.budget = random_() % 16 == 0 ? std::array{0, 1, 10}[random_() % 3] : usual_budget;
+      options.budget =
+          random_() % 16 == 0 ? std::array<std::uint64_t, 3>{0, 1, 10}[random_() % 3] : usual_budget;
       check_flat(workspace_, twin_, ray(), options, name_ + ", ray " + std::to_string(i), counted_);
     }
   }
@@ -436,6 +441,384 @@ TEST(rays, meet_sharp_polyhedra_where_exact_ones_do) {
             << " ended by a budget; " << refused << " solids refused\n";
   EXPECT_GT(counted.generic * 10, counted.rays);
   EXPECT_LE(counted.untold_generic * 100, counted.generic);
+}
+
+// ---- Curved surfaces --------------------------------------------------------------------------------------------
+
+struct CurvedCase {
+  std::string name;
+  TaggedMesh mesh;
+  oracle::WindingScheme scheme;
+  SchemeOptions options;
+  int levels = 2;  // of the twin
+};
+
+// Where on a patch a ray is aimed at: corners are vertices of the mesh or of its first split.
+enum class Spot : std::uint8_t { inside, dyadic_inside, side, dyadic_side, corner };
+constexpr std::size_t spots = 5;
+
+struct CurvedCounts {
+  std::size_t rays = 0, random = 0, aimed = 0, from_inside = 0, from_outside = 0, touching = 0;
+  std::size_t uncertified_random = 0, uncertified_aimed = 0, uncertified_touching = 0, incomplete = 0,
+              twin_ranges = 0, twin_crossings = 0, even_checks = 0, hits = 0;
+  double seconds = 0, slowest = 0;
+  std::string slowest_ray;
+
+  void print() const {
+    std::cout << "  " << rays << " rays: " << random << " random (" << uncertified_random
+              << " with answers not certified), " << aimed << " aimed at spots (" << uncertified_aimed
+              << "), " << touching << " tangent (" << uncertified_touching << "); " << from_inside
+              << " from inside, " << from_outside << " from outside, " << even_checks << " summed up to 0; "
+              << hits << " answers; " << incomplete << " ended by a budget; twin: " << twin_ranges
+              << " ranges, " << twin_crossings << " crossed; "
+              << 1e6 * seconds / static_cast<double>(std::max<std::size_t>(rays, 1)) << " us a ray, slowest "
+              << 1e3 * slowest << " ms: " << slowest_ray << '\n';
+  }
+};
+
+class CurvedTrials {
+ public:
+  CurvedTrials(CurvedCase c, std::uint64_t seed, CurvedCounts& counts)
+      : case_(std::move(c)),
+        random_(seed),
+        surface_(control(case_), case_.options, std::make_shared<BoundsCache>()),
+        model_(surface_, {.method = random_() % 4 == 0 ? BoundMethod::table : BoundMethod::rows,
+                          .tight = random_() % 4 == 0,
+                          .threads = 1}),
+        workspace_(model_),
+        twin_(case_.mesh, case_.scheme, case_.levels),
+        counts_(counts) {
+    for (std::size_t p = 0; p < surface_.patch_count(); ++p) {
+      if (surface_.has_patch(PatchId(p))) patches_.emplace_back(p);
+    }
+    try {
+      static_cast<void>(contains(workspace_, model_.ball().centre));
+      closed_ = true;
+    } catch (const InputError&) {
+    }
+    find_origins();
+  }
+
+  void run(std::uint64_t rays) {
+    for (std::uint64_t i = 0; i < rays && !::testing::Test::HasFailure(); ++i) one(i);
+  }
+
+  // Lines through two spots of every two sorts.
+  void run_pairs() {
+    for (std::size_t a = 0; a < spots; ++a)
+      for (std::size_t b = 0; b < spots && !::testing::Test::HasFailure(); ++b) {
+        const Point3 p = spot(static_cast<Spot>(a)), q = spot(static_cast<Spot>(b));
+        if (p == q) continue;
+        Ray ray{p, q - p, -1e3, 1e3};
+        ask(ray, {.query = RayQuery::all, .budget = usual_budget}, {}, counts_.uncertified_aimed, true);
+        ++counts_.aimed;
+      }
+  }
+
+  [[nodiscard]] bool closed() const { return closed_; }
+
+ private:
+  static ControlMesh control(const CurvedCase& c) {
+    const oracle::Rules* const rules = std::get_if<oracle::Rules>(&c.scheme);
+    return testing::control_mesh(c.mesh, rules ? *rules : oracle::Rules{});
+  }
+  SurfacePoint on_patch(Spot sort) {
+    const PatchId p = patches_[random_() % patches_.size()];
+    const double grain = std::ldexp(1, -static_cast<int>(1 + random_() % 6));
+    double u = between(random_, 0, 1), v = between(random_, 0, 1);
+    if (sort == Spot::dyadic_inside || sort == Spot::dyadic_side) {
+      u = std::round(u / grain) * grain;
+      v = std::round(v / grain) * grain;
+    }
+    if (sort == Spot::corner) {
+      u = v = 0;
+      const auto k = random_() % 3;
+      (k == 1 ? u : v) = k == 0 ? 0 : 1;
+    } else if (sort == Spot::side || sort == Spot::dyadic_side) {
+      const auto k = random_() % 3;
+      if (k == 0) v = 0;
+      if (k == 1) v = 1 - u;
+      if (k == 2) u = 0;
+    } else if (u + v > 1) {
+      u = 1 - u;
+      v = 1 - v;
+    }
+    return evaluate(surface_, place_of(surface_, p, {u, v}));
+  }
+  Point3 spot(Spot sort) { return on_patch(sort).position; }
+  Point3 anywhere(double share) {
+    Point3 q = model_.ball().centre;
+    for (std::size_t x = 0; x < 3; ++x) q[x] += between(random_, -share, share) * model_.ball().radius;
+    return q;
+  }
+  void find_origins() {
+    for (int i = 0; i < 40; ++i) {
+      Point3 q = anywhere(1.2);
+      if (i % 2 == 0) {
+        const SurfacePoint p = on_patch(Spot::inside);
+        if (!p.normal) continue;
+        q = p.position -
+            model_.ball().radius * std::exp2(-between(random_, 1, i % 4 == 0 ? 6 : 20)) * *p.normal;
+      }
+      if (!closed_) {
+        outside_.push_back(q);
+        continue;
+      }
+      const std::optional<bool> held = contains(workspace_, q);
+      if (held) (*held ? inside_ : outside_).push_back(q);
+    }
+    outside_.push_back(anywhere(0) + 1e6 * model_.ball().radius * Vector3{0.3, -0.5, 0.7});
+  }
+
+  void one(std::uint64_t i) {
+    const bool within = !inside_.empty() && random_() % 2 == 0;
+    const auto& pool = within ? inside_ : outside_;
+    Ray ray{pool[random_() % pool.size()], {}};
+    const std::optional<bool> known = closed_ ? std::optional(within) : std::nullopt;
+    std::size_t* uncertified = &counts_.uncertified_aimed;
+    if (i % 4 == 3) {
+      ray.direction = {between(random_, -1, 1), between(random_, -1, 1), between(random_, -1, 1)};
+      if (!within) ray.direction = anywhere(1) - ray.origin;
+      uncertified = &counts_.uncertified_random;
+      ++counts_.random;
+    } else if (i % 4 == 2) {
+      // Tangent: inside or outside is not known.
+      const SurfacePoint p = on_patch(static_cast<Spot>(random_() % spots));
+      Vector3 along =
+          p.normal
+              ? cross(*p.normal, {between(random_, -1, 1), between(random_, -1, 1), between(random_, -1, 1)})
+              : p.tangents[0];
+      if (along == Vector3{}) along = {1, 0, 0};
+      along = (1 / length(along)) * along;
+      ray = {p.position - between(random_, 0, 2) * model_.ball().radius * along, along};
+      uncertified = &counts_.uncertified_touching;
+      ++counts_.touching;
+      const std::optional<bool> held = closed_ ? contains(workspace_, ray.origin) : std::nullopt;
+      ask(ray, {.query = static_cast<RayQuery>(random_() % 3), .budget = usual_budget}, held, *uncertified,
+          i % 4 == 0);
+      return;
+    } else {
+      ray.direction = spot(static_cast<Spot>(random_() % spots)) - ray.origin;
+      ++counts_.aimed;
+    }
+    if (ray.direction == Vector3{}) return;
+    const RayQuery query = random_() % 2 == 0 ? RayQuery::all : static_cast<RayQuery>(random_() % 2);
+    ask(ray, {.query = query, .budget = 20'000}, known, *uncertified, closed_ ? i % 8 < 2 : true);
+  }
+
+  void ask(const Ray& ray, const RayOptions& options, std::optional<bool> within, std::size_t& uncertified,
+           bool by_twin) {
+    const auto where = [&] { return case_.name + ": " + testing_text(ray, options); };
+    const auto before = std::chrono::steady_clock::now();
+    const RayHits answer = trace(workspace_, ray, options);
+    const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+    counts_.seconds += took;
+    if (took > counts_.slowest) {
+      counts_.slowest = took;
+      counts_.slowest_ray = where();
+    }
+    ++counts_.rays;
+    counts_.hits += answer.hits.size();
+    counts_.incomplete += !answer.complete;
+    bool all_certified = answer.complete;
+    int sum = 0;
+    std::size_t certified = 0;
+    for (const RayHit& hit : answer.hits) {
+      all_certified = all_certified && hit.certified;
+      certified += hit.certified;
+      sum += hit.certified ? hit.side : 0;
+      EXPECT_LE(hit.t.lower, hit.t.upper) << where();
+      if (hit.certified) {
+        EXPECT_GE(hit.t.lower, ray.from) << where();
+        EXPECT_LE(hit.t.upper, ray.to) << where();
+        EXPECT_EQ(std::abs(hit.side), 1) << where();
+      }
+    }
+    uncertified += !all_certified && !answer.certain_hit();
+    const bool whole = ray.from == 0 && ray.to == INFINITY;
+    if (within) (*within ? counts_.from_inside : counts_.from_outside)++;
+    if (within && *within && whole) {
+      EXPECT_FALSE(answer.certain_miss()) << where() << ": a miss from inside";
+    }
+    if (within && whole && options.query == RayQuery::all && all_certified) {
+      if (*within) {
+        EXPECT_NE(sum, 0) << where() << text_of(answer);
+      } else {
+        EXPECT_EQ(sum, 0) << where() << text_of(answer);
+        EXPECT_EQ(certified % 2, 0u) << where() << text_of(answer);
+        ++counts_.even_checks;
+      }
+    }
+    if (by_twin) compare(ray, options, answer, where());
+  }
+
+  static std::string testing_text(const Ray& ray, const RayOptions& options) {
+    return text_of(ray, options.query);
+  }
+
+  // Brings lengths near 1, exactly, and as far as it can.
+  void compare(const Ray& ray, const RayOptions& options, const RayHits& answer, const std::string& where) {
+    const auto ranges = twin_.ranges(plain(ray.origin), plain(ray.direction));
+    const auto overlap = [](const Interval& t, const oracle::RefinedRays::Range& range) {
+      return t.lower <= range.upper && range.lower <= t.upper;
+    };
+    counts_.twin_ranges += ranges.size();
+    for (const RayHit& hit : answer.hits) {
+      if (!hit.certified) continue;
+      EXPECT_TRUE(
+          std::any_of(ranges.begin(), ranges.end(), [&](const auto& range) { return overlap(hit.t, range); }))
+          << where << ": certified where there is no surface" << text_of(answer);
+    }
+    if (!answer.complete) return;
+    const double end = options.query == RayQuery::all || !answer.certain_hit() ? INFINITY
+                       : options.query == RayQuery::any                        ? -INFINITY
+                                                                               : answer.hits.back().t.lower;
+    for (const auto& range : ranges) {
+      if (range.lower < ray.from || range.upper > std::min(end, ray.to)) continue;
+      if (!range.crossings) continue;
+      counts_.twin_crossings += *range.crossings != 0;
+      bool own = true, any = false;
+      int sum = 0;
+      for (const RayHit& hit : answer.hits) {
+        if (!overlap(hit.t, range)) continue;
+        any = true;
+        own = own && hit.certified && hit.t.lower >= range.lower && hit.t.upper <= range.upper;
+        sum += hit.side;
+      }
+      if (*range.crossings != 0) {
+        EXPECT_TRUE(any) << where << ": lost the crossing in " << range.lower << " .. " << range.upper
+                         << text_of(answer);
+      }
+      if (own && options.query == RayQuery::all) {
+        EXPECT_EQ(sum, *range.crossings)
+            << where << ": " << range.lower << " .. " << range.upper << text_of(answer);
+      }
+    }
+  }
+
+  CurvedCase case_;
+  std::mt19937_64 random_;
+  LimitSurface surface_;
+  SurfaceBvh model_;
+  SurfaceWorkspace workspace_;
+  oracle::RefinedRays twin_;
+  CurvedCounts& counts_;
+  std::vector<PatchId> patches_;
+  std::vector<Point3> inside_, outside_;
+  bool closed_ = false;
+};
+
+TaggedMesh tagged(const ControlMesh& mesh) {
+  TaggedMesh twin;
+  for (const Point3& p : mesh.points) twin.points.push_back(plain(p));
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    twin.polygons.emplace_back();
+    for (const VertexId v : mesh.face(FaceId(f))) twin.polygons.back().push_back(v.value());
+  }
+  for (const CreaseTag& c : mesh.tags.creases)
+    twin.creases.push_back({c.a.value(), c.b.value(), c.sharpness});
+  for (const CornerTag& c : mesh.tags.corners) twin.corners.push_back({c.vertex.value(), c.sharpness});
+  return twin;
+}
+
+CurvedCase model_case(std::size_t i) {
+  constexpr std::array names{"bracket", "bust", "demon", "figure", "head", "pawn", "pin", "ring", "star"};
+  const std::string name = names[i % names.size()];
+  const ControlMesh mesh = read_mesh(std::string(SNUG_MODELS_DIR) + "/" + name + ".obj");
+  oracle::Rules rules;
+  rules.clamp_dart_edges = true;
+  rules.scheme =
+      natural_scheme(mesh) == Scheme::loop ? oracle::PrimalScheme::loop : oracle::PrimalScheme::catmull_clark;
+  rules.chaikin = mesh.tags.crease_method == CreaseMethod::chaikin;
+  rules.smooth_triangles = mesh.tags.smooth_triangles == SmoothTriangles::smooth;
+  return {name, tagged(mesh), rules, testing::options_of(rules), mesh.face_count() > 2000 ? 0 : 1};
+}
+
+// Solids of every scheme; every fourth a vertex of up to 60 faces.
+CurvedCase closed_case(std::uint64_t number) {
+  if (number % 4 != 3) {
+    testing::SolidCase c = testing::solid_case(number);
+    const int levels = testing::twin_levels(c.mesh, 600);
+    return {c.name, std::move(c.mesh), c.scheme, c.options, levels};
+  }
+  std::mt19937_64 random(number * 31 + 5);
+  const auto n = static_cast<std::uint32_t>(3 + random() % 58);
+  oracle::Rules rules;
+  rules.clamp_dart_edges = true;
+  rules.chaikin = random() % 3 == 0;
+  rules.scheme = random() % 2 == 0 ? oracle::PrimalScheme::loop : oracle::PrimalScheme::catmull_clark;
+  rules.smooth_triangles = rules.scheme == oracle::PrimalScheme::catmull_clark && random() % 3 == 0;
+  TaggedMesh mesh = random() % 2 == 0 ? oracle::meshes::pyramid(n) : oracle::meshes::prism(n);
+  if (rules.scheme == oracle::PrimalScheme::loop) mesh = oracle::meshes::triangulated(mesh);
+  mesh = oracle::meshes::shaken(mesh, random() % 2 == 0 ? 0 : 0.1, random);
+  if (random() % 2 == 0) testing::tag(mesh, random, false);
+  return {
+      "valence " + std::to_string(n) + ", case " + std::to_string(number) + ", " + testing::text_of(rules),
+      mesh, rules, testing::options_of(rules), 2};
+}
+
+TEST(rays, aimed_at_closed_surfaces_miss_none) {
+  constexpr std::uint64_t rays_a_surface = 100;
+  const std::uint64_t first = number_of("SNUG_FIRST", 0),
+                      surfaces = (number_of("SNUG_PLACEMENTS", 24'000) + rays_a_surface - 1) / rays_a_surface;
+  CurvedCounts counts;
+  std::uint64_t refused = 0, open = 0;
+  for (std::uint64_t i = first; i < first + surfaces && !HasFailure(); ++i) {
+    try {
+      const bool model = i % 24 == 23;
+      CurvedTrials trials(model ? model_case(i / 24) : closed_case(i), i, counts);
+      open += !trials.closed();
+      trials.run(rays_a_surface);
+    } catch (const InputError& error) {
+      if (refused++ == 0) std::cout << "  refused " << i << ": " << error.what() << '\n';
+    }
+  }
+  counts.print();
+  std::cout << "  " << surfaces << " surfaces, " << refused << " refused, " << open << " not closed\n";
+  EXPECT_LE(refused * 50, surfaces);
+  EXPECT_LE(counts.uncertified_random * 1000, counts.random);
+  EXPECT_GT(counts.from_inside * 4, counts.rays);
+}
+
+// Boundaries of every rule, holes, what is not manifold, tags of every sort, all schemes; lines through each two
+// sorts of spots.
+TEST(rays, cross_open_surfaces_where_the_twins_do) {
+  const std::uint64_t rounds = 1 + number_of("SNUG_PLACEMENTS", 20'000) / 20'000 / 2;
+  CurvedCounts counts;
+  std::size_t refused = 0;
+  const auto try_one = [&](CurvedCase c, std::uint64_t seed) {
+    try {
+      CurvedTrials trials(std::move(c), seed, counts);
+      trials.run_pairs();
+      trials.run(40);
+    } catch (const InputError&) {
+      ++refused;  // no face has a surface
+    }
+  };
+  for (std::uint64_t round = 0; round < rounds && !HasFailure(); ++round) {
+    const std::uint64_t seed = 500 + number_of("SNUG_FIRST", 0) + round;
+    for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
+      for (const testing::TaggedCase& c : testing::tagged_cases(scheme, seed)) {
+        try_one({c.name + ", " + testing::text_of(c.rules), c.mesh, c.rules, testing::options_of(c.rules),
+                 testing::twin_levels(c.mesh, 2000)},
+                seed);
+        if (HasFailure()) return;
+      }
+    }
+    std::mt19937_64 random(seed);
+    for (const auto& [scheme, twin] : {std::pair{Scheme::doo_sabin, oracle::DualScheme::doo_sabin},
+                                       std::pair{Scheme::midedge, oracle::DualScheme::midedge}}) {
+      for (const TaggedMesh& mesh :
+           {oracle::meshes::quad_grid(5, 4), oracle::meshes::mixed_strip(), oracle::meshes::pyramid(7),
+            oracle::meshes::triangulated(oracle::meshes::quad_grid(4, 4)), oracle::meshes::prism(5)}) {
+        try_one({name_of(scheme), oracle::meshes::shaken(mesh, 0.3, random), twin, {scheme}, 4}, seed);
+        if (HasFailure()) return;
+      }
+    }
+  }
+  std::cout << "  " << refused << " refused\n";
+  counts.print();
+  EXPECT_GT(counts.twin_crossings * 10, counts.rays);
 }
 
 }  // namespace
