@@ -440,7 +440,7 @@ TEST(rays, meet_sharp_polyhedra_where_exact_ones_do) {
             << " not; of generic rays " << counted.untold_generic << " not told; " << counted.incomplete
             << " ended by a budget; " << refused << " solids refused\n";
   EXPECT_GT(counted.generic * 10, counted.rays);
-  EXPECT_LE(counted.untold_generic * 100, counted.generic);
+  EXPECT_LE(counted.untold_generic * 20, counted.generic);
 }
 
 // ---- Curved surfaces --------------------------------------------------------------------------------------------
