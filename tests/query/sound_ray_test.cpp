@@ -13,6 +13,7 @@
 #include <oracle/tagged_shapes.h>
 #include <snug/base/error.h>
 #include <snug/surface/evaluate.h>
+#include <testing/disguises.h>
 #include <testing/solid_cases.h>
 
 #include <algorithm>
@@ -463,6 +464,7 @@ struct CurvedCounts {
               twin_ranges = 0, twin_crossings = 0, even_checks = 0, hits = 0;
   double seconds = 0, slowest = 0;
   std::string slowest_ray;
+  std::map<std::string, std::size_t> thrown;
 
   void print() const {
     std::cout << "  " << rays << " rays: " << random << " random (" << uncertified_random
@@ -486,7 +488,8 @@ class CurvedTrials {
                           .tight = random_() % 4 == 0,
                           .threads = 1}),
         workspace_(model_),
-        twin_(case_.mesh, case_.scheme, case_.levels),
+        exponent_(exponent_of(case_.mesh)),
+        twin_(scaled(case_.mesh, -exponent_), case_.scheme, case_.levels),
         counts_(counts) {
     for (std::size_t p = 0; p < surface_.patch_count(); ++p) {
       if (surface_.has_patch(PatchId(p))) patches_.emplace_back(p);
@@ -515,9 +518,61 @@ class CurvedTrials {
       }
   }
 
+  // From near and far, with directions of every length, to and from places on the surface, with every precision
+  // and budget.
+  void run_extremes(std::uint64_t rays) {
+    for (std::uint64_t i = 0; i < rays && !::testing::Test::HasFailure(); ++i) {
+      const Point3 p = spot(static_cast<Spot>(random_() % spots)),
+                   q = spot(static_cast<Spot>(random_() % spots));
+      const auto some = [&] { return between(random_, -1, 1); };
+      const Vector3 aside =
+          std::array{0.0, 1e-9, 1e-3, 1.0, 1e6}[random_() % 5] * Vector3{some(), some(), some()};
+      Ray ray{q + model_.ball().radius * aside, {}};
+      ray.direction = p - ray.origin;
+      const double largest = max_abs(ray.direction);
+      if (!(largest > 0) || !std::isfinite(largest) || !is_finite(ray.origin)) continue;
+      switch (random_() % 5) {
+        case 0:
+          ray.to = 1;
+          break;
+        case 1:
+          ray.from = random_() % 2 == 0 ? 1 : -1e3;
+          break;
+        default: {
+          // A power of two that leaves the direction as it is, up to subnormal numbers.
+          const int exponent = std::array{-600, 0, 600}[random_() % 3] - std::ilogb(largest);
+          for (std::size_t k = 0; k < 3; ++k) ray.direction[k] = std::ldexp(ray.direction[k], exponent);
+        }
+      }
+      RayOptions options{.query = static_cast<RayQuery>(random_() % 3), .budget = 500};
+      if (random_() % 2 == 0) {
+        options.precision = std::array{0.0, 1e-15, 1e-3, 1e3}[random_() % 4] * surface_.size();
+        if (!std::isfinite(*options.precision)) options.precision.reset();
+      }
+      if (random_() % 3 == 0) options.budget = std::array<std::uint64_t, 3>{0, 1, 10}[random_() % 3];
+      try {
+        ask(ray, options, {}, counts_.uncertified_aimed, true);
+        ++counts_.aimed;
+      } catch (const InputError& error) {
+        ++counts_.thrown[error.what()];
+      }
+    }
+  }
+
   [[nodiscard]] bool closed() const { return closed_; }
 
  private:
+  static int exponent_of(const TaggedMesh& mesh) {
+    double largest = 0;
+    for (const Point& p : mesh.points)
+      for (const double x : p) largest = std::max(largest, std::fabs(x));
+    return largest > 0 ? std::ilogb(largest) : 0;
+  }
+  static TaggedMesh scaled(TaggedMesh mesh, int exponent) {
+    for (Point& p : mesh.points)
+      for (double& x : p) x = std::ldexp(x, exponent);
+    return mesh;
+  }
   static ControlMesh control(const CurvedCase& c) {
     const oracle::Rules* const rules = std::get_if<oracle::Rules>(&c.scheme);
     return testing::control_mesh(c.mesh, rules ? *rules : oracle::Rules{});
@@ -658,7 +713,18 @@ class CurvedTrials {
 
   // Brings lengths near 1, exactly, and as far as it can.
   void compare(const Ray& ray, const RayOptions& options, const RayHits& answer, const std::string& where) {
-    const auto ranges = twin_.ranges(plain(ray.origin), plain(ray.direction));
+    const auto power = [](const Vector3& v) {
+      return std::ilogb(std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}));
+    };
+    const int turned = power(ray.direction);
+    const auto by = [](const Point& p, int exponent) {
+      return Point{std::ldexp(p[0], exponent), std::ldexp(p[1], exponent), std::ldexp(p[2], exponent)};
+    };
+    auto ranges = twin_.ranges(by(plain(ray.origin), -exponent_), by(plain(ray.direction), -turned));
+    for (auto& range : ranges) {
+      range.lower = std::ldexp(range.lower, exponent_ - turned);
+      range.upper = std::ldexp(range.upper, exponent_ - turned);
+    }
     const auto overlap = [](const Interval& t, const oracle::RefinedRays::Range& range) {
       return t.lower <= range.upper && range.lower <= t.upper;
     };
@@ -701,6 +767,7 @@ class CurvedTrials {
   LimitSurface surface_;
   SurfaceBvh model_;
   SurfaceWorkspace workspace_;
+  int exponent_;  // coordinates of the twin are smaller by this power of two
   oracle::RefinedRays twin_;
   CurvedCounts& counts_;
   std::vector<PatchId> patches_;
@@ -819,6 +886,32 @@ TEST(rays, cross_open_surfaces_where_the_twins_do) {
   std::cout << "  " << refused << " refused\n";
   counts.print();
   EXPECT_GT(counts.twin_crossings * 10, counts.rays);
+}
+
+TEST(rays, hold_in_every_disguise) {
+  CurvedCounts counts;
+  std::size_t refused = 0, number = number_of("SNUG_FIRST", 0);
+  const std::uint64_t rays = 6 * (1 + number_of("SNUG_PLACEMENTS", 20'000) / 20'000);
+  for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
+    for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 800 + number)) {
+      if (++number % 6 != 0) continue;
+      for (const testing::Disguise& disguise : testing::disguises()) {
+        CurvedCase changed{c.name + ", " + testing::text_of(c.rules) + ", " + disguise.name, c.mesh, c.rules,
+                           testing::options_of(c.rules), testing::twin_levels(c.mesh, 300)};
+        for (Point& p : changed.mesh.points) p = disguise.change(p);
+        try {
+          CurvedTrials(std::move(changed), number, counts).run_extremes(rays);
+        } catch (const InputError& error) {
+          ++refused;
+          ++counts.thrown[std::string("surface: ") + error.what()];
+        }
+        if (HasFailure()) return;
+      }
+    }
+  }
+  counts.print();
+  std::cout << "  " << refused << " refused\n";
+  for (const auto& [text, count] : counts.thrown) std::cout << "  " << count << " times: " << text << '\n';
 }
 
 }  // namespace
