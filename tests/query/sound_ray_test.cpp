@@ -341,7 +341,7 @@ class FlatTrials {
   void run(std::uint64_t rays) {
     for (std::uint64_t i = 0; i < rays && !::testing::Test::HasFailure(); ++i) {
       RayOptions options{.query = static_cast<RayQuery>(random_() % 4 == 0 ? random_() % 3 : 2)};
-      if (random_() % 8 == 0)
+      if (random_() % 4 == 0)
         options.precision = std::array{0.0, 1e-9, 1e-3, 10.0, 1e5}[random_() % 5] * surface_.size();
       options.budget =
           random_() % 16 == 0 ? std::array<std::uint64_t, 3>{0, 1, 10}[random_() % 3] : usual_budget;
@@ -393,6 +393,11 @@ class FlatTrials {
       const Point &a = case_.mesh.points[f[0]], &b = case_.mesh.points[f[1 + random_() % (f.size() - 1)]];
       for (std::size_t x = 0; x < 3; ++x) q[x] = p[x] + b[x] - a[x];
     }
+    if (random_() % 3 == 0) {  // beside that, by more or by less than tubes are wide
+      const double aside = surface_.size() * std::ldexp(1, -6 - static_cast<int>(random_() % 24));
+      for (double& x : q) x += static_cast<double>(static_cast<int>(random_() % 3) - 1) * aside;
+      if (q == p) q[0] += aside;
+    }
     Ray ray{{p[0], p[1], p[2]}, {q[0] - p[0], q[1] - p[1], q[2] - p[2]}};
     switch (random_() % 6) {
       case 0:
@@ -441,7 +446,7 @@ TEST(rays, meet_sharp_polyhedra_where_exact_ones_do) {
             << " not; of generic rays " << counted.untold_generic << " not told; " << counted.incomplete
             << " ended by a budget; " << refused << " solids refused\n";
   EXPECT_GT(counted.generic * 10, counted.rays);
-  EXPECT_LE(counted.untold_generic * 20, counted.generic);
+  EXPECT_LE(counted.untold_generic * 8, counted.generic);
 }
 
 // ---- Curved surfaces --------------------------------------------------------------------------------------------
@@ -495,7 +500,7 @@ class CurvedTrials {
       if (surface_.has_patch(PatchId(p))) patches_.emplace_back(p);
     }
     try {
-      static_cast<void>(contains(workspace_, model_.ball().centre));
+      static_cast<void>(contains(workspace_, surface_.mesh().points[0]));
       closed_ = true;
     } catch (const InputError&) {
     }
@@ -615,6 +620,7 @@ class CurvedTrials {
         q = p.position -
             model_.ball().radius * std::exp2(-between(random_, 1, i % 4 == 0 ? 6 : 20)) * *p.normal;
       }
+      if (!is_finite(q)) continue;
       if (!closed_) {
         outside_.push_back(q);
         continue;
