@@ -449,6 +449,24 @@ TEST(rays, meet_sharp_polyhedra_where_exact_ones_do) {
   EXPECT_LE(counted.untold_generic * 8, counted.generic);
 }
 
+// Just outside of the border, nearer than a piece is known.
+TEST(rays, beside_a_border_are_no_certain_hits) {
+  TaggedMesh mesh{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2, 3}}, {}, {}, {}};
+  const LimitSurface surface(testing::control_mesh(mesh), {Scheme::bilinear},
+                             std::make_shared<BoundsCache>());
+  const SurfaceBvh model(surface, {.threads = 1});
+  SurfaceWorkspace workspace(model);
+  for (int k = 20; k < 50; ++k)
+    for (const double share : {0.1, 0.37, 0.5, 0.8})
+      for (const double precision : {1e-9, 1e-6, 1e-2}) {
+        const double off = std::ldexp(1, -k);
+        for (const Point3& from : {Point3{-off, share, 1}, Point3{1 + off, share, 1}, Point3{share, -off, 1},
+                                   Point3{share, 1 + off, 1}}) {
+          EXPECT_FALSE(trace(workspace, {from, {0, 0, -1}}, {.precision = precision}).certain_hit()) << k;
+        }
+      }
+}
+
 // ---- Curved surfaces --------------------------------------------------------------------------------------------
 
 struct CurvedCase {
