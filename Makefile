@@ -81,7 +81,7 @@ format:  ## rewrite C++ files in the project's format
 tidy: build  ## clang-tidy over the library
 	@run-clang-tidy -quiet -j $(JOBS) -p build/release 'src/snug/.*\.cpp$$'
 
-docs: install-packages  ## plots and tables of docs/convergence.md, pictures of README.md, docs/schemes.md, docs/meshes.md, docs/nodal_functions.md and docs/independence.md; links and citations
+docs: install-packages  ## plots and tables of docs/convergence.md, pictures of README.md, docs/schemes.md, docs/meshes.md, docs/rays.md, docs/nodal_functions.md and docs/independence.md; links and citations
 	@$(call build,release,snug_command snug_experiments_program)
 	@mkdir -p build/docs
 	@for name in rates tightness; do build/release/bin/snug-experiments $$name -o build/docs/$$name.json > /dev/null; done
@@ -94,6 +94,7 @@ docs: install-packages  ## plots and tables of docs/convergence.md, pictures of 
 	@scripts/draw_schemes build/release/bin/snug docs/pictures
 	@scripts/draw_meshes build/release/bin/snug docs/pictures
 	@scripts/draw_nodal build/release/bin/snug docs/pictures
+	@scripts/draw_rays build/release/bin/snug docs/pictures
 	@scripts/draw_independence build/release/bin/snug docs/pictures
 	@scripts/demo build/release/bin/snug docs/pictures/demo.png > /dev/null
 	@scripts/check_docs.py

@@ -138,7 +138,8 @@ Command ray_command() {
       .required();
   list.add(Group::own, "--all", &options->all, "All hits, not only the nearest one");
   list.add(Group::own, "--any", &options->any,
-           "Some hit, not always the nearest one: is anything in the way?").excludes("--all");
+           "Some hit, not always the nearest one: is anything in the way?")
+      .excludes("--all");
   list.add(Group::own, "--precision LENGTH", &options->precision,
            "Aimed-at length of a hit's interval; mesh units, or percent of the mesh");
   add_common_options(list, *options);

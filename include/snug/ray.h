@@ -30,7 +30,7 @@ struct RayOptions {
   RayQuery query = RayQuery::nearest;
   /// Aimed-at length of a hit's interval, in mesh units; default: 1e-6 of the surface's size.
   std::optional<double> precision{};
-  std::uint64_t budget = 100'000;  ///< most splits for each ray
+  std::uint64_t budget = 20'000;  ///< most splits for each ray
 };
 
 /// A place where a ray meets a limit surface, or may do so.
@@ -39,7 +39,8 @@ struct RayHit {
   /// Is it proved that the ray meets the surface within `t`? Else it may touch it there: it is tangent, passes
   /// the border of an open surface, or begins or ends, as nearly as can be told.
   bool certified = false;
-  /// +1 where the ray passes to the side that the normal shows, -1 against it; 0 where that is not known.
+  /// +1 where the ray passes to the side that the normal shows, -1 against it; 0 where that is not known, and where
+  /// hits of both sorts cannot be told apart.
   int side = 0;
   Point3 point;            ///< in the middle of `t`
   double point_error = 0;  ///< upper bound, per coordinate, of |point - p| for the ray's points p in `t`

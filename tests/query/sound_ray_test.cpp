@@ -431,7 +431,7 @@ class FlatTrials {
 TEST(rays, meet_sharp_polyhedra_where_exact_ones_do) {
   constexpr std::uint64_t rays_a_solid = 200;
   const std::uint64_t first = number_of("SNUG_FIRST", 0),
-                      solids = (number_of("SNUG_PLACEMENTS", 40'000) + rays_a_solid - 1) / rays_a_solid;
+                      solids = (number_of("SNUG_PLACEMENTS", 12'000) + rays_a_solid - 1) / rays_a_solid;
   Counted counted;
   std::uint64_t refused = 0;
   for (std::uint64_t i = 0; i < solids && !HasFailure(); ++i) {
@@ -851,7 +851,7 @@ CurvedCase closed_case(std::uint64_t number) {
 TEST(rays, aimed_at_closed_surfaces_miss_none) {
   constexpr std::uint64_t rays_a_surface = 100;
   const std::uint64_t first = number_of("SNUG_FIRST", 0),
-                      surfaces = (number_of("SNUG_PLACEMENTS", 24'000) + rays_a_surface - 1) / rays_a_surface;
+                      surfaces = (number_of("SNUG_PLACEMENTS", 12'000) + rays_a_surface - 1) / rays_a_surface;
   CurvedCounts counts;
   std::uint64_t refused = 0, open = 0;
   for (std::uint64_t i = first; i < first + surfaces && !HasFailure(); ++i) {
@@ -874,7 +874,7 @@ TEST(rays, aimed_at_closed_surfaces_miss_none) {
 // Boundaries of every rule, holes, what is not manifold, tags of every sort, all schemes; lines through each two
 // sorts of spots.
 TEST(rays, cross_open_surfaces_where_the_twins_do) {
-  const std::uint64_t rounds = 1 + number_of("SNUG_PLACEMENTS", 20'000) / 20'000 / 2;
+  const std::uint64_t rounds = 1 + number_of("SNUG_PLACEMENTS", 0) / 20'000 / 2;
   CurvedCounts counts;
   std::size_t refused = 0;
   const auto try_one = [&](CurvedCase c, std::uint64_t seed) {
@@ -915,7 +915,7 @@ TEST(rays, cross_open_surfaces_where_the_twins_do) {
 TEST(rays, hold_in_every_disguise) {
   CurvedCounts counts;
   std::size_t refused = 0, number = number_of("SNUG_FIRST", 0);
-  const std::uint64_t rays = 6 * (1 + number_of("SNUG_PLACEMENTS", 20'000) / 20'000);
+  const std::uint64_t rays = 6 * (1 + number_of("SNUG_PLACEMENTS", 0) / 20'000);
   for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 800 + number)) {
       if (++number % 6 != 0) continue;

@@ -17,8 +17,10 @@ namespace snug {
 namespace {
 
 // A rounding more or less on a number of some roundings.
-double lowered(double x) { return x - (16 * unit_roundoff * std::fabs(x) + underflow_error); }
-double raised(double x) { return x + (16 * unit_roundoff * std::fabs(x) + underflow_error); }
+double lowered(double x) {
+  return std::isfinite(x) ? x - (16 * unit_roundoff * std::fabs(x) + underflow_error) : x;
+}
+double raised(double x) { return -lowered(-x); }
 
 }  // namespace
 
@@ -50,7 +52,7 @@ class RayQuestion {
     const double from = lengths.to_scaled(ray.from), to = lengths.to_scaled(ray.to);
     const RayTask task{RayFrame(origin, normalized(ray.direction)),
                        {ray.from == 0 ? 0 : lowered(from), raised(to)},
-                       {ray.from == 0 ? 0 : raised(from), ray.to == INFINITY ? INFINITY : lowered(to)},
+                       {ray.from == 0 ? 0 : raised(from), lowered(to)},
                        options_.query,
                        precision_,
                        options_.budget};

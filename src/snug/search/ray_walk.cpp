@@ -60,17 +60,18 @@ class RayWalk {
 
   FoundHits run() {
     workspace_.begin();
-    if (!clip()) return {};
+    if (!clip()) return {{}, bounded_};
     if (quick()) return std::move(found_);
     FoundHits best;
     best.complete = false;
     double reach = std::clamp(task_.precision / 8, 0x1p-34, 0x1p-10);
-    const double least = 0x1p-42 * (1 + far_);
+    // Roundings alone are off by more than 2^-46 of that.
+    const double least = 0x1p-40 * (1 + far_);
     reach = std::max(reach, least);
     double share = first_share;
     for (unsigned i = 0; i < tubes; ++i, reach *= narrowing, share *= smaller_share) {
       if (reach < least) break;
-      const bool settled = search_tube(reach, share * reach);
+      const bool settled = search_tube(reach, std::max(share * reach, 0x1p-4 * least));
       if (i == 0 || found_.complete) best = std::move(found_);
       if (settled || !best.complete) break;
     }
@@ -78,7 +79,7 @@ class RayWalk {
   }
 
  private:
-  // The part of the ray that comes near the surface; false if there is none.
+  // The part of the ray that comes near the surface; false if there is none, or none that is bounded.
   bool clip() {
     const Ball& ball = workspace_.model().tree().ball();
     const Vector3 from = ball.centre - task_.ray.origin;
@@ -87,7 +88,8 @@ class RayWalk {
     const double reach = 1.001 * ball.radius + 0x1p-40 * (1 + far_);
     lower_ = std::max(task_.outer.lower, middle - reach);
     upper_ = std::min(task_.outer.upper, middle + reach);
-    if (!(upper_ >= lower_)) return !(upper_ < lower_);
+    bounded_ = std::isfinite(lower_) && std::isfinite(upper_);
+    if (!bounded_ || upper_ < lower_) return false;
     const double half = (upper_ - lower_) / 2, centre = lower_ + half;
     segment_.centre = task_.ray.origin + centre * task_.ray.along;
     segment_.box = {};
@@ -100,7 +102,6 @@ class RayWalk {
   void start() {
     open_.start({workspace_.root(), -INFINITY});
     found_ = {};
-    splits_ = 0;
   }
 
   // Adds what a node opens to, unless it is farther than `reach` from the line or behind `end`.
@@ -124,6 +125,12 @@ class RayWalk {
   }
   [[nodiscard]] bool within(const Extent& along) const {
     return along.lower >= task_.inner.lower && along.upper <= task_.inner.upper;
+  }
+
+  // Also pieces that are as flat as doubles tell: what is known of them is in single precision, relative to their
+  // size.
+  [[nodiscard]] bool can_open(const Node& node) {
+    return SurfaceWorkspace::can_open(node) || workspace_.patch(node).path.level() < PiecePath::max_level;
   }
 
   [[nodiscard]] SeenPiece seen(const Node& node) const {
@@ -159,7 +166,8 @@ class RayWalk {
         }
         const double off = crossing.state == State::bent ? piece.width() : piece.error();
         const bool small = !hit && off <= first_share / 8 * task_.precision;
-        if (small || !SurfaceWorkspace::can_open(node) || ++splits_ > quick_splits) return false;
+        if (small || !can_open(node) || splits_ >= std::min(quick_splits, task_.budget)) return false;
+        ++splits_;
       }
       open(node, 0, end);
     }
@@ -181,6 +189,9 @@ class RayWalk {
     });
     FoundHit nearest = *first;
     nearest.along.lower = begin;
+    for (const FoundHit& hit : hits) {
+      if (hit.along.lower <= end && hit.side != nearest.side) nearest.side = 0;
+    }
     hits.assign(1, nearest);
   }
 
@@ -214,7 +225,7 @@ class RayWalk {
         const double off = bent ? piece.width() + 2 * piece.error() : piece.error();
         const bool out_of_budget = splits_ >= task_.budget || workspace_.full();
         if (out_of_budget) found_.complete = false;
-        if (out_of_budget || off <= fine || !SurfaceWorkspace::can_open(node)) {
+        if (out_of_budget || off <= fine || !can_open(node)) {
           leaves_.push_back({piece, piece.crossing({}, 0), near.along, node});
           end_of_group = std::max(end_of_group, near.along.upper);
           if (out_of_budget) break;
@@ -226,6 +237,7 @@ class RayWalk {
     }
     if (!done_) settle_leaves(reach);
     if (task_.query == RayQuery::any) keep_certified();
+    if (task_.query == RayQuery::all) sort_hits();
     return settled_;
   }
 
@@ -347,7 +359,7 @@ class RayWalk {
   std::vector<Leaf> leaves_;
   FoundHits found_;
   std::uint64_t splits_ = 0;
-  bool settled_ = true, done_ = false;
+  bool bounded_ = true, settled_ = true, done_ = false;
 };
 
 }  // namespace

@@ -51,7 +51,7 @@ class SurfaceWorkspace {
   }
   /// The piece with its offset triangle, made anew.
   [[nodiscard]] Piece piece(const Node& node, HullPoints& scratch);
-  /// False for a piece that cannot be split.
+  /// False for a piece that need not be split: at the last level, or where rounding makes up its radius.
   [[nodiscard]] static bool can_open(const Node& node) {
     if (node.kind == Node::Kind::tree) return true;
     const std::uint8_t can_split = node.kind == Node::Kind::patch
@@ -70,7 +70,7 @@ class SurfaceWorkspace {
       return {boxes, static_cast<std::uint8_t>(place), kind, owner};
     }
   };
-  /// Requires:  can_open(node).
+  /// Requires:  can_open(node), or a piece above the last level.
   [[nodiscard]] Opened open(const Node& node);
 
   /// Has the query split as many different pieces as one may? Bounds its memory.
