@@ -710,7 +710,8 @@ class CurvedTrials {
       if (hit.certified) {
         EXPECT_GE(hit.t.lower, ray.from) << where();
         EXPECT_LE(hit.t.upper, ray.to) << where();
-        EXPECT_EQ(std::abs(hit.side), 1) << where();
+        // Of the first hits of two sheets in one, none is told.
+        EXPECT_GE(std::abs(hit.side), options.query == RayQuery::nearest ? 0 : 1) << where();
       }
     }
     uncertified += !all_certified && !answer.certain_hit();
