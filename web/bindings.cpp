@@ -49,7 +49,8 @@ val array_of(const Interval& interval) {
 }
 
 bool given(const val& options, const char* name) {
-  return !options.isUndefined() && !options.isNull() && !options[name].isUndefined() && !options[name].isNull();
+  return !options.isUndefined() && !options.isNull() && !options[name].isUndefined() &&
+         !options[name].isNull();
 }
 template <class T>
 std::optional<T> option(const val& options, const char* name) {
@@ -154,8 +155,8 @@ class Part {
     }
     const std::optional<double> sharp = option<double>(options, "sharp");
     if (sharp && how.scheme && !has_creases(*how.scheme)) {
-      throw InputError(InputProblem::value,
-                       std::string("sharp: ") + name_of(*how.scheme) + " has no creases; choose loop or catmark");
+      throw InputError(InputProblem::value, std::string("sharp: ") + name_of(*how.scheme) +
+                                                " has no creases; choose loop or catmark");
     }
     ControlMesh mesh = parse_mesh(bytes, name, [this](const std::string& line) { notes_.push_back(line); });
     try {
@@ -187,8 +188,9 @@ std::array<double, 12> twelve(const val& numbers) {
   }
   const std::vector<double> read = emscripten::convertJSArrayToNumberVector<double>(numbers);
   if (read.size() != 12) {
-    throw InputError(InputProblem::pose, "a pose is a list of twelve numbers, row by row: R | t; this one has " +
-                                             std::to_string(read.size()));
+    throw InputError(
+        InputProblem::pose,
+        "a pose is a list of twelve numbers, row by row: R | t; this one has " + std::to_string(read.size()));
   }
   std::array<double, 12> matrix;
   std::copy(read.begin(), read.end(), matrix.begin());
@@ -375,9 +377,9 @@ val cage_of(const Part& part) {
 
 void require_count(double count, double most, const char* what) {
   if (count <= most) return;
-  throw InputError(InputProblem::refused,
-                   std::string(what) + ": this level makes more than " + std::to_string(static_cast<long>(most)) +
-                       "; choose a lower level");
+  throw InputError(InputProblem::refused, std::string(what) + ": this level makes more than " +
+                                              std::to_string(static_cast<long>(most)) +
+                                              "; choose a lower level");
 }
 
 // Limit points and normals on a lattice of 2^level steps a patch; each patch has its own, so that creases stay sharp.
@@ -387,7 +389,8 @@ val sampled(const Part& part, unsigned level) {
     const bool triangular = has_triangles(surface.scheme());
     const PatchBounds bounds(surface, 1);
     const auto patches = bounds.patches();
-    require_count(std::ldexp(static_cast<double>(patches.size()), static_cast<int>(2 * level)), 4e6, "triangles");
+    require_count(std::ldexp(static_cast<double>(patches.size()), static_cast<int>(2 * level)), 4e6,
+                  "triangles");
     const std::uint32_t steps = 1u << level, points = (steps + 1) * (steps + 2) / 2;
     std::vector<SurfaceParameter> at;
     std::vector<std::uint32_t> triangles;
@@ -396,7 +399,8 @@ val sampled(const Part& part, unsigned level) {
       std::uint32_t next = first;
       for (std::uint32_t j = 0; j <= steps; ++j) {
         for (std::uint32_t i = 0; i + j <= steps; ++i, ++next) {
-          const double s = std::ldexp(i, -static_cast<int>(level)), t = std::ldexp(j, -static_cast<int>(level));
+          const double s = std::ldexp(i, -static_cast<int>(level)),
+                       t = std::ldexp(j, -static_cast<int>(level));
           SurfaceParameter place{patches[p].owner, patches[p].part / 2, s, t};
           // c0 c1 c2 of the quad, or c2 c3 c0.
           if (!triangular && patches[p].part % 2 == 0) place.u = s + t;
@@ -474,18 +478,19 @@ val enclosures(const Part& part, const val& options) {
     std::vector<double> base, radius, lower, upper;
     val pieces = val::array();
     const auto add = [](std::vector<double>& to, const Point3& p) { to.insert(to.end(), {p.x, p.y, p.z}); };
-    const BoundSummary summary = bound(part.surface(), bound_options(options), [&](const PatchEnclosure& piece) {
-      owners.push_back(piece.patch.owner);
-      parts.push_back(piece.patch.part);
-      levels.push_back(piece.level);
-      pieces.call<void>("push", piece.piece);
-      for (const Point3& p : piece.offset.base) add(base, p);
-      radius.push_back(piece.offset.radius);
-      for (const Box3& box : piece.interval.corner) {
-        add(lower, box.lower);
-        add(upper, box.upper);
-      }
-    });
+    const BoundSummary summary =
+        bound(part.surface(), bound_options(options), [&](const PatchEnclosure& piece) {
+          owners.push_back(piece.patch.owner);
+          parts.push_back(piece.patch.part);
+          levels.push_back(piece.level);
+          pieces.call<void>("push", piece.piece);
+          for (const Point3& p : piece.offset.base) add(base, p);
+          radius.push_back(piece.offset.radius);
+          for (const Box3& box : piece.interval.corner) {
+            add(lower, box.lower);
+            add(upper, box.upper);
+          }
+        });
     val result = val::object();
     result.set("count", static_cast<double>(summary.count));
     result.set("maxRadius", summary.max_radius);
@@ -508,8 +513,8 @@ val enclosure_shapes(const Part& part, const val& options) {
     const BoundOptions how = bound_options(options);
     const PatchBounds bounds(part.surface(), 1);
     if (!how.tolerance) {
-      require_count(std::ldexp(static_cast<double>(bounds.patches().size()), static_cast<int>(2 * how.level)), 40'000,
-                    "enclosures");
+      require_count(std::ldexp(static_cast<double>(bounds.patches().size()), static_cast<int>(2 * how.level)),
+                    40'000, "enclosures");
     }
     std::vector<float> positions, edges;
     double count = 0;
@@ -526,7 +531,8 @@ val enclosure_shapes(const Part& part, const val& options) {
             add(edges, hull.points[facet[next]]);
           }
           if (i == 0 || next == 0) continue;
-          for (const std::size_t corner : {std::size_t{0}, i, next}) add(positions, hull.points[facet[corner]]);
+          for (const std::size_t corner : {std::size_t{0}, i, next})
+            add(positions, hull.points[facet[corner]]);
         }
       }
       ++count;

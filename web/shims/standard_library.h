@@ -47,7 +47,8 @@ void transform(Range&& range, Out out, Change change) {
 
 template <class Range, class T, class Projection = identity>
 auto find(Range&& range, const T& value, Projection of = {}) {
-  return std::find_if(range.begin(), range.end(), [&](const auto& each) { return std::invoke(of, each) == value; });
+  return std::find_if(range.begin(), range.end(),
+                      [&](const auto& each) { return std::invoke(of, each) == value; });
 }
 
 template <class A, class B, class ProjectionA = identity, class ProjectionB = identity>
