@@ -213,14 +213,20 @@ val array_of(const Motion& motion) {
 // {axis, degrees, move}: rotated about an axis through the origin, then moved; `after` another pose.
 val make_pose(const val& parts) {
   return guarded([&] {
-    Motion motion;
-    if (given(parts, "after")) motion = motion_of(parts["after"]);
+    std::optional<Motion> motion;
+    // Nothing is multiplied by the identity, which would turn -0 into 0.
+    const auto then = [&](const Motion& next) { motion = motion ? next * *motion : next; };
+    if (given(parts, "after")) then(motion_of(parts["after"]));
     if (given(parts, "degrees")) {
       const Vector3 axis = given(parts, "axis") ? vector_of(parts["axis"], "axis") : Vector3{0, 0, 1};
-      motion = Motion::rotation_degrees(axis, parts["degrees"].as<double>()) * motion;
+      then(Motion::rotation_degrees(axis, parts["degrees"].as<double>()));
     }
-    if (given(parts, "move")) motion = Motion::translation(vector_of(parts["move"], "move")) * motion;
-    return array_of(motion);
+    if (given(parts, "move")) {
+      const Vector3 by = vector_of(parts["move"], "move");
+      const Vector3 from = motion ? motion->offset() : Vector3{};
+      motion = motion.value_or(Motion()).with_offset({from.x + by.x, from.y + by.y, from.z + by.z});
+    }
+    return array_of(motion.value_or(Motion()));
   });
 }
 

@@ -116,10 +116,10 @@ const words = {
 
 function sentence({ collision, texts }) {
   const [lower, upper] = texts.collision;
-  if (collision.verdict === "separated") return `Proved: the surfaces are at least ${lower} apart${upper ? `, at most ${upper}` : ""}.`;
+  if (collision.verdict === "separated") return "Proved: the limit surfaces do not touch.";
   if (collision.verdict === "within") return `Proved: two points, one on each surface, are at most ${upper} apart.`;
   if (collision.verdict === "intersecting") {
-    return collision.inner === null ? "Proved: the surfaces have a point in common."
+    return collision.inner === null ? "Proved: the limit surfaces have a point in common."
       : `Proved: a point of ${"AB"[collision.inner]} lies inside the solid ${"BA"[collision.inner]}.`;
   }
   return `The distance lies in [${lower}, ${upper ?? "?"}]; try a larger tolerance.`;

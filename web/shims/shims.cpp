@@ -39,25 +39,25 @@ extern "C" double cos(double x) { return remembered<cosl>(x); }
 
 // The shortest digits that read back as the same double, as JavaScript has them: plain where that is not longer, like
 // std::to_chars. Whole numbers from 2^53 on are written with all their digits.
+// clang-format off
 EM_JS(int, snug_shortest, (double x, char* to, int room), {
-  const[digits, exponent] = x.toExponential().split("e");
+  const [digits, exponent] = x.toExponential().split("e");
   const scientific = digits + "e" + exponent[0] + exponent.slice(1).padStart(2, "0");
-  const sign = x < 0 || Object.is(x, -0) ? "-" : "", figures = digits.replace(/ [-.] / g, ""),
-        at = Number(exponent);
+  const sign = x < 0 || Object.is(x, -0) ? "-" : "";
+  const figures = digits.split("-").join("").split(".").join("");
+  const at = Number(exponent);
   let plain;
-  if (at < 0)
-    plain = "0." + "0".repeat(-at - 1) + figures;
-  else if (figures.length <= at + 1)
-    plain = figures + "0".repeat(at + 1 - figures.length);
-  else
-    plain = figures.slice(0, at + 1) + "." + figures.slice(at + 1);
+  if (at < 0) plain = "0." + "0".repeat(-at - 1) + figures;
+  else if (figures.length <= at + 1) plain = figures + "0".repeat(at + 1 - figures.length);
+  else plain = figures.slice(0, at + 1) + "." + figures.slice(at + 1);
   const other = (scientific.startsWith("-") ? "" : sign) + scientific;
-  const exact = plain.indexOf(".") < 0 && Math.abs(x) >= 2 * *53 ? BigInt(Math.abs(x)).toString() : plain;
+  const exact = plain.indexOf(".") < 0 && Math.abs(x) >= 9007199254740992 ? BigInt(Math.abs(x)).toString() : plain;
   const text = sign.length + plain.length <= other.length ? sign + exact : other;
   if (text.length > room) return -1;
   for (let i = 0; i < text.length; ++i) HEAPU8[to + i] = text.charCodeAt(i);
   return text.length;
 });
+// clang-format on
 
 _LIBCPP_BEGIN_NAMESPACE_STD
 
