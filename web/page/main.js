@@ -139,14 +139,19 @@ function place_text(at, part) {
   return ` (${dual ? "vertex" : "face"} ${at.owner})`;
 }
 
+const inContact = ({ collision, distance }) => collision.verdict === "intersecting" || distance.distance[1] === 0;
+// Whose witnesses are shown: the points behind a proof of contact are those of collide.
+const seenAnswer = ({ collision, distance }) => (collision.verdict === "intersecting" && collision.witness ? collision : distance);
+
 function show(answer) {
   const { collision, distance, texts, milliseconds } = answer;
   verdictWords(collision.verdict, words[collision.verdict], sentence(answer));
   const [lower, upper] = texts.distance;
-  $("interval").textContent = distance.distance[1] === 0 ? "0" : `${lower} to ${upper}`;
-  $("exact").textContent = distance.distance[1] === 0 ? "contact is proved" : `exactly ${distance.distance.join(" to ")}`;
+  $("interval").textContent = inContact(answer) ? "0" : `${lower} to ${upper}`;
+  $("exact").textContent = inContact(answer) ? "contact is proved" : `exactly ${distance.distance.join(" to ")}`;
+  const { witness, witnessAt } = seenAnswer(answer);
   ["witness-a", "witness-b"].forEach((id, side) => {
-    $(id).textContent = point_text(distance.witness[side]) + place_text(distance.witnessAt[side], state.parts[state.pair[side]]);
+    $(id).textContent = point_text(witness[side]) + place_text(witnessAt[side], state.parts[state.pair[side]]);
   });
   $("work").textContent = `${milliseconds.toFixed(1)} ms, ${collision.stats.boxTests + distance.stats.boxTests} pairs of boxes`;
   $("depth").hidden = !(answer.question.solid && collision.verdict === "intersecting");
@@ -205,9 +210,9 @@ function put(element, at) {
 
 function overlay() {
   if (!view) return;
-  const witness = state.answer?.distance.witness;
+  const witness = state.answer && seenAnswer(state.answer).witness;
   const [a, b] = witness ? witness.map((p) => view.seen(p)) : [null, null];
-  const apart = state.answer && state.answer.distance.distance[1] > 0;
+  const apart = state.answer && !inContact(state.answer);
   put($("mark-a"), a);
   put($("mark-b"), b);
   const line = $("gap-line");
@@ -683,7 +688,7 @@ async function openData(data) {
   const parts = data.parts.map((part, i) => ({
     name: part.name,
     bytes: bytesOf(part.base64),
-    scheme: part.scheme ?? "auto",
+    scheme: (part.scheme ?? "auto") === "auto" && schemes.includes(state.file?.scheme?.[i]) ? state.file.scheme[i] : (part.scheme ?? "auto"),
     pose: part.place ?? places[i] ?? identity.slice(),
   }));
   await open(parts, [0.55, 0.35, 0.85]);

@@ -129,8 +129,7 @@ Corners read_corners(std::string_view bytes, const std::string& name) {
   }
   if (!has_count) fail_in_file(name, "the file is too short for binary STL: it is truncated");
   fail_in_file(name, "the file declares " + std::to_string(facets) + " facets, which take " +
-                         std::to_string(promised) + " bytes, but has " +
-                         std::to_string(bytes.size()));
+                         std::to_string(promised) + " bytes, but has " + std::to_string(bytes.size()));
 }
 
 /// Of length 1, or zero where the triangle has no area that a double tells from zero.
