@@ -24,10 +24,17 @@ help:  ## this list
 
 # A fresh clone builds the command alone, without the libraries of tests; where they are configured their objects serve.
 demo_preset = $(if $(wildcard build/release/CMakeCache.txt),release,demo)
-demo:  ## two surfaces: do they touch? and a picture of them, build/demo.png
+demo:  ## two surfaces: do they touch? and a picture of them, build/demo.png; where Emscripten is installed a page, build/demo.html
 	@scripts/install_packages build
 	@$(call build,$(demo_preset),snug_command)
 	@scripts/demo build/$(demo_preset)/bin/snug build/demo.png
+	@$(if $(and $(shell command -v em++),$(shell command -v npm)),$(MAKE) build/demo.html,\
+	  echo "A page to move the parts in: make page, then make demo again")
+
+.PHONY: build/demo.html
+build/demo.html:
+	@$(MAKE) page > build/page.log 2>&1 || { tail -20 build/page.log >&2; exit 1; }
+	@scripts/demo_page build/$(demo_preset)/bin/snug build/web/snug.html $@
 
 # Where Emscripten is installed the page is tested too; PAGE=no leaves it out.
 test: install-packages build  ## every test, on the release build
