@@ -15,7 +15,7 @@ const usual_tolerance = tolerances.indexOf("0.1");
 const schemes = ["auto", "loop", "catmark", "doo-sabin", "midedge", "bilinear", "flat"];
 const examples = [
   { name: "Bracket and pin", parts: [["bracket.obj", bracket], ["pin.obj", pin]], rotate: [135, [0, 0, 1]], move: [0.05, 0.05, 0.5], view: [0.04, 0.11, 1] },
-  { name: "Star and ring", parts: [["star.obj", star], ["ring.obj", ring]], rotate: [0, [0, 0, 1]], move: [2.5, 0, 0], view: [0.5, 0.5, 1] },
+  { name: "Star and ring", parts: [["star.obj", star], ["ring.obj", ring]], rotate: [0, [0, 0, 1]], move: [6, 0, 0], view: [0.2, 0.4, 1] },
   { name: "Figure and pawn", parts: [["figure.obj", figure], ["pawn.obj", pawn]], rotate: [0, [0, 0, 1]], move: [3, 0, 0], view: [0.3, 0.25, 1] },
 ];
 
@@ -485,7 +485,8 @@ function partCard(side) {
     if (state.parts.length > 1 || side === 0) return;
   }
   const title = document.createElement("strong");
-  title.textContent = `${"AB"[side]}: ${part?.name ?? ""}`;
+  title.textContent = `${"AB"[side]}: ${part?.name.split("/").pop() ?? ""}`;
+  title.title = part?.name ?? "";
   const facts = document.createElement("p");
   facts.className = "fine";
   if (part) {

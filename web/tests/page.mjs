@@ -251,6 +251,7 @@ test("schemes, sharpness, tolerance, solids, layers", { skip }, async () => {
   await page.check("#show-hulls");
   await idle(page);
   await page.waitForFunction(() => /hulls proved.*hulls/.test(document.getElementById("shown").textContent), null, { timeout: 60_000 });
+  assert.equal(await verdict(page), "Separated");
   await picture("hulls");
   await close();
 });
