@@ -17,20 +17,38 @@ ctest = ctest --parallel $(JOBS) --no-tests=error
 # Thread sanitizer wants an address space that is not shuffled too far; not every container may ask for that.
 unshuffled = $$(setarch -R true 2> /dev/null && echo setarch -R || true)
 
-.PHONY: help demo test test-long build bench format tidy docs check asan tsan fuzz install-packages clean
+.PHONY: page page-test help demo test test-long build bench format tidy docs check asan tsan fuzz install-packages clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-17s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
 # A fresh clone builds the command alone, without the libraries of tests; where they are configured their objects serve.
 demo_preset = $(if $(wildcard build/release/CMakeCache.txt),release,demo)
-demo:  ## two surfaces: do they touch? and a picture of them, build/demo.png
+demo:  ## two surfaces: do they touch? and a picture of them, build/demo.png; where Emscripten is installed a page, build/demo.html
 	@scripts/install_packages build
 	@$(call build,$(demo_preset),snug_command)
 	@scripts/demo build/$(demo_preset)/bin/snug build/demo.png
+	@$(if $(and $(shell command -v em++),$(shell command -v npm)),$(MAKE) build/demo.html,\
+	  echo "A page to move the parts in: make page, then make demo again")
 
+.PHONY: build/demo.html
+build/demo.html:
+	@$(MAKE) page > build/page.log 2>&1 || { tail -20 build/page.log >&2; exit 1; }
+	@scripts/demo_page build/$(demo_preset)/bin/snug build/web/snug.html $@
+
+# Where Emscripten is installed the page is tested too; PAGE=no leaves it out.
 test: install-packages build  ## every test, on the release build
 	@$(ctest) --preset release
+	@$(if $(filter no,$(PAGE)),true,$(if $(shell command -v em++),$(MAKE) page-test,echo "The page was not tested: there is no Emscripten; make page-test installs it"))
+
+page:  ## snug in a browser: build/web/snug.html, and the package for JavaScript, build/web/package
+	@scripts/install_packages build page
+	@$(call build,web)
+	@web/build build/web
+
+page-test: page  ## the package against the command, bit by bit, and the page in Chromium
+	@$(call build,$(demo_preset),snug_command)
+	@SNUG=build/$(demo_preset)/bin/snug web/test build/web
 
 test-long: install-packages build  ## the random tests with many more cases (docs/derivations/README.md), then every test with address sanitizer
 	@SNUG_PLACEMENTS=20000 $(ctest) --preset release
@@ -100,7 +118,7 @@ docs: install-packages  ## plots and tables of docs/convergence.md, pictures of 
 	@scripts/check_docs.py
 
 install-packages:  ## what building, testing and checking need, where it is missing (scripts/packages.txt has it in sections)
-	@scripts/install_packages
+	@scripts/install_packages build test bench gates fuzz
 
 clean:  ## remove build/
 	@rm -rf build

@@ -22,6 +22,10 @@ void require_output(const std::string& command, const std::string& output) {
   if (output.empty() || output == "-") return;
   if (command == "subdivide" || command == "tessellate" || command == "envelope" || command == "fit") {
     require_writable_ending(output);
+  } else if (command == "view") {
+    if (!output.ends_with(".html")) {
+      throw UsageError("-o " + output + ": view writes a page; give a file that ends in .html");
+    }
   } else if (command != "render" && !output.ends_with(".json")) {
     throw UsageError("-o " + output + ": " + command + " writes JSON; give a file that ends in .json");
   }

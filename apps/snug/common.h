@@ -137,5 +137,6 @@ class Report {
 [[nodiscard]] Command deviation_command();
 [[nodiscard]] Command render_command();
 [[nodiscard]] Command table_command();
+[[nodiscard]] Command view_command();
 
 }  // namespace snug::command

@@ -13,7 +13,7 @@ Program snug_program() {
           {collide_command(), distance_command(), deviation_command(), closest_command(), ray_command(),
            bound_command(), eval_command(), info_command(), measure_command(), subdivide_command(),
            tessellate_command(), hull_command(), envelope_command(), fit_command(), independence_command(),
-           render_command(), table_command()}};
+           render_command(), table_command(), view_command()}};
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <snug/base/contract.h>
+#include <snug/base/ordering.h>
 #include <snug/base/parallel.h>
 #include <snug/geometry/rounding.h>
 
@@ -67,11 +68,10 @@ std::vector<std::span<Item>> split_by_eight(std::span<Item> items, std::size_t p
       for (std::size_t k = 0; k < 3; ++k) sides[k] = upper[k] - lower[k];
       const auto axis =
           static_cast<std::size_t>(std::max_element(sides.begin(), sides.end()) - sides.begin());
-      std::nth_element(range.begin(), range.begin() + static_cast<std::ptrdiff_t>(middle), range.end(),
-                       [axis](const Item& a, const Item& b) {
-                         const float x = a.centre[axis], y = b.centre[axis];
-                         return x != y ? x < y : a.number < b.number;
-                       });
+      ordering::nth_element(range.data(), middle, range.size(), [axis](const Item& a, const Item& b) {
+        const float x = a.centre[axis], y = b.centre[axis];
+        return x != y ? x < y : a.number < b.number;
+      });
       finer.push_back(range.first(middle));
       finer.push_back(range.subspan(middle));
     }

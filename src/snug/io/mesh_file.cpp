@@ -52,11 +52,12 @@ std::string formatted(const ControlMesh& mesh, const std::string& ending, const 
   return format_obj(mesh);
 }
 
-ControlMesh parsed(const std::string& path, const std::string& name, const Notes& notes,
-                   const WorkMonitor& monitor) {
-  std::string ending =
-      format_among({"", ".obj", ".off", ".ply", ".stl"}, path, "read from .obj, .off, .ply and .stl");
-  const std::string bytes = read_file(path, monitor);
+/// The ending that names the format to read; empty for none.
+std::string format_to_read(const std::string& path) {
+  return format_among({"", ".obj", ".off", ".ply", ".stl"}, path, "read from .obj, .off, .ply and .stl");
+}
+
+ControlMesh parsed(std::string_view bytes, std::string ending, const std::string& name, const Notes& notes) {
   if (ending.empty()) ending = sniffed_format(bytes);
   if (ending == ".off") return parse_off(bytes, name);
   if (ending == ".ply") return parse_ply(bytes, name);
@@ -92,9 +93,14 @@ std::string told(const Welded& welded) {
 
 }  // namespace
 
+ControlMesh parse_mesh(std::string_view bytes, const std::string& name, const Notes& notes) {
+  return parsed(bytes, format_to_read(name), name, notes);
+}
+
 ControlMesh read_mesh(const std::string& path, const ReadOptions& options) {
   const std::string name = input_name(path);
-  ControlMesh mesh = parsed(path, name, options.notes, options.monitor);
+  std::string ending = format_to_read(path);  // before the file is opened
+  ControlMesh mesh = parsed(read_file(path, options.monitor), std::move(ending), name, options.notes);
   if (!options.weld) return mesh;
   try {
     const Welded welded = weld(mesh, options.weld(size_of(mesh)));

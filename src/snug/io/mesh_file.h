@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 #include <snug/mesh.h>
 #include <snug/mesh/control_mesh.h>
@@ -10,6 +11,10 @@
 namespace snug {
 
 class AtomicFile;
+
+/// read_mesh() of the bytes that a file of this name holds, without welding.
+[[nodiscard]] ControlMesh parse_mesh(std::string_view bytes, const std::string& name,
+                                     const Notes& notes = {});
 
 /// write_mesh() into a file that was opened for this name, and that is left to the caller to commit; with
 /// normals of the vertices if there are any and writes_normals(path).

@@ -117,11 +117,11 @@ class AsciiParser {
 
 Corners read_corners(std::string_view bytes, const std::string& name) {
   const bool has_count = bytes.size() >= preamble_size;
-  const std::size_t facets =
+  const std::uint32_t facets =
       has_count ? load<std::uint32_t>(bytes.data() + header_size, std::endian::little) : 0;
+  const std::uint64_t promised = preamble_size + std::uint64_t{facet_size} * facets;
   // Text of this size would have to be gigabytes long.
-  if (has_count && bytes.size() == preamble_size + facet_size * facets)
-    return read_binary(bytes, facets, name);
+  if (has_count && bytes.size() == promised) return read_binary(bytes, facets, name);
   if (begins_like_ascii(bytes)) return AsciiParser(plain_text(bytes, name), name).parse();
   refuse_other_formats(bytes, name);
   if (bytes.find('\0') == std::string_view::npos) {
@@ -129,8 +129,7 @@ Corners read_corners(std::string_view bytes, const std::string& name) {
   }
   if (!has_count) fail_in_file(name, "the file is too short for binary STL: it is truncated");
   fail_in_file(name, "the file declares " + std::to_string(facets) + " facets, which take " +
-                         std::to_string(preamble_size + facet_size * facets) + " bytes, but has " +
-                         std::to_string(bytes.size()));
+                         std::to_string(promised) + " bytes, but has " + std::to_string(bytes.size()));
 }
 
 /// Of length 1, or zero where the triangle has no area that a double tells from zero.

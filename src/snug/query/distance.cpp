@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include <snug/base/ordering.h>
 #include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/containment.h>
@@ -94,9 +95,9 @@ class Query {
           static_cast<void>(walk_.open(pair, walk_.opening(pair), INFINITY, next));
         }
       }
-      const auto end = next.begin() + static_cast<std::ptrdiff_t>(std::min(beam, next.size()));
-      std::partial_sort(next.begin(), end, next.end(), nearer);
-      front.assign(next.begin(), end);
+      const std::size_t kept = std::min(beam, next.size());
+      ordering::partial_sort(next.data(), kept, next.size(), nearer);
+      front.assign(next.begin(), next.begin() + static_cast<std::ptrdiff_t>(kept));
     }
     for (const NodePair& pair : front) improve(pair, pieces_.nearest(pair));
   }
@@ -122,7 +123,7 @@ class Query {
     if (!walk_.may_open(pair, opening, options_.budget)) return false;
     const std::size_t first = stack.size();
     bounds_.prune(static_cast<double>(walk_.open(pair, opening, bounds_.prune_distance(), stack)));
-    std::sort(stack.begin() + static_cast<std::ptrdiff_t>(first), stack.end(), farther);
+    ordering::sort(stack.data() + first, stack.size() - first, farther);
     return true;
   }
 

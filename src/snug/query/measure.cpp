@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <snug/base/error.h>
+#include <snug/base/ordering.h>
 #include <snug/base/parallel.h>
 #include <snug/geometry/interval.h>
 #include <snug/patch/evaluate.h>
@@ -175,7 +176,7 @@ class PatchMeasurer {
       for (const Net& tip : tips_) sum += tip.area;
       return enlarged(sum * (1 + gamma_bound(tips_.size())));
     };
-    std::make_heap(tips_.begin(), tips_.end(), smaller);
+    ordering::make_heap(tips_.data(), tips_.size(), smaller);
     double left = sum_of_tips();
     while (left > goal && !tips_.empty()) {
       const Net& largest = tips_.front();
@@ -183,16 +184,14 @@ class PatchMeasurer {
         result_.stuck = true;
         break;
       }
-      std::pop_heap(tips_.begin(), tips_.end(), smaller);
+      ordering::pop_heap(tips_.data(), tips_.size(), smaller);
       const Net tip = std::move(tips_.back());
       tips_.pop_back();
       const std::size_t before = tips_.size();
       left -= tip.area;
       refine(tip);
       for (std::size_t i = before; i < tips_.size(); ++i) left += tips_[i].area;
-      for (std::size_t i = before; i < tips_.size(); ++i) {
-        std::push_heap(tips_.begin(), tips_.begin() + static_cast<std::ptrdiff_t>(i) + 1, smaller);
-      }
+      for (std::size_t i = before; i < tips_.size(); ++i) ordering::push_heap(tips_.data(), i + 1, smaller);
       if (left <= goal) left = sum_of_tips();
     }
     left = sum_of_tips();
@@ -219,7 +218,7 @@ class PatchMeasurer {
         break;
       }
       const std::uint32_t i = heap_.front().second;
-      std::pop_heap(heap_.begin(), heap_.end());
+      ordering::pop_heap(heap_.data(), heap_.size(), std::less<>());
       heap_.pop_back();
       gap -= pieces_[i].gap();
       if (!pieces_[i].tight()) {
@@ -249,7 +248,7 @@ class PatchMeasurer {
   double push(std::uint32_t i) {
     if (pieces_[i].can_improve()) {
       heap_.emplace_back(pieces_[i].gap(), i);
-      std::push_heap(heap_.begin(), heap_.end());
+      ordering::push_heap(heap_.data(), heap_.size(), std::less<>());
     }
     return pieces_[i].gap();
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <snug/base/error.h>
+#include <snug/base/ordering.h>
 #include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/closest.h>
@@ -96,8 +97,8 @@ class Search {
           InputProblem::unrepresentable,
           "penetration: no translation that separates the solids fits doubles; scale the meshes down");
     }
-    std::sort(found.begin(), found.end(),
-              [](const Candidate& x, const Candidate& y) { return x.length < y.length; });
+    ordering::sort(found.data(), found.size(),
+                   [](const Candidate& x, const Candidate& y) { return x.length < y.length; });
     found.resize(std::min(found.size(), max_descended));
     best_ = found[0];
     for (const Candidate& start : found) descend(start);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <snug/base/error.h>
+#include <snug/base/ordering.h>
 #include <snug/search/workspace.h>
 
 namespace snug {
@@ -78,14 +79,14 @@ class NearestFirst {
   /// Requires:  not empty; so does take().
   [[nodiscard]] const Item& nearest() const { return items_.front(); }
   Item take() {
-    std::pop_heap(items_.begin(), items_.end(), farther);
+    ordering::pop_heap(items_.data(), items_.size(), farther);
     const Item item = items_.back();
     items_.pop_back();
     return item;
   }
   void add(const Item& item) {
     items_.push_back(item);
-    std::push_heap(items_.begin(), items_.end(), farther);
+    ordering::push_heap(items_.data(), items_.size(), farther);
   }
 
  private:

@@ -1,0 +1,58 @@
+// Makes the package and the page from the module: node web/build.mjs MODULE-FOLDER OUTPUT-FOLDER
+//
+//   OUTPUT/package/   snug.js, snug.wasm, snug.d.ts and what else npm publishes
+//   OUTPUT/snug.html  the page: one file, which needs no network
+
+import { build } from "esbuild";
+import { cp, mkdir, readFile, rm, writeFile } from "node:fs/promises";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const here = dirname(fileURLToPath(import.meta.url));
+const [module_folder, output] = process.argv.slice(2);
+const wasm = join(module_folder, "snug.wasm");
+
+const common = {
+  bundle: true,
+  minify: true,
+  legalComments: "none",
+  charset: "utf8",
+  target: ["chrome95", "firefox100", "safari15.2"],
+  alias: { "snug-module": join(module_folder, "snug.mjs") },
+  loader: { ".obj": "text" },
+  absWorkingDir: here,
+  logLevel: "warning",
+};
+
+async function bundled(entry, options) {
+  const made = await build({ ...common, ...options, entryPoints: [join(here, entry)], write: false });
+  return made.outputFiles[0].text;
+}
+
+async function makePackage() {
+  const folder = join(output, "package");
+  await rm(folder, { recursive: true, force: true });
+  await mkdir(folder, { recursive: true });
+  await writeFile(join(folder, "snug.js"), await bundled("package/snug.js", { format: "esm", target: "es2022", external: ["node:fs/promises"] }));
+  await cp(wasm, join(folder, "snug.wasm"));
+  for (const name of ["snug.d.ts", "package.json", "README.md"]) await cp(join(here, "package", name), join(folder, name));
+  await cp(join(here, "../LICENSE"), join(folder, "LICENSE"));
+}
+
+// Where a script stands inside a page, nothing may look like its end.
+const inside = (text) => text.replace(/<\/(script)/gi, "<\\/$1").replace(/<!--/g, "<\\!--");
+
+async function makePage() {
+  const parts = {
+    style: await readFile(join(here, "page/style.css"), "utf8"),
+    wasm: (await readFile(wasm)).toString("base64"),
+    engine: inside(await bundled("page/engine.js", { format: "iife", define: { "import.meta.url": '"file:///"' }, external: ["node:fs/promises"] })),
+    main: inside(await bundled("page/main.js", { format: "esm" })),
+  };
+  const page = await readFile(join(here, "page/index.html"), "utf8");
+  await writeFile(join(output, "snug.html"), page.replace(/\/\*(style|wasm|engine|main)\*\//g, (_, name) => parts[name]));
+}
+
+await mkdir(output, { recursive: true });
+await makePackage();
+await makePage();

@@ -1,0 +1,219 @@
+/** A rigid transform, row by row: R | t. Taken without change, and refused unless it is rigid within 1e-9. */
+export type Pose = readonly number[] | Float64Array;
+export type Point = [number, number, number];
+/** Contains the exact value. */
+export type Interval = [lower: number, upper: number];
+export type Verdict = "separated" | "within" | "intersecting" | "undecided";
+export type Scheme = "loop" | "catmark" | "doo-sabin" | "midedge" | "bilinear" | "flat";
+export type Boundary = "none" | "edge-only" | "edge-and-corner";
+
+/** What the library refuses: the message names the file, line, face or vertex, and the next step. */
+export class SnugError extends Error {
+  readonly problem: "unreadable" | "refused" | "pose" | "value" | "unrepresentable" | "memory";
+}
+
+export interface ReadOptions {
+  /** Default: loop if all faces are triangles, else catmark. */
+  scheme?: Scheme | "auto";
+  /** Default: the file's tag, else edge-and-corner. */
+  boundary?: Boundary;
+  /** Edges with a larger angle between face normals, in degrees, stay sharp; for parts from CAD. */
+  sharp?: number;
+  /** Merge vertices this close; 0: equal ones. */
+  weld?: number;
+  /** Bound every patch at the first query: later ones are faster. */
+  tight?: boolean;
+}
+
+/** Where a point lies: parameters on a face; in a dual scheme, on a vertex. */
+export interface Place {
+  owner: number;
+  corner: number;
+  u: number;
+  v: number;
+}
+export interface WitnessPlace extends Place {
+  normal: Point | null;
+  normalError: number | null;
+}
+
+export interface SearchStats {
+  boxTests: number;
+  triangleTests: number;
+  evaluations: number;
+  splits: number;
+}
+
+/** Poses default to where the files put the parts; lengths are in mesh units. */
+export interface PairOptions {
+  poseA?: Pose;
+  poseB?: Pose;
+  /** Compare the solids that closed surfaces bound: one inside the other intersects it. */
+  solid?: boolean;
+  budget?: number;
+}
+export interface CollideOptions extends PairOptions {
+  /** Surfaces this close may be reported as within. Default: 0.1 % of the larger size. */
+  tolerance?: number;
+  /** Required clearance, 0 by default. */
+  margin?: number;
+}
+export interface DistanceOptions extends PairOptions {
+  /** Largest width of the interval. Default: 0.01 % of the larger size. */
+  precision?: number;
+  /** Or this fraction of its upper end. */
+  relative?: number;
+}
+
+export interface Collision {
+  verdict: Verdict;
+  /** The upper end is Infinity if no pair of points was near enough to matter. */
+  distance: Interval;
+  /** The two closest points found, on A and on B. */
+  witness: [Point, Point] | null;
+  /** Upper bound, per coordinate, of how far a witness is from the limit point it stands for. */
+  witnessError: number | null;
+  witnessAt: [WitnessPlace | null, WitnessPlace | null] | null;
+  /** With solid: 0 if A has a surface point inside B, 1 the other way round. */
+  inner: 0 | 1 | null;
+  stats: SearchStats;
+}
+export interface Distance {
+  distance: Interval;
+  reached: boolean;
+  witness: [Point, Point];
+  witnessError: number;
+  witnessAt: [WitnessPlace | null, WitnessPlace | null];
+  inner: 0 | 1 | null;
+  stats: SearchStats;
+}
+export interface Penetration {
+  depth: Interval;
+  /** To be added to B's pose: proved to separate the solids. */
+  translation: Point;
+  reached: boolean;
+}
+export interface ClosestPoint {
+  distance: Interval;
+  reached: boolean;
+  point: Point;
+  pointError: number;
+  at: Place;
+}
+
+/** The control mesh: face f has the corners from offsets[f] to offsets[f + 1]. */
+export interface Cage {
+  points: Float64Array;
+  offsets: Uint32Array;
+  corners: Uint32Array;
+}
+/** Limit points and normals on a lattice of 2^level steps a patch; each patch has its own. For drawing. */
+export interface Samples {
+  positions: Float32Array;
+  normals: Float32Array;
+  triangles: Uint32Array;
+  /** Upper bound of the error of all coordinates. */
+  error: number;
+}
+export interface Tessellation {
+  positions: Float64Array;
+  normals: Float64Array;
+  triangles: Uint32Array;
+  /** Of each triangle the face; in a dual scheme, the vertex. */
+  owners: Uint32Array;
+  /** Proved, both ways. */
+  errorBound: number;
+  reached: boolean;
+}
+export interface BoundOptions {
+  /** Split until each radius is at most half of this. */
+  tolerance?: number;
+  /** Without a tolerance: split every patch this many times. */
+  level?: number;
+  budget?: number;
+}
+/** Of piece i: base has 9 numbers, three corners of the triangle whose sweep by radius[i] contains it; lower and upper have 9
+ *  numbers each, three boxes whose hull contains it, too. */
+export interface Enclosures {
+  count: number;
+  maxRadius: number;
+  reached: boolean;
+  owners: Uint32Array;
+  parts: Uint32Array;
+  levels: Uint32Array;
+  pieces: string[];
+  base: Float64Array;
+  radius: Float64Array;
+  lower: Float64Array;
+  upper: Float64Array;
+}
+/** Hulls of the three boxes, to draw: triangles and edges without indices. */
+export interface EnclosureShapes {
+  count: number;
+  maxRadius: number;
+  positions: Float32Array;
+  edges: Float32Array;
+}
+export interface Hull {
+  positions: Float64Array;
+  triangles: Uint32Array;
+  owners: Uint32Array;
+  gap: number;
+}
+export interface Hulls {
+  inner: Hull | null;
+  outer: Hull | null;
+  /** Are they proved not to meet the surface, each other and themselves? */
+  verified: boolean;
+  closed: boolean;
+  problems: { fault: string; inner: boolean; place: Point; owner: number | null }[];
+}
+
+/** A limit surface. It lives outside of JavaScript's memory: delete() it. */
+export interface Surface {
+  /** Longest side of the box of the vertices that faces use. */
+  readonly size: number;
+  readonly scheme: Scheme;
+  readonly boundary: Boundary;
+  /** What the reader dropped although it changes the surface. */
+  readonly notes: string[];
+  cage(): Cage;
+  samples(level?: number): Samples;
+  tessellate(options: {
+    tolerance?: number;
+    maxEdge?: number;
+    maxAngle?: number;
+    maxTriangles?: number;
+    budget?: number;
+  }): Tessellation;
+  enclosures(options?: BoundOptions): Enclosures;
+  enclosureShapes(options?: BoundOptions): EnclosureShapes;
+  hulls(options?: { tolerance?: number; inner?: boolean; outer?: boolean; budget?: number }): Hulls;
+  /** signed: negative inside a closed surface. */
+  closestPoint(
+    point: Point | readonly number[],
+    options?: { precision?: number; relative?: number; signed?: boolean; budget?: number },
+  ): ClosestPoint;
+  /** How far the limit surface may be from the faces of its control mesh; null with a dual scheme. */
+  limitToFaces(): number | null;
+  /** volume is null unless the surface is closed. */
+  measure(options?: { relative?: number }): { area: Interval; volume: Interval | null; reached: boolean };
+  delete(): void;
+}
+
+export interface SnugModule {
+  /** Reads OBJ, OFF, PLY or STL; the ending of the name says which. */
+  read(name: string, data: string | ArrayBuffer | ArrayBufferView, options?: ReadOptions): Surface;
+  collide(a: Surface, b: Surface, options?: CollideOptions): Collision;
+  distance(a: Surface, b: Surface, options?: DistanceOptions): Distance;
+  /** Of two closed surfaces: the shortest translation that separates the solids. */
+  penetration(a: Surface, b: Surface, options?: { poseA?: Pose; poseB?: Pose; relative?: number; budget?: number }): Penetration;
+  /** after: a pose to begin with; then rotated about an axis (z) through the origin, then moved. */
+  pose(steps: { after?: Pose; axis?: readonly number[]; degrees?: number; move?: readonly number[] }): number[];
+  /** About six digits of a lower bound, rounded down, and of an upper one, rounded up, as the command prints them. */
+  textAtMost(x: number): string;
+  textAtLeast(x: number): string;
+}
+
+/** Loads the module; `wasm`: the bytes of snug.wasm, where they are not beside snug.js. */
+export default function Snug(options?: { wasm?: ArrayBuffer | Uint8Array }): Promise<SnugModule>;

@@ -1,0 +1,222 @@
+// What is seen: parts with their cages, enclosures and hulls; the camera; which part is under a pointer. Knows no answers.
+
+import {
+  AmbientLight, BufferAttribute, BufferGeometry, DirectionalLight, DoubleSide, Group, LineBasicMaterial, LineDashedMaterial,
+  LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, MOUSE, PerspectiveCamera, Plane, Raycaster, Scene, Sphere, TOUCH,
+  Vector2, Vector3, WebGLRenderer, Box3,
+} from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+
+const dark = matchMedia("(prefers-color-scheme: dark)");
+const colours = () =>
+  dark.matches
+    ? { parts: [0x4f9fd0, 0xf2b673], cage: 0xdfe7ed, enclosure: 0xb9c8d2 }
+    : { parts: [0x1d5f8a, 0xe39a4f], cage: 0x16202a, enclosure: 0x33424e };
+
+const geometryOf = ({ positions, normals, triangles }) => {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(positions, 3));
+  if (normals) geometry.setAttribute("normal", new BufferAttribute(normals, 3));
+  if (triangles) geometry.setIndex(new BufferAttribute(triangles, 1));
+  if (!normals) geometry.computeVertexNormals();
+  return geometry;
+};
+const linesOf = (points) => {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(points, 3));
+  return geometry;
+};
+
+/** One part in the scene; its layers are replaced one by one. */
+class SeenPart {
+  constructor(index) {
+    this.index = index;
+    this.group = new Group();
+    this.group.matrixAutoUpdate = false;
+    this.layers = new Map();
+  }
+  colour() {
+    return colours().parts[this.index % 2];
+  }
+  // Replaces a layer by these objects, or takes it away.
+  put(name, ...objects) {
+    for (const old of this.layers.get(name) ?? []) {
+      this.group.remove(old);
+      old.geometry.dispose();
+      old.material.dispose();
+    }
+    this.layers.delete(name);
+    if (objects.length === 0) return;
+    this.layers.set(name, objects);
+    this.group.add(...objects);
+  }
+  show(name, visible) {
+    for (const object of this.layers.get(name) ?? []) object.visible = visible;
+  }
+  shape(shape) {
+    const geometry = geometryOf(shape);
+    const surface = new Mesh(geometry, new MeshLambertMaterial({ color: this.colour(), side: DoubleSide, polygonOffset: true,
+      polygonOffsetFactor: 1, polygonOffsetUnits: 1 }));
+    surface.userData.part = this.index;
+    this.put("surface", surface);
+    this.put("mesh", new Mesh(geometry.clone(), new MeshBasicMaterial({ color: colours().cage, wireframe: true, transparent: true, opacity: 0.55 })));
+    geometry.computeBoundingSphere();
+    this.sphere = geometry.boundingSphere.clone();
+  }
+  // A's cage in whole lines, B's in dashes.
+  cage(edges, size) {
+    const how = { color: colours().cage, transparent: true, opacity: 0.75 };
+    const lines = new LineSegments(linesOf(edges), this.index % 2 === 0 ? new LineBasicMaterial(how)
+      : new LineDashedMaterial({ ...how, dashSize: size / 40, gapSize: size / 60 }));
+    lines.computeLineDistances();
+    this.put("cage", lines);
+  }
+  enclosures(shapes) {
+    if (!shapes) return this.put("enclosures");
+    const glass = new MeshLambertMaterial({ color: this.colour(), transparent: true, opacity: 0.18, side: DoubleSide, depthWrite: false });
+    this.put("enclosures", new Mesh(geometryOf({ positions: shapes.positions }), glass),
+      new LineSegments(linesOf(shapes.edges), new LineBasicMaterial({ color: colours().enclosure, transparent: true, opacity: 0.4 })));
+  }
+  hulls(hulls) {
+    if (!hulls) return this.put("hulls");
+    const drawn = [];
+    for (const [hull, opacity] of [[hulls.outer, 0.22], [hulls.inner, 0.35]]) {
+      if (!hull) continue;
+      const geometry = geometryOf(hull);
+      drawn.push(new Mesh(geometry, new MeshLambertMaterial({ color: this.colour(), transparent: true, opacity, side: DoubleSide, depthWrite: false })),
+        new Mesh(geometry.clone(), new MeshBasicMaterial({ color: colours().enclosure, wireframe: true, transparent: true, opacity: 0.25 })));
+    }
+    this.put("hulls", ...drawn);
+  }
+  // The twelve numbers of a pose.
+  place(p) {
+    this.group.matrix.set(p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9], p[10], p[11], 0, 0, 0, 1);
+    this.group.matrixWorldNeedsUpdate = true;
+  }
+  placedSphere() {
+    this.group.updateMatrixWorld(true);
+    return this.sphere.clone().applyMatrix4(this.group.matrixWorld);
+  }
+}
+
+export class View {
+  constructor(stage, onFrame) {
+    this.stage = stage;
+    this.onFrame = onFrame;
+    this.scene = new Scene();
+    this.camera = new PerspectiveCamera(32, 1, 0.01, 100);
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true });
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    stage.append(this.renderer.domElement);
+    const light = new DirectionalLight(0xffffff, 2.2);
+    light.position.set(-0.5, 0.8, 1);
+    this.camera.add(light);
+    this.scene.add(this.camera, new AmbientLight(0xffffff, 1.1));
+    this.controls = new OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.PAN, RIGHT: MOUSE.ROTATE };
+    this.controls.touches = { ONE: TOUCH.ROTATE, TWO: TOUCH.DOLLY_ROTATE };
+    this.controls.zoomToCursor = true;
+    this.controls.addEventListener("change", () => this.draw());
+    this.parts = [];
+    this.raycaster = new Raycaster();
+    this.waiting = false;
+    new ResizeObserver(() => this.resize()).observe(stage);
+    this.resize();
+  }
+  part(index) {
+    while (this.parts.length <= index) {
+      const part = new SeenPart(this.parts.length);
+      this.parts.push(part);
+      this.scene.add(part.group);
+    }
+    return this.parts[index];
+  }
+  keep(count) {
+    for (const part of this.parts.splice(count)) {
+      for (const name of [...part.layers.keys()]) part.put(name);
+      this.scene.remove(part.group);
+    }
+  }
+  resize() {
+    const { clientWidth, clientHeight } = this.stage;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.camera.aspect = clientWidth / clientHeight;
+    this.camera.updateProjectionMatrix();
+    this.renderer.setSize(clientWidth, clientHeight);
+    this.draw();
+  }
+  draw() {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.renderer.render(this.scene, this.camera);
+      this.onFrame();
+    });
+  }
+  // Everything in sight, from where it is looked at now.
+  fit(direction) {
+    const box = new Box3();
+    for (const part of this.parts) {
+      if (!part.sphere) continue;
+      const { center, radius } = part.placedSphere();
+      box.union(new Box3().setFromCenterAndSize(center, new Vector3(2, 2, 2).multiplyScalar(radius)));
+    }
+    if (box.isEmpty()) return;
+    const sphere = box.getBoundingSphere(new Sphere());
+    const narrow = Math.min(1, this.camera.aspect);
+    const away = (0.82 * sphere.radius) / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
+    const from = direction ? new Vector3(...direction) : this.camera.position.clone().sub(this.controls.target);
+    this.camera.position.copy(sphere.center).addScaledVector(from.normalize(), away);
+    this.camera.near = away / 200;
+    this.camera.far = away * 50;
+    this.camera.updateProjectionMatrix();
+    this.controls.target.copy(sphere.center);
+    this.controls.update();
+    this.draw();
+  }
+  ray(x, y) {
+    const { left, top, width, height } = this.stage.getBoundingClientRect();
+    this.raycaster.setFromCamera(new Vector2(((x - left) / width) * 2 - 1, 1 - ((y - top) / height) * 2), this.camera);
+    return this.raycaster;
+  }
+  // The part under a place on the screen, and where the ray meets it.
+  hit(x, y) {
+    this.scene.updateMatrixWorld();
+    const surfaces = this.parts.flatMap((part) => part.layers.get("surface") ?? []);
+    const found = this.ray(x, y).intersectObjects(surfaces, false)[0];
+    return found && { part: found.object.userData.part, point: found.point };
+  }
+  // Where the ray meets the plane through a point that faces the camera.
+  inPlane(x, y, through) {
+    const facing = new Plane().setFromNormalAndCoplanarPoint(this.camera.getWorldDirection(new Vector3()), through);
+    return this.ray(x, y).ray.intersectPlane(facing, new Vector3());
+  }
+  axes() {
+    this.camera.updateMatrixWorld();
+    const e = this.camera.matrixWorld.elements;
+    return { right: [e[0], e[1], e[2]], up: [e[4], e[5], e[6]], forward: [-e[8], -e[9], -e[10]] };
+  }
+  turn(by, up) {
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const { right } = this.axes();
+    offset.applyAxisAngle(this.camera.up, by).applyAxisAngle(new Vector3(...right), up);
+    if (Math.abs(offset.clone().normalize().dot(this.camera.up)) > 0.995) return;
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+  }
+  zoom(factor) {
+    this.camera.position.sub(this.controls.target).multiplyScalar(factor).add(this.controls.target);
+    this.controls.update();
+  }
+  // In pixels of the stage; nothing behind the camera.
+  seen(point) {
+    const at = new Vector3(...point).applyMatrix4(this.camera.matrixWorldInverse);
+    if (at.z >= -this.camera.near) return null;
+    at.applyMatrix4(this.camera.projectionMatrix);
+    return [((at.x + 1) / 2) * this.stage.clientWidth, ((1 - at.y) / 2) * this.stage.clientHeight];
+  }
+  onScheme(change) {
+    dark.addEventListener("change", change);
+  }
+}

@@ -1,0 +1,218 @@
+// The package: node --test web/tests/package.mjs, with SNUG (the native command) and SNUG_PACKAGE (its folder).
+// What it answers is held against the native command, bit by bit.
+
+import assert from "node:assert/strict";
+import { execFileSync, spawnSync } from "node:child_process";
+import { mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, extname, join, resolve } from "node:path";
+import { after, test } from "node:test";
+import { fileURLToPath, pathToFileURL } from "node:url";
+
+const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
+const command = resolve(process.env.SNUG ?? join(root, "build/release/bin/snug"));
+const folder = resolve(process.env.SNUG_PACKAGE ?? join(root, "build/web/package"));
+const models = join(root, "examples/models");
+const { default: Snug, SnugError } = await import(pathToFileURL(join(folder, "snug.js")));
+
+const snug = await Snug();
+const scratch = mkdtempSync(join(tmpdir(), "snug-"));
+after(() => rmSync(scratch, { recursive: true }));
+
+const model = (name, options) => snug.read(name, readFileSync(join(models, name)), options);
+
+// The same numbers in every run.
+let seed = 12345n;
+const random = () => {
+  seed = (seed * 6364136223846793005n + 1442695040888963407n) & 0xffffffffffffffffn;
+  return Number(seed >> 11n) / 2 ** 53;
+};
+const centred = (size) => (random() - 0.5) * size;
+
+// A JSON document of the command, whatever it ends with.
+const ask = (...words) => JSON.parse(spawnSync(command, [...words, "--json", "--quiet"], { maxBuffer: 1 << 30, encoding: "utf8" }).stdout);
+
+test("says that the pin is clear of the bracket, and by how much", () => {
+  const [bracket, pin] = [model("bracket.obj"), model("pin.obj")];
+  const poseB = snug.pose({ axis: [0, 0, 1], degrees: 135, move: [0.05, 0.05, 0.5] });
+  assert.equal(snug.collide(bracket, pin, { poseB }).verdict, "separated");
+  const { distance, reached } = snug.distance(bracket, pin, { poseB, relative: 1e-3 });
+  assert.ok(reached);
+  assert.ok(0.205 < distance[0] && distance[1] < 0.2054 && distance[1] - distance[0] <= 1e-3 * distance[1], `${distance}`);
+  assert.equal(snug.textAtMost(1 / 3), "0.333333");
+  assert.equal(snug.textAtLeast(2 / 3), "0.666667");
+  const inner = snug.pose({ degrees: -45, move: [1.06, 1.06, 0.5] });
+  assert.equal(snug.collide(bracket, pin, { poseB: inner }).verdict, "intersecting");
+});
+
+// Poses far and near, turned by any angle and by right ones, in steps where parts of one lattice have many equal distances.
+function poses(size, count) {
+  return Array.from({ length: count }, (_, i) => {
+    if (i % 7 === 0) return snug.pose({ move: [[size, 0, 0], [0, 0, 0], [0, 0, size / 2], [0, size, 0]][i % 4] });
+    const degrees = i % 3 === 0 ? 90 * Math.floor(4 * random()) : 360 * random();
+    const move = [0, 1, 2].map(() => (i % 5 === 0 ? (Math.round(centred(8)) / 4) * size : centred(2 * size)));
+    return snug.pose({ axis: [centred(1), centred(1), centred(1)], degrees, move });
+  });
+}
+
+const places = (list) => list && list.map((at) => at && [at.face ?? at.vertex ?? at.owner, at.corner ?? 0, at.u, at.v, at.normal, at.normal_error ?? at.normalError ?? null]);
+const finite = (distance) => distance.map((x) => (x === Infinity ? null : x));
+const native_bits = (r) => [r.verdict ?? r.reached, r.distance, r.witness, r.witness_error, places(r.witness_at), Object.values(r.stats)];
+const own_bits = (r) => [r.verdict ?? r.reached, finite(r.distance), r.witness, r.witnessError, places(r.witnessAt), Object.values(r.stats)];
+
+test("gives the bits of the native library to 1120 questions", () => {
+  const pairs = [["bracket.obj", "pin.obj"], ["pawn.obj", "bust.obj"], ["star.obj", "ring.obj"], ["ring.obj", "ring.obj"], ["bracket.obj", "bracket.obj"],
+    ["head.obj", "figure.obj"], ["bracket.obj", "pin.obj", "doo-sabin"], ["star.obj", "ring.obj", "flat"]];
+  const file = join(scratch, "poses.txt");
+  const verdicts = new Set();
+  let asked = 0;
+  for (const [name_a, name_b, scheme] of pairs) {
+    const [a, b] = [model(name_a, { scheme: scheme ?? "auto" }), model(name_b, { scheme: scheme ?? "auto" })];
+    const list = poses(Math.max(a.size, b.size), 70);
+    writeFileSync(file, list.map((pose) => pose.join(" ")).join("\n") + "\n");
+    for (const question of ["collide", "distance"]) {
+      const document = ask(question, join(models, name_a), join(models, name_b), "--poses", file, ...(scheme ? ["--scheme", scheme] : []));
+      assert.equal(document.results.length, list.length);
+      document.results.forEach((native, i) => {
+        const own = question === "collide" ? snug.collide(a, b, { poseB: list[i], tolerance: document.tolerance })
+          : snug.distance(a, b, { poseB: list[i], precision: document.precision });
+        // Strict equality tells 0 from -0, and any two doubles.
+        assert.deepStrictEqual(own_bits(own), native_bits(native), `${question} ${name_a} ${name_b} ${scheme ?? ""}, pose ${i}`);
+        verdicts.add(own.verdict);
+        ++asked;
+      });
+    }
+  }
+  assert.equal(asked, 1120);
+  for (const verdict of ["separated", "within", "intersecting"]) assert.ok(verdicts.has(verdict), verdict);
+});
+
+test("makes the motions of the native library", () => {
+  const [a, b] = [join(models, "star.obj"), join(models, "ring.obj")];
+  for (let i = 0; i < 60; ++i) {
+    const axis = [centred(1), centred(1), centred(1)];
+    const degrees = i < 12 ? 15 * i : centred(2000);
+    const document = ask("collide", a, b, "--rotate-b", [...axis, degrees].join(" "), "--move-b", "0.1 0.2 9");
+    assert.deepStrictEqual(snug.pose({ axis, degrees, move: [0.1, 0.2, 9] }), document.place_b);
+  }
+});
+
+test("encloses as the native library does", () => {
+  for (const [name, level] of [["bracket.obj", 2], ["pawn.obj", 1], ["ring.obj", 1]]) {
+    const native = ask("bound", join(models, name), "--level", String(level)).enclosures;
+    const own = model(name).enclosures({ level });
+    assert.equal(own.count, native.length);
+    native.forEach((each, i) => {
+      const three = (list) => [...list.subarray(9 * i, 9 * i + 9)];
+      assert.deepStrictEqual([three(own.base), own.radius[i], three(own.lower), three(own.upper), own.pieces[i]],
+        [each.base.flat(), each.radius, each.lower.flat(), each.upper.flat(), each.piece]);
+    });
+  }
+});
+
+test("reads numbers exactly", () => {
+  const numbers = ["0.1", "1e-320", "4.9e-324", "2.4703282292062327e-324", "2.4703282292062328e-324", "1.7976931348623157e308", "-0", "123456789012345678901234567890",
+    "9007199254740993", "0.500000000000000166533453693773481063544750213623046875", "1.00000000000000011102230246251565404236316680908203125", "1e-400", ".5", "5.", "1E3"];
+  for (let i = 0; i < 5000; ++i) numbers.push(`${Math.floor(random() * 1e15)}${Math.floor(random() * 1e9)}e${Math.floor(centred(600))}`.replace(/e(\d+)/, (all, e) => (Number(e) > 280 ? "" : all)));
+  const text = numbers.map((n) => `v ${n} 0 0\n`).join("") + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n";
+  const read = snug.read("numbers.obj", text).cage().points;
+  numbers.forEach((n, i) => assert.ok(Object.is(read[3 * i], Number(n)), `${n}: ${read[3 * i]}`));
+});
+
+test("writes numbers as the native library does", () => {
+  const star = model("star.obj");
+  for (const [x, written] of [[-1, "-1"], [-0.0001, "-1e-04"], [-0.001, "-0.001"], [-0.00001, "-1e-05"], [-1e22, "-1e+22"], [-100000, "-1e+05"], [-123456, "-123456"], [-1.5e300, "-1.5e+300"],
+    [-12345678901234567890, "-12345678901234567168"], [-0.1, "-0.1"], [NaN, "nan"], [Infinity, "inf"], [-4.9e-324, "-5e-324"], [-0.30000000000000004, "-0.30000000000000004"]]) {
+    assert.throws(() => snug.collide(star, star, { tolerance: x }), (error) => {
+      assert.ok(error instanceof SnugError);
+      assert.equal(error.problem, "value");
+      assert.equal(error.message, `collide: the tolerance is ${written}: give a finite number that is not negative`);
+      return true;
+    });
+  }
+});
+
+function* filesOf(place) {
+  for (const name of readdirSync(place)) {
+    const path = join(place, name);
+    if (statSync(path).isDirectory()) yield* filesOf(path);
+    else yield path;
+  }
+}
+
+test("refuses what the command refuses, in the same words", () => {
+  let refused = 0, read = 0;
+  for (const path of filesOf(join(root, "tests/corpus"))) {
+    if (![".obj", ".off", ".ply", ".stl", ".txt", ""].includes(extname(path))) continue;
+    const native = spawnSync(command, ["bound", path, "--quiet", "-o", join(scratch, "bound.json")], { encoding: "utf8" });
+    let message = "";
+    try {
+      snug.read(path, readFileSync(path)).delete();
+      ++read;
+    } catch (error) {
+      assert.ok(error instanceof SnugError, `${path}: ${error.stack}`);
+      message = error.message;
+      ++refused;
+    }
+    if (native.status === 0 || native.status === 5) assert.equal(message, "", path);
+    else assert.equal(message, native.stderr.trim().replace(/^snug: /, ""), path);
+  }
+  assert.ok(refused > 20 && read > 5, `${refused} refused, ${read} read`);
+});
+
+test("has no sums that 32 bits cut off", () => {
+  // 50 bytes for each of these facets are the same as for none, modulo 2^32.
+  const bytes = new Uint8Array(84);
+  new DataView(bytes.buffer).setUint32(80, 2 ** 31, true);
+  assert.throws(() => snug.read("a.stl", bytes), { message: "a.stl: the file declares 2147483648 facets, which take 107374182484 bytes, but has 84" });
+});
+
+test("draws, bounds and measures", () => {
+  const pawn = model("pawn.obj");
+  const samples = pawn.samples(2);
+  assert.equal(samples.positions.length, samples.normals.length);
+  assert.ok(samples.triangles.every((i) => i < samples.positions.length / 3));
+  for (const name of ["bracket.obj", "star.obj", "pin.obj"]) {
+    // Points of the lattice are on the surface, for quads and triangles alike.
+    const surface = model(name);
+    const { positions } = surface.samples(1);
+    for (let i = 0; i < positions.length; i += 30) {
+      const { distance } = surface.closestPoint([...positions.subarray(i, i + 3)], { precision: 1e-6 });
+      assert.ok(distance[0] < 1e-6, `${name}: ${distance}`);
+    }
+  }
+  const triangles = pawn.tessellate({ tolerance: 0.01 * pawn.size });
+  assert.ok(triangles.reached && triangles.errorBound <= 0.01 * pawn.size);
+  const shapes = pawn.enclosureShapes({ level: 1 });
+  assert.equal(shapes.positions.length % 9, 0);
+  assert.ok(shapes.count > 100);
+  const ring = model("ring.obj");
+  assert.equal(ring.scheme, "loop");
+  const hulls = ring.hulls({ tolerance: 0.03 * ring.size });
+  assert.ok(hulls.verified && hulls.outer.gap <= 0.03 * ring.size);
+  const { area, volume } = ring.measure({ relative: 0.01 });
+  const native = ask("measure", join(models, "ring.obj"), "--precision", "0.01");
+  assert.deepStrictEqual([area, volume], [native.area, native.volume]);
+  assert.ok(ring.limitToFaces() > 0);
+  const inside = snug.penetration(ring, ring, { poseB: snug.pose({ move: [0.05, 0, 0] }) });
+  assert.ok(inside.depth[0] <= inside.depth[1]);
+});
+
+test("tells mistakes of its callers", () => {
+  const star = model("star.obj");
+  const { deepEqual, throws } = assert;
+  deepEqual(star.notes, []);
+  throws(() => snug.collide(star, star, { poseB: [1, 2, 3] }), { name: "SnugError", problem: "pose" });
+  throws(() => snug.collide(star, star, { poseB: [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0] }), { problem: "pose", message: /scales lengths by 2/ });
+  throws(() => snug.read("a.fbx", "x"), { problem: "unreadable", message: "a.fbx: meshes are read from .obj, .off, .ply and .stl files only" });
+  throws(() => model("star.obj", { scheme: "butterfly" }), { problem: "value", message: /'butterfly' is not loop/ });
+  throws(() => model("bracket.obj", { scheme: "doo-sabin", sharp: 30 }), { problem: "value", message: /has no creases/ });
+  throws(() => snug.collide(star, {}), TypeError);
+  star.delete();
+  throws(() => snug.collide(star, star), TypeError);
+});
+
+test("has types that fit", () => {
+  execFileSync(process.execPath, [join(root, "web/node_modules/typescript/bin/tsc"), "--noEmit", "--strict", "--target", "es2022", "--module", "nodenext",
+    "--moduleResolution", "nodenext", join(root, "web/tests/types.mts")], { stdio: "inherit" });
+});

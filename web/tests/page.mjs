@@ -1,0 +1,318 @@
+// The page in Chromium: node --test web/tests/page.mjs, with SNUG (the native command) and SNUG_PAGE. Its numbers are held
+// against the command that the page itself names. Pictures of it are left beside the page, in screenshots/.
+
+import assert from "node:assert/strict";
+import { execFileSync, spawnSync } from "node:child_process";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { basename, dirname, join, resolve } from "node:path";
+import { after, before, test } from "node:test";
+import { fileURLToPath, pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+
+const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
+const command = resolve(process.env.SNUG ?? join(root, "build/release/bin/snug"));
+const page_file = resolve(process.env.SNUG_PAGE ?? join(root, "build/web/snug.html"));
+const models = join(root, "examples/models");
+const corpus = join(root, "tests/corpus");
+const pictures = join(dirname(page_file), "screenshots");
+const browser_file = ["chromium", "chromium-browser", "google-chrome"].map((name) => join("/usr/bin", name)).find(existsSync);
+const skip = browser_file ? false : "there is no Chromium: scripts/install_packages page";
+
+let browser, scratch;
+before(async () => {
+  if (skip) return;
+  mkdirSync(pictures, { recursive: true });
+  scratch = mkdtempSync(join(tmpdir(), "snug-"));
+  browser = await chromium.launch({ executablePath: browser_file, args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
+});
+after(async () => {
+  await browser?.close();
+  if (scratch) rmSync(scratch, { recursive: true });
+});
+
+// Opens the page; close() tells what it had to complain of, and whether it asked for anything but itself.
+async function open({ file = page_file, width = 1280, height = 800, ...more } = {}) {
+  const context = await browser.newContext({ viewport: { width, height }, ...more });
+  const page = await context.newPage();
+  const faults = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && !/GPU stall|swiftshader/i.test(message.text()) && faults.push(message.text()));
+  page.on("pageerror", (error) => faults.push(error.stack));
+  page.on("request", (request) => !/^(file|blob|data):/.test(request.url()) && faults.push(`asked for ${request.url()}`));
+  await page.goto(pathToFileURL(file).href);
+  await page.waitForFunction(() => document.body.dataset.ready, null, { timeout: 60_000 });
+  await idle(page);
+  return {
+    page,
+    picture: (name) => page.screenshot({ path: join(pictures, `${name}.png`) }),
+    close: async () => {
+      await context.close();
+      assert.deepEqual(faults, []);
+    },
+  };
+}
+const idle = async (page) => {
+  await page.evaluate(() => new Promise((done) => setTimeout(done, 30)));
+  await page.waitForFunction(() => !window.snugPage.state().busy, null, { timeout: 60_000 });
+};
+const verdict = (page) => page.textContent("#verdict");
+
+// What the page shows is what the command answers that it names, double by double and digit by digit.
+async function holdAgainstCommand(page) {
+  await idle(page);
+  const { answer } = await page.evaluate(() => window.snugPage.state());
+  const lines = await page.evaluate(() => window.snugPage.commands());
+  const [collide, distance] = lines.map((line) => {
+    assert.match(line, /^snug (collide|distance) /);
+    const run = spawnSync("bash", ["-c", `"$SNUG" ${line.slice(5)} --json --quiet`], { cwd: models, encoding: "utf8", env: { ...process.env, SNUG: command } });
+    assert.ok([0, 5].includes(run.status), run.stderr);
+    return JSON.parse(run.stdout);
+  });
+  const open_ended = ([lower, upper]) => [lower, Number.isFinite(upper) ? upper : null];
+  assert.equal(answer.question.tolerance, collide.tolerance);
+  assert.equal(answer.question.tolerance, distance.precision);
+  assert.equal(answer.collision.verdict, collide.verdict);
+  assert.deepStrictEqual(open_ended(answer.collision.distance), collide.distance);
+  assert.deepStrictEqual(answer.distance.distance, distance.distance);
+  assert.deepStrictEqual(answer.distance.witness, distance.witness);
+  assert.deepStrictEqual(answer.collision.witness, collide.witness);
+  assert.equal((await verdict(page)).toLowerCase().split(" ")[0], collide.verdict);
+  const [lower, upper] = distance.distance;
+  const contact = collide.verdict === "intersecting" || upper === 0;
+  assert.equal(await page.textContent("#exact"), contact ? "contact is proved" : `exactly ${lower} to ${upper}`);
+  if (!contact) {
+    const said = execFileSync("bash", ["-c", `"$SNUG" ${lines[1].slice(5)} --quiet`], { cwd: models, encoding: "utf8", env: { ...process.env, SNUG: command } });
+    const [, at_least, at_most] = said.match(/at least (\S+) and at most (\S+) apart/);
+    assert.equal(await page.textContent("#interval"), `${at_least} to ${at_most}`);
+  }
+}
+
+const middle = (page, index) => page.evaluate((i) => {
+  const { left, top } = document.getElementById("stage").getBoundingClientRect();
+  const [x, y] = window.snugPage.seen(window.snugPage.middle(i));
+  return [x + left, y + top];
+}, index);
+
+test("opens with a first answer, and asks for nothing", { skip }, async () => {
+  const { page, picture, close } = await open();
+  console.log(`first answer and all shown after ${await page.evaluate(() => document.body.dataset.ready)} ms`);
+  assert.ok((await page.evaluate(() => Number(document.body.dataset.ready))) < 5000);
+  assert.equal(await verdict(page), "Separated");
+  await holdAgainstCommand(page);
+  await picture("opened");
+  await close();
+});
+
+test("a drag changes the verdict, with the command's numbers, within 5 ms a question", { skip }, async () => {
+  const { page, picture, close } = await open();
+  const pose = () => page.evaluate(() => window.snugPage.state().poses[1]);
+  const before = await pose();
+  let [x, y] = await middle(page, 1);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.evaluate(() => window.snugPage.times());
+  const seen = new Set();
+  const start = Date.now();
+  for (let i = 0; i < 120; ++i) {
+    await page.mouse.move((x += 1), (y -= 1));
+    seen.add(await verdict(page));
+    if (i % 40 === 20) await holdAgainstCommand(page);
+  }
+  const seconds = (Date.now() - start) / 1000;
+  await idle(page);
+  const times = (await page.evaluate(() => window.snugPage.times())).sort((a, b) => a - b);
+  const median = times[times.length >> 1];
+  console.log(`${times.length} answers in ${seconds.toFixed(1)} s with the checks between; median ${median.toFixed(2)} ms, 95 % below ${times[Math.floor(0.95 * times.length)].toFixed(2)} ms`);
+  assert.ok(median < 5, `a question takes ${median} ms`);
+  await page.mouse.up();
+  assert.notDeepEqual(await pose(), before);
+  assert.equal(await verdict(page), "Intersecting");
+  assert.ok(seen.has("Separated") && seen.has("Intersecting"), [...seen].join());
+  await holdAgainstCommand(page);
+  await picture("intersecting");
+  const { rate } = await page.evaluate(async () => {
+    // Drags as fast as they are answered: what the geometry alone allows.
+    const stage = document.getElementById("stage");
+    const frame = () => new Promise((done) => setTimeout(done));
+    window.snugPage.times();
+    const began = performance.now();
+    stage.focus();
+    let count = 0;
+    while (performance.now() - began < 2000) {
+      stage.dispatchEvent(new KeyboardEvent("keydown", { key: count++ % 2 ? "ArrowLeft" : "ArrowRight", bubbles: true }));
+      while (window.snugPage.state().busy) await frame();
+    }
+    return { rate: count / 2 };
+  });
+  console.log(`${rate} moves a second answered, pictures included`);
+  await close();
+});
+
+test("keys move a part, turn it and put it back", { skip }, async () => {
+  const { page, picture, close } = await open();
+  const poses = () => page.evaluate(() => window.snugPage.state().poses);
+  const before = await poses();
+  await page.focus("#stage");
+  for (let i = 0; i < 60 && (await verdict(page)) !== "Intersecting"; ++i) {
+    await page.keyboard.press("ArrowRight");
+    await page.keyboard.press("ArrowUp");
+    await idle(page);
+  }
+  assert.equal(await verdict(page), "Intersecting");
+  await holdAgainstCommand(page);
+  await picture("keys");
+  await page.keyboard.press("PageDown");
+  await page.keyboard.press("Shift+ArrowLeft");
+  await page.keyboard.press("]");
+  await idle(page);
+  const [a, b] = await poses();
+  assert.deepEqual(a, before[0]);
+  assert.notEqual(b[0], before[1][0]);
+  await holdAgainstCommand(page);
+  await page.keyboard.press("a");
+  await page.keyboard.press("ArrowDown");
+  await idle(page);
+  assert.notDeepEqual((await poses())[0], before[0]);
+  await holdAgainstCommand(page);
+  await page.keyboard.press("Home");
+  await idle(page);
+  assert.deepEqual(await poses(), before);
+  assert.equal(await verdict(page), "Separated");
+  await page.keyboard.press("h");
+  assert.ok(await page.isVisible("#keys"));
+  await picture("help");
+  await close();
+});
+
+async function drop(page, path, selector = "#stage", name = basename(path)) {
+  const data = await page.evaluateHandle(([base64, name]) => {
+    const bytes = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+    const transfer = new DataTransfer();
+    transfer.items.add(new File([bytes], name));
+    return transfer;
+  }, [readFileSync(path).toString("base64"), name]);
+  await page.dispatchEvent(selector, "dragenter", { dataTransfer: data });
+  await page.dispatchEvent(selector, "drop", { dataTransfer: data, clientX: 3, clientY: 3 });
+  await page.evaluate(() => new Promise((done) => setTimeout(done, 100)));
+  await idle(page);
+}
+
+test("bad files are refused in the command's words, and what was there stays", { skip }, async () => {
+  const { page, picture, close } = await open();
+  for (const name of ["coordinate_nan.obj", "count_huge.stl", "blank.off", "binary.off", "comment_backslash.obj", "coincident_vertices.obj"]) {
+    const native = spawnSync(command, ["bound", name, "--quiet", "-o", join(scratch, "bound.json")], { cwd: corpus, encoding: "utf8" });
+    await page.evaluate(() => (document.querySelector("#fault span").textContent = ""));
+    await drop(page, join(corpus, name));
+    const said = await page.evaluate(() => (document.getElementById("fault").hidden ? "" : document.querySelector("#fault span").textContent));
+    assert.equal(said, native.status === 0 ? "" : native.stderr.trim().replace(/^snug: /, ""), name);
+    if (native.status !== 0) assert.equal((await page.evaluate(() => window.snugPage.state().names))[0], "bracket.obj");
+    if (name === "coordinate_nan.obj") await picture("refused");
+  }
+  await drop(page, join(models, "pawn.obj"), "#part-b");
+  assert.deepEqual(await page.evaluate(() => window.snugPage.state().names), ["bracket.obj", "pawn.obj"]);
+  assert.equal(await page.isVisible("#fault"), false);
+  await holdAgainstCommand(page);
+  await close();
+});
+
+test("schemes, sharpness, tolerance, solids, layers", { skip }, async () => {
+  const { page, picture, close } = await open();
+  const shown = () => page.textContent("#shown");
+  await page.selectOption("#scheme-a", "doo-sabin");
+  await idle(page);
+  await holdAgainstCommand(page);
+  await page.selectOption("#scheme-a", "catmark");
+  await page.check("#sharp");
+  await idle(page);
+  await holdAgainstCommand(page);
+  assert.match((await page.evaluate(() => window.snugPage.commands()))[0], /--scheme-a catmark .*--sharp 30/);
+  await page.selectOption("#scheme-b", "midedge");
+  await idle(page);
+  assert.match(await page.textContent("#fault span"), /midedge has no creases/);
+  await page.uncheck("#sharp");
+  await page.fill("#tolerance", "9");
+  await idle(page);
+  await holdAgainstCommand(page);
+  await page.check("#solid");
+  await idle(page);
+  await holdAgainstCommand(page);
+  await page.check("#show-enclosures");
+  await page.fill("#level", "1");
+  await idle(page);
+  await page.waitForFunction(() => /112 enclosures.*448 enclosures/.test(document.getElementById("shown").textContent));
+  await picture("enclosures");
+  await page.uncheck("#show-enclosures");
+  await page.check("#adaptive");
+  await page.check("#show-mesh");
+  await idle(page);
+  assert.match(await shown(), /triangles within/);
+  await picture("adaptive");
+  await page.uncheck("#adaptive");
+  await page.selectOption("#example", "1");
+  await page.evaluate(() => new Promise((done) => setTimeout(done, 300)));
+  await page.check("#show-hulls");
+  await idle(page);
+  await page.waitForFunction(() => /hulls proved.*hulls/.test(document.getElementById("shown").textContent), null, { timeout: 60_000 });
+  assert.equal(await verdict(page), "Separated");
+  await picture("hulls");
+  await close();
+});
+
+test("fingers: one moves a part, two turn the view; the page fits a phone", { skip }, async () => {
+  const { page, picture, close } = await open({ width: 390, height: 844, hasTouch: true, isMobile: true });
+  const session = await page.context().newCDPSession(page);
+  const touch = (type, ...points) => session.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+  const poses = () => page.evaluate(() => window.snugPage.state().poses);
+  const before = await poses();
+  const [x, y] = await middle(page, 1);
+  await touch("touchStart", [x, y]);
+  for (let i = 1; i <= 30; ++i) await touch("touchMove", [x + 1.5 * i, y - 1.5 * i]);
+  await touch("touchEnd");
+  await idle(page);
+  const after_one = await poses();
+  assert.notDeepEqual(after_one[1], before[1]);
+  assert.deepEqual(after_one[0], before[0]);
+  await holdAgainstCommand(page);
+  const [u, v] = await middle(page, 0);
+  const eye = () => page.evaluate(() => window.snugPage.seen([1, 0, 0]));
+  const seen = await eye();
+  await touch("touchStart", [u, v]);
+  await touch("touchStart", [u, v], [u + 60, v]);
+  for (let i = 1; i <= 20; ++i) await touch("touchMove", [u + 3 * i, v], [u + 60 + 3 * i, v]);
+  await touch("touchEnd");
+  await idle(page);
+  assert.deepEqual(await poses(), after_one);
+  assert.notDeepEqual(await eye(), seen);
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+  await picture("phone");
+  await close();
+});
+
+test("in the dark, and without colours", { skip }, async () => {
+  const { page, picture, close } = await open({ colorScheme: "dark" });
+  await page.addStyleTag({ content: "html { filter: grayscale(1); }" });
+  await picture("dark-without-colours");
+  // Each control has a name, and the verdict is in words beside its sign.
+  const unnamed = await page.evaluate(() => [...document.querySelectorAll("input, select, button")].filter((e) => !(e.labels?.length || e.getAttribute("aria-label") || e.textContent.trim())).map((e) => e.outerHTML));
+  assert.deepEqual(unnamed, []);
+  assert.ok(await page.isVisible("#sign .separated"));
+  await close();
+});
+
+test("`snug view` makes the page of one's own parts and answer", { skip }, async () => {
+  const answer = join(scratch, "answer.json"), made = join(scratch, "view.html");
+  const [bracket, pin] = ["bracket.obj", "pin.obj"].map((name) => join(models, name));
+  execFileSync(command, ["collide", bracket, pin, "--rotate-b", "z -45", "--move-b", "1.5 1.5 0.5", "--tolerance", "0.5%", "--quiet", "-o", answer]);
+  execFileSync(command, ["view", bracket, pin, "--answer", answer, "--template", page_file, "--quiet", "-o", made]);
+  const { page, picture, close } = await open({ file: made });
+  assert.match(await page.textContent("#file-answer"), /separated.*This page finds the same, digit by digit/);
+  assert.equal(await page.textContent("#tolerance-text"), "0.5 %");
+  await holdAgainstCommand(page);
+  await picture("view");
+  await close();
+  execFileSync(command, ["view", join(models, "pawn.obj"), "--template", page_file, "--quiet", "-o", made]);
+  const one = await open({ file: made });
+  assert.equal(await verdict(one.page), "One part");
+  await one.picture("one");
+  await one.close();
+});

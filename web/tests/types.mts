@@ -1,0 +1,16 @@
+// Compiles if snug.d.ts has the types that people use; package.mjs calls what is declared.
+
+import Snug, { SnugError, type Collision, type Interval, type Surface } from "../package/snug.js";
+
+const snug = await Snug();
+const a: Surface = snug.read("a.obj", "v 0 0 0");
+const b: Surface = snug.read("b.ply", new Uint8Array(3), { scheme: "catmark", sharp: 30 });
+const hit: Collision = snug.collide(a, b, { poseB: snug.pose({ degrees: 30 }), solid: true });
+const gap: Interval = snug.distance(a, b, { relative: 1e-3 }).distance;
+const normal: readonly number[] | null | undefined = hit.witnessAt?.[0]?.normal;
+const positions: Float32Array = a.samples(2).positions;
+// @ts-expect-error: there is no such verdict
+const wrong: boolean = hit.verdict === "touching";
+// @ts-expect-error: nor such a scheme
+snug.read("c.obj", "", { scheme: "butterfly" });
+export { gap, normal, positions, wrong, SnugError };
