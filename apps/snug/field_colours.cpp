@@ -7,6 +7,8 @@
 #include <vector>
 
 #include <snug/base/parallel.h>
+#include <snug/bounds/enclosure.h>
+#include <snug/patch/evaluate.h>
 #include <snug/query/closest.h>
 #include <snug/surface/evaluate.h>
 
@@ -126,6 +128,28 @@ std::shared_ptr<Field> distances(const PlacedSurface& surface, const PlacedSurfa
       [&](PatchId, const PatchEvaluator&, TriangleParameter) { return found[next++].distance.upper; });
 }
 
+// Of each patch the longest side of its interval triangle's boxes, in units of the largest; less than a thousandth of
+// that is as good as nothing.
+std::vector<double> thicknesses(const LimitSurface& surface, int threads, const WorkMonitor& monitor) {
+  std::vector<double> sides(surface.patch_count());
+  parallel_for(sides.size(), threads, [&](std::size_t begin, std::size_t end) {
+    HullPoints points;
+    for (std::size_t p = begin; p < end; ++p) {
+      if (!surface.has_patch(PatchId(p))) continue;
+      monitor.checkpoint();
+      const Patch patch = surface.patch(PatchId(p));
+      hull_points(surface.library(), patch, points);
+      const IntervalTriangle triangle = interval_simplex<3>(points, limit_corners(patch));
+      for (const Box3& box : triangle.corner) sides[p] = std::max(sides[p], longest_side(box));
+    }
+  });
+  const double largest = sides.empty() ? 0 : *std::max_element(sides.begin(), sides.end());
+  for (double& side : sides) {
+    side = largest > 0 && std::isfinite(largest) ? 1 + std::log10(std::max(side / largest, 1e-3)) / 3 : 0;
+  }
+  return sides;
+}
+
 }  // namespace
 
 std::function<Colour(const PatchHit&)> colours_by(std::string_view name, const PlacedSurface& surface,
@@ -134,6 +158,10 @@ std::function<Colour(const PatchHit&)> colours_by(std::string_view name, const P
   const LimitSurface* const limit = surface.surface;
   if (name == "level") {
     return [](const PatchHit& hit) { return ramp(hit.level / 6.0); };
+  }
+  if (name == "thickness") {
+    const auto shares = std::make_shared<std::vector<double>>(thicknesses(*limit, threads, monitor));
+    return [shares](const PatchHit& hit) { return ramp((*shares)[hit.patch.index()]); };
   }
   if (name == "kind") {
     return [limit](const PatchHit& hit) { return colour_of_kind(limit->kind(hit.patch)); };

@@ -15,6 +15,7 @@ namespace snug::command {
 ///
 ///   level      how often a patch was split, as the picture needs it
 ///   kind       grey where the patch is a polynomial, else a colour for each kind
+///   thickness  of a patch's interval triangle, its logarithm: from a thousandth of the thickest to that
 ///   curvature  mean curvature: from -k to k, where k is exceeded by a twentieth of the surface
 ///   distance   to the other surface: from the least to the largest that is met
 ///

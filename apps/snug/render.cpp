@@ -592,8 +592,9 @@ Command render_command() {
   list.add(Group::own, "--colour NAME", &options->colour,
            "Colours of surfaces: plain; kind: grey where they are polynomials of the regular sort; level: "
            "how often "
-           "patches were split; curvature: the mean one; distance: of two meshes, to the other one")
-      .one_of({"plain", "kind", "level", "curvature", "distance"});
+           "patches were split; thickness: of their interval triangles; curvature: the mean one; distance: "
+           "of two meshes, to the other one")
+      .one_of({"plain", "kind", "level", "thickness", "curvature", "distance"});
   list.add(Group::own, "--opacity SHARE", &options->opacities,
            "How much of the light from behind a mesh stops, from 0 to 1; one for each mesh, in order");
   list.add(

@@ -98,6 +98,7 @@ TEST_F(ray_command, pictures_show_what_is_asked_for) {
                                               {"--zoom", "3"},
                                               {"--colour", "kind"},
                                               {"--colour", "level"},
+                                              {"--colour", "thickness"},
                                               {"--colour", "curvature"},
                                               {"--colour", "distance"}}) {
     pictures.push_back(picture(how));
