@@ -52,7 +52,7 @@ constexpr Vector3 default_view{-0.55, -0.35, -0.85};
 constexpr Vector3 default_up{0, 1, 0};
 
 struct Options : CommonOptions {
-  std::vector<std::string> meshes, poses, witnesses;
+  std::vector<std::string> meshes, poses, witnesses, labels;
   bool nearest_rigid = false;
   Degree degree;
   std::string size = "1000x1000", view, up;
@@ -488,6 +488,10 @@ Shot compose(const Options& options, std::span<const Part> parts, const Enclosur
   shot.camera = frame(visible, view.direction, view.up, aspect);
   shot.camera.tangent /= options.zoom;
   add_surfaces(shot, options, parts, units, largest_scale(visible, shot.camera, size.height), monitor);
+  for (std::size_t i = 0; i < options.labels.size(); ++i) {
+    shot.scene.labels.push_back({options.labels[i], palette::label_height * line_scale, palette::ink,
+                                 static_cast<double>(options.labels.size() - 1 - i)});
+  }
   if (!options.cut.empty()) shot.scene.cut = cut_plane(parse_witness(options.cut, "--cut"), units);
   for (std::size_t part = 0; part < solids.size(); ++part) {
     const SolidStyle style{static_cast<std::uint32_t>(2 * part + 1), palette::outline_width * line_scale,
@@ -580,6 +584,8 @@ Command render_command() {
       Group::own, "--witness \"X Y Z  X Y Z\"", &options->witnesses,
       "Draw two points, such as the witnesses of collide and distance, and the segment between them; may be "
       "repeated");
+  list.add(Group::own, "--label TEXT", &options->labels,
+           "Write a line at the lower left, such as the verdict; may be repeated");
   list.add(Group::own, "--enclosures", &options->enclosures,
            "Draw the enclosures of the surfaces and curves, half transparent");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,

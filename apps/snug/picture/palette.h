@@ -26,6 +26,7 @@ inline constexpr Colour signal = Colour::hex(0xc22f3d);      ///< contacts, witn
 [[nodiscard]] constexpr Material flat(Colour colour = signal) { return {.colour = colour, .lit = false}; }
 
 /// Strokes, in pixels of a picture about a thousand pixels wide.
-inline constexpr double cage_width = 2.2, outline_width = 1.2, witness_width = 5, witness_dot = 18;
+inline constexpr double cage_width = 2.2, outline_width = 1.2, witness_width = 5, witness_dot = 18,
+                        label_height = 22;
 
 }  // namespace snug::palette

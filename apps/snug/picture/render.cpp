@@ -9,6 +9,7 @@
 #include <optional>
 
 #include <picture/hierarchy.h>
+#include <picture/lettering.h>
 #include <picture/shading.h>
 #include <snug/base/error.h>
 #include <snug/geometry/direction.h>
@@ -94,6 +95,11 @@ void expect_sound(const Scene& scene, const Camera& camera, const RenderOptions&
     for (const Point3& p : t.corner) require_value(is_finite(p), "render: a triangle is not finite");
     for (const Vector3& n : t.normal) require_value(is_finite(n), "render: a normal is not finite");
   }
+  for (const Label& label : scene.labels) {
+    require_value(
+        std::isfinite(label.height_in_pixels) && label.height_in_pixels > 0 && in_unit(label.colour),
+        "render: the height of a label must be positive, and its colour from 0 to 1");
+  }
   for (const Line& line : scene.lines) {
     require_value(is_finite(line.a) && is_finite(line.b), "render: a line is not finite");
     require_value(std::isfinite(line.width_in_pixels) && line.width_in_pixels > 0 && in_unit(line.colour),
@@ -161,6 +167,7 @@ class Renderer {
   };
 
   void add_line(const Line& line, double near_depth);
+  void add_label(const Label& label);
   void sort_strokes_into_rows();
   [[nodiscard]] Vector3 turned(Vector3 v) const {
     return {dot(v, camera_.right), dot(v, camera_.up), dot(v, camera_.forward)};
@@ -230,6 +237,7 @@ Renderer::Renderer(const Scene& scene, const Camera& camera, const RenderOptions
   for (const Line& line : scene.lines)
     reach = std::max(reach, std::max(length(line.a - camera.eye), length(line.b - camera.eye)));
   for (const Line& line : scene.lines) add_line(line, 1e-4 * reach);
+  for (const Label& label : scene.labels) add_label(label);
   sort_strokes_into_rows();
 }
 
@@ -246,6 +254,23 @@ void Renderer::add_line(const Line& line, double near_depth) {
   const double half_width = line.width_in_pixels / 2;
   strokes_.push_back({column(a), row(a), column(b), row(b), 1 / a.z, 1 / b.z, half_width,
                       1 - std::min(0.5, 3 * half_width * 2 * half_pixel_), light_of(line.colour)});
+}
+
+// Dark on a rim of light, so that it is read on everything.
+void Renderer::add_label(const Label& label) {
+  constexpr double in_front = 1e12;  // one over a depth
+  // Long lines are smaller, and fit.
+  const double size = std::min(label.height_in_pixels, options_.width / (2 + lettering_width(label.text))),
+               left = size, foot = options_.height - size * (1 + 1.7 * label.lines_up);
+  const std::vector<LetterStroke> letters = lettering(label.text);
+  for (const bool rim : {true, false}) {
+    for (const LetterStroke& stroke : letters) {
+      const double nearness = rim ? in_front : 2 * in_front;
+      strokes_.push_back({left + size * stroke.from[0], foot - size * stroke.from[1],
+                          left + size * stroke.to[0], foot - size * stroke.to[1], nearness, nearness,
+                          (rim ? 0.17 : 0.08) * size, 1, light_of(rim ? Colour{1, 1, 1} : label.colour)});
+    }
+  }
 }
 
 void Renderer::sort_strokes_into_rows() {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <picture/colour.h>
@@ -44,6 +45,14 @@ struct SceneSurface {
   std::function<Colour(const PatchHit&)> colour{};  ///< in place of the material's, where given
 };
 
+/// A line of text in front of everything, as lettering() draws it, from the lower left corner of the picture.
+struct Label {
+  std::string text;
+  double height_in_pixels;  ///< of a capital
+  Colour colour;
+  double lines_up = 0;  ///< so many lines above the lowest one
+};
+
 /// Of surfaces all is left out where dot(normal, p) is more than `offset`.
 struct CutPlane {
   Vector3 normal;
@@ -57,6 +66,7 @@ struct Scene {
   std::vector<Line> lines;
   std::vector<SceneSurface> surfaces{};
   std::optional<CutPlane> cut{};
+  std::vector<Label> labels{};
 };
 
 }  // namespace snug
