@@ -35,6 +35,9 @@ PiecePath path_of(std::uint64_t place) {
 }
 PatchId patch_of(std::uint64_t place) { return PatchId(static_cast<std::uint32_t>(place)); }
 
+// How close a ray must come to a quadratic, as a share of its error: neighbours are rarely off by all of it in opposite
+// directions. A hit is as far from the surface as both together.
+constexpr double widening = 0.7;
 // Widest group of rays that is searched as one, as a share of the surface.
 constexpr double widest_beam = 0.1;
 // Where single precision alone, of coordinates up to about 2, moves a triangle.
@@ -141,7 +144,7 @@ struct CasterTree::Builder {
       block.origin[k] = static_cast<float>(points.lower[k] + (points.upper[k] - points.lower[k]) / 2);
     }
     block.step = static_cast<float>(longest_side(points) / 2 / 32766 + 1e-30);
-    block.error = static_cast<float>(error + static_cast<double>(block.step) + single_error);
+    block.error = static_cast<float>(widening * error + static_cast<double>(block.step) + single_error);
     block.taken = (1u << (end - begin)) - 1;
     for (std::size_t l = 0; l < caster_width; ++l) {
       const QuadraticPiece& piece = pieces[order[std::min(begin + l, end - 1)]];
@@ -162,7 +165,8 @@ struct CasterTree::Builder {
 
 CasterTree::CasterTree(const LimitSurface& surface, double tolerance, int threads, const WorkMonitor& monitor)
     : surface_(&surface) {
-  const std::vector<QuadraticPiece> pieces = quadratic_pieces(surface, tolerance / 2, threads, monitor);
+  const std::vector<QuadraticPiece> pieces =
+      quadratic_pieces(surface, tolerance / (1 + widening), threads, monitor);
   Builder builder{*this, pieces, {}, {}};
   builder.boxes.reserve(pieces.size());
   Box3 all;
