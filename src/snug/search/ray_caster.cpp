@@ -212,7 +212,7 @@ std::size_t CasterTree::bytes() const {
 // A ray from where it comes near, so that single precision will do.
 struct CasterTree::Approach {
   Approach(const CasterTree& tree, const Ray& ray)
-      : lengths(ray.direction, tree.surface_->scale()), direction(normalized(ray.direction)) {
+      : lengths(ray.direction, tree.surface_->scale()), direction(lengths.unit(ray.direction)) {
     const Point3 origin = tree.surface_->scale().apply(ray.origin);
     const Vector3 ahead = tree.centre_ - origin;
     const double middle = dot(direction, ahead);
@@ -232,18 +232,11 @@ struct CasterTree::Approach {
 
 namespace {
 
-std::size_t shortest_axis(const Vector3& v) {
-  const Vector3 size{std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)};
-  return size.x <= size.y && size.x <= size.z ? 0 : size.y <= size.z ? 1 : 2;
-}
-
-// Two directions across a ray, from an axis that is not along it.
-std::array<Vector3, 2> across(const Vector3& direction, std::size_t axis) {
-  Vector3 other;
-  other[axis] = 1;
-  const Vector3 product = cross(other, direction);
-  const Vector3 first = (1 / length(product)) * product;
-  return {first, cross(direction, first)};
+// Two directions across a ray.
+// Source:    [Duff17].
+std::array<Vector3, 2> across(const Vector3& d) {
+  const double sign = std::copysign(1.0, d.z), a = -1 / (sign + d.z), b = d.x * d.y * a;
+  return {Vector3{1 + sign * d.x * d.x * a, sign * b, -sign * d.x}, Vector3{b, sign + d.y * d.y * a, -d.y}};
 }
 
 // Nodes still to be visited, the nearest last.
@@ -276,7 +269,7 @@ class OpenNodes {
 
 kernels::CasterRay CasterTree::seen(const Approach& approach) const {
   kernels::CasterRay ray{};
-  const std::array<Vector3, 2> sides = across(approach.direction, shortest_axis(approach.direction));
+  const std::array<Vector3, 2> sides = across(approach.direction);
   for (std::size_t k = 0; k < 3; ++k) {
     const double d = approach.direction[k];
     ray.origin[k] = static_cast<float>(approach.start[k]);
@@ -313,10 +306,9 @@ void CasterTree::walk(const kernels::CasterRay& ray, float grown, float first, f
 struct CasterTree::Beam {
   Beam(const CasterTree& in, std::span<const Approach> group, double apart, double spreading)
       : tree(in), middle(in.seen(group[group.size() / 2])), count(group.size()) {
-    const std::size_t axis = shortest_axis(group[group.size() / 2].direction);
     for (std::size_t i = 0; i < caster_width; ++i) {
       const Approach& ray = group[std::min(i, count - 1)];
-      const std::array<Vector3, 2> sides = across(ray.direction, axis);
+      const std::array<Vector3, 2> sides = across(ray.direction);
       for (std::size_t k = 0; k < 3; ++k) {
         rays.origin[k][i] = static_cast<float>(ray.start[k]);
         rays.direction[k][i] = static_cast<float>(ray.direction[k]);
