@@ -92,7 +92,8 @@ struct QuickHit {
 
 /// A surface made ready for many rays that need no proof: pictures and picking.
 ///
-/// Guarantee: a hit is within the tolerance of a point of the surface. That it is the first one, and that none is
+/// Guarantee: a hit is within the tolerance of a point of the surface, or 2^-14 of the surface's size if that is
+///            more: places are kept in 16 bits. That it is the first one, and that none is
 ///            missed, is not proved; trace() does that.
 class SNUG_API RayCaster {
  public:

@@ -72,7 +72,7 @@ struct Found {
 };
 
 // From a place by Newton's method, kept on the triangle. Nothing is farther than infinity.
-HWY_INLINE void search(const Quadratic& q, V s, V r, V near, V from, V to, Found& found) {
+HWY_INLINE void search(const Quadratic& q, V s, V r, V near_sq, V from, V to, Found& found) {
   const Tag d;
   const V zero = hn::Zero(d), one = hn::Set(d, 1), half = hn::Set(d, 0.5F), tiny = hn::Set(d, 1e-30F);
   for (unsigned step = 0; step < steps; ++step) {
@@ -95,8 +95,8 @@ HWY_INLINE void search(const Quadratic& q, V s, V r, V near, V from, V to, Found
     r = hn::Max(zero, hn::Min(r, hn::Sub(one, s)));
   }
   const Vector value = q.at(s, r);
-  const V away = hn::Max(hn::Abs(value.x), hn::Abs(value.y));
-  const auto met = hn::And(hn::And(hn::Le(away, near), hn::Ge(value.z, from)),
+  const V away = hn::Add(hn::Mul(value.x, value.x), hn::Mul(value.y, value.y));
+  const auto met = hn::And(hn::And(hn::Le(away, near_sq), hn::Ge(value.z, from)),
                            hn::And(hn::Le(value.z, to), hn::Lt(value.z, found.t)));
   found.t = hn::IfThenElse(met, value.z, found.t);
   found.s = hn::IfThenElse(met, s, found.s);
@@ -162,7 +162,7 @@ HWY_INLINE Found first_hits(const Seen& seen, Mask candidates, V near, V from, V
                     sub(add(p[0], p[1]), doubled(p[3])),
                     doubled(sub(add(p[0], p[4]), add(p[3], p[5]))),
                     sub(add(p[0], p[2]), doubled(p[5]))};
-  const V none = hn::IfThenElse(candidates, near, hn::Set(d, -1));
+  const V none = hn::IfThenElse(candidates, hn::Mul(near, near), hn::Set(d, -1));
   const V zero = hn::Zero(d), one = hn::Set(d, 1), third = hn::Set(d, 1.0F / 3), half = hn::Set(d, 0.5F);
   Found found{hn::Set(d, INFINITY), zero, zero};
   search(q, third, third, none, from, to, found);
