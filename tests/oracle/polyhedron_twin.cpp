@@ -1,5 +1,7 @@
 #include <oracle/polyhedron_twin.h>
 
+#include <oracle/exact_vector.h>
+
 #include <algorithm>
 #include <stdexcept>
 
@@ -7,17 +9,7 @@ namespace oracle {
 
 namespace {
 
-using Vector = std::array<mpq_class, 3>;
-
-Vector operator-(const Vector& a, const Vector& b) {
-  return {mpq_class(a[0] - b[0]), mpq_class(a[1] - b[1]), mpq_class(a[2] - b[2])};
-}
-mpq_class dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector cross(const Vector& a, const Vector& b) {
-  return {mpq_class(a[1] * b[2] - a[2] * b[1]), mpq_class(a[2] * b[0] - a[0] * b[2]),
-          mpq_class(a[0] * b[1] - a[1] * b[0])};
-}
-Vector exact(const Point& p) { return {mpq_class(p[0]), mpq_class(p[1]), mpq_class(p[2])}; }
+using namespace exact_vectors;
 
 mpq_class to_segment(const Vector& q, const Vector& a, const Vector& b) {
   const Vector edge = b - a, from = q - a;

@@ -1,6 +1,7 @@
 #include <oracle/ray_twin.h>
 
 #include <oracle/dual_twin.h>
+#include <oracle/exact_vector.h>
 #include <oracle/polygon_twin.h>
 
 #include <algorithm>
@@ -14,18 +15,8 @@ namespace oracle {
 namespace {
 
 using Id = std::uint32_t;
-using Vector = std::array<mpq_class, 3>;
-
-Vector operator-(const Vector& a, const Vector& b) {
-  return {mpq_class(a[0] - b[0]), mpq_class(a[1] - b[1]), mpq_class(a[2] - b[2])};
-}
-mpq_class dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector cross(const Vector& a, const Vector& b) {
-  return {mpq_class(a[1] * b[2] - a[2] * b[1]), mpq_class(a[2] * b[0] - a[0] * b[2]),
-          mpq_class(a[0] * b[1] - a[1] * b[0])};
-}
+using namespace exact_vectors;
 bool is_zero(const Vector& a) { return a[0] == 0 && a[1] == 0 && a[2] == 0; }
-Vector exact(const Point& p) { return {mpq_class(p[0]), mpq_class(p[1]), mpq_class(p[2])}; }
 
 // Of a face with a corner that bends; that of a convex one.
 Vector normal_of(const std::vector<Vector>& points, const std::vector<Id>& face) {
