@@ -1,3 +1,4 @@
+#!/usr/bin/python3
 """check.py PAGES SITE: holds the built site to what it promises.
 
 Every link leads to a file of the site, and to a place in it; nothing is loaded from a network; every page says what GitHub's
@@ -100,8 +101,6 @@ def broken_links(site, pages):
 def differences(source, page):
     """How a page differs from what GitHub's Markdown makes of its source."""
     text = source.read_text(encoding="utf-8")
-    if text.startswith("---\n"):
-        text = text.split("\n---\n", 1)[1]
     made = subprocess.run(["cmark-gfm", "--extension", "table", "--extension", "strikethrough", "--unsafe"], input=text, check=True,
                           capture_output=True, text=True).stdout
     wanted = Page(made)

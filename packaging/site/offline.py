@@ -1,4 +1,4 @@
-"""offline.py SITE: search/offline.js, the index of the search and its worker as a script."""
+"""offline.py SITE: search/offline.js, the index of the search and its worker as a script. Files of the repository are not searched."""
 
 import json
 import pathlib
@@ -6,6 +6,7 @@ import sys
 
 site = pathlib.Path(sys.argv[1])
 index = json.loads((site / "search/search_index.json").read_text(encoding="utf-8"))
+index["docs"] = [place for place in index["docs"] if not place["location"].startswith("files/")]
 [worker] = site.glob("assets/javascripts/workers/search.*.min.js")
 code = worker.read_text(encoding="utf-8").split("\n//# sourceMappingURL")[0]
 (site / "search/offline.js").write_text(

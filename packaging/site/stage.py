@@ -117,7 +117,7 @@ class Site:
         if len(text) > LONGEST:
             text = text[:LONGEST].rsplit("\n", 1)[0] + "\n...\n"
         fence = "~~~~~~"
-        return f"---\nsearch:\n  exclude: true\n---\n\n# {path.name}\n\n`{path}`\n\n{fence}{LANGUAGE.get(path.suffix, 'text')}\n{text}\n{fence}\n"
+        return f"# {path.name}\n\n`{path}`\n\n{fence}{LANGUAGE.get(path.suffix, 'text')}\n{text}\n{fence}\n"
 
     def moved(self, text, path, page):
         """The text of a file of the repository with links that hold on its page."""
