@@ -1,4 +1,4 @@
-# CPack: the packages snug, libsnug-dev and, with SNUG_BUILD_PYTHON, python3-snug. `make deb` sets the flags and the date.
+# CPack: the packages snug, libsnug-dev and, where the module is built, python3-snug. `make deb` sets the flags and the date.
 
 set(SNUG_PACKAGER "snug developers <snug@packages.invalid>" CACHE STRING "Maintainer of the packages: Name <address>")
 set(SNUG_PACKAGE_REVISION 1 CACHE STRING "Debian revision")
@@ -28,7 +28,7 @@ set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME snug)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION math)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "bash-completion")
-set(CPACK_COMPONENT_COMMAND_DESCRIPTION "proved answers about subdivision surfaces - command
+set(CPACK_DEBIAN_COMMAND_DESCRIPTION "proved answers about subdivision surfaces - command
 ${about}
 .
 This package has the command snug, its manual pages, its completion in bash,
@@ -38,23 +38,30 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libsnug-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libhwy-dev, libstdc++-12-dev | libstdc++-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "snug, libosd-dev")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "proved answers about subdivision surfaces - C++ library
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "proved answers about subdivision surfaces - C++ library
 ${about}
 .
 This package has the C++20 headers, the static library, and the files that
 CMake and pkg-config find it by. The header for OpenSubdiv needs libosd-dev.")
 
-# python/ installs the module with the component `python`.
-if(SNUG_BUILD_PYTHON)
+# The target of python/, with what lies in python/snug, to where Debian's Python looks.
+if(TARGET snug_python)
+  set(python_packages lib/python3/dist-packages)
+  install(TARGETS snug_python LIBRARY DESTINATION ${python_packages}/snug COMPONENT python)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/python/snug DESTINATION ${python_packages} COMPONENT python
+          FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
   list(APPEND CPACK_COMPONENTS_ALL python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-snug)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-  find_package(Python3 REQUIRED COMPONENTS Interpreter)
-  math(EXPR next_minor "${Python3_VERSION_MINOR} + 1")
+  execute_process(COMMAND /usr/bin/python3 -c "import sys; print(sys.version_info.minor, sys.version_info.minor + 1)"
+                  OUTPUT_VARIABLE minors OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  separate_arguments(minors)
+  list(GET minors 0 minor)
+  list(GET minors 1 next_minor)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-      "python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${next_minor}), python3-numpy")
-  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "proved answers about subdivision surfaces - Python module
+      "python3 (>= 3.${minor}~), python3 (<< 3.${next_minor}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "proved answers about subdivision surfaces - Python module
 ${about}
 .
 This package has the module snug for Python 3, with arrays of numpy.")
@@ -62,7 +69,6 @@ endif()
 
 # What Debian wants below /usr/share/doc/PACKAGE: the changelogs of the project and of the package, and the copyright.
 set(documents ${CMAKE_CURRENT_BINARY_DIR}/documents)
-set(overrides_of_command ${CMAKE_CURRENT_LIST_DIR}/overrides_snug)
 add_custom_command(
   OUTPUT ${documents}/changelog.gz ${documents}/changelog.Debian.gz
   COMMAND ${CMAKE_CURRENT_LIST_DIR}/changelogs ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${documents}
@@ -73,6 +79,8 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   string(TOUPPER ${component} upper)
   install(FILES ${documents}/changelog.gz ${documents}/changelog.Debian.gz ${CMAKE_CURRENT_LIST_DIR}/copyright
           DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${upper}_PACKAGE_NAME} COMPONENT ${component})
+  install(FILES ${CMAKE_CURRENT_LIST_DIR}/overrides/${CPACK_DEBIAN_${upper}_PACKAGE_NAME}
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides COMPONENT ${component})
 endforeach()
 
 include(CPack)

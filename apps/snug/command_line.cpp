@@ -112,7 +112,8 @@ Invocation read_command_line(const Program& program, const std::vector<std::stri
   if (words.empty()) return {nullptr, help_of(program), ExitStatus::usage};
   const std::string& first = words.front();
   if (first == "--completion") {
-    if (words.size() != 2 || words[1] != "bash") throw UsageError("--completion needs the name of a shell: bash");
+    if (words.size() != 2 || words[1] != "bash")
+      throw UsageError("--completion needs the name of a shell: bash");
     return {nullptr, bash_completion(program)};
   }
   const auto command = std::find_if(commands.begin(), commands.end(),

@@ -74,7 +74,7 @@ class Site:
             elif path.parts[0] in ("include", "adapters") and path.suffix == ".h" and path.name != "snug.h":
                 self.pages[path] = pathlib.Path("reference", path.stem + ".md")
         self.decisions = [path for path in self.files if path.parent == pathlib.Path("docs/decisions")]
-        self.pages[pathlib.Path("docs/decisions")] = pathlib.Path("decisions/index.md")
+        self.pages[pathlib.Path("docs/decisions")] = pathlib.Path("decisions", "index.md")
 
     def write(self, page, text):
         """A page for MkDocs, and what it is made of for check.py."""
@@ -141,7 +141,7 @@ class Site:
                 (self.output / page).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(ROOT / path, self.output / page)
         titles = [(path.name, (ROOT / path).read_text(encoding="utf-8").splitlines()[0].lstrip("# ")) for path in self.decisions]
-        self.write("decisions/index.md", "# Decisions\n\n" + "".join(f"- [{title}]({name})\n" for name, title in titles))
+        self.write(pathlib.Path("decisions", "index.md"), "# Decisions\n\n" + "".join(f"- [{title}]({name})\n" for name, title in titles))
         shutil.copytree(ROOT / "packaging/site/assets", self.output / "assets", dirs_exist_ok=True)
 
 
