@@ -1,6 +1,9 @@
-"""A folder in the navigation of mkdocs.yml stands for its pages, index.md or README.md first."""
+"""A folder in the navigation of mkdocs.yml stands for its pages, index.md or README.md first; every page of docs/ has to be in it."""
 
+import logging
 import pathlib
+
+log = logging.getLogger("mkdocs.plugins.snug")
 
 
 def pages_of(folder, docs):
@@ -19,3 +22,11 @@ def expanded(nav, docs):
 def on_config(config):
     config["nav"] = expanded(config["nav"], pathlib.Path(config["docs_dir"]))
     return config
+
+
+def on_nav(nav, config, files):
+    listed = {page.file.src_uri for page in nav.pages}
+    for file in files.documentation_pages():
+        if file.src_uri not in listed and not file.src_uri.startswith("files/"):
+            log.warning("%s is not in the navigation of mkdocs.yml", file.src_uri)
+    return nav
