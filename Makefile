@@ -17,7 +17,7 @@ ctest = ctest --parallel $(JOBS) --no-tests=error
 # Thread sanitizer wants an address space that is not shuffled too far; not every container may ask for that.
 unshuffled = $$(setarch -R true 2> /dev/null && echo setarch -R || true)
 
-.PHONY: page page-test help demo test test-long build bench format tidy docs check asan tsan fuzz install-packages clean
+.PHONY: deb site page page-test help demo test test-long build bench format tidy docs check asan tsan fuzz install-packages clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-17s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -58,6 +58,14 @@ test-long: install-packages build  ## the random tests with many more cases (doc
 	@$(call build,asan)
 	@$(ctest) --test-dir build/asan --output-on-failure
 
+deb:  ## Debian packages of the command and the library: build/deb/packages
+	@scripts/install_packages build deb
+	@scripts/build_deb
+
+site:  ## the documentation as a site that needs no server: build/site/index.html
+	@scripts/install_packages docs
+	@scripts/build_site
+
 build:  ## the library, the command, the tests: build/release
 	@$(call build,release)
 
@@ -89,6 +97,9 @@ check: test  ## every gate that a commit must pass
 	@scripts/check_package
 	@scripts/check_tables
 	@scripts/check_certificates
+	@scripts/check_deb
+	@packaging/site/check.py --self-test
+	@$(MAKE) site
 	@$(MAKE) asan
 	@$(MAKE) tsan
 	@FUZZ_SECONDS=5 $(MAKE) fuzz
@@ -118,7 +129,7 @@ docs: install-packages  ## plots and tables of docs/convergence.md, pictures of 
 	@scripts/check_docs.py
 
 install-packages:  ## what building, testing and checking need, where it is missing (scripts/packages.txt has it in sections)
-	@scripts/install_packages build test bench gates fuzz
+	@scripts/install_packages build test bench gates deb docs fuzz
 
 clean:  ## remove build/
 	@rm -rf build

@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "completion.h"
 #include "length.h"
 #include "nearest.h"
 
@@ -110,6 +111,11 @@ Invocation read_command_line(const Program& program, const std::vector<std::stri
   const std::vector<Command>& commands = program.commands;
   if (words.empty()) return {nullptr, help_of(program), ExitStatus::usage};
   const std::string& first = words.front();
+  if (first == "--completion") {
+    if (words.size() != 2 || words[1] != "bash")
+      throw UsageError("--completion needs the name of a shell: bash");
+    return {nullptr, bash_completion(program)};
+  }
   const auto command = std::find_if(commands.begin(), commands.end(),
                                     [&](const Command& candidate) { return first == candidate.name; });
   const bool known = command != commands.end();

@@ -29,7 +29,7 @@ void require_options(const Options& options) {
   require_tolerance("envelope", options.tolerance);
   if (options.output == "-") throw UsageError("envelope: standard output takes no envelope; give a file");
   if (options.output.empty() && options.part.empty()) {
-    throw UsageError("envelope: give -o FILE, where the triangles go, or --part PART, or both");
+    throw UsageError("envelope: give -o FILE, where the triangles go, or --part FILE, or both");
   }
 }
 
@@ -141,7 +141,7 @@ Command envelope_command() {
            "Control mesh of a solid (OBJ, OFF, PLY or STL; - for standard input)");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Largest distance between limit surface and envelope, either way; mesh units or percent (1%)");
-  list.add(Group::own, "--part PART", &options->part,
+  list.add(Group::own, "--part FILE", &options->part,
            "Is the limit surface of this control mesh inside of the envelope, and how far from it?");
   add_common_options(list, *options);
   list.add(Group::effort, "--budget N", &options->most, "Most triangles of the envelope");

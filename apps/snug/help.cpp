@@ -68,25 +68,26 @@ constexpr std::array groups{
 };
 
 constexpr const char* statuses =
-    "Exit status: 0 answered, 2 usage, 3 unreadable file, 4 refused mesh, 5 tolerance or budget not reached, "
+    "0 answered, 2 usage, 3 unreadable file, 4 refused mesh, 5 tolerance or budget not reached, "
     "130 interrupted.";
 
 }  // namespace
 
+// Headings stand alone on their lines, and what is below them is indented: manual pages are made of it.
 std::string help_of(const Program& program) {
   std::string text =
-      fmt::format("{}\n\nUsage: {} COMMAND [OPTIONS] MESH...\n", program.summary, program.name);
+      fmt::format("{}\n\nUsage: {} COMMAND [OPTIONS] MESH...\n\n", program.summary, program.name);
+  text += fmt::format("{0} COMMAND --help lists the options of a command; {0} --version names the version.\n",
+                      program.name);
   for (const auto& [topic, heading] : topics) {
     std::string list;
     for (const Command& command : program.commands) {
-      if (command.topic == topic) list += entry(command.name, command.summary, 10);
+      if (command.topic == topic) list += entry(command.name, command.summary, 12);
     }
     if (!list.empty()) text += fmt::format("\n{}:\n{}", heading, list);
   }
-  text += fmt::format("\nExample: {}\n  {}\n\n", program.question, program.example);
-  text += fmt::format("{0} COMMAND --help lists the options of a command; {0} --version names the version.\n",
-                      program.name);
-  return text + wrapped(statuses, 0);
+  text += "\nExit status:\n  " + wrapped(statuses, 2);
+  return text + fmt::format("\nExamples:\n  {}\n  {}\n", program.question, program.example);
 }
 
 std::string help_of(const Program& program, const Command& command) {
@@ -110,7 +111,7 @@ std::string help_of(const Program& program, const Command& command) {
     }
     if (!list.empty()) text += fmt::format("\n{}:\n{}", heading, list);
   }
-  text += command.examples.size() > 1 ? "\nExamples:\n" : "\nExample:\n";
+  text += "\nExamples:\n";
   for (const std::string& example : command.examples) text += "  " + example + "\n";
   return text;
 }

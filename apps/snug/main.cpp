@@ -8,7 +8,7 @@ using namespace snug::command;
 Program snug_program() {
   return {"snug",
           "Proved answers about the limit surfaces of subdivision meshes.",
-          "do two parts collide, one of them moved by 3 along x?",
+          "Do two parts collide, one of them moved by 3 along x?",
           "snug collide pawn.obj bust.obj --move-b \"3 0 0\"",
           {collide_command(), distance_command(), deviation_command(), closest_command(), ray_command(),
            bound_command(), eval_command(), info_command(), measure_command(), subdivide_command(),

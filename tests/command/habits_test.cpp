@@ -197,7 +197,7 @@ TEST(help, is_in_groups_with_an_example_and_options_for_research_last) {
   expect_help(run_snug({"collide", "--help"}),
               {"Usage: snug collide A B [OPTIONS]", "Options:\n", "--tolerance LENGTH", "(default 0.1%)",
                "Poses:\n", "--place-a", "Meshes:\n", "--scheme", "Output:\n", "--json", "Effort:\n",
-               "--threads", "For research:\n", "--bounds", "Example:\n  snug collide "});
+               "--threads", "For research:\n", "--bounds", "Examples:\n  snug collide "});
   expect_help(run_snug({"bound", "-h"}), {"--tolerance", "For research:\n", "--bounds"});
   expect_help(run_snug({"subdivide", "--help"}), {"--level", "Example"});
   for (const char* command : {"distance", "closest", "render"}) {
@@ -208,6 +208,15 @@ TEST(help, is_in_groups_with_an_example_and_options_for_research_last) {
     expect_help(help, {"Usage: snug ", "Example"});
     EXPECT_EQ(help.out.find("For research"), std::string::npos) << help.out;
   }
+}
+
+TEST(completion, is_for_bash) {
+  const Outcome script = run_snug({"--completion", "bash"});
+  EXPECT_EQ(script.status, 0);
+  EXPECT_NE(script.out.find("\ncomplete -F _snug snug\n"), std::string::npos);
+  EXPECT_EQ(script.out.find('%'), std::string::npos);
+  EXPECT_EQ(run_snug({"--completion"}).status, 2);
+  EXPECT_EQ(run_snug({"--completion", "fish"}).status, 2);
 }
 
 }  // namespace
