@@ -147,20 +147,27 @@ void add_tags(MeshTags& tags, const py::object& creases, const py::object& corne
   if (!smooth_triangles.is_none()) tags.smooth_triangles = named(smooth_triangles, triangle_rules, "smooth_triangles");
 }
 
+std::vector<std::uint32_t> indices_of(const py::object& array) {
+  const auto numbers = array.cast<py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>>();
+  return {numbers.data(), numbers.data() + numbers.size()};
+}
+
+ControlMesh mesh_of(const Points& points, std::vector<std::uint32_t> offsets, const std::vector<std::uint32_t>& corners) {
+  ControlMesh mesh;
+  mesh.points.assign(points.all().begin(), points.all().end());
+  mesh.face_offsets = std::move(offsets);
+  mesh.face_vertices.reserve(corners.size());
+  for (const std::uint32_t v : corners) mesh.face_vertices.emplace_back(v);
+  return mesh;
+}
+
 // From Python's vertices and faces, or from one object that has both.
 ControlMesh mesh_of(const py::object& vertices, const py::object& faces) {
   if (faces.is_none() && py::isinstance<PySurface>(vertices)) return vertices.cast<const PySurface&>().surface().mesh();
   if (faces.is_none() && py::isinstance<PyMesh>(vertices)) return vertices.cast<const PyMesh&>().mesh;
   const py::tuple arrays = convert("mesh")(vertices, faces);
   const Points points(arrays[0], "vertices");
-  const auto offsets = arrays[1].cast<py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>>();
-  const auto corners = arrays[2].cast<py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>>();
-  ControlMesh mesh;
-  mesh.points.assign(points.all().begin(), points.all().end());
-  mesh.face_offsets.assign(offsets.data(), offsets.data() + offsets.size());
-  mesh.face_vertices.reserve(static_cast<std::size_t>(corners.size()));
-  for (py::ssize_t i = 0; i < corners.size(); ++i) mesh.face_vertices.emplace_back(corners.data()[i]);
-  return mesh;
+  return mesh_of(points, indices_of(arrays[1]), indices_of(arrays[2]));
 }
 
 std::unique_ptr<PySurface> made(ControlMesh mesh, SurfaceOptions options, std::optional<double> distance,
@@ -323,14 +330,11 @@ py::tuple state_of(const ControlMesh& mesh) {
 ControlMesh mesh_of_state(const py::tuple& state) {
   if (state.size() != 9) throw py::value_error("not a pickled mesh of snug");
   const Points points(state[0], "vertices");
-  const auto offsets = state[1].cast<std::vector<std::uint32_t>>(), corners = state[2].cast<std::vector<std::uint32_t>>();
+  const std::vector<std::uint32_t> offsets = indices_of(state[1]), corners = indices_of(state[2]);
   if (offsets.empty() || offsets.front() != 0 || offsets.back() != corners.size() || !std::is_sorted(offsets.begin(), offsets.end())) {
     throw py::value_error("not a pickled mesh of snug");
   }
-  ControlMesh mesh;
-  mesh.points.assign(points.all().begin(), points.all().end());
-  mesh.face_offsets = offsets;
-  for (const std::uint32_t v : corners) mesh.face_vertices.emplace_back(v);
+  ControlMesh mesh = mesh_of(points, offsets, corners);
   add_tags(mesh.tags, state[3], state[4], state[5], state[7], state[8]);
   if (!state[6].is_none()) mesh.tags.boundary = named(state[6], boundaries, "boundary");
   return mesh;
