@@ -9,7 +9,7 @@ Do not change an array while a call with it is under way in another thread.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ._errors import FileError, MeshError, MeshWarning, PoseError, UndecidedError
 from ._snug import (
@@ -54,6 +54,7 @@ __all__ = [
     "MeshError",
     "MeshWarning",
     "OneSidedDistance",
+    "Page",
     "Penetration",
     "PoseError",
     "QuickHit",
@@ -72,11 +73,14 @@ __all__ = [
     "view",
 ]
 
+if TYPE_CHECKING:
+    from ._view import Page, view
+
 
 def __getattr__(name: str) -> Any:
     """What is imported on first use."""
-    if name == "view":
-        from ._view import view
+    if name in ("Page", "view"):
+        from . import _view
 
-        return view
+        return getattr(_view, name)
     raise AttributeError(f"module 'snug' has no attribute '{name}'")

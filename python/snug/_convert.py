@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Sequence, Tuple
+from typing import Any, Tuple
 
 import numpy as np
 import numpy.typing as npt
@@ -15,8 +15,6 @@ _MOST = 2**32 - 2  # indices are 32 bits wide, and the largest one stands for no
 
 def doubles(numbers: Any, what: str) -> Doubles:
     """A C-contiguous array of doubles."""
-    if isinstance(numbers, np.ma.MaskedArray) and np.ma.is_masked(numbers):
-        raise ValueError(f"{what} has masked numbers; fill or drop them")
     array = _array(numbers, what)
     if array.dtype.kind == "O":
         try:
@@ -30,6 +28,8 @@ def doubles(numbers: Any, what: str) -> Doubles:
 
 
 def _array(numbers: Any, what: str) -> npt.NDArray[Any]:
+    if isinstance(numbers, np.ma.MaskedArray) and np.any(numbers.mask):
+        raise ValueError(f"{what} has masked numbers; fill or drop them")
     try:
         return np.asarray(numbers)
     except ValueError as error:  # ragged, or deeper than numpy goes
@@ -42,8 +42,6 @@ def _indices(numbers: Any, what: str) -> Indices:
         array = array.astype(np.int64)
     if array.dtype.kind not in "iu":
         raise TypeError(f"{what}: give whole numbers, not {array.dtype}; .astype(int) makes them")
-    if isinstance(numbers, np.ma.MaskedArray) and np.ma.is_masked(numbers):
-        raise ValueError(f"{what} has masked numbers; fill or drop them")
     wrong = (array < 0) | (array > _MOST)
     if wrong.any():
         raise ValueError(f"{what} has the index {array[wrong].flat[0]}; indices are from 0 to {_MOST}")
@@ -105,7 +103,7 @@ def _parts(given: Any) -> Tuple[Any, Any]:
     )
 
 
-def _flat_cells(block: Any) -> Sequence[Any]:
+def _flat_cells(block: Any) -> Any:
     kind = block.type
     return block.data if kind in ("triangle", "quad") or kind.startswith("polygon") else ()
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import Any, Dict, List, Optional, Tuple, Union
+from typing import Any, List, Optional, Tuple, Union
 
 Element = Tuple[str, Union[int, Tuple[int, int]]]
 
@@ -14,7 +14,8 @@ def elements_of(message: str) -> List[Element]:
     """The elements that a message of the library names, in its order: ("face", 3), ("edge", (1, 2))."""
     found: List[Element] = []
     for kind, a, b, single in _ELEMENT.findall(message):
-        element: Element = (kind, int(single)) if single else (kind, (int(a), int(b)))
+        index: Union[int, Tuple[int, int]] = int(single) if single else (int(a), int(b))
+        element = (str(kind), index)
         if element not in found:
             found.append(element)
     return found
@@ -35,6 +36,9 @@ class FileError(OSError):
     def __init__(self, message: str, filename: Optional[str] = None) -> None:
         super().__init__(message)
         self.filename = filename
+
+    def __str__(self) -> str:
+        return str(self.args[0])
 
     @property
     def line(self) -> Optional[int]:

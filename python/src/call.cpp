@@ -39,10 +39,8 @@ void Call::prepare() {
       py::module_::import("threading").attr("main_thread")().attr("ident").cast<std::uintptr_t>());
   pthread_atfork(nullptr, nullptr, [] { main_thread = pthread_self(); });
   const py::module_ signal = py::module_::import("signal");
-  if (py::isinstance<py::function>(signal.attr("getsignal")(SIGINT)) ||
-      PyCallable_Check(py::object(signal.attr("getsignal")(SIGINT)).ptr()) != 0) {
-    pythons_handler = PyOS_getsig(SIGINT);
-  }
+  const py::object handler = signal.attr("getsignal")(SIGINT);
+  if (PyCallable_Check(handler.ptr()) != 0) pythons_handler = PyOS_getsig(SIGINT);
 }
 
 Call::Call(const py::object& progress) {

@@ -95,21 +95,29 @@ Motion Poses::at(std::size_t i) const {
   try {
     return made(i);
   } catch (const InputError& error) {
-    const std::string where = name_ + (count_ ? "[" + std::to_string(i) + "]" : "") + ": ";
-    if (form_ == Form::quaternion) throw PoseFault(where + error.what(), std::nan(""));
-    const std::array<double, 12> numbers = matrix(i);
-    const bool affine = form_ != Form::matrix_4x4 || [&] {
-      const double* const last = numbers_->data() + 16 * i + 12;
-      return last[0] == 0 && last[1] == 0 && last[2] == 0 && last[3] == 1;
-    }();
-    try {
-      if (nearest_ && affine) return nearest_rigid(numbers).motion;
-    } catch (const InputError& farther) {
-      throw PoseFault(where + farther.what(), defect_of(numbers));
-    }
-    throw PoseFault(where + error.what() + (nearest_ ? "" : "; rigid=\"nearest\" takes the nearest rotation"),
-                    defect_of(numbers));
+    return mended(i, error.what());
   }
+}
+
+// What is no motion: the nearest one if that is wanted and there is one.
+Motion Poses::mended(std::size_t i, std::string_view fault) const {
+  const auto refuse_pose = [&](std::string_view why, double defect, const char* next_step) {
+    constexpr std::string_view prefix = "pose: ";
+    if (why.starts_with(prefix)) why.remove_prefix(prefix.size());
+    throw PoseFault(name_ + (count_ ? "[" + std::to_string(i) + "]: " : ": ") + std::string(why) + next_step, defect);
+  };
+  const double* const last = form_ == Form::matrix_4x4 ? numbers_->data() + 16 * i + 12 : nullptr;
+  const bool affine = form_ != Form::quaternion && (!last || (last[0] == 0 && last[1] == 0 && last[2] == 0 && last[3] == 1));
+  if (!affine) refuse_pose(fault, std::nan(""), "");
+  const std::array<double, 12> numbers = matrix(i);
+  try {
+    const NearestRigid nearest = nearest_rigid(numbers);
+    if (nearest_) return nearest.motion;
+  } catch (const InputError& error) {
+    refuse_pose(nearest_ ? error.what() : fault, defect_of(numbers), "");
+  }
+  refuse_pose(fault, defect_of(numbers), "; rigid=\"nearest\" takes the nearest rotation");
+  return {};
 }
 
 std::optional<std::size_t> common_count(const Poses& a, const Poses& b) {

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <snug/motion.h>
@@ -37,6 +38,7 @@ class Poses {
   enum class Form { identity, matrix_3x4, matrix_4x4, rotation, quaternion };
 
   [[nodiscard]] Motion made(std::size_t i) const;
+  [[nodiscard]] Motion mended(std::size_t i, std::string_view fault) const;
   [[nodiscard]] std::array<double, 12> matrix(std::size_t i) const;
 
   const char* name_;

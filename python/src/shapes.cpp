@@ -43,8 +43,9 @@ Enclosures bounded(const PySurface& self, const py::object& tolerance, unsigned 
 
 // The box of an interval triangle is exact: its corners are those of boxes.
 py::array boxes_of(const PySurface& self, unsigned level, const py::object& threads) {
-  const Enclosures enclosures = bounded(self, py::none(), level, py::none(), threads, py::none());
-  const Surface& surface = self.surface();
+  const PySurface taken = self;  // which an update() meanwhile does not reach
+  const Enclosures enclosures = bounded(taken, py::none(), level, py::none(), threads, py::none());
+  const Surface& surface = taken.surface();
   const bool dual = surface.scheme() == Scheme::doo_sabin || surface.scheme() == Scheme::midedge;
   std::vector<Box3> boxes(dual ? surface.mesh().vertex_count() : surface.mesh().face_count());
   for (const PatchEnclosure& piece : enclosures.pieces) {

@@ -172,6 +172,7 @@ ControlMesh mesh_of(const py::object& vertices, const py::object& faces) {
 
 std::unique_ptr<PySurface> made(ControlMesh mesh, SurfaceOptions options, std::optional<double> distance,
                                 std::optional<double> angle, const py::object& progress) {
+  if (options.boundary) mesh.tags.boundary = options.boundary;  // so that write() keeps it
   Call call(progress);
   return call.run([&](const WorkMonitor& monitor) {
     options.monitor = monitor;
