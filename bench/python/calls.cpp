@@ -24,9 +24,12 @@ int main(int argc, char** argv) {
   if (argc != 6) return 2;
   const snug::Surface a = snug::load(argv[1]), b = snug::load(argv[2]);
   const int calls = std::atoi(argv[3]), pose_count = std::atoi(argv[4]), point_count = std::atoi(argv[5]);
-  const snug::CollideOptions options{.tolerance = 0.1 / 100 * a.size(), .witness = snug::WitnessKind::none, .measure = false};
+  const snug::CollideOptions options{
+      .tolerance = 0.1 / 100 * a.size(), .witness = snug::WitnessKind::none, .measure = false};
   const std::array<double, 12> far{1, 0, 0, 30, 0, 1, 0, 0, 0, 0, 1, 0};
-  const auto ask = [&] { return snug::collide(a, b.at(snug::Motion::from_3x4(far)), options).distance.lower; };
+  const auto ask = [&] {
+    return snug::collide(a, b.at(snug::Motion::from_3x4(far)), options).distance.lower;
+  };
   double sum = ask();
   const double call = seconds([&] {
     for (int i = 0; i < calls; ++i) sum += ask();
@@ -43,5 +46,6 @@ int main(int argc, char** argv) {
   std::vector<snug::Point3> points;
   for (int i = 0; i < point_count; ++i) points.push_back({2.0 * i / point_count - 1, 0.75, 0.5});
   const double closest = seconds([&] { sum += snug::closest_points(a, points).back().distance.lower; });
-  std::printf("{\"call\": %.9g, \"batch\": %.9g, \"closest\": %.9g, \"sum\": %.17g}\n", call / calls, batch, closest, sum);
+  std::printf("{\"call\": %.9g, \"batch\": %.9g, \"closest\": %.9g, \"sum\": %.17g}\n", call / calls, batch,
+              closest, sum);
 }

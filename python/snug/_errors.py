@@ -43,10 +43,8 @@ class FileError(OSError):
     @property
     def line(self) -> Optional[int]:
         """The line that cannot be parsed, from 1; None if none is to blame."""
-        text = str(self)
-        if self.filename is not None and text.startswith(str(self.filename)):
-            text = text[len(str(self.filename)) :]
-        found = re.search(r"\bline (\d+)", text)
+        # "FILE:2: what is wrong", where the name of the file may have any text.
+        found = re.match(re.escape(str(self.filename)) + r":(\d+):", str(self))
         return int(found.group(1)) if found else None
 
     def __reduce__(self) -> Any:

@@ -41,7 +41,8 @@ class AnswerClass {
  public:
   using Self = Answers<T>;
 
-  AnswerClass(py::module_& module, const char* name, const char* doc) : class_(module, name, doc), name_(name) {
+  AnswerClass(py::module_& module, const char* name, const char* doc)
+      : class_(module, name, doc), name_(name) {
     class_.attr("__module__") = "snug";
     class_.def("__len__", [](const Self& self) {
       if (self.single()) throw py::type_error("a single answer has no length");
@@ -121,7 +122,9 @@ class AnswerClass {
   AnswerClass& repr(const Text& text, const Summary& summary) {
     class_.def("__repr__", [text, summary, name = std::string(name_)](const Self& self) {
       return "<snug." + name + " " +
-             (self.single() ? text(self.one()) : "of " + std::to_string(self.all().size()) + summary(self.all())) + ">";
+             (self.single() ? text(self.one())
+                            : "of " + std::to_string(self.all().size()) + summary(self.all())) +
+             ">";
     });
     return *this;
   }
@@ -138,11 +141,13 @@ class AnswerClass {
     class_.def(py::pickle(
         [](const Self& self) {
           const std::span<const T> all = self.all();
-          return py::make_tuple(SNUG_VERSION, sizeof(T), self.single(),
-                                py::bytes(reinterpret_cast<const char*>(all.data()), all.size_bytes()));  // NOLINT
+          return py::make_tuple(
+              SNUG_VERSION, sizeof(T), self.single(),
+              py::bytes(reinterpret_cast<const char*>(all.data()), all.size_bytes()));  // NOLINT
         },
         [](const py::tuple& state) {
-          if (state.size() != 4 || state[0].cast<std::string>() != SNUG_VERSION || state[1].cast<std::size_t>() != sizeof(T)) {
+          if (state.size() != 4 || state[0].cast<std::string>() != SNUG_VERSION ||
+              state[1].cast<std::size_t>() != sizeof(T)) {
             throw py::value_error("pickled by another version of snug");
           }
           const auto bytes = state[3].cast<std::string>();
@@ -166,12 +171,16 @@ class AnswerClass {
 template <class T, class At>
 void add_place(AnswerClass<T>& answers, const At& at) {
   answers
-      .view("face", [at](const T& t) -> const std::uint32_t& { return at(t).owner; },
-            "Face of the point, (n,) uint32; in a dual scheme its vertex.")
-      .view("corner", [at](const T& t) -> const std::uint32_t& { return at(t).corner; },
-            "Corner of the face whose quad has the parameters, (n,) uint32; 0 for triangles and quads.")
-      .view("u", [at](const T& t) -> const double& { return at(t).u; }, "First parameter, (n,).")
-      .view("v", [at](const T& t) -> const double& { return at(t).v; }, "Second parameter, (n,).");
+      .view(
+          "face", [at](const T& t) -> const std::uint32_t& { return at(t).owner; },
+          "Face of the point, (n,) uint32; in a dual scheme its vertex.")
+      .view(
+          "corner", [at](const T& t) -> const std::uint32_t& { return at(t).corner; },
+          "Corner of the face whose quad has the parameters, (n,) uint32; 0 for triangles and quads.")
+      .view(
+          "u", [at](const T& t) -> const double& { return at(t).u; }, "First parameter, (n,).")
+      .view(
+          "v", [at](const T& t) -> const double& { return at(t).v; }, "Second parameter, (n,).");
 }
 
 }  // namespace snug::python

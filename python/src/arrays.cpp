@@ -13,7 +13,8 @@ bool is_plain(py::handle numbers) {
   const auto array = py::reinterpret_borrow<py::array>(numbers);
   // Of numpy's own class: a masked array is of another one.
   if (Py_TYPE(numbers.ptr()) != py::detail::npy_api::get().PyArray_Type_) return false;
-  constexpr int wanted = py::detail::npy_api::NPY_ARRAY_C_CONTIGUOUS_ | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
+  constexpr int wanted =
+      py::detail::npy_api::NPY_ARRAY_C_CONTIGUOUS_ | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
   if ((array.flags() & wanted) != wanted) return false;
   const auto* const type = py::detail::array_descriptor_proxy(py::detail::array_proxy(array.ptr())->descr);
   return type->type_num == py::detail::npy_api::NPY_DOUBLE_ && type->byteorder != '>';
@@ -70,11 +71,13 @@ std::optional<double> length_of(const py::object& given, double size, const char
   double number = 0;
   const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   if (fault != std::errc() || end != digits.data() + digits.size() || !std::isfinite(number)) {
-    refuse(std::string(what) + ": '" + text + "' is not a length; give mesh units (0.01) or percent of the size (\"1%\")");
+    refuse(std::string(what) + ": '" + text +
+           "' is not a length; give mesh units (0.01) or percent of the size (\"1%\")");
   }
   const double length = percent ? number / 100 * size : number;
   if (!std::isfinite(length) || (number > 0 && !(length > 0))) {
-    refuse(std::string(what) + ": a length in percent does not fit a double for a mesh of this size; give it in mesh units");
+    refuse(std::string(what) +
+           ": a length in percent does not fit a double for a mesh of this size; give it in mesh units");
   }
   return length;
 }
@@ -85,7 +88,8 @@ std::uint64_t count_of(const py::object& given, std::uint64_t usual, const char*
   const std::uint64_t count = whole ? PyLong_AsUnsignedLongLong(whole.ptr()) : 0;
   if (PyErr_Occurred() == nullptr) return count;
   PyErr_Clear();
-  refuse(std::string(what) + ": " + py::repr(given).cast<std::string>() + " is not a whole number from 0 to 2^64 - 1");
+  refuse(std::string(what) + ": " + py::repr(given).cast<std::string>() +
+         " is not a whole number from 0 to 2^64 - 1");
 }
 
 int threads_of(const py::object& given) {

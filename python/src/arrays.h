@@ -23,7 +23,9 @@ class Doubles {
   Doubles(py::handle numbers, const char* what);
 
   [[nodiscard]] std::size_t dimensions() const { return static_cast<std::size_t>(array_.ndim()); }
-  [[nodiscard]] std::size_t extent(std::size_t axis) const { return static_cast<std::size_t>(array_.shape(static_cast<py::ssize_t>(axis))); }
+  [[nodiscard]] std::size_t extent(std::size_t axis) const {
+    return static_cast<std::size_t>(array_.shape(static_cast<py::ssize_t>(axis)));
+  }
   /// The same, counted from the last axis.
   [[nodiscard]] std::size_t last(std::size_t axis) const { return extent(dimensions() - 1 - axis); }
   [[nodiscard]] const double* data() const { return static_cast<const double*>(array_.data()); }
@@ -51,7 +53,7 @@ struct Layout {
   static void add(std::vector<py::ssize_t>&, std::vector<py::ssize_t>&) {}
 };
 template <class V>
-  requires std::is_same_v<V, Point3> || std::is_same_v<V, Vector3>
+requires std::is_same_v<V, Point3> || std::is_same_v<V, Vector3>
 struct Layout<V> {
   using Number = double;
   static void add(std::vector<py::ssize_t>& shape, std::vector<py::ssize_t>& strides) {
@@ -71,7 +73,8 @@ struct Layout<std::array<V, N>> {
 
 /// A read-only array over memory that `owner` keeps.
 template <class Number>
-py::array read_only(std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides, const Number* data, py::handle owner) {
+py::array read_only(std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides, const Number* data,
+                    py::handle owner) {
   py::array array(py::dtype::of<Number>(), std::move(shape), std::move(strides), data, owner);
   py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return array;
@@ -91,7 +94,8 @@ py::array column(std::span<const T> rows, const Member& member, py::handle owner
 }
 template <class T>
 py::array column(const std::vector<T>& rows, py::handle owner) {
-  return column(std::span<const T>(rows), [](const T& row) -> const T& { return row; }, owner);
+  return column(
+      std::span<const T>(rows), [](const T& row) -> const T& { return row; }, owner);
 }
 
 /// One value, seen without a copy: its numbers as an array.
@@ -100,7 +104,8 @@ py::array value_view(const V& value, py::handle owner) {
   std::vector<py::ssize_t> shape, strides;
   Layout<V>::add(shape, strides);
   using Number = typename Layout<V>::Number;
-  return read_only<Number>(std::move(shape), std::move(strides), reinterpret_cast<const Number*>(&value), owner);  // NOLINT
+  return read_only<Number>(std::move(shape), std::move(strides), reinterpret_cast<const Number*>(&value),
+                           owner);  // NOLINT
 }
 
 inline py::tuple pair_of(const Interval& interval) { return py::make_tuple(interval.lower, interval.upper); }

@@ -46,7 +46,8 @@ void Call::prepare() {
 Call::Call(const py::object& progress) {
   monitor_.stop = &stop_;
   if (!progress.is_none()) {
-    if (PyCallable_Check(progress.ptr()) == 0) throw py::type_error("progress: give a callable of one number");
+    if (PyCallable_Check(progress.ptr()) == 0)
+      throw py::type_error("progress: give a callable of one number");
     progress_ = progress;
     monitor_.on_progress = [this](double done) {
       const py::gil_scoped_acquire acquired;

@@ -14,7 +14,9 @@ std::string text_of(double x, int digits) {
   return text.data();
 }
 
-std::string text_of(const Interval& interval) { return text_of(interval.lower) + " to " + text_of(interval.upper); }
+std::string text_of(const Interval& interval) {
+  return text_of(interval.lower) + " to " + text_of(interval.upper);
+}
 
 }  // namespace snug::python
 

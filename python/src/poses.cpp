@@ -23,14 +23,16 @@ double defect_of(const std::array<double, 12>& m) {
 
 Poses::Poses(const py::object& given, const char* name, const py::object& rigid) : name_(name) {
   if (!rigid.is_none()) {
-    if (!py::isinstance<py::str>(rigid) || rigid.cast<std::string>() != "nearest") refuse("rigid: give None or 'nearest'");
+    if (!py::isinstance<py::str>(rigid) || rigid.cast<std::string>() != "nearest")
+      refuse("rigid: give None or 'nearest'");
     nearest_ = true;
   }
   if (given.is_none()) return;
   if (!PyTuple_Check(given.ptr())) {
     numbers_.emplace(given, name);
     const std::size_t dimensions = numbers_->dimensions();
-    if ((dimensions != 2 && dimensions != 3) || numbers_->last(0) != 4 || (numbers_->last(1) != 3 && numbers_->last(1) != 4)) {
+    if ((dimensions != 2 && dimensions != 3) || numbers_->last(0) != 4 ||
+        (numbers_->last(1) != 3 && numbers_->last(1) != 4)) {
       refuse(std::string(name) + " has the shape " + numbers_->shape_text() +
              "; give (4, 4), (3, 4), a tuple (rotation, translation), or n of them");
     }
@@ -38,7 +40,8 @@ Poses::Poses(const py::object& given, const char* name, const py::object& rigid)
     if (dimensions == 3) count_ = numbers_->extent(0);
     return;
   }
-  if (PyTuple_GET_SIZE(given.ptr()) != 2) refuse(std::string(name) + ": give a tuple (rotation, translation)");
+  if (PyTuple_GET_SIZE(given.ptr()) != 2)
+    refuse(std::string(name) + ": give a tuple (rotation, translation)");
   numbers_.emplace(PyTuple_GET_ITEM(given.ptr(), 0), name);
   translations_.emplace(PyTuple_GET_ITEM(given.ptr(), 1), name);
   const std::size_t many = translations_->dimensions() == 2 ? 1 : 0;
@@ -46,8 +49,10 @@ Poses::Poses(const py::object& given, const char* name, const py::object& rigid)
   const bool matrices = dimensions == 2 + many && numbers_->last(0) == 3 && numbers_->last(1) == 3;
   const bool quaternions = dimensions == 1 + many && numbers_->last(0) == 4;
   const bool translations = translations_->dimensions() == 1 + many && translations_->last(0) == 3;
-  if (!(matrices || quaternions) || !translations || (many == 1 && numbers_->extent(0) != translations_->extent(0))) {
-    refuse(std::string(name) + " has the shapes " + numbers_->shape_text() + " and " + translations_->shape_text() +
+  if (!(matrices || quaternions) || !translations ||
+      (many == 1 && numbers_->extent(0) != translations_->extent(0))) {
+    refuse(std::string(name) + " has the shapes " + numbers_->shape_text() + " and " +
+           translations_->shape_text() +
            "; give rotations (3, 3) or quaternions w x y z (4,) with translations (3,), or n of both");
   }
   form_ = matrices ? Form::rotation : Form::quaternion;
@@ -104,10 +109,12 @@ Motion Poses::mended(std::size_t i, std::string_view fault) const {
   const auto refuse_pose = [&](std::string_view why, double defect, const char* next_step) {
     constexpr std::string_view prefix = "pose: ";
     if (why.starts_with(prefix)) why.remove_prefix(prefix.size());
-    throw PoseFault(name_ + (count_ ? "[" + std::to_string(i) + "]: " : ": ") + std::string(why) + next_step, defect);
+    throw PoseFault(name_ + (count_ ? "[" + std::to_string(i) + "]: " : ": ") + std::string(why) + next_step,
+                    defect);
   };
   const double* const last = form_ == Form::matrix_4x4 ? numbers_->data() + 16 * i + 12 : nullptr;
-  const bool affine = form_ != Form::quaternion && (!last || (last[0] == 0 && last[1] == 0 && last[2] == 0 && last[3] == 1));
+  const bool affine =
+      form_ != Form::quaternion && (!last || (last[0] == 0 && last[1] == 0 && last[2] == 0 && last[3] == 1));
   if (!affine) refuse_pose(fault, std::nan(""), "");
   const std::array<double, 12> numbers = matrix(i);
   try {
@@ -132,7 +139,8 @@ std::vector<PosePair> pairs_of(const Poses& a, const Poses& b, std::size_t count
   std::vector<PosePair> pairs;
   pairs.reserve(count);
   const Motion first_a = a.count() ? Motion() : a.at(0), first_b = b.count() ? Motion() : b.at(0);
-  for (std::size_t i = 0; i < count; ++i) pairs.push_back({a.count() ? a.at(i) : first_a, b.count() ? b.at(i) : first_b});
+  for (std::size_t i = 0; i < count; ++i)
+    pairs.push_back({a.count() ? a.at(i) : first_a, b.count() ? b.at(i) : first_b});
   return pairs;
 }
 

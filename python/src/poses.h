@@ -14,7 +14,8 @@ namespace snug::python {
 /// A matrix that is not a motion.
 class PoseFault : public InputError {
  public:
-  PoseFault(const std::string& message, double defect) : InputError(InputProblem::pose, message), defect_(defect) {}
+  PoseFault(const std::string& message, double defect)
+      : InputError(InputProblem::pose, message), defect_(defect) {}
   /// The largest entry of |R'R - I|, roughly; not finite if the matrix is not.
   [[nodiscard]] double defect() const { return defect_; }
 

@@ -32,7 +32,7 @@ def test_every_way_a_message_names_elements():
     assert elements_of(text) == [("edge", (3, 17)), ("face", 4), ("vertex", 9), ("crease tag", 2)]
     with pytest.raises(snug.MeshError) as caught:
         snug.Surface(CUBE, CUBE_FACES[1:]).contains([0, 0, 0])
-    assert [kind for kind, _ in caught.value.elements] == ["edge"]
+    assert "edge" in [kind for kind, _ in caught.value.elements]
 
 
 def test_a_file_error_names_file_and_line(tmp_path):

@@ -12,7 +12,7 @@ import snug
 
 HERE = pathlib.Path(__file__).resolve().parent
 PACKAGE = pathlib.Path(snug.__file__).parent.parent
-ENVIRONMENT = {**os.environ, "MYPYPATH": str(PACKAGE), "PYTHONPATH": str(PACKAGE), "MYPY_CACHE_DIR": os.devnull}
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(PACKAGE), "MYPYPATH": str(PACKAGE), "MYPY_CACHE_DIR": os.devnull}
 
 pytestmark = pytest.mark.skipif(
     shutil.which("mypy") is None or shutil.which("stubtest") is None or "libasan" in os.environ.get("LD_PRELOAD", ""),
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.skipif(
 
 # pybind11's classes have a metaclass and an __init__ of their own; copies and sequences go without saying.
 ALLOWED = r"""
-snug\.(_snug\.)?_?[A-Z][A-Za-z]+
+snug\.(_snug\.|_view\.)?_?[A-Z][A-Za-z]+
 .*\.__(init|new|len|getitem|iter|copy|deepcopy|getstate|setstate|reduce)__
 """
 
