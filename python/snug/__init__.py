@@ -9,6 +9,7 @@ Do not change an array while a call with it is under way in another thread.
 
 from __future__ import annotations
 
+import importlib
 from typing import TYPE_CHECKING, Any
 
 from ._errors import FileError, MeshError, MeshWarning, PoseError, UndecidedError
@@ -42,6 +43,7 @@ from ._snug import (
 __all__ = [
     "ClosestPoint",
     "Collision",
+    "CollisionManager",
     "Containment",
     "Deviation",
     "Distance",
@@ -66,15 +68,19 @@ __all__ = [
     "UndecidedError",
     "__version__",
     "collide",
+    "collision",
     "deviation",
     "distance",
     "penetration",
+    "proximity",
     "read",
     "view",
 ]
 
 if TYPE_CHECKING:
+    from . import collision, proximity
     from ._view import Page, view
+    from .collision import CollisionManager
 
 
 def __getattr__(name: str) -> Any:
@@ -83,4 +89,8 @@ def __getattr__(name: str) -> Any:
         from . import _view
 
         return getattr(_view, name)
+    if name == "CollisionManager":
+        return importlib.import_module("snug.collision").CollisionManager
+    if name in ("collision", "proximity"):
+        return importlib.import_module(f"snug.{name}")
     raise AttributeError(f"module 'snug' has no attribute '{name}'")
