@@ -17,13 +17,14 @@ ctest = ctest --parallel $(JOBS) --no-tests=error
 # Thread sanitizer wants an address space that is not shuffled too far; not every container may ask for that.
 unshuffled = $$(setarch -R true 2> /dev/null && echo setarch -R || true)
 
-.PHONY: deb site page page-test help demo test test-long build bench format tidy docs check asan tsan fuzz install-packages clean
+.PHONY: deb site page page-test python python-asan wheel help demo test test-long build bench format tidy docs check asan tsan fuzz install-packages clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-17s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
 # A fresh clone builds the command alone, without the libraries of tests; where they are configured their objects serve.
 demo_preset = $(if $(wildcard build/release/CMakeCache.txt),release,demo)
+python_preset = $(if $(wildcard build/release/CMakeCache.txt),release,python)
 demo:  ## two surfaces: do they touch? and a picture of them, build/demo.png; where Emscripten is installed a page, build/demo.html
 	@scripts/install_packages build
 	@$(call build,$(demo_preset),snug_command)
@@ -66,6 +67,19 @@ site:  ## the documentation as a site that needs no server: build/site/index.htm
 	@scripts/install_packages docs
 	@scripts/build_site
 
+python:  ## the Python module: build/release/python, or build/python/python where nothing else is built
+	@scripts/install_packages build python
+	@$(call build,$(python_preset),snug_python)
+	@echo "The module is staged: export PYTHONPATH=$$PWD/build/$(python_preset)/python"
+
+wheel:  ## the same as a wheel: build/wheel
+	@scripts/install_packages build python
+	@mkdir -p build/wheel && cd python && /usr/bin/python3 -c "import build_backend; print('build/wheel/' + build_backend.build_wheel('../build/wheel'))"
+
+python-asan: install-packages  ## the tests of the Python module under address and undefined-behaviour sanitizer
+	@$(call build,asan,snug_python)
+	@$(ctest) --preset asan -L python
+
 build:  ## the library, the command, the tests: build/release
 	@$(call build,release)
 
@@ -101,6 +115,8 @@ check: test  ## every gate that a commit must pass
 	@packaging/site/check.py --self-test
 	@$(MAKE) site
 	@$(MAKE) asan
+	@scripts/check_wheel
+	@$(MAKE) python-asan
 	@$(MAKE) tsan
 	@FUZZ_SECONDS=5 $(MAKE) fuzz
 
@@ -129,7 +145,7 @@ docs: install-packages  ## plots and tables of docs/convergence.md, pictures of 
 	@scripts/check_docs.py
 
 install-packages:  ## what building, testing and checking need, where it is missing (scripts/packages.txt has it in sections)
-	@scripts/install_packages build test bench gates deb docs fuzz
+	@scripts/install_packages build test python bench gates deb docs fuzz
 
 clean:  ## remove build/
 	@rm -rf build

@@ -556,8 +556,8 @@ ExitStatus run(const Options& options) {
         .field("enclosures", enclosures.count)
         .field("reached", enclosures.reached);
   } else if (options.output != "-") {
-    report.text(fmt::format("{}: {} x {} pixels, {} triangles, {:.1f} % of {} rays hit", options.output,
-                            size.width, size.height, triangles,
+    report.text(fmt::format("{}: {} x {} pixels, {}{:.1f} % of {} rays hit", options.output, size.width,
+                            size.height, triangles == 0 ? "" : fmt::format("{} triangles, ", triangles),
                             100 * static_cast<double>(picture.hits) / static_cast<double>(picture.rays),
                             picture.rays));
     if (!enclosures.reached) {

@@ -197,6 +197,25 @@ TEST(ray_caster, finds_what_is_proved_to_be_hit) {
   }
 }
 
+// Many patches and small pieces, whose names take more bits.
+TEST(ray_caster, knows_where_small_pieces_lie) {
+  const Surface surface = load(model("bust.obj"));
+  const double tolerance = 1e-6 * surface.size();
+  const RayCaster caster(surface, tolerance);
+  std::size_t hits = 0;
+  for (const Ray& ray : rays_around(surface, 20000)) {
+    const QuickHit hit = caster.cast(ray);
+    if (!std::isfinite(hit.t)) continue;
+    const Point3 p = evaluate(surface, hit.at).position;
+    ASSERT_LE(
+        std::hypot(ray.origin.x + hit.t * ray.direction.x - p.x, ray.origin.y + hit.t * ray.direction.y - p.y,
+                   ray.origin.z + hit.t * ray.direction.z - p.z),
+        std::max(tolerance, 0x1p-14 * surface.size()));
+    ++hits;
+  }
+  EXPECT_GT(hits, 5000u);
+}
+
 // Few, large pieces: 16 bits a coordinate are all that is off.
 TEST(ray_caster, is_as_near_as_it_says_where_the_tolerance_is_small) {
   const Surface surface = sharp_cube();

@@ -9,31 +9,13 @@
 #include <snug/geometry/rounding.h>
 #include <snug/patch/piece_path.h>
 #include <snug/search/ray_scale.h>
-#include <snug/surface/quadratic_pieces.h>
 
 namespace snug {
 namespace {
 
 using kernels::caster_width;
 
-// A path of so many digits at most, in four bits and two for each, the first one lowest, above its patch.
-constexpr unsigned most_digits = 14;
-
-std::uint64_t packed(const PiecePath& path, PatchId root) {
-  const unsigned level = std::min(path.level(), most_digits);
-  std::uint64_t digits = 0;
-  for (unsigned d = 0; d < level; ++d) digits |= std::uint64_t{path.digit(d)} << 2 * d;
-  return (digits << 4 | level) << 32 | root.value();
-}
-
-PiecePath path_of(std::uint64_t place) {
-  PiecePath path;
-  for (const unsigned level = place >> 32 & 15u; path.level() < level;) {
-    path = path.child(static_cast<unsigned>(place >> (36 + 2 * path.level()) & 3u));
-  }
-  return path;
-}
-PatchId patch_of(std::uint64_t place) { return PatchId(static_cast<std::uint32_t>(place)); }
+constexpr unsigned most_digits = 14, bits_of_level = 4;
 
 // How close a ray must come to a quadratic, as a share of its error: neighbours are rarely off by all of it in opposite
 // directions. A hit is as far from the surface as both together.
@@ -59,6 +41,37 @@ Box3 merged(const Box3& a, const Box3& b) {
 }
 
 }  // namespace
+
+CasterTree::Places::Places(std::span<const QuadraticPiece> pieces) {
+  std::uint32_t last = 0;
+  unsigned deepest = 0;
+  for (const QuadraticPiece& piece : pieces) {
+    last = std::max(last, piece.root.value());
+    deepest = std::max(deepest, piece.path.level());
+  }
+  root_bits_ = static_cast<unsigned>(std::bit_width(last));
+  wide_ = root_bits_ + bits_of_level + 2 * std::min(deepest, most_digits) > 32;
+}
+
+void CasterTree::Places::add(const QuadraticPiece& piece) {
+  const unsigned level = std::min(piece.path.level(), most_digits);
+  std::uint64_t place = 0;
+  for (unsigned d = level; d-- > 0;) place = place << 2 | piece.path.digit(d);
+  place = (place << bits_of_level | level) << root_bits_ | piece.root.value();
+  words_.push_back(static_cast<std::uint32_t>(place));
+  if (wide_) words_.push_back(static_cast<std::uint32_t>(place >> 32));
+}
+
+CasterTree::Places::Place CasterTree::Places::operator[](std::size_t i) const {
+  std::uint64_t place = wide_ ? words_[2 * i] | std::uint64_t{words_[2 * i + 1]} << 32 : words_[i];
+  Place result{PatchId(place & ((std::uint64_t{1} << root_bits_) - 1)), {}};
+  place >>= root_bits_;
+  const unsigned level = place & ((1u << bits_of_level) - 1);
+  for (place >>= bits_of_level; result.path.level() < level; place >>= 2) {
+    result.path = result.path.child(place & 3u);
+  }
+  return result;
+}
 
 // A tree by medians: eight ranges a node, whole blocks each, cut across the longest side of their centres.
 struct CasterTree::Builder {
@@ -156,7 +169,7 @@ struct CasterTree::Builder {
               std::clamp(std::nearbyint(from / static_cast<double>(block.step)), -32767.0, 32767.0));
         }
       }
-      tree.places_.push_back(packed(piece.path, piece.root));
+      tree.places_.add(piece);
     }
     tree.blocks_.push_back(block);
     return all;
@@ -167,6 +180,7 @@ CasterTree::CasterTree(const LimitSurface& surface, double tolerance, int thread
     : surface_(&surface) {
   const std::vector<QuadraticPiece> pieces =
       quadratic_pieces(surface, tolerance / (1 + widening), threads, monitor);
+  places_ = Places(pieces);
   Builder builder{*this, pieces, {}, {}};
   builder.boxes.reserve(pieces.size());
   Box3 all;
@@ -206,7 +220,7 @@ CasterTree::CasterTree(const LimitSurface& surface, double tolerance, int thread
 
 std::size_t CasterTree::bytes() const {
   return nodes_.capacity() * sizeof(Node) + blocks_.capacity() * sizeof(kernels::CasterBlock) +
-         places_.capacity() * sizeof(std::uint64_t);
+         places_.bytes();
 }
 
 // A ray from where it comes near, so that single precision will do.
@@ -405,14 +419,13 @@ void CasterTree::cast(std::span<const Ray> rays, std::span<PatchHit> out) const 
 
 PatchHit CasterTree::finished(const Approach& approach, std::uint32_t block,
                               const kernels::CasterHit& hit) const {
-  const std::uint64_t place = places_[block * caster_width + hit.place];
+  const Places::Place place = places_[block * caster_width + hit.place];
   const TriangleParameter at{static_cast<double>(hit.u), static_cast<double>(hit.v)};
   PatchHit answer;
   answer.t = approach.lengths.to_parameter(static_cast<double>(hit.t) + approach.skipped);
-  const PiecePath path = path_of(place);
-  answer.patch = patch_of(place);
-  answer.at = to_face(path, at);
-  answer.level = path.level();
+  answer.patch = place.root;
+  answer.at = to_face(place.path, at);
+  answer.level = place.path.level();
   // Of the quadratic.
   const auto& net = blocks_[block].net;
   const auto difference = [&](std::size_t from, std::size_t to) {

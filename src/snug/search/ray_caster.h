@@ -10,6 +10,7 @@
 #include <snug/ray.h>
 #include <snug/search/caster_kernels.h>
 #include <snug/surface/limit_surface.h>
+#include <snug/surface/quadratic_pieces.h>
 
 namespace snug {
 
@@ -47,6 +48,25 @@ class CasterTree {
     std::array<std::uint32_t, kernels::caster_width> children;  // nodes, or blocks with leaf_bit
     std::uint32_t taken;                                        // a bit for each
   };
+  /// Which pieces of which patches there are: 4 bytes each where few and shallow, else 8.
+  class Places {
+   public:
+    struct Place {
+      PatchId root;
+      PiecePath path;  ///< its first 14 digits
+    };
+    Places() = default;
+    explicit Places(std::span<const QuadraticPiece> pieces);  ///< none yet, but room for each of these
+    void add(const QuadraticPiece& piece);
+    void shrink_to_fit() { words_.shrink_to_fit(); }
+    [[nodiscard]] Place operator[](std::size_t i) const;
+    [[nodiscard]] std::size_t bytes() const { return words_.capacity() * sizeof(std::uint32_t); }
+
+   private:
+    std::vector<std::uint32_t> words_;  // from the lowest bit: the root, the number of digits, the digits
+    unsigned root_bits_ = 32;
+    bool wide_ = true;  // two words each
+  };
   struct Builder;
   struct Approach;
   struct Beam;
@@ -59,7 +79,7 @@ class CasterTree {
   const LimitSurface* surface_;
   std::vector<Node> nodes_;  // the root first
   std::vector<kernels::CasterBlock> blocks_;
-  std::vector<std::uint64_t> places_;  // caster_width a block
+  Places places_;  // caster_width a block
   Point3 centre_;
   double radius_ = 0;   // around everything
   float rounding_ = 0;  // of places across a ray

@@ -1,0 +1,96 @@
+"""Proved answers about the limit surfaces of subdivision meshes.
+
+    a, b = snug.read("bracket.obj"), snug.read("pin.obj")
+    hit = snug.collide(a, b, pose_b=T)
+
+Lengths are in the units of the meshes. Arrays of answers are read-only; indices are uint32, or int64 where -1 means none.
+Do not change an array while a call with it is under way in another thread.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+from ._errors import FileError, MeshError, MeshWarning, PoseError, UndecidedError
+from ._snug import (
+    ClosestPoint,
+    Collision,
+    Containment,
+    Deviation,
+    Distance,
+    Enclosures,
+    Hull,
+    Hulls,
+    Measures,
+    Mesh,
+    OneSidedDistance,
+    Penetration,
+    QuickHit,
+    RayHits,
+    SignedDistance,
+    Surface,
+    SurfacePoint,
+    Tessellation,
+    __version__,
+    collide,
+    deviation,
+    distance,
+    penetration,
+    read,
+)
+
+__all__ = [
+    "ClosestPoint",
+    "Collision",
+    "CollisionManager",
+    "Containment",
+    "Deviation",
+    "Distance",
+    "Enclosures",
+    "FileError",
+    "Hull",
+    "Hulls",
+    "Measures",
+    "Mesh",
+    "MeshError",
+    "MeshWarning",
+    "OneSidedDistance",
+    "Page",
+    "Penetration",
+    "PoseError",
+    "QuickHit",
+    "RayHits",
+    "SignedDistance",
+    "Surface",
+    "SurfacePoint",
+    "Tessellation",
+    "UndecidedError",
+    "__version__",
+    "collide",
+    "collision",
+    "deviation",
+    "distance",
+    "penetration",
+    "proximity",
+    "read",
+    "view",
+]
+
+if TYPE_CHECKING:
+    from . import collision, proximity
+    from ._view import Page, view
+    from .collision import CollisionManager
+
+
+def __getattr__(name: str) -> Any:
+    """What is imported on first use."""
+    if name in ("Page", "view"):
+        from . import _view
+
+        return getattr(_view, name)
+    if name == "CollisionManager":
+        return importlib.import_module("snug.collision").CollisionManager
+    if name in ("collision", "proximity"):
+        return importlib.import_module(f"snug.{name}")
+    raise AttributeError(f"module 'snug' has no attribute '{name}'")

@@ -1,0 +1,309 @@
+"""Which of many placed surfaces touch, by the names and argument orders of trimesh.collision.CollisionManager.
+
+A script that uses trimesh's manager uses this one by changing its import. The answers are about limit surfaces and
+are proved:
+
+- two objects collide if their verdict is 'within' or 'intersecting': at most `tolerance` apart, 0.1 % of the larger
+  one's size by default. With solid=True one inside the other collides, too. Where nothing could be shown,
+  UndecidedError is raised;
+- a minimum distance is the lower end of a proved interval: the objects are at least so far apart. DistanceData has
+  the interval; it is 0 for objects that touch, never negative;
+- one contact is given for each pair: the witnesses' middle, not all contact points.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Callable, Dict, FrozenSet, Iterable, Iterator, List, NamedTuple, Optional, Sequence, Set, Tuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from ._errors import UndecidedError
+from ._snug import Collision, Distance, Surface, collide, distance, penetration
+from .proximity import as_surface
+
+Floats = npt.NDArray[np.float64]
+
+__all__ = ["CollisionManager", "ContactData", "DistanceData"]
+
+_EXTERNAL = "__external"
+
+
+class _Placed(NamedTuple):
+    name: str
+    surface: Surface
+    pose: Floats
+    lower: Floats  # a box around it, generously
+    upper: Floats
+
+
+def _placed(name: str, surface: Surface, transform: Optional[npt.ArrayLike]) -> _Placed:
+    pose = np.eye(4) if transform is None else np.array(transform, dtype=np.float64)
+    if pose.shape != (4, 4):
+        raise ValueError(f"transform has the shape {pose.shape}; give (4, 4)")
+    vertices = surface.vertices
+    world = vertices @ pose[:3, :3].T + pose[:3, 3]
+    room = 1e-9 * (np.abs(world).max(initial=0.0) + np.abs(vertices).max(initial=0.0) + np.abs(pose[:3, 3]).max())
+    return _Placed(name, surface, pose, world.min(axis=0) - room, world.max(axis=0) + room)
+
+
+class _Group:
+    """Objects, and their boxes in arrays."""
+
+    def __init__(self, objects: Sequence[_Placed]) -> None:
+        self.objects = objects
+        self.lower = np.array([each.lower for each in objects]).reshape(-1, 3)
+        self.upper = np.array([each.upper for each in objects]).reshape(-1, 3)
+        self.sizes = np.array([each.surface.size for each in objects])
+
+
+class _Row(NamedTuple):
+    """An object, and those of a group from `begin` on."""
+
+    one: _Placed
+    group: _Group
+    begin: int
+
+    def gaps(self) -> Floats:
+        """Lower bounds of distances by boxes: a limit surface lies in the box of its vertices."""
+        lower, upper = self.group.lower[self.begin :], self.group.upper[self.begin :]
+        apart = np.maximum(np.maximum(self.one.lower - upper, lower - self.one.upper), 0.0)
+        gaps: Floats = np.linalg.norm(apart, axis=1) * (1 - 1e-12)
+        return gaps
+
+    def sizes(self) -> Floats:
+        """The larger one's, of each pair."""
+        return np.maximum(self.one.surface.size, self.group.sizes[self.begin :])
+
+    def other(self, i: int) -> _Placed:
+        return self.group.objects[self.begin + i]
+
+
+def _internal(objects: Sequence[_Placed]) -> Iterator[_Row]:
+    group = _Group(objects)
+    return (_Row(each, group, i + 1) for i, each in enumerate(objects))
+
+
+def _between(objects: Sequence[_Placed], others: Sequence[_Placed]) -> Iterator[_Row]:
+    group = _Group(others)
+    return (_Row(each, group, 0) for each in objects)
+
+
+class ContactData:
+    """One contact of two objects."""
+
+    def __init__(self, a: _Placed, b: _Placed, found: Collision) -> None:
+        self.names: FrozenSet[str] = frozenset((a.name, b.name))
+        self.collision = found  #: the proved answer
+        self._objects = (a, b)
+
+    @property
+    def point(self) -> Floats:
+        """Between the witnesses, (3,), world coordinates."""
+        middle: Floats = np.asarray(self.collision.points).mean(axis=0)
+        return middle
+
+    @property
+    def normal(self) -> Floats:
+        """The normal of the first object at the contact, (3,), world coordinates; NaN where it has none."""
+        a = self._objects[0]
+        face = int(self.collision.faces[0])
+        if face < 0:
+            return np.full(3, np.nan)
+        u, v = self.collision.parameters[0]
+        there = a.surface.evaluate(face, u, v, corner=int(self.collision.corners[0]))
+        return a.pose[:3, :3] @ np.asarray(there.normal)
+
+    @property
+    def depth(self) -> float:
+        """How deeply two solids penetrate: the upper end of penetration(), found when asked for. Closed surfaces only."""
+        a, b = self._objects
+        return float(penetration(a.surface, b.surface, pose_a=a.pose, pose_b=b.pose).upper)
+
+    def index(self, name: str) -> int:
+        """The face of the object `name` at the contact; -1 if it was located on the other one only."""
+        return int(self.collision.faces[_side(self._objects, name)])
+
+
+class DistanceData:
+    """How far two objects are apart."""
+
+    def __init__(self, a: _Placed, b: _Placed, found: Distance) -> None:
+        self.names: FrozenSet[str] = frozenset((a.name, b.name))
+        self.interval: Tuple[float, float] = (float(found.lower), float(found.upper))  #: contains the distance
+        self._found = found
+        self._objects = (a, b)
+
+    @property
+    def distance(self) -> float:
+        """The interval's lower end, mesh units."""
+        return self.interval[0]
+
+    def point(self, name: str) -> Floats:
+        """The closest point of the object `name`, (3,), world coordinates."""
+        return np.array(self._found.points[_side(self._objects, name)])
+
+    def index(self, name: str) -> int:
+        """The face that it lies on; -1 if it was located on the other object only."""
+        return int(self._found.faces[_side(self._objects, name)])
+
+
+def _side(objects: Tuple[_Placed, _Placed], name: str) -> int:
+    for side, each in enumerate(objects):
+        if each.name == name:
+            return side
+    raise ValueError(f"{name!r} is not one of the names {objects[0].name!r} and {objects[1].name!r}")
+
+
+Names = Union[Set[str], Set[Tuple[str, str]]]
+
+
+class CollisionManager:
+    """Objects by name, each a surface and a transform (4, 4).
+
+    tolerance, solid: as in snug.collide(). relative: as in snug.distance().
+    """
+
+    def __init__(self, tolerance: Union[float, str] = "0.1%", solid: bool = False, relative: float = 1e-4) -> None:
+        self._tolerance = tolerance
+        self._solid = solid
+        self._relative = relative
+        self._objects: Dict[str, _Placed] = {}
+
+    def add_object(self, name: str, mesh: Any, transform: Optional[npt.ArrayLike] = None) -> Surface:
+        """Adds a surface, or a mesh that snug.Surface() takes, in place of an object of that name. Returns the surface."""
+        surface = as_surface(mesh)
+        self._objects[name] = _placed(name, surface, transform)
+        return surface
+
+    def remove_object(self, name: str) -> None:
+        """Removes an object. Raises ValueError if there is none of that name."""
+        self._require(name)
+        del self._objects[name]
+
+    def set_transform(self, name: str, transform: npt.ArrayLike) -> None:
+        """Places an object anew. Raises ValueError if there is none of that name."""
+        self._objects[name] = _placed(name, self._require(name).surface, transform)
+
+    def in_collision_single(
+        self,
+        mesh: Any,
+        transform: Optional[npt.ArrayLike] = None,
+        return_names: bool = False,
+        return_data: bool = False,
+    ) -> Any:
+        """Does a surface touch any object?
+
+        Returns bool; with return_names also the set of names of those that it touches, with return_data also a list of
+        ContactData.
+        """
+        other = _placed(_EXTERNAL, as_surface(mesh), transform)
+        found = list(self._contacts(_between(self._all(), [other]), return_names or return_data))
+        return self._answer(found, {a.name for a, _, _ in found}, return_names, return_data)
+
+    def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
+        """Do any two objects touch? As in_collision_single(), with pairs of names in alphabetical order."""
+        found = list(self._contacts(_internal(self._all()), return_names or return_data))
+        names = {(min(a.name, b.name), max(a.name, b.name)) for a, b, _ in found}
+        return self._answer(found, names, return_names, return_data)
+
+    def in_collision_other(
+        self, other_manager: "CollisionManager", return_names: bool = False, return_data: bool = False
+    ) -> Any:
+        """Does any object touch one of another manager? As above; pairs begin with the name in this one."""
+        found = list(self._contacts(_between(self._all(), other_manager._all()), return_names or return_data))
+        return self._answer(found, {(a.name, b.name) for a, b, _ in found}, return_names, return_data)
+
+    def min_distance_single(
+        self, mesh: Any, transform: Optional[npt.ArrayLike] = None, return_name: bool = False, return_data: bool = False
+    ) -> Any:
+        """How far a surface is from the objects, at least; with return_name also the nearest one's name, with
+        return_data also DistanceData."""
+        other = _placed(_EXTERNAL, as_surface(mesh), transform)
+        return self._nearest(_between(self._all(), [other]), return_name, return_data, lambda a, b: a)
+
+    def min_distance_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
+        """How far any two objects are apart, at least; with names as in in_collision_internal()."""
+        return self._nearest(
+            _internal(self._all()), return_names, return_data, lambda a, b: (min(a, b), max(a, b))
+        )
+
+    def min_distance_other(
+        self, other_manager: "CollisionManager", return_names: bool = False, return_data: bool = False
+    ) -> Any:
+        """How far the objects are from another manager's, at least; with names as in in_collision_other()."""
+        return self._nearest(
+            _between(self._all(), other_manager._all()), return_names, return_data, lambda a, b: (a, b)
+        )
+
+    def _require(self, name: str) -> _Placed:
+        try:
+            return self._objects[name]
+        except KeyError:
+            raise ValueError(f"there is no object named {name!r}") from None
+
+    def _all(self) -> List[_Placed]:
+        return list(self._objects.values())
+
+    def _contacts(self, rows: Iterable[_Row], all_of_them: bool) -> Iterator[Tuple[_Placed, _Placed, Collision]]:
+        undecided: Optional[UndecidedError] = None
+        for row in rows:
+            for i in np.flatnonzero(row.gaps() <= self._reach(row)):
+                a, b = row.one, row.other(int(i))
+                hit = collide(
+                    a.surface, b.surface, pose_a=a.pose, pose_b=b.pose, tolerance=self._tolerance, solid=self._solid
+                )
+                try:
+                    touch = bool(hit)
+                except UndecidedError as error:
+                    undecided = UndecidedError(f"{a.name!r} and {b.name!r}: {error}")
+                    continue
+                if touch:
+                    yield a, b, hit
+                    if not all_of_them:
+                        return
+        if undecided is not None:
+            raise undecided
+
+    def _reach(self, row: _Row) -> Floats:
+        """At least the tolerance for each of a row's pairs, mesh units."""
+        if isinstance(self._tolerance, str):
+            return 1.01 * float(self._tolerance.rstrip("% ")) / 100 * row.sizes()
+        return np.broadcast_to(float(self._tolerance), row.sizes().shape)
+
+    def _answer(
+        self, found: List[Tuple[_Placed, _Placed, Collision]], names: Names, return_names: bool, return_data: bool
+    ) -> Any:
+        result: List[Any] = [bool(found)]
+        if return_names:
+            result.append(names)
+        if return_data:
+            result.append([ContactData(a, b, hit) for a, b, hit in found])
+        return result[0] if len(result) == 1 else tuple(result)
+
+    def _nearest(
+        self,
+        rows: Iterable[_Row],
+        return_names: bool,
+        return_data: bool,
+        named: Callable[[str, str], Any],
+    ) -> Any:
+        near = [(float(gap), row.one, row.other(i)) for row in rows for i, gap in enumerate(row.gaps())]
+        best: Optional[Tuple[_Placed, _Placed, Distance]] = None
+        lower = np.inf
+        for gap, a, b in sorted(near, key=lambda each: each[0]):
+            if gap >= lower:
+                break
+            found = distance(
+                a.surface, b.surface, pose_a=a.pose, pose_b=b.pose, relative=self._relative, solid=self._solid
+            )
+            if best is None or found.lower < lower:
+                best, lower = (a, b, found), float(found.lower)
+        if best is None:
+            raise ValueError("there are no two objects to compare")
+        result: List[Any] = [lower]
+        if return_names:
+            result.append(named(best[0].name, best[1].name))
+        if return_data:
+            result.append(DistanceData(*best))
+        return result[0] if len(result) == 1 else tuple(result)

@@ -1,0 +1,102 @@
+#include "arrays.h"
+
+#include <charconv>
+#include <cmath>
+
+#include <snug/error.h>
+
+namespace snug::python {
+namespace {
+
+bool is_plain(py::handle numbers) {
+  if (!py::isinstance<py::array>(numbers)) return false;
+  const auto array = py::reinterpret_borrow<py::array>(numbers);
+  // Of numpy's own class: a masked array is of another one.
+  if (Py_TYPE(numbers.ptr()) != py::detail::npy_api::get().PyArray_Type_) return false;
+  constexpr int wanted =
+      py::detail::npy_api::NPY_ARRAY_C_CONTIGUOUS_ | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
+  if ((array.flags() & wanted) != wanted) return false;
+  const auto* const type = py::detail::array_descriptor_proxy(py::detail::array_proxy(array.ptr())->descr);
+  return type->type_num == py::detail::npy_api::NPY_DOUBLE_ && type->byteorder != '>';
+}
+
+[[noreturn]] void refuse(const std::string& message) { throw InputError(InputProblem::value, message); }
+
+}  // namespace
+
+py::object convert(const char* function) { return py::module_::import("snug._convert").attr(function); }
+
+Doubles::Doubles(py::handle numbers, const char* what)
+    : array_(is_plain(numbers) ? py::reinterpret_borrow<py::array>(numbers)
+                               : py::array(convert("doubles")(numbers, what))) {}
+
+std::string Doubles::shape_text() const {
+  std::string text = "(";
+  for (std::size_t axis = 0; axis < dimensions(); ++axis) {
+    text += (axis > 0 ? ", " : "") + std::to_string(extent(axis));
+  }
+  return text + (dimensions() == 1 ? ",)" : ")");
+}
+
+Points::Points(py::handle numbers, const char* what) : numbers_(numbers, what) {
+  const std::size_t dimensions = numbers_.dimensions();
+  if ((dimensions == 1 || dimensions == 2) && numbers_.last(0) == 3) return;
+  refuse(std::string(what) + " has the shape " + numbers_.shape_text() + "; give (3,) or (n, 3)");
+}
+
+std::span<const Point3> Points::all() const {
+  static_assert(sizeof(Point3) == 3 * sizeof(double));
+  return {reinterpret_cast<const Point3*>(numbers_.data()), single() ? 1 : numbers_.extent(0)};  // NOLINT
+}
+
+std::optional<double> number_of(const py::object& given, const char* what) {
+  if (given.is_none()) return {};
+  const double number = PyFloat_AsDouble(given.ptr());
+  if (number == -1 && PyErr_Occurred() != nullptr) {
+    PyErr_Clear();
+    throw py::type_error(std::string(what) + ": give a number, not " + py::repr(given).cast<std::string>());
+  }
+  return number;
+}
+
+std::optional<double> length_of(const py::object& given, double size, const char* what) {
+  if (!py::isinstance<py::str>(given)) return number_of(given, what);
+  const auto text = given.cast<std::string>();
+  std::string_view digits = text;
+  while (digits.starts_with(' ')) digits.remove_prefix(1);
+  while (digits.ends_with(' ')) digits.remove_suffix(1);
+  const bool percent = digits.ends_with('%');
+  if (percent) digits.remove_suffix(1);
+  while (digits.ends_with(' ')) digits.remove_suffix(1);
+  double number = 0;
+  const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (fault != std::errc() || end != digits.data() + digits.size() || !std::isfinite(number)) {
+    refuse(std::string(what) + ": '" + text +
+           "' is not a length; give mesh units (0.01) or percent of the size (\"1%\")");
+  }
+  const double length = percent ? number / 100 * size : number;
+  if (!std::isfinite(length) || (number > 0 && !(length > 0))) {
+    refuse(std::string(what) +
+           ": a length in percent does not fit a double for a mesh of this size; give it in mesh units");
+  }
+  return length;
+}
+
+std::uint64_t count_of(const py::object& given, std::uint64_t usual, const char* what) {
+  if (given.is_none()) return usual;
+  const auto whole = py::reinterpret_steal<py::object>(PyNumber_Index(given.ptr()));
+  const std::uint64_t count = whole ? PyLong_AsUnsignedLongLong(whole.ptr()) : 0;
+  if (PyErr_Occurred() == nullptr) return count;
+  PyErr_Clear();
+  refuse(std::string(what) + ": " + py::repr(given).cast<std::string>() +
+         " is not a whole number from 0 to 2^64 - 1");
+}
+
+int threads_of(const py::object& given) {
+  constexpr std::uint64_t most = 4096;
+  const std::uint64_t threads = count_of(given, 0, "threads");
+  if (threads > most) refuse("threads: give at most 4096; 0 takes all cores");
+  return static_cast<int>(threads);
+}
+
+}  // namespace snug::python

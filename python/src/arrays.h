@@ -1,0 +1,126 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <snug/geometry.h>
+
+namespace snug::python {
+
+namespace py = pybind11;
+
+/// Numbers from Python as C-contiguous doubles: the array's own memory if it holds such, else a copy. Whoever holds this
+/// keeps them alive; they must not be changed during a call.
+class Doubles {
+ public:
+  /// Errors:    TypeError, ValueError naming `what`: not real numbers, ragged, masked.
+  Doubles(py::handle numbers, const char* what);
+
+  [[nodiscard]] std::size_t dimensions() const { return static_cast<std::size_t>(array_.ndim()); }
+  [[nodiscard]] std::size_t extent(std::size_t axis) const {
+    return static_cast<std::size_t>(array_.shape(static_cast<py::ssize_t>(axis)));
+  }
+  /// The same, counted from the last axis.
+  [[nodiscard]] std::size_t last(std::size_t axis) const { return extent(dimensions() - 1 - axis); }
+  [[nodiscard]] const double* data() const { return static_cast<const double*>(array_.data()); }
+  [[nodiscard]] std::string shape_text() const;
+
+ private:
+  py::array array_;
+};
+
+/// A point (3,) or n points (n, 3).
+class Points {
+ public:
+  Points(py::handle numbers, const char* what);
+  [[nodiscard]] bool single() const { return numbers_.dimensions() == 1; }
+  [[nodiscard]] std::span<const Point3> all() const;
+
+ private:
+  Doubles numbers_;
+};
+
+/// How the numbers of a value lie in memory.
+template <class V>
+struct Layout {
+  using Number = V;
+  static void add(std::vector<py::ssize_t>&, std::vector<py::ssize_t>&) {}
+};
+template <class V>
+requires std::is_same_v<V, Point3> || std::is_same_v<V, Vector3>
+struct Layout<V> {
+  using Number = double;
+  static void add(std::vector<py::ssize_t>& shape, std::vector<py::ssize_t>& strides) {
+    shape.push_back(3);
+    strides.push_back(sizeof(double));
+  }
+};
+template <class V, std::size_t N>
+struct Layout<std::array<V, N>> {
+  using Number = typename Layout<V>::Number;
+  static void add(std::vector<py::ssize_t>& shape, std::vector<py::ssize_t>& strides) {
+    shape.push_back(N);
+    strides.push_back(sizeof(V));
+    Layout<V>::add(shape, strides);
+  }
+};
+
+/// A read-only array over memory that `owner` keeps.
+template <class Number>
+py::array read_only(std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides, const Number* data,
+                    py::handle owner) {
+  py::array array(py::dtype::of<Number>(), std::move(shape), std::move(strides), data, owner);
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
+
+/// One number for each row: a member of `rows`, seen without a copy.
+template <class T, class Member>
+py::array column(std::span<const T> rows, const Member& member, py::handle owner) {
+  using V = std::remove_cvref_t<decltype(member(rows[0]))>;
+  using Number = typename Layout<V>::Number;
+  static_assert(std::is_reference_v<decltype(member(rows[0]))>, "a view of a temporary");
+  std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(rows.size())}, strides{sizeof(T)};
+  Layout<V>::add(shape, strides);
+  static constexpr Number none{};
+  const auto* data = rows.empty() ? &none : reinterpret_cast<const Number*>(&member(rows[0]));  // NOLINT
+  return read_only<Number>(std::move(shape), std::move(strides), data, owner);
+}
+template <class T>
+py::array column(const std::vector<T>& rows, py::handle owner) {
+  return column(
+      std::span<const T>(rows), [](const T& row) -> const T& { return row; }, owner);
+}
+
+/// One value, seen without a copy: its numbers as an array.
+template <class V>
+py::array value_view(const V& value, py::handle owner) {
+  std::vector<py::ssize_t> shape, strides;
+  Layout<V>::add(shape, strides);
+  using Number = typename Layout<V>::Number;
+  return read_only<Number>(std::move(shape), std::move(strides), reinterpret_cast<const Number*>(&value),
+                           owner);  // NOLINT
+}
+
+inline py::tuple pair_of(const Interval& interval) { return py::make_tuple(interval.lower, interval.upper); }
+
+// Options.
+
+/// A length: a number of mesh units, or text such as "0.1%" of `size`. None is empty.
+/// Errors:    ValueError, TypeError naming `what`.
+[[nodiscard]] std::optional<double> length_of(const py::object& given, double size, const char* what);
+[[nodiscard]] std::optional<double> number_of(const py::object& given, const char* what);
+/// None: `usual`.
+[[nodiscard]] std::uint64_t count_of(const py::object& given, std::uint64_t usual, const char* what);
+/// A number of threads; 0: all cores.
+[[nodiscard]] int threads_of(const py::object& given);
+/// A function of snug._convert, which takes what is not an array of doubles.
+[[nodiscard]] py::object convert(const char* function);
+
+}  // namespace snug::python

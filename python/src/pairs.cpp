@@ -1,0 +1,362 @@
+// Two surfaces: collide, distance, penetration.
+
+#include <cmath>
+
+#include <snug/collide.h>
+#include <snug/distance.h>
+
+#include "answers.h"
+#include "call.h"
+#include "poses.h"
+#include "surface.h"
+
+namespace snug::python {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// The names that an enum has.
+template <class Enum>
+Enum named(const py::object& given, std::initializer_list<std::pair<const char*, Enum>> names,
+           const char* what) {
+  std::string known;
+  if (py::isinstance<py::str>(given)) {
+    const auto word = given.cast<std::string>();
+    for (const auto& [name, value] : names) {
+      if (word == name) return value;
+    }
+  }
+  for (const auto& [name, value] : names) known += (known.empty() ? "'" : ", '") + std::string(name) + "'";
+  throw InputError(InputProblem::value,
+                   std::string(what) + ": " + py::repr(given).cast<std::string>() + " is none of " + known);
+}
+
+double larger_size(const PySurface& a, const PySurface& b) {
+  return std::max(a.surface().size(), b.surface().size());
+}
+
+// One answer, or one for each pose.
+template <class T, class One, class Many>
+Answers<T> for_poses(const PySurface& py_a, const PySurface& py_b, const Poses& pose_a, const Poses& pose_b,
+                     const py::object& progress, const One& one, const Many& many) {
+  const Surface a = py_a.surface(), b = py_b.surface();  // which an update() meanwhile does not reach
+  const std::optional<std::size_t> count = common_count(pose_a, pose_b);
+  Call call(progress);
+  return call.run([&](const WorkMonitor& monitor) {
+    if (!count) return Answers<T>(one(a.at(pose_a.at(0)), b.at(pose_b.at(0)), monitor));
+    return Answers<T>(many(a, b, pairs_of(pose_a, pose_b, *count), monitor));
+  });
+}
+
+Answers<Collision> collide_surfaces(const PySurface& a, const PySurface& b, const py::object& pose_a,
+                                    const py::object& pose_b, const py::object& tolerance,
+                                    const py::object& margin, bool solid, const py::object& witness,
+                                    bool measure, const py::object& budget, const py::object& threads,
+                                    const py::object& progress, const py::object& rigid) {
+  CollideOptions options;
+  if (!tolerance.is_none()) options.tolerance = length_of(tolerance, larger_size(a, b), "tolerance");
+  if (!margin.is_none()) options.margin = *length_of(margin, larger_size(a, b), "margin");
+  options.solid = solid;
+  options.measure = measure;
+  options.budget = count_of(budget, options.budget, "budget");
+  if (!witness.is_none()) {
+    options.witness = named<WitnessKind>(witness,
+                                         {{"none", WitnessKind::none},
+                                          {"approximate", WitnessKind::approximate},
+                                          {"exact", WitnessKind::exact}},
+                                         "witness");
+  }
+  const int all_threads = threads_of(threads);
+  return for_poses<Collision>(
+      a, b, {pose_a, "pose_a", rigid}, {pose_b, "pose_b", rigid}, progress,
+      [&](const PlacedSurface& x, const PlacedSurface& y, const WorkMonitor& monitor) {
+        return collide(x, y, options, monitor);
+      },
+      [&](const Surface& x, const Surface& y, const std::vector<PosePair>& poses,
+          const WorkMonitor& monitor) { return collide(x, y, poses, options, all_threads, monitor); });
+}
+
+Answers<Distance> distance_of_surfaces(const PySurface& a, const PySurface& b, const py::object& pose_a,
+                                       const py::object& pose_b, const py::object& relative,
+                                       const py::object& absolute, bool solid, const py::object& budget,
+                                       const py::object& threads, const py::object& progress,
+                                       const py::object& rigid) {
+  DistanceOptions options;
+  options.relative = number_of(relative, "relative");
+  options.absolute = length_of(absolute, larger_size(a, b), "absolute");
+  options.solid = solid;
+  options.budget = count_of(budget, options.budget, "budget");
+  const int all_threads = threads_of(threads);
+  return for_poses<Distance>(
+      a, b, {pose_a, "pose_a", rigid}, {pose_b, "pose_b", rigid}, progress,
+      [&](const PlacedSurface& x, const PlacedSurface& y, const WorkMonitor& monitor) {
+        return distance(x, y, options, monitor);
+      },
+      [&](const Surface& x, const Surface& y, const std::vector<PosePair>& poses,
+          const WorkMonitor& monitor) { return distance(x, y, poses, options, all_threads, monitor); });
+}
+
+Answers<Penetration> penetration_of_surfaces(const PySurface& a, const PySurface& b, const py::object& pose_a,
+                                             const py::object& pose_b, const py::object& relative,
+                                             const py::object& budget, const py::object& progress,
+                                             const py::object& rigid) {
+  PenetrationOptions options;
+  options.relative = number_of(relative, "relative").value_or(options.relative);
+  options.budget = count_of(budget, options.budget, "budget");
+  return for_poses<Penetration>(
+      a, b, {pose_a, "pose_a", rigid}, {pose_b, "pose_b", rigid}, progress,
+      [&](const PlacedSurface& x, const PlacedSurface& y, const WorkMonitor& monitor) {
+        return penetration(x, y, options, monitor);
+      },
+      [&](const Surface& x, const Surface& y, const std::vector<PosePair>& poses,
+          const WorkMonitor& monitor) {
+        std::vector<Penetration> answers;
+        answers.reserve(poses.size());
+        for (const PosePair& pose : poses) {
+          monitor.report(static_cast<double>(answers.size()) / static_cast<double>(poses.size()));
+          answers.push_back(
+              penetration(x.at(pose.a), y.at(pose.b), options, {.on_progress = {}, .stop = monitor.stop}));
+        }
+        return answers;
+      });
+}
+
+// What Collision and Distance have in common.
+
+const std::array<Point3, 2>* witness_of(const Collision& answer) {
+  return answer.witness ? &*answer.witness : nullptr;
+}
+const std::array<Point3, 2>* witness_of(const Distance& answer) { return &answer.witness; }
+
+template <class T>
+void add_common(AnswerClass<T>& answers) {
+  answers
+      .view(
+          "lower", [](const T& t) -> const double& { return t.distance.lower; },
+          "Lower end of the interval that contains the distance, (n,), mesh units.")
+      .view(
+          "upper", [](const T& t) -> const double& { return t.distance.upper; },
+          "Upper end of it, (n,), mesh units; infinite if no pair of points was near enough to matter.")
+      .template array<double>(
+          "points", {2, 3},
+          [](const T& t, double* out) {
+            const std::array<Point3, 2>* const points = witness_of(t);
+            for (std::size_t s = 0; s < 2; ++s) {
+              for (std::size_t k = 0; k < 3; ++k) *out++ = points ? (*points)[s][k] : nan;
+            }
+          },
+          "The two closest points found, on A and on B, (n, 2, 3), world coordinates; NaN if there are none.")
+      .view(
+          "point_error", [](const T& t) -> const double& { return t.witness_error; },
+          "Upper bound, per coordinate, of the distance from a point to the limit point that it stands for, "
+          "(n,).")
+      .template array<std::int64_t>(
+          "faces", {2},
+          [](const T& t, std::int64_t* out) {
+            for (const auto& at : t.at) *out++ = at ? std::int64_t{at->owner} : -1;
+          },
+          "Faces of the points (of dual schemes vertices), (n, 2) int64; -1 where a point was located on the "
+          "other surface only.")
+      .template array<std::int64_t>(
+          "corners", {2},
+          [](const T& t, std::int64_t* out) {
+            for (const auto& at : t.at) *out++ = at ? std::int64_t{at->corner} : -1;
+          },
+          "Corners of these faces that the parameters belong to, (n, 2) int64; -1 likewise.")
+      .template array<double>(
+          "parameters", {2, 2},
+          [](const T& t, double* out) {
+            for (const auto& at : t.at) {
+              *out++ = at ? at->u : nan;
+              *out++ = at ? at->v : nan;
+            }
+          },
+          "Parameters u, v of the points, (n, 2, 2); NaN likewise.")
+      .template array<std::int64_t>(
+          "inner", {},
+          [](const T& t, std::int64_t* out) { *out = t.inner ? static_cast<std::int64_t>(*t.inner) : -1; },
+          "With solid=True: 0 if a point of A's surface lies inside B, 1 the other way round, else -1, (n,) "
+          "int64.")
+      .list(
+          "stats",
+          [](const T& t) {
+            py::dict stats;
+            stats["box_tests"] = t.stats.box_tests;
+            stats["triangle_tests"] = t.stats.triangle_tests;
+            stats["evaluations"] = t.stats.evaluations;
+            stats["splits"] = t.stats.splits;
+            return stats;
+          },
+          "The work that was done, as a dict; of many answers a list.");
+}
+
+bool colliding(const Collision& answer) {
+  return answer.verdict == Verdict::within || answer.verdict == Verdict::intersecting;
+}
+
+bool truth(const Answers<Collision>& self) {
+  if (!self.single()) {
+    throw py::value_error(
+        "The truth value of an array with more than one element is ambiguous. Use hit.any() or hit.all()");
+  }
+  const Collision& answer = self.one();
+  if (answer.verdict == Verdict::undecided) {
+    refuse_undecided("undecided: the distance is " + text_of(answer.distance) +
+                     "; give a larger tolerance or budget");
+  }
+  return colliding(answer);
+}
+
+// Is there one that is `wanted`? Not known where none is and some are undecided.
+bool some(const Answers<Collision>& self, bool wanted) {
+  std::size_t undecided = 0;
+  for (const Collision& answer : self.all()) {
+    if (answer.verdict == Verdict::undecided) {
+      ++undecided;
+    } else if (colliding(answer) == wanted) {
+      return true;
+    }
+  }
+  if (undecided > 0) {
+    refuse_undecided(std::to_string(undecided) + " of " + std::to_string(self.all().size()) +
+                     " answers are undecided; give a larger tolerance or budget, or see hit.undecided");
+  }
+  return false;
+}
+
+std::string counts(std::span<const Collision> all) {
+  std::array<std::size_t, 4> count{};
+  for (const Collision& each : all) ++count[static_cast<std::size_t>(each.verdict) % 4];
+  std::string text;
+  for (std::size_t v = 0; v < 4; ++v) {
+    if (count[v] > 0)
+      text +=
+          (text.empty() ? ": " : ", ") + std::to_string(count[v]) + " " + name_of(static_cast<Verdict>(v));
+  }
+  return text;
+}
+
+void add_collision(py::module_& module) {
+  AnswerClass<Collision> answers(
+      module, "Collision",
+      "Do two surfaces touch? One answer, or n of them for n poses. bool() is True for 'within' and\n"
+      "'intersecting', False for 'separated', and raises UndecidedError for 'undecided'.");
+  add_common(answers);
+  const auto mask = [&](const char* name, const auto& holds, const char* doc) {
+    answers.array<bool>(
+        name, {}, [holds](const Collision& t, bool* out) { *out = holds(t); }, doc);
+  };
+  mask("colliding", colliding, "Is the verdict 'within' or 'intersecting'? (n,) bool.");
+  mask(
+      "separated", [](const Collision& t) { return t.verdict == Verdict::separated; },
+      "Are they proved to be farther apart than the margin? (n,) bool.");
+  mask(
+      "undecided", [](const Collision& t) { return t.verdict == Verdict::undecided; },
+      "Was nothing shown within the budget or the precision of doubles? (n,) bool.");
+  answers.list(
+      "verdict", [](const Collision& t) { return py::str(name_of(t.verdict)); },
+      "'separated', 'within', 'intersecting' or 'undecided'; of many answers a list.");
+  answers.python()
+      .def("__bool__", truth)
+      .def(
+          "any", [](const Answers<Collision>& self) { return some(self, true); },
+          "Does any collide? Raises UndecidedError where that depends on undecided ones.")
+      .def(
+          "all", [](const Answers<Collision>& self) { return !some(self, false); },
+          "Do all collide? Raises UndecidedError where that depends on undecided ones.");
+  answers.repr(
+      [](const Collision& t) {
+        const bool touch = t.verdict == Verdict::intersecting && t.distance.upper == 0;
+        return std::string(name_of(t.verdict)) + (touch ? "" : ", distance " + text_of(t.distance));
+      },
+      counts);
+}
+
+void add_distance(py::module_& module) {
+  AnswerClass<Distance> answers(module, "Distance",
+                                "How far apart two surfaces are: one answer, or n of them for n poses.");
+  add_common(answers);
+  answers.view(
+      "reached", [](const Distance& t) -> const bool& { return t.reached; },
+      "Is the interval as narrow as requested? (n,) bool. It contains the distance in any case.");
+  answers.repr(
+      [](const Distance& t) { return text_of(t.distance) + (t.reached ? "" : ", precision not reached"); });
+}
+
+void add_penetration(py::module_& module) {
+  AnswerClass<Penetration> answers(
+      module, "Penetration",
+      "How deeply two solids penetrate: the least length of a translation of B that separates them.");
+  answers
+      .view(
+          "lower", [](const Penetration& t) -> const double& { return t.depth.lower; },
+          "No translation shorter than this separates them, (n,), mesh units.")
+      .view(
+          "upper", [](const Penetration& t) -> const double& { return t.depth.upper; },
+          "`translation` is at most this long, (n,), mesh units.")
+      .view(
+          "translation", [](const Penetration& t) -> const Vector3& { return t.translation; },
+          "Added to B's translation it separates them: proved, (n, 3). Zero if they are separated as they "
+          "are.")
+      .view(
+          "reached", [](const Penetration& t) -> const bool& { return t.reached; },
+          "Is the interval as narrow as requested? (n,) bool.")
+      .repr([](const Penetration& t) {
+        return "depth " + text_of(t.depth) + (t.reached ? "" : ", precision not reached");
+      });
+}
+
+constexpr const char* pose_doc =
+    "pose_a, pose_b: rigid transforms x -> R x + t as (4, 4), (3, 4), a tuple (R, t) or (quaternion w x y z, "
+    "t); or n of\n"
+    "them with n in front of each shape, and then the answer has n. One pose on one side stands beside n on "
+    "the other.\n"
+    "rigid=\"nearest\": what is not rigid within 1e-9 is replaced by the nearest rotation.\n"
+    "progress: called with the fraction done; what it raises ends the work.\n\n";
+
+}  // namespace
+
+void add_pair_queries(py::module_& module) {
+  add_collision(module);
+  add_distance(module);
+  add_penetration(module);
+  using py::arg;
+  const py::object none = py::none();
+  const std::string poses = pose_doc;
+  module.def(
+      "collide", collide_surfaces, arg("a"), arg("b"), py::kw_only(), arg("pose_a") = none,
+      arg("pose_b") = none, arg("tolerance") = "0.1%", arg("margin") = 0, arg("solid") = false,
+      arg("witness") = "exact", arg("measure") = true, arg("budget") = none, arg("threads") = 0,
+      arg("progress") = none, arg("rigid") = none,
+      ("Do two limit surfaces touch?\n\n" + poses +
+       "tolerance, margin: mesh units, or percent of the larger surface's size as in \"0.1%\"; with "
+       "tolerance 0 only proofs\n"
+       "of contact or separation count. solid: compare the solids that closed surfaces bound.\n"
+       "witness: 'none', 'approximate' or 'exact'. measure: narrow the interval of separated surfaces.\n"
+       "budget: most splits. threads: for many poses; 0 takes all cores.\n\n"
+       "Guarantee: 'separated' means distance > margin, 'within' distance <= margin + tolerance, "
+       "'intersecting' a common\n"
+       "point, for the doubles given. The answer depends on the input alone.\n"
+       "Raises ValueError, PoseError, MeshError (solid: a surface is not closed), OverflowError.")
+          .c_str());
+  module.def("distance", distance_of_surfaces, arg("a"), arg("b"), py::kw_only(), arg("pose_a") = none,
+             arg("pose_b") = none, arg("relative") = none, arg("absolute") = none, arg("solid") = false,
+             arg("budget") = none, arg("threads") = 0, arg("progress") = none, arg("rigid") = none,
+             ("How far apart are two limit surfaces?\n\n" + poses +
+              "The work ends once upper - lower <= max(absolute, relative * upper); absolute is in mesh "
+              "units, or percent of the\n"
+              "larger surface's size. By default absolute is 0.01 % of it.\n\n"
+              "Guarantee: [lower, upper] contains the distance, whether that was reached or not.\n"
+              "Raises as collide().")
+                 .c_str());
+  module.def("penetration", penetration_of_surfaces, arg("a"), arg("b"), py::kw_only(), arg("pose_a") = none,
+             arg("pose_b") = none, arg("relative") = none, arg("budget") = none, arg("progress") = none,
+             arg("rigid") = none,
+             ("How deeply do two solids penetrate?\n\n" + poses +
+              "relative: ends once the interval's width is at most this fraction of its upper end (0.05).\n"
+              "budget: most splits of each collision query of the search.\n\n"
+              "Raises as collide(); MeshError for surfaces that are not closed.")
+                 .c_str());
+}
+
+}  // namespace snug::python

@@ -1,0 +1,453 @@
+// One surface and points, rays, parameters: closest_point, signed_distance, contains, cast_rays, evaluate.
+
+#include <cmath>
+
+#include <snug/closest.h>
+#include <snug/evaluate.h>
+#include <snug/ray.h>
+
+#include "answers.h"
+#include "call.h"
+#include "surface.h"
+
+namespace snug::python {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// One answer, or one for each point.
+template <class T, class One, class Many>
+Answers<T> for_points(const PySurface& self, const py::object& given, const py::object& progress,
+                      const One& one, const Many& many) {
+  const Surface surface = self.surface();
+  const Points points(given, "points");
+  Call call(progress);
+  return call.run([&](const WorkMonitor& monitor) {
+    if (points.single()) return Answers<T>(one(surface, points.all()[0], monitor));
+    return Answers<T>(many(surface, points.all(), monitor));
+  });
+}
+
+ClosestOptions closest_options(const PySurface& self, const py::object& relative, const py::object& absolute,
+                               const py::object& budget) {
+  ClosestOptions options;
+  options.relative = number_of(relative, "relative");
+  options.absolute = length_of(absolute, self.surface().size(), "absolute");
+  options.budget = count_of(budget, options.budget, "budget");
+  return options;
+}
+
+Answers<ClosestPoint> closest(const PySurface& self, const py::object& points, const py::object& relative,
+                              const py::object& absolute, const py::object& budget, const py::object& threads,
+                              const py::object& progress) {
+  const ClosestOptions options = closest_options(self, relative, absolute, budget);
+  const int all_threads = threads_of(threads);
+  return for_points<ClosestPoint>(
+      self, points, progress,
+      [&](const Surface& surface, const Point3& p, const WorkMonitor& monitor) {
+        return closest_point(surface, p, options, monitor);
+      },
+      [&](const Surface& surface, std::span<const Point3> all, const WorkMonitor& monitor) {
+        return closest_points(surface, all, options, all_threads, monitor);
+      });
+}
+
+Answers<SignedDistance> signed_of(const PySurface& self, const py::object& points, const py::object& relative,
+                                  const py::object& absolute, const py::object& budget,
+                                  const py::object& threads, const py::object& progress) {
+  const ClosestOptions options = closest_options(self, relative, absolute, budget);
+  const int all_threads = threads_of(threads);
+  return for_points<SignedDistance>(
+      self, points, progress,
+      [&](const Surface& surface, const Point3& p, const WorkMonitor& monitor) {
+        return signed_distance(surface, p, options, monitor);
+      },
+      [&](const Surface& surface, std::span<const Point3> all, const WorkMonitor& monitor) {
+        return signed_distances(surface, all, options, all_threads, monitor);
+      });
+}
+
+/// Is a point inside? 1, 0, or -1 where that cannot be told.
+struct Side {
+  std::int8_t inside;
+};
+
+Side side_of(const Surface& surface, const Point3& p, const WorkMonitor& monitor) {
+  const std::optional<bool> inside = contains(surface, p, monitor);
+  return {static_cast<std::int8_t>(inside ? *inside : -1)};
+}
+
+Answers<Side> contained(const PySurface& self, const py::object& points, const py::object& progress) {
+  return for_points<Side>(
+      self, points, progress, side_of,
+      [](const Surface& surface, std::span<const Point3> all, const WorkMonitor& monitor) {
+        std::vector<Side> sides;
+        sides.reserve(all.size());
+        const WorkMonitor stop{.on_progress = {}, .stop = monitor.stop};
+        for (std::size_t i = 0; i < all.size(); ++i) {
+          if (i % 1024 == 0) monitor.report(static_cast<double>(i) / static_cast<double>(all.size()));
+          sides.push_back(side_of(surface, all[i], stop));
+        }
+        return sides;
+      });
+}
+
+void add_closest(py::module_& module) {
+  AnswerClass<ClosestPoint> answers(module, "ClosestPoint",
+                                    "The closest point of a surface: of one point, or of each of n.");
+  answers
+      .view(
+          "lower", [](const ClosestPoint& t) -> const double& { return t.distance.lower; },
+          "Lower end of the interval that contains the distance, (n,), mesh units.")
+      .view(
+          "upper", [](const ClosestPoint& t) -> const double& { return t.distance.upper; },
+          "Upper end of it; `point` is at most so far away, (n,).")
+      .view(
+          "point", [](const ClosestPoint& t) -> const Point3& { return t.point; },
+          "A limit point close to the closest one, (n, 3).")
+      .view(
+          "point_error", [](const ClosestPoint& t) -> const double& { return t.point_error; },
+          "Upper bound, per coordinate, of its distance from the limit point at its parameters, (n,).")
+      .view(
+          "reached", [](const ClosestPoint& t) -> const bool& { return t.reached; },
+          "Is the interval as narrow as requested? (n,) bool.");
+  add_place(answers, [](const ClosestPoint& t) -> const SurfaceParameter& { return t.at; });
+  answers.repr([](const ClosestPoint& t) {
+    return "distance " + text_of(t.distance) + ", face " + std::to_string(t.at.owner);
+  });
+
+  AnswerClass<SignedDistance> signed_answers(
+      module, "SignedDistance",
+      "How far one point, or each of n, is from a closed surface: negative inside.");
+  signed_answers
+      .view(
+          "lower", [](const SignedDistance& t) -> const double& { return t.distance.lower; },
+          "Lower end of the interval that contains the signed distance, (n,), mesh units.")
+      .view(
+          "upper", [](const SignedDistance& t) -> const double& { return t.distance.upper; },
+          "Upper end of it, (n,).")
+      .view(
+          "point", [](const SignedDistance& t) -> const Point3& { return t.nearest.point; },
+          "A limit point close to the closest one, (n, 3).")
+      .view(
+          "point_error", [](const SignedDistance& t) -> const double& { return t.nearest.point_error; },
+          "Upper bound, per coordinate, of its distance from the limit point at its parameters, (n,).")
+      .view(
+          "reached", [](const SignedDistance& t) -> const bool& { return t.reached; },
+          "Is the interval as narrow as requested, and the sign proved? (n,) bool.");
+  add_place(signed_answers, [](const SignedDistance& t) -> const SurfaceParameter& { return t.nearest.at; });
+  signed_answers.repr([](const SignedDistance& t) { return text_of(t.distance); });
+}
+
+void add_containment(py::module_& module) {
+  AnswerClass<Side> answers(
+      module, "Containment",
+      "Is one point, or each of n, inside of a closed surface? bool() of one raises UndecidedError where it\n"
+      "cannot be told: on the surface and within rounding of it.");
+  const auto mask = [&](const char* name, std::int8_t value, const char* doc) {
+    answers.array<bool>(
+        name, {}, [value](const Side& t, bool* out) { *out = t.inside == value; }, doc);
+  };
+  mask("inside", 1, "Proved to be inside, (n,) bool.");
+  mask("outside", 0, "Proved to be outside, (n,) bool.");
+  mask("undecided", -1, "On the surface or within rounding of it, (n,) bool.");
+  answers.python().def("__bool__", [](const Answers<Side>& self) {
+    if (!self.single()) {
+      throw py::value_error(
+          "The truth value of an array with more than one element is ambiguous. Use .inside or .outside");
+    }
+    if (self.one().inside < 0)
+      refuse_undecided("undecided: the point is on the surface, or within rounding of it");
+    return self.one().inside == 1;
+  });
+  answers.repr([](const Side& t) {
+    return std::string(t.inside < 0 ? "undecided" : t.inside == 1 ? "inside" : "outside");
+  });
+}
+
+// Rays.
+
+/// The hits of all rays, by ray and t.
+struct Hits {
+  bool single = false;
+  std::vector<RayHit> hits;
+  std::vector<std::int64_t> ray;
+  std::vector<std::uint8_t> complete, certain_hit, certain_miss;
+};
+
+struct RayInput {
+  RayInput(const py::object& origins, const py::object& directions)
+      : from(origins, "origins"), along(directions, "directions") {
+    if (!from.single() && !along.single() && from.all().size() != along.all().size()) {
+      throw InputError(InputProblem::value,
+                       "origins has " + std::to_string(from.all().size()) + " points and directions has " +
+                           std::to_string(along.all().size()) + "; give as many, or one of either");
+    }
+  }
+  [[nodiscard]] bool single() const { return from.single() && along.single(); }
+  [[nodiscard]] std::vector<Ray> rays() const {
+    const std::span<const Point3> o = from.all(), d = along.all();
+    const std::size_t n = from.single() ? d.size() : o.size();
+    std::vector<Ray> result;
+    result.reserve(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Point3& direction = d[along.single() ? 0 : i];
+      result.push_back(
+          {.origin = o[from.single() ? 0 : i], .direction = {direction.x, direction.y, direction.z}});
+    }
+    return result;
+  }
+
+  Points from, along;
+};
+
+Hits traced(const PySurface& self, const RayInput& input, const RayOptions& options, int threads,
+            const py::object& progress) {
+  const Surface surface = self.surface();
+  Call call(progress);
+  return call.run([&](const WorkMonitor& monitor) {
+    const std::vector<RayHits> all = trace(surface, input.rays(), options, threads, monitor);
+    Hits result;
+    result.single = input.single();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      result.complete.push_back(all[i].complete);
+      result.certain_hit.push_back(all[i].certain_hit());
+      result.certain_miss.push_back(all[i].certain_miss());
+      for (const RayHit& hit : all[i].hits) {
+        result.hits.push_back(hit);
+        result.ray.push_back(static_cast<std::int64_t>(i));
+      }
+    }
+    return result;
+  });
+}
+
+py::object cast_rays(PySurface& self, const py::object& origins, const py::object& directions,
+                     const py::object& query, bool certified, const py::object& precision,
+                     const py::object& tolerance, const py::object& budget, const py::object& threads,
+                     const py::object& progress) {
+  const RayInput input(origins, directions);
+  RayOptions options;
+  const std::string word = py::isinstance<py::str>(query) ? query.cast<std::string>() : "";
+  if (word == "any") options.query = RayQuery::any;
+  if (word == "all") options.query = RayQuery::all;
+  if (word != "nearest" && word != "any" && word != "all") {
+    throw InputError(InputProblem::value,
+                     "query: " + py::repr(query).cast<std::string>() + " is none of 'nearest', 'any', 'all'");
+  }
+  const int all_threads = threads_of(threads);
+  if (certified) {
+    options.precision = length_of(precision, self.surface().size(), "precision");
+    options.budget = count_of(budget, options.budget, "budget");
+    return py::cast(traced(self, input, options, all_threads, progress));
+  }
+  if (word != "nearest")
+    throw InputError(InputProblem::value,
+                     "query: without proof (certified=False) only 'nearest' can be asked");
+  const auto caster =
+      self.caster(length_of(tolerance, self.surface().size(), "tolerance").value_or(0), all_threads);
+  std::vector<QuickHit> hits;
+  {
+    const py::gil_scoped_release released;
+    const std::vector<Ray> rays = input.rays();
+    hits.resize(rays.size());
+    caster->cast(rays, hits, all_threads);
+  }
+  if (input.single()) return py::cast(Answers<QuickHit>(hits[0]));
+  return py::cast(Answers<QuickHit>(std::move(hits)));
+}
+
+void add_rays(py::module_& module) {
+  py::class_<Hits> cls(module, "RayHits",
+                       "Where rays meet a surface: every hit lies in one of the intervals, and each "
+                       "certified one holds a hit.\n"
+                       "Hits of all rays follow one another, m in all, in the order of rays and of t.");
+  cls.attr("__module__") = "snug";
+  const auto hit_view = [&](const char* name, const auto& member, const char* doc) {
+    cls.def_property_readonly(
+        name,
+        [member](const py::object& self) {
+          return column(std::span<const RayHit>(self.cast<const Hits&>().hits), member, self);
+        },
+        doc);
+  };
+  const auto number_view = [&](const char* name, auto Hits::*numbers, const char* doc) {
+    cls.def_property_readonly(
+        name, [numbers](const py::object& self) { return column(self.cast<const Hits&>().*numbers, self); },
+        doc);
+  };
+  const auto mask = [&](const char* name, std::vector<std::uint8_t> Hits::*flags, const char* doc) {
+    cls.def_property_readonly(
+        name,
+        [flags](const py::object& object) -> py::object {
+          const Hits& self = object.cast<const Hits&>();
+          if (self.single) return py::bool_((self.*flags)[0] != 0);
+          return column(self.*flags, object).attr("view")("bool");
+        },
+        doc);
+  };
+  hit_view(
+      "lower", [](const RayHit& t) -> const double& { return t.t.lower; },
+      "Lower ends of t, (m,), in lengths of the direction.");
+  hit_view(
+      "upper", [](const RayHit& t) -> const double& { return t.t.upper; }, "Upper ends of t, (m,).");
+  hit_view(
+      "certified", [](const RayHit& t) -> const bool& { return t.certified; },
+      "Is a hit in the interval proved? (m,) bool.");
+  hit_view(
+      "side", [](const RayHit& t) -> const int& { return t.side; },
+      "+1 where the ray passes along the normal, -1 against it, 0 where that is not known, (m,).");
+  hit_view(
+      "point", [](const RayHit& t) -> const Point3& { return t.point; },
+      "In the middle of the intervals, (m, 3).");
+  hit_view(
+      "point_error", [](const RayHit& t) -> const double& { return t.point_error; },
+      "Upper bound, per coordinate, of the distance of the ray's points in the interval from `point`, (m,).");
+  hit_view(
+      "face", [](const RayHit& t) -> const std::uint32_t& { return t.at.owner; },
+      "Faces there (of dual schemes vertices), (m,) uint32.");
+  hit_view(
+      "corner", [](const RayHit& t) -> const std::uint32_t& { return t.at.corner; },
+      "Corners of these faces, (m,) uint32.");
+  hit_view(
+      "u", [](const RayHit& t) -> const double& { return t.at.u; }, "First parameter, (m,).");
+  hit_view(
+      "v", [](const RayHit& t) -> const double& { return t.at.v; }, "Second parameter, (m,).");
+  cls.def_property_readonly(
+      "normal",
+      [](const Hits& self) {
+        py::array_t<double> result({static_cast<py::ssize_t>(self.hits.size()), py::ssize_t{3}});
+        double* out = result.mutable_data();
+        for (const RayHit& hit : self.hits) {
+          for (std::size_t k = 0; k < 3; ++k) *out++ = hit.normal ? (*hit.normal)[k] : nan;
+        }
+        return result;
+      },
+      "Unit normals there, (m, 3); NaN where there is none.");
+  number_view("ray", &Hits::ray, "The ray of each hit, (m,) int64.");
+  mask("complete", &Hits::complete,
+       "Of each ray: are all hits that the query is about among them? (n,) bool.");
+  mask("certain_hit", &Hits::certain_hit, "Of each ray: is it proved that there is a hit? (n,) bool.");
+  mask("certain_miss", &Hits::certain_miss, "Of each ray: is it proved that there is none? (n,) bool.");
+  cls.def("__len__", [](const Hits& self) { return self.hits.size(); });
+  cls.def("__repr__", [](const Hits& self) {
+    return "<snug.RayHits " + std::to_string(self.hits.size()) + " of " +
+           std::to_string(self.complete.size()) + (self.complete.size() == 1 ? " ray>" : " rays>");
+  });
+
+  AnswerClass<QuickHit> quick(module, "QuickHit",
+                              "What a ray, or each of n, meets first, for pictures: nothing is proved.");
+  quick
+      .view(
+          "t", [](const QuickHit& t) -> const double& { return t.t; },
+          "In lengths of the direction, (n,); infinite: nothing.")
+      .view(
+          "normal", [](const QuickHit& t) -> const Vector3& { return t.normal; },
+          "Roughly, of length 1 or 0, (n, 3).")
+      .array<bool>(
+          "hit", {}, [](const QuickHit& t, bool* out) { *out = std::isfinite(t.t); },
+          "Was anything met? (n,) bool.")
+      .repr([](const QuickHit& t) {
+        return std::isfinite(t.t) ? "t " + text_of(t.t) : std::string("nothing");
+      });
+  add_place(quick, [](const QuickHit& t) -> const SurfaceParameter& { return t.at; });
+}
+
+Answers<SurfacePoint> evaluated(const PySurface& self, const py::object& face, const py::object& u,
+                                const py::object& v, const py::object& corner, const py::object& threads) {
+  const Surface surface = self.surface();
+  const py::tuple arrays = convert("parameters")(face, u, v, corner);
+  const auto owners = arrays[0].cast<py::array_t<std::uint32_t>>(),
+             corners = arrays[3].cast<py::array_t<std::uint32_t>>();
+  const Doubles us(arrays[1], "u"), vs(arrays[2], "v");
+  std::vector<SurfaceParameter> at(static_cast<std::size_t>(owners.size()));
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    at[i] = {owners.data()[i], corners.data()[i], us.data()[i], vs.data()[i]};
+  }
+  const bool single = arrays[4].cast<bool>();
+  const int all_threads = threads_of(threads);
+  const py::gil_scoped_release released;
+  if (single) return Answers<SurfacePoint>(evaluate(surface, at[0]));
+  return Answers<SurfacePoint>(evaluate(surface, at, all_threads));
+}
+
+void add_evaluated(py::module_& module) {
+  AnswerClass<SurfacePoint> answers(module, "SurfacePoint",
+                                    "A limit point, or n of them, with tangents and normals.");
+  answers
+      .view(
+          "position", [](const SurfacePoint& t) -> const Point3& { return t.position; },
+          "The point, (n, 3), mesh units.")
+      .view(
+          "error", [](const SurfacePoint& t) -> const double& { return t.error; },
+          "Upper bound, per coordinate, of its distance from the exact one, (n,).")
+      .view(
+          "tangents", [](const SurfacePoint& t) -> const std::array<Vector3, 2>& { return t.tangents; },
+          "Derivatives in u and v where they exist, else two limit tangents, (n, 2, 3).")
+      .view(
+          "differentiable", [](const SurfacePoint& t) -> const bool& { return t.differentiable; },
+          "Do they exist? (n,) bool.")
+      .array<double>(
+          "normal", {3},
+          [](const SurfacePoint& t, double* out) {
+            for (std::size_t k = 0; k < 3; ++k) out[k] = t.normal ? (*t.normal)[k] : nan;
+          },
+          "Unit normal, (n, 3); NaN where there is none.")
+      .array<double>(
+          "normal_error", {}, [](const SurfacePoint& t, double* out) { *out = t.normal_error.value_or(nan); },
+          "Upper bound of |normal - exact normal|, (n,); NaN where none is proved.")
+      .repr([](const SurfacePoint& t) {
+        return text_of(t.position.x) + " " + text_of(t.position.y) + " " + text_of(t.position.z);
+      });
+}
+
+}  // namespace
+
+void add_point_queries(py::class_<PySurface>& surface, py::module_& module) {
+  add_closest(module);
+  add_containment(module);
+  add_rays(module);
+  add_evaluated(module);
+  using py::arg;
+  const py::object none = py::none();
+  constexpr const char* narrow =
+      "The work ends once upper - lower <= max(absolute, relative * upper); absolute is in mesh units, or "
+      "percent of the size as\n"
+      "in \"0.1%\"; by default 0.01 %. budget: most splits for each point. threads: for many points; 0 takes "
+      "all cores.\n";
+  surface
+      .def(
+          "closest_point", &closest, arg("points"), py::kw_only(), arg("relative") = none,
+          arg("absolute") = none, arg("budget") = none, arg("threads") = 0, arg("progress") = none,
+          (std::string(
+               "The point of the surface closest to a point (3,), or to each of (n, 3), in mesh units.\n\n") +
+           narrow +
+           "\nGuarantee: [lower, upper] contains the distance. Raises ValueError, MeshError, OverflowError.")
+              .c_str())
+      .def("signed_distance", &signed_of, arg("points"), py::kw_only(), arg("relative") = none,
+           arg("absolute") = none, arg("budget") = none, arg("threads") = 0, arg("progress") = none,
+           (std::string("The distance of a point (3,), or of each of (n, 3), negative inside of the closed "
+                        "surface.\n\n") +
+            narrow + "\nRaises as closest_point(); MeshError for a surface that is not closed.")
+               .c_str())
+      .def("contains", &contained, arg("points"), py::kw_only(), arg("progress") = none,
+           "Is a point (3,), or each of (n, 3), inside of the closed surface? Proved, or undecided.\n\n"
+           "Raises ValueError; MeshError for a surface that is not closed.")
+      .def("cast_rays", &cast_rays, arg("origins"), arg("directions"), py::kw_only(),
+           arg("query") = "nearest", arg("certified") = true, arg("precision") = none,
+           arg("tolerance") = "0.01%", arg("budget") = none, arg("threads") = 0, arg("progress") = none,
+           "Where rays meet the surface: origins and directions (3,) or (n, 3), one of either beside n of "
+           "the other.\n\n"
+           "query: 'nearest', 'any', 'all'. precision: length of a hit's interval. budget: most splits for "
+           "each ray.\n"
+           "certified=False: a QuickHit for pictures, within the tolerance; nothing is proved.\n\n"
+           "Raises ValueError, MeshError, OverflowError.")
+      .def("evaluate", &evaluated, arg("face"), arg("u"), arg("v"), arg("corner") = 0, py::kw_only(),
+           arg("threads") = 0,
+           "Limit points at parameters: numbers, or arrays that are broadcast against each other.\n\n"
+           "Loop: (1 - u - v) c0 + u c1 + v c2 on a face. Other schemes: u, v in [0, 1] on a quad; on other "
+           "faces on the quad at\n"
+           "`corner`. In a dual scheme `face` is a vertex. Raises ValueError, OverflowError.");
+}
+
+}  // namespace snug::python

@@ -1,0 +1,526 @@
+// What is made from a surface: bounds, boxes, triangles, hulls, measures, deviations, refined meshes.
+
+#include <cmath>
+
+#include <snug/bound.h>
+#include <snug/deviation.h>
+#include <snug/evaluate.h>
+#include <snug/hull.h>
+#include <snug/measure.h>
+#include <snug/tessellate.h>
+
+#include "answers.h"
+#include "call.h"
+#include "surface.h"
+
+namespace snug::python {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// Bounds.
+
+struct Enclosures {
+  std::vector<PatchEnclosure> pieces;
+  BoundSummary summary;
+};
+
+Enclosures bounded(const PySurface& self, const py::object& tolerance, unsigned level,
+                   const py::object& budget, const py::object& threads, const py::object& progress) {
+  const Surface surface = self.surface();
+  BoundOptions options;
+  options.tolerance = length_of(tolerance, surface.size(), "tolerance");
+  options.level = level;
+  options.budget = count_of(budget, options.budget, "budget");
+  options.threads = threads_of(threads);
+  Call call(progress);
+  return call.run([&](const WorkMonitor& monitor) {
+    Enclosures result;
+    result.summary = bound(
+        surface, options, [&](const PatchEnclosure& piece) { result.pieces.push_back(piece); }, monitor);
+    return result;
+  });
+}
+
+// The box of an interval triangle is exact: its corners are those of boxes.
+py::array boxes_of(const PySurface& self, unsigned level, const py::object& threads) {
+  const PySurface taken = self;  // which an update() meanwhile does not reach
+  const Enclosures enclosures = bounded(taken, py::none(), level, py::none(), threads, py::none());
+  const Surface& surface = taken.surface();
+  const bool dual = surface.scheme() == Scheme::doo_sabin || surface.scheme() == Scheme::midedge;
+  std::vector<Box3> boxes(dual ? surface.mesh().vertex_count() : surface.mesh().face_count());
+  for (const PatchEnclosure& piece : enclosures.pieces) {
+    if (piece.patch.owner >= boxes.size()) boxes.resize(piece.patch.owner + 1);
+    for (const Box3& corner : piece.interval.corner) boxes[piece.patch.owner].add(corner);
+  }
+  py::array_t<double> result({static_cast<py::ssize_t>(boxes.size()), py::ssize_t{2}, py::ssize_t{3}});
+  double* out = result.mutable_data();
+  for (const Box3& box : boxes) {
+    for (const Point3& p : {box.lower, box.upper}) {
+      for (std::size_t k = 0; k < 3; ++k) *out++ = box.empty() ? nan : p[k];
+    }
+  }
+  return result;
+}
+
+void add_enclosures(py::module_& module) {
+  py::class_<Enclosures> cls(module, "Enclosures",
+                             "Sets that contain the pieces of a surface, n in all, in mesh units.");
+  cls.attr("__module__") = "snug";
+  const auto view = [&](const char* name, const auto& member, const char* doc) {
+    cls.def_property_readonly(
+        name,
+        [member](const py::object& self) {
+          return column(std::span<const PatchEnclosure>(self.cast<const Enclosures&>().pieces), member, self);
+        },
+        doc);
+  };
+  view(
+      "face", [](const PatchEnclosure& t) -> const std::uint32_t& { return t.patch.owner; },
+      "The piece's face (of dual schemes vertex), (n,) uint32.");
+  view(
+      "part", [](const PatchEnclosure& t) -> const std::uint32_t& { return t.patch.part; },
+      "Which patch of the face, (n,) uint32.");
+  view(
+      "level", [](const PatchEnclosure& t) -> const unsigned& { return t.level; },
+      "Number of splits, (n,) uint32.");
+  view(
+      "base", [](const PatchEnclosure& t) -> const Triangle& { return t.offset.base; },
+      "Triangles: the piece is within `radius` of its own, (n, 3, 3).");
+  view(
+      "radius", [](const PatchEnclosure& t) -> const double& { return t.offset.radius; }, "(n,)");
+  view(
+      "corners", [](const PatchEnclosure& t) -> const Triangle& { return t.corners; },
+      "Limit corners in double precision, for pictures, (n, 3, 3).");
+  // The boxes of an interval triangle: (lower, upper) each.
+  const auto box_view = [&](const char* name, std::size_t upper, const char* doc) {
+    cls.def_property_readonly(
+        name,
+        [upper](const py::object& object) {
+          const std::vector<PatchEnclosure>& pieces = object.cast<const Enclosures&>().pieces;
+          static_assert(sizeof(Box3) == 6 * sizeof(double));
+          static constexpr double none = 0;
+          const double* const data =
+              pieces.empty() ? &none : &pieces[0].interval.corner[0].lower.x + 3 * upper;
+          return read_only<double>({static_cast<py::ssize_t>(pieces.size()), 3, 3},
+                                   {sizeof(PatchEnclosure), sizeof(Box3), sizeof(double)}, data, object);
+        },
+        doc);
+  };
+  box_view("lower", 0, "Lower corners of three boxes whose convex hull contains the piece, (n, 3, 3).");
+  box_view("upper", 1, "Upper corners of these boxes, (n, 3, 3).");
+  cls.def_property_readonly(
+         "pieces",
+         [](const Enclosures& self) {
+           py::list names;
+           for (const PatchEnclosure& piece : self.pieces) names.append(piece.piece);
+           return names;
+         },
+         "Which piece of its patch: a list of words with a digit for each split.")
+      .def_property_readonly(
+          "reached", [](const Enclosures& self) { return self.summary.reached; },
+          "False if the budget, 60 levels or rounding ended splitting before the tolerance.")
+      .def_property_readonly(
+          "max_radius", [](const Enclosures& self) { return self.summary.max_radius; }, "The largest radius.")
+      .def_property_readonly(
+          "splits", [](const Enclosures& self) { return self.summary.splits; }, "Splits in all.")
+      .def("__len__", [](const Enclosures& self) { return self.pieces.size(); })
+      .def("__repr__", [](const Enclosures& self) {
+        return "<snug.Enclosures of " + std::to_string(self.pieces.size()) + " pieces, radius at most " +
+               text_of(self.summary.max_radius) + ">";
+      });
+}
+
+// Triangles.
+
+template <class Class>
+void add_triangles(Class& cls) {
+  using T = typename Class::type;
+  cls.attr("__module__") = "snug";
+  cls.def_property_readonly(
+         "vertices", [](const py::object& self) { return column(self.cast<const T&>().positions, self); },
+         "Corners, (n, 3) float64, mesh units.")
+      .def_property_readonly(
+          "faces", [](const py::object& self) { return column(self.cast<const T&>().triangles, self); },
+          "Triangles, (m, 3) uint32.")
+      .def_property_readonly(
+          "owners", [](const py::object& self) { return column(self.cast<const T&>().owners, self); },
+          "Of each triangle the face of the surface (of dual schemes the vertex), (m,) uint32.");
+}
+
+Tessellation tessellated(const PySurface& self, const py::object& tolerance, const py::object& max_edge,
+                         const py::object& max_angle, const py::object& view, const py::object& max_thickness,
+                         const py::object& max_triangles, bool single_precision, bool normals, bool corners,
+                         const py::object& budget, const py::object& threads, const py::object& progress) {
+  const Surface surface = self.surface();
+  TessellateOptions options;
+  options.tolerance = length_of(tolerance, surface.size(), "tolerance");
+  options.max_edge = length_of(max_edge, surface.size(), "max_edge");
+  options.max_angle = number_of(max_angle, "max_angle");
+  if (!view.is_none()) {
+    if (!PyTuple_Check(view.ptr()) || PyTuple_GET_SIZE(view.ptr()) != 2) {
+      throw InputError(InputProblem::value, "view: give a tuple (eye, degrees)");
+    }
+    const Points eye(py::handle(PyTuple_GET_ITEM(view.ptr(), 0)), "view");
+    if (!eye.single()) throw InputError(InputProblem::value, "view: the eye is one point (3,)");
+    options.view = Viewpoint{
+        eye.all()[0],
+        number_of(py::reinterpret_borrow<py::object>(PyTuple_GET_ITEM(view.ptr(), 1)), "view").value_or(0)};
+  }
+  options.max_thickness = length_of(max_thickness, surface.size(), "max_thickness");
+  if (!max_triangles.is_none()) options.max_triangles = count_of(max_triangles, 0, "max_triangles");
+  options.single_precision = single_precision;
+  options.normals = normals;
+  options.corners = corners;
+  options.budget = count_of(budget, options.budget, "budget");
+  options.threads = threads_of(threads);
+  Call call(progress);
+  return call.run([&](const WorkMonitor& monitor) { return tessellate(surface, options, monitor); });
+}
+
+void add_tessellation(py::module_& module) {
+  py::class_<Tessellation> cls(module, "Tessellation", "Triangles near a surface, without cracks.");
+  add_triangles(cls);
+  cls.def_property_readonly(
+      "normals",
+      [](const py::object& self) { return column(self.cast<const Tessellation&>().normals, self); },
+      "Limit normals at the vertices, of length 1, 0 0 0 where there is none, (n, 3); empty with "
+      "normals=False.");
+  const auto parameter = [&](const char* name, const auto& member, const char* doc) {
+    cls.def_property_readonly(
+        name,
+        [member](const py::object& self) {
+          return column(std::span<const SurfaceParameter>(self.cast<const Tessellation&>().parameters),
+                        member, self);
+        },
+        doc);
+  };
+  parameter(
+      "face", [](const SurfaceParameter& t) -> const std::uint32_t& { return t.owner; },
+      "Of each vertex: a face that it lies on, (n,) uint32.");
+  parameter(
+      "corner", [](const SurfaceParameter& t) -> const std::uint32_t& { return t.corner; },
+      "Corner of that face, (n,) uint32.");
+  parameter(
+      "u", [](const SurfaceParameter& t) -> const double& { return t.u; }, "First parameter there, (n,).");
+  parameter(
+      "v", [](const SurfaceParameter& t) -> const double& { return t.v; }, "Second parameter there, (n,).");
+  cls.def_property_readonly(
+         "corner_parameters",
+         [](const py::object& object) {
+           const auto& corners = object.cast<const Tessellation&>().corners;
+           static constexpr double none = 0;
+           const double* const data = corners.empty() ? &none : &corners[0][0].u;
+           static_assert(offsetof(SurfaceParameter, v) == offsetof(SurfaceParameter, u) + sizeof(double));
+           return read_only<double>({static_cast<py::ssize_t>(corners.size()), 3, 2},
+                                    {3 * sizeof(SurfaceParameter), sizeof(SurfaceParameter), sizeof(double)},
+                                    data, object);
+         },
+         "u, v of each triangle's corners on its own face, (m, 3, 2); empty without corners=True.")
+      .def_property_readonly(
+          "corner_corners",
+          [](const py::object& object) {
+            return column(
+                std::span<const std::array<SurfaceParameter, 3>>(object.cast<const Tessellation&>().corners),
+                [](const std::array<SurfaceParameter, 3>& t) -> const std::uint32_t& { return t[0].corner; },
+                object);
+          },
+          "The `corner` that these belong to, (m,) uint32; empty without corners=True.")
+      .def_property_readonly(
+          "error_bound", [](const Tessellation& self) { return self.error_bound; },
+          "Proved: neither the surface nor the triangles have a point farther than this from the other.")
+      .def_property_readonly(
+          "position_error", [](const Tessellation& self) { return self.position_error; },
+          "Upper bound, per coordinate, of |vertex - limit point|.")
+      .def_property_readonly(
+          "reached", [](const Tessellation& self) { return self.reached; },
+          "False if the budget, or max_triangles, ended refinement before.")
+      .def("__repr__", [](const Tessellation& self) {
+        return "<snug.Tessellation of " + std::to_string(self.triangles.size()) +
+               " triangles, error at most " + text_of(self.error_bound) + ">";
+      });
+}
+
+// Hulls.
+
+Hulls hulls_of(const PySurface& self, const py::object& tolerance, bool inner, bool outer,
+               const py::object& budget, bool single_precision, const py::object& threads,
+               const py::object& progress) {
+  const Surface surface = self.surface();
+  HullOptions options;
+  options.tolerance = length_of(tolerance, surface.size(), "tolerance").value_or(0);
+  options.inner = inner;
+  options.outer = outer;
+  options.budget = count_of(budget, options.budget, "budget");
+  options.single_precision = single_precision;
+  options.threads = threads_of(threads);
+  Call call(progress);
+  return call.run([&](const WorkMonitor& monitor) { return hulls(surface, options, monitor); });
+}
+
+// None, or the hull within its hulls, whose memory it keeps.
+py::object hull_in(const py::object& object, std::optional<Hull> Hulls::*which) {
+  const Hulls& self = object.cast<const Hulls&>();
+  if (!(self.*which)) return py::none();
+  return py::cast(&*(self.*which), py::return_value_policy::reference_internal, object);
+}
+
+void add_hulls(py::module_& module) {
+  py::class_<Hull> hull(module, "Hull", "Triangles on one side of a surface.");
+  add_triangles(hull);
+  hull.def_property_readonly(
+      "gap", [](const Hull& self) { return self.gap; },
+      "Neither the hull nor the surface has a point farther than this from the other.");
+  hull.def("__repr__", [](const Hull& self) {
+    return "<snug.Hull of " + std::to_string(self.triangles.size()) + " triangles, gap " + text_of(self.gap) +
+           ">";
+  });
+  py::class_<Hulls> cls(module, "Hulls", "The inner and the outer hull of a surface: inner, outer = hulls.");
+  cls.attr("__module__") = "snug";
+  cls.def_property_readonly(
+         "inner", [](const py::object& self) { return hull_in(self, &Hulls::inner); }, "Hull, or None.")
+      .def_property_readonly(
+          "outer", [](const py::object& self) { return hull_in(self, &Hulls::outer); }, "Hull, or None.")
+      .def("__iter__",
+           [](const py::object& self) {
+             return py::iter(py::make_tuple(hull_in(self, &Hulls::inner), hull_in(self, &Hulls::outer)));
+           })
+      .def_property_readonly(
+          "verified", [](const Hulls& self) { return self.verified; }, "Do all guarantees hold?")
+      .def_property_readonly(
+          "closed", [](const Hulls& self) { return self.closed; }, "Does the surface bound a solid?")
+      .def_property_readonly(
+          "problems",
+          [](const Hulls& self) {
+            py::list list;
+            for (const HullProblem& problem : self.problems) {
+              py::dict each;
+              each["fault"] = name_of(problem.fault);
+              each["inner"] = problem.inner;
+              each["place"] = py::make_tuple(problem.place.x, problem.place.y, problem.place.z);
+              each["face"] = problem.owner ? py::object(py::int_(*problem.owner)) : py::object(py::none());
+              list.append(each);
+            }
+            return list;
+          },
+          "If not, some of the places: dicts with fault, inner, place and face.")
+      .def("__repr__", [](const Hulls& self) {
+        return std::string("<snug.Hulls ") + (self.verified ? "verified>" : "not verified>");
+      });
+}
+
+// Measures.
+
+Measures measured(const PySurface& self, const py::object& relative, const py::object& budget,
+                  const py::object& threads, const py::object& progress) {
+  const Surface surface = self.surface();
+  MeasureOptions options;
+  options.relative = number_of(relative, "relative");
+  options.budget = count_of(budget, options.budget, "budget");
+  options.threads = threads_of(threads);
+  Call call(progress);
+  return call.run([&](const WorkMonitor& monitor) { return measure(surface, options, monitor); });
+}
+
+template <std::size_t N>
+py::object intervals(const std::optional<std::array<Interval, N>>& given) {
+  if (!given) return py::none();
+  py::array_t<double> result({static_cast<py::ssize_t>(N), py::ssize_t{2}});
+  double* out = result.mutable_data();
+  for (const Interval& each : *given) {
+    *out++ = each.lower;
+    *out++ = each.upper;
+  }
+  return result;
+}
+
+void add_measures(py::module_& module) {
+  py::class_<Measures> cls(module, "Measures", "Intervals (lower, upper) that contain the exact values.");
+  cls.attr("__module__") = "snug";
+  cls.def_property_readonly(
+         "area", [](const Measures& self) { return pair_of(self.area); }, "Area: (lower, upper).")
+      .def_property_readonly(
+          "volume",
+          [](const Measures& self) -> py::object {
+            if (!self.volume) return py::none();
+            return pair_of(*self.volume);
+          },
+          "Volume: (lower, upper); None unless the surface is closed.")
+      .def_property_readonly(
+          "centroid", [](const Measures& self) { return intervals(self.centroid); },
+          "x, y, z, (3, 2); None where the volume may be 0.")
+      .def_property_readonly(
+          "inertia", [](const Measures& self) { return intervals(self.inertia); },
+          "xx, yy, zz, xy, yz, zx of the tensor about the centroid with density 1, (6, 2); None likewise.")
+      .def_property_readonly(
+          "reached", [](const Measures& self) { return self.reached; }, "Are all as narrow as requested?")
+      .def("__repr__", [](const Measures& self) {
+        return "<snug.Measures area " + text_of(self.area) +
+               (self.volume ? ", volume " + text_of(*self.volume) : "") + ">";
+      });
+}
+
+// Deviations.
+
+Deviation deviation_of(const PySurface& self, const py::object& candidate, const py::object& absolute,
+                       const py::object& tolerance, bool solid, const py::object& budget,
+                       const py::object& threads, const py::object& progress) {
+  const Surface surface = self.surface();
+  DeviationOptions options;
+  options.absolute = length_of(absolute, surface.size(), "absolute");
+  options.tolerance = length_of(tolerance, surface.size(), "tolerance");
+  options.solid = solid;
+  options.budget = count_of(budget, options.budget, "budget");
+  options.threads = threads_of(threads);
+  if (py::isinstance<PySurface>(candidate)) {
+    const Surface other = candidate.cast<const PySurface&>().surface();
+    Call call(progress);
+    return call.run([&](const WorkMonitor& monitor) { return deviation(surface, other, options, monitor); });
+  }
+  const Doubles corners(convert("triangles")(candidate), "mesh");
+  static_assert(sizeof(Triangle) == 9 * sizeof(double));
+  const std::span<const Triangle> triangles(reinterpret_cast<const Triangle*>(corners.data()),
+                                            corners.extent(0));  // NOLINT
+  Call call(progress);
+  return call.run(
+      [&](const WorkMonitor& monitor) { return deviation(surface, triangles, options, monitor); });
+}
+
+void add_deviation(py::module_& module) {
+  AnswerClass<OneSidedDistance> one(module, "OneSidedDistance",
+                                    "The greatest distance of a point of one set from the other set.");
+  one.view(
+         "lower", [](const OneSidedDistance& t) -> const double& { return t.distance.lower; },
+         "Lower end of its interval, mesh units.")
+      .view(
+          "upper", [](const OneSidedDistance& t) -> const double& { return t.distance.upper; },
+          "Upper end of it.")
+      .view(
+          "point", [](const OneSidedDistance& t) -> const Point3& { return t.from; },
+          "The farthest point found, (3,).")
+      .view(
+          "nearest", [](const OneSidedDistance& t) -> const Point3& { return t.to; },
+          "A point of the other set near it, (3,).")
+      .view(
+          "point_error", [](const OneSidedDistance& t) -> const double& { return t.error; },
+          "Upper bound, per coordinate, of the distance of `point` from a point of its set.")
+      .array<std::int64_t>(
+          "face", {},
+          [](const OneSidedDistance& t, std::int64_t* out) { *out = t.at ? std::int64_t{t.at->owner} : -1; },
+          "Face of `point` if its set is a surface, else -1.")
+      .repr([](const OneSidedDistance& t) { return text_of(t.distance); });
+  py::class_<Deviation> cls(module, "Deviation",
+                            "How far a surface and a candidate that is to stand for it deviate.");
+  cls.attr("__module__") = "snug";
+  cls.def_property_readonly(
+         "from_surface", [](const Deviation& self) { return Answers<OneSidedDistance>(self.from_surface); },
+         "Of points of the surface from the candidate.")
+      .def_property_readonly(
+          "from_candidate",
+          [](const Deviation& self) { return Answers<OneSidedDistance>(self.from_candidate); },
+          "Of points of the candidate from the surface.");
+  const auto side = [&](const char* name, std::optional<OneSidedDistance> Deviation::*which,
+                        const char* doc) {
+    cls.def_property_readonly(
+        name,
+        [which](const Deviation& self) -> py::object {
+          if (!(self.*which)) return py::none();
+          return py::cast(Answers<OneSidedDistance>(*(self.*which)));
+        },
+        doc);
+  };
+  side("inside", &Deviation::inside, "With solid=True: how far the candidate lies inside; else None.");
+  side("outside", &Deviation::outside, "With solid=True: how far the candidate lies outside; else None.");
+  cls.def_property_readonly(
+         "reached", [](const Deviation& self) { return self.reached; },
+         "Is each interval as narrow as requested or, with a tolerance, each question answered?")
+      .def("__repr__", [](const Deviation& self) {
+        return "<snug.Deviation from surface " + text_of(self.from_surface.distance) + ", from candidate " +
+               text_of(self.from_candidate.distance) + ">";
+      });
+}
+
+PyMesh refined(const PySurface& self, const py::object& level, bool limit, const py::object& progress) {
+  const Surface surface = self.surface();
+  const std::uint64_t steps = std::min<std::uint64_t>(count_of(level, 0, "level"), 64);
+  Call call(progress);
+  return call.run([&](const WorkMonitor& monitor) {
+    return PyMesh{subdivided(surface, static_cast<unsigned>(steps), limit, monitor)};
+  });
+}
+
+}  // namespace
+
+void add_shapes(py::class_<PySurface>& surface, py::module_& module) {
+  add_enclosures(module);
+  add_tessellation(module);
+  add_hulls(module);
+  add_measures(module);
+  add_deviation(module);
+  using py::arg;
+  const py::object none = py::none();
+  surface
+      .def(
+          "bound",
+          [](const PySurface& self, const py::object& tolerance, const py::object& level,
+             const py::object& budget, const py::object& threads, const py::object& progress) {
+            const auto splits =
+                static_cast<unsigned>(std::min<std::uint64_t>(count_of(level, 0, "level"), 1000));
+            return bounded(self, tolerance, splits, budget, threads, progress);
+          },
+          py::kw_only(), arg("tolerance") = none, arg("level") = 0, arg("budget") = none, arg("threads") = 0,
+          arg("progress") = none,
+          "Sets that contain the whole surface, piece by piece.\n\n"
+          "tolerance: split until each radius is at most half of it; mesh units or percent of the size. "
+          "Without one every\n"
+          "patch is split `level` times. budget: most splits in all.\n\n"
+          "Guarantee: every limit point of a patch lies in the union of its pieces' sets. Raises ValueError, "
+          "OverflowError.")
+      .def(
+          "boxes",
+          [](const PySurface& self, const py::object& level, const py::object& threads) {
+            return boxes_of(self,
+                            static_cast<unsigned>(std::min<std::uint64_t>(count_of(level, 0, "level"), 1000)),
+                            threads);
+          },
+          arg("level") = 0, py::kw_only(), arg("threads") = 0,
+          "A box around the surface of each face (of dual schemes vertex), (n, 2, 3): lower and upper "
+          "corners; NaN where it\n"
+          "has no surface. level: split so often first, for tighter boxes. Proved.")
+      .def("tessellate", &tessellated, arg("tolerance") = none, py::kw_only(), arg("max_edge") = none,
+           arg("max_angle") = none, arg("view") = none, arg("max_thickness") = none,
+           arg("max_triangles") = none, arg("single_precision") = false, arg("normals") = true,
+           arg("corners") = false, arg("budget") = none, arg("threads") = 0, arg("progress") = none,
+           "Triangles near the surface, without cracks.\n\n"
+           "tolerance: largest distance between the two, either way. max_edge: longest edge. max_angle: "
+           "degrees between normals.\n"
+           "view: (eye, degrees), from where no error is seen under a larger angle. max_thickness: of "
+           "pieces. max_triangles: the\n"
+           "smallest error for so many. Lengths are mesh units, or percent of the size.\n\n"
+           "Raises ValueError, OverflowError.")
+      .def("hull", &hulls_of, arg("tolerance"), py::kw_only(), arg("inner") = true, arg("outer") = true,
+           arg("budget") = none, arg("single_precision") = false, arg("threads") = 0, arg("progress") = none,
+           "Two meshes that sandwich the surface, at most `tolerance` from it: inner, outer = "
+           "surface.hull(\"0.5%\").\n"
+           "What is guaranteed holds if .verified. Raises ValueError, MeshError, OverflowError.")
+      .def("measure", &measured, py::kw_only(), arg("relative") = none, arg("budget") = none,
+           arg("threads") = 0, arg("progress") = none,
+           "Area, and of a closed surface volume, centroid and inertia, as intervals.\n"
+           "relative: how narrow (0.0001). Raises ValueError, MeshError, OverflowError.")
+      .def(
+          "subdivided", &refined, arg("level") = 1, arg("limit") = false, py::kw_only(),
+          arg("progress") = none,
+          "The control mesh after `level` steps of subdivision, a Mesh; with limit=True at limit positions.\n"
+          "Raises ValueError, MeshError, OverflowError.");
+  module.def("deviation", &deviation_of, arg("surface"), arg("candidate"), py::kw_only(),
+             arg("absolute") = none, arg("tolerance") = none, arg("solid") = false, arg("budget") = none,
+             arg("threads") = 0, arg("progress") = none,
+             "How far a surface and a candidate deviate: a Surface, or triangles as for Surface(mesh) or (n, "
+             "3, 3) corners.\n\n"
+             "absolute: how narrow the intervals become; by default 0.01 % of the size. tolerance: only "
+             "which distances are\n"
+             "greater is asked. solid: also how far the candidate lies inside and outside.\n\n"
+             "Raises ValueError, MeshError, OverflowError.");
+}
+
+}  // namespace snug::python

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <snug/ray.h>
+#include <snug/surface.h>
+
+#include "arrays.h"
+
+namespace snug::python {
+
+/// What Python calls a Surface: a handle to a limit surface, which update() replaces.
+class PySurface {
+ public:
+  PySurface(ControlMesh mesh, const SurfaceOptions& options);
+
+  [[nodiscard]] const Surface& surface() const { return surface_; }
+  [[nodiscard]] const SurfaceOptions& options() const { return options_; }
+  /// The surface of the same faces, tags and options with these control points.
+  /// Errors:    those of Surface; nothing is changed then.
+  void update(std::span<const Point3> points);
+  /// Made on first use, and anew for another tolerance or after an update.
+  [[nodiscard]] std::shared_ptr<const RayCaster> caster(double tolerance, int threads);
+
+ private:
+  Surface surface_;
+  SurfaceOptions options_;
+  std::shared_ptr<const RayCaster> caster_;
+  double caster_tolerance_ = 0;
+};
+
+/// A control mesh as a value, such as one that was subdivided.
+struct PyMesh {
+  ControlMesh mesh;
+};
+
+void add_errors(py::module_& module);
+void add_surface(py::module_& module);
+void add_pair_queries(py::module_& module);
+void add_point_queries(py::class_<PySurface>& surface, py::module_& module);
+void add_shapes(py::class_<PySurface>& surface, py::module_& module);
+
+/// Raises snug.UndecidedError.
+[[noreturn]] void refuse_undecided(const std::string& message);
+/// Issues a snug.MeshWarning for each line.
+void warn(const std::vector<std::string>& lines);
+
+}  // namespace snug::python

@@ -1,0 +1,97 @@
+"""The module and the command, digit by digit."""
+
+import json
+import os
+import subprocess
+
+import numpy as np
+import pytest
+
+import snug
+from conftest import MODELS, ROOT, moved, turned
+
+COMMAND = os.environ.get("SNUG_COMMAND", str(ROOT / "build/release/bin/snug"))
+pytestmark = pytest.mark.skipif(not os.path.exists(COMMAND), reason="the command is not built")
+
+PAIRS = [("bracket", "pin"), ("pawn", "bust"), ("ring", "star")]
+POSES = [moved(), moved(0, 0, 0.5), turned(135, 0.05, 0.05, 0.5), turned(17, 1.1, -0.3, 0.2), turned(80, 9, 1, 2)]
+
+
+def told(*words, stdin=None):
+    done = subprocess.run([COMMAND, *map(str, words), "--json", "--quiet"], capture_output=True, text=True, input=stdin)
+    assert done.stdout, done.stderr
+    return json.loads(done.stdout)
+
+
+def text(pose):
+    return " ".join(map(repr, pose[:3].reshape(-1).tolist()))
+
+
+def same_pair(document, answer):
+    upper = document["distance"][1]
+    assert [document["distance"][0], np.inf if upper is None else upper] == [answer.lower, answer.upper]
+    if document["witness"] is None:
+        assert np.isnan(answer.points).all()
+    else:
+        assert document["witness"] == answer.points.tolist() and document["witness_error"] == answer.point_error
+        for i, at in enumerate(document["witness_at"]):
+            if at is None:
+                assert answer.faces[i] == -1
+            else:
+                assert [at.get("face", at.get("vertex")), at["u"], at["v"]] == [answer.faces[i], *answer.parameters[i]]
+    assert (-1 if document["inner"] is None else "ab".index(document["inner"]) if isinstance(document["inner"], str) else document["inner"]) == answer.inner
+    assert document["stats"] == answer.stats
+
+
+@pytest.mark.parametrize("names", PAIRS)
+def test_pairs(names):
+    files = [MODELS / f"{name}.obj" for name in names]
+    a, b = map(snug.read, files)
+    for pose in POSES:
+        document = told("collide", *files, "--place-b", text(pose))
+        answer = snug.collide(a, b, pose_b=pose)
+        assert document["verdict"] == answer.verdict
+        same_pair(document, answer)
+        document, answer = told("distance", *files, "--place-b", text(pose)), snug.distance(a, b, pose_b=pose)
+        assert document["reached"] == answer.reached
+        same_pair(document, answer)
+    many = snug.collide(a, b, pose_b=POSES)
+    for i, pose in enumerate(POSES):
+        assert told("collide", *files, "--place-b", text(pose))["distance"][0] == many.lower[i]
+
+
+def test_solids_and_options():
+    files = MODELS / "bracket.obj", MODELS / "pin.obj"
+    a, b = map(snug.read, files)
+    document = told("collide", *files, "--place-b", text(moved(0, 0, 0.5)), "--solid", "--margin", "1%", "--tolerance", "0.01")
+    same_pair(document, snug.collide(a, b, pose_b=moved(0, 0, 0.5), solid=True, margin="1%", tolerance=0.01))
+    document = told("distance", *files, "--precision", "0", "--relative", "1e-6")
+    same_pair(document, snug.distance(a, b, relative=1e-6))
+
+
+@pytest.mark.parametrize("name", ["bracket", "pawn"])
+@pytest.mark.parametrize("scheme", ["auto", "doo-sabin"])
+def test_one_surface(name, scheme, tmp_path):
+    file = MODELS / f"{name}.obj"
+    surface = snug.read(file, scheme=scheme)
+    points = np.random.default_rng(3).uniform(-1, 1, (20, 3)) * surface.size
+    (tmp_path / "points.txt").write_text("".join(" ".join(map(repr, p)) + "\n" for p in points.tolist()))
+    results = told("closest", file, "--points", tmp_path / "points.txt", "--signed", "--scheme", scheme)["results"]
+    near, signed, inside = surface.closest_point(points), surface.signed_distance(points), surface.contains(points)
+    assert [r["distance"] for r in results] == np.column_stack([near.lower, near.upper]).tolist()
+    assert [r["point"] for r in results] == near.point.tolist()
+    assert [r["signed_distance"] for r in results] == np.column_stack([signed.lower, signed.upper]).tolist()
+    assert [r["inside"] for r in results] == inside.inside.tolist()
+    measures = surface.measure()
+    document = told("measure", file, "--scheme", scheme)
+    assert [document["area"], document["volume"]] == [list(measures.area), list(measures.volume)]
+    assert [document["centroid"], document["inertia"]] == [measures.centroid.tolist(), measures.inertia.tolist()]
+    pieces = told("bound", file, "--tolerance", "5%", "--scheme", scheme)["enclosures"]
+    bound = surface.bound(tolerance="5%")
+    for key in ("piece", "level", "lower", "upper", "base", "radius", "corners"):
+        assert [p[key] for p in pieces] == np.asarray(getattr(bound, "pieces" if key == "piece" else key)).tolist()
+    rays = "".join(" ".join(map(repr, p)) + " 0.1 0.2 -1\n" for p in points.tolist())
+    hits = surface.cast_rays(points, [0.1, 0.2, -1], query="all")
+    flat = [hit for r in told("ray", file, "--rays", "-", "--all", "--scheme", scheme, stdin=rays)["results"] for hit in r["hits"]]
+    assert [h["t"] for h in flat] == np.column_stack([hits.lower, hits.upper]).tolist()
+    assert [h["side"] for h in flat] == hits.side.tolist()

@@ -1,0 +1,23 @@
+"""The programs in README.md and docs/python.md run, and say what the pages say."""
+
+import re
+
+import pytest
+
+from conftest import MODELS, ROOT
+
+PAGES = ["README.md", "docs/python.md"]
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_programs_of_a_page(page, monkeypatch, capsys):
+    monkeypatch.chdir(MODELS)
+    names = {}
+    programs = re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(encoding="utf-8"), re.DOTALL)
+    assert programs
+    for program in programs:
+        exec(compile(program, page, "exec"), names)
+    said = capsys.readouterr().out
+    assert said.startswith("separated 0.205" if page == "README.md" else "separated ")
+    if page == "docs/python.md":
+        assert names["hits"].colliding.shape == (1000,) and names["hits"].any()

@@ -1,0 +1,140 @@
+"""What is refused: with which exception, and what it names."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+
+import snug
+from conftest import CUBE, CUBE_FACES
+from snug._errors import elements_of
+
+
+def test_a_mesh_error_names_elements():
+    with pytest.raises(snug.MeshError) as caught:
+        snug.Surface(CUBE, [[0, 1, 99, 2], [0, 0, 1]])
+    assert isinstance(caught.value, ValueError)
+    assert caught.value.elements[:2] == [("face", 0), ("vertex", 99)] and ("face", 1) in caught.value.elements
+    with pytest.raises(snug.MeshError) as caught:
+        snug.Surface(np.where(np.arange(24).reshape(8, 3) == 10, np.nan, CUBE), CUBE_FACES)
+    assert caught.value.elements == [("vertex", 3)]
+    for broken in (dict(creases=[(0, 99, 1)]), dict(corners=[(99, 1)]), dict(holes=[99])):
+        with pytest.raises(snug.MeshError) as caught:
+            snug.Surface(CUBE, CUBE_FACES, **broken)
+        assert caught.value.elements
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert again.elements == caught.value.elements
+
+
+def test_every_way_a_message_names_elements():
+    text = "edge (3, 17) has 3 faces: 1, 2 and 5; face 4 names vertex 9 twice; crease tag 2 needs two vertices"
+    assert elements_of(text) == [("edge", (3, 17)), ("face", 4), ("vertex", 9), ("crease tag", 2)]
+    with pytest.raises(snug.MeshError) as caught:
+        snug.Surface(CUBE, CUBE_FACES[1:]).contains([0, 0, 0])
+    assert "edge" in [kind for kind, _ in caught.value.elements]
+
+
+def test_a_file_error_names_file_and_line(tmp_path):
+    with pytest.raises(snug.FileError) as caught:
+        snug.read(tmp_path / "none.obj")
+    assert isinstance(caught.value, OSError) and caught.value.filename == str(tmp_path / "none.obj") and caught.value.line is None
+    broken = tmp_path / "line 7.obj"
+    broken.write_text("v 0 0 0\nv 1 x 0\n")
+    with pytest.raises(snug.FileError) as caught:
+        snug.read(broken)
+    assert caught.value.line == 2 and str(broken) in str(caught.value)
+    for again in (pickle.loads(pickle.dumps(caught.value)), copy.copy(caught.value)):
+        assert (str(again), again.filename, again.line) == (str(caught.value), str(broken), 2)
+    with pytest.raises(snug.FileError):
+        snug.Surface(CUBE, CUBE_FACES).write(tmp_path / "a.xyz")
+    with pytest.raises(snug.MeshError):
+        snug.Surface(CUBE, CUBE_FACES).write(tmp_path / "a.stl")
+    for wrong in ("a\0b.obj", 3, None):
+        with pytest.raises((ValueError, TypeError)):
+            snug.read(wrong)
+
+
+def test_a_pose_error_is_pickled():
+    again = pickle.loads(pickle.dumps(snug.PoseError("pose_b: bad", 0.5)))
+    assert str(again) == "pose_b: bad" and again.defect == 0.5
+
+
+@pytest.mark.parametrize(
+    "vertices, faces",
+    [
+        ([], []),
+        (CUBE, []),
+        (CUBE[:, :2], CUBE_FACES),
+        (CUBE[0], CUBE_FACES),
+        (CUBE[None], CUBE_FACES),
+        (np.float64(3), CUBE_FACES),
+        (CUBE.astype(complex), CUBE_FACES),
+        (CUBE.astype(str), CUBE_FACES),
+        (np.array([[None] * 3]), CUBE_FACES),
+        (np.ma.masked_array(CUBE, CUBE > 0), CUBE_FACES),
+        (CUBE, CUBE_FACES.astype(float)),
+        (CUBE, CUBE_FACES - 1),
+        (CUBE, np.uint64(2**63) + CUBE_FACES.astype(np.uint64)),
+        (CUBE, CUBE_FACES + 2**32),
+        (CUBE, CUBE_FACES[None]),
+        (CUBE, 3),
+        (CUBE, "faces"),
+        (CUBE, [[0, 1, 2], 3]),
+        (CUBE, [[0, 1, [2]]]),
+        (CUBE, [[10**30, 1, 2]]),
+        ("vertices", None),
+        (None, None),
+    ],
+)
+def test_what_is_no_mesh(vertices, faces):
+    with pytest.raises((ValueError, TypeError, OverflowError)):
+        snug.Surface(vertices, faces)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        dict(scheme="nurbs"),
+        dict(scheme=3),
+        dict(boundary="edge"),
+        dict(bounds="spheres"),
+        dict(crease_method="x"),
+        dict(smooth_triangles=1),
+        dict(sharp=-1),
+        dict(sharp="30"),
+        dict(sharp=30, scheme="doo-sabin"),
+        dict(weld=-1),
+        dict(weld=np.nan),
+        dict(creases=[(0, 1)]),
+        dict(creases=[(0.5, 1, 1)]),
+        dict(creases=[(-1, 1, 1)]),
+        dict(creases=[(0, 1, np.nan)]),
+        dict(corners=[1]),
+        dict(holes=[[1]]),
+        dict(threads=-1),
+        dict(threads=10**6),
+        dict(progress=3),
+    ],
+)
+def test_what_is_no_option(options):
+    with pytest.raises((ValueError, TypeError)):
+        snug.Surface(CUBE, CUBE_FACES, **options)
+
+
+def test_values_that_do_not_fit(cube):
+    huge = snug.Surface(CUBE * 1e308, CUBE_FACES)
+    with pytest.raises(OverflowError):
+        huge.measure()
+    with pytest.raises(ValueError):
+        cube.closest_point([1e300, 0, 0])
+    with pytest.raises(ValueError):
+        cube.tessellate()
+    with pytest.raises(ValueError):
+        cube.bound(level=61)
+    with pytest.raises((ValueError, MemoryError)):
+        cube.subdivided(64)
+    with pytest.raises(TypeError):
+        snug.collide(cube, CUBE)
+    with pytest.raises(TypeError):
+        snug.Collision()

@@ -1,0 +1,148 @@
+"""Whatever Python can pass, there is an answer or an exception of Python: the interpreter lives on, and numbers stay sound.
+
+SNUG_FUZZ=N runs N cases of each.
+"""
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as arrays
+
+import snug
+from conftest import CUBE, CUBE_FACES, moved
+
+EXPECTED = (ValueError, TypeError, OverflowError, MemoryError, snug.FileError, snug.UndecidedError)
+
+numbers = st.one_of(
+    st.floats(-2, 2),
+    st.floats(width=64),
+    st.sampled_from([0.0, -0.0, 1.0, -1.0, 5e-324, 1e-300, 1e300, -1.7e308, np.inf, np.nan]),
+)
+dtypes = st.one_of(
+    arrays.floating_dtypes(),
+    arrays.integer_dtypes(),
+    arrays.unsigned_integer_dtypes(),
+    arrays.boolean_dtypes(),
+    arrays.complex_number_dtypes(),
+    arrays.unicode_string_dtypes(max_len=3),
+    arrays.datetime64_dtypes(),
+)
+shapes = arrays.array_shapes(min_dims=0, max_dims=4, min_side=0, max_side=5)
+anything = st.one_of(
+    dtypes.flatmap(lambda dtype: arrays.arrays(dtype, shapes)),
+    st.sampled_from([(3,), (7, 3), (4, 4), (3, 4), (2, 4, 4), (2, 3, 4), (3, 3), (4,), (2, 4)]).flatmap(
+        lambda shape: arrays.arrays(np.float64, shape, elements=numbers)
+    ),
+    st.recursive(st.one_of(st.none(), st.booleans(), st.integers(), numbers, st.text(max_size=3), st.binary(max_size=3)),
+                 lambda inner: st.one_of(st.lists(inner, max_size=4), st.tuples(inner, inner)), max_leaves=12),
+)
+
+
+def seen(answer):
+    """Looks at all properties, which makes their arrays."""
+    for name in dir(type(answer)):
+        if not name.startswith("_") and isinstance(getattr(type(answer), name), property):
+            try:
+                getattr(answer, name)
+            except EXPECTED:
+                pass
+    repr(answer)
+    return answer
+
+
+def attempt(work):
+    try:
+        return seen(work())
+    except EXPECTED:
+        return None
+
+
+SOLID = snug.Surface(CUBE, CUBE_FACES)
+
+
+@given(anything)
+def test_points(given_points):
+    near = attempt(lambda: SOLID.closest_point(given_points, budget=100))
+    attempt(lambda: SOLID.signed_distance(given_points, budget=100))
+    attempt(lambda: SOLID.contains(given_points))
+    if near is not None:
+        assert not np.isnan(near.lower).any() and (np.asarray(near.lower) <= near.upper).all()
+
+
+@given(anything, anything)
+def test_poses(a, b):
+    for rigid in (None, "nearest"):
+        hit = attempt(lambda: snug.collide(SOLID, SOLID, pose_a=a, pose_b=b, rigid=rigid, budget=100))
+        attempt(lambda: snug.distance(SOLID, SOLID, pose_a=a, pose_b=(a, b), rigid=rigid, budget=100))
+        if hit is not None:
+            assert (np.asarray(hit.lower) <= hit.upper).all()
+
+
+@given(anything, anything, st.sampled_from(["nearest", "any", "all"]), st.booleans())
+def test_rays(origins, directions, query, certified):
+    attempt(lambda: SOLID.cast_rays(origins, directions, query=query, certified=certified, budget=100))
+
+
+@given(anything, anything, anything, anything)
+def test_parameters(face, u, v, corner):
+    attempt(lambda: SOLID.evaluate(face, u, v, corner))
+
+
+@given(anything, st.one_of(anything, st.lists(st.lists(st.integers(0, 8), max_size=5), max_size=8)), anything, anything, anything)
+def test_meshes(vertices, faces, creases, corners, holes):
+    for work in (
+        lambda: snug.Surface(vertices, faces),
+        lambda: snug.Surface(CUBE, faces),
+        lambda: snug.Surface(vertices, CUBE_FACES),
+        lambda: snug.Surface(CUBE, CUBE_FACES, creases=creases),
+        lambda: snug.Surface(CUBE, CUBE_FACES, corners=corners),
+        lambda: snug.Surface(CUBE, CUBE_FACES, holes=holes),
+    ):
+        made = attempt(work)
+        if made is not None:
+            attempt(lambda: made.measure(budget=100))
+            attempt(lambda: made.bound(level=1))
+            attempt(lambda: snug.collide(made, SOLID, budget=100))
+
+
+@given(
+    st.lists(st.lists(st.integers(0, 7), min_size=3, max_size=5), min_size=1, max_size=8),
+    arrays.arrays(np.float64, (8, 3), elements=numbers),
+    st.sampled_from(["auto", "loop", "catmark", "doo-sabin", "midedge", "bilinear", "flat"]),
+    st.sampled_from([None, 0, 30, "auto", 200]),
+    st.sampled_from([None, True, 0.5]),
+)
+def test_random_meshes(faces, vertices, scheme, sharp, weld):
+    made = attempt(lambda: snug.Surface(vertices, faces, scheme=scheme, sharp=sharp, weld=weld))
+    if made is None:
+        return
+    attempt(lambda: made.boxes())
+    attempt(lambda: made.subdivided(1, limit=True))
+    attempt(lambda: made.tessellate("20%", budget=1000))
+    attempt(lambda: made.update(vertices[::-1]))
+    near = attempt(lambda: made.closest_point([0.5, 0.25, 0.125], budget=200))
+    if near is not None:
+        assert near.lower <= near.upper
+
+
+@given(anything, anything, anything)
+def test_options(a, b, c):
+    attempt(lambda: snug.collide(SOLID, SOLID, pose_b=moved(3), tolerance=a, margin=b, budget=c))
+    attempt(lambda: snug.collide(SOLID, SOLID, pose_b=[moved(3)], threads=a, witness=b, rigid=c))
+    attempt(lambda: snug.distance(SOLID, SOLID, pose_b=moved(3), relative=a, absolute=b, budget=500))
+    attempt(lambda: SOLID.bound(tolerance=a, level=2, budget=100))
+    attempt(lambda: SOLID.bound(level=a, budget=100))
+    attempt(lambda: SOLID.tessellate(a, max_edge=b, view=(b, c), max_triangles=c, budget=1000))
+    attempt(lambda: SOLID.hull(a, budget=100))
+    attempt(lambda: snug.deviation(SOLID, a, budget=100))
+    attempt(lambda: SOLID.update(a))
+    attempt(lambda: snug.Surface(CUBE, CUBE_FACES, scheme=a, boundary=b, crease_method=c))
+    attempt(lambda: snug.Surface(CUBE, CUBE_FACES, sharp=a, weld=b, smooth_triangles=c))
+    attempt(lambda: SOLID.update(CUBE))
+
+
+@given(st.binary(max_size=64), st.integers(0, 10**6), st.booleans())
+def test_pickles(content, size, single):
+    for cls in (snug.Collision, snug.Distance, snug.ClosestPoint):
+        for count in (size, len(snug.collide(SOLID, SOLID, pose_b=[moved(3)]).__getstate__()[3])):
+            attempt(lambda: cls.__new__(cls).__setstate__((snug.__version__, count, single, content)))

@@ -1,0 +1,152 @@
+"""Beside the answers: threads, Ctrl-C, progress, forks, time of import."""
+
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import snug
+from conftest import CUBE, CUBE_FACES, MODELS, moved, turned
+
+
+def test_one_surface_and_many_threads(bracket, pin):
+    poses = np.array([turned(3 * i, 0.05 * i - 1) for i in range(40)])
+    expected = snug.collide(bracket, pin, pose_b=poses).lower
+    found = [None] * 4
+
+    def ask(i):
+        found[i] = np.array([snug.collide(bracket, pin, pose_b=pose).lower for pose in poses])
+
+    workers = [threading.Thread(target=ask, args=(i,)) for i in range(4)]
+    for worker in workers:
+        worker.start()
+    for worker in workers:
+        worker.join()
+    for each in found:
+        np.testing.assert_array_equal(each, expected)
+
+
+def test_updates_while_others_ask(cube):
+    faults = []
+    done = threading.Event()
+
+    def ask():
+        try:
+            while not done.is_set():
+                hits = cube.cast_rays([[0, 0, 9]] * 5, [0, 0, -1], certified=False).t
+                near = cube.closest_point(np.zeros((50, 3))).lower
+                if len(set(hits)) != 1 or len(set(near)) != 1:
+                    faults.append((hits, near))
+        except Exception as error:
+            faults.append(error)
+
+    workers = [threading.Thread(target=ask) for _ in range(3)]
+    for worker in workers:
+        worker.start()
+    for i in range(60):
+        cube.update(CUBE * (1 + i % 3))
+    done.set()
+    for worker in workers:
+        worker.join()
+    assert not faults
+
+
+def test_progress(cube):
+    seen = []
+    cube.tessellate("0.5%", progress=seen.append)
+    assert seen and all(0 <= done <= 1 for done in seen)
+
+    def fail(done):
+        raise LookupError("enough")
+
+    with pytest.raises(LookupError, match="enough"):
+        cube.tessellate("0.01%", progress=fail)
+    with pytest.raises(LookupError):
+        snug.collide(cube, cube, pose_b=[moved(3)] * 5000, progress=fail)
+    # A query within the callback.
+    cube.tessellate("0.5%", progress=lambda done: cube.contains([0, 0, 0]))
+
+
+LONG = """
+    import signal, sys, threading, time
+    import snug
+    surface = snug.read({model!r})
+    print("ready", flush=True)
+    {handler}
+    begin = time.monotonic()
+    try:
+        surface.tessellate("0.00001%", budget=10**9)
+    except KeyboardInterrupt:
+        print("interrupted", flush=True)
+    except {error} as error:
+        print("raised", flush=True)
+"""
+
+
+def interrupted(handler="", error="MemoryError", signals=1):
+    program = textwrap.dedent(LONG).format(model=str(MODELS / "bust.obj"), handler=handler, error=error)
+    process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == "ready\n"
+    time.sleep(0.5)
+    for _ in range(signals):
+        process.send_signal(signal.SIGINT)
+    begin = time.monotonic()
+    said = process.stdout.readline()
+    return said, time.monotonic() - begin, process
+
+
+def test_ctrl_c_ends_a_long_query():
+    said, seconds, process = interrupted()
+    assert said == "interrupted\n" and seconds < 1
+    assert process.wait(5) == 0
+
+
+def test_ctrl_c_calls_the_handler_in_place():
+    handler = "signal.signal(signal.SIGINT, lambda *_: (_ for _ in ()).throw(LookupError()))"
+    said, seconds, process = interrupted(handler, "LookupError")
+    assert said == "raised\n" and seconds < 1
+    process.wait(5)
+
+
+def test_the_handler_is_put_back():
+    program = """
+        import os, signal
+        import snug
+        cube = snug.Surface({vertices}, {faces})
+        snug.collide(cube, cube)
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            for _ in range(10**6): pass
+        except KeyboardInterrupt:
+            pass
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        snug.collide(cube, cube)
+        os.kill(os.getpid(), signal.SIGINT)
+        print("ignored")
+    """
+    program = textwrap.dedent(program).format(vertices=CUBE.tolist(), faces=CUBE_FACES.tolist())
+    assert subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout == "ignored\n"
+
+
+def test_after_a_fork(cube):
+    expected = cube.closest_point([3, 2, 1]).lower
+    child = os.fork()
+    if child == 0:
+        same = cube.closest_point(np.full((4, 3), [3, 2, 1])).lower[0] == expected
+        os._exit(0 if same else 1)
+    assert os.waitpid(child, 0)[1] == 0
+
+
+@pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="sanitizers take their time")
+def test_import_is_quick():
+    program = "import time, numpy; begin = time.perf_counter(); import snug; print(time.perf_counter() - begin)"
+    seconds = [float(subprocess.run([sys.executable, "-c", program], capture_output=True, check=True).stdout) for _ in range(5)]
+    assert min(seconds) < 0.1
+    late = "import sys, snug; print([name for name in sys.modules if name.startswith('snug.')])"
+    assert "_view" not in subprocess.run([sys.executable, "-c", late], capture_output=True, text=True, check=True).stdout

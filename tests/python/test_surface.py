@@ -1,0 +1,184 @@
+"""Surfaces: how they are made, seen, changed, written, copied."""
+
+import copy
+import gc
+import pickle
+import types
+import warnings
+
+import numpy as np
+import pytest
+
+import snug
+from conftest import CUBE, CUBE_FACES, MODELS, moved
+
+
+def test_properties(cube):
+    assert (cube.scheme, cube.boundary, cube.size, cube.is_closed) == ("catmark", "edge-and-corner", 2.0, True)
+    assert repr(cube) == "<snug.Surface catmark, 6 faces, size 2>"
+    np.testing.assert_array_equal(cube.vertices, CUBE)
+    np.testing.assert_array_equal(cube.faces, CUBE_FACES)
+    assert cube.vertices.dtype == np.float64 and cube.faces.dtype == np.uint32
+    assert not cube.vertices.flags.writeable and not cube.faces.flags.writeable
+    with pytest.raises(ValueError):
+        cube.vertices[0] = 1
+
+
+@pytest.mark.parametrize("dtype", ["f4", ">f8", "i2", "u1", "f2", "g", "O"])
+def test_any_real_dtype(dtype):
+    whole = (CUBE + 2).astype(dtype)
+    np.testing.assert_array_equal(snug.Surface(whole, CUBE_FACES).vertices, CUBE + 2)
+
+
+@pytest.mark.parametrize("dtype", ["i1", "u2", "i8", ">i4", "u8"])
+def test_any_whole_dtype(dtype):
+    np.testing.assert_array_equal(snug.Surface(CUBE, CUBE_FACES.astype(dtype)).faces, CUBE_FACES)
+
+
+def test_any_stride():
+    wide = np.zeros((8, 6))
+    wide[:, ::2] = CUBE
+    for vertices in (wide[:, ::2], np.asfortranarray(CUBE), CUBE.tolist(), CUBE[::-1][::-1]):
+        np.testing.assert_array_equal(snug.Surface(vertices, CUBE_FACES.tolist()).vertices, CUBE)
+
+
+def test_faces_of_several_sizes():
+    vertices = np.vstack([CUBE, [[0, 0, 2]]])
+    faces = [list(face) for face in CUBE_FACES if list(face) != [1, 5, 7, 3]] + [[1, 5, 8], [5, 7, 8], [7, 3, 8], [3, 1, 8]]
+    made = snug.Surface(vertices, faces)
+    assert [list(face) for face in made.faces] == faces and made.is_closed
+
+
+def test_objects_with_meshes(cube):
+    trimesh = types.SimpleNamespace(vertices=CUBE, faces=CUBE_FACES)
+    open3d = types.SimpleNamespace(vertices=CUBE, triangles=CUBE_FACES[:, :3])
+    meshio = types.SimpleNamespace(
+        points=CUBE, cells=[types.SimpleNamespace(type="vertex", data=[[0]]), types.SimpleNamespace(type="quad", data=CUBE_FACES)]
+    )
+    assert snug.Surface(trimesh).scheme == "catmark"
+    assert snug.Surface(open3d).scheme == "loop"
+    np.testing.assert_array_equal(snug.Surface(meshio).faces, CUBE_FACES)
+    tagged = snug.Surface(CUBE, CUBE_FACES, creases=[(0, 1, 2.5)], scheme="bilinear")
+    assert snug.Surface(tagged).creases == [(0, 1, 2.5)] and snug.Surface(tagged).scheme == "catmark"
+    assert snug.Surface(cube.tessellate("5%")).scheme == "loop"
+    assert snug.Surface(cube.subdivided(1)).is_closed
+    with pytest.raises(TypeError, match="neither"):
+        snug.Surface(object())
+
+
+def test_tags():
+    tags = dict(creases=[(0, 1, 2), (1, 3, np.inf)], corners=np.array([[5, 10.0]]), holes=[3])
+    made = snug.Surface(CUBE, CUBE_FACES, crease_method="chaikin", boundary="edge-only", **tags)
+    assert made.creases == [(0, 1, 2.0), (1, 3, 10.0)] and made.corners == [(5, 10.0)] and made.holes == [3]
+    assert made.boundary == "edge-only" and not made.is_closed
+    sharp = snug.Surface(CUBE, CUBE_FACES, sharp="auto")
+    assert len(sharp.creases) >= 12
+    welded = snug.Surface(CUBE[CUBE_FACES].reshape(-1, 3), np.arange(24).reshape(6, 4), weld=True)
+    assert len(welded.vertices) == 8 and welded.is_closed
+
+
+def test_update(cube):
+    before, far = cube.vertices, cube.closest_point([9, 0, 0])
+    copied = copy.copy(cube)
+    cube.update(CUBE * 2)
+    np.testing.assert_array_equal(before, CUBE)
+    np.testing.assert_array_equal(cube.vertices, CUBE * 2)
+    assert cube.closest_point([9, 0, 0]).upper < far.lower
+    assert copied.closest_point([9, 0, 0]).lower == far.lower
+    quick = cube.cast_rays([0, 0, 9], [0, 0, -1], certified=False).t
+    cube.update(CUBE)
+    assert cube.cast_rays([0, 0, 9], [0, 0, -1], certified=False).t > quick
+    for wrong in (CUBE[:-1], CUBE * np.nan):
+        with pytest.raises(ValueError):
+            cube.update(wrong)
+    np.testing.assert_array_equal(cube.vertices, CUBE)
+
+
+def test_views_keep_memory(cube):
+    vertices, faces = cube.vertices, snug.Surface(CUBE, CUBE_FACES).faces
+    lower = snug.collide(cube, cube, pose_b=[moved(9)] * 1000).lower
+    inner = cube.hull("5%").inner.vertices
+    kept = inner.copy()
+    cube.update(CUBE * 3)
+    del cube
+    gc.collect()
+    ballast = [np.full((8, 3), 7.0) for _ in range(1000)]
+    np.testing.assert_array_equal(vertices, CUBE)
+    np.testing.assert_array_equal(faces, CUBE_FACES)
+    np.testing.assert_array_equal(inner, kept)
+    assert (lower == lower[0]).all() and len(ballast) == 1000
+
+
+def test_pickle_and_copies(bracket, pin):
+    tagged = snug.Surface(CUBE, CUBE_FACES, creases=[(0, 1, 2.5)], holes=[2], boundary="none", scheme="catmark", bounds="table")
+    for made in (bracket, tagged, snug.read(MODELS / "pawn.obj")):
+        for again in (pickle.loads(pickle.dumps(made)), copy.copy(made), copy.deepcopy(made)):
+            np.testing.assert_array_equal(again.vertices, made.vertices)
+            assert (again.scheme, again.boundary, again.creases, again.holes) == (made.scheme, made.boundary, made.creases, made.holes)
+            assert again.measure().area == made.measure().area
+    mesh = pickle.loads(pickle.dumps(tagged.subdivided(1)))
+    assert mesh.creases == tagged.subdivided(1).creases and len(mesh.creases) == 2
+    for hit in (snug.collide(bracket, pin), snug.collide(bracket, pin, pose_b=[moved(3), moved(0)])):
+        again = pickle.loads(pickle.dumps(hit))
+        np.testing.assert_array_equal(again.points, hit.points)
+        assert again.verdict == hit.verdict
+    with pytest.raises(ValueError):
+        snug.Collision.__new__(snug.Collision).__setstate__(("0", 1, True, b""))
+
+
+def test_files(tmp_path, cube):
+    for name in ("a.obj", "b.off", "c.ply", "ä.obj"):
+        cube.write(tmp_path / name)
+        np.testing.assert_array_equal(snug.read(tmp_path / name).vertices, CUBE)
+    tagged = snug.Surface(CUBE, CUBE_FACES, creases=[(0, 1, 2.5)], boundary="edge-only")
+    tagged.write(str(tmp_path / "tagged.obj"))
+    again = snug.read(str(tmp_path / "tagged.obj").encode())
+    assert again.creases == tagged.creases and again.boundary == "edge-only"
+    with pytest.warns(snug.MeshWarning):
+        tagged.write(tmp_path / "tagged.off")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(snug.MeshWarning):
+            tagged.write(tmp_path / "again.off")
+
+
+def test_shapes(cube):
+    bound = cube.bound(tolerance="1%")
+    assert bound.reached and bound.max_radius <= 0.005 * cube.size * 1.0001 and len(bound) == len(bound.pieces) == len(bound.radius)
+    assert bound.base.shape == bound.lower.shape == bound.corners.shape == (len(bound), 3, 3)
+    assert (bound.lower <= bound.upper).all()
+    boxes = cube.boxes()
+    assert boxes.shape == (6, 2, 3)
+    points = cube.evaluate(np.repeat(np.arange(6), 50), *np.random.default_rng(1).random((2, 300)))
+    for own in (boxes[np.repeat(np.arange(6), 50)], cube.boxes(level=3)[np.repeat(np.arange(6), 50)]):
+        assert (own[:, 0] <= points.position).all() and (points.position <= own[:, 1]).all()
+    mesh = cube.tessellate("1%", corners=True)
+    assert mesh.reached and mesh.error_bound <= 0.01 * cube.size and mesh.faces.max() < len(mesh.vertices)
+    assert mesh.corner_parameters.shape == (len(mesh.faces), 3, 2) and mesh.normals.shape == mesh.vertices.shape
+    assert len(mesh.owners) == len(mesh.corner_corners) == len(mesh.faces)
+    deviation = snug.deviation(cube, mesh)
+    assert deviation.from_surface.lower <= mesh.error_bound and deviation.inside is None
+    assert snug.deviation(cube, cube).from_candidate.lower == 0
+    inner, outer = hulls = cube.hull("2%")
+    assert hulls.verified and hulls.closed and hulls.problems == []
+    assert cube.signed_distance(inner.vertices).upper.max() < 0 < cube.signed_distance(outer.vertices).lower.min()
+    assert cube.hull("2%", inner=False).inner is None
+    measures = cube.measure()
+    assert measures.reached and measures.volume[0] <= measures.volume[1] and measures.centroid.shape == (3, 2)
+    assert cube.subdivided(2).faces.shape == (96, 4)
+    assert snug.Surface(CUBE, CUBE_FACES[1:]).measure().volume is None
+    assert np.isnan(snug.Surface(CUBE, CUBE_FACES, holes=[2]).boxes()[2]).all()
+
+
+def test_view(cube, tmp_path):
+    template = tmp_path / "template.html"
+    template.write_text('<p><script type="application/json" id="snug-data">{}</script></p>')
+    hit = snug.collide(cube, cube, pose_b=moved(9))
+    page = snug.view(cube, cube, hit, poses=[None, moved(9)], template=template, path=tmp_path / "page.html")
+    assert (tmp_path / "page.html").read_text() == page.html and "v 1 1 1" not in page.html
+    assert page.html.startswith("<p><script") and page.html.endswith("</script></p>") and "separated" in page.html
+    assert page._repr_html_().startswith("<iframe srcdoc=") and repr(page).startswith("<snug.Page")
+    with pytest.raises(TypeError):
+        snug.view(hit, cube, template=template)
+    with pytest.raises(snug.FileError, match="make page"):
+        snug.view(cube, template=tmp_path / "none.html")

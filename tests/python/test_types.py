@@ -1,0 +1,50 @@
+"""The types that the package declares: complete, true to the module, and enough for mypy --strict."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+import snug
+
+HERE = pathlib.Path(__file__).resolve().parent
+PACKAGE = pathlib.Path(snug.__file__).parent.parent
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(PACKAGE), "MYPYPATH": str(PACKAGE), "MYPY_CACHE_DIR": os.devnull}
+
+pytestmark = pytest.mark.skipif(
+    shutil.which("mypy") is None or shutil.which("stubtest") is None or "libasan" in os.environ.get("LD_PRELOAD", ""),
+    reason="mypy is not installed, or sanitizers run",
+)
+
+# pybind11's classes have a metaclass and an __init__ of their own; copies and sequences go without saying.
+ALLOWED = r"""
+snug\.(_snug\.|_view\.)?_?[A-Z][A-Za-z]+
+.*\.__(init|new|len|getitem|iter|copy|deepcopy|getstate|setstate|reduce)__
+"""
+
+
+def test_a_program():
+    done = subprocess.run(["mypy", "--strict", "--python-executable", sys.executable, str(HERE / "sample.py")],
+                          env=ENVIRONMENT, capture_output=True, text=True, cwd=HERE)
+    assert done.returncode == 0, done.stdout
+
+
+def test_declarations_are_true(tmp_path):
+    (tmp_path / "allowed").write_text(ALLOWED.strip())
+    done = subprocess.run(["stubtest", "snug", "--concise", "--allowlist", tmp_path / "allowed", "--ignore-unused-allowlist"],
+                          env=ENVIRONMENT, capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_every_name_is_explained():
+    for name in snug.__all__:
+        if name.startswith("_"):
+            continue
+        thing = getattr(snug, name)
+        assert thing.__doc__, name
+        for member in vars(thing) if isinstance(thing, type) else ():
+            if not member.startswith("_"):
+                assert getattr(thing, member).__doc__, f"{name}.{member}"
