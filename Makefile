@@ -111,6 +111,7 @@ check: test  ## every gate that a commit must pass
 	@scripts/check_package
 	@scripts/check_tables
 	@scripts/check_certificates
+	@scripts/check_deb --self-test
 	@scripts/check_deb
 	@packaging/site/check.py --self-test
 	@$(MAKE) site
