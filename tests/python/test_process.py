@@ -143,10 +143,8 @@ def test_after_a_fork(cube):
     assert os.waitpid(child, 0)[1] == 0
 
 
-@pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="sanitizers take their time")
-def test_import_is_quick():
-    program = "import time, numpy; begin = time.perf_counter(); import snug; print(time.perf_counter() - begin)"
-    seconds = [float(subprocess.run([sys.executable, "-c", program], capture_output=True, check=True).stdout) for _ in range(5)]
-    assert min(seconds) < 0.1
+def test_import_brings_no_more_than_it_needs():
+    """What takes its time is imported on first use; how long the import takes: bench/python/run."""
     late = "import sys, snug; print([name for name in sys.modules if name.startswith('snug.')])"
-    assert "_view" not in subprocess.run([sys.executable, "-c", late], capture_output=True, text=True, check=True).stdout
+    loaded = subprocess.run([sys.executable, "-c", late], capture_output=True, text=True, check=True).stdout
+    assert not any(name in loaded for name in ("_view", "collision", "proximity"))
