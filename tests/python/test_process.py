@@ -89,15 +89,17 @@ LONG = """
 """
 
 
-def interrupted(handler="", error="MemoryError", signals=1):
+def interrupted(handler="", error="MemoryError"):
     program = textwrap.dedent(LONG).format(model=str(MODELS / "bust.obj"), handler=handler, error=error)
     process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+    watch = threading.Timer(30, process.kill)
+    watch.start()
     assert process.stdout.readline() == "ready\n"
     time.sleep(0.5)
-    for _ in range(signals):
-        process.send_signal(signal.SIGINT)
+    process.send_signal(signal.SIGINT)
     begin = time.monotonic()
     said = process.stdout.readline()
+    watch.cancel()
     return said, time.monotonic() - begin, process
 
 
