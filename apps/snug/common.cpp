@@ -45,8 +45,8 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 void add_common_options(OptionList& list, CommonOptions& options) {
   Option& scheme =
       add_scheme_option(list, "--scheme", options.scheme,
-                        "Subdivision scheme; auto: curve if there are polylines only, loop if all "
-                        "faces are triangles, else catmark");
+                        "Subdivision scheme; auto: curve if there are polylines only, that of the file "
+                        "if it names one, loop if all faces are triangles, else catmark");
   scheme.choices.emplace_back("curve");
   list.add(Group::mesh, "--boundary RULE", &options.boundary,
            "Boundary rule; default: the file's tag, else edge-and-corner")

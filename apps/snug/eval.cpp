@@ -202,7 +202,8 @@ ExitStatus run(const Options& options) {
 Command eval_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
+  list.add(Group::own, "MESH", &options->mesh,
+           "Control mesh (OBJ, OFF, PLY, STL or USD; - for standard input)");
   list.add(Group::own, "--samples N", &options->samples,
            "Evaluate a grid with N steps, 1 to 1000, along each edge of every face or polyline")
       .between(1, 1000);

@@ -41,7 +41,7 @@ TEST(corpus, every_file_has_one_row) {
   for (const Row& row : index_rows()) listed.insert(row.file);
   for (const auto& entry : std::filesystem::directory_iterator(SNUG_CORPUS_DIR)) {
     const std::string ending = entry.path().extension();
-    if (ending == ".obj" || ending == ".off" || ending == ".ply" || ending == ".stl") {
+    if (ending == ".obj" || ending == ".off" || ending == ".ply" || ending == ".stl" || ending == ".usda") {
       present.insert(entry.path().filename());
     }
   }
@@ -100,6 +100,10 @@ TEST(corpus, variants_of_a_file_hold_the_same_mesh) {
                            "faces_first", "integer_coordinates", "empty_tristrips"}) {
     SCOPED_TRACE(file);
     expect_same_arrays(read("tetrahedron.off"), read(std::string(file) + ".ply"));
+  }
+  for (const char* file : {"tetrahedron", "scene"}) {
+    SCOPED_TRACE(file);
+    expect_same_arrays(read("tetrahedron.off"), read(std::string(file) + ".usda"));
   }
   const ControlMesh facets = read("tetrahedron_binary.stl");
   EXPECT_EQ(facets.vertex_count(), 4u);
