@@ -198,7 +198,7 @@ Command bound_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL or USD; - for standard input)");
+           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Split until each radius is at most half of this; mesh units or percent (1%)");
   list.add(Group::own, "--level N", &options->level,

@@ -149,7 +149,7 @@ ExitStatus run(const Options& options) {
 Command closest_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL or USD)");
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "--points FILE", &options->points,
            "File with one point per line, 'x y z'; - for standard input")
       .required();

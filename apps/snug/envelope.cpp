@@ -139,7 +139,7 @@ Command envelope_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh of a solid (OBJ, OFF, PLY, STL or USD; - for standard input)");
+           "Control mesh of a solid (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Largest distance between limit surface and envelope, either way; mesh units or percent (1%)");
   list.add(Group::own, "--part PART", &options->part,

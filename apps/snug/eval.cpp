@@ -203,7 +203,7 @@ Command eval_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL or USD; - for standard input)");
+           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
   list.add(Group::own, "--samples N", &options->samples,
            "Evaluate a grid with N steps, 1 to 1000, along each edge of every face or polyline")
       .between(1, 1000);

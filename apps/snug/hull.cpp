@@ -99,11 +99,11 @@ Command hull_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL or USD; - for standard input)");
+           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Largest distance between limit surface and hulls, either way; mesh units or percent (1%)");
   list.add(Group::own, "--inner FILE", &options->inner,
-           "Write the triangles behind the surface: inside of the solid (OBJ, OFF, PLY, STL or USD)");
+           "Write the triangles behind the surface: inside of the solid (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "--outer FILE", &options->outer, "Write those in front of it: around the solid");
   add_common_options(list, *options);
   list.add(Group::effort, "--budget N", &options->most, "Most triangles of a hull");

@@ -131,7 +131,7 @@ Command ray_command() {
   auto options = std::make_shared<Options>();
   options->budget = RayOptions().budget;
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL or USD)");
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "--rays FILE", &options->rays,
            "File with one ray per line, 'ox oy oz dx dy dz', for a segment with 'from to' after it; - for "
            "standard input")

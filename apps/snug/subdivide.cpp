@@ -83,7 +83,7 @@ Command subdivide_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL or USD; - for standard input)");
+           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
   list.add(Group::own, "--level N", &options->level, "Steps of subdivision, 0 to 12").between(0, 12);
   list.add(Group::own, "--limit", &options->limit, "Move every vertex to its limit position");
   add_degree_option(list, options->degree);

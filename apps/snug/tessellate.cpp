@@ -123,7 +123,7 @@ Command tessellate_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh (OBJ, OFF, PLY, STL or USD; - for standard input)");
+           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Largest distance between limit surface and triangles, either way; mesh units or percent (0.1%)");
   list.add(Group::own, "--max-triangles N", &options->max_triangles,

@@ -127,9 +127,9 @@ struct ReadOptions {
   WorkMonitor monitor{};
 };
 
-/// Reads a control mesh. The extension selects the format: .obj, .off, .ply, .stl or .usda (also .usd, if it is
-/// text), in upper or lower case. Standard input ("-") and files without an extension are recognised as PLY,
-/// OFF or USD by their first bytes; otherwise they are read as OBJ.
+/// Reads a control mesh. The extension selects the format: .obj, .off, .ply, .stl, .glb or .usda (also .usd, if
+/// it is text), in upper or lower case. Standard input ("-") and files without an extension are recognised as
+/// PLY, OFF, USD or glTF by their first bytes; otherwise they are read as OBJ.
 ///
 /// Notes:     those of the parser, and one line about what was welded.
 /// Errors:    InputError: (unreadable) for a file that cannot be read or parsed, naming the line; those of

@@ -50,7 +50,7 @@ TEST(mesh_file, round_trips_by_ending_in_any_case) {
   const TemporaryFolder folder;
   const ControlMesh mesh = creased_triangle();
   for (const char* name : {"a.obj", "a.OBJ", "a.off", "a.Off", "b.c.obj", "a.ply", "a.PLY", "a.stl", "a.Stl",
-                           "a.usda", "a.USDA"}) {
+                           "a.glb", "a.usda", "a.USDA"}) {
     write_mesh(mesh, folder / name);
     expect_same_arrays(mesh, read_mesh(folder / name));
   }
@@ -87,8 +87,9 @@ TEST(mesh_file, tells_the_formats_of_standard_input_apart) {
   put(folder / "off", format_off(creased_triangle()));
   put(folder / "ply", format_ply(creased_triangle()));
   put(folder / "usda", format_usda(creased_triangle(), "usda"));
+  put(folder / "glb", format_glb(creased_triangle(), "glb"));
   put(folder / "bad", "OFF\n3 1 0\n0 0 0\n");
-  for (const char* name : {"obj", "off", "ply", "usda"}) {
+  for (const char* name : {"obj", "off", "ply", "usda", "glb"}) {
     const InputFrom input(folder / name);
     expect_same_arrays(creased_triangle(), read_mesh("-"));
   }
@@ -162,9 +163,9 @@ TEST(mesh_file, bad_names_are_clear_errors) {
   EXPECT_EQ(message(""), "the name of the file to read is empty");
   EXPECT_EQ(message(folder / "none.obj"),
             folder / "none.obj" + ": cannot be read: No such file or directory");
-  for (const char* name : {"a.xyz", "a.glb"}) {
+  for (const char* name : {"a.xyz", "a.gltf"}) {
     EXPECT_EQ(message(folder / name),
-              folder / name + ": meshes are read from .obj, .off, .ply, .stl and .usda files only");
+              folder / name + ": meshes are read from .obj, .off, .ply, .stl, .usda and .glb files only");
   }
   std::filesystem::create_directory(folder / "folder.obj");
   EXPECT_EQ(message(folder / "folder.obj"), folder / "folder.obj" + ": is a directory: name a file in it");

@@ -131,6 +131,27 @@ namespace snug {
 [[nodiscard]] std::string format_usda(const ControlMesh& mesh, const std::string& name,
                                       const Notes& notes = {});
 
+/// Whether the bytes begin like a binary glTF file.
+[[nodiscard]] bool begins_like_glb(std::string_view bytes);
+
+/// The control mesh that the triangles of a binary glTF 2.0 file are.
+///
+/// Reads:     the meshes of the nodes of the default scene (without one: the first; without any: all nodes):
+///            triangles, strips and fans, with or without indices; positions as floats, and as integers where
+///            KHR_mesh_quantization allows them; sparse and interleaved accessors. Materials, normals, cameras
+///            and animations are ignored.
+/// Guarantee: coordinates are exactly the floats, and moved by nodes at most as far off as a note says. The
+///            file splits vertices by normals and the like: within a node, corners become one vertex where
+///            they are equal. Triangles with two corners in one place are left out, the others keep their
+///            order; mirroring nodes reverse them. Instances and shared accessors make at most 100 times the
+///            file.
+/// Notes:     one line each for moved points, primitives without triangles, triangles that are left out, and
+///            skins or morph targets, which are not applied.
+/// Errors:    also buffers outside of the file, extensions that are needed and may concern the geometry, such
+///            as Draco's and meshopt's, nodes that do not form trees.
+/// Source:    glTF 2.0 specification, sections 3.5 to 3.7 and 4.4.
+[[nodiscard]] ControlMesh parse_glb(std::string_view bytes, const std::string& name, const Notes& notes = {});
+
 /// The mesh as a binary glTF 2.0 file, for viewers: one node, one mesh, one list of triangles; positions as
 /// floats, indices of 32 bits, normals of the vertices if there are any, no materials. Its tags are left out.
 ///

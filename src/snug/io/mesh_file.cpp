@@ -43,6 +43,7 @@ bool changes_surface(const ControlMesh& mesh) {
 /// The format of a file whose name does not tell.
 std::string sniffed_format(std::string_view bytes) {
   if (begins_like_ply(bytes)) return ".ply";
+  if (begins_like_glb(bytes)) return ".glb";
   if (begins_like_usda(bytes)) return ".usda";
   return begins_like_off(bytes) ? ".off" : ".obj";
 }
@@ -59,8 +60,8 @@ std::string formatted(const ControlMesh& mesh, const std::string& ending, const 
 
 /// The ending that names the format to read; empty for none.
 std::string format_to_read(const std::string& path) {
-  return format_among({"", ".obj", ".off", ".ply", ".stl", ".usda", ".usd", ".usdc", ".usdz"}, path,
-                      "read from .obj, .off, .ply, .stl and .usda");
+  return format_among({"", ".obj", ".off", ".ply", ".stl", ".usda", ".usd", ".usdc", ".usdz", ".glb"}, path,
+                      "read from .obj, .off, .ply, .stl, .usda and .glb");
 }
 
 ControlMesh parsed(std::string_view bytes, std::string ending, const std::string& name, const Notes& notes) {
@@ -68,6 +69,7 @@ ControlMesh parsed(std::string_view bytes, std::string ending, const std::string
   if (ending == ".off") return parse_off(bytes, name);
   if (ending == ".ply") return parse_ply(bytes, name);
   if (ending == ".stl") return parse_stl(bytes, name);
+  if (ending == ".glb") return parse_glb(bytes, name, notes);
   if (ending.starts_with(".usd")) return parse_usda(bytes, name, notes);  // refuses binary ones
   return parse_obj(bytes, name, notes);
 }

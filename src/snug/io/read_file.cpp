@@ -103,9 +103,7 @@ struct Signature {
 
 constexpr const char *utf16 = "this is UTF-16 text: save it as UTF-8",
                      *ply = "this is a PLY file: give it a name that ends in .ply",
-                     *gltf =
-                         "this is a binary glTF file, which is written but not read: "
-                         "convert it to OBJ, OFF, PLY or STL",
+                     *gltf = "this is a binary glTF file: give it a name that ends in .glb",
                      *usdc = "this is a binary USD file: convert it to text, usdcat -o mesh.usda";
 
 constexpr std::array<Signature, 11> signatures{

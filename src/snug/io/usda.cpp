@@ -15,8 +15,8 @@
 #include <snug/io/number.h>
 #include <snug/io/read_file.h>
 #include <snug/io/text_cursor.h>
+#include <snug/io/transform.h>
 #include <snug/io/usda_prims.h>
-#include <snug/io/usda_transform.h>
 #include <snug/scheme/scheme.h>
 
 namespace snug {
@@ -132,7 +132,7 @@ class Assembler {
         local = {};
         continue;
       }
-      constexpr std::string_view invert = "!invert!";
+      constexpr std::string_view invert = "!invert!", front = "xformOp:";
       const bool inverse = name.starts_with(invert);
       if (inverse) name.remove_prefix(invert.size());
       refuse_samples(prim, name);
@@ -141,7 +141,10 @@ class Assembler {
         fail_at(operations.order_line,
                 "xformOpOrder names " + in_quotes(name) + ", which the prim does not have");
       }
-      const UsdaOperation operation = usda_operation(name, given->second.values, inverse);
+      // "xformOp:KIND" or "xformOp:KIND:SUFFIX"
+      const std::string_view kind = name.substr(std::min(front.size(), name.size()));
+      const TransformOperation operation =
+          transform_operation(kind.substr(0, kind.find(':')), given->second.values, inverse);
       if (!operation.fault.empty()) fail_at(given->second.line, in_quotes(name) + ' ' + operation.fault);
       local = local.after(operation.map);
     }

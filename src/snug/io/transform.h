@@ -27,23 +27,24 @@ struct AffineEnclosure {
   friend bool operator==(const AffineEnclosure&, const AffineEnclosure&) = default;
 };
 
-/// The map of an operation of USD's Xformable, or why there is none.
-struct UsdaOperation {
+/// The map of one operation of a file, or why there is none.
+struct TransformOperation {
   AffineEnclosure map;
   /// The end of a sentence that begins with the name of the operation. Empty if there is a map.
   std::string fault;
 };
 
-/// The map of an attribute "xformOp:KIND" or "xformOp:KIND:SUFFIX", inverted if "!invert!" stands before it.
+/// The map of an operation, or its inverse.
 ///
 ///     translate, scale      three numbers; translateX, scaleX and so on: one
 ///     rotateX, Y, Z         degrees, counter-clockwise where the axis points at the viewer
 ///     rotateXYZ and so on   degrees about x, y and z; the letters are the order of the turns
 ///     orient                a quaternion w x y z; its length, within a hundredth of 1, is divided out
-///     transform             a matrix by rows, of the map of row vectors: the last row is the translation
+///     transform             a matrix, the images of x, y, z and of the origin one after the other, each with
+///                           the number 0 or 1 behind it: by rows in USD, by columns in glTF
 ///
-/// Source:    OpenUSD, UsdGeomXformable and UsdGeomXformOp.
-[[nodiscard]] UsdaOperation usda_operation(std::string_view name, std::span<const double> numbers,
-                                           bool inverse);
+/// Source:    OpenUSD, UsdGeomXformable and UsdGeomXformOp; glTF 2.0, section 3.5.
+[[nodiscard]] TransformOperation transform_operation(std::string_view kind, std::span<const double> numbers,
+                                                     bool inverse = false);
 
 }  // namespace snug

@@ -1,4 +1,4 @@
-#include <snug/io/usda_transform.h>
+#include <snug/io/transform.h>
 
 #include <array>
 #include <cmath>
@@ -94,7 +94,7 @@ class Cases {
         "translate", "scale",     "rotateX",   "rotateY", "rotateZ",   "rotateXYZ",  "rotateXZY", "rotateYXZ",
         "rotateYZX", "rotateZXY", "rotateZYX", "orient",  "transform", "translateY", "scaleZ"};
     const std::string kind = kinds[random_() % kinds.size()];
-    Case c{"xformOp:" + kind + (random_() % 2 ? ":own" : ""), {}, identity()};
+    Case c{kind, {}, identity()};
     const auto take = [&](std::size_t count) {
       for (std::size_t i = 0; i < count; ++i) c.numbers.push_back(number());
     };
@@ -154,13 +154,13 @@ void expect_holds(const Interval& range, Number exact, Number size, const std::s
   EXPECT_LE(range.upper - range.lower, 1e-13L * size) << what;
 }
 
-TEST(usda_transform, operations_enclose_those_of_the_documentation_alone_inverted_and_in_pairs) {
+TEST(transform, operations_enclose_those_of_the_documentation_alone_inverted_and_in_pairs) {
   Cases cases;
   for (int trial = 0; trial < 4000; ++trial) {
     const Case outer = cases.draw(), inner = cases.draw();
     const bool invert_outer = trial % 2, invert_inner = trial / 2 % 2;
-    const UsdaOperation a = usda_operation(outer.name, outer.numbers, invert_outer),
-                        b = usda_operation(inner.name, inner.numbers, invert_inner);
+    const TransformOperation a = transform_operation(outer.name, outer.numbers, invert_outer),
+                             b = transform_operation(inner.name, inner.numbers, invert_inner);
     ASSERT_EQ(a.fault, "") << outer.name;
     ASSERT_EQ(b.fault, "") << inner.name;
     const Point3 point{cases.number(), cases.number(), cases.number()};
@@ -178,40 +178,39 @@ TEST(usda_transform, operations_enclose_those_of_the_documentation_alone_inverte
   }
 }
 
-TEST(usda_transform, quarter_turns_and_mirrors_are_exact) {
+TEST(transform, quarter_turns_and_mirrors_are_exact) {
   const std::array<double, 3> angles{90, -270, 180};
-  const AffineEnclosure map = usda_operation("xformOp:rotateXYZ", angles, false).map;
+  const AffineEnclosure map = transform_operation("rotateXYZ", angles, false).map;
   const std::array<Interval, 3> image = map({0.1, 0.2, 0.3});
   for (const Interval& x : image) EXPECT_EQ(x.lower, x.upper);
   EXPECT_EQ(map.handedness(), 1);
-  EXPECT_EQ(usda_operation("xformOp:scale", std::array{1e-200, -1e-200, 1e-200}, false).map.handedness(), -1);
-  EXPECT_EQ(usda_operation("xformOp:scale", std::array{1e200, 1e200, 1e200}, false).map.handedness(), 1);
-  EXPECT_EQ(usda_operation("xformOp:scale", std::array{0.0, 1.0, 1.0}, false).map.handedness(), 0);
+  EXPECT_EQ(transform_operation("scale", std::array{1e-200, -1e-200, 1e-200}, false).map.handedness(), -1);
+  EXPECT_EQ(transform_operation("scale", std::array{1e200, 1e200, 1e200}, false).map.handedness(), 1);
+  EXPECT_EQ(transform_operation("scale", std::array{0.0, 1.0, 1.0}, false).map.handedness(), 0);
 }
 
-TEST(usda_transform, says_what_is_wrong) {
+TEST(transform, says_what_is_wrong) {
   const auto fault = [](const char* name, const std::vector<double>& numbers, bool inverse = false) {
-    return usda_operation(name, numbers, inverse).fault;
+    return transform_operation(name, numbers, inverse).fault;
   };
-  EXPECT_EQ(fault("xformOp:translate", {1, 2}), "has 2 numbers, not three");
-  EXPECT_EQ(fault("xformOp:rotateX", {1, 2}), "has 2 numbers, not one");
-  EXPECT_EQ(fault("xformOp:orient", {1, 2, 3}), "has 3 numbers, not the four of a quaternion");
-  EXPECT_EQ(fault("xformOp:orient", {1, 1, 0, 0}),
+  EXPECT_EQ(fault("translate", {1, 2}), "has 2 numbers, not three");
+  EXPECT_EQ(fault("rotateX", {1, 2}), "has 2 numbers, not one");
+  EXPECT_EQ(fault("orient", {1, 2, 3}), "has 3 numbers, not the four of a quaternion");
+  EXPECT_EQ(fault("orient", {1, 1, 0, 0}),
             "is a quaternion of another length than 1: write w, x, y, z of a rotation");
-  EXPECT_EQ(fault("xformOp:orient", {0, 0, 0, 0}),
+  EXPECT_EQ(fault("orient", {0, 0, 0, 0}),
             "is a quaternion of another length than 1: write w, x, y, z of a rotation");
-  EXPECT_EQ(fault("xformOp:transform", {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}),
-            "is a perspective map: its last column must be 0 0 0 1");
-  EXPECT_EQ(fault("xformOp:transform", {1, 2, 3, 0, 2, 4, 6, 0, 0, 0, 1, 0, 0, 0, 0, 1}, true),
+  EXPECT_EQ(fault("transform", {1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}),
+            "is a perspective map: write one whose numbers beside the images are 0 0 0 1");
+  EXPECT_EQ(fault("transform", {1, 2, 3, 0, 2, 4, 6, 0, 0, 0, 1, 0, 0, 0, 0, 1}, true),
             "cannot be inverted: its matrix is singular, or nearly so");
-  EXPECT_EQ(
-      fault("xformOp:transform", {1e308, 1e308, 0, 0, 1e308, -1e308, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, true),
-      "cannot be inverted: its matrix is singular, or nearly so");
-  EXPECT_EQ(fault("xformOp:scale", {0, 1, 1}, true), "cannot be inverted: a factor is 0");
-  EXPECT_EQ(fault("xformOp:scale", {1e-320, 1, 1}, true), "is beyond the range of doubles");
-  EXPECT_EQ(fault("xformOp:rotateXXY", {0, 1, 1}), "is an operation that snug does not know");
-  EXPECT_EQ(fault("xformOp:translateW", {0}), "is an operation that snug does not know");
-  EXPECT_EQ(fault("xformOp", {}), "is an operation that snug does not know");
+  EXPECT_EQ(fault("transform", {1e308, 1e308, 0, 0, 1e308, -1e308, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, true),
+            "cannot be inverted: its matrix is singular, or nearly so");
+  EXPECT_EQ(fault("scale", {0, 1, 1}, true), "cannot be inverted: a factor is 0");
+  EXPECT_EQ(fault("scale", {1e-320, 1, 1}, true), "is beyond the range of doubles");
+  EXPECT_EQ(fault("rotateXXY", {0, 1, 1}), "is an operation that snug does not know");
+  EXPECT_EQ(fault("translateW", {0}), "is an operation that snug does not know");
+  EXPECT_EQ(fault("", {}), "is an operation that snug does not know");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include <snug/io/usda_transform.h>
+#include <snug/io/transform.h>
 
 #include <algorithm>
 #include <cmath>
@@ -72,14 +72,14 @@ std::optional<std::size_t> axis_behind(std::string_view kind, std::string_view f
   return axis_of(kind.back());
 }
 
-UsdaOperation translation(const Row& shift, bool inverse) {
-  UsdaOperation result;
+TransformOperation translation(const Row& shift, bool inverse) {
+  TransformOperation result;
   for (std::size_t k = 0; k < 3; ++k) result.map.shift[k] = inverse ? -shift[k] : shift[k];
   return result;
 }
 
-UsdaOperation scale(const Row& factors, bool inverse) {
-  UsdaOperation result;
+TransformOperation scale(const Row& factors, bool inverse) {
+  TransformOperation result;
   for (std::size_t k = 0; k < 3; ++k) {
     if (inverse && is_zero(factors[k])) return {{}, "cannot be inverted: a factor is 0"};
     const bool is_unit = factors[k] == Interval(1) || factors[k] == Interval(-1);
@@ -88,13 +88,13 @@ UsdaOperation scale(const Row& factors, bool inverse) {
   return result;
 }
 
-UsdaOperation rotation(const Matrix& m, bool inverse) {
-  UsdaOperation result;
+TransformOperation rotation(const Matrix& m, bool inverse) {
+  TransformOperation result;
   result.map.matrix = inverse ? transposed(m) : m;
   return result;
 }
 
-UsdaOperation orientation(std::span<const double> q, bool inverse) {
+TransformOperation orientation(std::span<const double> q, bool inverse) {
   const Row v{q[1], q[2], q[3]};
   const Interval w = q[0], norm_sq = sum(product(w, w), dot(v, v));
   constexpr double slack = 0.01;
@@ -113,10 +113,10 @@ UsdaOperation orientation(std::span<const double> q, bool inverse) {
   return rotation(m, inverse);
 }
 
-UsdaOperation matrix_operation(std::span<const double> rows, bool inverse) {
-  UsdaOperation result;
+TransformOperation matrix_operation(std::span<const double> rows, bool inverse) {
+  TransformOperation result;
   if (rows[3] != 0 || rows[7] != 0 || rows[11] != 0 || rows[15] != 1) {
-    return {{}, "is a perspective map: its last column must be 0 0 0 1"};
+    return {{}, "is a perspective map: write one whose numbers beside the images are 0 0 0 1"};
   }
   Matrix& m = result.map.matrix;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -139,10 +139,10 @@ UsdaOperation matrix_operation(std::span<const double> rows, bool inverse) {
   return {inverted, {}};
 }
 
-UsdaOperation operation(std::string_view kind, std::span<const double> n, bool inverse) {
+TransformOperation operation(std::string_view kind, std::span<const double> n, bool inverse) {
   const auto needs = [&](std::size_t count) { return n.size() == count; };
   const auto wrong_count = [&](const char* count) {
-    return UsdaOperation{{}, "has " + std::to_string(n.size()) + " numbers, not " + count};
+    return TransformOperation{{}, "has " + std::to_string(n.size()) + " numbers, not " + count};
   };
   const auto three = [](double x, double y, double z) { return Row{x, y, z}; };
   if (kind == "translate" || kind == "scale") {
@@ -213,10 +213,8 @@ bool AffineEnclosure::is_finite() const {
   return true;
 }
 
-UsdaOperation usda_operation(std::string_view name, std::span<const double> numbers, bool inverse) {
-  constexpr std::string_view front = "xformOp:";
-  std::string_view kind = name.substr(std::min(front.size(), name.size()));
-  UsdaOperation result = operation(kind.substr(0, kind.find(':')), numbers, inverse);
+TransformOperation transform_operation(std::string_view kind, std::span<const double> numbers, bool inverse) {
+  TransformOperation result = operation(kind, numbers, inverse);
   if (result.fault.empty() && !result.map.is_finite()) result.fault = "is beyond the range of doubles";
   return result;
 }
