@@ -6,6 +6,7 @@
 #include <snug/base/error.h>
 #include <snug/base/parallel.h>
 #include <snug/io/atomic_file.h>
+#include <snug/io/column_table.h>
 #include <snug/io/mesh_file.h>
 #include <snug/mesh/tag_names.h>
 #include <snug/scheme/rules.h>
@@ -25,6 +26,11 @@ void require_output(const std::string& command, const std::string& output) {
   } else if (command == "view") {
     if (!output.ends_with(".html")) {
       throw UsageError("-o " + output + ": view writes a page; give a file that ends in .html");
+    }
+  } else if (command == "closest" || command == "eval") {
+    if (!output.ends_with(".json") && !ColumnTable::is_table(output)) {
+      throw UsageError("-o " + output + ": " + command +
+                       " writes JSON or a table; give a file that ends in .json, .npy, .ply or .csv");
     }
   } else if (command != "render" && !output.ends_with(".json")) {
     throw UsageError("-o " + output + ": " + command + " writes JSON; give a file that ends in .json");
@@ -65,7 +71,8 @@ void add_common_options(OptionList& list, CommonOptions& options) {
 void add_output_options(OptionList& list, CommonOptions& options) {
   list.add(Group::output, "--json", &options.json, "Print one JSON document");
   list.add(Group::output, "-o FILE", &options.output,
-           "Output file: JSON (.json), or the mesh or picture; - for standard output");
+           "Output file: JSON (.json), a table of points (.npy, .ply, .csv), the mesh or picture; - for "
+           "standard output");
   list.add(Group::output, "--quiet", &options.quiet, "No progress and no notes on standard error");
   list.add(Group::effort, "--threads N", &options.threads,
            "Threads, up to 1024; 0: all cores. Results do not depend on threads")

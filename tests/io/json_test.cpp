@@ -30,7 +30,9 @@ nlohmann::json other(const Json& value) {
     }
     default: {
       nlohmann::json object = nlohmann::json::object();
-      for (const auto& [key, item] : value.members) object[std::string(key)] = other(item);
+      for (std::size_t i = 0; i < value.names.size(); ++i) {
+        object[std::string(value.names[i])] = other(value.items[i]);
+      }
       return object;
     }
   }

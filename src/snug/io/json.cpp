@@ -81,7 +81,8 @@ class JsonReader {
       if (peek() != '"') fail("the name of a member is missing");
       const std::string_view key = read_text();
       expect(':');
-      value.members.emplace_back(key, read_value(depth + 1));
+      value.names.push_back(key);
+      value.items.push_back(read_value(depth + 1));
     } while (take(','));
     expect('}');
   }
@@ -123,9 +124,10 @@ class JsonReader {
 }  // namespace
 
 const Json* Json::find(std::string_view name) const {
-  const auto found = std::find_if(members.rbegin(), members.rend(),
-                                  [&](const auto& member) { return member.first == name; });
-  return found == members.rend() ? nullptr : &found->second;
+  for (std::size_t i = names.size(); i-- > 0;) {
+    if (names[i] == name) return &items[i];
+  }
+  return nullptr;
 }
 
 std::optional<std::uint64_t> Json::integer() const {

@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace snug {
@@ -18,9 +17,9 @@ class Json {
   Kind kind = Kind::null;
   bool truth = false;
   double number = 0;
-  std::string_view text;  ///< what stands between the quotes, escapes as they are
-  std::vector<Json> items;
-  std::vector<std::pair<std::string_view, Json>> members;
+  std::string_view text;                ///< what stands between the quotes, escapes as they are
+  std::vector<Json> items;              ///< of an array; of an object, the values of its members
+  std::vector<std::string_view> names;  ///< of an object's members
 
   /// The member of this name, the last one if there are several; nothing if there is none, or no object.
   [[nodiscard]] const Json* find(std::string_view name) const;
