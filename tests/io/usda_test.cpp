@@ -377,6 +377,8 @@ TEST(usda, transforms_that_are_none_are_refused) {
             "in.usda:8: xformOpOrder names 'xformOp:translate', which the prim does not have");
   EXPECT_EQ(with("float xformOp:spin = 3", "xformOp:spin"),
             "in.usda:7: 'xformOp:spin' is an operation that snug does not know");
+  EXPECT_EQ(with("float xformOp:rotateX:\xff = (a)", "xformOp:rotateX"),
+            "in.usda:7: 'xformOp:rotateX:\\xff': 'a' is not a number");
   EXPECT_EQ(with("float3 xformOp:scale = (0, 1, 1)", "!invert!xformOp:scale"),
             "in.usda:7: 'xformOp:scale' cannot be inverted: a factor is 0");
   EXPECT_EQ(with("double3 xformOp:scale = (1e308, 1e308, 1e308)\nfloat3 xformOp:scale:b = (1e308, 1, 1)",
