@@ -59,8 +59,8 @@ test-long: install-packages build  ## the random tests with many more cases (doc
 	@$(call build,asan)
 	@$(ctest) --test-dir build/asan --output-on-failure
 
-deb:  ## Debian packages of the command and the library: build/deb/packages
-	@scripts/install_packages build deb
+deb:  ## Debian packages of the command, the library and the module for Python: build/deb/packages
+	@scripts/install_packages build python deb
 	@scripts/build_deb
 
 site:  ## the documentation as a site that needs no server: build/site/index.html
