@@ -17,7 +17,7 @@ ctest = ctest --parallel $(JOBS) --no-tests=error
 # Thread sanitizer wants an address space that is not shuffled too far; not every container may ask for that.
 unshuffled = $$(setarch -R true 2> /dev/null && echo setarch -R || true)
 
-.PHONY: deb site page page-test python python-asan wheel help demo test test-long build bench format tidy docs check asan tsan fuzz install-packages clean
+.PHONY: deb site page page-test python python-asan wheel notebooks help demo test test-long build bench format tidy docs check asan tsan fuzz install-packages clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-17s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -76,6 +76,10 @@ wheel:  ## the same as a wheel: build/wheel
 	@scripts/install_packages build python
 	@mkdir -p build/wheel && cd python && /usr/bin/python3 -c "import build_backend; print('build/wheel/' + build_backend.build_wheel('../build/wheel'))"
 
+notebooks: python  ## executes the notebooks: build/notebooks
+	@scripts/install_packages notebooks
+	@scripts/run_notebooks "$$PWD/build/$(python_preset)/python" "$$PWD/build/notebooks"
+
 python-asan: install-packages  ## the tests of the Python module under address and undefined-behaviour sanitizer
 	@$(call build,asan,snug_python)
 	@$(ctest) --preset asan -L python
@@ -118,6 +122,7 @@ check: test  ## every gate that a commit must pass
 	@$(MAKE) asan
 	@scripts/check_wheel
 	@$(MAKE) python-asan
+	@$(MAKE) notebooks
 	@$(MAKE) tsan
 	@FUZZ_SECONDS=5 $(MAKE) fuzz
 

@@ -18,7 +18,7 @@ ORDER = ["base", "geometry", "mesh", "scheme", "patch", "bounds", "bvh", "surfac
          "front"]
 EXCEPTIONS = {
     "bvh": {"base", "geometry"},  # knows sets and ids, no surfaces
-    "io": {"base", "geometry", "mesh"},
+    "io": {"base", "geometry", "mesh", "scheme"},  # files name schemes; knows no surfaces
 }
 # Rooms with a library of their own, which is not installed: of the other folders only these include them, and their own
 # CMakeLists.txt lists their sources.

@@ -108,7 +108,8 @@ void write_polyhedra(const Polyhedra& polyhedra, const Options& options, AtomicF
   if (polyhedra.count() == 0) {
     throw InputError(InputProblem::refused, options.mesh + ": no enclosure is a solid or a polygon to write");
   }
-  write_mesh(polyhedra.mesh(), file, options.polyhedra, notes_for(options), stopped_by_interrupts());
+  write_mesh(as_facets(polyhedra.mesh(), options.polyhedra), file, options.polyhedra, notes_for(options),
+             stopped_by_interrupts());
   report.text(fmt::format("{}: {} polyhedra with {} facets, for pictures", options.polyhedra,
                           polyhedra.count(), polyhedra.mesh().face_count()));
 }
@@ -196,7 +197,8 @@ ExitStatus run(const Options& options) {
 Command bound_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
+  list.add(Group::own, "MESH", &options->mesh,
+           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Split until each radius is at most half of this; mesh units or percent (1%)");
   list.add(Group::own, "--level N", &options->level,

@@ -3,6 +3,9 @@
 #include <cmath>
 
 #include <fmt/core.h>
+#include <snug/io/atomic_file.h>
+#include <snug/io/column_table.h>
+#include <snug/io/number_rows.h>
 #include <snug/io/read_file.h>
 
 #include "length.h"
@@ -21,20 +24,13 @@ struct Options : CommonOptions {
   bool with_sign = false;
 };
 
-// Lines "x y z".
 std::vector<Point3> read_points(const std::string& path) {
-  const std::string text = read_file(path, stopped_by_interrupts());
   std::vector<Point3> points;
-  for_each_line(text, [&](std::string_view line, std::size_t number) {
-    Point3 p;
-    const bool good = parse(next_word(line), p.x) && parse(next_word(line), p.y) &&
-                      parse(next_word(line), p.z) && next_word(line).empty() && is_finite(p);
-    if (!good) {
-      throw InputError(InputProblem::unreadable,
-                       path + ":" + std::to_string(number) + ": a line is 'x y z', three finite numbers");
-    }
-    points.push_back(p);
-  });
+  for_each_row(read_file(path, stopped_by_interrupts()), path, {3}, "a line is 'x y z', three finite numbers",
+               [&](std::span<const double> row) {
+                 points.push_back({row[0], row[1], row[2]});
+                 return is_finite(points.back());
+               });
   return points;
 }
 
@@ -107,6 +103,61 @@ void write_result(Report& report, const LimitSurface& surface, const Result& res
   json.end_object();
 }
 
+// Columns of a file of answers, a row a point.
+ColumnTable table_of(const std::vector<Result>& results, const LimitSurface& surface,
+                     const Options& options) {
+  using Type = ColumnTable::Type;
+  const bool has_corner = !surface.rules().triangular();
+  std::vector<ColumnTable::Column> columns;
+  for (const char* name : {"x", "y", "z", "error", "distance_lower", "distance_upper"}) {
+    columns.push_back({name, Type::real});
+  }
+  if (options.with_sign)
+    columns.insert(columns.end(), {{"signed_lower", Type::real}, {"signed_upper", Type::real}});
+  columns.push_back({surface.rules().owner(), Type::integer});
+  if (has_corner) columns.push_back({"corner", Type::integer});
+  columns.insert(columns.end(), {{"u", Type::real}, {"v", Type::real}, {"reached", Type::flag}});
+  ColumnTable table(std::move(columns), options.output);
+  for (const Result& result : results) {
+    const ClosestPoint& near = result.nearest;
+    for (const double x : {near.point.x, near.point.y, near.point.z, near.point_error, near.distance.lower,
+                           near.distance.upper}) {
+      table.add(x);
+    }
+    if (result.with_sign) {
+      table.add(result.with_sign->distance.lower);
+      table.add(result.with_sign->distance.upper);
+    }
+    table.add(near.at.owner);
+    if (has_corner) table.add(near.at.corner);
+    for (const double x : {near.at.u, near.at.v, result.reached() ? 1.0 : 0.0}) table.add(x);
+  }
+  return table;
+}
+
+// All answers as a document or as lines; returns whether all reached what was asked for.
+bool write_results(Report& report, const LimitSurface& surface, const std::vector<Result>& results) {
+  bool reached = true;
+  for (const Result& result : results) {
+    write_result(report, surface, result);
+    reached = reached && result.reached();
+  }
+  return reached;
+}
+
+ExitStatus finish_with_table(Report& report, const Options& options, const LimitSurface& surface,
+                             const std::vector<Result>& results) {
+  const ColumnTable table = table_of(results, surface, options);
+  AtomicFile file(options.output);
+  file.write(table.file());
+  std::size_t missed = 0;
+  for (const Result& result : results) missed += result.reached() ? 0 : 1;
+  if (report.json()) report.write().field("count", results.size()).field("reached", missed == 0);
+  report.text(fmt::format("{}: {} closest points{}", options.output, results.size(),
+                          missed == 0 ? "" : fmt::format(", {} wider than asked for", missed)));
+  return report.finish(missed == 0, {&file});
+}
+
 ExitStatus run(const Options& options) {
   const Length precision = parse_length(options.precision, "--precision", true);
   const std::vector<Point3> points = read_points(options.points);
@@ -126,20 +177,18 @@ ExitStatus run(const Options& options) {
       results = find(model, points, wanted, options, monitor);
     });
   }
-  Report report("closest", options);
+  const bool as_table = ColumnTable::is_table(options.output);
+  CommonOptions shown = options;
+  if (as_table) shown.output.clear();
+  Report report("closest", shown);
   report.heads({options.mesh}, {name_of(surface.options().scheme)});
-  if (report.json()) {
-    report.write().field("precision", *wanted.absolute).field("relative", *wanted.relative);
-    report.write().key("results").begin_array();
-  }
+  if (report.json()) report.write().field("precision", *wanted.absolute).field("relative", *wanted.relative);
+  if (as_table) return finish_with_table(report, options, surface, results);
+  if (report.json()) report.write().key("results").begin_array();
   report.text(fmt::format("# {}  x y z  {} u v{}",
                           options.with_sign ? "signed distance: lower upper" : "distance: lower upper",
                           surface.rules().owner(), surface.rules().triangular() ? "" : " corner"));
-  bool reached = true;
-  for (const Result& result : results) {
-    write_result(report, surface, result);
-    reached = reached && result.reached();
-  }
+  const bool reached = write_results(report, surface, results);
   if (report.json()) report.write().end_array();
   return report.finish(reached);
 }
@@ -149,9 +198,10 @@ ExitStatus run(const Options& options) {
 Command closest_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL)");
-  list.add(Group::own, "--points FILE", &options->points,
-           "File with one point per line, 'x y z'; - for standard input")
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
+  list.add(
+          Group::own, "--points FILE", &options->points,
+          "File with one point per line, 'x y z', CSV too, or an array of NumPy (.npy); - for standard input")
       .required();
   list.add(Group::own, "--precision LENGTH", &options->precision,
            "Largest width of a distance interval; mesh units, or percent of the mesh");
@@ -164,7 +214,9 @@ Command closest_command() {
   return {"closest",
           Topic::one_surface,
           "Find the points of a limit surface closest to given points",
-          {"snug closest bust.obj --points points.txt", "echo \"0 2 5\" | snug closest bust.obj --points -"},
+          {"snug closest bust.obj --points points.txt",
+           "snug closest bust.obj --points points.npy -o closest.npy",
+           "echo \"0 2 5\" | snug closest bust.obj --points -"},
           std::move(list),
           [options] { return run(*options); }};
 }

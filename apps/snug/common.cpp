@@ -6,6 +6,7 @@
 #include <snug/base/error.h>
 #include <snug/base/parallel.h>
 #include <snug/io/atomic_file.h>
+#include <snug/io/column_table.h>
 #include <snug/io/mesh_file.h>
 #include <snug/mesh/tag_names.h>
 #include <snug/scheme/rules.h>
@@ -26,6 +27,11 @@ void require_output(const std::string& command, const std::string& output) {
     if (!output.ends_with(".html")) {
       throw UsageError("-o " + output + ": view writes a page; give a file that ends in .html");
     }
+  } else if (command == "closest" || command == "eval") {
+    if (!output.ends_with(".json") && !ColumnTable::is_table(output)) {
+      throw UsageError("-o " + output + ": " + command +
+                       " writes JSON or a table; give a file that ends in .json, .npy, .ply or .csv");
+    }
   } else if (command != "render" && !output.ends_with(".json")) {
     throw UsageError("-o " + output + ": " + command + " writes JSON; give a file that ends in .json");
   }
@@ -45,8 +51,8 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 void add_common_options(OptionList& list, CommonOptions& options) {
   Option& scheme =
       add_scheme_option(list, "--scheme", options.scheme,
-                        "Subdivision scheme; auto: curve if there are polylines only, loop if all "
-                        "faces are triangles, else catmark");
+                        "Subdivision scheme; auto: curve if there are polylines only, that of the file "
+                        "if it names one, loop if all faces are triangles, else catmark");
   scheme.choices.emplace_back("curve");
   list.add(Group::mesh, "--boundary RULE", &options.boundary,
            "Boundary rule; default: the file's tag, else edge-and-corner")
@@ -65,7 +71,8 @@ void add_common_options(OptionList& list, CommonOptions& options) {
 void add_output_options(OptionList& list, CommonOptions& options) {
   list.add(Group::output, "--json", &options.json, "Print one JSON document");
   list.add(Group::output, "-o FILE", &options.output,
-           "Output file: JSON (.json), or the mesh or picture; - for standard output");
+           "Output file: JSON (.json), a table of points (.npy, .ply, .csv), the mesh or picture; - for "
+           "standard output");
   list.add(Group::output, "--quiet", &options.quiet, "No progress and no notes on standard error");
   list.add(Group::effort, "--threads N", &options.threads,
            "Threads, up to 1024; 0: all cores. Results do not depend on threads")

@@ -35,7 +35,7 @@ struct CommonOptions {
   std::string output;  ///< -o; empty for none
   int threads = 0;
   std::uint64_t budget = 1'000'000;
-  std::string weld;   ///< a length; empty: only equal vertices of STL files are welded
+  std::string weld;   ///< a length; empty: only equal vertices of STL and glTF files are
   std::string sharp;  ///< an angle or auto; empty: only what tags make sharp
   bool quiet = false;
 };

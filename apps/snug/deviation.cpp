@@ -259,7 +259,7 @@ Command deviation_command() {
   auto options = std::make_shared<Options>();
   options->budget = DeviationOptions{}.budget;
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL)");
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "CANDIDATE", &options->candidate,
            "Triangles to compare with its limit surface: any, such as a tessellation or a scan");
   list.add(Group::own, "--precision LENGTH", &options->precision,

@@ -128,7 +128,8 @@ ExitStatus run(const Options& options) {
   const bool reached = found.verified && (!fit || fit->inside);
   if (options.output.empty() || !found.verified) return report.finish(reached);
   AtomicFile file(options.output);
-  write_mesh(mesh_of(*found.outer), file, options.output, notes_for(options), stopped_by_interrupts());
+  write_mesh(as_facets(mesh_of(*found.outer), options.output), file, options.output, notes_for(options),
+             stopped_by_interrupts());
   return report.finish(reached, {&file});
 }
 
@@ -138,7 +139,7 @@ Command envelope_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
-           "Control mesh of a solid (OBJ, OFF, PLY or STL; - for standard input)");
+           "Control mesh of a solid (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Largest distance between limit surface and envelope, either way; mesh units or percent (1%)");
   list.add(Group::own, "--part FILE", &options->part,

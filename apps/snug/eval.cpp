@@ -1,7 +1,11 @@
 #include <cmath>
+#include <limits>
 #include <map>
+#include <optional>
 
 #include <fmt/core.h>
+#include <snug/io/atomic_file.h>
+#include <snug/io/column_table.h>
 #include <snug/io/read_file.h>
 #include <snug/surface/evaluate.h>
 
@@ -45,8 +49,44 @@ void write_weights(JsonWriter& json, const LimitSurface& surface, const SurfaceP
   json.end_object();
 }
 
-void write_point(Report& report, const Options& options, const LimitSurface& surface,
+using Columns = std::vector<ColumnTable::Column>;
+
+Columns columns_of(const LimitSurface& surface) {
+  using Type = ColumnTable::Type;
+  Columns columns{{surface.rules().owner(), Type::integer}, {"corner", Type::integer}};
+  if (surface.rules().triangular()) columns.pop_back();
+  for (const char* name : {"u", "v", "x", "y", "z", "error", "normal_x", "normal_y", "normal_z", "du_x",
+                           "du_y", "du_z", "dv_x", "dv_y", "dv_z"}) {
+    columns.push_back({name, Type::real});
+  }
+  columns.push_back({"differentiable", Type::flag});
+  return columns;
+}
+
+void add_row(ColumnTable& table, const LimitSurface& surface, const SurfaceParameter& at,
+             const SurfacePoint& point) {
+  table.add(at.owner);
+  if (!surface.rules().triangular()) table.add(at.corner);
+  for (const double x : {at.u, at.v, point.position.x, point.position.y, point.position.z, point.error})
+    table.add(x);
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  for (const Vector3& vector :
+       {point.normal.value_or(Vector3{none, none, none}), point.tangents[0], point.tangents[1]}) {
+    for (std::size_t axis = 0; axis < 3; ++axis) table.add(vector[axis]);
+  }
+  table.add(point.differentiable ? 1 : 0);
+}
+
+// Where points go: a document or lines, or a table.
+struct Output {
+  Report& report;
+  ColumnTable* table;
+};
+
+void write_point(const Output& output, const Options& options, const LimitSurface& surface,
                  const SurfaceParameter& at, const SurfacePoint& point) {
+  if (output.table) return add_row(*output.table, surface, at, point);
+  Report& report = output.report;
   const SchemeRules& rules = surface.rules();
   if (!report.json()) {
     report.text(fmt::format("{} {} {}{}  {} {} {}", at.owner, at.u, at.v,
@@ -90,13 +130,13 @@ void for_each_place(const LimitSurface& surface, std::uint32_t owner, unsigned s
 }
 
 // Writes the points of a lattice on an owner; returns how many.
-std::size_t write_lattice(Report& report, const Options& options, const LimitSurface& surface,
+std::size_t write_lattice(const Output& output, const Options& options, const LimitSurface& surface,
                           std::uint32_t owner) {
   SurfaceEvaluator evaluator(surface);
   std::size_t count = 0;
   for_each_place(surface, owner, options.samples, [&](const SurfaceParameter& at) {
     if (!patch_at(surface, at)) return;
-    write_point(report, options, surface, at, evaluator(at));
+    write_point(output, options, surface, at, evaluator(at));
     ++count;
   });
   return count;
@@ -134,21 +174,39 @@ std::vector<CurveParameter> read_requests(const std::string& path, const CurveSe
   return requests;
 }
 
-void write_point(Report& report, const Options&, const CurveSet&, const CurveParameter& at,
+Columns columns_of(const CurveSet&) {
+  using Type = ColumnTable::Type;
+  Columns columns{{"edge", Type::integer}};
+  for (const char* name : {"t", "x", "y", "z", "error", "tangent_x", "tangent_y", "tangent_z"}) {
+    columns.push_back({name, Type::real});
+  }
+  return columns;
+}
+
+void write_point(const Output& output, const Options&, const CurveSet&, const CurveParameter& at,
                  const CurveSetPoint& point) {
   const auto& [x, y, z] = point.position;
+  if (output.table) {
+    output.table->add(at.edge);
+    for (const double number :
+         {at.t, x, y, z, point.error, point.tangent.x, point.tangent.y, point.tangent.z}) {
+      output.table->add(number);
+    }
+    return;
+  }
+  Report& report = output.report;
   if (!report.json()) return report.text(fmt::format("{} {}  {} {} {}", at.edge, at.t, x, y, z));
   JsonWriter& json = report.write();
   json.begin_object().field("edge", at.edge).field("t", at.t).field("position", point.position);
   json.field("error", point.error).field("tangent", point.tangent).end_object();
 }
 
-std::size_t write_lattice(Report& report, const Options& options, const CurveSet& curves,
+std::size_t write_lattice(const Output& output, const Options& options, const CurveSet& curves,
                           std::uint32_t edge) {
   const unsigned steps = options.samples;
   for (unsigned i = 0; i <= steps; ++i) {
     const CurveParameter at{edge, i / static_cast<double>(steps)};
-    write_point(report, options, curves, at, evaluate(curves, at));
+    write_point(output, options, curves, at, evaluate(curves, at));
   }
   return steps + 1;
 }
@@ -156,25 +214,38 @@ std::size_t write_lattice(Report& report, const Options& options, const CurveSet
 // The points that are asked for, on a surface or on curves with `owners` faces, vertices or edges.
 template <class Source>
 ExitStatus answer(const Options& options, const Source& source, std::size_t owners,
-                  const std::function<void(Report&)>& heads) {
+                  const std::function<void(Report&, bool lines)>& heads) {
   const auto requests =
       options.at.empty() ? decltype(read_requests("", source)){} : read_requests(options.at, source);
-  Report report("eval", options);
-  heads(report);
-  if (report.json()) report.write().key("points").begin_array();
+  std::optional<ColumnTable> table;
+  CommonOptions shown = options;
+  if (ColumnTable::is_table(options.output)) {
+    if (options.weights) throw UsageError("eval: --weights are written to .json only");
+    table.emplace(columns_of(source), options.output);
+    shown.output.clear();
+  }
+  Report report("eval", shown);
+  const Output output{report, table ? &*table : nullptr};
+  heads(report, !table);
+  if (report.json() && !table) report.write().key("points").begin_array();
   std::size_t count = requests.size();
   naming(options.mesh, [&] {
-    for (const auto& at : requests) write_point(report, options, source, at, evaluate(source, at));
+    for (const auto& at : requests) write_point(output, options, source, at, evaluate(source, at));
     if (!options.at.empty()) return;
     ProgressBar bar("evaluating " + options.mesh, options.quiet);
     const WorkMonitor monitor = bar.monitor();
     for (std::uint32_t owner = 0; owner < owners; ++owner) {
-      count += write_lattice(report, options, source, owner);
+      count += write_lattice(output, options, source, owner);
       monitor.report(static_cast<double>(owner + 1) / static_cast<double>(owners));
     }
   });
-  if (report.json()) report.write().end_array().field("count", count);
-  return report.finish();
+  if (report.json() && !table) report.write().end_array();
+  if (report.json()) report.write().field("count", count);
+  if (!table) return report.finish();
+  AtomicFile file(options.output);
+  file.write(table->file());
+  report.text(fmt::format("{}: {} limit points", options.output, count));
+  return report.finish(true, {&file});
 }
 
 ExitStatus run(const Options& options) {
@@ -182,16 +253,17 @@ ExitStatus run(const Options& options) {
   if (asks_for_curves("eval", mesh, options.mesh, options, options.degree)) {
     if (options.weights) throw UsageError("eval: --weights are those of surfaces");
     const CurveSet curves = make_curves(std::move(mesh), options.mesh, curve_degree(options.degree));
-    return answer(options, curves, curves.edge_count(), [&](Report& report) {
+    return answer(options, curves, curves.edge_count(), [&](Report& report, bool lines) {
       curve_heads(report, options.mesh, curves.degree());
-      report.text("# edge t  x y z");
+      if (lines) report.text("# edge t  x y z");
     });
   }
   const LimitSurface surface =
       make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
-  return answer(options, surface, surface.owner_count(), [&](Report& report) {
+  return answer(options, surface, surface.owner_count(), [&](Report& report, bool lines) {
     const Scheme scheme = surface.options().scheme;
     report.heads({options.mesh}, {name_of(scheme)});
+    if (!lines) return;
     report.text(fmt::format("# {} u v{}  x y z", surface.rules().owner(),
                             surface.rules().triangular() ? "" : " corner"));
   });
@@ -202,7 +274,8 @@ ExitStatus run(const Options& options) {
 Command eval_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
+  list.add(Group::own, "MESH", &options->mesh,
+           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
   list.add(Group::own, "--samples N", &options->samples,
            "Evaluate a grid with N steps, 1 to 1000, along each edge of every face or polyline")
       .between(1, 1000);
@@ -218,7 +291,8 @@ Command eval_command() {
   return {"eval",
           Topic::one_surface,
           "Evaluate limit points, tangents and normals",
-          {"snug eval pawn.obj --samples 2", "echo \"0 0.25 0.5\" | snug eval pawn.obj --at - --json"},
+          {"snug eval pawn.obj --samples 2", "snug eval pawn.obj --samples 8 -o points.ply",
+           "echo \"0 0.25 0.5\" | snug eval pawn.obj --at - --json"},
           std::move(list),
           [options] { return run(*options); }};
 }

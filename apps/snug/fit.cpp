@@ -280,7 +280,8 @@ ExitStatus run(const Options& options) {
 Command fit_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh to begin with (OBJ, OFF, PLY or STL)");
+  list.add(Group::own, "MESH", &options->mesh,
+           "Control mesh to begin with (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "--points FILE", &options->points,
            "File with lines 'x y z', or all 'x y z face u v' as in eval; - for standard input")
       .required();

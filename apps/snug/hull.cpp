@@ -84,7 +84,7 @@ ExitStatus run(const Options& options) {
   std::deque<AtomicFile> files;
   for (const auto& [hull, path] : {std::pair{&found.inner, &options.inner}, {&found.outer, &options.outer}}) {
     if (!*hull || !found.verified) continue;
-    write_mesh(mesh_of(**hull), files.emplace_back(*path), *path, notes_for(options),
+    write_mesh(as_facets(mesh_of(**hull), *path), files.emplace_back(*path), *path, notes_for(options),
                stopped_by_interrupts());
   }
   write_summary(report, options, surface, how.tolerance, found);
@@ -98,11 +98,12 @@ ExitStatus run(const Options& options) {
 Command hull_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
+  list.add(Group::own, "MESH", &options->mesh,
+           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Largest distance between limit surface and hulls, either way; mesh units or percent (1%)");
   list.add(Group::own, "--inner FILE", &options->inner,
-           "Write the triangles behind the surface: inside of the solid (OBJ, OFF, PLY or STL)");
+           "Write the triangles behind the surface: inside of the solid (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "--outer FILE", &options->outer, "Write those in front of it: around the solid");
   add_common_options(list, *options);
   list.add(Group::effort, "--budget N", &options->most, "Most triangles of a hull");

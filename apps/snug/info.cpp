@@ -113,7 +113,8 @@ ExitStatus run(const Options& options) {
 Command info_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
+  list.add(Group::own, "MESH", &options->mesh,
+           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
   add_common_options(list, *options);
   return {"info",
           Topic::files,

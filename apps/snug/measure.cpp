@@ -104,7 +104,7 @@ Command measure_command() {
   auto options = std::make_shared<Options>();
   options->budget = MeasureOptions{}.budget;
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL)");
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "--precision SHARE", &options->precision,
            "Largest width of an interval, as a share of what is measured: 0.0001 or 0.01%");
   list.add(Group::effort, "--budget N", &options->budget,

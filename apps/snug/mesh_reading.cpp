@@ -87,11 +87,11 @@ std::string text_of_length(double length, double size) {
 
 namespace {
 
-bool is_stl(const std::string& path) {
+bool holds_facets(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return ending == ".stl";
+  return ending == ".stl" || ending == ".glb";
 }
 
 std::string how_far(std::optional<double> apart, const LimitSurface& surface) {
@@ -103,7 +103,7 @@ std::string how_far(std::optional<double> apart, const LimitSurface& surface) {
 void note_smooth_facets(const std::string& path, const CommonOptions& options, const std::string& far) {
   const Notes note = notes_for(options);
   const SchemeRules* const rules = scheme_named(options.scheme);
-  if (!note || !options.sharp.empty() || !is_stl(path) || (rules && rules->local)) return;
+  if (!note || !options.sharp.empty() || !holds_facets(path) || (rules && rules->local)) return;
   note(path +
        ": the facets are used as a control mesh, whose smooth limit surface differs from them: " + far +
        "; --sharp auto keeps sharp edges and flat faces, --scheme flat takes the triangles as they are");
@@ -113,7 +113,7 @@ void note_distance_to_faces(const LimitSurface& surface, const std::string& path
                             const CommonOptions& options, std::optional<double> known) {
   const Notes note = notes_for(options);
   const bool sharp = !options.sharp.empty();
-  if (!note || surface.rules().local || (!sharp && !is_stl(path))) return;
+  if (!note || surface.rules().local || (!sharp && !holds_facets(path))) return;
   constexpr std::size_t most_faces = 200'000;  // half a second
   if (!known && surface.face_count() > most_faces) {
     note_smooth_facets(path, options, ask_info);

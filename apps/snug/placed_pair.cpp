@@ -12,7 +12,7 @@ SurfaceBvhOptions model_options(const CommonOptions& options) {
 }
 
 void add_pair_options(OptionList& list, PairOptions& options) {
-  list.add(Group::own, "A", &options.mesh_a, "First control mesh (OBJ, OFF, PLY or STL)");
+  list.add(Group::own, "A", &options.mesh_a, "First control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "B", &options.mesh_b, "Second control mesh");
   add_pose_options(list, "-a", "A", options.pose_a);
   add_pose_options(list, "-b", "B", options.pose_b);

@@ -1,8 +1,10 @@
 #include <snug/query/ray.h>
 
-#include <string_view>
+#include <cmath>
+#include <span>
 
 #include <fmt/core.h>
+#include <snug/io/number_rows.h>
 #include <snug/io/read_file.h>
 
 #include "common.h"
@@ -10,7 +12,6 @@
 #include "placed_pair.h"
 #include "progress_bar.h"
 #include "witness.h"
-#include "words.h"
 
 namespace snug::command {
 namespace {
@@ -21,28 +22,27 @@ struct Options : CommonOptions {
   bool any = false, all = false;
 };
 
-// Lines "ox oy oz dx dy dz", and for a segment "from to".
+// Rows "ox oy oz dx dy dz", and for a segment "from to".
 std::vector<Ray> read_rays(const std::string& path) {
-  const std::string text = read_file(path, stopped_by_interrupts());
   std::vector<Ray> rays;
-  for_each_line(text, [&](std::string_view line, std::size_t number) {
-    Ray ray;
-    bool good = true;
-    for (std::size_t k = 0; k < 3; ++k) good = good && parse(next_word(line), ray.origin[k]);
-    for (std::size_t k = 0; k < 3; ++k) good = good && parse(next_word(line), ray.direction[k]);
-    if (const std::string_view from = next_word(line); !from.empty()) {
-      good = good && parse(from, ray.from) && parse(next_word(line), ray.to) && next_word(line).empty();
-    }
-    good = good && is_finite(ray.origin) && is_finite(ray.direction) && !(ray.direction == Vector3{}) &&
-           std::isfinite(ray.from) && ray.from <= ray.to;
-    if (!good) {
-      throw InputError(InputProblem::unreadable,
-                       path + ":" + std::to_string(number) +
-                           ": a line is 'ox oy oz dx dy dz', or with 'from to' after it: finite numbers, a "
-                           "direction that is not 0 0 0, and from <= to");
-    }
-    rays.push_back(ray);
-  });
+  for_each_row(
+      read_file(path, stopped_by_interrupts()), path, {6, 8},
+      "a line is 'ox oy oz dx dy dz', or with 'from to' after it: finite numbers, a direction that is "
+      "not 0 0 0, and from <= to",
+      [&](std::span<const double> row) {
+        Ray ray;
+        for (std::size_t k = 0; k < 3; ++k) {
+          ray.origin[k] = row[k];
+          ray.direction[k] = row[3 + k];
+        }
+        if (row.size() == 8) {
+          ray.from = row[6];
+          ray.to = row[7];
+        }
+        rays.push_back(ray);
+        return is_finite(ray.origin) && is_finite(ray.direction) && !(ray.direction == Vector3{}) &&
+               std::isfinite(ray.from) && ray.from <= ray.to;
+      });
   return rays;
 }
 
@@ -131,10 +131,11 @@ Command ray_command() {
   auto options = std::make_shared<Options>();
   options->budget = RayOptions().budget;
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL)");
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "--rays FILE", &options->rays,
-           "File with one ray per line, 'ox oy oz dx dy dz', for a segment with 'from to' after it; - for "
-           "standard input")
+           "File with one ray per line, 'ox oy oz dx dy dz', for a segment with 'from to' after it, CSV too, "
+           "or "
+           "an array of NumPy (.npy); - for standard input")
       .required();
   list.add(Group::own, "--all", &options->all, "All hits, not only the nearest one");
   list.add(Group::own, "--any", &options->any,

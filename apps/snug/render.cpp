@@ -576,7 +576,7 @@ Command render_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "MESH", &options->meshes,
-           "Control meshes (OBJ, OFF, PLY or STL; - for standard input)");
+           "Control meshes (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
   list.add(Group::own, "--size WxH", &options->size, "Pixels: WxH, or one number");
   list.add(Group::own, "--samples N", &options->samples, "N * N rays a pixel, N from 1 to 16").between(1, 16);
   list.add(Group::own, "--cage", &options->cage, "Draw the edges of the control meshes and polygons");

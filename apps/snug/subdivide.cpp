@@ -55,6 +55,7 @@ ExitStatus run(const Options& options) {
     result = subdivide(std::move(mesh), rules, options.level, options.limit, bar.monitor());
   });
   if (!curves) note_smooth_facets(options.mesh, options, ask_info);
+  if (!curves && names_scheme(options.output)) result.tags.scheme = scheme;
   AtomicFile file(options.output);
   write_mesh(result, file, options.output, notes_for(options), stopped_by_interrupts());
   CommonOptions to_standard_output = options;
@@ -81,7 +82,8 @@ ExitStatus run(const Options& options) {
 Command subdivide_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
+  list.add(Group::own, "MESH", &options->mesh,
+           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
   list.add(Group::own, "--level N", &options->level, "Steps of subdivision, 0 to 12").between(0, 12);
   list.add(Group::own, "--limit", &options->limit, "Move every vertex to its limit position");
   add_degree_option(list, options->degree);

@@ -110,8 +110,8 @@ ExitStatus run(const Options& options) {
                              : tessellate(surface, how, bar.monitor());
   });
   AtomicFile file(options.output);
-  write_mesh(mesh_of(result), file, options.output, notes_for(options), stopped_by_interrupts(),
-             result.normals);
+  write_mesh(as_facets(mesh_of(result), options.output), file, options.output, notes_for(options),
+             stopped_by_interrupts(), result.normals);
   report.heads({options.mesh}, {name_of(surface.options().scheme)});
   write_summary(report, options, result);
   return report.finish(result.reached, {&file});
@@ -122,7 +122,8 @@ ExitStatus run(const Options& options) {
 Command tessellate_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL; - for standard input)");
+  list.add(Group::own, "MESH", &options->mesh,
+           "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Largest distance between limit surface and triangles, either way; mesh units or percent (0.1%)");
   list.add(Group::own, "--max-triangles N", &options->max_triangles,

@@ -147,7 +147,7 @@ ExitStatus run(const Options& options) {
 Command view_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->meshes, "Control meshes (OBJ, OFF, PLY or STL)");
+  list.add(Group::own, "MESH", &options->meshes, "Control meshes (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "--answer FILE", &options->answer,
            "JSON of collide or distance about the first two: shown, with its poses");
   list.add(Group::own, "--template FILE", &options->page, "The page to fill, if not the installed one");

@@ -78,6 +78,7 @@ struct MeshTags {
   std::optional<BoundaryRule> boundary;
   CreaseMethod crease_method = CreaseMethod::uniform;
   SmoothTriangles smooth_triangles = SmoothTriangles::catmark;
+  std::optional<Scheme> scheme;  ///< none: that of the faces, see SurfaceOptions
 };
 
 /// A polygonal control mesh: positions, faces as counter-clockwise vertex cycles, tags, and polylines.
@@ -126,9 +127,9 @@ struct ReadOptions {
   WorkMonitor monitor{};
 };
 
-/// Reads a control mesh. The extension selects the format: .obj, .off, .ply or .stl, in upper or lower case.
-/// Standard input ("-") and files without an extension are recognised as PLY or OFF by their first bytes;
-/// otherwise they are read as OBJ.
+/// Reads a control mesh. The extension selects the format: .obj, .off, .ply, .stl, .glb or .usda (also .usd, if
+/// it is text), in upper or lower case. Standard input ("-") and files without an extension are recognised as
+/// PLY, OFF, USD or glTF by their first bytes; otherwise they are read as OBJ.
 ///
 /// Notes:     those of the parser, and one line about what was welded.
 /// Errors:    InputError: (unreadable) for a file that cannot be read or parsed, naming the line; those of
@@ -136,7 +137,7 @@ struct ReadOptions {
 [[nodiscard]] SNUG_API ControlMesh read_mesh(const std::string& path, const ReadOptions& options = {});
 
 /// Writes a control mesh, completely or not at all. The extension selects the format: .obj, .off, .ply
-/// (binary, little endian), .stl (binary) or .glb; "-" is OBJ on standard output.
+/// (binary, little endian), .stl (binary), .glb or .usda; "-" is OBJ on standard output.
 ///
 /// Notes:     one line for tags and one for polylines that the format cannot hold, and those of the format's
 ///            writer.

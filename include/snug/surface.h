@@ -22,7 +22,8 @@ enum class BoundMethod : std::uint8_t {
 };
 
 struct SurfaceOptions {
-  std::optional<Scheme> scheme{};          ///< default: Loop if all faces are triangles, else Catmull-Clark
+  /// Default: the mesh's tag, else Loop if all faces are triangles, else Catmull-Clark.
+  std::optional<Scheme> scheme{};
   std::optional<BoundaryRule> boundary{};  ///< default: the mesh's tag, else edge_and_corner
   BoundMethod bounds = BoundMethod::rows;  ///< how pieces are bounded
   /// Bound every patch at the first query, some microseconds each. The BVH becomes tighter, which pays off

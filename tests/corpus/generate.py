@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
-"""Writes the PLY and STL files of this folder: most are binary, so this is where to read what is in them."""
+"""Writes the PLY, STL and glTF files of this folder: most are binary, so this is where to read what is in them."""
 
+import json
+import math
 import pathlib
 import struct
 
@@ -182,3 +184,45 @@ put("two_coordinates.stl", TEXT.replace("vertex 1 0 0", "vertex 1 0", 1))
 put("text_behind.stl", TEXT + "facet\n")
 put("degenerate_facet.stl", binary(TRIANGLES + [[POINTS[0], POINTS[0], POINTS[1]]]))
 put("duplicate_facet.stl", solid(facet(t) for t in TRIANGLES + TRIANGLES[:1]))
+
+
+# --- glTF ------------------------------------------------------------------------------------------------------------
+
+def glb(text, binary):
+    text += b" " * (-len(text) % 4)
+    chunks = struct.pack("<I", len(text)) + b"JSON" + text + struct.pack("<I", len(binary)) + b"BIN\0" + binary
+    return b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks
+
+
+def gltf(binary=None, **changes):
+    """A tetrahedron: positions as floats, then indices of 16 bits; changes replace parts of the JSON text."""
+    whole = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+                      {"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
+        "buffers": [{"byteLength": 72}]}
+    whole.update(changes)
+    if binary is None:
+        binary = floats("<") + struct.pack("<12H", *sum(FACES, ()))
+    return glb(json.dumps(whole).encode(), binary)
+
+
+put("tetrahedron.glb", gltf())
+put("moved_nodes.glb", gltf(nodes=[{"children": [1]},
+                                   {"mesh": 0, "rotation": [0, 0, 1, 0], "translation": [1, 2, 3]}]))
+put("strip.glb", gltf(meshes=[{"primitives": [{"attributes": {"POSITION": 0}, "mode": 5}]}]))
+put("empty.glb", b"")
+put("truncated.glb", gltf()[:-10])
+put("wrong_length.glb", gltf() + b"more")
+put("json_truncated.glb", glb(b'{"asset": {"version": "2.0"', b""))
+put("json_nested.glb", glb(b"[" * 4000, b""))
+put("node_cycle.glb", gltf(nodes=[{"mesh": 0, "children": [0]}]))
+put("count_huge.glb", gltf(accessors=[{"componentType": 5126, "count": 10**15, "type": "VEC3"}]))
+put("view_beyond.glb", gltf(bufferViews=[{"buffer": 0, "byteOffset": 2**53 - 1, "byteLength": 48}]))
+put("external_buffer.glb", gltf(buffers=[{"byteLength": 72, "uri": "other.bin"}]))
+put("draco.glb", gltf(extensionsRequired=["KHR_draco_mesh_compression"]))
+put("index_beyond.glb", gltf(binary=floats("<") + struct.pack("<12H", *range(12))))
+put("coordinate_nan.glb", gltf(binary=floats("<", [(math.nan, 0, 0)] + POINTS[1:]) + bytes(24)))
+put("lines.glb", gltf(meshes=[{"primitives": [{"attributes": {"POSITION": 0}, "mode": 1}]}]))

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <random>
+#include <vector>
 
 namespace snug {
 namespace {
@@ -93,6 +94,31 @@ TEST(cos_of_turn, is_exact_where_it_is_rational) {
   EXPECT_EQ(cos_of_turn(1, 4), Interval(0.0));
   EXPECT_EQ(cos_of_turn(1, 6), Interval(0.5));
   EXPECT_EQ(cos_of_turn(5, 10), Interval(-1.0));
+}
+
+TEST(interval, sines_of_degrees_contain_the_exact_ones) {
+  std::mt19937_64 random(7);
+  const std::vector<double> ends{0,   1e-320, 45,  -45, 90, 135,   180,   225,
+                                 270, 315,    360, 30,  60, 1e300, -1e17, 44.999999999999993};
+  for (int trial = 0; trial < 20000; ++trial) {
+    const double angle = trial < 16 ? ends[trial] : std::uniform_real_distribution<double>(-800, 800)(random);
+    const SineCosine found = of_degrees(angle);
+    Exact radians(angle), pi(0), sine(0), cosine(0);
+    mpfr_const_pi(pi.value_, MPFR_RNDN);
+    mpfr_mul(radians.value_, radians.value_, pi.value_, MPFR_RNDN);
+    mpfr_div_ui(radians.value_, radians.value_, 180, MPFR_RNDN);
+    mpfr_sin_cos(sine.value_, cosine.value_, radians.value_, MPFR_RNDN);
+    if (std::fmod(angle, 90) == 0) {
+      ASSERT_EQ(found.sine.lower, found.sine.upper);
+      ASSERT_EQ(found.sine.lower, std::round(mpfr_get_d(sine.value_, MPFR_RNDN))) << angle;
+      ASSERT_EQ(found.cosine.lower, std::round(mpfr_get_d(cosine.value_, MPFR_RNDN))) << angle;
+      continue;
+    }
+    ASSERT_TRUE(holds(found.sine, sine)) << angle;
+    ASSERT_TRUE(holds(found.cosine, cosine)) << angle;
+    ASSERT_LE(found.sine.upper - found.sine.lower, 0x1p-46) << angle;
+    ASSERT_LE(found.cosine.upper - found.cosine.lower, 0x1p-46) << angle;
+  }
 }
 
 }  // namespace

@@ -41,7 +41,8 @@ TEST(corpus, every_file_has_one_row) {
   for (const Row& row : index_rows()) listed.insert(row.file);
   for (const auto& entry : std::filesystem::directory_iterator(SNUG_CORPUS_DIR)) {
     const std::string ending = entry.path().extension();
-    if (ending == ".obj" || ending == ".off" || ending == ".ply" || ending == ".stl") {
+    if (ending == ".obj" || ending == ".off" || ending == ".ply" || ending == ".stl" || ending == ".usda" ||
+        ending == ".glb") {
       present.insert(entry.path().filename());
     }
   }
@@ -101,6 +102,13 @@ TEST(corpus, variants_of_a_file_hold_the_same_mesh) {
     SCOPED_TRACE(file);
     expect_same_arrays(read("tetrahedron.off"), read(std::string(file) + ".ply"));
   }
+  for (const char* file : {"tetrahedron", "scene"}) {
+    SCOPED_TRACE(file);
+    expect_same_arrays(read("tetrahedron.off"), read(std::string(file) + ".usda"));
+  }
+  // Vertices in the order of the facets, as in STL.
+  EXPECT_EQ(read("tetrahedron.glb").points, read("tetrahedron_binary.stl").points);
+  EXPECT_EQ(read("tetrahedron.glb").face_vertices, read("tetrahedron_binary.stl").face_vertices);
   const ControlMesh facets = read("tetrahedron_binary.stl");
   EXPECT_EQ(facets.vertex_count(), 4u);
   for (const char* file : {"tetrahedron_ascii", "binary_solid", "binary_title_ply", "two_solids",

@@ -49,15 +49,16 @@ class InputFrom {
 TEST(mesh_file, round_trips_by_ending_in_any_case) {
   const TemporaryFolder folder;
   const ControlMesh mesh = creased_triangle();
-  for (const char* name :
-       {"a.obj", "a.OBJ", "a.off", "a.Off", "b.c.obj", "a.ply", "a.PLY", "a.stl", "a.Stl"}) {
+  for (const char* name : {"a.obj", "a.OBJ", "a.off", "a.Off", "b.c.obj", "a.ply", "a.PLY", "a.stl", "a.Stl",
+                           "a.glb", "a.usda", "a.USDA"}) {
     write_mesh(mesh, folder / name);
     expect_same_arrays(mesh, read_mesh(folder / name));
   }
   EXPECT_EQ(read_mesh(folder / "a.obj").tags.creases.size(), 1u);
+  EXPECT_EQ(read_mesh(folder / "a.usda").tags.creases.size(), 1u);
 }
 
-TEST(mesh_file, says_that_only_obj_has_tags) {
+TEST(mesh_file, says_that_only_obj_and_usd_have_tags) {
   const TemporaryFolder folder;
   std::vector<std::string> lines;
   const Notes notes = [&](const std::string& line) { lines.push_back(line); };
@@ -67,7 +68,17 @@ TEST(mesh_file, says_that_only_obj_has_tags) {
   mesh.tags = {};
   for (const char* name : {"a.off", "a.ply", "a.stl", "a.glb"}) write_mesh(mesh, folder / name, notes);
   write_mesh(creased_triangle(), folder / "a.obj", notes);
+  write_mesh(creased_triangle(), folder / "a.usda", notes);
   EXPECT_EQ(lines.size(), 4u);
+  // A scheme is a tag, but for that which the faces name themselves.
+  mesh.tags.scheme = Scheme::loop;
+  write_mesh(mesh, folder / "a.off", notes);
+  EXPECT_EQ(lines.size(), 4u);
+  mesh.tags.scheme = Scheme::flat;
+  write_mesh(mesh, folder / "a.off", notes);
+  EXPECT_EQ(lines.size(), 5u);
+  write_mesh(mesh, folder / "a.obj", notes);
+  EXPECT_EQ(read_mesh(folder / "a.obj").tags.scheme, Scheme::flat);
 }
 
 TEST(mesh_file, tells_the_formats_of_standard_input_apart) {
@@ -75,8 +86,10 @@ TEST(mesh_file, tells_the_formats_of_standard_input_apart) {
   put(folder / "obj", obj_text);
   put(folder / "off", format_off(creased_triangle()));
   put(folder / "ply", format_ply(creased_triangle()));
+  put(folder / "usda", format_usda(creased_triangle(), "usda"));
+  put(folder / "glb", format_glb(creased_triangle(), "glb"));
   put(folder / "bad", "OFF\n3 1 0\n0 0 0\n");
-  for (const char* name : {"obj", "off", "ply"}) {
+  for (const char* name : {"obj", "off", "ply", "usda", "glb"}) {
     const InputFrom input(folder / name);
     expect_same_arrays(creased_triangle(), read_mesh("-"));
   }
@@ -131,7 +144,8 @@ TEST(mesh_file, says_which_file_cannot_be_welded) {
 }
 
 TEST(mesh_file, knows_which_formats_hold_polygons) {
-  for (const char* name : {"-", "a.obj", "a.OFF", "a.ply"}) EXPECT_TRUE(writes_polygons(name)) << name;
+  for (const char* name : {"-", "a.obj", "a.OFF", "a.ply", "a.usda"})
+    EXPECT_TRUE(writes_polygons(name)) << name;
   for (const char* name : {"a.stl", "a.STL", "a.glb"}) EXPECT_FALSE(writes_polygons(name)) << name;
 }
 
@@ -149,15 +163,15 @@ TEST(mesh_file, bad_names_are_clear_errors) {
   EXPECT_EQ(message(""), "the name of the file to read is empty");
   EXPECT_EQ(message(folder / "none.obj"),
             folder / "none.obj" + ": cannot be read: No such file or directory");
-  for (const char* name : {"a.xyz", "a.glb"}) {
+  for (const char* name : {"a.xyz", "a.gltf"}) {
     EXPECT_EQ(message(folder / name),
-              folder / name + ": meshes are read from .obj, .off, .ply and .stl files only");
+              folder / name + ": meshes are read from .obj, .off, .ply, .stl, .usda and .glb files only");
   }
   std::filesystem::create_directory(folder / "folder.obj");
   EXPECT_EQ(message(folder / "folder.obj"), folder / "folder.obj" + ": is a directory: name a file in it");
   for (const char* name : {"a.xyz", "a"}) {
     const std::string expected =
-        folder / name + ": meshes are written to .obj, .off, .ply, .stl and .glb files only";
+        folder / name + ": meshes are written to .obj, .off, .ply, .stl, .glb and .usda files only";
     EXPECT_EQ(unreadable([&] { write_mesh(creased_triangle(), folder / name); }), expected);
     EXPECT_EQ(unreadable([&] { require_writable_ending(folder / name); }), expected);
   }

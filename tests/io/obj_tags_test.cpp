@@ -64,6 +64,8 @@ TEST(obj_tags, rules_are_those_of_the_file_format) {
             CreaseMethod::uniform);
   EXPECT_EQ(parse("t smoothtriangles 0/0/1 smooth\n").smooth_triangles, SmoothTriangles::smooth);
   EXPECT_EQ(parse("t smoothtriangles 0/0/1 catmark\n").smooth_triangles, SmoothTriangles::catmark);
+  EXPECT_FALSE(parse("").scheme.has_value());
+  EXPECT_EQ(parse("t scheme 0/0/1 bilinear\n").scheme, Scheme::bilinear);
 }
 
 TEST(obj_tags, what_changes_the_surface_is_not_ignored_in_silence) {

@@ -2,8 +2,10 @@
 
 import os
 import pathlib
+import tempfile
 
 import hypothesis
+import hypothesis.configuration
 import numpy as np
 import pytest
 
@@ -11,6 +13,8 @@ import snug
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 MODELS = ROOT / "examples/models"
+
+hypothesis.configuration.set_hypothesis_home_dir(tempfile.gettempdir())
 
 # SNUG_FUZZ=N: N cases of each random test.
 hypothesis.settings.register_profile(

@@ -89,15 +89,17 @@ LONG = """
 """
 
 
-def interrupted(handler="", error="MemoryError", signals=1):
+def interrupted(handler="", error="MemoryError"):
     program = textwrap.dedent(LONG).format(model=str(MODELS / "bust.obj"), handler=handler, error=error)
     process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+    watch = threading.Timer(30, process.kill)
+    watch.start()
     assert process.stdout.readline() == "ready\n"
     time.sleep(0.5)
-    for _ in range(signals):
-        process.send_signal(signal.SIGINT)
+    process.send_signal(signal.SIGINT)
     begin = time.monotonic()
     said = process.stdout.readline()
+    watch.cancel()
     return said, time.monotonic() - begin, process
 
 
@@ -143,10 +145,8 @@ def test_after_a_fork(cube):
     assert os.waitpid(child, 0)[1] == 0
 
 
-@pytest.mark.skipif("libasan" in os.environ.get("LD_PRELOAD", ""), reason="sanitizers take their time")
-def test_import_is_quick():
-    program = "import time, numpy; begin = time.perf_counter(); import snug; print(time.perf_counter() - begin)"
-    seconds = [float(subprocess.run([sys.executable, "-c", program], capture_output=True, check=True).stdout) for _ in range(5)]
-    assert min(seconds) < 0.1
+def test_import_brings_no_more_than_it_needs():
+    """What takes its time is imported on first use; how long the import takes: bench/python/run."""
     late = "import sys, snug; print([name for name in sys.modules if name.startswith('snug.')])"
-    assert "_view" not in subprocess.run([sys.executable, "-c", late], capture_output=True, text=True, check=True).stdout
+    loaded = subprocess.run([sys.executable, "-c", late], capture_output=True, text=True, check=True).stdout
+    assert not any(name in loaded for name in ("_view", "collision", "proximity"))

@@ -21,7 +21,7 @@ pytestmark = pytest.mark.skipif(
 
 # pybind11's classes have a metaclass and an __init__ of their own; copies and sequences go without saying.
 ALLOWED = r"""
-snug\.(_snug\.|_view\.)?_?[A-Z][A-Za-z]+
+snug\.(_snug\.|_view\.|collision\.|proximity\.)?_?[A-Z][A-Za-z]+
 .*\.__(init|new|len|getitem|iter|copy|deepcopy|getstate|setstate|reduce)__
 """
 

@@ -202,7 +202,7 @@ export interface Surface {
 }
 
 export interface SnugModule {
-  /** Reads OBJ, OFF, PLY or STL; the ending of the name says which. */
+  /** Reads OBJ, OFF, PLY, STL, USD or glTF; the ending of the name says which. */
   read(name: string, data: string | ArrayBuffer | ArrayBufferView, options?: ReadOptions): Surface;
   collide(a: Surface, b: Surface, options?: CollideOptions): Collision;
   distance(a: Surface, b: Surface, options?: DistanceOptions): Distance;

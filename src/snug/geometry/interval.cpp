@@ -25,6 +25,9 @@ Interval alternating_series(Interval first, Interval x_sq, unsigned factor) {
   return {rounded_down(sum.lower - rest), rounded_up(sum.upper + rest)};
 }
 
+// Between these two neighbours.
+constexpr Interval pi(0x1.921fb54442d18p+1, 0x1.921fb54442d19p+1);
+
 }  // namespace
 
 Interval operator+(Interval a, Interval b) {
@@ -59,13 +62,33 @@ Interval cos_of_turn(unsigned k, unsigned n) {
   if (num == 0) return 1.0;
   if (4 * num == den) return 0.0;
   if (6 * num == den) return 0.5;
-  // pi lies between these two neighbours.
-  const Interval pi(0x1.921fb54442d18p+1, 0x1.921fb54442d19p+1);
   const Interval x =
       Interval(2) * pi * Interval(static_cast<double>(num)) / Interval(static_cast<double>(den));
   if (8 * num <= den) return alternating_series(1.0, x * x, 1);
   const Interval y = pi / Interval(2) - x;  // in (0, pi/4): cos x = sin y
   return alternating_series(y, y * y, 2);
+}
+
+SineCosine of_degrees(double angle) {
+  SNUG_EXPECT(std::isfinite(angle));
+  int quarters = 0;                                         // correct in its last three bits at least
+  const double rest = std::remquo(angle, 90.0, &quarters);  // exact, in [-45, 45]
+  Interval sine = 0.0, cosine = 1.0;
+  if (rest != 0) {
+    const Interval x = Interval(rest) * pi / Interval(180);
+    sine = alternating_series(x, x * x, 2);
+    cosine = alternating_series(1.0, x * x, 1);
+  }
+  switch (quarters & 3) {
+    case 0:
+      return {sine, cosine};
+    case 1:
+      return {cosine, -sine};
+    case 2:
+      return {-sine, -cosine};
+    default:
+      return {-cosine, sine};
+  }
 }
 
 }  // namespace snug

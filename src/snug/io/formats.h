@@ -99,6 +99,59 @@ namespace snug {
 [[nodiscard]] std::string format_stl(const ControlMesh& mesh, const std::string& name,
                                      const Notes& notes = {});
 
+/// Whether a text begins with the header of USD's text format.
+[[nodiscard]] bool begins_like_usda(std::string_view text);
+
+/// The control mesh that a USD text describes.
+///
+/// Reads:     the meshes (`def Mesh`) that are defined, active, visible, and neither guide nor proxy, as one
+///            control mesh: points, faceVertexCounts, faceVertexIndices, subdivisionScheme,
+///            interpolateBoundary, triangleSubdivisionRule, creases, corners, holes and orientation; and the
+///            transforms of their prims and of those above. All else is passed over: normals, primvars,
+///            materials, subsets, lights, cameras.
+/// Guarantee: coordinates are the doubles nearest to the decimals, whatever type the file names; where a
+///            transform is not the identity, they are at most as far off as a note says. Meshes, vertices and
+///            faces keep their order. The scheme and the rules are tags, the scheme always: `catmullClark`
+///            where the file names none; `none` is flat, or bilinear where a face is no triangle. Faces of
+///            left-handed meshes, and of mirrored right-handed ones, are reversed.
+/// Notes:     one line for each reason why meshes are left out, for transforms, for reversed faces, for units
+///            and axes, and for `none` with faces that are no triangles.
+/// Errors:    also references, payloads, inherits, specializes, variants, sublayers, instancers and values by
+///            time where they may concern a mesh that counts; meshes whose schemes or rules differ; binary
+///            files.
+/// Source:    OpenUSD, UsdGeomMesh, UsdGeomXformable and UsdGeomImageable.
+[[nodiscard]] ControlMesh parse_usda(std::string_view bytes, const std::string& name,
+                                     const Notes& notes = {});
+
+/// The mesh as a USD text with one prim, which parse_usda reads back bit by bit and with its tags. `points`
+/// have the type that USD asks for, point3f, but all digits: other programs round them to floats.
+///
+/// Notes:     one line for a dual scheme and one for a crease method, which USD does not have.
+/// Errors:    InputError (refused) for more than 2^31 - 1 vertices.
+[[nodiscard]] std::string format_usda(const ControlMesh& mesh, const std::string& name,
+                                      const Notes& notes = {});
+
+/// Whether the bytes begin like a binary glTF file.
+[[nodiscard]] bool begins_like_glb(std::string_view bytes);
+
+/// The control mesh that the triangles of a binary glTF 2.0 file are.
+///
+/// Reads:     the meshes of the nodes of the default scene (without one: the first; without any: all nodes):
+///            triangles, strips and fans, with or without indices; positions as floats, and as integers where
+///            KHR_mesh_quantization allows them; sparse and interleaved accessors. Materials, normals, cameras
+///            and animations are ignored.
+/// Guarantee: coordinates are exactly the floats, and moved by nodes at most as far off as a note says. The
+///            file splits vertices by normals and the like: within a node, corners become one vertex where
+///            they are equal. Triangles with two corners in one place are left out, the others keep their
+///            order; mirroring nodes reverse them. Instances and shared accessors make at most 100 times the
+///            file.
+/// Notes:     one line each for moved points, primitives without triangles, triangles that are left out, and
+///            skins or morph targets, which are not applied.
+/// Errors:    also buffers outside of the file, extensions that are needed and may concern the geometry, such
+///            as Draco's and meshopt's, nodes that do not form trees.
+/// Source:    glTF 2.0 specification, sections 3.5 to 3.7 and 4.4.
+[[nodiscard]] ControlMesh parse_glb(std::string_view bytes, const std::string& name, const Notes& notes = {});
+
 /// The mesh as a binary glTF 2.0 file, for viewers: one node, one mesh, one list of triangles; positions as
 /// floats, indices of 32 bits, normals of the vertices if there are any, no materials. Its tags are left out.
 ///

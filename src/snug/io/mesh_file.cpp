@@ -10,6 +10,7 @@
 #include <snug/io/number.h>
 #include <snug/io/read_file.h>
 #include <snug/mesh/weld.h>
+#include <snug/scheme/scheme.h>
 
 namespace snug {
 namespace {
@@ -28,18 +29,22 @@ std::string format_among(std::initializer_list<std::string_view> known, const st
 /// The ending that names the format to write.
 std::string format_to_write(const std::string& path) {
   if (path == "-") return ".obj";
-  return format_among({".obj", ".off", ".ply", ".stl", ".glb"}, path,
-                      "written to .obj, .off, .ply, .stl and .glb");
+  return format_among({".obj", ".off", ".ply", ".stl", ".glb", ".usda"}, path,
+                      "written to .obj, .off, .ply, .stl, .glb and .usda");
 }
 
-bool changes_surface(const MeshTags& tags) {
-  return !tags.creases.empty() || !tags.corners.empty() || !tags.holes.empty() || tags.boundary ||
-         tags.crease_method != CreaseMethod::uniform || tags.smooth_triangles != SmoothTriangles::catmark;
+bool changes_surface(const ControlMesh& mesh) {
+  const MeshTags& tags = mesh.tags;
+  return natural_scheme(mesh) != scheme_of_faces(mesh) || !tags.creases.empty() || !tags.corners.empty() ||
+         !tags.holes.empty() || tags.boundary || tags.crease_method != CreaseMethod::uniform ||
+         tags.smooth_triangles != SmoothTriangles::catmark;
 }
 
 /// The format of a file whose name does not tell.
 std::string sniffed_format(std::string_view bytes) {
   if (begins_like_ply(bytes)) return ".ply";
+  if (begins_like_glb(bytes)) return ".glb";
+  if (begins_like_usda(bytes)) return ".usda";
   return begins_like_off(bytes) ? ".off" : ".obj";
 }
 
@@ -48,13 +53,15 @@ std::string formatted(const ControlMesh& mesh, const std::string& ending, const 
   if (ending == ".off") return format_off(mesh);
   if (ending == ".ply") return format_ply(mesh);
   if (ending == ".stl") return format_stl(mesh, path, notes);
+  if (ending == ".usda") return format_usda(mesh, path, notes);
   if (ending == ".glb") return format_glb(mesh, path, notes, normals);
   return format_obj(mesh);
 }
 
 /// The ending that names the format to read; empty for none.
 std::string format_to_read(const std::string& path) {
-  return format_among({"", ".obj", ".off", ".ply", ".stl"}, path, "read from .obj, .off, .ply and .stl");
+  return format_among({"", ".obj", ".off", ".ply", ".stl", ".usda", ".usd", ".usdc", ".usdz", ".glb"}, path,
+                      "read from .obj, .off, .ply, .stl, .usda and .glb");
 }
 
 ControlMesh parsed(std::string_view bytes, std::string ending, const std::string& name, const Notes& notes) {
@@ -62,6 +69,8 @@ ControlMesh parsed(std::string_view bytes, std::string ending, const std::string
   if (ending == ".off") return parse_off(bytes, name);
   if (ending == ".ply") return parse_ply(bytes, name);
   if (ending == ".stl") return parse_stl(bytes, name);
+  if (ending == ".glb") return parse_glb(bytes, name, notes);
+  if (ending.starts_with(".usd")) return parse_usda(bytes, name, notes);  // refuses binary ones
   return parse_obj(bytes, name, notes);
 }
 
@@ -120,16 +129,25 @@ bool writes_polygons(const std::string& path) {
 
 bool writes_floats(const std::string& path) { return !writes_polygons(path); }
 
+bool names_scheme(const std::string& path) { return format_to_write(path) == ".usda"; }
+
+ControlMesh as_facets(ControlMesh mesh, const std::string& path) {
+  if (names_scheme(path)) mesh.tags.scheme = Scheme::flat;
+  return mesh;
+}
+
 bool writes_normals(const std::string& path) { return format_to_write(path) == ".glb"; }
 
 void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& path, const Notes& notes,
                 const WorkMonitor& monitor, std::span<const Vector3> normals) {
   const std::string ending = format_to_write(path);
   const auto note_if = [&](bool dropped, const char* what) {
-    if (dropped && ending != ".obj" && notes) notes(path + what);
+    if (dropped && notes) notes(path + what);
   };
-  note_if(changes_surface(mesh.tags), ": this format has no tags: creases and rules are dropped");
-  note_if(mesh.polyline_count() > 0, ": this format has no polylines: they are dropped");
+  const bool is_obj = ending == ".obj";
+  note_if(!is_obj && ending != ".usda" && changes_surface(mesh),
+          ": this format has no tags: creases and rules are dropped");
+  note_if(!is_obj && mesh.polyline_count() > 0, ": this format has no polylines: they are dropped");
   monitor.checkpoint();
   const std::string bytes = formatted(mesh, ending, path, notes, normals);
   constexpr std::size_t part = std::size_t{1} << 20;

@@ -30,5 +30,9 @@ void require_writable_ending(const std::string& path);
 [[nodiscard]] bool writes_floats(const std::string& path);
 /// Does write_mesh write normals of vertices into it?
 [[nodiscard]] bool writes_normals(const std::string& path);
+/// Does every such file name a scheme? Without a tag, that of the faces.
+[[nodiscard]] bool names_scheme(const std::string& path);
+/// A mesh whose faces are meant as they are, to write into such a file: tagged so if names_scheme(path).
+[[nodiscard]] ControlMesh as_facets(ControlMesh mesh, const std::string& path);
 
 }  // namespace snug

@@ -7,6 +7,7 @@
 
 #include <snug/io/number.h>
 #include <snug/mesh/tag_names.h>
+#include <snug/scheme/rules.h>
 
 namespace snug {
 namespace {
@@ -83,6 +84,13 @@ void spread_sharpness(const TextCursor& at, const std::string& tag, std::vector<
   sharpness.resize(count, sharpness[0]);
 }
 
+std::string names_of_schemes() {
+  std::string names;
+  for (const SchemeRules* rules : all_schemes())
+    names += (names.empty() ? "" : ", ") + std::string(rules->name);
+  return names;
+}
+
 void append_tag(std::string& text, std::string_view head, std::initializer_list<std::uint32_t> ids,
                 std::optional<double> sharpness = {}) {
   text += head;
@@ -101,8 +109,8 @@ void append_tag(std::string& text, std::string_view head, std::initializer_list<
 
 void ObjTagReader::read(TextCursor& at) {
   const std::string_view name = at.word();
-  constexpr std::array<std::string_view, 6> known{"crease", "corner",       "interpolateboundary",
-                                                  "hole",   "creasemethod", "smoothtriangles"};
+  constexpr std::array<std::string_view, 7> known{
+      "crease", "corner", "interpolateboundary", "hole", "creasemethod", "smoothtriangles", "scheme"};
   if (std::find(known.begin(), known.end(), name) == known.end()) return ignore(at, name);
 
   const std::string tag = "tag " + std::string(name) + ": ";
@@ -131,6 +139,10 @@ void ObjTagReader::read(TextCursor& at) {
   } else if (name == "interpolateboundary") {
     if (values.ids.empty() || values.ids[0] >= numbered_rules.size()) refuse_choice("0, 1 and 2");
     tags_.boundary = numbered_rules[values.ids[0]];
+  } else if (name == "scheme") {
+    const SchemeRules* const rules = scheme_named(values.text);
+    if (!rules) refuse_choice(names_of_schemes());
+    tags_.scheme = rules->scheme;
   } else {
     const auto choose = [&](const auto& names, auto& choice) {
       const auto chosen = value_in(names, values.text);
@@ -172,6 +184,7 @@ MeshTags ObjTagReader::finish(const TextCursor& at, std::size_t vertex_count, st
 }
 
 void append_obj_tags(std::string& text, const MeshTags& tags) {
+  if (tags.scheme) text += std::string("t scheme 0/0/1 ") + name_of(*tags.scheme) + '\n';
   if (tags.boundary) {
     const auto number = std::find(numbered_rules.begin(), numbered_rules.end(), *tags.boundary);
     append_tag(text, "t interpolateboundary 1/0/0",

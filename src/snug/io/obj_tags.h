@@ -22,9 +22,10 @@ namespace snug {
 ///     interpolateboundary  0 none, 1 edge-and-corner, 2 edge-only
 ///     creasemethod         "normal" or "uniform", "chaikin"
 ///     smoothtriangles      "catmark", "smooth"
+///     scheme               the name of a scheme of surfaces; this one is snug's own
 ///
 /// Vertices and faces count from 0 here, although `f` counts from 1. Tags may stand before what they name. Of
-/// the last three the last one in the file holds. `facevaryinginterpolateboundary` does not concern the
+/// the last four the last one in the file holds. `facevaryinginterpolateboundary` does not concern the
 /// surface and is ignored; so are hierarchical edits (`vertexedit`, `edgeedit`, `faceedit`) and unknown
 /// names, each name with one note.
 class ObjTagReader {

@@ -103,11 +103,10 @@ struct Signature {
 
 constexpr const char *utf16 = "this is UTF-16 text: save it as UTF-8",
                      *ply = "this is a PLY file: give it a name that ends in .ply",
-                     *gltf =
-                         "this is a binary glTF file, which is written but not read: "
-                         "convert it to OBJ, OFF, PLY or STL";
+                     *gltf = "this is a binary glTF file: give it a name that ends in .glb",
+                     *usdc = "this is a binary USD file: convert it to text, usdcat -o mesh.usda";
 
-constexpr std::array<Signature, 10> signatures{
+constexpr std::array<Signature, 11> signatures{
     {{"\xFF\xFE"sv, utf16},
      {"\xFE\xFF"sv, utf16},
      {"\x1F\x8B"sv, "this is a gzip file: unpack it first"},
@@ -117,7 +116,8 @@ constexpr std::array<Signature, 10> signatures{
      {"\x28\xB5\x2F\xFD"sv, "this is a Zstandard file: unpack it first"},
      {"glTF"sv, gltf},
      {"ply\n"sv, ply},
-     {"ply\r"sv, ply}}};
+     {"ply\r"sv, ply},
+     {"PXR-USDC"sv, usdc}}};
 
 bool begins_with_binary_off(std::string_view bytes) {
   const std::string_view line = bytes.substr(0, bytes.find_first_of("\r\n"));

@@ -150,21 +150,7 @@ Vector3 unit_normal(const Point3& a, const Point3& b, const Point3& c) {
 }  // namespace
 
 ControlMesh parse_stl(std::string_view bytes, const std::string& name) {
-  const Corners corners = read_corners(bytes, name);
-  const std::vector<std::uint32_t> first = first_of_welded(corners);
-  ControlMesh mesh;
-  std::vector<std::uint32_t> number(corners.size());
-  mesh.face_vertices.reserve(corners.size());
-  mesh.face_offsets.reserve(corners.size() / 3 + 1);
-  for (std::uint32_t corner = 0; corner < corners.size(); ++corner) {
-    if (first[corner] == corner) {
-      number[corner] = static_cast<std::uint32_t>(mesh.points.size());
-      mesh.points.push_back(corners[corner]);
-    }
-    mesh.face_vertices.emplace_back(number[first[corner]]);
-    if (corner % 3 == 2) mesh.face_offsets.push_back(corner + 1);
-  }
-  return mesh;
+  return mesh_of_triangles(read_corners(bytes, name));
 }
 
 std::string format_stl(const ControlMesh& mesh, const std::string& name, const Notes& notes) {

@@ -95,7 +95,7 @@ class Inspector {
     };
     const auto good_sharpness = [](double s) { return std::isfinite(s) && s >= 0; };
     const auto there = [&](VertexId v) { return v.index() < mesh_.vertex_count(); };
-    const auto& [creases, corners, holes, boundary, crease_method, smooth_triangles] = mesh_.tags;
+    const auto& [creases, corners, holes, boundary, crease_method, smooth_triangles, scheme] = mesh_.tags;
     for (std::size_t i = 0; i < creases.size(); ++i) {
       const auto [a, b, sharpness] = creases[i];
       expect(there(a) && there(b) && good_sharpness(sharpness), "crease", i,

@@ -263,4 +263,21 @@ Welded weld(ControlMesh& mesh, double distance) {
   return Welder(mesh, first_of_welded(mesh.points, distance)).weld();
 }
 
+ControlMesh mesh_of_triangles(std::span<const Point3> corners) {
+  const std::vector<std::uint32_t> first = first_of_welded(corners);
+  ControlMesh mesh;
+  std::vector<std::uint32_t> number(corners.size());
+  mesh.face_vertices.reserve(corners.size());
+  mesh.face_offsets.reserve(corners.size() / 3 + 1);
+  for (std::uint32_t corner = 0; corner < corners.size(); ++corner) {
+    if (first[corner] == corner) {
+      number[corner] = static_cast<std::uint32_t>(mesh.points.size());
+      mesh.points.push_back(corners[corner]);
+    }
+    mesh.face_vertices.emplace_back(number[first[corner]]);
+    if (corner % 3 == 2) mesh.face_offsets.push_back(corner + 1);
+  }
+  return mesh;
+}
+
 }  // namespace snug

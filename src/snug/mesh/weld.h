@@ -20,5 +20,10 @@ namespace snug {
 /// Cost:      linear without a distance; with one also sorting the points and their pairs in neighbouring
 ///            cells of half that distance until one welds the two cells: about a second for a million points.
 [[nodiscard]] std::vector<std::uint32_t> first_of_welded(std::span<const Point3> points, double distance = 0);
+/// The mesh of triangles that are given by three corners each. Corners become one vertex where they are equal,
+/// 0 and -0 being equal; vertices are numbered in the order of their first corners, triangles keep theirs.
+///
+/// Requires:  fewer than 2^32 - 1 corners, a multiple of three.
+[[nodiscard]] ControlMesh mesh_of_triangles(std::span<const Point3> corners);
 
 }  // namespace snug

@@ -30,6 +30,7 @@ ControlMesh only(const ControlMesh& mesh, const std::vector<bool>& kept) {
     }
     result.add_face(corners);
   }
+  result.tags.scheme = mesh.tags.scheme;
   result.tags.boundary = mesh.tags.boundary;
   return result;
 }
@@ -74,6 +75,7 @@ ControlMesh subdivide(ControlMesh mesh, const SchemeOptions& options, unsigned l
                       const WorkMonitor& monitor) {
   const SchemeOptions rules = with_tags(options, mesh.tags);
   require_subdividable(mesh, rules);
+  if (mesh.tags.scheme) mesh.tags.scheme = rules.scheme;
   if (level > 60 || face_count_after(mesh, rules_of(rules.scheme), level) > 0x1p31) {
     throw InputError(InputProblem::refused, "level " + std::to_string(level) + " of " +
                                                 std::to_string(mesh.face_count()) +

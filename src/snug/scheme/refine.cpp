@@ -72,6 +72,7 @@ MeshTags refined_tags(const ControlMesh& mesh, const SchemeOptions& options, con
                       const RefinedTopology& refined) {
   const SchemeRules& rules = rules_of(options.scheme);
   MeshTags tags;
+  tags.scheme = mesh.tags.scheme;
   tags.boundary = mesh.tags.boundary;
   tags.crease_method = mesh.tags.crease_method;
   if (rules.triangular()) tags.smooth_triangles = mesh.tags.smooth_triangles;

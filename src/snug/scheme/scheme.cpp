@@ -94,6 +94,10 @@ Topology require_fit_for(Purpose purpose, const ControlMesh& mesh, const SchemeO
 const char* name_of(Scheme scheme) { return rules_of(scheme).name; }
 
 Scheme natural_scheme(const ControlMesh& mesh) {
+  return mesh.tags.scheme ? *mesh.tags.scheme : scheme_of_faces(mesh);
+}
+
+Scheme scheme_of_faces(const ControlMesh& mesh) {
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     if (mesh.face(FaceId(f)).size() != 3) return Scheme::catmark;
   }

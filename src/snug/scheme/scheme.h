@@ -23,8 +23,10 @@ struct SchemeOptions {
 /// Most vertices of a face.
 inline constexpr std::size_t max_face_size = 1000;
 
-/// The scheme of a mesh that names none: Loop for triangles alone, else Catmull-Clark.
+/// The scheme that a mesh's tag names; without one that of its faces.
 [[nodiscard]] Scheme natural_scheme(const ControlMesh& mesh);
+/// Loop for triangles alone, else Catmull-Clark, whatever the tag.
+[[nodiscard]] Scheme scheme_of_faces(const ControlMesh& mesh);
 
 /// The topology of the mesh. Throws InputError (refused), naming elements and the next step, unless the limit
 /// surface under these rules is one that snug answers questions about: no refusing defect (mesh/validate.h),

@@ -1,0 +1,331 @@
+#include <snug/io/formats.h>
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include <snug/io/binary.h>
+
+#include "io_testing.h"
+
+namespace snug {
+namespace {
+
+using nlohmann::json;
+using testing::corners;
+using testing::expect_same_arrays;
+using testing::unreadable;
+
+using Ids = std::vector<std::uint32_t>;
+
+std::string container(const std::string& text, const std::string& binary) {
+  std::string padded = text;
+  padded.resize((text.size() + 3) / 4 * 4, ' ');
+  std::string bytes = "glTF";
+  append_binary(bytes, std::uint32_t{2});
+  append_binary(bytes, static_cast<std::uint32_t>(12 + 8 + padded.size() + 8 + binary.size()));
+  append_binary(bytes, static_cast<std::uint32_t>(padded.size()));
+  bytes += "JSON" + padded;
+  append_binary(bytes, static_cast<std::uint32_t>(binary.size()));
+  bytes.append("BIN\0", 4);
+  return bytes + binary;
+}
+
+/// A file that grows by values: views, accessors, and one primitive that a test may change.
+class File {
+ public:
+  json text{{"asset", {{"version", "2.0"}}},
+            {"scene", 0},
+            {"scenes", {{{"nodes", {0}}}}},
+            {"nodes", {{{"mesh", 0}}}},
+            {"meshes", {{{"primitives", json::array({json{{"attributes", json::object()}}})}}}},
+            {"accessors", json::array()},
+            {"bufferViews", json::array()}};
+  std::string binary;
+
+  template <class Number>
+  std::size_t view(const std::vector<Number>& values, std::size_t stride = 0) {
+    json own{{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", values.size() * sizeof(Number)}};
+    if (stride) own["byteStride"] = stride;
+    for (const Number value : values) append_binary(binary, value);
+    text["bufferViews"].push_back(own);
+    return text["bufferViews"].size() - 1;
+  }
+  std::size_t accessor(std::size_t view, unsigned component, std::size_t count, const char* type) {
+    text["accessors"].push_back(
+        {{"bufferView", view}, {"componentType", component}, {"count", count}, {"type", type}});
+    return text["accessors"].size() - 1;
+  }
+  void positions(const std::vector<float>& values) {
+    primitive()["attributes"]["POSITION"] = accessor(view(values), 5126, values.size() / 3, "VEC3");
+  }
+  template <class Number>
+  void indices(const std::vector<Number>& values, unsigned component) {
+    primitive()["indices"] = accessor(view(values), component, values.size(), "SCALAR");
+  }
+  json& primitive() { return text["meshes"][0]["primitives"][0]; }
+  json& node(std::size_t n = 0) { return text["nodes"][n]; }
+
+  [[nodiscard]] std::string bytes() const {
+    json whole = text;
+    if (!whole.contains("buffers")) whole["buffers"] = {{{"byteLength", binary.size()}}};
+    return container(whole.dump(), binary);
+  }
+  [[nodiscard]] ControlMesh read(const Notes& notes = {}) const {
+    return parse_glb(bytes(), "in.glb", notes);
+  }
+  [[nodiscard]] std::string refusal() const {
+    return unreadable([&] { static_cast<void>(read()); });
+  }
+  [[nodiscard]] std::vector<std::string> notes() const {
+    std::vector<std::string> lines;
+    static_cast<void>(read([&](const std::string& line) { lines.push_back(line); }));
+    return lines;
+  }
+};
+
+/// Five corners of a strip in the plane.
+File strip() {
+  File file;
+  file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0.1f});
+  return file;
+}
+
+std::vector<Ids> faces(const ControlMesh& mesh) {
+  std::vector<Ids> all;
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) all.push_back(corners(mesh, f));
+  return all;
+}
+
+TEST(parse_glb, reads_back_what_is_written) {
+  ControlMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0.5}, {0.25, 3, -2}};
+  for (const auto& f : {Ids{0, 1, 2}, Ids{0, 3, 1}, Ids{1, 3, 2}}) {
+    mesh.add_face(std::vector<VertexId>(f.begin(), f.end()));
+  }
+  expect_same_arrays(mesh, parse_glb(format_glb(mesh, "a.glb"), "a.glb"));
+  const std::vector<Vector3> normals(4, {0, 0, 1});
+  expect_same_arrays(mesh, parse_glb(format_glb(mesh, "a.glb", {}, normals), "a.glb"));
+}
+
+TEST(parse_glb, lists_strips_and_fans_turn_as_the_specification_says) {
+  File file = strip();
+  file.indices<std::uint16_t>({0, 1, 2, 2, 1, 3}, 5123);
+  EXPECT_EQ(faces(file.read()), (std::vector{Ids{0, 1, 2}, Ids{2, 1, 3}}));
+  file = strip();
+  file.primitive()["mode"] = 5;
+  EXPECT_EQ(faces(file.read()), (std::vector{Ids{0, 1, 2}, Ids{1, 3, 2}, Ids{2, 3, 4}}));
+  file.primitive()["mode"] = 6;  // vertices are numbered as they are met
+  EXPECT_EQ(file.read().points[0], (Point3{1, 0, 0}));
+  EXPECT_EQ(faces(file.read()), (std::vector{Ids{0, 1, 2}, Ids{1, 3, 2}, Ids{3, 4, 2}}));
+}
+
+TEST(parse_glb, indices_may_be_of_8_16_and_32_bits_or_none) {
+  const auto with = [](const auto& add) {
+    File file = strip();
+    add(file);
+    return faces(file.read());
+  };
+  const std::vector<Ids> wanted{Ids{0, 1, 2}};
+  EXPECT_EQ(with([](File& f) { f.indices<std::uint8_t>({1, 3, 2}, 5121); }), wanted);
+  EXPECT_EQ(with([](File& f) { f.indices<std::uint16_t>({1, 3, 2}, 5123); }), wanted);
+  EXPECT_EQ(with([](File& f) { f.indices<std::uint32_t>({1, 3, 2}, 5125); }), wanted);
+  File file;
+  file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
+  EXPECT_EQ(faces(file.read()), (std::vector{Ids{0, 1, 2}, Ids{1, 3, 2}}));  // welded
+}
+
+TEST(parse_glb, reads_interleaved_and_sparse_accessors) {
+  File file;
+  const std::size_t view = file.view<float>({9, 0, 0, 0, 9, 1, 0, 0, 9, 0, 1, 0}, 16);
+  file.primitive()["attributes"]["POSITION"] = file.accessor(view, 5126, 3, "VEC3");
+  file.text["accessors"][0]["byteOffset"] = 4;
+  EXPECT_EQ(file.read().points, (std::vector<Point3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  const std::size_t places = file.view<std::uint8_t>({2, 0, 0, 0}), values = file.view<float>({5, 6, 7});
+  file.text["accessors"][0]["sparse"] = {{"count", 1},
+                                         {"indices", {{"bufferView", places}, {"componentType", 5121}}},
+                                         {"values", {{"bufferView", values}}}};
+  EXPECT_EQ(file.read().points[2], (Point3{5, 6, 7}));
+  // Without a view all other elements are zero.
+  File zeros;
+  const std::size_t two = zeros.view<std::uint16_t>({1, 2}), news = zeros.view<float>({5, 6, 7, 8, 9, 10});
+  zeros.text["accessors"].push_back({{"componentType", 5126},
+                                     {"count", 3},
+                                     {"type", "VEC3"},
+                                     {"sparse",
+                                      {{"count", 2},
+                                       {"indices", {{"bufferView", two}, {"componentType", 5123}}},
+                                       {"values", {{"bufferView", news}}}}}});
+  zeros.primitive()["attributes"]["POSITION"] = 0;
+  EXPECT_EQ(zeros.read().points, (std::vector<Point3>{{0, 0, 0}, {5, 6, 7}, {8, 9, 10}}));
+}
+
+TEST(parse_glb, quantized_positions_are_integers_or_parts_of_the_largest) {
+  File file;
+  const std::size_t view = file.view<std::int8_t>({0, 0, 0, 0, 127, 0, 0, 0, -128, 64, 0, 0}, 4);
+  file.primitive()["attributes"]["POSITION"] = file.accessor(view, 5120, 3, "VEC3");
+  file.text["extensionsRequired"] = {"KHR_mesh_quantization"};
+  EXPECT_EQ(file.read().points, (std::vector<Point3>{{0, 0, 0}, {127, 0, 0}, {-128, 64, 0}}));
+  file.text["accessors"][0]["normalized"] = true;
+  EXPECT_EQ(file.read().points, (std::vector<Point3>{{0, 0, 0}, {1, 0, 0}, {-1, 64.0 / 127, 0}}));
+}
+
+TEST(parse_glb, nodes_move_their_meshes) {
+  File file = strip();
+  file.indices<std::uint8_t>({0, 1, 2}, 5121);
+  file.text["nodes"] = json::array(
+      {{{"children", {1}}, {"translation", {0, 0, 5}}},
+       {{"mesh", 0}, {"translation", {10, 0, 0}}, {"rotation", {0, 0, 1, 0}}, {"scale", {2, 1, 1}}}});
+  // Scaled, turned by half a turn about z, moved.
+  const ControlMesh mesh = file.read();
+  EXPECT_NEAR(mesh.points[1].x, 8, 1e-14);
+  EXPECT_NEAR(mesh.points[2].y, -1, 1e-14);
+  EXPECT_EQ(mesh.points[0].z, 5);
+  EXPECT_EQ(corners(mesh, 0), (Ids{0, 1, 2}));
+  EXPECT_EQ(file.notes().size(), 1u);
+  // Columns of a matrix: a mirror, and a move.
+  file.node(1) = {{"mesh", 0}, {"matrix", {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 7, 0, 0, 1}}};
+  EXPECT_EQ(file.read().points[1], (Point3{6, 0, 5}));
+  EXPECT_EQ(corners(file.read(), 0), (Ids{0, 2, 1}));
+}
+
+TEST(parse_glb, equal_corners_are_welded_within_a_node) {
+  File file;
+  // Two triangles beside each other, of two primitives.
+  file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  const std::size_t other = file.accessor(file.view<float>({1, 0, 0, 1, 1, 0, -0.0f, 1, 0}), 5126, 3, "VEC3");
+  file.text["meshes"][0]["primitives"].push_back({{"attributes", {{"POSITION", other}}}});
+  EXPECT_EQ(faces(file.read()), (std::vector{Ids{0, 1, 2}, Ids{1, 3, 2}}));
+  // As two nodes they stay apart.
+  file.text["meshes"] =
+      json::array({{{"primitives", json::array({{{"attributes", {{"POSITION", 0}}}}})}},
+                   {{"primitives", json::array({{{"attributes", {{"POSITION", other}}}}})}}});
+  file.text["nodes"] = json::array({{{"mesh", 0}}, {{"mesh", 1}}});
+  file.text["scenes"][0]["nodes"] = {1, 0};
+  EXPECT_EQ(faces(file.read()), (std::vector{Ids{0, 1, 2}, Ids{3, 4, 5}}));
+  EXPECT_EQ(file.read().points[1], (Point3{1, 1, 0}));  // in the order of the scene
+}
+
+TEST(parse_glb, scenes_say_which_nodes_count) {
+  File file = strip();
+  file.indices<std::uint8_t>({0, 1, 2}, 5121);
+  file.text["nodes"] = json::array({{{"mesh", 0}}, {{"mesh", 0}, {"children", {2}}}, {{"mesh", 0}}});
+  file.text["scenes"] = json::array({{{"nodes", {0}}}, {{"nodes", {1}}}});
+  EXPECT_EQ(file.read().face_count(), 1u);
+  file.text["scene"] = 1;
+  EXPECT_EQ(file.read().face_count(), 2u);
+  file.text.erase("scene");
+  EXPECT_EQ(file.read().face_count(), 1u);
+  file.text.erase("scenes");
+  EXPECT_EQ(file.read().face_count(), 3u);
+}
+
+TEST(parse_glb, what_makes_no_triangles_is_left_out_with_a_note) {
+  File file = strip();
+  file.indices<std::uint8_t>({0, 1, 2, 2, 2, 3}, 5121);
+  EXPECT_EQ(file.read().face_count(), 1u);
+  EXPECT_EQ(file.notes(),
+            (std::vector<std::string>{"in.glb: 1 triangles with two corners in one place are left "
+                                      "out: faces are numbered without them"}));
+  file = strip();
+  file.indices<std::uint8_t>({0, 1, 2}, 5121);
+  json line = file.primitive();
+  line["mode"] = 1;
+  file.text["meshes"][0]["primitives"].push_back(line);
+  EXPECT_EQ(file.notes(),
+            (std::vector<std::string>{"in.glb: 1 primitives are left out: they hold no triangles"}));
+  file.node()["skin"] = 0;
+  EXPECT_EQ(file.notes().back(), "in.glb: skins and morph targets are not applied");
+  file.text["nodes"][0].erase("mesh");
+  EXPECT_EQ(file.refusal(), "in.glb: the file has no triangles in its scene");
+}
+
+TEST(parse_glb, faults_name_what_is_wrong) {
+  const auto changed = [](const auto& change) {
+    File file = strip();
+    file.indices<std::uint8_t>({0, 1, 2, 0}, 5121);
+    file.text["accessors"][1]["count"] = 3;
+    change(file);
+    return file.refusal();
+  };
+  EXPECT_EQ(changed([](File& f) { f.text["asset"]["version"] = "1.0"; }),
+            "in.glb: glTF: only version 2.0 is read");
+  EXPECT_EQ(changed([](File& f) { f.text["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }),
+            "in.glb: glTF: the extension 'KHR_draco_mesh_compression' is needed: write the file without it");
+  EXPECT_EQ(changed([](File& f) {
+              f.text["buffers"] = {{{"byteLength", 100}, {"uri", "a.bin"}}};
+            }),
+            "in.glb: glTF: buffer 0 is not in the file: write one .glb file with all in it");
+  EXPECT_EQ(changed([](File& f) { f.text["accessors"][0]["count"] = 6; }),
+            "in.glb: glTF: an accessor of 6 elements ends beyond its buffer view");
+  EXPECT_EQ(changed([](File& f) { f.text["accessors"][0]["byteOffset"] = 1; }),
+            "in.glb: glTF: an accessor of 5 elements ends beyond its buffer view");
+  EXPECT_EQ(changed([](File& f) { f.text["accessors"][0]["count"] = 1e15; }),
+            "in.glb: glTF: accessor 0 counts more than the file can hold");
+  EXPECT_EQ(changed([](File& f) { f.text["accessors"][0]["count"] = 2.5; }),
+            "in.glb: glTF: 'count' is not a whole number that counts something");
+  EXPECT_EQ(changed([](File& f) { f.text["accessors"][0]["type"] = "VEC2"; }),
+            "in.glb: glTF: accessor 0 is not of the type VEC3");
+  EXPECT_EQ(changed([](File& f) { f.text["accessors"][1]["componentType"] = 5126; }),
+            "in.glb: glTF: an accessor of 3 elements ends beyond its buffer view");
+  EXPECT_EQ(changed([](File& f) { f.text["accessors"][1]["componentType"] = 5120; }),
+            "in.glb: glTF: accessor 1: indices are not whole numbers from 0");
+  EXPECT_EQ(changed([](File& f) { f.text["accessors"][1]["count"] = 4; }),
+            "in.glb: glTF: 4 corners are no triangles");
+  EXPECT_EQ(changed([](File& f) { f.text["bufferViews"][1]["byteOffset"] = 61; }),
+            "in.glb: glTF: buffer view 1 ends beyond its buffer: the file is truncated");
+  EXPECT_EQ(changed([](File& f) { f.binary[61] = 7; }),
+            "in.glb: glTF: node 0: index 7 names none of 5 vertices");
+  EXPECT_EQ(changed([](File& f) { f.binary[3] = 0x7f, f.binary[2] = '\x80'; }),
+            "in.glb: glTF: vertex 0 of accessor 0: a coordinate is not a finite number");
+  EXPECT_EQ(changed([](File& f) { f.node()["children"] = {0}; }),
+            "in.glb: glTF: node 0 is met twice: nodes must form trees");
+  EXPECT_EQ(changed([](File& f) { f.node()["mesh"] = 3; }),
+            "in.glb: glTF: 'meshes' has no number 3: it counts 1");
+  EXPECT_EQ(changed([](File& f) {
+              f.node()["scale"] = {1, 2};
+            }),
+            "in.glb: glTF: 'scale' of node 0 has 2 numbers, not three");
+  EXPECT_EQ(
+      changed([](File& f) {
+        f.node()["rotation"] = {0, 0, 0, 0};
+      }),
+      "in.glb: glTF: 'rotation' of node 0 is a quaternion of another length than 1: write w, x, y, z of a "
+      "rotation");
+}
+
+TEST(parse_glb, instances_are_bounded) {
+  File file = strip();
+  file.indices<std::uint8_t>(std::vector<std::uint8_t>(3000, 0), 5121);
+  file.text["nodes"] = json::array();
+  file.text["scenes"][0]["nodes"] = json::array();
+  for (int n = 0; n < 4000; ++n) {
+    file.text["nodes"].push_back({{"mesh", 0}});
+    file.text["scenes"][0]["nodes"].push_back(n);
+  }
+  EXPECT_EQ(
+      file.refusal(),
+      "in.glb: glTF: instances or shared values make more than 100 times the file: write fewer of them");
+}
+
+TEST(parse_glb, containers_must_be_whole) {
+  File file = strip();
+  file.indices<std::uint8_t>({0, 1, 2}, 5121);
+  const std::string bytes = file.bytes();
+  for (std::size_t size = 0; size < bytes.size(); size += 7) {
+    EXPECT_FALSE(unreadable([&] { static_cast<void>(parse_glb(bytes.substr(0, size), "in.glb")); }).empty());
+  }
+  const auto refusal = [](const std::string& text) {
+    return unreadable([&] { static_cast<void>(parse_glb(text, "in.glb")); });
+  };
+  EXPECT_EQ(refusal("OFF\n"), "in.glb: this is not a binary glTF file: it does not begin with 'glTF'");
+  EXPECT_EQ(refusal(bytes + "x"), "in.glb: glTF: the file declares " + std::to_string(bytes.size()) +
+                                      " bytes, but has " + std::to_string(bytes.size() + 1));
+  EXPECT_EQ(refusal("glTF" + std::string("\1\0\0\0", 4) + bytes.substr(8)),
+            "in.glb: glTF: version 1 is not read: write version 2");
+}
+
+}  // namespace
+}  // namespace snug
