@@ -82,7 +82,9 @@ TEST(points, tables_hold_the_numbers_of_the_document) {
     const Outcome outcome =
         run_snug({"closest", star, "--points", lines, "-o", folder.file(name), "--quiet"});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    if (name[2] != 'j') EXPECT_EQ(outcome.out, folder.file(name) + ": 3 closest points\n");
+    if (name[2] != 'j') {
+      EXPECT_EQ(outcome.out, folder.file(name) + ": 3 closest points\n");
+    }
     EXPECT_EQ(
         run_snug({"eval", star, "--samples", "3", "-o", folder.file(std::string("e") + (name + 1))}).status,
         0);

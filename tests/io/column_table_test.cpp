@@ -34,6 +34,18 @@ TEST(column_table, ply_names_its_properties) {
   EXPECT_EQ(file.size(), head.size() + 2 * 13);
 }
 
+TEST(column_table, numbers_begin_at_multiples_of_64_whatever_the_names) {
+  for (std::size_t length = 1; length <= 128; ++length) {
+    const std::string head = ColumnTable({{std::string(length, 'a'), Type::real}}, "a.npy").file();
+    EXPECT_EQ(head.size() % 64, 0u) << length;
+    const std::string end = "'fortran_order': False, 'shape': (0,), }";
+    const std::size_t at = head.find(end);
+    ASSERT_NE(at, std::string::npos) << length;
+    EXPECT_EQ(head.find_first_not_of(' ', at + end.size()), head.size() - 1);
+    EXPECT_EQ(head.back(), '\n');
+  }
+}
+
 TEST(column_table, numpy_loads_the_same_numbers) {
   const testing::TemporaryFolder folder;
   for (const char* path : {"a.npy", "empty.npy"}) {

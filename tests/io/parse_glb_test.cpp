@@ -143,6 +143,9 @@ TEST(parse_glb, reads_interleaved_and_sparse_accessors) {
   file.primitive()["attributes"]["POSITION"] = file.accessor(view, 5126, 3, "VEC3");
   file.text["accessors"][0]["byteOffset"] = 4;
   EXPECT_EQ(file.read().points, (std::vector<Point3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  file.text["bufferViews"][0]["byteStride"] = 32;  // two fit
+  EXPECT_EQ(file.refusal(), "in.glb: glTF: an accessor of 3 elements ends beyond its buffer view");
+  file.text["bufferViews"][0]["byteStride"] = 16;
   const std::size_t places = file.view<std::uint8_t>({2, 0, 0, 0}), values = file.view<float>({5, 6, 7});
   file.text["accessors"][0]["sparse"] = {{"count", 1},
                                          {"indices", {{"bufferView", places}, {"componentType", 5121}}},
@@ -178,7 +181,7 @@ TEST(parse_glb, nodes_move_their_meshes) {
   file.text["nodes"] = json::array(
       {{{"children", {1}}, {"translation", {0, 0, 5}}},
        {{"mesh", 0}, {"translation", {10, 0, 0}}, {"rotation", {0, 0, 1, 0}}, {"scale", {2, 1, 1}}}});
-  // Scaled, turned by half a turn about z, moved.
+  // Scaled, turned by half a turn about z, moved; then moved by the node above.
   const ControlMesh mesh = file.read();
   EXPECT_NEAR(mesh.points[1].x, 8, 1e-14);
   EXPECT_NEAR(mesh.points[2].y, -1, 1e-14);

@@ -280,6 +280,12 @@ TEST(usda, transforms_move_points_from_the_inside_out) {
   const ControlMesh mesh = parse("def Xform \"x\" {" + above + mesh_prim(quad + own) + "}");
   EXPECT_EQ(mesh.points[1], (Point3{10, 2, 5}));  // (1 0 0), (2 0 0), (0 2 0), (10 2 0)
   EXPECT_EQ(mesh.points[2], (Point3{9, 2, 5}));
+  // The prim above acts last: moved to (11 0 0), then turned.
+  const std::string turn =
+      "float xformOp:rotateZ = 90\nuniform token[] xformOpOrder = [\"xformOp:rotateZ\"]\n";
+  const std::string move =
+      "double3 xformOp:translate = (10, 0, 0)\nuniform token[] xformOpOrder = [\"xformOp:translate\"]\n";
+  EXPECT_EQ(parse("def Xform \"x\" {" + turn + mesh_prim(quad + move) + "}").points[1], (Point3{0, 11, 0}));
   // A scope has no place; nor has a prim without a type; the order counts, not the attribute.
   EXPECT_EQ(parse("def Scope \"x\" {" + above + mesh_prim(quad) + "}").points[1], (Point3{1, 0, 0}));
   EXPECT_EQ(parse_mesh_of(quad + "double3 xformOp:translate = (10, 0, 0)\n").points[1], (Point3{1, 0, 0}));

@@ -305,7 +305,8 @@ class PrimReader {
       return;
     }
     constexpr std::size_t most_numbers = 16;
-    const bool is_new = operations.given.insert({name, {text_.reals(in_quotes(name), most_numbers), line}}).second;
+    const bool is_new =
+        operations.given.insert({name, {text_.reals(in_quotes(name), most_numbers), line}}).second;
     if (!is_new) text_.fail_at(line, in_quotes(name) + " is given twice: take one out");
   }
 
