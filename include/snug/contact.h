@@ -9,10 +9,10 @@ namespace snug {
 
 /// A velocity and an angular velocity that stay what they are, in world coordinates, for one unit of time.
 struct SteadyMotion {
-  Vector3 velocity;       ///< of the point `about`
+  Vector3 velocity{};     ///< of the point `about`
   Vector3 axis{0, 0, 1};  ///< of the rotation, of any positive length
   double radians = 0;     ///< rotated in one unit of time, counterclockwise when the axis points at the viewer
-  Point3 about;           ///< at time 0; it moves with the surface
+  Point3 about{};         ///< at time 0; it moves with the surface
 };
 
 /// How a surface moves: a pose for every time in [0, duration()], continuous in time.
@@ -49,12 +49,12 @@ class SNUG_API Trajectory {
   /// See above. Those of screw() move with velocity along the axis and `turning` across it, `about` being
   /// the translation of `from`; those of steady() have no `turning`.
   struct Piece {
-    Motion from, to;
+    Motion from{}, to{};
     bool ends = false;  ///< in `to`
     Vector3 axis{0, 0, 1};
     double radians = 0;
-    Point3 about;
-    Vector3 velocity, turning;
+    Point3 about{};
+    Vector3 velocity{}, turning{};
   };
   [[nodiscard]] std::span<const Piece> pieces() const { return pieces_; }
   [[nodiscard]] const Motion& start() const { return start_; }
