@@ -83,7 +83,8 @@ struct TimeOfContact {
   /// At no time before the lower end they have a common point. The upper end is infinite if nothing shows
   /// that they come near each other, as for `separated`, whose lower end is the end of the motion.
   Interval time{0, std::numeric_limits<double>::infinity()};
-  /// Is `time` so short that no point of one surface moves by more than the tolerance against the other one?
+  /// Is `time` so short that no point of one surface moves by more than the tolerance, or 1e-10 of the size,
+  /// against the other one?
   bool reached = false;
   std::optional<std::array<Point3, 2>> witness;  ///< of the closest points found at time.upper, on A and on B
   double witness_error = 0;                      ///< as in Collision

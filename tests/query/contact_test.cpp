@@ -380,6 +380,31 @@ TEST(time_of_contact, says_what_it_cannot_do) {
   EXPECT_FALSE(stopped.reached);
 }
 
+TEST(time_of_contact, crossings_are_proved_for_all_places_within_the_deviation) {
+  std::mt19937_64 random(4);
+  Part a(testing::box({-1, -1, -1}, {1, 1, 1}, true)), b(testing::box({0, -0.2, -0.3}, {2, 0.2, 0.3}, true));
+  int proved = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    // B reaches so deep into A through its side.
+    const double depth = std::exp2(-10 * unit(random)), deviation = std::exp2(2 * unit(random) - 1) * depth;
+    const Motion turn = random_placement(random, {});
+    const Motion pose_a = turn, pose_b = turn * Motion::translation({1 - depth, 0.1, 0.2});
+    const bool on_a = random() % 2 != 0;
+    const PlacedBvh placed_a{a.model, a.scratch, pose_a, on_a ? deviation : 0},
+        placed_b{b.model, b.scratch, pose_b, on_a ? 0 : deviation};
+    const CollideOptions options{.tolerance = 0, .budget = 20'000, .solid = trial % 2 != 0, .measure = false};
+    const Verdict verdict = collide(placed_a, placed_b, options).verdict;
+    // Moved out by more than its depth, it is apart.
+    if (deviation > depth * (1 + 1e-6)) {
+      EXPECT_NE(verdict, Verdict::intersecting) << trial;
+    }
+    proved += verdict == Verdict::intersecting;
+    const PlacedBvh exact{b.model, b.scratch, pose_b};
+    EXPECT_EQ(collide({a.model, a.scratch, pose_a}, exact, options).verdict, Verdict::intersecting) << trial;
+  }
+  EXPECT_GT(proved, 10);
+}
+
 TEST(time_of_contact, of_every_scheme_is_not_later_than_collisions_at_samples) {
   std::mt19937_64 random(5);
   int met = 0;

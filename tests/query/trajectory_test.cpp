@@ -61,7 +61,7 @@ TEST(trajectory, poses_are_as_near_to_the_exact_ones_as_they_say) {
     const BoundedPose found = piece.at(s);
     const auto errors = oracle::placement_errors(twin_of(motion.pieces()[0]), s, found.pose.numbers());
     for (std::size_t k = 0; k < 12; ++k) {
-      ASSERT_LE(errors[k], found.error[k] + 1e-36) << trial << ' ' << k;
+      ASSERT_LE(errors[k], found.error[k] + 1e-30) << trial << ' ' << k;
       if (k % 4 != 3) widest = std::max(widest, found.error[k]);
     }
     // Points move by no more than the deviation of that reach.
@@ -71,7 +71,7 @@ TEST(trajectory, poses_are_as_near_to_the_exact_ones_as_they_say) {
       const double off = (errors[4 * i] + errors[4 * i + 1] + errors[4 * i + 2]) * reach + errors[4 * i + 3];
       farthest += off * off;
     }
-    ASSERT_LE(std::sqrt(farthest), found.deviation(reach) * (1 + 1e-12) + 1e-36);
+    ASSERT_LE(std::sqrt(farthest), found.deviation(reach) * (1 + 1e-12) + 1e-26);
   }
   EXPECT_LT(widest, 1e-13);  // twenty turns
 }

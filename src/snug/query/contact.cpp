@@ -141,23 +141,44 @@ class Query {
     const Collision found = collide(at.a, at.b, wanted, monitor_);
     count(found.stats);
     if (found.verdict == Verdict::intersecting) return true;
-    return found.verdict != Verdict::separated && (outside_ || options_.solid) &&
+    return found.verdict != Verdict::separated && (options_.solid || outside()) &&
            common_point(at.a, at.b, monitor_).inner.has_value();
+  }
+
+  // Are closed surfaces known to be outside of each other at time 0? Then one that has a point inside of the
+  // other one later has met it. Asked only where no crossing is found.
+  bool outside() {
+    if (!outside_) {
+      const auto closed = [](const MovingBvh& moving) { return !open_reason(moving.model.surface()); };
+      outside_ = apart_ && closed(*side_[0]) && closed(*side_[1]);
+      if (*outside_) {
+        const Nesting found = nesting_at_start();
+        outside_ = !found.inner && found.certain;
+      }
+    }
+    return *outside_;
+  }
+  // Poses are exact there.
+  [[nodiscard]] PlacedBvh at_start(std::size_t side) const {
+    return {side_[side]->model, side_[side]->scratch, side_[side]->motion.start()};
+  }
+  [[nodiscard]] Nesting nesting_at_start() const {
+    return apart_ ? nesting(at_start(0), at_start(1), monitor_)
+                  : common_point(at_start(0), at_start(1), monitor_);
   }
 
   // At time 0. True if that is the answer.
   bool start() {
     const Look look = look_at(0, duration_ > 0 ? 1 : 0);
-    const bool closed = !open_reason(side_[0]->model.surface()) && !open_reason(side_[1]->model.surface());
-    if (!look.crossing && closed) {
-      const Places at = places_at(0);
-      inside_ = look.lower > 0 ? nesting(at.a, at.b, monitor_) : common_point(at.a, at.b, monitor_);
-      outside_ = look.lower > 0 && !inside_.inner && inside_.certain;
-      if (options_.solid && inside_.inner) crossing_ = 0;
-      if (options_.solid && (inside_.inner || (look.lower > 0 && !inside_.certain))) return true;
+    apart_ = look.lower > 0;
+    if (options_.solid && !look.crossing) {
+      inside_ = nesting_at_start();
+      if (inside_.inner) crossing_ = 0;
+      if (inside_.inner || (apart_ && !inside_.certain)) return true;
+      outside_ = apart_;
     }
     take(look, duration_ > 0 ? 1 : 0);
-    if (duration_ == 0) over_ = look.lower > 0;
+    if (duration_ == 0) over_ = apart_;
     return look.crossing || duration_ == 0;
   }
 
@@ -236,9 +257,11 @@ class Query {
       }
       if (looks_ >= options_.max_looks) return false;
       const double before = lower_;
-      take(look_at(next_time(end), end), end);
+      const Look look = look_at(next_time(end), end);
+      take(look, end);
       // Too slow to get anywhere.
-      if (ahead_.empty() && lower_ - before <= 0x1p-48 * std::max(1.0, before)) block(lower_);
+      const bool slow = lower_ - before <= 0x1p-48 * std::max(1.0, before);
+      if (look.lower > 0 && ahead_.empty() && slow) block(lower_);
     }
     if (end == duration_) over_ = true;
     return true;
@@ -271,7 +294,7 @@ class Query {
     if (crossing_ < INFINITY) {
       answer.verdict = Verdict::intersecting;
       answer.time = {std::min(lower_, crossing_), crossing_};
-    } else if (within_ < INFINITY) {
+    } else if (within_ < INFINITY && !over_) {
       answer.verdict = Verdict::within;
       answer.time = {std::min(lower_, within_), within_};
     } else {
@@ -322,8 +345,9 @@ class Query {
   double closing_ = 1;        // share of speed_ at which the distance shrank
   int looks_ = 0, blocks_ = 0;
   bool probed_ = false, over_ = false;
-  bool outside_ = false;  // closed surfaces, none inside of the other at first
-  Nesting inside_;        // at first
+  bool apart_ = false;           // at first, as surfaces
+  std::optional<bool> outside_;  // of outside(), once known
+  Nesting inside_;               // at first, with solids
   SearchStats stats_;
 };
 
