@@ -33,7 +33,8 @@ std::vector<Move> moves(std::size_t count, std::uint64_t seed) {
     const PosePair one = place_in_room(1.5, random), other = place_in_room(1.5, random);
     const Vector3 to{normal(random), normal(random), normal(random)};
     const Vector3 way = (2 / length(to)) * to;
-    const Move move{one.a, one.b.with_offset(one.b.offset() - way), other.b.with_offset(other.b.offset() + way)};
+    const Move move{one.a, one.b.with_offset(one.b.offset() - way),
+                    other.b.with_offset(other.b.offset() + way)};
     result.push_back(move);
   }
   return result;
@@ -41,14 +42,20 @@ std::vector<Move> moves(std::size_t count, std::uint64_t seed) {
 
 struct Subjects {
   Subjects(LimitSurface in_a, LimitSurface in_b)
-      : a(std::move(in_a)), b(std::move(in_b)), model_a(a), model_b(b), scratch_a(model_a), scratch_b(model_b) {}
+      : a(std::move(in_a)),
+        b(std::move(in_b)),
+        model_a(a),
+        model_b(b),
+        scratch_a(model_a),
+        scratch_b(model_b) {}
   LimitSurface a, b;
   SurfaceBvh model_a, model_b;
   SurfaceWorkspace scratch_a, scratch_b;
 
   TimeOfContact first(const Move& move) {
     const Trajectory still(move.a), moving = Trajectory::screw(move.from, move.to);
-    return time_of_contact({model_a, scratch_a, still}, {model_b, scratch_b, moving}, {.tolerance = tolerance});
+    return time_of_contact({model_a, scratch_a, still}, {model_b, scratch_b, moving},
+                           {.tolerance = tolerance});
   }
   double distance_at(const Motion& pose_a, const Motion& pose_b) {
     return distance({model_a, scratch_a, pose_a}, {model_b, scratch_b, pose_b}, {.absolute = tolerance})
@@ -78,10 +85,11 @@ void print_answers(const char* name, std::vector<TimeOfContact>& answers) {
   }
   std::sort(looks.begin(), looks.end());
   std::sort(widths.begin(), widths.end());
-  std::printf("# %s: %zu intersecting, %zu within, %zu separated, %zu undecided, %zu reached; looks %d in the "
-              "median, %d at nine tenths, %d at most; widths %.2g in the median\n",
-              name, verdicts[2], verdicts[1], verdicts[0], verdicts[3], reached, looks[looks.size() / 2],
-              looks[looks.size() * 9 / 10], looks.back(), widths.empty() ? 0 : widths[widths.size() / 2]);
+  std::printf(
+      "# %s: %zu intersecting, %zu within, %zu separated, %zu undecided, %zu reached; looks %d in the "
+      "median, %d at nine tenths, %d at most; widths %.2g in the median\n",
+      name, verdicts[2], verdicts[1], verdicts[0], verdicts[3], reached, looks[looks.size() / 2],
+      looks[looks.size() * 9 / 10], looks.back(), widths.empty() ? 0 : widths[widths.size() / 2]);
 }
 
 // FCL's times against snug's intervals on the same triangles.
@@ -105,8 +113,9 @@ struct Errors {
     }
   }
   void print(const char* name) const {
-    std::printf("# %s of %zu: %zu contacts missed, %zu late by up to %.4f, %zu early by up to %.4f, %zu of none\n",
-                name, count, missed, late, latest, early, earliest, invented);
+    std::printf(
+        "# %s of %zu: %zu contacts missed, %zu late by up to %.4f, %zu early by up to %.4f, %zu of none\n",
+        name, count, missed, late, latest, early, earliest, invented);
   }
 };
 

@@ -112,17 +112,19 @@ std::string sentence(const TimeOfContact& answer, double tolerance) {
     case Verdict::separated:
       return fmt::format("separated: proved, no contact up to time {}", lower);
     case Verdict::within:
-      return fmt::format("within: no contact before time {}, and at time {} at most {:.6g} apart", lower, upper,
-                         tolerance);
+      return fmt::format("within: no contact before time {}, and at time {} at most {:.6g} apart", lower,
+                         upper, tolerance);
     case Verdict::intersecting:
-      return answer.inner ? "intersecting: proved, at time 0 " + inner_sentence(*answer.inner)
-                          : fmt::format("intersecting: proved, first contact at a time from {} to {}", lower, upper);
+      return answer.inner
+                 ? "intersecting: proved, at time 0 " + inner_sentence(*answer.inner)
+                 : fmt::format("intersecting: proved, first contact at a time from {} to {}", lower, upper);
     case Verdict::undecided:
       break;
   }
-  return fmt::format("undecided: no contact before time {}, what comes later is open; give a larger --tolerance "
-                     "or --budget",
-                     lower);
+  return fmt::format(
+      "undecided: no contact before time {}, what comes later is open; give a larger --tolerance "
+      "or --budget",
+      lower);
 }
 
 // With --exit-code.
@@ -206,7 +208,8 @@ Command contact_command() {
   add_move_options(list, "-a", "A", options->move_a);
   add_move_options(list, "-b", "B", options->move_b);
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
-           "Surfaces this close may be reported as within, and times are told to a motion of so much; mesh units, or percent "
+           "Surfaces this close may be reported as within, and times are told to a motion of so much; mesh "
+           "units, or percent "
            "of the larger mesh");
   list.add(Group::own, "--solid", &options->solid,
            "Compare solids bounded by closed surfaces: one inside the other is in contact");

@@ -19,7 +19,7 @@ struct PairOptions : CommonOptions {
   std::string scheme_a, scheme_b;
   PoseOptions pose_a, pose_b;
   bool nearest_rigid = false;
-  std::string poses;  ///< a file of poses; empty for none
+  std::string poses;   ///< a file of poses; empty for none
   bool moves = false;  ///< other options have poses, too
 };
 /// Those of two meshes and their poses; with --poses for commands that answer many.

@@ -61,7 +61,7 @@ enum class FclContact : std::uint8_t { naive, advancement };
 /// contact. `looks`: times, at most.
 /// Requires:  as fcl_distance().
 [[nodiscard]] std::optional<double> fcl_first_contact(const FclModel& a, const Motion& place_a,
-                                                      const FclModel& b, const Motion& from,
-                                                      const Motion& to, FclContact how, std::size_t looks);
+                                                      const FclModel& b, const Motion& from, const Motion& to,
+                                                      FclContact how, std::size_t looks);
 
 }  // namespace snug::bench

@@ -11,8 +11,8 @@ namespace snug {
 struct SteadyMotion {
   Vector3 velocity{};     ///< of the point `about`
   Vector3 axis{0, 0, 1};  ///< of the rotation, of any positive length
-  double radians = 0;     ///< rotated in one unit of time, counterclockwise when the axis points at the viewer
-  Point3 about{};         ///< at time 0; it moves with the surface
+  double radians = 0;  ///< rotated in one unit of time, counterclockwise when the axis points at the viewer
+  Point3 about{};      ///< at time 0; it moves with the surface
 };
 
 /// How a surface moves: a pose for every time in [0, duration()], continuous in time.

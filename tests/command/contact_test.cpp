@@ -17,7 +17,8 @@ class contact : public ::testing::Test {
   void SetUp() override {
     std::string text;
     for (int i = 0; i < 8; ++i) {
-      text += "v " + std::to_string(i & 1) + " " + std::to_string(i >> 1 & 1) + " " + std::to_string(i >> 2) + "\n";
+      text += "v " + std::to_string(i & 1) + " " + std::to_string(i >> 1 & 1) + " " + std::to_string(i >> 2) +
+              "\n";
     }
     std::ofstream(cube_) << text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
   }
@@ -80,7 +81,8 @@ TEST_F(contact, refusals_name_the_option_and_the_next_step) {
   EXPECT_EQ(refused({"--about-b", "1 0 0", "--velocity-b", "1 0 0"}).status, 2);
   const Outcome half = refused({"--to-b", "-1 0 0 0  0 -1 0 0  0 0 1 0"});
   EXPECT_EQ(half.status, 4);
-  EXPECT_NE(half.err.find("--to-b: trajectory: the second pose is half a turn away"), std::string::npos) << half.err;
+  EXPECT_NE(half.err.find("--to-b: trajectory: the second pose is half a turn away"), std::string::npos)
+      << half.err;
   std::ofstream(folder_.file("path.txt")) << "1 0 0 3 0 1 0 0.1 0 0 1 0.2\n\n1 0 0 2 0 1 0 0.1 0 0 1\n";
   const Outcome bad = refused({"--path-b", folder_.file("path.txt")});
   EXPECT_EQ(bad.status, 3);

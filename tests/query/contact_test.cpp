@@ -65,14 +65,17 @@ oracle::TriangleSoup soup(const ControlMesh& mesh) {
 
 // Whole-numbered corners, many of them in one plane or on one line with others.
 ControlMesh lattice_part(std::mt19937_64& random) {
-  const auto whole = [&](int most) { return static_cast<double>(random() % static_cast<unsigned>(most)) + 1; };
+  const auto whole = [&](int most) {
+    return static_cast<double>(random() % static_cast<unsigned>(most)) + 1;
+  };
   switch (random() % 4) {
     case 0:
       return testing::l_prism(true);
     case 1: {
       ControlMesh mesh;
       mesh.points = {{0, 0, 0}, {whole(3), 0, 0}, {0, whole(3), 0}, {0, 0, whole(3)}};
-      for (const testing::Ids& f : {testing::Ids{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}) testing::add_face(mesh, f);
+      for (const testing::Ids& f : {testing::Ids{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}})
+        testing::add_face(mesh, f);
       return mesh;
     }
     default:
@@ -89,8 +92,8 @@ TEST(time_of_contact, of_translated_polyhedra_holds_the_exact_one) {
       return static_cast<double>(static_cast<int>(random() % static_cast<unsigned>(2 * most + 1)) - most);
     };
     const Vector3 from{whole(7), whole(7), whole(7)};
-    const Vector3 by = random() % 2 ? Vector3{-2 * from.x, -2 * from.y, -2 * from.z}
-                                    : Vector3{whole(9), whole(9), whole(9)};
+    const Vector3 by =
+        random() % 2 ? Vector3{-2 * from.x, -2 * from.y, -2 * from.z} : Vector3{whole(9), whole(9), whole(9)};
     oracle::TriangleSoup moving = soup(b.mesh);
     for (auto& t : moving) {
       for (auto& p : t) {
@@ -124,7 +127,8 @@ TEST(time_of_contact, of_translated_polyhedra_holds_the_exact_one) {
 }
 
 // The first time at which boxes penetrate by more than `depth`, by samples and halving; nothing if none is seen.
-std::optional<double> first_overlap(const std::function<long double(double)>& apart, double end, double depth) {
+std::optional<double> first_overlap(const std::function<long double(double)>& apart, double end,
+                                    double depth) {
   constexpr int samples = 400;
   double before = 0;
   for (int i = 0; i <= samples; ++i) {
@@ -220,16 +224,18 @@ std::vector<Contact> contacts() {
   const Motion tilted = Motion::rotation({0.3, 1, 0.2}, 0.6) * Motion::rotation({0.1, 0.2, 1}, 0.7);
   const Motion edge = Motion::rotation_degrees({0, 0, 1}, 45);
   const Motion across = Motion::rotation({1, 0, 0}, 0.5) * edge;
-  return {touching("vertex, face", tilted, 0.1, 0.2),
-          touching("face, vertex", Motion::rotation({0, 0, 1}, 0.2) * Motion::rotation({0, 1, 0}, 0.1), 1.4, 1.5),
-          touching("edge, edge", Motion::rotation({1, 0, 0}, 0.5) * Motion::rotation_degrees({0, 1, 0}, 45), 1.2, 0.1),
-          touching("edge, face", edge, 0.1, 0.2),
-          touching("crossed edge, face", across, 0.3, 0),
-          touching("face, face", {}, 0.1, 0.2),
-          touching("face, face beside", {}, 1.6, 0),
-          touching("face, whole face", {}, 0, 0),
-          touching("vertex, vertex", tilted, 1.6, 1.6),
-          touching("grazing edge", edge, 1.845, 0.2)};
+  return {
+      touching("vertex, face", tilted, 0.1, 0.2),
+      touching("face, vertex", Motion::rotation({0, 0, 1}, 0.2) * Motion::rotation({0, 1, 0}, 0.1), 1.4, 1.5),
+      touching("edge, edge", Motion::rotation({1, 0, 0}, 0.5) * Motion::rotation_degrees({0, 1, 0}, 45), 1.2,
+               0.1),
+      touching("edge, face", edge, 0.1, 0.2),
+      touching("crossed edge, face", across, 0.3, 0),
+      touching("face, face", {}, 0.1, 0.2),
+      touching("face, face beside", {}, 1.6, 0),
+      touching("face, whole face", {}, 0, 0),
+      touching("vertex, vertex", tilted, 1.6, 1.6),
+      touching("grazing edge", edge, 1.845, 0.2)};
 }
 
 // Motions of B that are at the pose at time 0.6 of each piece, more or less.
@@ -249,37 +255,77 @@ Trajectory steady_to(const Motion& pose, const Vector3& velocity, const Vector3&
 }
 
 std::vector<Kind> kinds() {
-  const auto screw_of = [](const Trajectory& steady) { return Trajectory::screw(steady.at(0), steady.at(1)); };
-  return {{"translation", [](const Motion& c) { return steady_to(c, {-2, 0.3, 0.2}, {0, 0, 1}, 0, {}); }},
-          {"straight on", [](const Motion& c) { return steady_to(c, {-2, 0, 0}, {0, 0, 1}, 0, {}); }},
-          {"slow at the end", [](const Motion& c) { return steady_to(c, {-0.02, 1, 0}, {0, 0, 1}, 0, {}); }},
-          {"along", [](const Motion& c) { return steady_to(c, {0, 1.5, 0.4}, {0, 0, 1}, 0, {}); }},
-          {"away", [](const Motion& c) { return steady_to(c, {1, 0.5, 0}, {0, 0, 1}, 0, {}); }},
-          {"turn about a point beside", [](const Motion& c) {
-             return steady_to(c, {}, {0.1, 0.2, 1}, 1.2, {1, -3, 0}); }},
-          {"turn the other way", [](const Motion& c) {
-             return steady_to(c, {}, {0.1, 0.2, 1}, -1.2, {1, -3, 0}); }},
-          {"turn about its middle, moving", [](const Motion& c) {
-             return steady_to(c, {-1, 0, 0}, {1, 1, 1}, 2.5, Point3{} + c.offset()); }},
-          {"many turns", [](const Motion& c) {
-             return steady_to(c, {-1, 0.1, 0}, {0, 1, 1}, 20, Point3{} + c.offset()); }},
-          {"tiny turn", [](const Motion& c) { return steady_to(c, {-1, 0, 0}, {0, 1, 1}, 1e-9, {1, 1, 1}); }},
-          {"screw", [=](const Motion& c) {
-             return screw_of(steady_to(c, {-1, 0.3, 0}, {1, 0.2, 0}, 1.5, Point3{} + c.offset())); }},
-          {"screw of 179.999 degrees", [=](const Motion& c) {
+  const auto screw_of = [](const Trajectory& steady) {
+    return Trajectory::screw(steady.at(0), steady.at(1));
+  };
+  return {{"translation",
+           [](const Motion& c) {
+             return steady_to(c, {-2, 0.3, 0.2}, {0, 0, 1}, 0, {});
+           }},
+          {"straight on",
+           [](const Motion& c) {
+             return steady_to(c, {-2, 0, 0}, {0, 0, 1}, 0, {});
+           }},
+          {"slow at the end",
+           [](const Motion& c) {
+             return steady_to(c, {-0.02, 1, 0}, {0, 0, 1}, 0, {});
+           }},
+          {"along",
+           [](const Motion& c) {
+             return steady_to(c, {0, 1.5, 0.4}, {0, 0, 1}, 0, {});
+           }},
+          {"away",
+           [](const Motion& c) {
+             return steady_to(c, {1, 0.5, 0}, {0, 0, 1}, 0, {});
+           }},
+          {"turn about a point beside",
+           [](const Motion& c) {
+             return steady_to(c, {}, {0.1, 0.2, 1}, 1.2, {1, -3, 0});
+           }},
+          {"turn the other way",
+           [](const Motion& c) {
+             return steady_to(c, {}, {0.1, 0.2, 1}, -1.2, {1, -3, 0});
+           }},
+          {"turn about its middle, moving",
+           [](const Motion& c) {
+             return steady_to(c, {-1, 0, 0}, {1, 1, 1}, 2.5, Point3{} + c.offset());
+           }},
+          {"many turns",
+           [](const Motion& c) {
+             return steady_to(c, {-1, 0.1, 0}, {0, 1, 1}, 20, Point3{} + c.offset());
+           }},
+          {"tiny turn",
+           [](const Motion& c) {
+             return steady_to(c, {-1, 0, 0}, {0, 1, 1}, 1e-9, {1, 1, 1});
+           }},
+          {"screw",
+           [=](const Motion& c) {
+             return screw_of(steady_to(c, {-1, 0.3, 0}, {1, 0.2, 0}, 1.5, Point3{} + c.offset()));
+           }},
+          {"screw of 179.999 degrees",
+           [=](const Motion& c) {
              return screw_of(steady_to(c, {-1, 0, 0}, {1, 0, 0.1}, 179.999 * std::numbers::pi / 180,
-                                       Point3{} + c.offset())); }},
-          {"path that ends a piece there", [](const Motion& c) {
+                                       Point3{} + c.offset()));
+           }},
+          {"path that ends a piece there",
+           [](const Motion& c) {
              return Trajectory::through(std::vector<Motion>{
                  Motion::rotation({0, 0, 1}, 0.5) * c.with_offset(c.offset() + Vector3{1.5, 0, 0}), c,
-                 c.with_offset(c.offset() + Vector3{-0.5, 0.1, 0})}); }},
-          {"path that ends there", [](const Motion& c) {
-             return Trajectory::through(std::vector<Motion>{
-                 c.with_offset(c.offset() + Vector3{2, 1, 0}),
-                 c.with_offset(c.offset() + Vector3{1, 0, 0}), c}); }},
-          {"begins there", [](const Motion& c) { return translated({-0.5, 0, 0}, c); }},
-          {"begins inside", [](const Motion& c) {
-             return translated({-0.5, 0, 0}, c.with_offset(c.offset() - Vector3{0.3, 0, 0})); }},
+                 c.with_offset(c.offset() + Vector3{-0.5, 0.1, 0})});
+           }},
+          {"path that ends there",
+           [](const Motion& c) {
+             return Trajectory::through(std::vector<Motion>{c.with_offset(c.offset() + Vector3{2, 1, 0}),
+                                                            c.with_offset(c.offset() + Vector3{1, 0, 0}), c});
+           }},
+          {"begins there",
+           [](const Motion& c) {
+             return translated({-0.5, 0, 0}, c);
+           }},
+          {"begins inside",
+           [](const Motion& c) {
+             return translated({-0.5, 0, 0}, c.with_offset(c.offset() - Vector3{0.3, 0, 0}));
+           }},
           {"no motion", [](const Motion& c) { return translated({}, c); }}};
 }
 
@@ -295,8 +341,8 @@ TEST(time_of_contact, is_true_for_every_motion_into_every_contact) {
   std::sort(checked.looks.begin(), checked.looks.end());
   std::cout << "  " << checked.intersecting << " intersecting, " << checked.within << " within, "
             << checked.separated << " separated, " << checked.undecided << " undecided; " << checked.wide
-            << " not told to the tolerance; looks " << checked.looks[checked.looks.size() / 2] << " in the median, "
-            << checked.looks.back() << " at most\n";
+            << " not told to the tolerance; looks " << checked.looks[checked.looks.size() / 2]
+            << " in the median, " << checked.looks.back() << " at most\n";
 }
 
 TEST(time_of_contact, is_true_where_both_move) {
@@ -328,8 +374,8 @@ TEST(time_of_contact, of_a_rotated_box_is_the_known_one) {
   const double radians = 1.5;
   const double exact = (std::numbers::pi / 4 - std::acos(1.2 / std::numbers::sqrt2)) / radians;
   for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
-    const TimeOfContact found =
-        ask(wall, Motion(), a, Trajectory::steady({}, {{}, {0, 0, 2}, radians, {}}), {.tolerance = tolerance});
+    const TimeOfContact found = ask(wall, Motion(), a, Trajectory::steady({}, {{}, {0, 0, 2}, radians, {}}),
+                                    {.tolerance = tolerance});
     EXPECT_EQ(found.verdict, Verdict::intersecting);
     EXPECT_LE(found.time.lower, exact + 1e-15);
     EXPECT_GE(found.time.upper, exact - 1e-15);
@@ -347,8 +393,8 @@ TEST(time_of_contact, that_touches_at_the_end_alone_is_not_called_separated) {
   EXPECT_NE(touching.verdict, Verdict::separated);
   EXPECT_LE(touching.time.lower, 1);
   EXPECT_LE(touching.time.upper, 1);
-  const TimeOfContact short_of_it =
-      ask(a, Motion(), b, translated({-1, 0, 0}, Motion::translation({2.5 + 1e-9, 0, 0})), {.tolerance = 1e-10});
+  const TimeOfContact short_of_it = ask(
+      a, Motion(), b, translated({-1, 0, 0}, Motion::translation({2.5 + 1e-9, 0, 0})), {.tolerance = 1e-10});
   EXPECT_EQ(short_of_it.verdict, Verdict::separated);
 }
 
@@ -419,7 +465,8 @@ TEST(time_of_contact, of_every_scheme_is_not_later_than_collisions_at_samples) {
                  to = random_placement(random, random_vector(random, size));
     const Trajectory motion = Trajectory::screw(from, to);
     const Trajectory still(Motion{});
-    const TimeOfContact found = time_of_contact({model, one, still}, {same, other, motion}, {.max_looks = 200});
+    const TimeOfContact found =
+        time_of_contact({model, one, still}, {same, other, motion}, {.max_looks = 200});
     for (int i = 0; i <= 60; ++i) {
       const double t = i / 60.0;
       const Collision at = collide({model, one, Motion()}, {same, other, motion.at(t)},

@@ -100,9 +100,9 @@ TEST(sound_time_of_contact, no_points_of_loop_surfaces_meet_before) {
   }
   std::sort(looks.begin(), looks.end());
   std::cout << "  " << verdicts[0] << " separated, " << verdicts[1] << " within, " << verdicts[2]
-            << " intersecting, " << verdicts[3] << " undecided; " << wide << " not told to the tolerance; looks "
-            << looks[looks.size() / 2] << " in the median, " << looks.back() << " at most; " << checked
-            << " samples in contact\n";
+            << " intersecting, " << verdicts[3] << " undecided; " << wide
+            << " not told to the tolerance; looks " << looks[looks.size() / 2] << " in the median, "
+            << looks.back() << " at most; " << checked << " samples in contact\n";
   EXPECT_GT(verdicts[2], 10);
   EXPECT_GT(checked, 100);
 }

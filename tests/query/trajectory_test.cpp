@@ -23,8 +23,8 @@ using testing::unit;
 oracle::Point plain(const Vector3& v) { return {v.x, v.y, v.z}; }
 
 oracle::TwinScrew twin_of(const Trajectory::Piece& piece) {
-  oracle::TwinScrew twin{piece.from.numbers(),        plain(piece.axis),    plain(piece.about - Point3{}),
-                         plain(piece.velocity),       plain(piece.turning), piece.radians,
+  oracle::TwinScrew twin{piece.from.numbers(),  plain(piece.axis),    plain(piece.about - Point3{}),
+                         plain(piece.velocity), plain(piece.turning), piece.radians,
                          std::nullopt};
   if (piece.ends) twin.to = piece.to.numbers();
   return twin;
@@ -110,7 +110,8 @@ TEST(trajectory, screws_have_a_constant_twist_and_the_shorter_rotation) {
 TEST(trajectory, half_a_turn_is_refused_and_a_little_less_is_not) {
   const auto turn = [](double degrees) { return Motion::rotation_degrees({1, 2, -1}, degrees); };
   EXPECT_THROW(static_cast<void>(Trajectory::screw({}, turn(180))), InputError);
-  EXPECT_THROW(static_cast<void>(Trajectory::through(std::vector<Motion>{{}, turn(90), turn(270)})), InputError);
+  EXPECT_THROW(static_cast<void>(Trajectory::through(std::vector<Motion>{{}, turn(90), turn(270)})),
+               InputError);
   for (const double degrees : {179.999, -179.999, 179.99999, 1e-7, 0.0}) {
     const Trajectory motion = Trajectory::screw({}, turn(degrees));
     EXPECT_NEAR(motion.pieces()[0].radians, std::fabs(degrees) * std::numbers::pi / 180, 1e-12);
@@ -133,7 +134,8 @@ TEST(trajectory, no_point_is_faster_than_the_bound_and_some_are_nearly_as_fast) 
   double best = 0;
   for (int trial = 0; trial < 300; ++trial) {
     const Point3 high{0.1 + unit(random), 0.1 + 3 * unit(random), 0.1 + unit(random)};
-    ControlMesh mesh = testing::turned(testing::box({-1, -1, -1}, high, true), random, false, 3 * unit(random));
+    ControlMesh mesh =
+        testing::turned(testing::box({-1, -1, -1}, high, true), random, false, 3 * unit(random));
     const LimitSurface surface(mesh, {Scheme::flat}, std::make_shared<BoundsCache>());
     const SurfaceBvh model(surface);
     const Trajectory motion = any_motion(random);

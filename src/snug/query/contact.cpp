@@ -67,13 +67,15 @@ class Query {
     first_ = static_cast<double>(piece);
     for (std::size_t side = 0; side < 2; ++side) {
       const Trajectory& motion = side_[side]->motion;
-      motion_[side] = motion.pieces().empty() ? PieceMotion(motion.start()) : PieceMotion(motion.pieces()[piece]);
+      motion_[side] =
+          motion.pieces().empty() ? PieceMotion(motion.start()) : PieceMotion(motion.pieces()[piece]);
     }
     const SurfaceBvh &model_a = side_[0]->model, &model_b = side_[1]->model;
     const bool straight = motion_[0]->straight() && motion_[1]->straight();
     const double apart = enlarged(motion_[0]->speed(model_a) + motion_[1]->speed(model_b));
-    speed_ = straight ? std::min(apart, PieceMotion::relative_speed(*motion_[0], model_a, *motion_[1], model_b))
-                      : apart;
+    speed_ = straight
+                 ? std::min(apart, PieceMotion::relative_speed(*motion_[0], model_a, *motion_[1], model_b))
+                 : apart;
     ahead_.clear();
     last_.reset();
     closing_ = 1;
@@ -118,8 +120,7 @@ class Query {
     const Places at = places_at(time);
     Look look{.time = time};
     if (far_enough(at, time, end, look)) return look;
-    const DistanceOptions wanted{
-        .absolute = resolution_, .relative = relative, .budget = options_.budget};
+    const DistanceOptions wanted{.absolute = resolution_, .relative = relative, .budget = options_.budget};
     const Distance found = distance(at.a, at.b, wanted, monitor_);
     count(found.stats);
     look.crossing = found.distance.upper == 0;
@@ -134,10 +135,8 @@ class Query {
     monitor_.checkpoint();
     ++looks_;
     const Places at = places_at(time);
-    const CollideOptions wanted{.tolerance = 0,
-                                .budget = options_.budget,
-                                .witness = WitnessKind::none,
-                                .measure = false};
+    const CollideOptions wanted{
+        .tolerance = 0, .budget = options_.budget, .witness = WitnessKind::none, .measure = false};
     const Collision found = collide(at.a, at.b, wanted, monitor_);
     count(found.stats);
     if (found.verdict == Verdict::intersecting) return true;
@@ -239,8 +238,7 @@ class Query {
     }
     if (!last_) return lower_;
     // The next look is to reach back to lower_ with a distance that shrinks as it did before.
-    const double time =
-        lower_ + reach_share * time_for(last_->lower) * (1 - closing_) / (1 + closing_);
+    const double time = lower_ + reach_share * time_for(last_->lower) * (1 - closing_) / (1 + closing_);
     double limit = std::min(crossing_, blocked_);
     if (within_ > lower_) limit = std::min(limit, within_);
     return limit <= end ? std::min(time, middle_of(lower_, limit)) : std::min(time, end);
@@ -251,7 +249,8 @@ class Query {
   bool cross_piece(double end) {
     while (lower_ < end) {
       const double met = std::min({crossing_, within_, blocked_});
-      if (met <= end && (short_enough(lower_, crossing_ <= end ? crossing_ : met) || blocks_ >= max_blocked)) {
+      if (met <= end &&
+          (short_enough(lower_, crossing_ <= end ? crossing_ : met) || blocks_ >= max_blocked)) {
         if (crossing_ <= end || probed_ || !options_.prove_contact || !find_crossing(end)) return false;
         continue;
       }

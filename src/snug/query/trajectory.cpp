@@ -101,8 +101,8 @@ Trajectory::Piece screw_piece(const Motion& from, const Motion& to, const std::s
     piece.turning = across;
   } else {
     // Solves (sin turning + (1 - cos) n x turning) / radians = across.
-    const double a = std::sin(piece.radians) / piece.radians,
-                 half = std::sin(piece.radians / 2), b = 2 * half * half / piece.radians;
+    const double a = std::sin(piece.radians) / piece.radians, half = std::sin(piece.radians / 2),
+                 b = 2 * half * half / piece.radians;
     piece.turning = (1 / (a * a + b * b)) * (a * across - b * cross(n, across));
   }
   return piece;
@@ -192,8 +192,7 @@ PieceMotion::Intervals PieceMotion::screwed(double s) const {
   };
   Intervals result;
   for (std::size_t j = 0; j < 3; ++j) {
-    const IntervalVector column =
-        turned({from.row(0)[j], from.row(1)[j], from.row(2)[j]});
+    const IntervalVector column = turned({from.row(0)[j], from.row(1)[j], from.row(2)[j]});
     for (std::size_t i = 0; i < 3; ++i) result[4 * i + j] = column[i];
   }
   const IntervalVector about = intervals(piece_.about - Point3{}), turning = intervals(piece_.turning);
@@ -290,8 +289,8 @@ double PieceMotion::relative_speed(const PieceMotion& a, const SurfaceBvh& model
   const auto velocity = [](const PieceMotion& m) {
     return intervals(m.piece_.velocity) + intervals(m.piece_.turning);
   };
-  const double result = enlarged(length_up(velocity(b) - velocity(a)) + a.closing_speed(model_a) +
-                                 b.closing_speed(model_b));
+  const double result =
+      enlarged(length_up(velocity(b) - velocity(a)) + a.closing_speed(model_a) + b.closing_speed(model_b));
   if (!std::isfinite(result)) refuse_range();
   return result;
 }
