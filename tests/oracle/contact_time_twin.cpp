@@ -75,7 +75,8 @@ std::array<Real, 12> screwed(const TwinScrew& screw, double s) {
   const Real size = unary(mpfi_sqrt, raw[0] * raw[0] + raw[1] * raw[1] + raw[2] * raw[2]);
   const Reals n{raw[0] / size, raw[1] / size, raw[2] / size};
   const Real angle = Real(s) * Real(screw.radians), sine = unary(mpfi_sin, angle),
-             cosine = unary(mpfi_cos, angle), rest = Real(1.0) - cosine;
+             cosine = unary(mpfi_cos, angle), half = unary(mpfi_sin, angle / Real(2.0)),
+             rest = Real(2.0) * half * half;
   std::array<Reals, 3> q;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {

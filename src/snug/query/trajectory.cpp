@@ -182,7 +182,8 @@ PieceMotion::PieceMotion(const Trajectory::Piece& piece) : piece_(piece) {
 PieceMotion::Intervals PieceMotion::screwed(double s) const {
   const Motion& from = piece_.from;
   const Interval angle = Interval(s) * Interval(piece_.radians);
-  const auto [sine, cosine] = piece_.radians == 0 ? SineCosine{0, 1} : sine_cosine(angle);
+  const SineCosine of_angle = piece_.radians == 0 ? SineCosine{0, 1} : sine_cosine(angle);
+  const Interval &sine = of_angle.sine, &cosine = of_angle.cosine;
   const Interval half_sine = sine_cosine(angle / Interval(2)).sine;
   const Interval rest = Interval(2) * (half_sine * half_sine);  // 1 - cosine, with its own digits
   const IntervalVector& n = axis_;
