@@ -357,6 +357,16 @@ TEST(time_of_contact, is_true_where_both_move) {
         {}, {random_vector(random, 0.5), random_vector(random, 1), unit(random), {0.1, 0.2, 0}});
     check_boxes({half_a, half_b}, of_a, of_b, kind.name + " to " + contact.name + ", both", checked);
   }
+  // Both translate: towards each other, side by side, one after the other.
+  for (int trial = 0; trial < 60; ++trial) {
+    const Vector3 start = random_vector(random, 3), of_both = random_vector(random, 2);
+    const Trajectory of_a = translated(of_both + random_vector(random, 1)),
+                     of_b =
+                         translated(of_both - (trial % 2 ? 1.0 : 0.2) * start,
+                                    random_placement(random, start + Vector3{trial % 3 ? 0.0 : 2.5, 0, 0}));
+    check_boxes({half_a, half_b}, of_a, of_b, "translations, trial " + std::to_string(trial), checked);
+    if (::testing::Test::HasFatalFailure()) return;
+  }
   for (int trial = 0; trial < 60; ++trial) {
     const auto any = [&] {
       return Trajectory::screw(random_placement(random, random_vector(random, 2)),
