@@ -60,7 +60,8 @@ class Tree final : public FclTree {
     fcl::continuousCollide(geometry_.get(), transform(place), transform(place),
                            static_cast<const Tree&>(other).geometry_.get(), transform(from), transform(to),
                            request, result);
-    if (!result.is_collide) return std::nullopt;
+    // Advancement leaves is_collide as it is.
+    if (!result.is_collide && !(result.time_of_contact < 1)) return std::nullopt;
     return result.time_of_contact;
   }
 

@@ -126,6 +126,47 @@ TEST(time_of_contact, of_translated_polyhedra_holds_the_exact_one) {
   EXPECT_GT(missed, 50);
 }
 
+void add_box(ControlMesh& mesh, const Point3& low, const Point3& high) {
+  const ControlMesh box = testing::box(low, high, true);
+  const auto first = static_cast<std::uint32_t>(mesh.points.size());
+  mesh.points.insert(mesh.points.end(), box.points.begin(), box.points.end());
+  for (std::size_t f = 0; f < box.face_count(); ++f) {
+    const auto face = box.face(FaceId(f));
+    testing::add_face(mesh, {first + face[0].value(), first + face[1].value(), first + face[2].value()});
+  }
+}
+
+// A small part flies along a plate, as far from it all the time, and into thin fins.
+TEST(time_of_contact, thin_fins_are_not_jumped_over) {
+  std::mt19937_64 random(8);
+  int met = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    ControlMesh comb;
+    add_box(comb, {-1, -2, -2}, {10, 2, -1});
+    for (int fins = 1 + static_cast<int>(random() % 3); fins > 0; --fins) {
+      const double x = 1 + 8 * unit(random);
+      add_box(comb, {x, -1, -0.5}, {x + std::exp2(-12 * unit(random)), 1, 2 * unit(random) - 0.4});
+    }
+    Part a(comb), b = box(0.05, 0.05, 0.05);
+    const Vector3 from{-0.5, 0, -0.6 + 1.5 * unit(random)}, by{10, 0.5 * unit(random), 0};
+    oracle::TriangleSoup moving = soup(b.mesh);
+    for (auto& t : moving) {
+      for (auto& p : t) {
+        for (std::size_t k = 0; k < 3; ++k) p[k] += from[k];  // rounds by less than what is allowed for below
+      }
+    }
+    const std::optional<mpq_class> first = oracle::first_contact(soup(a.mesh), moving, {by.x, by.y, by.z});
+    const TimeOfContact found =
+        ask(a, Motion(), b, translated(by, Motion::translation(from)), {.tolerance = 1e-5});
+    if (!first) continue;
+    ++met;
+    ASSERT_NE(found.verdict, Verdict::separated) << trial << " at " << first->get_d();
+    ASSERT_LE(found.time.lower, first->get_d() + 1e-14) << trial;
+    EXPECT_LE(found.time.upper, first->get_d() + 1e-4) << trial;
+  }
+  EXPECT_GT(met, 40);
+}
+
 // The first time at which boxes penetrate by more than `depth`, by samples and halving; nothing if none is seen.
 std::optional<double> first_overlap(const std::function<long double(double)>& apart, double end,
                                     double depth) {

@@ -195,7 +195,7 @@ class Query {
   // Takes into account what is known at a time.
   void take(const Look& look, double end) {
     if (look.crossing) {
-      crossing_ = std::min(crossing_, look.time);
+      meet(look.time);
       return;
     }
     if (look.upper <= tolerance_) within_ = std::min(within_, look.time);
@@ -205,6 +205,11 @@ class Query {
     } else {
       block(look.time);
     }
+  }
+  // What lies beyond a contact is of no use.
+  void meet(double time) {
+    crossing_ = std::min(crossing_, time);
+    std::erase_if(ahead_, [this](const Look& look) { return look.time > crossing_; });
   }
   void block(double time) {
     blocked_ = std::min(blocked_, time);
@@ -231,7 +236,8 @@ class Query {
   // The next time to look at, from lower_ on.
   [[nodiscard]] double next_time(double end) const {
     if (!ahead_.empty()) {
-      return middle_of(lower_, ahead_.back().time - time_for(ahead_.back().lower));
+      const double from = ahead_.back().time - time_for(ahead_.back().lower);
+      return middle_of(lower_, blocked_ > lower_ ? std::min(blocked_, from) : from);
     }
     if (crossing_ <= end && blocked_to_ < crossing_ && blocked_ - lower_ < crossing_ - blocked_to_) {
       return middle_of(std::max(lower_, blocked_to_), crossing_);
@@ -248,11 +254,11 @@ class Query {
   // To the end of a piece. False if there is an answer, or none can be found.
   bool cross_piece(double end) {
     while (lower_ < end) {
-      const double met = std::min({crossing_, within_, blocked_});
-      if (met <= end &&
-          (short_enough(lower_, crossing_ <= end ? crossing_ : met) || blocks_ >= max_blocked)) {
-        if (crossing_ <= end || probed_ || !options_.prove_contact || !find_crossing(end)) return false;
-        continue;
+      if (crossing_ <= end && short_enough(lower_, crossing_)) return false;
+      const double near = std::min(within_, blocked_);
+      if (near <= end && (short_enough(lower_, near) || blocks_ >= max_blocked)) {
+        if (!probed_ && options_.prove_contact && find_crossing(std::min(end, crossing_))) continue;
+        if (crossing_ > end || blocks_ >= max_blocked) return false;
       }
       if (looks_ >= options_.max_looks) return false;
       const double before = lower_;
@@ -276,7 +282,7 @@ class Query {
     for (int i = 0; i < max_probes; ++i, step *= 2) {
       const double time = std::min(base + step, end);
       if (probe(time)) {
-        crossing_ = time;
+        meet(time);
         blocked_ = INFINITY;
         blocked_to_ = 0;
         blocks_ = 0;
