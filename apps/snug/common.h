@@ -130,6 +130,7 @@ class Report {
 [[nodiscard]] Command hull_command();
 [[nodiscard]] Command envelope_command();
 [[nodiscard]] Command collide_command();
+[[nodiscard]] Command contact_command();
 [[nodiscard]] Command distance_command();
 [[nodiscard]] Command measure_command();
 [[nodiscard]] Command closest_command();

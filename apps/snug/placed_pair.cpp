@@ -11,14 +11,16 @@ SurfaceBvhOptions model_options(const CommonOptions& options) {
   return result;
 }
 
-void add_pair_options(OptionList& list, PairOptions& options) {
+void add_pair_options(OptionList& list, PairOptions& options, bool many_poses) {
   list.add(Group::own, "A", &options.mesh_a, "First control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "B", &options.mesh_b, "Second control mesh");
   add_pose_options(list, "-a", "A", options.pose_a);
   add_pose_options(list, "-b", "B", options.pose_b);
   add_nearest_rigid_option(list, options.nearest_rigid);
-  list.add(Group::placement, "--poses FILE", &options.poses,
-           "Answer many poses, one per line: a pose of B, or JSON with a, b or both; - for standard input");
+  if (many_poses) {
+    list.add(Group::placement, "--poses FILE", &options.poses,
+             "Answer many poses, one per line: a pose of B, or JSON with a, b or both; - for standard input");
+  }
   add_common_options(list, options);
   add_bound_options(list, options);
   add_scheme_option(list, "--scheme-a", options.scheme_a, "Scheme of A; overrides --scheme");
@@ -36,7 +38,7 @@ void write_poses(JsonWriter& json, const PosePair& poses) {
 PairArguments::PairArguments(const PairOptions& options)
     : options_(options), model_options_(model_options(options)) {
   const bool unplaced = options.pose_a.place.empty() && options.pose_b.place.empty() && options.poses.empty();
-  if (options.nearest_rigid && unplaced) {
+  if (options.nearest_rigid && unplaced && !options.moves) {
     throw UsageError("--nearest-rigid needs --place-a, --place-b or --poses");
   }
   if (options.scheme != "auto" && !options.scheme_a.empty() && !options.scheme_b.empty()) {

@@ -50,16 +50,18 @@ auto naming_option(const std::string& option, const Make& make) {
   }
 }
 
-Vector3 parse_move(const std::string& text, const std::string& option) {
+}  // namespace
+
+Vector3 parse_vector(const std::string& text, const std::string& option, const std::string& what) {
   const std::vector<double> numbers = numbers_of(words_of(text), option);
   if (numbers.size() != 3) {
     throw UsageError(
-        fmt::format("{}: '{}' is not a translation; give three numbers, as in \"3 0 0\"", option, text));
+        fmt::format("{}: '{}' is not {}; give three numbers, as in \"3 0 0\"", option, text, what));
   }
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-Motion parse_rotation(const std::string& text, const std::string& option) {
+AxisAngle parse_axis_angle(const std::string& text, const std::string& option) {
   const std::vector<std::string> words = words_of(text);
   if (words.size() == 2) {
     constexpr std::array<std::string_view, 3> names{"x", "y", "z"};
@@ -67,7 +69,7 @@ Motion parse_rotation(const std::string& text, const std::string& option) {
       if (words[0] != names[axis]) continue;
       Vector3 direction;
       direction[axis] = 1;
-      return Motion::rotation_degrees(direction, number_of(words[1], option));
+      return {direction, number_of(words[1], option)};
     }
   }
   if (words.size() != 4) {
@@ -76,12 +78,8 @@ Motion parse_rotation(const std::string& text, const std::string& option) {
                     option, text));
   }
   const std::vector<double> numbers = numbers_of(words, option);
-  return naming_option(option, [&] {
-    return Motion::rotation_degrees({numbers[0], numbers[1], numbers[2]}, numbers[3]);
-  });
+  return {{numbers[0], numbers[1], numbers[2]}, numbers[3]};
 }
-
-}  // namespace
 
 void add_pose_options(OptionList& list, const std::string& suffix, const std::string& mesh,
                       PoseOptions& options) {
@@ -136,8 +134,14 @@ Motion parse_pose(const std::string& text, const std::string& option, const Mend
 Motion pose_of(const PoseOptions& options, const std::string& suffix, const Mending& mending) {
   if (!options.place.empty()) return parse_pose(options.place, "--place" + suffix, mending);
   Motion pose;
-  if (!options.rotate.empty()) pose = parse_rotation(options.rotate, "--rotate" + suffix);
-  if (!options.move.empty()) pose = pose.with_offset(parse_move(options.move, "--move" + suffix));
+  if (!options.rotate.empty()) {
+    const std::string option = "--rotate" + suffix;
+    const AxisAngle turn = parse_axis_angle(options.rotate, option);
+    pose = naming_option(option, [&] { return Motion::rotation_degrees(turn.axis, turn.degrees); });
+  }
+  if (!options.move.empty()) {
+    pose = pose.with_offset(parse_vector(options.move, "--move" + suffix, "a translation"));
+  }
   return pose;
 }
 

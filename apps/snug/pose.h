@@ -41,6 +41,16 @@ struct TakenPose {
 /// Errors:    UsageError for another count or text that is no number; InputError (pose). Both name `option`.
 [[nodiscard]] Motion parse_pose(const std::string& text, const std::string& option, const Mending& mending);
 
+/// Three numbers; an axis, x, y, z or three numbers, with degrees after it.
+/// Errors:    UsageError that names `option` and says that the text is not `what`, such as "a translation".
+[[nodiscard]] Vector3 parse_vector(const std::string& text, const std::string& option,
+                                   const std::string& what);
+struct AxisAngle {
+  Vector3 axis;
+  double degrees;
+};
+[[nodiscard]] AxisAngle parse_axis_angle(const std::string& text, const std::string& option);
+
 /// The pose that options with this suffix name: the rotation, then the translation, or the matrix.
 /// Errors:    UsageError; InputError (pose). Both name the option.
 [[nodiscard]] Motion pose_of(const PoseOptions& options, const std::string& suffix, const Mending& mending);

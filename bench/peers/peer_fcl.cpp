@@ -42,4 +42,10 @@ double fcl_distance(const FclModel& a, const Motion& place_a, const FclModel& b,
   return a.tree().distance(place_a, b.tree(), place_b);
 }
 
+std::optional<double> fcl_first_contact(const FclModel& a, const Motion& place_a, const FclModel& b,
+                                        const Motion& from, const Motion& to, FclContact how,
+                                        std::size_t looks) {
+  return a.tree().first_contact(place_a, b.tree(), from, to, how, looks);
+}
+
 }  // namespace snug::bench

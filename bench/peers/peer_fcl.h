@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include <snug/geometry/motion.h>
@@ -53,5 +54,14 @@ class FclModel {
 /// Requires:  both models of one build with FclBoxes::obbrss.
 [[nodiscard]] double fcl_distance(const FclModel& a, const Motion& place_a, const FclModel& b,
                                   const Motion& place_b);
+
+/// How FCL looks for a first contact: at even times, or by conservative advancement.
+enum class FclContact : std::uint8_t { naive, advancement };
+/// The time in [0, 1] at which b, on a screw between two placements, first meets a; nothing if FCL sees no
+/// contact. `looks`: times, at most.
+/// Requires:  as fcl_distance().
+[[nodiscard]] std::optional<double> fcl_first_contact(const FclModel& a, const Motion& place_a,
+                                                      const FclModel& b, const Motion& from, const Motion& to,
+                                                      FclContact how, std::size_t looks);
 
 }  // namespace snug::bench

@@ -10,6 +10,7 @@
 #include <fcl/math/bv/OBB.h>
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/continuous_collision.h>
 #include <fcl/narrowphase/distance.h>
 
 namespace snug::bench {
@@ -47,6 +48,21 @@ class Tree final : public FclTree {
     fcl::DistanceResultd result;
     return fcl::distance(geometry_.get(), transform(place), static_cast<const Tree&>(other).geometry_.get(),
                          transform(other_place), request, result);
+  }
+
+  [[nodiscard]] std::optional<double> first_contact(const Motion& place, const FclTree& other,
+                                                    const Motion& from, const Motion& to, FclContact how,
+                                                    std::size_t looks) const override {
+    const fcl::ContinuousCollisionRequestd request(
+        looks, 1e-4, fcl::CCDM_SCREW, fcl::GST_LIBCCD,
+        how == FclContact::naive ? fcl::CCDC_NAIVE : fcl::CCDC_CONSERVATIVE_ADVANCEMENT);
+    fcl::ContinuousCollisionResultd result;
+    fcl::continuousCollide(geometry_.get(), transform(place), transform(place),
+                           static_cast<const Tree&>(other).geometry_.get(), transform(from), transform(to),
+                           request, result);
+    // Advancement leaves is_collide as it is.
+    if (!result.is_collide && !(result.time_of_contact < 1)) return std::nullopt;
+    return result.time_of_contact;
   }
 
  private:

@@ -20,6 +20,9 @@ class FclTree {
                                      const Motion& other_place) const = 0;
   [[nodiscard]] virtual double distance(const Motion& place, const FclTree& other,
                                         const Motion& other_place) const = 0;
+  [[nodiscard]] virtual std::optional<double> first_contact(const Motion& place, const FclTree& other,
+                                                            const Motion& from, const Motion& to,
+                                                            FclContact how, std::size_t looks) const = 0;
 };
 
 [[nodiscard]] std::unique_ptr<FclTree> make_packaged_fcl_tree(const TriangleMesh& mesh, FclBoxes boxes);

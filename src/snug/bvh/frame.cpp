@@ -41,6 +41,9 @@ RelativeFrame::RelativeFrame(const PlacedFrame& target, const PlacedFrame& sourc
   slack = enlarged(16 * (defects + 16 * unit_roundoff) * (1 + scale + max_abs(translation)) +
                    8 * inverse * underflow_error) +
           0x1p-100;
+  if (const double off = target.deviation + source.deviation; off > 0) {
+    slack += enlarged((1 + 8 * defects) * inverse * off);
+  }
   slack = static_cast<double>(static_cast<float>(slack * (1 + 0x1p-22)));
   comparable = slack < 0x1p20;
   to_world = target.scale * (1 - 8 * defects);

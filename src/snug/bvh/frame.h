@@ -12,6 +12,9 @@ struct PlacedFrame {
   double scale = 1;
   Vector3 translation;
   double defect = 0;  ///< upper bound of the largest entry of |R'R - I|
+  /// Upper bound of how far the image that is meant of a point may be from the exact one. Only RelativeFrame
+  /// accounts for it.
+  double deviation = 0;
 
   [[nodiscard]] Point3 apply(const Point3& p) const {
     return Point3{} + (scale * times(rows, p - Point3{}) + translation);
@@ -30,7 +33,8 @@ struct PlacedFrame {
 /// and a bound of what is wrong with it.
 ///
 /// Guarantee: for points p of the target and q of the source, both at most 2 in their own frames,
-///            |M q + t - p| <= (1 + 4 defects) / target.scale times their placed distance, plus `slack`.
+///            |M q + t - p| <= (1 + 4 defects) / target.scale times their placed distance, plus `slack`. The
+///            same for the places that are meant, if these are as near as the frames' deviations say.
 /// Source:    derivations/boxes.md.
 struct RelativeFrame {
   Rows3 rows;  ///< of M

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numbers>
 
 #include <snug/base/contract.h>
 
@@ -14,7 +15,7 @@ Interval around(double p, double q, double r, double s) {
   return {rounded_down(low), rounded_up(high)};
 }
 
-// Taylor of sin and cos on [0, pi/4]: terms alternate and fall, so the first left out bounds the remainder.
+// Taylor of sin and cos on [-1, 1]: terms alternate and fall, so the first left out bounds the remainder.
 Interval alternating_series(Interval first, Interval x_sq, unsigned factor) {
   Interval term = first, sum = first;
   for (unsigned i = factor; i < 26; i += 2) {
@@ -47,6 +48,37 @@ Interval operator*(Interval a, Interval b) {
 Interval operator/(Interval a, Interval b) {
   if (b.contains(0)) return {-INFINITY, INFINITY};
   return around(a.lower / b.lower, a.lower / b.upper, a.upper / b.lower, a.upper / b.upper);
+}
+
+Interval square_root(Interval a) {
+  return {std::fmax(0.0, rounded_down(std::sqrt(std::fmax(0.0, a.lower)))),
+          rounded_up(std::sqrt(std::fmax(0.0, a.upper)))};
+}
+
+SineCosine sine_cosine(Interval radians) {
+  const double angle = middle(radians), off = radius(radians);
+  if (!(std::fabs(angle) < 0x1p40 && off < 1)) return {{-1, 1}, {-1, 1}};
+  const double quarters = std::nearbyint(angle * (2 / std::numbers::pi));
+  // Half of pi lies between these two neighbours.
+  const Interval half_pi(0x1.921fb54442d18p+0, 0x1.921fb54442d19p+0);
+  const Interval rest =
+      quarters == 0 ? Interval(angle) : Interval(angle) - Interval(quarters) * half_pi;  // in [-0.8, 0.8]
+  const Interval rest_sq = rest * rest;
+  const auto widened = [&](Interval x) {
+    return Interval(std::fmax(-1.0, rounded_down(x.lower - off)), std::fmin(1.0, rounded_up(x.upper + off)));
+  };
+  const Interval s = widened(alternating_series(rest, rest_sq, 2)),
+                 c = widened(alternating_series(1.0, rest_sq, 1));
+  switch (static_cast<std::int64_t>(quarters) & 3) {
+    case 0:
+      return {s, c};
+    case 1:
+      return {c, -s};
+    case 2:
+      return {-s, -c};
+    default:
+      return {-c, s};
+  }
 }
 
 Interval cos_of_turn(unsigned k, unsigned n) {

@@ -22,6 +22,16 @@ namespace snug {
   return a.lower == a.upper ? 0.0 : rounded_up(std::fmax(a.upper - m, m - a.lower));
 }
 
+/// Of the part that is not negative.
+[[nodiscard]] Interval square_root(Interval a);
+
+struct SineCosine {
+  Interval sine, cosine;
+};
+/// Of every angle in the interval.
+/// Guarantee: inclusion; width at most 64 unit roundoffs plus that of the angle, for an angle up to 4 in size.
+[[nodiscard]] SineCosine sine_cosine(Interval radians);
+
 /// cos(2 pi k / n), by exact values where it is rational and a Taylor polynomial with remainder elsewhere.
 /// Guarantee: inclusion; width at most 64 unit roundoffs.
 /// Requires:  n >= 1.

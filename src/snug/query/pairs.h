@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <snug/contact.h>
 #include <snug/distance.h>
 #include <snug/search/workspace.h>
 
@@ -23,6 +24,16 @@ namespace snug {
 /// pieces cut each other, contact is proved as in collide().
 [[nodiscard]] Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options,
                                 const WorkMonitor& monitor = {});
+
+/// A model that moves, with a workspace as in PlacedBvh.
+struct MovingBvh {
+  const SurfaceBvh& model;
+  SurfaceWorkspace& scratch;
+  const Trajectory& motion;
+};
+[[nodiscard]] TimeOfContact time_of_contact(const MovingBvh& a, const MovingBvh& b,
+                                            const ContactOptions& options = {},
+                                            const WorkMonitor& monitor = {});
 
 /// Requires:  two workspaces.
 [[nodiscard]] Penetration penetration(const PlacedBvh& a, const PlacedBvh& b,

@@ -27,7 +27,8 @@ PlacedFrame frame_of(const PlacedBvh& placed, PowerOfTwo world) {
   return {.rows = {pose.row(0), pose.row(1), pose.row(2)},
           .scale = scale_to(world, placed.model.surface().scale()),
           .translation = world.apply(pose.offset()),
-          .defect = pose.defect()};
+          .defect = pose.defect(),
+          .deviation = placed.deviation > 0 ? enlarged(world.apply(placed.deviation)) : 0};
 }
 
 // A placed surface as a k-DOP, in units of which one mesh unit is `world` many; `scale` leads there.

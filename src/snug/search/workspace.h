@@ -107,6 +107,9 @@ struct PlacedBvh {
   const SurfaceBvh& model;
   SurfaceWorkspace& scratch;  ///< of this model and of no other one in the same query
   Motion pose;
+  /// Upper bound, in mesh units, of how far from there the place that is meant of a point may be. Crossings and
+  /// points inside of solids are proved for that place too; distances are those of `pose` itself.
+  double deviation = 0;
 };
 
 }  // namespace snug

@@ -1,0 +1,227 @@
+#include <numbers>
+#include <vector>
+
+#include <snug/base/error.h>
+#include <snug/query/pairs.h>
+
+#include <fmt/core.h>
+
+#include "length.h"
+#include "placed_pair.h"
+#include "pose_file.h"
+#include "progress_bar.h"
+#include "solids.h"
+#include "witness.h"
+
+namespace snug::command {
+namespace {
+
+// How one mesh moves, as its options say it.
+struct MoveOptions {
+  std::string to, path, velocity, spin, about;
+};
+
+struct Options : PairOptions {
+  MoveOptions move_a, move_b;
+  std::string tolerance = "0.1%";
+  bool solid = false;
+  bool exit_code = false;
+};
+
+void add_move_options(OptionList& list, const std::string& suffix, const std::string& mesh,
+                      MoveOptions& options) {
+  const std::string to = "--to" + suffix, path = "--path" + suffix, velocity = "--velocity" + suffix,
+                    spin = "--spin" + suffix;
+  list.add(Group::own, to + " \"NUMBERS\"", &options.to,
+           "Pose of " + mesh + " at time 1, as --place" + suffix + "; it moves there along a screw");
+  list.add(Group::own, path + " FILE", &options.path,
+           mesh + " moves along screws through the poses of a file, one per line, at times 0, 1, 2 ...")
+      .excludes(to)
+      .excludes("--place" + suffix)
+      .excludes("--rotate" + suffix)
+      .excludes("--move" + suffix);
+  list.add(Group::own, velocity + " \"X Y Z\"", &options.velocity, "Translation of " + mesh + " until time 1")
+      .excludes(to)
+      .excludes(path);
+  list.add(Group::own, spin + " \"AXIS DEGREES\"", &options.spin,
+           "Rotation of " + mesh + " until time 1 about a point that moves with it")
+      .excludes(to)
+      .excludes(path);
+  list.add(Group::own, "--about" + suffix + " \"X Y Z\"", &options.about,
+           "This point at time 0, in world coordinates; else the origin of the mesh where it is placed")
+      .needs(spin);
+}
+
+Trajectory read_path(const std::string& name, bool nearest_rigid) {
+  const WorkMonitor never;
+  PoseFile file(name, never);
+  std::vector<Motion> poses;
+  for (auto lines = file.next(never); !lines.empty(); lines = file.next(never)) {
+    for (const PoseLine& line : lines) {
+      try {
+        const ReadPoses read = parse_pose_line(line.text, nearest_rigid);
+        if (!read.b || read.a) {
+          throw InputError(InputProblem::unreadable, "a path is of one mesh; give one pose a line");
+        }
+        poses.push_back(*read.b);
+      } catch (const InputError& error) {
+        throw InputError(error.problem(), file.name_of(line.number) + ": " + error.what());
+      }
+    }
+  }
+  if (poses.empty()) throw InputError(InputProblem::unreadable, name + ": no pose; give one or more lines");
+  try {
+    return Trajectory::through(poses);
+  } catch (const InputError& error) {
+    throw InputError(error.problem(), name + ": " + error.what());
+  }
+}
+
+Trajectory motion_of(const MoveOptions& options, const std::string& suffix, const Motion& from,
+                     const Mending& mending) {
+  if (!options.path.empty()) return read_path(options.path, mending.nearest_rigid);
+  if (!options.to.empty()) {
+    const std::string option = "--to" + suffix;
+    const Motion to = parse_pose(options.to, option, mending);
+    try {
+      return Trajectory::screw(from, to);
+    } catch (const InputError& error) {
+      throw InputError(error.problem(), option + ": " + error.what());
+    }
+  }
+  if (options.velocity.empty() && options.spin.empty()) return from;
+  SteadyMotion motion;
+  motion.about = Point3{} + from.offset();
+  if (!options.velocity.empty()) {
+    motion.velocity = parse_vector(options.velocity, "--velocity" + suffix, "a translation");
+  }
+  if (!options.spin.empty()) {
+    const AxisAngle spin = parse_axis_angle(options.spin, "--spin" + suffix);
+    motion.axis = spin.axis;
+    motion.radians = spin.degrees * (std::numbers::pi / 180);
+  }
+  if (!options.about.empty()) {
+    motion.about = Point3{} + parse_vector(options.about, "--about" + suffix, "a point");
+  }
+  return Trajectory::steady(from, motion);
+}
+
+std::string sentence(const TimeOfContact& answer, double tolerance) {
+  const std::string lower = text_at_most(answer.time.lower), upper = text_at_most(answer.time.upper, true);
+  switch (answer.verdict) {
+    case Verdict::separated:
+      return fmt::format("separated: proved, no contact up to time {}", lower);
+    case Verdict::within:
+      return fmt::format("within: no contact before time {}, and at time {} at most {:.6g} apart", lower,
+                         upper, tolerance);
+    case Verdict::intersecting:
+      return answer.inner
+                 ? "intersecting: proved, at time 0 " + inner_sentence(*answer.inner)
+                 : fmt::format("intersecting: proved, first contact at a time from {} to {}", lower, upper);
+    case Verdict::undecided:
+      break;
+  }
+  return fmt::format(
+      "undecided: no contact before time {}, what comes later is open; give a larger --tolerance "
+      "or --budget",
+      lower);
+}
+
+// With --exit-code.
+ExitStatus status_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::separated:
+      return ExitStatus::answered;
+    case Verdict::within:
+      return ExitStatus::within;
+    case Verdict::intersecting:
+      return ExitStatus::intersecting;
+    case Verdict::undecided:
+      break;
+  }
+  return ExitStatus::undecided;
+}
+
+void write_answer(JsonWriter& json, const Sides& sides, const TimeOfContact& answer) {
+  json.field("verdict", name_of(answer.verdict)).field("reached", answer.reached);
+  json.key("time").begin_array().value(answer.time.lower);
+  answer.time.upper < INFINITY ? json.value(answer.time.upper) : json.null();
+  json.end_array().key("witness");
+  if (answer.witness) {
+    json.begin_array().value((*answer.witness)[0]).value((*answer.witness)[1]).end_array();
+    json.field("witness_error", answer.witness_error);
+  } else {
+    json.null().key("witness_error").null();
+  }
+  write_places(json, sides, answer.witness ? &answer.at : nullptr);
+  write_inner(json, answer.inner);
+  json.key("looks").value(static_cast<std::uint64_t>(answer.looks));
+  write_stats(json, answer.stats);
+}
+
+ExitStatus run(const Options& options) {
+  const Length tolerance = parse_length(options.tolerance, "--tolerance", true);
+  PairArguments pair(options);
+  const Mending mending{options.nearest_rigid, notes_for(options)};
+  const Trajectory motion_a = motion_of(options.move_a, "-a", pair.pose_a(), mending),
+                   motion_b = motion_of(options.move_b, "-b", pair.pose_b(), mending);
+  if (motion_a.duration() == 0 && motion_b.duration() == 0) {
+    throw UsageError("nothing moves; give --to-b, --velocity-b, --spin-b or --path-b, or the same for A");
+  }
+  ContactOptions wanted;
+  wanted.tolerance = tolerance.in_mesh_units(pair.size());
+  wanted.budget = options.budget;
+  wanted.solid = options.solid;
+  ProgressBar bar("moving", options.quiet);
+  const WorkMonitor monitor = bar.monitor();
+  pair.prepare(monitor);
+  if (options.solid) pair.require_closed();
+  Report report("contact", options);
+  pair.write_heads(report);
+  const TimeOfContact answer = time_of_contact({pair.model_a(), pair.a().scratch, motion_a},
+                                               {pair.model_b(), pair.b().scratch, motion_b}, wanted, monitor);
+  // Where the witnesses are: at contact, or at the beginning.
+  const double time = answer.time.upper < INFINITY ? answer.time.upper : 0;
+  const PosePair at{motion_a.at(time), motion_b.at(time)};
+  const Sides sides{{&pair.model_a().surface(), &pair.model_b().surface()}, {at.a, at.b}};
+  if (report.json()) {
+    report.write().field("tolerance", *wanted.tolerance);
+    report.write().field("duration", std::max(motion_a.duration(), motion_b.duration()));
+    write_poses(report.write(), at);
+    write_answer(report.write(), sides, answer);
+  }
+  report.text(sentence(answer, *wanted.tolerance));
+  if (answer.witness) {
+    for (const std::string& line : witness_lines(sides, *answer.witness, answer.at)) report.text(line);
+  }
+  const ExitStatus status = report.finish(answer.verdict != Verdict::undecided && answer.reached);
+  return options.exit_code ? status_of(answer.verdict) : status;
+}
+
+}  // namespace
+
+Command contact_command() {
+  auto options = std::make_shared<Options>();
+  options->moves = true;
+  options->budget = ContactOptions{}.budget;
+  OptionList list;
+  add_move_options(list, "-a", "A", options->move_a);
+  add_move_options(list, "-b", "B", options->move_b);
+  list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
+           "Surfaces this close may be reported as within, and times are told to a motion of so much; mesh "
+           "units, or percent "
+           "of the larger mesh");
+  list.add(Group::own, "--solid", &options->solid,
+           "Compare solids bounded by closed surfaces: one inside the other is in contact");
+  list.add(Group::own, "--exit-code", &options->exit_code,
+           "Exit with 0 separated, 10 within, 11 intersecting, 12 undecided");
+  add_pair_options(list, *options, false);
+  return {"contact",
+          Topic::two_surfaces,
+          "When do two moving limit surfaces first touch? Never later than told",
+          {"snug contact pawn.obj bust.obj --move-b \"3 0 0\" --velocity-b \"-3 0 0\" --spin-b \"z 90\""},
+          std::move(list),
+          [options] { return run(*options); }};
+}
+
+}  // namespace snug::command

@@ -1,0 +1,378 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <snug/base/error.h>
+#include <snug/geometry/rounding.h>
+#include <snug/query/containment.h>
+#include <snug/query/pairs.h>
+#include <snug/query/trajectory.h>
+#include <snug/search/pair_frames.h>
+#include <snug/search/precision.h>
+#include <snug/search/solid.h>
+#include <snug/surface/unscale.h>
+
+namespace snug {
+namespace {
+
+// Precision of distances: of the distance, and of the tolerance.
+constexpr double relative = 0.25, share_of_tolerance = 0.125;
+// The least share of it, where surfaces come together slowly while they move fast.
+constexpr double least_share = 0x1p-9;
+// Without a tolerance: of the size.
+constexpr double least_resolution = 0x1p-36;
+// Of the reach that two times that are looked at may have together, to be sure that they meet.
+constexpr double reach_share = 0.8;
+// Times after the surfaces have come within the tolerance that are tried for a crossing.
+constexpr int max_probes = 7;
+// Times in a row that tell nothing.
+constexpr int max_blocked = 8;
+
+// What is known at one time, of the exact motion.
+struct Look {
+  double time = 0;
+  double lower = 0, upper = INFINITY;  // of the distance
+  bool crossing = false;
+  // What the distance most likely is: points found are mostly the nearest ones.
+  [[nodiscard]] double likely() const { return upper < INFINITY ? upper : lower; }
+};
+
+// The first contact during one piece of both motions, and what came before.
+class Query {
+ public:
+  Query(const MovingBvh& a, const MovingBvh& b, const ContactOptions& options, const WorkMonitor& monitor)
+      : side_{&a, &b},
+        options_(options),
+        monitor_(monitor),
+        tolerance_(*options.tolerance),
+        size_(share_of_size(1, a.model.surface().size(), b.model.surface().size())),
+        duration_(std::max(a.motion.duration(), b.motion.duration())) {
+    resolution_ = std::max(share_of_tolerance * tolerance_, least_resolution * size_);
+  }
+
+  TimeOfContact run() {
+    enter_piece(0);
+    if (!start()) {
+      for (std::size_t piece = 0; static_cast<double>(piece) < duration_; ++piece) {
+        if (piece > 0) enter_piece(piece);
+        if (!cross_piece(static_cast<double>(piece) + 1)) break;
+      }
+    }
+    return result();
+  }
+
+ private:
+  void enter_piece(std::size_t piece) {
+    first_ = static_cast<double>(piece);
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Trajectory& motion = side_[side]->motion;
+      motion_[side] =
+          motion.pieces().empty() ? PieceMotion(motion.start()) : PieceMotion(motion.pieces()[piece]);
+    }
+    const SurfaceBvh &model_a = side_[0]->model, &model_b = side_[1]->model;
+    const bool straight = motion_[0]->straight() && motion_[1]->straight();
+    const double apart = enlarged(motion_[0]->speed(model_a) + motion_[1]->speed(model_b));
+    speed_ = straight
+                 ? std::min(apart, PieceMotion::relative_speed(*motion_[0], model_a, *motion_[1], model_b))
+                 : apart;
+    ahead_.clear();
+    last_.reset();
+    closing_ = 1;
+  }
+
+  // Both as doubles, with what these are off by where the surfaces may meet.
+  struct Places {
+    PlacedBvh a, b;
+    [[nodiscard]] double doubt() const { return a.deviation + b.deviation; }
+  };
+  [[nodiscard]] Places places_at(double time) const {
+    const double s = time - first_;  // exact: both are at most a factor of 2 apart, or first_ is 0
+    const BoundedPose pose_a = motion_[0]->at(s), pose_b = motion_[1]->at(s);
+    const Ball &ball_a = side_[0]->model.ball(), &ball_b = side_[1]->model.ball();
+    // A common point is at most so far from the origin of either surface, and so are all its own.
+    const double between = distance(pose_a.pose.apply(ball_a.centre), pose_b.pose.apply(ball_b.centre));
+    const double beyond = 2 * (between + ball_a.radius + ball_b.radius);
+    const double reach_a = enlarged(max_abs(ball_a.centre - Point3{}) + ball_a.radius + beyond),
+                 reach_b = enlarged(max_abs(ball_b.centre - Point3{}) + ball_b.radius + beyond);
+    return {{side_[0]->model, side_[0]->scratch, pose_a.pose, pose_a.deviation(reach_a)},
+            {side_[1]->model, side_[1]->scratch, pose_b.pose, pose_b.deviation(reach_b)}};
+  }
+
+  void count(const SearchStats& stats) {
+    stats_.box_tests += stats.box_tests;
+    stats_.triangle_tests += stats.triangle_tests;
+    stats_.evaluations += stats.evaluations;
+    stats_.splits += stats.splits;
+  }
+
+  // Is the surfaces' distance at that time enough for all that is left of the piece?
+  [[nodiscard]] bool far_enough(const Places& at, double time, double end, Look& look) const {
+    const double gap = root_gap(at.a, at.b, INFINITY) * (1 - 4 * unit_roundoff) - at.doubt();
+    if (!(gap > enlarged(speed_ * (end - time)))) return false;
+    look.lower = gap;
+    return true;
+  }
+
+  Look look_at(double time, double end) {
+    monitor_.report(time / std::max(duration_, 1.0));
+    ++looks_;
+    const Places at = places_at(time);
+    Look look{.time = time};
+    if (far_enough(at, time, end, look)) return look;
+    const DistanceOptions wanted{.absolute = resolution_, .relative = relative, .budget = options_.budget};
+    const Distance found = distance(at.a, at.b, wanted, monitor_);
+    count(found.stats);
+    look.crossing = found.distance.upper == 0;
+    look.lower = std::max(0.0, rounded_down(found.distance.lower - at.doubt()));
+    look.upper = look.crossing ? 0 : enlarged(found.distance.upper + at.doubt());
+    return look;
+  }
+
+  // Tries to prove contact at a time, by a crossing or by a point of one surface inside of the other one that
+  // was not inside at the beginning.
+  bool probe(double time) {
+    monitor_.checkpoint();
+    ++looks_;
+    const Places at = places_at(time);
+    const CollideOptions wanted{
+        .tolerance = 0, .budget = options_.budget, .witness = WitnessKind::none, .measure = false};
+    const Collision found = collide(at.a, at.b, wanted, monitor_);
+    count(found.stats);
+    if (found.verdict == Verdict::intersecting) return true;
+    return found.verdict != Verdict::separated && (options_.solid || outside()) &&
+           common_point(at.a, at.b, monitor_).inner.has_value();
+  }
+
+  // Are closed surfaces known to be outside of each other at time 0? Then one that has a point inside of the
+  // other one later has met it. Asked only where no crossing is found.
+  bool outside() {
+    if (!outside_) {
+      const auto closed = [](const MovingBvh& moving) { return !open_reason(moving.model.surface()); };
+      outside_ = apart_ && closed(*side_[0]) && closed(*side_[1]);
+      if (*outside_) {
+        const Nesting found = nesting_at_start();
+        outside_ = !found.inner && found.certain;
+      }
+    }
+    return *outside_;
+  }
+  // Poses are exact there.
+  [[nodiscard]] PlacedBvh at_start(std::size_t side) const {
+    return {side_[side]->model, side_[side]->scratch, side_[side]->motion.start()};
+  }
+  [[nodiscard]] Nesting nesting_at_start() const {
+    return apart_ ? nesting(at_start(0), at_start(1), monitor_)
+                  : common_point(at_start(0), at_start(1), monitor_);
+  }
+
+  // At time 0. True if that is the answer.
+  bool start() {
+    const Look look = look_at(0, duration_ > 0 ? 1 : 0);
+    apart_ = look.lower > 0;
+    if (options_.solid && !look.crossing) {
+      inside_ = nesting_at_start();
+      if (inside_.inner) crossing_ = 0;
+      if (inside_.inner || (apart_ && !inside_.certain)) return true;
+      outside_ = apart_;
+    }
+    take(look, duration_ > 0 ? 1 : 0);
+    if (duration_ == 0) over_ = apart_;
+    return look.crossing || duration_ == 0;
+  }
+
+  // How long a distance lasts, rounded down.
+  [[nodiscard]] double time_for(double distance) const {
+    if (speed_ == 0) return distance > 0 ? INFINITY : 0;
+    return std::max(0.0, rounded_down(rounded_down(distance / speed_)));
+  }
+  // Is the time between two so short that it is not worth making shorter?
+  [[nodiscard]] bool short_enough(double from, double to) const {
+    return from >= to || enlarged(speed_ * (to - from)) <= goal();
+  }
+  [[nodiscard]] double goal() const { return std::max(tolerance_, 8 * least_resolution * size_); }
+
+  // Takes into account what is known at a time.
+  void take(const Look& look, double end) {
+    if (look.crossing) {
+      meet(look.time);
+      return;
+    }
+    if (look.upper <= tolerance_) within_ = std::min(within_, look.time);
+    if (look.lower > 0) {
+      ahead_.push_back(look);
+      connect(end);
+    } else {
+      block(look.time);
+    }
+  }
+  // What lies beyond a contact is of no use.
+  void meet(double time) {
+    crossing_ = std::min(crossing_, time);
+    std::erase_if(ahead_, [this](const Look& look) { return look.time > crossing_; });
+  }
+  void block(double time) {
+    blocked_ = std::min(blocked_, time);
+    blocked_to_ = std::max(blocked_to_, time);
+    ++blocks_;
+  }
+
+  // Looks ahead that reach back to `lower_` raise it.
+  void connect(double end) {
+    while (!ahead_.empty()) {
+      const Look& next = ahead_.back();
+      const double last = time_for(next.lower);
+      if (rounded_up(next.time - last) > lower_ && next.time > lower_) return;
+      lower_ = std::clamp(rounded_down(next.time + last), std::max(lower_, next.time), std::max(lower_, end));
+      if (last_ && last_->time < next.time && speed_ > 0) {
+        const double share = (last_->likely() - next.likely()) / (next.time - last_->time) / speed_;
+        closing_ = std::clamp(share, 0.0, 1.0);
+      }
+      last_ = next;
+      ahead_.pop_back();
+    }
+  }
+
+  // The next time to look at, from lower_ on.
+  [[nodiscard]] double next_time(double end) const {
+    if (!ahead_.empty()) {
+      const double from = ahead_.back().time - time_for(ahead_.back().lower);
+      return middle_of(lower_, blocked_ > lower_ ? std::min(blocked_, from) : from);
+    }
+    if (crossing_ <= end && blocked_to_ < crossing_ && blocked_ - lower_ < crossing_ - blocked_to_) {
+      return middle_of(std::max(lower_, blocked_to_), crossing_);
+    }
+    if (!last_) return lower_;
+    // The next look is to reach back to lower_ with a distance that shrinks as it did before.
+    const double time = lower_ + reach_share * time_for(last_->lower) * (1 - closing_) / (1 + closing_);
+    double limit = std::min(crossing_, blocked_);
+    if (within_ > lower_) limit = std::min(limit, within_);
+    return limit <= end ? std::min(time, middle_of(lower_, limit)) : std::min(time, end);
+  }
+  [[nodiscard]] static double middle_of(double from, double to) { return from + (to - from) / 2; }
+
+  // To the end of a piece. False if there is an answer, or none can be found.
+  bool cross_piece(double end) {
+    while (lower_ < end) {
+      if (crossing_ <= end && short_enough(lower_, crossing_)) return false;
+      const double near = std::min(within_, blocked_);
+      if (near <= end && (short_enough(lower_, near) || blocks_ >= max_blocked)) {
+        if (!probed_ && options_.prove_contact && find_crossing(std::min(end, crossing_))) continue;
+        if (crossing_ > end || blocks_ >= max_blocked) return false;
+      }
+      if (looks_ >= options_.max_looks) return false;
+      const double before = lower_;
+      const Look look = look_at(next_time(end), end);
+      take(look, end);
+      // Too slow to get anywhere.
+      const bool slow = lower_ - before <= 0x1p-48 * std::max(1.0, before);
+      if (look.lower > 0 && ahead_.empty() && slow) block(lower_);
+    }
+    if (end == duration_) over_ = true;
+    return true;
+  }
+
+  // A little after the surfaces have come near each other.
+  bool find_crossing(double end) {
+    probed_ = true;
+    const double closing = std::max(closing_, least_share) * speed_;
+    const double base = std::max(lower_, last_ ? last_->time + last_->likely() / closing : 0);
+    resolution_ = std::max(resolution_ * std::clamp(closing_, least_share, 1.0), least_resolution * size_);
+    double step = 0.25 * goal() / speed_;
+    for (int i = 0; i < max_probes; ++i, step *= 2) {
+      const double time = std::min(base + step, end);
+      if (probe(time)) {
+        meet(time);
+        blocked_ = INFINITY;
+        blocked_to_ = 0;
+        blocks_ = 0;
+        return true;
+      }
+      if (time == end) return false;
+    }
+    return false;
+  }
+
+  TimeOfContact result() {
+    TimeOfContact answer;
+    answer.looks = looks_;
+    if (crossing_ < INFINITY) {
+      answer.verdict = Verdict::intersecting;
+      answer.time = {std::min(lower_, crossing_), crossing_};
+    } else if (within_ < INFINITY && !over_) {
+      answer.verdict = Verdict::within;
+      answer.time = {std::min(lower_, within_), within_};
+    } else {
+      answer.verdict = over_ ? Verdict::separated : Verdict::undecided;
+      answer.time = {over_ ? duration_ : lower_, INFINITY};
+      answer.reached = over_;
+    }
+    if (answer.time.upper < INFINITY) {
+      answer.reached = short_enough(answer.time.lower, answer.time.upper);
+      tell_witness(answer);
+    }
+    answer.stats = stats_;
+    return answer;
+  }
+
+  void tell_witness(TimeOfContact& answer) {
+    const Places at = places_at(answer.time.upper);
+    if (options_.solid && inside_.inner) {
+      answer.witness = {inside_.point.position, inside_.point.position};
+      answer.witness_error = inside_.point.error;
+      answer.at[*inside_.inner] = inside_.at;
+      answer.inner = inside_.inner;
+      return;
+    }
+    const Distance found = distance(
+        at.a, at.b, {.absolute = resolution_, .relative = relative, .budget = options_.budget}, monitor_);
+    count(found.stats);
+    answer.witness = found.witness;
+    answer.witness_error = enlarged(found.witness_error + at.doubt());
+    answer.at = found.at;
+  }
+
+  std::array<const MovingBvh*, 2> side_;
+  const ContactOptions& options_;
+  const WorkMonitor& monitor_;
+  double tolerance_, size_, duration_;
+  std::array<std::optional<PieceMotion>, 2> motion_;
+  double first_ = 0;  // time at which the piece begins
+  double speed_ = 0;  // upper bound, of the surfaces against each other
+  double resolution_ = 0;
+  // At no time up to lower_ there is contact, or before it where it is 0 or an end of the answer.
+  double lower_ = 0;
+  // The first times known with contact at or before, within the tolerance, and of which nothing can be told.
+  double crossing_ = INFINITY, within_ = INFINITY, blocked_ = INFINITY;
+  double blocked_to_ = 0;     // the last of these
+  std::vector<Look> ahead_;   // times without contact beyond lower_, the first one last
+  std::optional<Look> last_;  // the last one that raised it
+  double closing_ = 1;        // share of speed_ at which the distance shrank
+  int looks_ = 0, blocks_ = 0;
+  bool probed_ = false, over_ = false;
+  bool apart_ = false;           // at first, as surfaces
+  std::optional<bool> outside_;  // of outside(), once known
+  Nesting inside_;               // at first, with solids
+  SearchStats stats_;
+};
+
+}  // namespace
+
+TimeOfContact time_of_contact(const MovingBvh& a, const MovingBvh& b, const ContactOptions& options,
+                              const WorkMonitor& monitor) {
+  ContactOptions wanted = options;
+  if (!wanted.tolerance) {
+    wanted.tolerance = share_of_size(1e-3, a.model.surface().size(), b.model.surface().size());
+  }
+  require_length(*wanted.tolerance, "time of contact: the tolerance");
+  const double ends_a = a.motion.duration(), ends_b = b.motion.duration();
+  require_value(ends_a == ends_b || ends_a == 0 || ends_b == 0,
+                "time of contact: the motions last for different times; give both the same number of pieces");
+  if (options.solid) {
+    static_cast<void>(a.model.solid());
+    static_cast<void>(b.model.solid());
+  }
+  return Query(a, b, wanted, monitor).run();
+}
+
+}  // namespace snug

@@ -1,0 +1,299 @@
+#include <snug/query/trajectory.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <snug/base/error.h>
+#include <snug/geometry/direction.h>
+#include <snug/geometry/rounding.h>
+
+namespace snug {
+namespace {
+
+using Numbers = std::array<double, 12>;
+using IntervalVector = std::array<Interval, 3>;
+
+// Half the cosine of poses that are so nearly half a turn apart that neither rotation is the shorter one.
+constexpr double half_turn = 1e-8;
+// Rotations by less are translations: quotients by them would leave the range.
+constexpr double least_angle = 0x1p-500;
+
+IntervalVector intervals(const Vector3& v) { return {v.x, v.y, v.z}; }
+IntervalVector operator+(const IntervalVector& a, const IntervalVector& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+IntervalVector operator-(const IntervalVector& a, const IntervalVector& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+IntervalVector operator*(Interval s, const IntervalVector& a) { return {s * a[0], s * a[1], s * a[2]}; }
+Interval dot(const IntervalVector& a, const IntervalVector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+IntervalVector cross(const IntervalVector& a, const IntervalVector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+double largest(Interval a) { return std::max(std::fabs(a.lower), std::fabs(a.upper)); }
+// Upper bound of the length.
+double length_up(const IntervalVector& a) {
+  Vector3 most{largest(a[0]), largest(a[1]), largest(a[2])};
+  const double size = max_abs(most);
+  if (!std::isfinite(size)) return INFINITY;
+  if (size == 0) return 0;
+  const PowerOfTwo scale = PowerOfTwo::normalising(size);
+  return enlarged(scale.inverse().apply(enlarged(length(scale.apply(most)))));
+}
+
+IntervalVector rotated(const Motion& m, const IntervalVector& v) {
+  return {dot(intervals(m.row(0)), v), dot(intervals(m.row(1)), v), dot(intervals(m.row(2)), v)};
+}
+
+[[noreturn]] void refuse_range() {
+  throw InputError(InputProblem::unrepresentable,
+                   "trajectory: its poses do not fit doubles; scale the meshes and the motion down");
+}
+
+// The unit quaternion w, x, y, z of a rotation, w not negative, to some roundings.
+std::array<double, 4> quaternion_of(const Rows3& r) {
+  const double xx = r[0].x, yy = r[1].y, zz = r[2].z;
+  std::array<double, 4> q{1 + xx + yy + zz, 1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz};
+  const double wx = r[2].y - r[1].z, wy = r[0].z - r[2].x, wz = r[1].x - r[0].y;
+  const double xy = r[0].y + r[1].x, xz = r[0].z + r[2].x, yz = r[1].z + r[2].y;
+  const auto k = std::max_element(q.begin(), q.end()) - q.begin();
+  if (k == 0) q = {q[0], wx, wy, wz};
+  if (k == 1) q = {wx, q[1], xy, xz};
+  if (k == 2) q = {wy, xy, q[2], yz};
+  if (k == 3) q = {wz, xz, yz, q[3]};
+  double norm = 0;
+  for (const double x : q) norm += x * x;
+  const double factor = std::copysign(1 / std::sqrt(norm), q[0]);
+  for (double& x : q) x *= factor;
+  return q;
+}
+
+// The rotation that takes that of one pose to that of another.
+Rows3 rotation_between(const Motion& from, const Motion& to) {
+  Rows3 rows;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) rows[i][j] = dot(to.row(i), from.row(j));
+  }
+  return rows;
+}
+
+Trajectory::Piece screw_piece(const Motion& from, const Motion& to, const std::string& what) {
+  Trajectory::Piece piece{.from = from, .to = to, .ends = true};
+  const auto [w, x, y, z] = quaternion_of(rotation_between(from, to));
+  if (w < half_turn) {
+    throw InputError(InputProblem::pose, what +
+                                             "is half a turn away: neither way round is the shorter one; "
+                                             "give a pose between, or an axis and an angle");
+  }
+  const Vector3 vector{x, y, z};
+  piece.radians = 2 * std::atan2(length(vector), w);
+  if (piece.radians < least_angle) piece.radians = 0;
+  if (piece.radians > 0) piece.axis = normalized(vector);
+  piece.about = Point3{} + from.offset();
+  const Vector3 way = to.offset() - from.offset(), n = piece.axis;
+  if (!is_finite(way) || !(max_abs(way) < 0x1p1000)) refuse_range();
+  piece.velocity = dot(n, way) * n;
+  const Vector3 across = way - piece.velocity;
+  if (piece.radians == 0) {
+    piece.turning = across;
+  } else {
+    // Solves (sin turning + (1 - cos) n x turning) / radians = across.
+    const double a = std::sin(piece.radians) / piece.radians, half = std::sin(piece.radians / 2),
+                 b = 2 * half * half / piece.radians;
+    piece.turning = (1 / (a * a + b * b)) * (a * across - b * cross(n, across));
+  }
+  return piece;
+}
+
+}  // namespace
+
+Trajectory::Trajectory(const Motion& pose) : start_(pose) {}
+
+Trajectory Trajectory::screw(const Motion& from, const Motion& to) {
+  Trajectory result(from);
+  result.pieces_ = {screw_piece(from, to, "trajectory: the second pose ")};
+  return result;
+}
+
+Trajectory Trajectory::through(std::span<const Motion> poses) {
+  require_value(!poses.empty(), "trajectory: no pose; give one or more");
+  Trajectory result(poses[0]);
+  for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
+    result.pieces_.push_back(
+        screw_piece(poses[i], poses[i + 1], "trajectory: pose " + std::to_string(i + 2) + " "));
+  }
+  return result;
+}
+
+Trajectory Trajectory::steady(const Motion& from, const SteadyMotion& motion) {
+  require_value(is_finite(motion.velocity) && max_abs(motion.velocity) < 0x1p1000,
+                "trajectory: the velocity does not fit; give three numbers below 1e300");
+  require_value(is_finite(motion.about), "trajectory: the point to rotate about is not finite");
+  require_value(std::isfinite(motion.radians) && std::fabs(motion.radians) < 0x1p30,
+                "trajectory: the rotation is not finite or more than 1e8 turns; give less");
+  require_value(is_finite(motion.axis) && (motion.axis != Vector3{} || motion.radians == 0),
+                "trajectory: the axis of rotation has no length or is not finite; give its direction");
+  Piece piece{.from = from};
+  piece.about = motion.about;
+  piece.velocity = motion.velocity;
+  if (std::fabs(motion.radians) >= least_angle) {
+    piece.radians = motion.radians;
+    piece.axis = PowerOfTwo::normalising(max_abs(motion.axis)).apply(motion.axis);
+  }
+  Trajectory result(from);
+  result.pieces_ = {piece};
+  return result;
+}
+
+Motion Trajectory::at(double time) const {
+  if (pieces_.empty()) return start_;
+  require_value(time >= 0 && time <= duration(),
+                "trajectory: a time outside of the motion; give one from 0 to its duration");
+  const std::size_t piece = std::min(static_cast<std::size_t>(time), pieces_.size() - 1);
+  return PieceMotion(pieces_[piece]).at(time - static_cast<double>(piece)).pose;
+}
+
+double BoundedPose::deviation(double reach) const {
+  double most = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double turned = error[4 * i] + error[4 * i + 1] + error[4 * i + 2];
+    most = std::max(most, (turned > 0 ? turned * reach : 0) + error[4 * i + 3]);
+  }
+  return most == 0 ? 0 : enlarged(spatial_error(most));
+}
+
+PieceMotion::PieceMotion(const Motion& stays) : stays_(true), axis_{0, 0, 1} {
+  piece_.from = stays;
+  piece_.about = Point3{} + stays.offset();
+}
+
+PieceMotion::PieceMotion(const Trajectory::Piece& piece) : piece_(piece) {
+  const IntervalVector given = intervals(piece.axis);
+  const Interval size = square_root(dot(given, given));
+  axis_ = {given[0] / size, given[1] / size, given[2] / size};
+  if (!piece.ends) return;
+  closing_ = screwed(1);
+  for (std::size_t k = 0; k < 12; ++k) closing_[k] = Interval(piece.to.numbers()[k]) - closing_[k];
+}
+
+PieceMotion::Intervals PieceMotion::screwed(double s) const {
+  const Motion& from = piece_.from;
+  const Interval angle = Interval(s) * Interval(piece_.radians);
+  const SineCosine of_angle = piece_.radians == 0 ? SineCosine{0, 1} : sine_cosine(angle);
+  const Interval &sine = of_angle.sine, &cosine = of_angle.cosine;
+  const Interval half_sine = sine_cosine(angle / Interval(2)).sine;
+  const Interval rest = Interval(2) * (half_sine * half_sine);  // 1 - cosine, with its own digits
+  const IntervalVector& n = axis_;
+  const auto turned = [&](const IntervalVector& v) {
+    if (piece_.radians == 0) return v;
+    return cosine * v + sine * cross(n, v) + (rest * dot(n, v)) * n;
+  };
+  Intervals result;
+  for (std::size_t j = 0; j < 3; ++j) {
+    const IntervalVector column = turned({from.row(0)[j], from.row(1)[j], from.row(2)[j]});
+    for (std::size_t i = 0; i < 3; ++i) result[4 * i + j] = column[i];
+  }
+  const IntervalVector about = intervals(piece_.about - Point3{}), turning = intervals(piece_.turning);
+  IntervalVector place = about;
+  if (const Vector3 t = from.offset(); Point3{} + t != piece_.about) {
+    place = turned(intervals(t) - about) + about;
+  }
+  place = place + Interval(s) * intervals(piece_.velocity);
+  if (piece_.turning != Vector3{}) {
+    const Interval radians(piece_.radians);
+    place = piece_.radians == 0 ? place + Interval(s) * turning
+                                : place + (sine / radians) * turning + (rest / radians) * cross(n, turning);
+  }
+  for (std::size_t i = 0; i < 3; ++i) result[4 * i + 3] = place[i];
+  return result;
+}
+
+BoundedPose PieceMotion::at(double s) const {
+  if (stays_ || s == 0) return {piece_.from};
+  if (piece_.ends && s == 1) return {piece_.to};
+  Intervals exact = screwed(s);
+  Numbers numbers;
+  BoundedPose result;
+  for (std::size_t k = 0; k < 12; ++k) {
+    if (piece_.ends) exact[k] = exact[k] + Interval(s) * closing_[k];
+    numbers[k] = middle(exact[k]);
+    if (!std::isfinite(numbers[k])) refuse_range();
+  }
+  // Between poses at the border of rigidity it may be crossed.
+  result.pose = rigidity_defect(numbers) <= rigidity_tolerance ? Motion::from_3x4(numbers)
+                                                               : nearest_rigid(numbers).motion;
+  for (std::size_t k = 0; k < 12; ++k) {
+    const double taken = result.pose.numbers()[k];
+    result.error[k] = std::max(0.0, rounded_up(std::max(exact[k].upper - taken, taken - exact[k].lower)));
+  }
+  return result;
+}
+
+// radians n x (R x + t - about) + turning, by which x moves across the axis at first.
+PieceMotion::IntervalVector PieceMotion::lever_at(const IntervalVector& point) const {
+  const Vector3 t = piece_.from.offset();
+  IntervalVector arm = rotated(piece_.from, point);
+  if (Point3{} + t != piece_.about) arm = arm + (intervals(t) - intervals(piece_.about - Point3{}));
+  return Interval(piece_.radians) * cross(axis_, arm) + intervals(piece_.turning);
+}
+
+// The largest of these over the surface: at a corner of its box, or by its ball.
+double PieceMotion::lever(const SurfaceBvh& model) const {
+  if (piece_.radians == 0) return length_up(intervals(piece_.turning));
+  const Ball& ball = model.ball();
+  const Obb& box = model.box();
+  // Growth of R beyond 1: 2 defects.
+  double by_ball = length_up(lever_at(intervals(ball.centre - Point3{})));
+  by_ball = enlarged(by_ball + std::fabs(piece_.radians) * ball.radius * (1 + 2 * piece_.from.defect()));
+  // Axes are orthonormal up to some roundings, which moves a corner by less than this.
+  const double more = 0x1p-40 * (box.half.x + box.half.y + box.half.z);
+  double by_box = 0;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    IntervalVector point = intervals(box.centre - Point3{});
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double half = enlarged(box.half[k] + more);
+      point = point + Interval((corner >> k & 1u) != 0 ? half : -half) * intervals(box.axes[k]);
+    }
+    by_box = std::max(by_box, length_up(lever_at(point)));
+  }
+  return std::min(by_ball, std::isfinite(by_box) ? by_box : INFINITY);
+}
+
+// Of s (to - S(1)).
+double PieceMotion::closing_speed(const SurfaceBvh& model) const {
+  if (!piece_.ends) return 0;
+  double matrix = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) matrix += largest(closing_[4 * i + j]);
+  }
+  const Ball& ball = model.ball();
+  return enlarged(matrix * (length_up(intervals(ball.centre - Point3{})) + ball.radius) +
+                  length_up({closing_[3], closing_[7], closing_[11]}));
+}
+
+double PieceMotion::speed(const SurfaceBvh& model) const {
+  if (stays_) return 0;
+  const IntervalVector velocity = intervals(piece_.velocity);
+  const Interval along = dot(axis_, velocity);
+  const double rise = enlarged(largest(along) + largest(dot(axis_, intervals(piece_.turning)))),
+               across = enlarged(length_up(velocity - along * axis_) + lever(model));
+  const double result = enlarged(length_up({rise, across, 0}) + closing_speed(model));
+  if (!std::isfinite(result)) refuse_range();
+  return result;
+}
+
+double PieceMotion::relative_speed(const PieceMotion& a, const SurfaceBvh& model_a, const PieceMotion& b,
+                                   const SurfaceBvh& model_b) {
+  const auto velocity = [](const PieceMotion& m) {
+    return intervals(m.piece_.velocity) + intervals(m.piece_.turning);
+  };
+  const double result =
+      enlarged(length_up(velocity(b) - velocity(a)) + a.closing_speed(model_a) + b.closing_speed(model_b));
+  if (!std::isfinite(result)) refuse_range();
+  return result;
+}
+
+}  // namespace snug

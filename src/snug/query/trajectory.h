@@ -1,0 +1,55 @@
+#pragma once
+
+#include <array>
+
+#include <snug/contact.h>
+#include <snug/geometry/interval.h>
+#include <snug/geometry/motion.h>
+#include <snug/search/surface_bvh.h>
+
+namespace snug {
+
+/// A pose in double precision, and upper bounds of what its numbers differ by from the one that is meant.
+struct BoundedPose {
+  Motion pose;
+  std::array<double, 12> error{};
+
+  /// Upper bound of the distance between the places of a point by this pose and by the one meant.
+  /// Requires:  no coordinate of the point is larger than `reach`.
+  [[nodiscard]] double deviation(double reach) const;
+};
+
+/// A piece of a trajectory, or a pose that stays, with proved bounds.
+///
+/// Source:    derivations/time_of_contact.md.
+class PieceMotion {
+ public:
+  explicit PieceMotion(const Motion& stays);
+  /// Errors:    InputError (unrepresentable) where a pose does not fit doubles; at() and speed() likewise.
+  explicit PieceMotion(const Trajectory::Piece& piece);
+
+  /// Requires:  s in [0, 1].
+  [[nodiscard]] BoundedPose at(double s) const;
+  /// Upper bound of the velocity of any point of the surface, in mesh units for one unit of time.
+  [[nodiscard]] double speed(const SurfaceBvh& model) const;
+  /// Does it only translate?
+  [[nodiscard]] bool straight() const { return piece_.radians == 0; }
+  /// Of two that only translate: upper bound of their relative velocity.
+  [[nodiscard]] static double relative_speed(const PieceMotion& a, const SurfaceBvh& model_a,
+                                             const PieceMotion& b, const SurfaceBvh& model_b);
+
+ private:
+  using Intervals = std::array<Interval, 12>;
+  using IntervalVector = std::array<Interval, 3>;
+  [[nodiscard]] Intervals screwed(double s) const;
+  [[nodiscard]] double closing_speed(const SurfaceBvh& model) const;
+  [[nodiscard]] double lever(const SurfaceBvh& model) const;
+  [[nodiscard]] IntervalVector lever_at(const IntervalVector& point) const;
+
+  Trajectory::Piece piece_;
+  bool stays_ = false;
+  IntervalVector axis_;  // of length 1
+  Intervals closing_{};  // to - S(1)
+};
+
+}  // namespace snug

@@ -1,0 +1,93 @@
+// contact, as people script it.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "run_snug.h"
+
+namespace snug::testing {
+namespace {
+
+using nlohmann::json;
+
+class contact : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string text;
+    for (int i = 0; i < 8; ++i) {
+      text += "v " + std::to_string(i & 1) + " " + std::to_string(i >> 1 & 1) + " " + std::to_string(i >> 2) +
+              "\n";
+    }
+    std::ofstream(cube_) << text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+  }
+  [[nodiscard]] json answer(std::vector<std::string> arguments, int status = 0) const {
+    arguments.insert(arguments.begin(), {"contact", cube_, cube_, "--scheme", "bilinear", "--json"});
+    const Outcome outcome = run_snug(arguments);
+    EXPECT_EQ(outcome.status, status) << outcome.err;
+    return json::parse(outcome.out, nullptr, false);
+  }
+  [[nodiscard]] Outcome refused(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), {"contact", cube_, cube_, "--scheme", "bilinear"});
+    return run_snug(arguments);
+  }
+
+  TemporaryFolder folder_;
+  std::string cube_ = folder_.file("cube.obj");
+};
+
+TEST_F(contact, of_cubes_is_told_for_every_way_to_move) {
+  // From x = 3 by -4 the faces meet at half the time; a little off the middle.
+  const json steady = answer({"--move-b", "3 0.1 0.2", "--velocity-b", "-4 0 0", "--tolerance", "1e-3"});
+  EXPECT_EQ(steady["verdict"], "intersecting");
+  EXPECT_EQ(steady["reached"], true);
+  EXPECT_EQ(steady["duration"], 1);
+  EXPECT_LE(steady["time"][0], 0.5);
+  EXPECT_GE(steady["time"][1], 0.5 - 1e-12);
+  EXPECT_LE(steady["time"][1], 0.501);
+  EXPECT_EQ(steady["witness"].size(), 2);
+  EXPECT_NEAR(steady["place_b"][3].get<double>(), 1, 1e-2);
+  const json screw = answer({"--move-b", "3 0.1 0.2", "--to-b", "1 0 0 -1  0 1 0 0.1  0 0 1 0.2"});
+  EXPECT_LE(screw["time"][0], 0.5);
+  EXPECT_GE(screw["time"][1], 0.5 - 1e-3);
+  std::ofstream(folder_.file("path.txt")) << "1 0 0 3 0 1 0 0.1 0 0 1 0.2\n1 0 0 2 0 1 0 0.1 0 0 1 0.2\n"
+                                             "1 0 0 0 0 1 0 0.1 0 0 1 0.2\n";
+  const json path = answer({"--path-b", folder_.file("path.txt")});
+  EXPECT_EQ(path["duration"], 2);
+  EXPECT_LE(path["time"][0], 1.5);
+  EXPECT_GE(path["time"][1], 1.5 - 1e-3);
+  const json both = answer({"--velocity-a", "2 0 0", "--move-b", "3 0.1 0.2", "--velocity-b", "-2 0 0"});
+  EXPECT_LE(both["time"][0], 0.5);
+  // Turned about z it sweeps past, two away.
+  const json past = answer({"--move-b", "3 0 0", "--spin-b", "z 360", "--about-b", "3.5 0.5 0"});
+  EXPECT_EQ(past["verdict"], "separated");
+  EXPECT_EQ(past["time"], json({1, nullptr}));
+  EXPECT_EQ(past["witness"], nullptr);
+}
+
+TEST_F(contact, of_solids_begins_inside) {
+  EXPECT_EQ(answer({"--move-b", "0.1 0.2 0.3", "--velocity-b", "1 0 0", "--solid"})["time"][1], 0);
+  const json out = answer({"--exit-code", "--move-b", "5 0 0", "--velocity-b", "1 0 0", "--solid"});
+  EXPECT_EQ(out["verdict"], "separated");
+  EXPECT_EQ(refused({"--exit-code", "--move-b", "3 0.1 0.2", "--velocity-b", "-4 0 0"}).status, 11);
+}
+
+TEST_F(contact, refusals_name_the_option_and_the_next_step) {
+  EXPECT_NE(refused({}).err.find("nothing moves; give --to-b"), std::string::npos);
+  EXPECT_EQ(refused({}).status, 2);
+  EXPECT_EQ(refused({"--poses", "poses.txt", "--velocity-b", "1 0 0"}).status, 2);
+  EXPECT_EQ(refused({"--velocity-b", "1 0"}).status, 2);
+  EXPECT_EQ(refused({"--about-b", "1 0 0", "--velocity-b", "1 0 0"}).status, 2);
+  const Outcome half = refused({"--to-b", "-1 0 0 0  0 -1 0 0  0 0 1 0"});
+  EXPECT_EQ(half.status, 4);
+  EXPECT_NE(half.err.find("--to-b: trajectory: the second pose is half a turn away"), std::string::npos)
+      << half.err;
+  std::ofstream(folder_.file("path.txt")) << "1 0 0 3 0 1 0 0.1 0 0 1 0.2\n\n1 0 0 2 0 1 0 0.1 0 0 1\n";
+  const Outcome bad = refused({"--path-b", folder_.file("path.txt")});
+  EXPECT_EQ(bad.status, 3);
+  EXPECT_NE(bad.err.find("path.txt:3: 11 numbers"), std::string::npos) << bad.err;
+}
+
+}  // namespace
+}  // namespace snug::testing
