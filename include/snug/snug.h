@@ -5,6 +5,7 @@
 #include <snug/bound.h>
 #include <snug/closest.h>
 #include <snug/collide.h>
+#include <snug/contacts.h>
 #include <snug/deviation.h>
 #include <snug/distance.h>
 #include <snug/evaluate.h>
