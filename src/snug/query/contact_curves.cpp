@@ -31,6 +31,7 @@ struct PlacedPatch {
 struct Outcome {
   enum class State : std::uint8_t { apart, arcs, open, split } state = State::apart;
   std::vector<CutArc> arcs;
+  std::vector<Box3> specks;
   Box3 box;
   bool reached = true;
 };
@@ -57,9 +58,10 @@ class Cutter {
                                     [&](const CutArc& arc) { return arc.deviation <= precision_; });
       outcome.state = outcome.reached || last ? Outcome::State::arcs : Outcome::State::split;
       outcome.arcs = std::move(found.arcs);
+      outcome.specks = std::move(found.specks);
       return outcome;
     }
-    outcome.reached = longest_side(outcome.box) <= precision_;
+    outcome.reached = std::max(longest_side(a.placed.box()), longest_side(b.placed.box())) <= precision_;
     outcome.state = outcome.reached || last ? Outcome::State::open : Outcome::State::split;
     return outcome;
   }
@@ -254,16 +256,17 @@ CutSurfaces cut_surfaces(const std::array<const LimitSurface*, 2>& surfaces,
       result.open.push_back({outcome.box, item.pieces.roots, item.pieces.contact});
     }
     if (outcome.state != Outcome::State::arcs) return;
+    for (const Box3& speck : outcome.specks) {
+      result.open.push_back({speck, item.pieces.roots, item.pieces.contact});
+    }
     for (CutArc& arc : outcome.arcs) {
       const auto number = static_cast<std::uint32_t>(2 * result.arcs.size());
+      ChainArc chained;
       for (std::uint32_t e = 0; e < 2; ++e) {
+        if (!arc.ends[e].sure) continue;
         ends.push_back(placed_end(surfaces, item.pieces, arc.ends[e]));
         ends.back().number = number + e;
-      }
-      ChainArc chained;
-      for (std::size_t e = 0; e < 2; ++e) {
-        const PlacedEnd& end = ends[ends.size() - 2 + e];
-        chained.at_border[e] = is_border(*surfaces[end.side], end.line);
+        chained.at_border[e] = is_border(*surfaces[arc.ends[e].side], ends.back().line);
       }
       chained.ends = {arc_end(item.pieces, arc.ends[0]), arc_end(item.pieces, arc.ends[1])};
       chained.arc = std::move(arc);

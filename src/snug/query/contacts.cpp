@@ -22,7 +22,7 @@ namespace {
 
 // Pieces of regions are at most this share of the larger surface; those of which nothing is proved are split so many
 // times smaller.
-constexpr double largest_share = 0x1p-6, smallest_share = 0x1p-3;
+constexpr double largest_share = 0x1p-5, smallest_share = 0x1p-3;
 
 // Two pieces that may be within the tolerance of each other. Lengths are in the query's units.
 struct NearPieces {
@@ -92,8 +92,10 @@ class Query {
       const PairWalk::Opening opening = walk_.opening(pair);
       const bool none = opening == PairWalk::Opening::none;
       if (pair.bounded() && (none || !walk_.may_open(pair, opening, options_.budget))) {
-        answer_.reached = false;
-        list(pair, pieces_.nearest(pair));
+        const PiecePair pieces = pieces_.nearest(pair);
+        // What cannot be split is as fine as it gets.
+        if (!none || (within_ > 0 && !(pieces.near_distance <= within_))) answer_.reached = false;
+        list(pair, pieces);
         continue;
       }
       if (queue.size() + near_.size() > options_.budget) {

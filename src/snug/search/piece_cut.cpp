@@ -19,6 +19,8 @@ constexpr double max_slope = 0.5, least_sine = 1e-5, direction_error = 1e-9;
 // The share of its distance from a zero that a step may leave, and how many are made.
 constexpr double max_contraction = 0.9;
 constexpr unsigned max_steps = 80;
+// How large a box may be in which ends of arcs are not told apart.
+constexpr double max_speck = 0x1p-24;
 
 Vector3 mean(const std::vector<Vector3>& vectors) {
   Vector3 sum;
@@ -60,11 +62,41 @@ Extent extent_of(const std::vector<Vector3>& points, double error, const Point3&
 
 bool parted(const Extent& a, const Extent& b) { return a.upper < b.lower || b.upper < a.lower; }
 
-// Where a parameter along an edge lies on the piece.
-TriangleParameter on_edge(std::size_t edge, double t) {
-  if (edge == 0) return {t, 0};
-  if (edge == 1) return {1 - t, t};
-  return {0, 1 - t};
+// A straight line in the parameters of a piece.
+struct Path {
+  TriangleParameter from, to;
+  std::vector<Vector3> tangents;  // their hull holds the derivative along it
+  [[nodiscard]] TriangleParameter at(double t) const {
+    return {from.u + t * (to.u - from.u), from.v + t * (to.v - from.v)};
+  }
+};
+
+Path edge_of(const PlacedPiece& piece, std::size_t k) {
+  constexpr std::array<TriangleParameter, 3> corners{{{0, 0}, {1, 0}, {0, 1}}};
+  return {corners[k], corners[(k + 1) % 3], piece.along_edge(k)};
+}
+
+// Through a piece from border to border, across the line between two parameters and halfway; nothing where there is
+// no such line.
+std::optional<Path> path_between(const PlacedPiece& piece, TriangleParameter p, TriangleParameter q) {
+  const TriangleParameter middle{(p.u + q.u) / 2, (p.v + q.v) / 2}, along{p.v - q.v, q.u - p.u};
+  double low = -INFINITY, high = INFINITY;
+  // Where the line leaves the half planes u >= 0, v >= 0, 1 - u - v >= 0.
+  const std::array<std::array<double, 2>, 3> sides{
+      {{middle.u, along.u}, {middle.v, along.v}, {1 - middle.u - middle.v, -along.u - along.v}}};
+  for (const auto& [value, rate] : sides) {
+    if (rate > 0) low = std::max(low, -value / rate);
+    if (rate < 0) high = std::min(high, -value / rate);
+  }
+  if (!(low < high && std::isfinite(high - low))) return std::nullopt;
+  Path path;
+  path.from = {middle.u + low * along.u, middle.v + low * along.v};
+  path.to = {middle.u + high * along.u, middle.v + high * along.v};
+  for (std::size_t i = 0; i < piece.along_u().size(); ++i) {
+    path.tangents.push_back((path.to.u - path.from.u) * piece.along_u()[i] +
+                            (path.to.v - path.from.v) * piece.along_v()[i]);
+  }
+  return path;
 }
 
 }  // namespace
@@ -216,8 +248,9 @@ Place clamped(const Place& p) {
   }
   return result;
 }
+// The ends of a path that was computed may be off the border by some roundings.
 bool outside(const Place& p, double radius) {
-  return p.t < -radius || p.t > 1 + radius || p.u < -radius || p.v < -radius ||
+  return p.t < -radius - 0x1p-45 || p.t > 1 + radius + 0x1p-45 || p.u < -radius || p.v < -radius ||
          p.u + p.v > 1 + 2 * radius + 0x1p-50;
 }
 bool inside(const Place& p, double radius) {
@@ -225,37 +258,41 @@ bool inside(const Place& p, double radius) {
          p.u + p.v < 1 - 2 * radius - 0x1p-50;
 }
 
-// An edge of one piece against another piece: zeros of edge(t) - piece(u, v), all of which a step of Newton's method
-// with one and the same matrix brings nearer to each other.
-class EdgeAgainstPiece {
+// A path on one piece against another piece: zeros of path(t) - piece(u, v), all of which a step of Newton's method with
+// one and the same matrix brings nearer to each other.
+class PathAgainstPiece {
  public:
-  EdgeAgainstPiece(const PlacedPiece& from, std::size_t edge, const PlacedPiece& piece)
-      : from_(from), edge_(edge), piece_(piece) {
-    const Vector3 t = mean(from.along_edge(edge)), u = mean(piece.along_u()), v = mean(piece.along_v());
+  PathAgainstPiece(const PlacedPiece& from, const Path& path, const PlacedPiece& piece)
+      : from_(from), path_(path), piece_(piece) {
+    const Vector3 t = mean(path.tangents), u = mean(piece.along_u()), v = mean(piece.along_v());
     const Vector3 across = cross(u, v);
     const double inverse = 1 / dot(t, across);
     if (!std::isfinite(inverse)) return;
     rows_ = {inverse * across, -inverse * cross(v, t), -inverse * cross(t, u)};
-    const double e = from.derivative_error(), f = piece.derivative_error();
+    const double e = 4 * from.derivative_error(), f = piece.derivative_error();
     contraction_ = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      contraction_ =
-          std::max(contraction_, safely * (widest(from.along_edge(edge), e, rows_[i], i == 0 ? 1 : 0) +
-                                           widest(piece.along_u(), f, rows_[i], i == 1 ? -1 : 0) +
-                                           widest(piece.along_v(), f, rows_[i], i == 2 ? -1 : 0)));
+      contraction_ = std::max(contraction_, safely * (widest(path.tangents, e, rows_[i], i == 0 ? 1 : 0) +
+                                                      widest(piece.along_u(), f, rows_[i], i == 1 ? -1 : 0) +
+                                                      widest(piece.along_v(), f, rows_[i], i == 2 ? -1 : 0)));
     }
     error_ = enlarged(from.error() + piece.error() + from.origin_error() + piece.origin_error());
     origins_ = from.origin() - piece.origin();
   }
 
-  enum class State : std::uint8_t { none, one, unsure };
+  enum class State : std::uint8_t {
+    none,    // there is no zero
+    one,     // there is one, in the inside
+    border,  // none, or one at the border of a domain
+    unsure,
+  };
   struct Found {
     State state = State::unsure;
     Place at{};
-    double doubt = 0;
+    double doubt = 0;  // a zero is no farther from there
   };
   [[nodiscard]] Found find() const {
-    if (!(contraction_ < max_contraction)) return {.state = apart() ? State::none : State::unsure};
+    if (!(contraction_ < max_contraction)) return {};
     Found found;
     Place x{0.5, 1.0 / 3, 1.0 / 3};
     double far = 2.0 / 3 * safely;  // a zero is no farther from x
@@ -273,9 +310,26 @@ class EdgeAgainstPiece {
       x = clamped(next);
       const double moved = max_abs(Place{next.t - x.t, next.u - x.u, next.v - x.v});
       far = std::min(safely * (radius + moved), 1.0);
-      if (found.state == State::unsure && size <= blur) break;
+      if (found.state == State::unsure && far <= safely * 8 * (blur + 0x1p-50) / (1 - contraction_)) {
+        return {State::border, x, far};
+      }
     }
     return found;
+  }
+
+  // Is there a plane between an edge and the piece: along the piece, or across it and along one of its edges?
+  [[nodiscard]] bool apart(std::size_t edge) const {
+    const auto parts = [&](const Vector3& w) {
+      return w != Vector3{} &&
+             parted(snug::extent_of(from_.edge(edge), from_.error(), from_.origin(), from_.origin_error(), w),
+                    piece_.extent(w));
+    };
+    if (parts(piece_.normal())) return true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::vector<Vector3>& side = piece_.edge(k);
+      if (parts(normalized(cross(piece_.normal(), side.back() - side.front())))) return true;
+    }
+    return parts(normalized(cross(piece_.normal(), from_.normal()))) || parts(from_.normal());
   }
 
  private:
@@ -284,7 +338,7 @@ class EdgeAgainstPiece {
     double blur;  // upper bound of what each coordinate is off
   };
   [[nodiscard]] Step step_at(const Place& x) const {
-    const Vector3 p = from_.at(on_edge(edge_, x.t)), q = piece_.at({x.u, x.v});
+    const Vector3 p = from_.at(path_.at(x.t)), q = piece_.at({x.u, x.v});
     const Vector3 gap = origins_ + (p - q);
     const double error =
         error_ + 8 * unit_roundoff * (snug::max_abs(origins_) + snug::max_abs(p) + snug::max_abs(q));
@@ -296,51 +350,38 @@ class EdgeAgainstPiece {
     return step;
   }
 
-  // Is there a plane between the edge and the piece: along the piece, or across it and along one of its edges?
-  [[nodiscard]] bool apart() const {
-    const auto parts = [&](const Vector3& w) {
-      return w != Vector3{} &&
-             parted(snug::extent_of(from_.edge(edge_), from_.error(), from_.origin(), from_.origin_error(), w),
-                    piece_.extent(w));
-    };
-    if (parts(piece_.normal())) return true;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::vector<Vector3>& side = piece_.edge(k);
-      if (parts(normalized(cross(piece_.normal(), side.back() - side.front())))) return true;
-    }
-    return parts(normalized(cross(piece_.normal(), from_.normal()))) || parts(from_.normal());
-  }
-
   const PlacedPiece& from_;
-  std::size_t edge_;
+  const Path& path_;
   const PlacedPiece& piece_;
   std::array<Vector3, 3> rows_;
   double contraction_ = INFINITY, error_ = 0;
   Vector3 origins_;
 };
+using Found = PathAgainstPiece::Found;
+using State = PathAgainstPiece::State;
 
-CutEnd end_at(const PlacedPiece& from, std::size_t side, std::size_t edge, const EdgeAgainstPiece::Found& found) {
-  CutEnd end{.side = side,
-             .edge = edge,
+CutEnd end_at(const PlacedPiece& from, const Path& path, const Found& found) {
+  CutEnd end{.side = 0,
+             .edge = 0,
              .along = found.at.t,
              .at = {found.at.u, found.at.v},
              .doubt = found.doubt,
+             .sure = found.state == State::one,
              .point = {},
              .error = 0};
-  const Vector3 p = from.at(on_edge(edge, end.along));
+  const Vector3 p = from.at(path.at(end.along));
   end.point = from.origin() + p;
   const double error = from.error() + from.origin_error() + 4 * unit_roundoff * max_abs(end.point - Point3{});
-  end.error = enlarged(found.doubt * longest(from.along_edge(edge), from.derivative_error()) * safely +
-                       spatial_error(error));
+  end.error =
+      enlarged(found.doubt * longest(path.tangents, 4 * from.derivative_error()) * safely + spatial_error(error));
   return end;
 }
 
 // The arc between two ends, along a direction that no chord of it is far from.
-CutArc arc_between(const CutEnd& from, const CutEnd& to, const Vector3& along, double spread) {
+CutArc arc_between(const CutEnd& from, const CutEnd& to, const Vector3& along, double spread, double error) {
   CutArc arc{.ends = {from, to}, .deviation = 0, .box = {}};
   const Vector3 way = to.point - from.point;
   const double ahead = dot(way, along), aside = length(way - ahead * along);
-  const double error = std::max(from.error, to.error);
   const double tangent = spread / std::sqrt(1 - spread * spread);
   arc.deviation = enlarged(safely * ((tangent * (ahead + 2 * error) + aside) / 2 + 3 * error) +
                            8 * unit_roundoff * (max_abs(from.point - Point3{}) + max_abs(to.point - Point3{})));
@@ -353,42 +394,162 @@ CutArc arc_between(const CutEnd& from, const CutEnd& to, const Vector3& along, d
   return arc;
 }
 
+// Ends that are not told apart along the direction of the curve.
+struct EndGroup {
+  std::vector<CutEnd> ends;
+  double lower, upper;  // heights along the direction
+  [[nodiscard]] bool sure() const { return ends.size() == 1 && ends[0].sure; }
+  // Holds all their points.
+  [[nodiscard]] Box3 box() const {
+    Box3 box;
+    const double around = enlarged(2 * (upper - lower) + 0x1p-48);
+    for (const CutEnd& end : ends) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.lower[axis] = std::min(box.lower[axis], end.point[axis] - end.error - around);
+        box.upper[axis] = std::max(box.upper[axis], end.point[axis] + end.error + around);
+      }
+    }
+    return box;
+  }
+};
+
+// Where they lie on the first piece.
+TriangleParameter on_first(const PlacedPiece& first, const CutEnd& end) {
+  return end.side == 0 ? edge_of(first, end.edge).at(end.along) : end.at;
+}
+
+// What two pieces have in common, which is met once at most on each plane across `along`.
+class Transversal {
+ public:
+  Transversal(const PlacedPiece& a, const PlacedPiece& b, const Vector3& along, double spread)
+      : a_(a), b_(b), along_(along), spread_(spread) {}
+
+  [[nodiscard]] PieceCut cut() {
+    if (!find_ends()) return {};
+    if (groups_.empty()) return {PieceCut::State::apart, {}, {}};
+    const bool sure = std::all_of(groups_.begin(), groups_.end(), [](const EndGroup& g) { return g.sure(); });
+    if (sure && groups_.size() % 2 != 0) return {};
+    PieceCut result{PieceCut::State::arcs, {}, {}};
+    bool before = false;
+    for (std::size_t i = 0; i < groups_.size(); ++i) {
+      const bool last = i + 1 == groups_.size();
+      const std::optional<bool> after = last ? false : sure ? i % 2 == 0 : arc_after(i);
+      if (!after) return {};
+      // Between two arcs there would have to be an end that is none.
+      if (before && *after) return {};
+      if (groups_[i].sure() && before == *after) return {};
+      if (*after) {
+        result.arcs.push_back(arc_between(groups_[i].ends[0], groups_[i + 1].ends[0], along_, spread_, doubt(i)));
+        result.arcs.back().ends[0].sure = groups_[i].sure();
+        result.arcs.back().ends[1].sure = groups_[i + 1].sure();
+      }
+      if (!groups_[i].sure()) {
+        const Box3 box = groups_[i].box();
+        if (!(longest_side(box) < max_speck)) return {};
+        result.specks.push_back(box);
+      }
+      before = *after;
+    }
+    return result;
+  }
+
+ private:
+  [[nodiscard]] double height(const CutEnd& end) const { return dot(along_, end.point - Point3{}); }
+
+  bool find_ends() {
+    std::vector<CutEnd> ends;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const PlacedPiece &from = side == 0 ? a_ : b_, &piece = side == 0 ? b_ : a_;
+      for (std::size_t edge = 0; edge < 3; ++edge) {
+        const Path path = edge_of(from, edge);
+        const PathAgainstPiece test(from, path, piece);
+        const Found found = test.find();
+        if (found.state == State::unsure && !test.apart(edge)) return false;
+        if (found.state != State::one && found.state != State::border) continue;
+        ends.push_back(end_at(from, path, found));
+        ends.back().side = side;
+        ends.back().edge = edge;
+      }
+    }
+    std::sort(ends.begin(), ends.end(), [&](const CutEnd& x, const CutEnd& y) { return height(x) < height(y); });
+    for (const CutEnd& end : ends) {
+      const double middle = height(end), reach = safely * end.error + 0x1p-46;
+      if (groups_.empty() || middle - reach > groups_.back().upper) {
+        groups_.push_back({{}, middle - reach, middle + reach});
+      }
+      EndGroup& group = groups_.back();
+      group.ends.push_back(end);
+      group.lower = std::min(group.lower, middle - reach);
+      group.upper = std::max(group.upper, middle + reach);
+    }
+    // A lower end may reach below what was closed before.
+    for (std::size_t i = 0; i + 1 < groups_.size(); ++i) {
+      if (!(groups_[i].upper < groups_[i + 1].lower)) return false;
+    }
+    return true;
+  }
+
+  // Is there an arc from group i to the next one? Looked for halfway, on a path that parts them in the first piece.
+  [[nodiscard]] std::optional<bool> arc_after(std::size_t i) const {
+    const EndGroup &low = groups_[i], &high = groups_[i + 1];
+    const TriangleParameter p = on_first(a_, low.ends[0]), q = on_first(a_, high.ends[0]);
+    const auto path = path_between(a_, p, q);
+    if (!path) return std::nullopt;
+    // All ends of each group on their side, by far.
+    const TriangleParameter way{q.u - p.u, q.v - p.v}, middle{(p.u + q.u) / 2, (p.v + q.v) / 2};
+    const double size = std::fabs(way.u) + std::fabs(way.v);
+    for (const EndGroup* group : {&low, &high}) {
+      for (const CutEnd& end : group->ends) {
+        const TriangleParameter at = on_first(a_, end);
+        const double ahead = (at.u - middle.u) * way.u + (at.v - middle.v) * way.v;
+        const double least = size * (2 * end.doubt + 0x1p-45);
+        if (!(group == &low ? ahead < -least : ahead > least)) return std::nullopt;
+      }
+    }
+    const Found found = PathAgainstPiece(a_, *path, b_).find();
+    if (found.state == State::none) return false;
+    if (found.state != State::one) return std::nullopt;
+    const CutEnd met = end_at(a_, *path, found);
+    const double at = height(met), reach = safely * met.error + 0x1p-46;
+    if (!(at - reach > low.upper && at + reach < high.lower)) return std::nullopt;
+    return true;
+  }
+
+  // How far the exact ends of an arc may be from those that stand for their groups.
+  [[nodiscard]] double doubt(std::size_t i) const {
+    double found = 0;
+    for (std::size_t k = i; k <= i + 1; ++k) {
+      const CutEnd& first = groups_[k].ends[0];
+      for (const CutEnd& end : groups_[k].ends) {
+        found = std::max(found, safely * (length(end.point - first.point) + end.error));
+      }
+    }
+    return found;
+  }
+
+  const PlacedPiece &a_, &b_;
+  Vector3 along_;
+  double spread_;
+  std::vector<EndGroup> groups_;
+};
+
 }  // namespace
 
 PieceCut cut(const PlacedPiece& a, const PlacedPiece& b) {
-  if (common_box(a.box(), b.box()).empty()) return {PieceCut::State::apart, {}};
+  if (common_box(a.box(), b.box()).empty()) return {PieceCut::State::apart, {}, {}};
   const auto parts = [&](const Vector3& w) { return w != Vector3{} && parted(a.extent(w), b.extent(w)); };
-  if (parts(a.normal()) || parts(b.normal())) return {PieceCut::State::apart, {}};
+  if (parts(a.normal()) || parts(b.normal())) return {PieceCut::State::apart, {}, {}};
   if (!a.bounded_slope() || !b.bounded_slope()) return {};
   const Vector3 across = cross(a.normal(), b.normal());
   const double sine = length(across), cosine = std::fabs(dot(a.normal(), b.normal()));
   if (!(sine > least_sine)) return {};
   const Vector3 along = normalized(across);
-  if (parts(along)) return {PieceCut::State::apart, {}};
+  if (parts(along)) return {PieceCut::State::apart, {}, {}};
   // The share of a chord of both pieces that is across `along`.
   const double s = a.slope(), t = b.slope();
   const double spread = safely * std::sqrt(s * s + t * t + 2 * s * t * cosine) / sine + direction_error;
   if (!(spread < max_slope)) return {};
-  std::vector<CutEnd> ends;
-  for (std::size_t side = 0; side < 2; ++side) {
-    const PlacedPiece &from = side == 0 ? a : b, &piece = side == 0 ? b : a;
-    for (std::size_t edge = 0; edge < 3; ++edge) {
-      const EdgeAgainstPiece::Found found = EdgeAgainstPiece(from, edge, piece).find();
-      if (found.state == EdgeAgainstPiece::State::unsure) return {};
-      if (found.state == EdgeAgainstPiece::State::one) ends.push_back(end_at(from, side, edge, found));
-    }
-  }
-  if (ends.empty()) return {PieceCut::State::apart, {}};
-  if (ends.size() % 2 != 0) return {};
-  const auto height = [&](const CutEnd& end) { return dot(along, end.point - Point3{}); };
-  std::sort(ends.begin(), ends.end(), [&](const CutEnd& x, const CutEnd& y) { return height(x) < height(y); });
-  PieceCut result{PieceCut::State::arcs, {}};
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    const double errors = safely * (ends[i].error + ends[i + 1].error) + 0x1p-45;
-    if (!(height(ends[i + 1]) - height(ends[i]) > errors)) return {};
-    if (i % 2 == 0) result.arcs.push_back(arc_between(ends[i], ends[i + 1], along, spread));
-  }
-  return result;
+  return Transversal(a, b, along, spread).cut();
 }
 
 Box3 common_box(const Box3& a, const Box3& b) {

@@ -66,9 +66,10 @@ class PlacedPiece {
 struct CutEnd {
   std::size_t side;      ///< 0: an edge of the first piece
   std::size_t edge;      ///< from corner k of its kind to the next
-  double along;          ///< in (0, 1), along the edge
-  TriangleParameter at;  ///< on the other piece, in its inside
+  double along;          ///< in [0, 1], along the edge
+  TriangleParameter at;  ///< on the other piece; if `sure` in its inside
   double doubt;          ///< upper bound of what these parameters are off
+  bool sure;             ///< else several edges pass so near to it that it is not known which ends the arc
   Point3 point;
   double error;          ///< upper bound of |point - exact|, a length
 };
@@ -84,15 +85,17 @@ struct CutArc {
 struct PieceCut {
   enum class State : std::uint8_t {
     apart,   ///< proved: they have no point in common
-    arcs,    ///< proved: what they have in common are these arcs
+    arcs,    ///< proved: what they have in common are these arcs, and what lies in the specks
     unsure,
   };
   State state = State::unsure;
   std::vector<CutArc> arcs;
+  /// Tiny boxes around ends that are not `sure`, where an edge of one piece meets an edge of the other, or nearly so.
+  std::vector<Box3> specks;
 };
 
-/// Guarantee: the state, rounding included. Ends of arcs are each the only common point of their edge and the other
-///            piece.
+/// Guarantee: the state, rounding included. Ends of arcs that are `sure` are each the only common point of their edge
+///            and the other piece; an arc begins and ends within CutEnd::error of these, or in a speck.
 /// Source:    derivations/contacts.md.
 [[nodiscard]] PieceCut cut(const PlacedPiece& a, const PlacedPiece& b);
 
