@@ -83,7 +83,8 @@ struct Contacts {
   std::vector<ContactRegion> regions;
   std::vector<IntersectionCurve> curves;
   std::vector<OpenBox> open;
-  SearchStats stats;
+  SearchStats stats;             ///< of the search for regions
+  std::uint64_t compared = 0;    ///< pairs of pieces compared for curves
 };
 
 /// All contacts of two placed limit surfaces, and the curves in which they intersect.

@@ -68,7 +68,7 @@ class Query {
     find_regions();
     tell_curves();
     answer_.stats = stats_;
-    answer_.stats.evaluations += cut_.compared;
+    answer_.compared = cut_.compared;
     return std::move(answer_);
   }
 
