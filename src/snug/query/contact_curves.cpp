@@ -295,9 +295,12 @@ CutSurfaces cut_surfaces(const std::array<const LimitSurface*, 2>& surfaces,
   result.compared += pieces.size();
   for (Item& item : first) take(std::move(item), frontier);
   while (!frontier.empty()) {
-    if (result.compared + 16 * frontier.size() > budget) {
-      open_rest(frontier);
-      break;
+    // A pair makes up to 16 smaller ones.
+    const std::uint64_t room = (budget - std::min(budget, result.compared)) / 16;
+    if (frontier.size() > room) {
+      const auto last = frontier.begin() + static_cast<std::ptrdiff_t>(room);
+      open_rest({last, frontier.end()});
+      frontier.erase(last, frontier.end());
     }
     std::vector<std::vector<Item>> found(frontier.size());
     std::vector<std::uint64_t> compared(frontier.size());

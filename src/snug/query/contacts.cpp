@@ -112,7 +112,11 @@ class Query {
   bool look_at(const NodePair& pair) {
     PiecePair pieces = pieces_.nearest(pair);
     if (pieces.gap > tolerance_ || pieces_.gap_along(pair.nodes, pieces.between) > tolerance_) return false;
-    const auto size = static_cast<double>(std::max(walk_.size(pair, 0), walk_.size(pair, 1)));
+    // Flat pieces need not be split, however large.
+    double size = 0;
+    for (std::size_t s = 0; s < 2; ++s) {
+      if (SurfaceWorkspace::can_open(pair.nodes[s])) size = std::max(size, static_cast<double>(walk_.size(pair, s)));
+    }
     if (size > fine_) return true;
     if (!(pieces.near_distance <= within_)) pieces_.approach(pieces);
     const bool done = pieces.near_distance <= within_ || within_ <= 0 || size <= smallest_share * fine_;
