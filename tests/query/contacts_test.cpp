@@ -122,8 +122,8 @@ TEST(contacts, of_a_round_rod_and_a_plane_are_a_circle) {
   const Point3& first = found.curves[0].points[0];
   const double radius = std::hypot(first.x, first.y);
   EXPECT_GT(radius, 0.8);
-  for (const Point3& p : found.curves[0].points) EXPECT_NEAR(std::hypot(p.x, p.y), radius, 1e-3);
-  EXPECT_NEAR(length_of(found.curves[0]), 2 * 3.14159265358979 * radius, 0.01);
+  for (const Point3& p : found.curves[0].points) EXPECT_NEAR(std::hypot(p.x, p.y), radius, 5e-3);
+  EXPECT_NEAR(length_of(found.curves[0]), 2 * 3.14159265358979 * radius, 0.03);
 }
 
 TEST(contacts, of_a_thin_rod_through_a_thick_one_are_two_closed_curves_in_two_regions) {

@@ -17,6 +17,8 @@ namespace {
 
 // Below, parameters of root patches are exact, and far from the last digit of doubles.
 constexpr unsigned max_level = 40;
+// What bends less than this share of its size is flat.
+constexpr double least_bend = 0x1p-12;
 // Upper bound of what a parameter of a root patch is off where it is computed from that of a piece.
 constexpr double path_error = 0x1p-48;
 
@@ -66,11 +68,25 @@ class Cutter {
     return outcome;
   }
 
-  // Which are to be split: the larger one, or both.
+  // Which are to be split: what bends more, or both; neither, if neither can be. Flat pieces stay whole as long as
+  // the other one can become as small as the precision.
   [[nodiscard]] std::array<bool, 2> which(const PlacedPatch& a, const PlacedPatch& b) const {
-    const bool can_a = a.patch->path.level() < max_level, can_b = b.patch->path.level() < max_level;
-    const double size_a = longest_side(a.placed.box()), size_b = longest_side(b.placed.box());
-    return {can_a && (!can_b || !(size_a < size_b / 2)), can_b && (!can_a || !(size_b < size_a / 2))};
+    const std::array<const PlacedPatch*, 2> both{&a, &b};
+    std::array<bool, 2> can{}, fine{}, result{};
+    std::array<double, 2> size{}, bend{};
+    for (std::size_t s = 0; s < 2; ++s) {
+      can[s] = both[s]->patch->path.level() < max_level;
+      size[s] = longest_side(both[s]->placed.box());
+      fine[s] = size[s] <= precision_;
+      bend[s] = std::clamp(both[s]->placed.slope(), least_bend, 1.0) * size[s];
+    }
+    for (std::size_t s = 0; s < 2; ++s) {
+      const std::size_t other = 1 - s;
+      const bool only = !can[other] || (fine[other] && !fine[s]);
+      const bool wanted = !(fine[s] && !fine[other]) && !(bend[s] < bend[other] / 4);
+      result[s] = can[s] && (only || wanted);
+    }
+    return result;
   }
 
   // The parts that a piece is to be compared by.
