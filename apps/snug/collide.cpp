@@ -119,9 +119,10 @@ void require_curves(const Options& options) {
 std::optional<Contacts> all_contacts(const Options& options, double tolerance, double precision,
                                      PairArguments& pair, const WorkMonitor& monitor) {
   if (!options.all) return std::nullopt;
-  return contacts(pair.a(), pair.b(),
-                  {.tolerance = tolerance, .precision = precision, .budget = options.budget, .threads = options.threads},
-                  monitor);
+  return contacts(
+      pair.a(), pair.b(),
+      {.tolerance = tolerance, .precision = precision, .budget = options.budget, .threads = options.threads},
+      monitor);
 }
 
 ExitStatus run(const Options& options) {
@@ -191,13 +192,15 @@ Command collide_command() {
       .needs("--solid")
       .excludes("--poses");
   list.add(Group::own, "--all", &options->all,
-           "List every contact within the tolerance, in regions, and the curves in which the surfaces intersect")
+           "List every contact within the tolerance, in regions, and the curves in which the surfaces "
+           "intersect")
       .excludes("--poses")
       .excludes("--solid");
   list.add(Group::own, "--precision LENGTH", &options->precision,
            "How near curves are to the lines between their points; mesh units, or percent of the larger mesh")
       .needs("--all");
-  list.add(Group::own, "--curves FILE", &options->curves, "Write the curves as lines of an OBJ file").needs("--all");
+  list.add(Group::own, "--curves FILE", &options->curves, "Write the curves as lines of an OBJ file")
+      .needs("--all");
   list.add(Group::own, "--exit-code", &options->exit_code,
            "Exit with 0 separated, 10 within, 11 intersecting, 12 undecided")
       .excludes("--poses");

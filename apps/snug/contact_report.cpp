@@ -45,7 +45,10 @@ void write_region(JsonWriter& json, const Sides& sides, const ContactRegion& reg
 }
 
 void write_curve(JsonWriter& json, const IntersectionCurve& curve) {
-  json.begin_object().field("region", curve.region).field("closed", curve.closed).field("proved", curve.proved);
+  json.begin_object()
+      .field("region", curve.region)
+      .field("closed", curve.closed)
+      .field("proved", curve.proved);
   json.field("error", curve.error);
   json.key("at_border").begin_array().value(curve.at_border[0]).value(curve.at_border[1]).end_array();
   json.key("points").begin_array();
@@ -70,8 +73,8 @@ std::string region_line(const Sides& sides, const ContactRegion& region, std::si
   };
   const Vector3 sides_of_box = region.box.upper - region.box.lower;
   std::string text = fmt::format("region {}: {}, {} of A and {} of B, size {:.4g} x {:.4g} x {:.4g}", number,
-                                 name_of(region.verdict), owners(0), owners(1), sides_of_box.x, sides_of_box.y,
-                                 sides_of_box.z);
+                                 name_of(region.verdict), owners(0), owners(1), sides_of_box.x,
+                                 sides_of_box.y, sides_of_box.z);
   if (region.verdict != Verdict::intersecting) {
     text += fmt::format(", distance in [{}, {}]", text_at_most(region.distance.lower),
                         text_at_most(region.distance.upper, true));
@@ -85,9 +88,9 @@ std::string curve_line(const IntersectionCurve& curve, std::size_t number) {
   std::string text = fmt::format("curve {}: {}, {} points within {} of both surfaces, region {}, ", number,
                                  curve.closed ? "closed" : "open", curve.points.size(),
                                  text_at_most(curve.error, true), curve.region);
-  return text + (curve.proved
-                     ? "proved"
-                     : fmt::format("{} of {} boxes not proved to hold one arc", unproved, curve.boxes.size()));
+  return text + (curve.proved ? "proved"
+                              : fmt::format("{} of {} boxes not proved to hold one arc", unproved,
+                                            curve.boxes.size()));
 }
 
 }  // namespace

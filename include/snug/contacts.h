@@ -16,9 +16,10 @@ struct ContactsOptions {
   /// > 0, mesh units: how far a line between two points of a curve may be from the curve, and how large the boxes
   /// become in which no curve is proved. Default: 0.1 % of the larger surface's size.
   std::optional<double> precision{};
-  std::uint64_t budget = 200'000;  ///< most pairs of pieces that are compared for regions, and again for curves
-  bool curves = true;              ///< look for intersection curves
-  int threads = 0;                 ///< for curves; 0: all cores
+  std::uint64_t budget =
+      200'000;         ///< most pairs of pieces that are compared for regions, and again for curves
+  bool curves = true;  ///< look for intersection curves
+  int threads = 0;     ///< for curves; 0: all cores
 };
 
 /// A patch of A and one of B, in contact.
@@ -37,8 +38,9 @@ struct ContactRegion {
   /// `intersecting`: proved, a curve runs through it or a crossing was found; `within`: the witnesses are at most
   /// the tolerance apart; `undecided`: there may be no contact here.
   Verdict verdict = Verdict::undecided;
-  std::vector<PatchContact> contacts;              ///< in the order of patches
-  std::array<std::vector<std::uint32_t>, 2> owners;  ///< faces of A and of B (vertices in a dual scheme), sorted
+  std::vector<PatchContact> contacts;  ///< in the order of patches
+  std::array<std::vector<std::uint32_t>, 2>
+      owners;  ///< faces of A and of B (vertices in a dual scheme), sorted
   /// Contains all points of A and of B in the region that are within the tolerance of each other.
   Box3 box;
   Interval distance;              ///< contains the least distance of A and B in the region
@@ -83,8 +85,8 @@ struct Contacts {
   std::vector<ContactRegion> regions;
   std::vector<IntersectionCurve> curves;
   std::vector<OpenBox> open;
-  SearchStats stats;             ///< of the search for regions
-  std::uint64_t compared = 0;    ///< pairs of pieces compared for curves
+  SearchStats stats;           ///< of the search for regions
+  std::uint64_t compared = 0;  ///< pairs of pieces compared for curves
 };
 
 /// All contacts of two placed limit surfaces, and the curves in which they intersect.

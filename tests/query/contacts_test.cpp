@@ -46,26 +46,29 @@ Surface rod(double radius, double half, std::uint32_t n = 6) {
   }
   for (oracle::Point& p : mesh.points) {
     const double away = std::hypot(p[0] - x, p[1] - y);
-    p = {(p[0] - x) * radius / away, (p[1] - y) * radius / away, ((p[2] - low) / (high - low) * 2 - 1) * half};
+    p = {(p[0] - x) * radius / away, (p[1] - y) * radius / away,
+         ((p[2] - low) / (high - low) * 2 - 1) * half};
   }
   return Surface(testing::control_mesh(mesh));
 }
 
 double length_of(const IntersectionCurve& curve) {
   double sum = 0;
-  for (std::size_t i = 0; i + 1 < curve.points.size(); ++i) sum += distance(curve.points[i], curve.points[i + 1]);
+  for (std::size_t i = 0; i + 1 < curve.points.size(); ++i)
+    sum += distance(curve.points[i], curve.points[i + 1]);
   return curve.closed ? sum + distance(curve.points.back(), curve.points.front()) : sum;
 }
 
 // Up to what points that were computed are off.
 bool holds(const Box3& box, const Point3& p) {
   constexpr double e = 1e-11;
-  return p.x >= box.lower.x - e && p.x <= box.upper.x + e && p.y >= box.lower.y - e && p.y <= box.upper.y + e &&
-         p.z >= box.lower.z - e && p.z <= box.upper.z + e;
+  return p.x >= box.lower.x - e && p.x <= box.upper.x + e && p.y >= box.lower.y - e &&
+         p.y <= box.upper.y + e && p.z >= box.lower.z - e && p.z <= box.upper.z + e;
 }
 bool listed(const Contacts& found, const Point3& p) {
   for (const IntersectionCurve& curve : found.curves) {
-    if (std::any_of(curve.boxes.begin(), curve.boxes.end(), [&](const CurveBox& b) { return holds(b.box, p); }))
+    if (std::any_of(curve.boxes.begin(), curve.boxes.end(),
+                    [&](const CurveBox& b) { return holds(b.box, p); }))
       return true;
   }
   return std::any_of(found.open.begin(), found.open.end(), [&](const OpenBox& b) { return holds(b.box, p); });
@@ -138,8 +141,9 @@ TEST(contacts, of_a_thin_rod_through_a_thick_one_are_two_closed_curves_in_two_re
 
 TEST(contacts, curves_end_at_the_border) {
   const Surface a = plane(1), b = plane(3);
-  const Contacts found = contacts(
-      a, b.at(Motion::translation({0.03, 0.05, 0.07}) * Motion::rotation({1, 0.2, 0.1}, 1.2)), {.precision = 1e-3});
+  const Contacts found =
+      contacts(a, b.at(Motion::translation({0.03, 0.05, 0.07}) * Motion::rotation({1, 0.2, 0.1}, 1.2)),
+               {.precision = 1e-3});
   ASSERT_EQ(found.curves.size(), 1u);
   const IntersectionCurve& curve = found.curves[0];
   EXPECT_FALSE(curve.closed);
@@ -159,8 +163,8 @@ TEST(contacts, of_two_sharp_boxes_are_the_polygon_that_is_known) {
   EXPECT_TRUE(found.curves[0].closed);
   EXPECT_NEAR(length_of(found.curves[0]), 2 * (0.7 + 0.55 + 0.4), 1e-6);
   const Point3 f{from.x, from.y, from.z}, t{1, 1, 1};
-  const std::array<Point3, 6> corners{
-      Point3{t.x, f.y, f.z}, {t.x, t.y, f.z}, {f.x, t.y, f.z}, {f.x, t.y, t.z}, {f.x, f.y, t.z}, {t.x, f.y, t.z}};
+  const std::array<Point3, 6> corners{Point3{t.x, f.y, f.z}, {t.x, t.y, f.z}, {f.x, t.y, f.z},
+                                      {f.x, t.y, t.z},       {f.x, f.y, t.z}, {t.x, f.y, t.z}};
   for (std::size_t k = 0; k < 6; ++k) {
     for (double s = 0; s <= 1; s += 1.0 / 64) {
       EXPECT_TRUE(listed(found, corners[k] + s * (corners[(k + 1) % 6] - corners[k]))) << k << " " << s;

@@ -58,7 +58,8 @@ class Checks {
     if (trial_.number % 2 == 0 && trial_.truth.upper < 0.5 * size_) {
       tolerance = std::max(tolerance, trial_.truth.upper * (1 + 2 * unit(trial_.random)));
     }
-    ContactsOptions options{.tolerance = tolerance, .precision = 0.01 * size_, .budget = 60'000, .threads = 1};
+    ContactsOptions options{
+        .tolerance = tolerance, .precision = 0.01 * size_, .budget = 60'000, .threads = 1};
     if (trial_.number % 5 == 4) options.budget = 1 + trial_.random() % 3000;
     const Contacts found = contacts(trial_.placed(0), trial_.placed(1), options);
     ++counts["trials"];
@@ -97,7 +98,8 @@ class Checks {
     const LimitSurface& surface = *side(s).surface;
     while (true) {
       const PatchId p(trial_.random() % surface.patch_count());
-      if (surface.has_patch(p)) return sample(s, place_of(surface, p, testing::random_parameter(trial_.random)));
+      if (surface.has_patch(p))
+        return sample(s, place_of(surface, p, testing::random_parameter(trial_.random)));
     }
   }
   // The nearest one on the other surface.
@@ -116,8 +118,8 @@ class Checks {
       if (apart <= tolerance - 1e-12 * far_) {
         ++counts["near points"];
         EXPECT_TRUE(listed.contains({a.at.owner, b.at.owner}))
-            << testing::describe(trial_) << ": owners " << a.at.owner << ", " << b.at.owner << " are " << apart
-            << " apart, tolerance " << tolerance;
+            << testing::describe(trial_) << ": owners " << a.at.owner << ", " << b.at.owner << " are "
+            << apart << " apart, tolerance " << tolerance;
         EXPECT_TRUE(in_region(found, a.point, b.point)) << testing::describe(trial_);
       }
       if (apart <= 1e-12 * size_) {

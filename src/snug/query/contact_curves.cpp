@@ -90,7 +90,8 @@ class Cutter {
   }
 
   // The parts that a piece is to be compared by.
-  [[nodiscard]] std::vector<PlacedPatch> parts(std::size_t side, const PlacedPatch& whole, bool split_it) const {
+  [[nodiscard]] std::vector<PlacedPatch> parts(std::size_t side, const PlacedPatch& whole,
+                                               bool split_it) const {
     std::vector<PlacedPatch> result;
     if (!split_it) {
       result.push_back(whole);
@@ -112,7 +113,8 @@ class Cutter {
 
 // A line along which pieces meet: a side of a root patch, or one inside of it. Parts of one line have equal names.
 struct Line {
-  std::uint32_t sort = 0;  // 0 to 2: inside of a patch, by which parameter is constant; 3, 4: inside an owner, an edge
+  std::uint32_t sort =
+      0;  // 0 to 2: inside of a patch, by which parameter is constant; 3, 4: inside an owner, an edge
   std::uint32_t number = 0;
   double constant = 0;
   double from = 0, to = 0;  // where the part begins and ends
@@ -353,7 +355,8 @@ namespace {
 
 class Chainer {
  public:
-  explicit Chainer(const CutSurfaces& cut) : cut_(cut), link_(2 * cut.arcs.size()), visited_(cut.arcs.size()) {
+  explicit Chainer(const CutSurfaces& cut)
+      : cut_(cut), link_(2 * cut.arcs.size()), visited_(cut.arcs.size()) {
     for (std::uint32_t i = 0; i < link_.size(); ++i) link_[i] = cut.arcs[i / 2].next[i % 2];
     link_through_open();
   }

@@ -30,7 +30,7 @@ struct NearPieces {
   std::array<Box3, 2> boxes;
   Interval distance;
   bool within = false, crossing = false;
-  std::array<TriangleParameter, 2> at;  // of the root patches: where they are about nearest
+  std::array<TriangleParameter, 2> at;                 // of the root patches: where they are about nearest
   std::array<std::shared_ptr<const Patch>, 2> pieces;  // of those that may have a point in common
 };
 
@@ -115,7 +115,8 @@ class Query {
     // Flat pieces need not be split, however large.
     double size = 0;
     for (std::size_t s = 0; s < 2; ++s) {
-      if (SurfaceWorkspace::can_open(pair.nodes[s])) size = std::max(size, static_cast<double>(walk_.size(pair, s)));
+      if (SurfaceWorkspace::can_open(pair.nodes[s]))
+        size = std::max(size, static_cast<double>(walk_.size(pair, s)));
     }
     if (size > fine_) return true;
     if (!(pieces.near_distance <= within_)) pieces_.approach(pieces);
@@ -152,9 +153,9 @@ class Query {
       NearPieces& item = near_[i];
       if (item.pieces[0]) crossing.push_back({std::move(item.pieces), item.roots, i});
     }
-    cut_ = cut_surfaces({&models_[0]->surface(), &models_[1]->surface()}, {frames_.frame(0), frames_.frame(1)},
-                        crossing, frames_.length_down(*options_.precision), options_.budget, options_.threads,
-                        monitor_);
+    cut_ = cut_surfaces(
+        {&models_[0]->surface(), &models_[1]->surface()}, {frames_.frame(0), frames_.frame(1)}, crossing,
+        frames_.length_down(*options_.precision), options_.budget, options_.threads, monitor_);
     answer_.reached = answer_.reached && cut_.reached;
     arc_in_.assign(near_.size(), ChainArc::none);
     for (std::uint32_t i = 0; i < cut_.arcs.size(); ++i) {
@@ -322,9 +323,10 @@ class Query {
       answer_.curves.push_back(std::move(curve));
     }
     for (const OpenPieces& open : cut_.open) {
-      answer_.open.push_back({unscaled(open.box, back),
-                              {models_[0]->surface().place(open.roots[0]), models_[1]->surface().place(open.roots[1])},
-                              region_[open.contact]});
+      answer_.open.push_back(
+          {unscaled(open.box, back),
+           {models_[0]->surface().place(open.roots[0]), models_[1]->surface().place(open.roots[1])},
+           region_[open.contact]});
     }
   }
 

@@ -372,8 +372,8 @@ CutEnd end_at(const PlacedPiece& from, const Path& path, const Found& found) {
   const Vector3 p = from.at(path.at(end.along));
   end.point = from.origin() + p;
   const double error = from.error() + from.origin_error() + 4 * unit_roundoff * max_abs(end.point - Point3{});
-  end.error =
-      enlarged(found.doubt * longest(path.tangents, 4 * from.derivative_error()) * safely + spatial_error(error));
+  end.error = enlarged(found.doubt * longest(path.tangents, 4 * from.derivative_error()) * safely +
+                       spatial_error(error));
   return end;
 }
 
@@ -383,8 +383,9 @@ CutArc arc_between(const CutEnd& from, const CutEnd& to, const Vector3& along, d
   const Vector3 way = to.point - from.point;
   const double ahead = dot(way, along), aside = length(way - ahead * along);
   const double tangent = spread / std::sqrt(1 - spread * spread);
-  arc.deviation = enlarged(safely * ((tangent * (ahead + 2 * error) + aside) / 2 + 3 * error) +
-                           8 * unit_roundoff * (max_abs(from.point - Point3{}) + max_abs(to.point - Point3{})));
+  arc.deviation =
+      enlarged(safely * ((tangent * (ahead + 2 * error) + aside) / 2 + 3 * error) +
+               8 * unit_roundoff * (max_abs(from.point - Point3{}) + max_abs(to.point - Point3{})));
   arc.box.add(from.point);
   arc.box.add(to.point);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -439,7 +440,8 @@ class Transversal {
       if (before && *after) return {};
       if (groups_[i].sure() && before == *after) return {};
       if (*after) {
-        result.arcs.push_back(arc_between(groups_[i].ends[0], groups_[i + 1].ends[0], along_, spread_, doubt(i)));
+        result.arcs.push_back(
+            arc_between(groups_[i].ends[0], groups_[i + 1].ends[0], along_, spread_, doubt(i)));
         result.arcs.back().ends[0].sure = groups_[i].sure();
         result.arcs.back().ends[1].sure = groups_[i + 1].sure();
       }
@@ -471,7 +473,8 @@ class Transversal {
         ends.back().edge = edge;
       }
     }
-    std::sort(ends.begin(), ends.end(), [&](const CutEnd& x, const CutEnd& y) { return height(x) < height(y); });
+    std::sort(ends.begin(), ends.end(),
+              [&](const CutEnd& x, const CutEnd& y) { return height(x) < height(y); });
     for (const CutEnd& end : ends) {
       const double middle = height(end), reach = safely * end.error + 0x1p-46;
       if (groups_.empty() || middle - reach > groups_.back().upper) {

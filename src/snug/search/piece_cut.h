@@ -71,21 +71,22 @@ struct CutEnd {
   double doubt;          ///< upper bound of what these parameters are off
   bool sure;             ///< else several edges pass so near to it that it is not known which ends the arc
   Point3 point;
-  double error;          ///< upper bound of |point - exact|, a length
+  double error;  ///< upper bound of |point - exact|, a length
 };
 
 /// An arc in which two pieces cut each other.
 struct CutArc {
   std::array<CutEnd, 2> ends;
-  double deviation;  ///< upper bound of the distance of arc and straight line between the points, each from the other
-  Box3 box;          ///< holds the arc
+  double
+      deviation;  ///< upper bound of the distance of arc and straight line between the points, each from the other
+  Box3 box;       ///< holds the arc
 };
 
 /// How two pieces cut each other.
 struct PieceCut {
   enum class State : std::uint8_t {
-    apart,   ///< proved: they have no point in common
-    arcs,    ///< proved: what they have in common are these arcs, and what lies in the specks
+    apart,  ///< proved: they have no point in common
+    arcs,   ///< proved: what they have in common are these arcs, and what lies in the specks
     unsure,
   };
   State state = State::unsure;
