@@ -9,6 +9,7 @@
 #include <snug/query/pairs.h>
 
 #include "meshes.h"
+#include "placements.h"
 #include "runner.h"
 
 namespace {

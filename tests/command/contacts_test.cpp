@@ -48,7 +48,7 @@ TEST(contacts_command, lists_regions_and_curves) {
 TEST(contacts_command, is_coarser_with_a_small_budget_and_says_so) {
   const Outcome outcome =
       run_snug({"collide", model("bust.obj"), model("pawn.obj"), "--all", "--budget", "2000"});
-  EXPECT_EQ(outcome.status, 3) << outcome.out;
+  EXPECT_EQ(outcome.status, 5) << outcome.out;
   EXPECT_NE(outcome.out.find("budget"), std::string::npos) << outcome.out;
 }
 

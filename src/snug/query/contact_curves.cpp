@@ -17,6 +17,9 @@ namespace {
 
 // Below, parameters of root patches are exact, and far from the last digit of doubles.
 constexpr unsigned max_level = 40;
+// Pieces smaller than the precision are split down to this share of it, as long as there are at most so many pairs.
+constexpr double smallest_open = 0x1p-5;
+constexpr std::size_t max_late = 1024;
 // What bends less than this share of its size is flat.
 constexpr double least_bend = 0x1p-12;
 // Upper bound of what a parameter of a root patch is off where it is computed from that of a piece.
@@ -29,9 +32,9 @@ struct PlacedPatch {
   PlacedPiece placed;
 };
 
-// What became of two pieces.
+// What became of two pieces; `late`: they are as small as was asked, but smaller ones may be told apart.
 struct Outcome {
-  enum class State : std::uint8_t { apart, arcs, open, split } state = State::apart;
+  enum class State : std::uint8_t { apart, arcs, open, split, late } state = State::apart;
   std::vector<CutArc> arcs;
   std::vector<Box3> specks;
   Box3 box;
@@ -63,8 +66,11 @@ class Cutter {
       outcome.specks = std::move(found.specks);
       return outcome;
     }
-    outcome.reached = std::max(longest_side(a.placed.box()), longest_side(b.placed.box())) <= precision_;
-    outcome.state = outcome.reached || last ? Outcome::State::open : Outcome::State::split;
+    const double size = std::max(longest_side(a.placed.box()), longest_side(b.placed.box()));
+    outcome.reached = size <= precision_;
+    outcome.state = last || size <= smallest_open * precision_ ? Outcome::State::open
+                    : outcome.reached                          ? Outcome::State::late
+                                                               : Outcome::State::split;
     return outcome;
   }
 
@@ -74,10 +80,14 @@ class Cutter {
     const std::array<const PlacedPatch*, 2> both{&a, &b};
     std::array<bool, 2> can{}, fine{}, result{};
     std::array<double, 2> size{}, bend{};
+    const double limit =
+        longest_side(a.placed.box()) <= precision_ && longest_side(b.placed.box()) <= precision_
+            ? smallest_open * precision_
+            : precision_;
     for (std::size_t s = 0; s < 2; ++s) {
       can[s] = both[s]->patch->path.level() < max_level;
       size[s] = longest_side(both[s]->placed.box());
-      fine[s] = size[s] <= precision_;
+      fine[s] = size[s] <= limit;
       bend[s] = std::clamp(both[s]->placed.slope(), least_bend, 1.0) * size[s];
     }
     for (std::size_t s = 0; s < 2; ++s) {
@@ -264,8 +274,10 @@ CutSurfaces cut_surfaces(const std::array<const LimitSurface*, 2>& surfaces,
     Outcome outcome;
   };
   // Takes what is known, and leaves what is to be split.
+  std::vector<Item> late;
   const auto take = [&](Item&& item, std::vector<CrossingPieces>& rest) {
     Outcome& outcome = item.outcome;
+    if (outcome.state == Outcome::State::late) late.push_back(std::move(item));
     if (outcome.state == Outcome::State::split) rest.push_back(std::move(item.pieces));
     if (outcome.state == Outcome::State::arcs || outcome.state == Outcome::State::open) {
       result.reached = result.reached && outcome.reached;
@@ -293,6 +305,17 @@ CutSurfaces cut_surfaces(const std::array<const LimitSurface*, 2>& surfaces,
       result.arcs.push_back(std::move(chained));
     }
   };
+  const auto take_late = [&](std::vector<CrossingPieces>& rest) {
+    const bool few = late.size() <= max_late;
+    for (Item& item : late) {
+      if (few) {
+        rest.push_back(std::move(item.pieces));
+      } else {
+        result.open.push_back({item.outcome.box, item.pieces.roots, item.pieces.contact});
+      }
+    }
+    late.clear();
+  };
   const auto open_rest = [&](const std::vector<CrossingPieces>& rest) {
     for (const CrossingPieces& p : rest) {
       const PlacedPatch a = cutter.place(0, p.pieces[0]), b = cutter.place(1, p.pieces[1]);
@@ -312,6 +335,7 @@ CutSurfaces cut_surfaces(const std::array<const LimitSurface*, 2>& surfaces,
   });
   result.compared += pieces.size();
   for (Item& item : first) take(std::move(item), frontier);
+  take_late(frontier);
   while (!frontier.empty()) {
     // A pair makes up to 16 smaller ones.
     const std::uint64_t room = (budget - std::min(budget, result.compared)) / 16;
@@ -345,6 +369,7 @@ CutSurfaces cut_surfaces(const std::array<const LimitSurface*, 2>& surfaces,
       result.compared += compared[i];
       for (Item& item : found[i]) take(std::move(item), next);
     }
+    take_late(next);
     frontier.swap(next);
   }
   join_ends(ends, result.arcs);
