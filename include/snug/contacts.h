@@ -52,8 +52,8 @@ struct ContactRegion {
 /// A box on an intersection curve, between one of its points and the next.
 struct CurveBox {
   Box3 box;
-  /// Proved: A and B cross in one arc here, from the one point to the other, and nowhere else in these two pieces.
-  /// Else the box joins two arcs that end in it.
+  /// Proved: a piece of A and one of B cross in this arc, from the one point to the other, up to a speck at either
+  /// end if that is an open box. Else the box joins two arcs that end in it.
   bool one_arc = false;
 };
 

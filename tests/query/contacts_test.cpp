@@ -217,6 +217,29 @@ TEST(contacts, of_mirrored_surfaces_are_one_closed_curve_with_tiny_gaps) {
   for (const Point3& p : found.curves[0].points) EXPECT_NEAR(p.x, 0.25, 1e-9);
 }
 
+// A flat sheet whose lower border, between corners of patches at (1, 0.25) and (2, 0.25), lies above the line between
+// them: a plane through both meets the patch there at these corners alone.
+TEST(contacts, do_not_run_where_a_border_is_hollow) {
+  oracle::TaggedMesh mesh = meshes::quad_grid(3, 2);
+  for (oracle::Point& p : mesh.points) {
+    if (p[1] == 0 && (p[0] == 1 || p[0] == 2)) p[1] = 0.3;
+  }
+  const Surface a(testing::control_mesh(mesh)), b = plane(5, 3);
+  const Motion upright = Motion::translation({0.02, 0.25, 0.01}) * Motion::rotation_degrees({1, 0, 0}, 90);
+  // Whole patches are compared.
+  const Contacts found = contacts(a, b.at(upright), {.tolerance = 4, .precision = 2});
+  EXPECT_TRUE(found.complete);
+  EXPECT_FALSE(found.curves.empty());
+  for (const IntersectionCurve& curve : found.curves) {
+    for (std::size_t i = 0; i < curve.boxes.size(); ++i) {
+      if (!curve.boxes[i].one_arc) continue;
+      const Point3 &p = curve.points[i], &q = curve.points[(i + 1) % curve.points.size()];
+      const double x = (p.x + q.x) / 2;
+      EXPECT_TRUE(x < 1 || x > 2) << x;
+    }
+  }
+}
+
 TEST(contacts, do_not_depend_on_threads_or_earlier_queries) {
   const Surface a = ball(), b = rod(0.4, 2);
   const PlacedSurface placed = b.at(Motion::rotation({1, 2, 3}, 0.8));
