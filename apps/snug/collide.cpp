@@ -1,7 +1,12 @@
 #include <snug/query/pairs.h>
 
-#include <fmt/core.h>
+#include <optional>
 
+#include <fmt/core.h>
+#include <snug/io/atomic_file.h>
+#include <snug/query/contacts.h>
+
+#include "contact_report.h"
 #include "length.h"
 #include "placed_pair.h"
 #include "pose_answers.h"
@@ -17,6 +22,8 @@ struct Options : PairOptions {
   bool solid = false;
   bool penetration = false;
   bool exit_code = false;
+  bool all = false;
+  std::string precision = "0.1%", curves;
 };
 
 void write_answer(JsonWriter& json, const Sides& sides, const Collision& answer) {
@@ -100,7 +107,27 @@ ExitStatus run_poses(PairArguments& pair, Report& report, const CollideOptions& 
   return answer_poses(pair, report, "verdict lower upper ax ay az bx by bz", ask, monitor);
 }
 
+void require_curves(const Options& options) {
+  if (options.curves.empty()) return;
+  if (!options.curves.ends_with(".obj")) {
+    throw UsageError("collide: --curves writes lines of OBJ; give a file name that ends in .obj");
+  }
+  require_writable(options.curves);
+}
+
+// With --all: every contact, and the file of --curves.
+std::optional<Contacts> all_contacts(const Options& options, double tolerance, double precision,
+                                     PairArguments& pair, const WorkMonitor& monitor) {
+  if (!options.all) return std::nullopt;
+  return contacts(
+      pair.a(), pair.b(),
+      {.tolerance = tolerance, .precision = precision, .budget = options.budget, .threads = options.threads},
+      monitor);
+}
+
 ExitStatus run(const Options& options) {
+  require_curves(options);
+  const Length precision = parse_length(options.precision, "--precision");
   const Length tolerance = parse_length(options.tolerance, "--tolerance", true);
   const Length margin = parse_length(options.margin, "--margin", true);
   PairArguments pair(options);
@@ -120,10 +147,15 @@ ExitStatus run(const Options& options) {
   const Collision answer = collide(pair.a(), pair.b(), wanted, monitor);
   std::optional<Penetration> depth;
   if (options.penetration) depth = penetration(pair.a(), pair.b(), {}, monitor);
+  const std::optional<Contacts> all =
+      all_contacts(options, *wanted.tolerance, precision.in_mesh_units(pair.size()), pair, monitor);
+  std::optional<AtomicFile> curves;
+  if (all && !options.curves.empty()) write_curves(all->curves, curves.emplace(options.curves));
   if (report.json()) {
     write_poses(report.write(), {pair.pose_a(), pair.pose_b()});
     write_answer(report.write(), sides_of(pair.a(), pair.b()), answer);
     if (depth) write_penetration(report.write(), *depth);
+    if (all) write_contacts(report.write(), sides_of(pair.a(), pair.b()), *all);
   }
   report.text(sentence(answer, *wanted.tolerance, wanted.margin));
   if (answer.witness) {
@@ -132,9 +164,15 @@ ExitStatus run(const Options& options) {
     }
   }
   if (depth) report.text(penetration_sentence(*depth));
+  if (all) {
+    for (const std::string& line : contact_lines(sides_of(pair.a(), pair.b()), *all)) report.text(line);
+  }
   if (answer.verdict == Verdict::separated && !options.solid)
     note_nesting(options, pair.a(), pair.b(), monitor);
-  const ExitStatus status = report.finish(answer.verdict != Verdict::undecided);
+  std::vector<AtomicFile*> files;
+  if (curves) files.push_back(&*curves);
+  const ExitStatus status =
+      report.finish(answer.verdict != Verdict::undecided && (!all || (all->complete && all->reached)), files);
   return options.exit_code ? status_of(answer.verdict) : status;
 }
 
@@ -153,6 +191,16 @@ Command collide_command() {
            "Bound the shortest translation that separates the solids, and print one that does")
       .needs("--solid")
       .excludes("--poses");
+  list.add(Group::own, "--all", &options->all,
+           "List every contact within the tolerance, in regions, and the curves in which the surfaces "
+           "intersect")
+      .excludes("--poses")
+      .excludes("--solid");
+  list.add(Group::own, "--precision LENGTH", &options->precision,
+           "How near curves are to the lines between their points; mesh units, or percent of the larger mesh")
+      .needs("--all");
+  list.add(Group::own, "--curves FILE", &options->curves, "Write the curves as lines of an OBJ file")
+      .needs("--all");
   list.add(Group::own, "--exit-code", &options->exit_code,
            "Exit with 0 separated, 10 within, 11 intersecting, 12 undecided")
       .excludes("--poses");

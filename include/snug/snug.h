@@ -6,6 +6,7 @@
 #include <snug/closest.h>
 #include <snug/collide.h>
 #include <snug/contact.h>
+#include <snug/contacts.h>
 #include <snug/deviation.h>
 #include <snug/distance.h>
 #include <snug/evaluate.h>

@@ -5,6 +5,7 @@
 #include <snug/front/workspace.h>
 #include <snug/query/bound.h>
 #include <snug/query/closest.h>
+#include <snug/query/contacts.h>
 #include <snug/query/deviation.h>
 #include <snug/query/hull.h>
 #include <snug/query/measure.h>
@@ -66,6 +67,12 @@ Distance distance(const PlacedSurface& a, const PlacedSurface& b, const Distance
 std::vector<Distance> distance(const Surface& a, const Surface& b, std::span<const PosePair> poses,
                                const DistanceOptions& options, int threads, const WorkMonitor& monitor) {
   return PairWorkspaces(bvh(a), bvh(b), threads).answers(distance, poses, options, monitor);
+}
+
+Contacts contacts(const PlacedSurface& a, const PlacedSurface& b, const ContactsOptions& options,
+                  const WorkMonitor& monitor, Workspace& workspace) {
+  const Placed at(a, b, workspace);
+  return contacts(at.a, at.b, options, monitor);
 }
 
 ClosestPoint closest_point(const Surface& surface, const Point3& to, const ClosestOptions& options,

@@ -1,0 +1,368 @@
+#include <snug/contacts.h>
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <unordered_map>
+#include <utility>
+
+#include <snug/base/error.h>
+#include <snug/geometry/rounding.h>
+#include <snug/mesh/disjoint_sets.h>
+#include <snug/query/contact_curves.h>
+#include <snug/query/contacts.h>
+#include <snug/query/touching_boxes.h>
+#include <snug/search/crossing.h>
+#include <snug/search/pair_frames.h>
+#include <snug/search/precision.h>
+#include <snug/surface/unscale.h>
+
+namespace snug {
+namespace {
+
+// Pieces of regions are at most this share of the larger surface; those of which nothing is proved are split so many
+// times smaller.
+constexpr double largest_share = 0x1p-5, smallest_share = 0x1p-3;
+
+// Two pieces that may be within the tolerance of each other. Lengths are in the query's units.
+struct NearPieces {
+  std::array<PatchId, 2> roots;
+  std::array<Box3, 2> boxes;
+  Interval distance;
+  bool within = false, crossing = false;
+  std::array<TriangleParameter, 2> at;                 // of the root patches: where they are about nearest
+  std::array<std::shared_ptr<const Patch>, 2> pieces;  // of those that may have a point in common
+};
+
+Box3 box_of(const Triangle& base, double radius) {
+  Box3 box;
+  for (const Point3& p : base) box.add(p);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.lower[axis] = rounded_down(box.lower[axis] - radius);
+    box.upper[axis] = rounded_up(box.upper[axis] + radius);
+  }
+  return box;
+}
+
+Box3 widened(Box3 box, double by) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.lower[axis] = rounded_down(box.lower[axis] - by);
+    box.upper[axis] = rounded_up(box.upper[axis] + by);
+  }
+  return box;
+}
+
+class Query {
+ public:
+  Query(const PlacedBvh& a, const PlacedBvh& b, const ContactsOptions& options, const WorkMonitor& monitor)
+      : models_{&a.model, &b.model},
+        frames_(a, b),
+        options_(options),
+        monitor_(monitor),
+        tolerance_(frames_.length_up(*options.tolerance)),
+        within_(frames_.length_down(*options.tolerance)) {}
+
+  Contacts run() {
+    walk();
+    if (options_.curves) find_curves();
+    find_regions();
+    tell_curves();
+    answer_.stats = stats_;
+    answer_.compared = cut_.compared;
+    return std::move(answer_);
+  }
+
+ private:
+  // ---- Pairs of pieces ----
+
+  // Breadth first: where the budget ends, what is left is about equally large.
+  void walk() {
+    answer_.complete = answer_.reached = true;
+    std::deque<NodePair> queue{walk_.roots()};
+    const double size = static_cast<double>(std::max(walk_.size(queue[0], 0), walk_.size(queue[0], 1)));
+    fine_ = std::max(largest_share * size, tolerance_);
+    std::vector<NodePair> opened;
+    while (!queue.empty()) {
+      const NodePair pair = queue.front();
+      queue.pop_front();
+      if (pair.bounded()) {
+        monitor_.checkpoint();
+        if (!look_at(pair)) continue;
+      }
+      const PairWalk::Opening opening = walk_.opening(pair);
+      const bool none = opening == PairWalk::Opening::none;
+      if (pair.bounded() && (none || !walk_.may_open(pair, opening, options_.budget))) {
+        const PiecePair pieces = pieces_.nearest(pair);
+        // What cannot be split is as fine as it gets.
+        if (!none || (within_ > 0 && !(pieces.near_distance <= within_))) answer_.reached = false;
+        list(pair, pieces);
+        continue;
+      }
+      if (queue.size() + near_.size() > options_.budget) {
+        answer_.complete = answer_.reached = false;
+        return;
+      }
+      opened.clear();
+      static_cast<void>(walk_.open(pair, opening, tolerance_, opened));
+      queue.insert(queue.end(), opened.begin(), opened.end());
+    }
+  }
+
+  // Is a pair to be split? Else it is done with: apart, or listed.
+  bool look_at(const NodePair& pair) {
+    PiecePair pieces = pieces_.nearest(pair);
+    if (pieces.gap > tolerance_ || pieces_.gap_along(pair.nodes, pieces.between) > tolerance_) return false;
+    // Flat pieces need not be split, however large.
+    double size = 0;
+    for (std::size_t s = 0; s < 2; ++s) {
+      if (SurfaceWorkspace::can_open(pair.nodes[s]))
+        size = std::max(size, static_cast<double>(walk_.size(pair, s)));
+    }
+    if (size > fine_) return true;
+    if (!(pieces.near_distance <= within_)) pieces_.approach(pieces);
+    const bool done = pieces.near_distance <= within_ || within_ <= 0 || size <= smallest_share * fine_;
+    if (done) list(pair, pieces);
+    return !done;
+  }
+
+  void list(const NodePair& pair, const PiecePair& pieces) {
+    NearPieces item;
+    const double gap = std::max(pieces.gap, pieces_.gap_along(pair.nodes, pieces.between));
+    if (gap > tolerance_) return;
+    item.within = pieces.near_distance <= within_;
+    item.distance = {std::min(gap, pieces.near_distance), pieces.near_distance};
+    for (std::size_t s = 0; s < 2; ++s) {
+      SurfaceWorkspace& workspace = frames_.workspace(s);
+      item.roots[s] = workspace.root_of(pair.nodes[s]);
+      item.boxes[s] = box_of(pieces.base[s], pieces.radii[s]);
+      const Patch& patch = workspace.patch(pair.nodes[s]);
+      item.at[s] = to_face(patch.path, pieces.at[s]);
+      if (gap <= 0 && options_.curves) item.pieces[s] = std::make_shared<const Patch>(patch);
+    }
+    if (gap <= 0 && !options_.curves && pieces.near.certain_distance == 0) {
+      item.crossing = certainly_cross(frames_, pieces);
+    }
+    near_.push_back(std::move(item));
+  }
+
+  // ---- Curves ----
+
+  void find_curves() {
+    std::vector<CrossingPieces> crossing;
+    for (std::uint32_t i = 0; i < near_.size(); ++i) {
+      NearPieces& item = near_[i];
+      if (item.pieces[0]) crossing.push_back({std::move(item.pieces), item.roots, i});
+    }
+    cut_ = cut_surfaces(
+        {&models_[0]->surface(), &models_[1]->surface()}, {frames_.frame(0), frames_.frame(1)}, crossing,
+        frames_.length_down(*options_.precision), options_.budget, options_.threads, monitor_);
+    answer_.reached = answer_.reached && cut_.reached;
+    arc_in_.assign(near_.size(), ChainArc::none);
+    for (std::uint32_t i = 0; i < cut_.arcs.size(); ++i) {
+      std::uint32_t& known = arc_in_[cut_.arcs[i].contact];
+      known = std::min(known, i);
+      near_[cut_.arcs[i].contact].crossing = true;
+    }
+    std::vector<bool> met(near_.size());
+    for (const CrossingPieces& pair : crossing) met[pair.contact] = true;
+    std::vector<bool> left(near_.size());
+    for (const ChainArc& arc : cut_.arcs) left[arc.contact] = true;
+    for (const OpenPieces& open : cut_.open) left[open.contact] = true;
+    // With no tolerance, what has no common point is no contact.
+    kept_.assign(near_.size(), true);
+    for (std::size_t i = 0; i < near_.size(); ++i) kept_[i] = tolerance_ > 0 || left[i] || !met[i];
+  }
+
+  // ---- Regions ----
+
+  [[nodiscard]] bool neighbours(std::size_t side, PatchId p, PatchId q) const {
+    if (p == q) return true;
+    const LimitSurface& surface = models_[side]->surface();
+    const auto a = surface.corner_names(p), b = surface.corner_names(q);
+    return std::any_of(a.begin(), a.end(),
+                       [&](std::uint32_t name) { return std::find(b.begin(), b.end(), name) != b.end(); });
+  }
+
+  void find_regions() {
+    if (kept_.empty()) kept_.assign(near_.size(), true);
+    std::vector<Box3> boxes;
+    for (const NearPieces& item : near_) boxes.push_back(item.boxes[0]);
+    DisjointSets sets(near_.size());
+    for_each_touching(boxes, [&](std::uint32_t i, std::uint32_t k) {
+      const NearPieces &x = near_[i], &y = near_[k];
+      if (!kept_[i] || !kept_[k] || sets.least(i) == sets.least(k)) return;
+      if (!touch(x.boxes[1], y.boxes[1])) return;
+      if (neighbours(0, x.roots[0], y.roots[0]) && neighbours(1, x.roots[1], y.roots[1])) sets.join(i, k);
+    });
+    std::map<std::uint32_t, std::vector<std::uint32_t>> members;
+    region_.assign(near_.size(), 0);
+    for (std::uint32_t i = 0; i < near_.size(); ++i) {
+      if (kept_[i]) members[sets.least(i)].push_back(i);
+    }
+    for (const auto& [least, items] : members) {
+      for (const std::uint32_t i : items) region_[i] = static_cast<std::uint32_t>(answer_.regions.size());
+      answer_.regions.push_back(region_of(items));
+    }
+  }
+
+  [[nodiscard]] ContactRegion region_of(const std::vector<std::uint32_t>& items) {
+    ContactRegion region;
+    std::map<std::array<std::uint32_t, 2>, PatchContact> contacts;
+    Box3 box;
+    std::uint32_t nearest = items.front(), arc = ChainArc::none;
+    double lower = INFINITY, upper = INFINITY;
+    for (const std::uint32_t i : items) {
+      const NearPieces& item = near_[i];
+      const Interval distance = told(item);
+      const std::array<std::uint32_t, 2> roots{item.roots[0].value(), item.roots[1].value()};
+      const auto [at, added] = contacts.try_emplace(roots);
+      PatchContact& contact = at->second;
+      if (added) {
+        for (std::size_t s = 0; s < 2; ++s) contact.patches[s] = models_[s]->surface().place(item.roots[s]);
+        contact.distance = distance;
+      }
+      contact.distance = {std::min(contact.distance.lower, distance.lower),
+                          std::min(contact.distance.upper, distance.upper)};
+      contact.verdict = better(contact.verdict, verdict_of(item));
+      region.verdict = better(region.verdict, verdict_of(item));
+      lower = std::min(lower, distance.lower);
+      upper = std::min(upper, distance.upper);
+      // What is farther than the tolerance from the other piece is in no contact.
+      for (std::size_t s = 0; s < 2; ++s) {
+        box.add(common_box(item.boxes[s], widened(item.boxes[1 - s], tolerance_)));
+      }
+      if (item.distance.upper < near_[nearest].distance.upper) nearest = i;
+      if (!arc_in_.empty()) arc = std::min(arc, arc_in_[i]);
+    }
+    for (auto& [roots, contact] : contacts) {
+      for (std::size_t s = 0; s < 2; ++s) region.owners[s].push_back(contact.patches[s].owner);
+      region.contacts.push_back(contact);
+    }
+    for (std::vector<std::uint32_t>& owners : region.owners) {
+      std::sort(owners.begin(), owners.end());
+      owners.erase(std::unique(owners.begin(), owners.end()), owners.end());
+    }
+    region.box = unscaled(box, frames_.to_mesh_units());
+    region.distance = {lower, upper};
+    if (arc != ChainArc::none) {
+      tell_witness(cut_.arcs[arc].roots, cut_.arcs[arc].ends[0].at, region);
+    } else {
+      tell_witness(near_[nearest].roots, near_[nearest].at, region);
+    }
+    return region;
+  }
+
+  [[nodiscard]] Interval told(const NearPieces& item) const {
+    const PowerOfTwo back = frames_.to_mesh_units();
+    if (item.crossing) return {0, 0};
+    return {unscaled_down(item.distance.lower, back),
+            require_representable(unscaled_up(item.distance.upper, back))};
+  }
+  [[nodiscard]] static Verdict verdict_of(const NearPieces& item) {
+    return item.crossing ? Verdict::intersecting : item.within ? Verdict::within : Verdict::undecided;
+  }
+  [[nodiscard]] static Verdict better(Verdict a, Verdict b) {
+    for (const Verdict v : {Verdict::intersecting, Verdict::within}) {
+      if (a == v || b == v) return v;
+    }
+    return Verdict::undecided;
+  }
+
+  void tell_witness(const std::array<PatchId, 2>& roots, const std::array<TriangleParameter, 2>& at,
+                    ContactRegion& region) const {
+    const PowerOfTwo back = frames_.to_mesh_units();
+    double error = 0;
+    for (std::size_t s = 0; s < 2; ++s) {
+      const LimitSurface& surface = models_[s]->surface();
+      const Patch patch = surface.patch(roots[s]);
+      const BoundedPoint point = frames_.frame(s).apply(limit_point(patch, at[s]).from(patch.origin));
+      region.witness[s] = require_representable(back.apply(point.position));
+      region.at[s] = place_of(surface, roots[s], at[s]);
+      error = std::max(error, point.error);
+    }
+    region.witness_error = unscaled_up(error, back) + underflow_error;
+  }
+
+  void tell_curves() {
+    const PowerOfTwo back = frames_.to_mesh_units();
+    for (const Chains::Chain& chain : chains_of(cut_).chains) {
+      IntersectionCurve curve;
+      curve.closed = chain.closed;
+      curve.proved = true;
+      curve.at_border = chain.at_border;
+      curve.region = region_[cut_.arcs[chain.ends.front() / 2].contact];
+      double error = 0;
+      const auto point = [&](std::uint32_t end) {
+        const CutEnd& e = cut_.arcs[end / 2].arc.ends[end % 2];
+        error = std::max(error, e.error);
+        return require_representable(back.apply(e.point));
+      };
+      const auto box = [&](const Box3& b, bool one_arc) {
+        curve.boxes.push_back({unscaled(b, back), one_arc});
+        curve.proved = curve.proved && one_arc;
+      };
+      for (std::size_t i = 0; i < chain.ends.size(); ++i) {
+        const std::uint32_t in = chain.ends[i], out = in ^ 1u;
+        const CutArc& arc = cut_.arcs[in / 2].arc;
+        curve.points.push_back(point(in));
+        error = std::max(error, arc.deviation);
+        box(arc.box, true);
+        const bool last = i + 1 == chain.ends.size();
+        const Box3* const gap = i < chain.gaps.size() && !chain.gaps[i].empty() ? &chain.gaps[i] : nullptr;
+        if (gap != nullptr) {
+          curve.points.push_back(point(out));
+          box(*gap, false);
+          const Vector3 sides = gap->upper - gap->lower;
+          error = std::max(error, enlarged(length(sides)));
+        } else if (last && !chain.closed) {
+          curve.points.push_back(point(out));
+        }
+      }
+      // Two ends that are one point are told as one of them.
+      curve.error = unscaled_up(enlarged(3 * error), back) + underflow_error;
+      answer_.curves.push_back(std::move(curve));
+    }
+    for (const OpenPieces& open : cut_.open) {
+      answer_.open.push_back(
+          {unscaled(open.box, back),
+           {models_[0]->surface().place(open.roots[0]), models_[1]->surface().place(open.roots[1])},
+           region_[open.contact]});
+    }
+  }
+
+  std::array<const SurfaceBvh*, 2> models_;
+  PairFrames frames_;
+  SearchStats stats_;
+  PairWalk walk_{frames_, stats_, WideNode::Gaps::axes};
+  PiecePairs pieces_{frames_, stats_};
+  const ContactsOptions& options_;
+  const WorkMonitor& monitor_;
+  double tolerance_, within_;
+  double fine_ = 0;
+  std::vector<NearPieces> near_;
+  std::vector<bool> kept_;
+  std::vector<std::uint32_t> region_, arc_in_;
+  CutSurfaces cut_;
+  Contacts answer_;
+};
+
+}  // namespace
+
+Contacts contacts(const PlacedBvh& a, const PlacedBvh& b, const ContactsOptions& options,
+                  const WorkMonitor& monitor) {
+  ContactsOptions wanted = options;
+  const double share = share_of_size(1e-3, a.model.surface().size(), b.model.surface().size());
+  if (!wanted.tolerance) wanted.tolerance = share;
+  if (!wanted.precision) wanted.precision = share;
+  require_length(*wanted.tolerance, "contacts: the tolerance");
+  require_length(*wanted.precision, "contacts: the precision");
+  require_value(*wanted.precision > 0 || !options.precision, "contacts: the precision must be positive");
+  if (root_gap(a, b, *wanted.tolerance) > *wanted.tolerance) {
+    Contacts none;
+    none.complete = none.reached = true;
+    return none;
+  }
+  return Query(a, b, wanted, monitor).run();
+}
+
+}  // namespace snug
