@@ -155,10 +155,9 @@ void bench_queries(const std::string& name, const ControlMesh& mesh, const Way& 
   std::vector<Motion> poses;
   for (std::size_t i = 0; i < options.size<std::size_t>(400, 50); ++i) {
     points.push_back({size * unit(random), size * unit(random), 0.5 * size * unit(random)});
-    const Vector3 axis{unit(random), unit(random), unit(random)};
-    poses.push_back(Motion::rotation(axis, 3 * unit(random))
-                        .then(Motion::translation(
-                            {size * unit(random), size * unit(random), 0.5 * size * unit(random)})));
+    poses.push_back(Motion::from_quaternion(
+        {unit(random), unit(random), unit(random), unit(random)},
+        {size * unit(random), size * unit(random), 0.5 * size * unit(random)}));
   }
   const auto items = static_cast<double>(points.size());
   const auto closest = [&](Asked& in) {
