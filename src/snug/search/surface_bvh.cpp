@@ -48,7 +48,7 @@ const LeafNode& SurfaceBvh::make_leaf(std::uint32_t i) const {
 LeafNode* SurfaceBvh::Leaves::unused() {
   const std::lock_guard lock(mutex_);
   if (unused_.empty()) {
-    unused_.reserve(++count_);  // so that clear() takes no memory
+    ++count_;
     return nullptr;
   }
   LeafNode* const node = unused_.back().release();
@@ -67,11 +67,16 @@ const LeafNode& SurfaceBvh::Leaves::keep(std::uint32_t i, std::span<const PieceS
   if (nodes_[i].compare_exchange_strong(there, made.get(), std::memory_order_acq_rel)) return *made.release();
   // Another thread was quicker: both are the same.
   const std::lock_guard lock(mutex_);
-  unused_.push_back(std::move(made));
+  if (unused_.size() < unused_.capacity()) {
+    unused_.push_back(std::move(made));
+  } else {
+    --count_;
+  }
   return *there;
 }
 
 void SurfaceBvh::Leaves::clear() {
+  unused_.reserve(count_);
   for (auto& place : nodes_) {
     if (LeafNode* const node = place.load(std::memory_order_relaxed)) {
       unused_.emplace_back(node);
@@ -86,7 +91,8 @@ SurfaceBvh::Leaves::~Leaves() {
 
 std::size_t SurfaceBvh::Leaves::bytes() const {
   const std::lock_guard lock(mutex_);
-  return nodes_.size() * sizeof(void*) + count_ * (sizeof(LeafNode) + sizeof(void*));
+  return nodes_.size() * sizeof(void*) + count_ * sizeof(LeafNode) +
+         unused_.capacity() * sizeof(void*);
 }
 
 WideBvh SurfaceBvh::make_tree(const SurfaceBvhOptions& options, const WorkMonitor& monitor) {
