@@ -85,7 +85,7 @@ class SNUG_API Surface {
 ///            about a frame uses nothing that was found out about another one. Once as many frames exist as
 ///            are held at a time and one more, move() and what it prepares take no memory, nor do collide(),
 ///            distance() and closest_point() where earlier queries came as far.
-/// Cost:      a frame and its BVH some 0.1 microseconds a patch, see bench/results/moving.txt. The BVH is built
+/// Cost:      a frame and its BVH 0.06 microseconds a patch, see bench/results/moving.txt. The BVH is built
 ///            anew where its boxes would be half as large again for their patches as when it was last built.
 ///            SurfaceOptions::tight counts for the first surface alone. Memory: that of as many surfaces as
 ///            frames were ever held at a time, and one or two more.
