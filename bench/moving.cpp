@@ -41,7 +41,8 @@ std::vector<Way> ways() {
            }},
           {"bent by 90 degrees",
            [=](const Point3& p, double t) {
-             const double angle = t * std::numbers::pi / 2 * p.x / 8, radius = 8 / (std::numbers::pi / 2 * t + 1e-9);
+             const double angle = t * std::numbers::pi / 2 * p.x / 8,
+                          radius = 8 / (std::numbers::pi / 2 * t + 1e-9);
              return Point3{std::sin(angle) * (radius + p.z), p.y, std::cos(angle) * (radius + p.z) - radius};
            }},
           {"twisted by 90 degrees",
@@ -64,7 +65,9 @@ std::vector<Way> ways() {
              return Point3{p.x, y, z};
            }},
           {"stretched six times",
-           [](const Point3& p, double t) { return Point3{(1 + 5 * t) * p.x, p.y, p.z}; }},
+           [](const Point3& p, double t) {
+             return Point3{(1 + 5 * t) * p.x, p.y, p.z};
+           }},
           {"everything thrown about", [](const Point3& p, double t) {
              const auto noise = [&](double a, double b, double c) {
                const double x = 4375.85453 * std::sin(a * p.x + b * p.y + c * p.z);
@@ -106,8 +109,9 @@ void bench_frames(const std::string& name, const ControlMesh& mesh, const Option
               "patch", options);
   const double items = patches * frames;
   MovingSurface moving(first), positions(first);
-  group.add("refitted: move() and the tree", items,
-            each_frame([&](const std::vector<Point3>& now) { return checksum(moving.move(now).data()->bvh()); }));
+  group.add("refitted: move() and the tree", items, each_frame([&](const std::vector<Point3>& now) {
+              return checksum(moving.move(now).data()->bvh());
+            }));
   group.add("refitted: move() alone", items,
             each_frame([&](const std::vector<Point3>& now) { return positions.move(now).size(); }));
   group.add("built anew: Surface and whole tree", items, each_frame([&](const std::vector<Point3>& now) {
@@ -155,9 +159,9 @@ void bench_queries(const std::string& name, const ControlMesh& mesh, const Way& 
   std::vector<Motion> poses;
   for (std::size_t i = 0; i < options.size<std::size_t>(400, 50); ++i) {
     points.push_back({size * unit(random), size * unit(random), 0.5 * size * unit(random)});
-    poses.push_back(Motion::from_quaternion(
-        {unit(random), unit(random), unit(random), unit(random)},
-        {size * unit(random), size * unit(random), 0.5 * size * unit(random)}));
+    poses.push_back(
+        Motion::from_quaternion({unit(random), unit(random), unit(random), unit(random)},
+                                {size * unit(random), size * unit(random), 0.5 * size * unit(random)}));
   }
   const auto items = static_cast<double>(points.size());
   const auto closest = [&](Asked& in) {

@@ -49,7 +49,8 @@ TEST_F(CarriedAxesTest, turn_with_their_points) {
 
 // The proofs of boxes want no more than this.
 TEST_F(CarriedAxesTest, are_orthonormal_up_to_a_few_roundings_whatever_the_points) {
-  const std::array<Triangle, 6> odd{Triangle{}, Triangle{point(), point(), point()},
+  const std::array<Triangle, 6> odd{Triangle{},
+                                    Triangle{point(), point(), point()},
                                     Triangle{Point3{1, 0, 0}, Point3{2, 0, 0}, Point3{3, 0, 0}},
                                     Triangle{Point3{0, 0, 0}, Point3{1e-300, 0, 0}, Point3{0, 1e-300, 0}},
                                     Triangle{Point3{0, 0, 0}, Point3{2, 0, 0}, Point3{1, 1e-17, 0}},

@@ -107,8 +107,10 @@ TEST(enclosures, boxes_in_motion_hold_every_time_in_between) {
           const std::uint32_t corner = mesh.face(FaceId(owner)).size() > 4 ? part / 2 : 0;
           const bool second = part % 2 != 0;
           if (triangle && surface.scheme() != Scheme::loop) continue;
-          const SurfacePoint at = evaluate(
-              then, {owner, corner, second ? 0.1 : 0.6, triangle ? 0.3 : second ? 0.7 : 0.2});
+          const SurfacePoint at = evaluate(then, {owner, corner, second ? 0.1 : 0.6,
+                                                  triangle ? 0.3
+                                                  : second ? 0.7
+                                                           : 0.2});
           for (std::size_t k = 0; k < 3; ++k) {
             EXPECT_LE(boxes[i].lower[k], at.position[k] + at.error + rounding) << testing::name_of(journey);
             EXPECT_GE(boxes[i].upper[k], at.position[k] - at.error - rounding) << testing::name_of(journey);

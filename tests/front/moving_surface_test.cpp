@@ -32,9 +32,15 @@ std::vector<double> answers(const Surface& surface, const Surface& other, Worksp
   const Distance apart = distance(surface, beside, {.relative = 1e-3}, {}, workspace);
   const Collision contact = collide(surface, beside, {.tolerance = 1e-4}, {}, workspace);
   const RayHits hits = trace(surface, {{10, 0.1, 0.2}, {-1, 0, 0}}, {}, {}, workspace);
-  return {closest.distance.lower, closest.distance.upper, closest.point.x, apart.distance.lower,
-          apart.distance.upper, contact.distance.lower, contact.distance.upper,
-          static_cast<double>(contact.verdict), static_cast<double>(hits.hits.size())};
+  return {closest.distance.lower,
+          closest.distance.upper,
+          closest.point.x,
+          apart.distance.lower,
+          apart.distance.upper,
+          contact.distance.lower,
+          contact.distance.upper,
+          static_cast<double>(contact.verdict),
+          static_cast<double>(hits.hits.size())};
 }
 std::vector<double> answers(const Surface& surface, const Surface& other) {
   Workspace fresh;

@@ -1,8 +1,8 @@
 #include <snug/search/refit_plan.h>
 
 #include <oracle/test_meshes.h>
-#include <snug/search/surface_bvh.h>
 #include <snug/patch/evaluate.h>
+#include <snug/search/surface_bvh.h>
 #include <testing/journeys.h>
 #include <testing/patches.h>
 #include <testing/scheme_surfaces.h>
@@ -17,7 +17,8 @@ using testing::Journey;
 using testing::NamedSurface;
 
 // Limit points of each patch, in scaled units.
-std::map<std::uint32_t, std::vector<Point3>> samples_of(const LimitSurface& surface, std::mt19937_64& random) {
+std::map<std::uint32_t, std::vector<Point3>> samples_of(const LimitSurface& surface,
+                                                        std::mt19937_64& random) {
   std::map<std::uint32_t, std::vector<Point3>> samples;
   testing::for_each_patch(surface, [&](PatchId p) {
     const Patch patch = surface.patch(p);
@@ -123,8 +124,8 @@ TEST(refit_plan, axes_go_along_so_that_boxes_stay_as_narrow) {
   SurfaceBvh model(surface, {.threads = 1}, shared);
   const auto plan = shared.get();
   ASSERT_GT(plan->order().node_count(), 20u);
-  for (const Journey journey : {Journey::tiny, Journey::turned, Journey::from_small, Journey::from_large,
-                                Journey::from_huge}) {
+  for (const Journey journey :
+       {Journey::tiny, Journey::turned, Journey::from_small, Journey::from_large, Journey::from_huge}) {
     surface.move(testing::start_of(journey, rest, random));
     WideBvh tree = WideBvh::in_order_of(plan->order());
     EXPECT_NEAR(plan->refit(surface, tree) / plan->looseness(), 1, 1e-6) << testing::name_of(journey);
@@ -157,8 +158,7 @@ TEST(refit_plan, another_one_is_made_where_boxes_are_much_larger_than_they_were)
   const auto better = shared.get();
   ASSERT_NE(better, plan);
   // As good as one that knew of no other position.
-  EXPECT_EQ(better->looseness(),
-            RefitPlan(surface, std::vector<PatchId>(better->patches()), 1).looseness());
+  EXPECT_EQ(better->looseness(), RefitPlan(surface, std::vector<PatchId>(better->patches()), 1).looseness());
   expect_all_inside(model, random);
   model.refit(shared);
   EXPECT_EQ(shared.get(), better) << "once is enough";

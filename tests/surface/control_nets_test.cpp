@@ -17,9 +17,9 @@ struct Nets {
     testing::for_each_patch(surface, [&](PatchId p) { patches.push_back(p); });
     ControlHull hull;
     for (std::size_t begin = 0; begin < patches.size(); begin += 8) {
-      members.emplace_back(patches.begin() + static_cast<std::ptrdiff_t>(begin),
-                           patches.begin() +
-                               static_cast<std::ptrdiff_t>(std::min(begin + 8, patches.size())));
+      members.emplace_back(
+          patches.begin() + static_cast<std::ptrdiff_t>(begin),
+          patches.begin() + static_cast<std::ptrdiff_t>(std::min(begin + 8, patches.size())));
       hull.assign(surface, members.back());
       nets.add(hull);
     }

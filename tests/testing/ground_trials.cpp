@@ -643,7 +643,8 @@ void GroundTrials::make_moved(GroundSide& side, const SurfaceBvhOptions& options
   side.model = std::make_unique<SurfaceBvh>(*side.surface, moving, side.plan);
   side.scratch = std::make_unique<SurfaceWorkspace>(*side.model);
   const Ball& ball = side.model->ball();
-  const Point3 from = std::isfinite(ball.radius) ? ball.centre + ball.radius * Vector3{1, 0.5, 0.25} : Point3{};
+  const Point3 from =
+      std::isfinite(ball.radius) ? ball.centre + ball.radius * Vector3{1, 0.5, 0.25} : Point3{};
   static_cast<void>(closest_point(*side.scratch, from, {.relative = 1e-2, .budget = 30}));
   side.surface->move(here);
   side.model->refit(side.plan);

@@ -75,7 +75,9 @@ inline constexpr std::size_t journey_count = 11;
       case Journey::from_small:
       case Journey::from_large:
       case Journey::from_huge: {
-        const double by = journey == Journey::from_small ? 1e-3 : journey == Journey::from_large ? 1e3 : 1e200;
+        const double by = journey == Journey::from_small   ? 1e-3
+                          : journey == Journey::from_large ? 1e3
+                                                           : 1e200;
         p = {by * q.x, by * q.y, by * q.z};
         break;
       }

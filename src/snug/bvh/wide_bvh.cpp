@@ -258,7 +258,8 @@ void WideBvh::finish_refit(std::span<const Obb> leaves) {
     const std::size_t end = level == whole().level ? nodes_.size() : begins_[level + 1];
     coarse = std::span<const Obb>(node_boxes_).subspan(begins_[level], end - begins_[level]);
   }
-  const Ball ball = leaves.size() > few ? ball_around(leaves, ball_around(coarse).centre) : ball_around(leaves);
+  const Ball ball =
+      leaves.size() > few ? ball_around(leaves, ball_around(coarse).centre) : ball_around(leaves);
   finish(nodes_.empty() ? leaves[0] : node_boxes_.back(), ball, leaves.size() > few ? coarse : leaves);
 }
 
@@ -381,8 +382,8 @@ std::span<const std::uint32_t> WideBvh::leaf(std::size_t i) const {
 }
 
 std::size_t WideBvh::bytes() const {
-  return nodes_.capacity() * (sizeof(TreeNode) + 1) + node_boxes_.capacity() * sizeof(Obb) + items_.capacity() * sizeof(std::uint32_t) +
-         (unmade_ ? unmade_->items.capacity() * sizeof(Item) : 0);
+  return nodes_.capacity() * (sizeof(TreeNode) + 1) + node_boxes_.capacity() * sizeof(Obb) +
+         items_.capacity() * sizeof(std::uint32_t) + (unmade_ ? unmade_->items.capacity() * sizeof(Item) : 0);
 }
 
 }  // namespace snug

@@ -12,8 +12,8 @@ MovingSurface::MovingSurface(MovingSurface&&) noexcept = default;
 MovingSurface& MovingSurface::operator=(MovingSurface&&) noexcept = default;
 
 const Surface& MovingSurface::move(std::span<const Point3> points) {
-  const auto free = std::find_if(frames_.begin(), frames_.end(),
-                                 [](const auto& frame) { return frame.use_count() == 1; });
+  const auto free =
+      std::find_if(frames_.begin(), frames_.end(), [](const auto& frame) { return frame.use_count() == 1; });
   if (free == frames_.end()) {
     auto frame = std::make_shared<SurfaceData>(*now_.data(), points, plan_);
     frames_.push_back(frame);

@@ -45,7 +45,7 @@ class RefitPlan {
 
   std::vector<PatchId> patches_;
   WideBvh order_;
-  ControlNets nets_;                    // of the leaves
+  ControlNets nets_;                     // of the leaves
   std::vector<Carried> leaves_, nodes_;  // by number, and by name
   double looseness_ = 0;
 };

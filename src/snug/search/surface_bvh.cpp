@@ -91,8 +91,7 @@ SurfaceBvh::Leaves::~Leaves() {
 
 std::size_t SurfaceBvh::Leaves::bytes() const {
   const std::lock_guard lock(mutex_);
-  return nodes_.size() * sizeof(void*) + count_ * sizeof(LeafNode) +
-         unused_.capacity() * sizeof(void*);
+  return nodes_.size() * sizeof(void*) + count_ * sizeof(LeafNode) + unused_.capacity() * sizeof(void*);
 }
 
 WideBvh SurfaceBvh::make_tree(const SurfaceBvhOptions& options, const WorkMonitor& monitor) {

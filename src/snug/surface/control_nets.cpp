@@ -24,15 +24,10 @@ std::span<const VertexId> ControlNets::corners(std::size_t net) const {
 
 ControlNets::Fit ControlNets::fit(std::size_t net, const LimitSurface& surface, const Axes& axes) const {
   const Begin &begin = begins_[net], &end = begins_[net + 1];
-  const kernels::ControlNet lists{vertices_.data() + begin.vertices,
-                                  end.vertices - begin.vertices,
-                                  rings_.data() + begin.rings,
-                                  ring_ends_.data() + begin.corners,
-                                  end.corners - begin.corners,
-                                  patch_.data() + begin.places,
-                                  patch_ends_.data() + begin.patches,
-                                  weights_.data() + begin.patches,
-                                  end.patches - begin.patches};
+  const kernels::ControlNet lists{
+      vertices_.data() + begin.vertices,  end.vertices - begin.vertices,   rings_.data() + begin.rings,
+      ring_ends_.data() + begin.corners,  end.corners - begin.corners,     patch_.data() + begin.places,
+      patch_ends_.data() + begin.patches, weights_.data() + begin.patches, end.patches - begin.patches};
   thread_local std::vector<double> memory;
   const std::size_t needed = 4 * lists.vertex_count + 8 * lists.corner_count;
   if (memory.size() < needed) memory.resize(needed);

@@ -46,10 +46,10 @@ void LimitSurface::move(std::span<const Point3> points) {
   double probe = 0;
   for (const Point3& p : points) probe += (p.x - p.x) + (p.y - p.y) + (p.z - p.z);  // 0 unless not finite
   if (probe != 0) {
-    const auto bad = std::find_if(points.begin(), points.end(), [](const Point3& p) { return !is_finite(p); });
-    throw InputError(InputProblem::refused,
-                     "vertex " + std::to_string(bad - points.begin()) +
-                         " has a coordinate that is not finite; mend these elements");
+    const auto bad =
+        std::find_if(points.begin(), points.end(), [](const Point3& p) { return !is_finite(p); });
+    throw InputError(InputProblem::refused, "vertex " + std::to_string(bad - points.begin()) +
+                                                " has a coordinate that is not finite; mend these elements");
   }
   std::copy(points.begin(), points.end(), mesh_.points.begin());
   set_scale();
@@ -112,7 +112,8 @@ void LimitSurface::Layout::find_bare_owners(const ControlMesh& mesh) {
 }
 
 HalfEdge LimitSurface::corner_at(std::size_t owner, std::size_t k) const {
-  HalfEdge h = layout_->rules->primal ? layout_->topology.first_of(FaceId(owner)) : layout_->topology.leaving(VertexId(owner));
+  HalfEdge h = layout_->rules->primal ? layout_->topology.first_of(FaceId(owner))
+                                      : layout_->topology.leaving(VertexId(owner));
   for (; k > 0; --k) h = layout_->rules->primal ? layout_->topology.next(h) : layout_->topology.ccw(h);
   return h;
 }
@@ -139,10 +140,11 @@ const Kind& LimitSurface::find_kind(PatchId p) const {
   }
   if (!after_first_split(p)) {
     const HalfEdge start = corner_at(owner, 2 * std::size_t{part});
-    return keep(p.index(), layout_->library->kinds().find(kind_key_from(layout_->topology, start, layout_->options, layout_->sharpness)));
+    return keep(p.index(), layout_->library->kinds().find(kind_key_from(
+                               layout_->topology, start, layout_->options, layout_->sharpness)));
   }
-  const Kind& whole =
-      layout_->library->kinds().find(kind_key_from(layout_->topology, corner_at(owner), layout_->options, layout_->sharpness));
+  const Kind& whole = layout_->library->kinds().find(
+      kind_key_from(layout_->topology, corner_at(owner), layout_->options, layout_->sharpness));
   layout_->polygons[owner].store(&whole, std::memory_order_relaxed);
   const std::vector<KindChild>& children = whole.children();
   for (std::size_t k = 0; k < children.size(); ++k) keep(layout_->begins[owner] + k, *children[k].kind);
@@ -179,7 +181,8 @@ void LimitSurface::control_vertices(PatchId p, std::vector<VertexId>& out) const
   if (const Kind* polygon = polygon_of(p)) {
     polygon->control_vertices(layout_->topology, corner_at(at.owner), out);
   } else {
-    kind(p).control_vertices(layout_->topology, corner_at(at.owner, 2 * std::size_t{at.part}) + first(p), out);
+    kind(p).control_vertices(layout_->topology, corner_at(at.owner, 2 * std::size_t{at.part}) + first(p),
+                             out);
   }
 }
 
@@ -221,7 +224,8 @@ std::array<std::uint32_t, 3> LimitSurface::corner_names(PatchId p) const {
   const auto name = [](std::size_t n) { return static_cast<std::uint32_t>(n); };
   const auto corner = [&, place_owner = owner](std::size_t k) {
     const HalfEdge h = corner_at(place_owner, k);
-    return primal ? layout_->topology.from(h).value() : name(vertices + edges + layout_->topology.face_of(h).index());
+    return primal ? layout_->topology.from(h).value()
+                  : name(vertices + edges + layout_->topology.face_of(h).index());
   };
   if (layout_->rules->triangular()) return {corner(0), corner(1), corner(2)};
   if (!after_first_split(p)) {

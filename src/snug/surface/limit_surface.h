@@ -80,7 +80,9 @@ class LimitSurface {
 
   /// Is there a limit patch? Not in a hole, not at a boundary with BoundaryRule::none, and with a dual scheme
   /// not of a boundary vertex.
-  [[nodiscard]] bool has_patch(PatchId p) const { return layout_->bare.empty() || !layout_->bare[place(p).owner]; }
+  [[nodiscard]] bool has_patch(PatchId p) const {
+    return layout_->bare.empty() || !layout_->bare[place(p).owner];
+  }
   /// Requires:  has_patch(p).
   [[nodiscard]] const Kind& kind(PatchId p) const {
     const Kind* const known = layout_->kinds[p.index()].load(std::memory_order_acquire);
