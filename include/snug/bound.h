@@ -84,6 +84,17 @@ class SNUG_API PatchBounds {
   ///            result does not fit a double, and the contents of `out` are then unspecified.
   void update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads = 1);
 
+  /// Boxes of all patches while every control point goes along a line from its place in `begin` to that in
+  /// `end`, in mesh units: for motion blur.
+  ///
+  /// Guarantee: every limit point of a patch is in its box at every time in between, both ends and rounding
+  ///            included; so is the hull of all of them.
+  /// Errors:    those of the other update(), with out.size() == patches().size().
+  /// Cost:      that of two of them. Memory: 96 bytes a patch from the first call on.
+  /// Source:    docs/derivations/moving.md.
+  void update(std::span<const Point3> begin, std::span<const Point3> end, std::span<Box3> out,
+              int threads = 1);
+
  private:
   struct Inside;
   std::unique_ptr<Inside> inside_;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <snug/evaluate.h>
+#include <testing/journeys.h>
 
 namespace snug {
 namespace {
@@ -77,6 +78,49 @@ TEST(enclosures, follow_a_mesh_that_moves) {
   PatchBounds taken = std::move(bounds);
   EXPECT_EQ(taken.patches().size(), triangles.size());
   EXPECT_THROW(taken.update(std::vector<Point3>(3), triangles), InputError);
+}
+
+// Limit points of meshes in between, of every kind of motion between the ends.
+TEST(enclosures, boxes_in_motion_hold_every_time_in_between) {
+  std::mt19937_64 random(9);
+  for (const char* name : {"star.obj", "bracket.obj"}) {
+    const ControlMesh mesh = model(name).mesh();
+    const Surface surface(mesh);
+    PatchBounds bounds(surface);
+    std::vector<Box3> boxes(bounds.patches().size());
+    for (std::size_t j = 0; j < testing::journey_count; ++j) {
+      const auto journey = static_cast<testing::Journey>(j);
+      const std::vector<Point3> begin = testing::start_of(journey, mesh.points, random);
+      bounds.update(begin, mesh.points, boxes);
+      for (const double t : {0.0, 0.25, 0.5, 0.875, 1.0}) {
+        ControlMesh between = mesh;
+        for (std::size_t v = 0; v < begin.size(); ++v) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            between.points[v][k] = (1 - t) * begin[v][k] + t * mesh.points[v][k];
+          }
+        }
+        const Surface then(between);
+        const double rounding = 1e-14 * then.size();
+        for (std::size_t i = 0; i < boxes.size(); i += 7) {
+          const auto [owner, part] = bounds.patches()[i];
+          const bool triangle = mesh.face(FaceId(owner)).size() == 3;
+          const std::uint32_t corner = mesh.face(FaceId(owner)).size() > 4 ? part / 2 : 0;
+          const bool second = part % 2 != 0;
+          if (triangle && surface.scheme() != Scheme::loop) continue;
+          const SurfacePoint at = evaluate(then, {owner, corner, second ? 0.1 : 0.6,
+                                                  triangle ? 0.3
+                                                  : second ? 0.7
+                                                           : 0.2});
+          for (std::size_t k = 0; k < 3; ++k) {
+            EXPECT_LE(boxes[i].lower[k], at.position[k] + at.error + rounding) << testing::name_of(journey);
+            EXPECT_GE(boxes[i].upper[k], at.position[k] - at.error - rounding) << testing::name_of(journey);
+          }
+        }
+      }
+    }
+    boxes.pop_back();
+    EXPECT_THROW(bounds.update(mesh.points, mesh.points, boxes), InputError);
+  }
 }
 
 }  // namespace

@@ -25,6 +25,7 @@
 #include <cstdlib>
 #include <functional>
 #include <map>
+#include <set>
 
 #include "testing/verdict_only.h"
 
@@ -479,6 +480,34 @@ TEST(ground, answers_are_true) {
     if (count >= 10 * usual) {
       EXPECT_GT(checks.count("solids: nested"), 0u);
     }
+  }
+}
+
+// The same of surfaces whose control points have moved and whose trees were refitted: every journey with every
+// scheme, tag and rule. SNUG_MOVED=N: so many placements.
+TEST(ground, answers_about_moved_surfaces_are_true) {
+  const std::uint64_t usual = 3 * testing::covering_rows().size();
+  const std::uint64_t first = from_environment("SNUG_FIRST", 0);
+  const std::uint64_t count = from_environment("SNUG_MOVED", usual);
+  testing::GroundTrials trials(1, true);
+  Checks checks;
+  std::set<std::array<std::size_t, 3>> covered, possible;  // journey, factor, value
+  for (std::uint64_t i = 0; i < count; ++i) {
+    GroundTrial trial = trials.make(first + i);
+    for (const GroundSide& side : *trial.sides) {
+      for (std::size_t f = 0; f < testing::factor_count; ++f) {
+        covered.insert({static_cast<std::size_t>(*side.journey), f, side.choices[f]});
+        for (std::size_t j = 0; j < testing::journey_count; ++j) possible.insert({j, f, side.choices[f]});
+      }
+    }
+    if (!checks.run(trial)) break;
+  }
+  checks.report();
+  std::printf("  journeys with cases: %zu of %zu\n", covered.size(), possible.size());
+  if (first == 0 && count >= usual && !HasFailure()) {
+    EXPECT_EQ(covered, possible);
+    EXPECT_GT(checks.count("collide: separated"), count / 10);
+    EXPECT_GT(checks.count("collide: within") + checks.count("collide: intersecting"), count / 10);
   }
 }
 

@@ -10,6 +10,7 @@
 #include <oracle/dual_twin.h>
 #include <oracle/polygon_twin.h>
 #include <oracle/tagged_shapes.h>
+#include <snug/query/closest.h>
 #include <testing/ground_trials.h>
 #include <testing/tagged.h>
 
@@ -587,8 +588,8 @@ struct GroundTrials::Shared {
   }
 };
 
-GroundTrials::GroundTrials(std::uint64_t of_each_row)
-    : of_each_row_(of_each_row), shared_(std::make_unique<Shared>()) {}
+GroundTrials::GroundTrials(std::uint64_t of_each_row, bool moving)
+    : of_each_row_(of_each_row), moving_(moving), shared_(std::make_unique<Shared>()) {}
 GroundTrials::~GroundTrials() = default;
 
 void GroundTrials::make_sides(std::uint64_t row) {
@@ -621,10 +622,33 @@ void GroundTrials::make_sides(std::uint64_t row) {
     SurfaceBvhOptions model;
     model.threads = 1;
     model.method = choice<BoundMethod>(s.choices, Factor::sets);
-    s.model = std::make_unique<SurfaceBvh>(*s.surface, model);
-    s.scratch = std::make_unique<SurfaceWorkspace>(*s.model);
+    if (moving_) {
+      make_moved(s, model, row + side * (row / journey_count + 1), random);
+    } else {
+      s.model = std::make_unique<SurfaceBvh>(*s.surface, model);
+      s.scratch = std::make_unique<SurfaceWorkspace>(*s.model);
+    }
     s.twin = std::make_unique<oracle::LimitTwin>(s.made.mesh, shared_->rules_of(s.made));
   }
+}
+
+void GroundTrials::make_moved(GroundSide& side, const SurfaceBvhOptions& options, std::uint64_t row,
+                              std::mt19937_64& random) const {
+  const std::vector<Point3> here = side.surface->mesh().points;
+  side.journey = static_cast<Journey>(row % journey_count);
+  side.surface->move(start_of(*side.journey, here, random));
+  side.plan.set(nullptr);
+  SurfaceBvhOptions moving = options;
+  if (row / journey_count % 2 == 0) moving.most_looser = INFINITY;
+  side.model = std::make_unique<SurfaceBvh>(*side.surface, moving, side.plan);
+  side.scratch = std::make_unique<SurfaceWorkspace>(*side.model);
+  const Ball& ball = side.model->ball();
+  const Point3 from =
+      std::isfinite(ball.radius) ? ball.centre + ball.radius * Vector3{1, 0.5, 0.25} : Point3{};
+  static_cast<void>(closest_point(*side.scratch, from, {.relative = 1e-2, .budget = 30}));
+  side.surface->move(here);
+  side.model->refit(side.plan);
+  side.scratch->renew(*side.model);
 }
 
 GroundTrial GroundTrials::make(std::uint64_t number) {
@@ -711,6 +735,7 @@ std::string describe(const GroundTrial& trial) {
     text += side == 0 ? "; A:" : "; B:";
     for (std::size_t f = 0; f < factor_count; ++f)
       text += (f == 0 ? " " : ", ") + name_of_value(f, (*trial.sides)[side].choices[f]);
+    if (const auto journey = (*trial.sides)[side].journey) text += ", " + name_of(*journey);
     text += ", placed \"";
     for (std::size_t i = 0; i < 12; ++i) {
       char number[40];

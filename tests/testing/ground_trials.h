@@ -14,6 +14,7 @@
 #include <oracle/tagged_mesh.h>
 #include <snug/search/workspace.h>
 #include <snug/surface/limit_surface.h>
+#include <testing/journeys.h>
 
 /// Placed pairs of surfaces of every scheme, tag and rule, so that each two cases that can go together do.
 namespace snug::testing {
@@ -60,6 +61,8 @@ struct GroundSide {
   Choices choices{};
   GroundMesh made;
   std::unique_ptr<LimitSurface> surface;
+  std::optional<Journey> journey;  ///< that it and its tree have made
+  SharedPlan plan;
   std::unique_ptr<SurfaceBvh> model;
   std::unique_ptr<SurfaceWorkspace> scratch;
   std::unique_ptr<oracle::LimitTwin> twin;
@@ -85,10 +88,11 @@ struct GroundTrial {
 };
 
 /// The same number, the same trial. The first trials go through row_count() rows, so many of each; then rows
-/// are random.
+/// are random. Surfaces that move come from elsewhere: their trees are made there and refitted, by the first
+/// plan alone or by another one where need be, and what was known of their pieces has to be forgotten.
 class GroundTrials {
  public:
-  explicit GroundTrials(std::uint64_t of_each_row);
+  explicit GroundTrials(std::uint64_t of_each_row, bool moving = false);
   ~GroundTrials();
   [[nodiscard]] GroundTrial make(std::uint64_t number);
   /// Of the trial that was made last.
@@ -97,7 +101,10 @@ class GroundTrials {
  private:
   struct Shared;
   void make_sides(std::uint64_t row);
+  void make_moved(GroundSide& side, const SurfaceBvhOptions& options, std::uint64_t row,
+                  std::mt19937_64& random) const;
   std::uint64_t of_each_row_;
+  bool moving_;
   std::uint64_t made_ = UINT64_MAX;
   PairChoices row_{};
   std::array<GroundSide, 2> sides_;

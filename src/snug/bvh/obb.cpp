@@ -198,6 +198,25 @@ Obb box_of(const std::array<Vector3, 3>& axes, const std::array<Extent, 3>& exte
   return box;
 }
 
+Axes orthonormal_axes(const Vector3& a, const Vector3& b) {
+  const double size_a = length(a);
+  if (!(size_a > 0x1p-400) || !(size_a < 0x1p400)) return Obb{}.axes;
+  const Vector3 first = (1 / size_a) * a;
+  // Where little is left of the second, rounding has turned it.
+  Vector3 second = b - dot(first, b) * first;
+  double size_b = length(second);
+  if (!(size_b > 0.25 * length(b)) || !(size_b > 0x1p-400) || !(size_b < 0x1p400)) {
+    const Vector3 across{std::fabs(first.x), std::fabs(first.y), std::fabs(first.z)};
+    Vector3 other;
+    other[across.x <= across.y && across.x <= across.z ? 0 : across.y <= across.z ? 1 : 2] = 1;
+    second = other - dot(first, other) * first;
+    size_b = length(second);
+  }
+  second = (1 / size_b) * second;
+  second = second - dot(first, second) * first;
+  return {first, second, cross(first, second)};
+}
+
 Obb merge(std::span<const Obb> boxes) {
   SNUG_EXPECT(!boxes.empty());
   Vector3 sum;
@@ -210,7 +229,10 @@ Obb merge(std::span<const Obb> boxes) {
       add_outer(covariance, box.axes[k], box.half[k] * box.half[k] / 3);
     }
   }
-  const std::array<Vector3, 3> axes = turned_to_fit(axes_of(covariance), boxes);
+  return merge(boxes, turned_to_fit(axes_of(covariance), boxes));
+}
+
+Obb merge(std::span<const Obb> boxes, const Axes& axes) {
   return fit_box(axes, [&](const Vector3& axis) { return extent_of(boxes, axis); });
 }
 
@@ -219,34 +241,52 @@ Ball ball_around(const Obb& box) {
   return {box.centre, std::isfinite(reach) ? enlarged(reach) : INFINITY};
 }
 
+namespace {
+
+// The corner of boxes that is farthest from a point, and an upper bound of how far it is.
+struct Farthest {
+  Vector3 corner;
+  double distance;
+};
+Farthest farthest_corner(std::span<const Obb> boxes, const Point3& from) {
+  double farthest_sq = 0;
+  Vector3 to_farthest;
+  for (const Obb& box : boxes) {
+    const Vector3 to = box.centre - from;
+    Vector3 corner = to;
+    double sq = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double along = dot(box.axes[k], to), reach = std::fabs(along) + box.half[k];
+      sq += reach * reach;
+      corner = corner + (along < 0 ? -box.half[k] : box.half[k]) * box.axes[k];
+    }
+    if (std::isnan(sq)) return {corner, INFINITY};
+    if (sq > farthest_sq) {
+      farthest_sq = sq;
+      to_farthest = corner;
+    }
+  }
+  // What axes lack of orthonormality, and roundings of what is about 4 large.
+  return {to_farthest, enlarged(std::sqrt(farthest_sq) * (1 + 64 * unit_roundoff)) +
+                           64 * unit_roundoff * max_abs(from - Point3{})};
+}
+
+}  // namespace
+
 Ball ball_around(std::span<const Obb> boxes) {
   constexpr int steps = 32;
   Ball best{boxes[0].centre, INFINITY};
   Point3 centre = merge(boxes).centre;
   for (int step = 1; step <= steps; ++step) {
-    double farthest_sq = 0;
-    Vector3 to_farthest;
-    for (const Obb& box : boxes) {
-      const Vector3 from = box.centre - centre;
-      Vector3 corner = from;
-      double sq = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double along = dot(box.axes[k], from), reach = std::fabs(along) + box.half[k];
-        sq += reach * reach;
-        corner = corner + (along < 0 ? -box.half[k] : box.half[k]) * box.axes[k];
-      }
-      if (!(sq <= farthest_sq)) {
-        farthest_sq = sq;
-        to_farthest = corner;
-      }
-    }
-    // What axes lack of orthonormality, and roundings of what is about 4 large.
-    const double radius = enlarged(std::sqrt(farthest_sq) * (1 + 64 * unit_roundoff)) +
-                          64 * unit_roundoff * max_abs(centre - Point3{});
-    if (radius < best.radius) best = {centre, radius};
-    centre = centre + (1.0 / (step + 1)) * to_farthest;
+    const Farthest farthest = farthest_corner(boxes, centre);
+    if (farthest.distance < best.radius) best = {centre, farthest.distance};
+    centre = centre + (1.0 / (step + 1)) * farthest.corner;
   }
   return best;
+}
+
+Ball ball_around(std::span<const Obb> boxes, const Point3& centre) {
+  return {centre, farthest_corner(boxes, centre).distance};
 }
 
 }  // namespace snug

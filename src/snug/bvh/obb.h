@@ -30,9 +30,15 @@ struct Obb {
   Vector3 half;
 };
 
+using Axes = std::array<Vector3, 3>;
+
 /// Axes for a box around points: the principal axes, orthonormal up to a few roundings.
 /// Source:    [Gottschalk96].
-[[nodiscard]] std::array<Vector3, 3> principal_axes(std::span<const Point3> points);
+[[nodiscard]] Axes principal_axes(std::span<const Point3> points);
+
+/// Axes that are orthonormal up to a few roundings: the first along `a`, the second in the plane of a and b
+/// where that can be told, else anywhere; the coordinate axes where `a` is zero or not finite.
+[[nodiscard]] Axes orthonormal_axes(const Vector3& a, const Vector3& b);
 
 /// The box with given axes around a set with these extents along them, rounding included; one that nothing is
 /// certainly apart from where an extent is not finite.
@@ -46,6 +52,8 @@ template <class Extents>
 
 /// A box around one or more boxes.
 [[nodiscard]] Obb merge(std::span<const Obb> boxes);
+/// The same along given axes.
+[[nodiscard]] Obb merge(std::span<const Obb> boxes, const Axes& axes);
 
 /// A ball around a box.
 struct Ball {
@@ -56,5 +64,7 @@ struct Ball {
 /// A ball around one or more boxes, some percent larger than the smallest.
 /// Source:    [Badoiu03].
 [[nodiscard]] Ball ball_around(std::span<const Obb> boxes);
+/// A ball around them with this centre.
+[[nodiscard]] Ball ball_around(std::span<const Obb> boxes, const Point3& centre);
 
 }  // namespace snug

@@ -142,9 +142,10 @@ WideBvh::WideBvh(std::size_t item_count) : items_(item_count) {
 }
 
 WideBvh::WideBvh(WideBvh&&) noexcept = default;
+WideBvh& WideBvh::operator=(WideBvh&&) noexcept = default;
 WideBvh::~WideBvh() = default;
 
-WideBvh::WideBvh(std::span<const Point3> centres, int threads, const Fit& fit) : WideBvh(centres.size()) {
+std::vector<WideBvh::Item> WideBvh::items_at(std::span<const Point3> centres) {
   std::vector<Item> items;
   items.reserve(centres.size());
   for (std::size_t i = 0; i < centres.size(); ++i) {
@@ -153,6 +154,11 @@ WideBvh::WideBvh(std::span<const Point3> centres, int threads, const Fit& fit) :
                      0,
                      static_cast<std::uint32_t>(i)});
   }
+  return items;
+}
+
+WideBvh::WideBvh(std::span<const Point3> centres, int threads, const Fit& fit) : WideBvh(centres.size()) {
+  std::vector<Item> items = items_at(centres);
   sort(whole(), items, threads);
   const Fitted fitted = fit_upwards(whole(), threads, fit);
   finish(merge(fitted.below), ball_around(fitted.leaves), fitted.leaves);
@@ -197,6 +203,64 @@ WideBvh::WideBvh(std::span<const Ball> balls, Fit fit, unsigned part_level) : Wi
     parts = std::move(finer);
   }
   finish(box, unmade_->ball_around_all(), parts);
+}
+
+WideBvh WideBvh::in_order(std::span<const Point3> centres, int threads) {
+  WideBvh tree(centres.size());
+  std::vector<Item> items = items_at(centres);
+  tree.sort(tree.whole(), items, threads);
+  return tree;
+}
+
+WideBvh WideBvh::in_order_of(const WideBvh& other) {
+  WideBvh tree(other.items_.size());
+  tree.items_ = other.items_;
+  return tree;
+}
+
+WideBvh::LeafRange WideBvh::leaves_of(std::uint32_t name) const {
+  const Subtree of = subtree(name);
+  const std::size_t begin = of.number * leaves_of_level(of.level);
+  return {begin, begin + leaves_below(of)};
+}
+
+// Level by level. A box is fitted to those two levels below it, which are tighter than those between.
+void WideBvh::refit(std::span<const Obb> leaves, std::span<const Axes> axes) {
+  SNUG_EXPECT(leaves.size() == leaf_count() && (axes.empty() || axes.size() == nodes_.size()) && !unmade_);
+  node_boxes_.resize(nodes_.size());
+  const std::span<Obb> boxes = node_boxes_;
+  std::span<const Obb> below = leaves, two_below = leaves;
+  std::size_t per_box = WideNode::width;  // of those two below
+  for (unsigned level = 1; level <= whole().level; ++level) {
+    const std::size_t count = (below.size() + WideNode::width - 1) / WideNode::width;
+    const std::span<Obb> parents = boxes.subspan(begins_[level], count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t first = i * WideNode::width;
+      keep({level, i}, below.subspan(first, std::min(WideNode::width, below.size() - first)));
+      const std::size_t from = i * per_box;
+      const std::span<const Obb> around = two_below.subspan(from, std::min(per_box, two_below.size() - from));
+      parents[i] = axes.empty() ? merge(around) : merge(around, axes[begins_[level] + i]);
+    }
+    two_below = below;
+    below = parents;
+    per_box = WideNode::width * WideNode::width;
+  }
+  finish_refit(leaves);
+}
+
+// The ball's centre, a choice, from few boxes, its radius from all.
+void WideBvh::finish_refit(std::span<const Obb> leaves) {
+  constexpr std::size_t few = 64;
+  std::span<const Obb> coarse = leaves;
+  unsigned level = 0;
+  while (coarse.size() > few && level < whole().level) {
+    ++level;
+    const std::size_t end = level == whole().level ? nodes_.size() : begins_[level + 1];
+    coarse = std::span<const Obb>(node_boxes_).subspan(begins_[level], end - begins_[level]);
+  }
+  const Ball ball =
+      leaves.size() > few ? ball_around(leaves, ball_around(coarse).centre) : ball_around(leaves);
+  finish(nodes_.empty() ? leaves[0] : node_boxes_.back(), ball, leaves.size() > few ? coarse : leaves);
 }
 
 void WideBvh::finish(const Obb& box, const Ball& ball, std::span<const Obb> parts) {
@@ -318,8 +382,8 @@ std::span<const std::uint32_t> WideBvh::leaf(std::size_t i) const {
 }
 
 std::size_t WideBvh::bytes() const {
-  return nodes_.capacity() * (sizeof(TreeNode) + 1) + items_.capacity() * sizeof(std::uint32_t) +
-         (unmade_ ? unmade_->items.capacity() * sizeof(Item) : 0);
+  return nodes_.capacity() * (sizeof(TreeNode) + 1) + node_boxes_.capacity() * sizeof(Obb) +
+         items_.capacity() * sizeof(std::uint32_t) + (unmade_ ? unmade_->items.capacity() * sizeof(Item) : 0);
 }
 
 }  // namespace snug

@@ -41,7 +41,29 @@ class WideBvh {
   /// Requires:  the same of the balls' centres; radii finite; part_level >= 1.
   /// Cost:      about 0.05 microseconds an item at once, 0.6 an item of a part.
   WideBvh(std::span<const Ball> items, Fit fit, unsigned part_level = 2);
+
+  /// Which items lie together, and no boxes yet: refit() makes them.
+  /// Requires:  as for a whole tree.
+  [[nodiscard]] static WideBvh in_order(std::span<const Point3> centres, int threads);
+  /// The same order, without boxes.
+  [[nodiscard]] static WideBvh in_order_of(const WideBvh& other);
+  /// Makes all boxes anew, around these boxes of the leaves, along given axes: one triple for each node by
+  /// its name, for the box around all of it. Without axes they are chosen as for a whole tree. Memory is
+  /// taken the first time only. Not while others read.
+  /// Guarantee: as ever. The axes need be orthonormal up to a few roundings, no more.
+  /// Requires:  made by in_order() or in_order_of(); leaf_count() boxes; node_count() axes or none.
+  void refit(std::span<const Obb> leaves, std::span<const Axes> axes = {});
+  [[nodiscard]] std::size_t node_count() const { return nodes_.size(); }
+  /// What refit() made: a box around all of each node, by name.
+  [[nodiscard]] std::span<const Obb> node_boxes() const { return node_boxes_; }
+  /// The leaves below a node: from `begin` to before `end`.
+  struct LeafRange {
+    std::size_t begin, end;
+  };
+  [[nodiscard]] LeafRange leaves_of(std::uint32_t name) const;
+
   WideBvh(WideBvh&&) noexcept;
+  WideBvh& operator=(WideBvh&&) noexcept;
   ~WideBvh();
 
   /// The root is the one box of this node.
@@ -74,6 +96,7 @@ class WideBvh {
     std::vector<Obb> leaves, below;  // a box a leaf, and all that fit() made
   };
   explicit WideBvh(std::size_t item_count);
+  [[nodiscard]] static std::vector<Item> items_at(std::span<const Point3> centres);
   [[nodiscard]] Subtree whole() const { return {static_cast<unsigned>(begins_.size() - 1), 0}; }
   [[nodiscard]] Subtree subtree(std::uint32_t name) const;
   [[nodiscard]] std::uint32_t name_of(Subtree of) const;
@@ -85,12 +108,14 @@ class WideBvh {
   void make(std::uint32_t name) const;
   void keep(Subtree of, std::span<const Obb> boxes) const;
   void finish(const Obb& box, const Ball& ball, std::span<const Obb> parts);
+  void finish_refit(std::span<const Obb> leaves);
 
   std::vector<std::uint32_t> begins_;  // name of the first node of each level; of leaves 0
   // Written before `made_` tells.
   mutable std::vector<std::uint32_t> items_;
   mutable std::vector<TreeNode> nodes_;
   mutable std::vector<std::atomic<bool>> made_;
+  std::vector<Obb> node_boxes_;  // of trees that are refitted
   std::unique_ptr<Unmade> unmade_;
   TreeNode root_;
   Obb box_;

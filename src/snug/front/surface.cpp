@@ -8,6 +8,7 @@ namespace snug {
 
 Surface::Surface(ControlMesh mesh, const SurfaceOptions& options)
     : data_(std::make_shared<const SurfaceData>(std::move(mesh), options)) {}
+Surface::Surface(std::shared_ptr<const SurfaceData> data) noexcept : data_(std::move(data)) {}
 Surface::Surface(const Surface&) noexcept = default;
 Surface& Surface::operator=(const Surface&) noexcept = default;
 Surface::~Surface() = default;

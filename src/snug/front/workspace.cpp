@@ -28,7 +28,8 @@ void Workspace::Pieces::begin_query() {
 }
 
 SurfaceWorkspace& Workspace::Pieces::find(const Surface& surface, bool second) {
-  const std::uint64_t name = 2 * surface.data()->number() + (second ? 1 : 0);
+  const SurfaceData& data = *surface.data();
+  const std::uint64_t name = 2 * data.storage() + (second ? 1 : 0);
   Recent& recent = recent_[name % recent_.size()];
   if (recent.name != name) {
     Entry& entry = entries_[name];
@@ -36,9 +37,14 @@ SurfaceWorkspace& Workspace::Pieces::find(const Surface& surface, bool second) {
       entry.query = query_;
       entry.surface = surface.data();
       drop_old();
-      entry.pieces = std::make_unique<SurfaceWorkspace>(surface.data()->bvh());
+      entry.pieces = std::make_unique<SurfaceWorkspace>(data.bvh());
+      entry.number = data.number();
     }
     recent = {name, &entry};
+  }
+  if (recent.entry->number != data.number()) {
+    recent.entry->pieces->renew(data.bvh());
+    recent.entry->number = data.number();
   }
   recent.entry->query = query_;
   return *recent.entry->pieces;

@@ -26,8 +26,10 @@ class Workspace::Pieces {
   void clear();
 
  private:
+  // Of one surface, or of the frames of a moving one that use the same memory: of the last one met.
   struct Entry {
     std::weak_ptr<const SurfaceData> surface;
+    std::uint64_t number = 0;  // of that frame
     std::unique_ptr<SurfaceWorkspace> pieces;
     std::uint64_t query = 0;  // that used it last
   };

@@ -69,7 +69,8 @@ class Query {
     if (w == Vector3{} || !(bounds_.upper() > 4 * room)) return false;
     const double height_a = dot(w, witness_.points[0] - Point3{}) + room,
                  height_b = dot(w, witness_.points[1] - Point3{}) - room;
-    std::array<std::vector<Node>, 2> beyond;
+    thread_local std::array<std::vector<Node>, 2> beyond;
+    for (std::vector<Node>& side : beyond) side.clear();
     if (!pieces_.beyond(0, w, height_a, room / 4, max_beyond, options_.budget, beyond[0]) ||
         !pieces_.beyond(1, -w, -height_b, room / 4, max_beyond, options_.budget, beyond[1])) {
       return false;
@@ -84,7 +85,8 @@ class Query {
 
   // Straight down to pieces that are near each other, so that there is an upper bound from the beginning.
   void dive() {
-    std::vector<NodePair> front{walk_.roots()}, next;
+    thread_local std::vector<NodePair> front, next;
+    front.assign(1, walk_.roots());
     const auto whole = [](const NodePair& pair) { return pair.bounded(); };
     while (!std::all_of(front.begin(), front.end(), whole)) {
       next.clear();

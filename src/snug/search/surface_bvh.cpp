@@ -31,26 +31,68 @@ std::vector<PatchId> existing_patches(const LimitSurface& surface) {
 
 }  // namespace
 
-std::vector<PieceSketch> SurfaceBvh::sketches(std::span<const std::uint32_t> items) const {
-  std::vector<PieceSketch> pieces;
-  pieces.reserve(items.size());
-  for (const std::uint32_t item : items) {
-    const PatchId p = patches_[item];
-    pieces.push_back(sketch(surface_->library(), surface_->patch(p), method_));
+std::span<const PieceSketch> SurfaceBvh::sketches(std::span<const std::uint32_t> items) const {
+  thread_local std::array<PieceSketch, WideBvh::leaf_size> pieces;
+  thread_local Patch patch;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    surface_->patch(patches_[items[i]], patch);
+    pieces[i] = sketch(surface_->library(), patch, method_);
   }
-  return pieces;
+  return std::span(pieces).first(items.size());
 }
 
-const LeafNode& SurfaceBvh::keep_leaf(std::uint32_t i, std::span<const PieceSketch> pieces) const {
-  auto made = std::make_unique<const LeafNode>(pieces);
-  const LeafNode* there = nullptr;
-  // Another thread may have been quicker: both are the same.
-  if (!leaves_->nodes[i].compare_exchange_strong(there, made.get(), std::memory_order_acq_rel)) return *there;
-  leaves_->made.fetch_add(1, std::memory_order_relaxed);
-  return *made.release();
+const LeafNode& SurfaceBvh::make_leaf(std::uint32_t i) const {
+  return leaves_->keep(i, sketches(tree_.leaf(i)));
 }
 
-const LeafNode& SurfaceBvh::make_leaf(std::uint32_t i) const { return keep_leaf(i, sketches(tree_.leaf(i))); }
+LeafNode* SurfaceBvh::Leaves::unused() {
+  const std::lock_guard lock(mutex_);
+  if (unused_.empty()) {
+    ++count_;
+    return nullptr;
+  }
+  LeafNode* const node = unused_.back().release();
+  unused_.pop_back();
+  return node;
+}
+
+const LeafNode& SurfaceBvh::Leaves::keep(std::uint32_t i, std::span<const PieceSketch> pieces) {
+  std::unique_ptr<LeafNode> made(unused());
+  if (made) {
+    *made = LeafNode(pieces);
+  } else {
+    made = std::make_unique<LeafNode>(pieces);
+  }
+  LeafNode* there = nullptr;
+  if (nodes_[i].compare_exchange_strong(there, made.get(), std::memory_order_acq_rel)) return *made.release();
+  // Another thread was quicker: both are the same.
+  const std::lock_guard lock(mutex_);
+  if (unused_.size() < unused_.capacity()) {
+    unused_.push_back(std::move(made));
+  } else {
+    --count_;
+  }
+  return *there;
+}
+
+void SurfaceBvh::Leaves::clear() {
+  unused_.reserve(count_);
+  for (auto& place : nodes_) {
+    if (LeafNode* const node = place.load(std::memory_order_relaxed)) {
+      unused_.emplace_back(node);
+      place.store(nullptr, std::memory_order_relaxed);
+    }
+  }
+}
+
+SurfaceBvh::Leaves::~Leaves() {
+  for (const auto& node : nodes_) delete node.load(std::memory_order_relaxed);
+}
+
+std::size_t SurfaceBvh::Leaves::bytes() const {
+  const std::lock_guard lock(mutex_);
+  return nodes_.size() * sizeof(void*) + count_ * sizeof(LeafNode) + unused_.capacity() * sizeof(void*);
+}
 
 WideBvh SurfaceBvh::make_tree(const SurfaceBvhOptions& options, const WorkMonitor& monitor) {
   const auto fit_to_control = [surface = surface_, patches = patches_.data()](
@@ -72,9 +114,9 @@ WideBvh SurfaceBvh::make_tree(const SurfaceBvhOptions& options, const WorkMonito
           [&](std::size_t leaf, std::span<const std::uint32_t> items, std::vector<Obb>& boxes) {
             monitor.checkpoint();
             if (options.tight) {
-              const std::vector<PieceSketch> pieces = sketches(items);
+              const std::span<const PieceSketch> pieces = sketches(items);
               for (const PieceSketch& piece : pieces) boxes.push_back(piece.box);
-              keep_leaf(static_cast<std::uint32_t>(leaf), pieces);
+              leaves_->keep(static_cast<std::uint32_t>(leaf), pieces);
               return;
             }
             fit_to_control(leaf, items, boxes);
@@ -85,16 +127,68 @@ SurfaceBvh::SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& opt
                        const WorkMonitor& monitor)
     : surface_(&surface),
       method_(options.method),
+      threads_(options.threads),
+      most_looser_(options.most_looser),
       patches_(existing_patches(surface)),
       leaves_(std::make_unique<Leaves>((patches_.size() + WideBvh::leaf_size - 1) / WideBvh::leaf_size)),
       tree_(make_tree(options, monitor)),
       solid_(std::make_unique<Lazy<Solid>>()) {
-  const PowerOfTwo back = surface.scale().inverse();
+  find_extents();
+}
+
+namespace {
+
+std::shared_ptr<const RefitPlan> plan_for(const LimitSurface& surface, SharedPlan& shared, int threads) {
+  std::shared_ptr<const RefitPlan> plan = shared.get();
+  if (!plan) {
+    plan = std::make_shared<const RefitPlan>(surface, existing_patches(surface), threads);
+    shared.set(plan);
+  }
+  return plan;
+}
+
+}  // namespace
+
+SurfaceBvh::SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& options, SharedPlan& plan)
+    : surface_(&surface),
+      method_(options.method),
+      threads_(options.threads),
+      most_looser_(options.most_looser),
+      plan_(plan_for(surface, plan, options.threads)),
+      patches_(plan_->patches()),
+      leaves_(std::make_unique<Leaves>(plan_->order().leaf_count())),
+      tree_(WideBvh::in_order_of(plan_->order())),
+      solid_(std::make_unique<Lazy<Solid>>()) {
+  refit(plan);
+}
+
+void SurfaceBvh::refit(SharedPlan& plan) {
+  const auto refit_by = [this](std::shared_ptr<const RefitPlan> latest) {
+    if (plan_ != latest) {
+      tree_ = WideBvh::in_order_of(latest->order());
+      plan_ = std::move(latest);
+    }
+    return plan_->refit(*surface_, tree_);
+  };
+  leaves_->clear();
+  solid_->clear();
+  const double looseness = refit_by(plan_for(*surface_, plan, threads_));
+  if (looseness > most_looser_ * plan_->looseness()) {
+    auto better = std::make_shared<const RefitPlan>(*surface_, patches_, threads_);
+    plan.set(better);
+    refit_by(std::move(better));
+  }
+  find_extents();
+}
+
+void SurfaceBvh::find_extents() {
+  const PowerOfTwo back = surface_->scale().inverse();
   const Ball scaled = tree_.ball();
   ball_ = {back.apply(scaled.centre), enlarged(back.apply(scaled.radius))};
   // Beyond these sizes products lose digits to the ends of the range.
   if (!is_finite(ball_.centre) || !(ball_.radius < 0x1p500) || std::abs(back.exponent()) > 500) {
     ball_ = {Point3{}, INFINITY};
+    box_ = {};
     box_.half = {INFINITY, INFINITY, INFINITY};
     return;
   }
@@ -103,17 +197,12 @@ SurfaceBvh::SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& opt
   for (std::size_t k = 0; k < 3; ++k) box_.half[k] = enlarged(back.apply(box_.half[k]));
 }
 
-SurfaceBvh::Leaves::~Leaves() {
-  for (const auto& node : nodes) delete node.load(std::memory_order_relaxed);
-}
-
 const Solid& SurfaceBvh::solid() const {
   return solid_->get([&] { return Solid(*surface_); });
 }
 
 std::size_t SurfaceBvh::bytes() const {
-  return patches_.capacity() * sizeof(PatchId) + tree_.bytes() + leaves_->nodes.size() * sizeof(void*) +
-         leaves_->made.load(std::memory_order_relaxed) * sizeof(LeafNode);
+  return patches_.capacity() * sizeof(PatchId) + tree_.bytes() + leaves_->bytes();
 }
 
 }  // namespace snug

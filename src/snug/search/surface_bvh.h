@@ -3,12 +3,14 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include <snug/base/lazy.h>
 #include <snug/bvh/wide_bvh.h>
 #include <snug/monitor.h>
 #include <snug/search/piece_node.h>
+#include <snug/search/refit_plan.h>
 #include <snug/search/solid.h>
 
 namespace snug {
@@ -24,10 +26,13 @@ struct SurfaceBvhOptions {
   /// many levels; one of fewer takes some milliseconds.
   std::size_t least_lazy = 8192;
   unsigned part_level = 2;
+  /// A surface that moves gets another plan where boxes are so many times as large for their patches as they
+  /// were where the plan was made.
+  double most_looser = 1.5;
 };
 
 /// A surface made ready for queries: a tree down to its patches, parts and leaves of which are made where
-/// they are not yet. Nothing else ever changes; may be read by many threads.
+/// they are not yet. Nothing else ever changes, but by refit(); may be read by many threads.
 /// Cost:      about 0.6 microseconds and 15 bytes a patch, and 170 bytes a patch that a query came near; of
 ///            large models 0.1 and 40, and 0.6 a patch that a query came near. See bench/results/bars.txt.
 class SurfaceBvh {
@@ -36,13 +41,17 @@ class SurfaceBvh {
   /// Errors:    InputError (refused) if no face has a patch.
   explicit SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& options = {},
                       const WorkMonitor& monitor = {});
+  /// The same for a surface that moves: by the plan that its frames share, made anew if need be.
+  SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& options, SharedPlan& plan);
+  /// After the surface has moved. Keeps its memory. Nobody else may use the model meanwhile.
+  void refit(SharedPlan& plan);
 
   [[nodiscard]] const LimitSurface& surface() const { return *surface_; }
   [[nodiscard]] BoundMethod method() const { return method_; }
   [[nodiscard]] const WideBvh& tree() const { return tree_; }
   /// What is known of the patches of a leaf.
   [[nodiscard]] const LeafNode& leaf(std::uint32_t i) const {
-    const LeafNode* const ready = leaves_->nodes[i].load(std::memory_order_acquire);
+    const LeafNode* const ready = leaves_->find(i);
     return ready != nullptr ? *ready : make_leaf(i);
   }
   /// The patch at a place in a leaf.
@@ -61,19 +70,36 @@ class SurfaceBvh {
 
  private:
   // A node for each leaf of the tree, null where not made.
-  struct Leaves {
-    explicit Leaves(std::size_t leaf_count) : nodes(leaf_count) {}
+  class Leaves {
+   public:
+    explicit Leaves(std::size_t leaf_count) : nodes_(leaf_count) {}
     ~Leaves();
-    std::vector<std::atomic<const LeafNode*>> nodes;
-    std::atomic<std::size_t> made{0};
+    [[nodiscard]] const LeafNode* find(std::uint32_t i) const {
+      return nodes_[i].load(std::memory_order_acquire);
+    }
+    const LeafNode& keep(std::uint32_t i, std::span<const PieceSketch> pieces);
+    // Back to none; keeps their memory.
+    void clear();
+    [[nodiscard]] std::size_t bytes() const;
+
+   private:
+    [[nodiscard]] LeafNode* unused();
+
+    std::vector<std::atomic<LeafNode*>> nodes_;
+    mutable std::mutex mutex_;
+    std::vector<std::unique_ptr<LeafNode>> unused_;
+    std::size_t count_ = 0;  // of those made, be they in use or not
   };
-  [[nodiscard]] std::vector<PieceSketch> sketches(std::span<const std::uint32_t> items) const;
+  [[nodiscard]] std::span<const PieceSketch> sketches(std::span<const std::uint32_t> items) const;
   [[nodiscard]] WideBvh make_tree(const SurfaceBvhOptions& options, const WorkMonitor& monitor);
   const LeafNode& make_leaf(std::uint32_t i) const;
-  const LeafNode& keep_leaf(std::uint32_t i, std::span<const PieceSketch> pieces) const;
+  void find_extents();
 
   const LimitSurface* surface_;
   BoundMethod method_;
+  int threads_;
+  double most_looser_;
+  std::shared_ptr<const RefitPlan> plan_;  // that tree_ has its order from; null where it was built
   std::vector<PatchId> patches_;
   std::unique_ptr<Leaves> leaves_;
   WideBvh tree_;

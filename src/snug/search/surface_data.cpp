@@ -38,10 +38,27 @@ std::uint64_t next_number() {
 SurfaceData::SurfaceData(ControlMesh mesh, const SurfaceOptions& options)
     : limit_(make_surface(std::move(mesh), options)),
       bvh_options_{.method = options.bounds, .tight = options.tight, .threads = options.threads},
-      number_(next_number()) {}
+      number_(next_number()),
+      storage_(number_) {}
+
+SurfaceData::SurfaceData(const SurfaceData& like, std::span<const Point3> points,
+                         std::shared_ptr<SharedPlan> plan)
+    : limit_(like.limit_, points),
+      bvh_options_(like.bvh_options_),
+      plan_(std::move(plan)),
+      number_(next_number()),
+      storage_(number_) {}
+
+void SurfaceData::move(std::span<const Point3> points) {
+  limit_.move(points);
+  bvh_.expire();
+  number_ = next_number();
+}
 
 const SurfaceBvh& SurfaceData::bvh() const {
-  return bvh_.get([&] { return SurfaceBvh(limit_, bvh_options_); });
+  if (!plan_) return bvh_.get([&] { return SurfaceBvh(limit_, bvh_options_); });
+  return bvh_.get([&] { return SurfaceBvh(limit_, bvh_options_, *plan_); },
+                  [&](SurfaceBvh& old) { old.refit(*plan_); });
 }
 
 std::size_t SurfaceData::bytes() const {

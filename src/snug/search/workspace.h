@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <deque>
-#include <unordered_map>
 #include <vector>
 
 #include <snug/geometry/motion.h>
@@ -36,6 +35,8 @@ class SurfaceWorkspace {
 
   /// For queries: to be called first.
   void begin();
+  /// Forgets all that was split, when the surface has moved. Keeps its memory.
+  void renew(const SurfaceBvh& model);
   [[nodiscard]] Node root() const { return {&model_->tree().root(), 0, Node::Kind::tree, 0}; }
   /// What is known of a patch or a piece.
   /// Requires:  node.bounded(), here and below.
@@ -90,13 +91,36 @@ class SurfaceWorkspace {
   struct Root {
     std::uint32_t split = none, patch = none;
   };
+  // Of whole patches, by number; open addressing.
+  class Roots {
+   public:
+    // Stays where it is until another patch is asked for.
+    [[nodiscard]] Root& operator[](std::uint32_t patch);
+    // Keeps its memory.
+    void clear();
+    [[nodiscard]] std::size_t bytes() const { return places_.capacity() * sizeof(Place); }
+
+   private:
+    struct Place {
+      std::uint32_t patch = 0, round = 0;
+      Root root;
+    };
+    [[nodiscard]] Place& place_of(std::uint32_t patch);
+
+    std::vector<Place> places_;  // a power of two of them, at most half in use
+    std::size_t count_ = 0;
+    std::uint32_t round_ = 1;  // places of earlier ones are free
+  };
   [[nodiscard]] std::uint32_t patch_place(const Node& node);
   [[nodiscard]] std::uint32_t& split_place(const Node& node);
+  [[nodiscard]] Patch& next_patch();
 
   const SurfaceBvh* model_;
-  std::unordered_map<std::uint32_t, Root> roots_;  // of whole patches
+  Roots roots_;
+  // What is behind the counts is memory for more.
   std::deque<Split> splits_;
   std::deque<Patch> patches_;
+  std::size_t split_count_ = 0, patch_count_ = 0;
   std::size_t bytes_of_points_ = 0;
   std::uint32_t query_ = 0;
   std::size_t touched_ = 0;

@@ -11,6 +11,7 @@ void ControlHull::assign(const LimitSurface& surface, std::span<const PatchId> p
   const Topology& topology = surface.topology();
   numbers_.begin(topology.vertex_count());
   points_.clear();
+  vertices_.clear();
   corners_.clear();
   ring_.clear();
   ring_ends_.clear();
@@ -21,7 +22,10 @@ void ControlHull::assign(const LimitSurface& surface, std::span<const PatchId> p
   const bool primal = surface.rules().primal;
   const auto add = [&](VertexId v) {
     const std::uint32_t number = numbers_.number(v.index());
-    if (number == points_.size()) points_.push_back(surface.scaled_point(v));
+    if (number == points_.size()) {
+      points_.push_back(surface.scaled_point(v));
+      vertices_.push_back(v);
+    }
     return number;
   };
   for (const PatchId p : patches) {

@@ -26,9 +26,11 @@ class ControlHull {
   [[nodiscard]] Obb box() const;
 
  private:
+  friend class ControlNets;  // keeps these lists
+
   CompactNumbering numbers_;
-  std::vector<VertexId> corners_;
-  std::vector<Point3> points_;  // corners first
+  std::vector<VertexId> corners_, vertices_;  // those of faces, and all, corners first
+  std::vector<Point3> points_;                // of vertices_
   std::size_t inner_count_ = 0;
   // Indices into points_ and where each list ends: of faces a corner, of corners a patch.
   std::vector<std::uint32_t> ring_, ring_ends_, patch_, patch_ends_;
