@@ -19,7 +19,9 @@ struct PairOptions : CommonOptions {
   std::string scheme_a, scheme_b;
   PoseOptions pose_a, pose_b;
   bool nearest_rigid = false;
-  std::string poses;  ///< a file of poses; empty for none
+  std::string poses;    ///< a file of poses; empty for none
+  std::string scene;    ///< a file of many parts, in place of both meshes; empty for none
+  std::string journal;  ///< --resume; empty for none
 };
 void add_pair_options(OptionList& list, PairOptions& options);
 

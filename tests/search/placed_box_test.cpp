@@ -37,9 +37,14 @@ TEST(placed_box, contains_limit_points_of_every_scheme_wherever_it_is_placed) {
   std::mt19937_64 random(73);
   testing::for_each_surface(73, [&](const testing::NamedSurface& named) {
     const LimitSurface& surface = named.surface;
-    const SurfaceBvh model(surface, {.threads = 1});
+    std::optional<SurfaceBvh> model;
+    try {
+      model.emplace(surface, SurfaceBvhOptions{.threads = 1});
+    } catch (const InputError&) {
+      return;  // all holes
+    }
     for (const Motion& pose : some_poses(random, surface.size())) {
-      const Box3 box = placed_box(model, pose);
+      const Box3 box = placed_box(*model, pose);
       for (int sample = 0; sample < 40; ++sample) {
         SurfaceParameter at{.owner = static_cast<std::uint32_t>(random() % surface.owner_count())};
         const int corner = static_cast<int>(random() % 4);  // corners reach farthest
@@ -52,8 +57,8 @@ TEST(placed_box, contains_limit_points_of_every_scheme_wherever_it_is_placed) {
         const auto image = placed(pose, point.position);
         for (std::size_t axis = 0; axis < 3; ++axis) {
           // The point's own error is not the box's.
-          ASSERT_GE(image[axis] + 1.8 * point.position_error, box.lower[axis]) << named.name;
-          ASSERT_LE(image[axis] - 1.8 * point.position_error, box.upper[axis]) << named.name;
+          ASSERT_GE(image[axis] + 1.8 * point.error, box.lower[axis]) << named.name;
+          ASSERT_LE(image[axis] - 1.8 * point.error, box.upper[axis]) << named.name;
         }
       }
     }

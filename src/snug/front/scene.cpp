@@ -217,6 +217,12 @@ const Box3& SceneBroadPhase::box(std::uint32_t part) const { return state_->boxe
 SceneWorkers::SceneWorkers(int threads)
     : workspaces_(static_cast<std::size_t>(threads > 0 ? threads : hardware_threads())) {}
 
+void SceneWorkers::run(const std::function<void(Workspace&)>& work) {
+  std::atomic<std::size_t> taken{0};
+  share_ranges(workspaces_.size(), static_cast<int>(workspaces_.size()),
+               [&](SharedRanges&) { work(workspaces_[taken++]); });
+}
+
 void SceneWorkers::for_each(std::size_t count,
                             const std::function<void(Workspace&, std::size_t)>& answer) {
   std::atomic<std::size_t> taken{0};

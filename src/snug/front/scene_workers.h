@@ -14,6 +14,9 @@ class SceneWorkers {
   /// `threads`: 0 for all cores.
   explicit SceneWorkers(int threads);
 
+  /// Calls work(workspace) on all threads, each with its own.
+  /// Errors:    what `work` throws is thrown again once all have ended, of several one.
+  void run(const std::function<void(Workspace&)>& work);
   /// Calls answer(workspace, i) for each i in [0, count), no two at once with the same workspace.
   /// Errors:    what `answer` throws ends the loop and is thrown again, of several one.
   void for_each(std::size_t count, const std::function<void(Workspace&, std::size_t)>& answer);
