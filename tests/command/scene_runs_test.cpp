@@ -16,8 +16,8 @@ namespace {
 
 class scene_runs : public ::testing::Test {
  protected:
-  std::string file_ = write_scene(folder_.file("s.json"), random_scene(200, 7, 11));
   TemporaryFolder folder_;
+  std::string file_ = write_scene(folder_.file("s.json"), random_scene(200, 7, 11));
 };
 
 TEST_F(scene_runs, go_on_after_being_killed_at_any_moment) {
