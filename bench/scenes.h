@@ -19,7 +19,8 @@ using ModelScene = std::vector<PlacedModel>;
 
 /// Models of size 1 in random places and turns, `density` of them in a unit cube on average. With 1 most parts meet one or
 /// two others, with 4 about ten.
-[[nodiscard]] ModelScene packed_scene(std::size_t parts, double density, std::size_t models, std::uint64_t seed);
+[[nodiscard]] ModelScene packed_scene(std::size_t parts, double density, std::size_t models,
+                                      std::uint64_t seed);
 /// Rings in rows, each half a turn from the one before, so near that neighbours nearly mesh: model 0.
 [[nodiscard]] ModelScene gear_train(std::size_t parts);
 /// The last model on a path of many poses through a cell of packed parts: each pose is a part.

@@ -121,7 +121,8 @@ ExitStatus run_scene(const Options& options) {
   const Length tolerance = text.tolerance.value_or(parse_length(options.tolerance, "--tolerance", true));
   const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
   SceneQuestion question;
-  question.key = fmt::format("{} {} {} {}", tolerance.number, tolerance.percent, options.solid, options.budget);
+  question.key =
+      fmt::format("{} {} {} {}", tolerance.number, tolerance.percent, options.solid, options.budget);
   question.margin = text.margin;
   question.all_pairs = options.all_pairs;
   question.header = "verdict lower upper ax ay az bx by bz";
@@ -202,7 +203,8 @@ Command collide_command() {
       .excludes("--poses")
       .excludes("--scene");
   list.add(Group::own, "--exit-code", &options->exit_code,
-           "Exit with 0 separated, 10 within, 11 intersecting, 12 undecided; of a scene the gravest: 11, 12, 10, 0")
+           "Exit with 0 separated, 10 within, 11 intersecting, 12 undecided; of a scene the gravest: 11, 12, "
+           "10, 0")
       .excludes("--poses");
   list.at("--tolerance").excludes("--scene");
   list.at("--margin").excludes("--scene");

@@ -73,8 +73,7 @@ ExitStatus run_scene(const Options& options) {
     wanted.relative = options.relative;
     wanted.budget = options.budget;
     wanted.solid = options.solid;
-    const std::optional<Distance> found =
-        distance_of_pair(run.scene(), pair, wanted, stop_only, workspace);
+    const std::optional<Distance> found = distance_of_pair(run.scene(), pair, wanted, stop_only, workspace);
     if (!found) {
       answer.verdict = Verdict::separated;
       return;

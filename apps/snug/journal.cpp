@@ -76,9 +76,9 @@ void Journal::read_entries(const std::string& head) {
     if (!headed && (text.size() >= head.size() || ended)) {
       // What was torn in the first line holds no answer.
       if (text != head.substr(0, text.size()) && !text.starts_with(head)) {
-        fail(text.starts_with(title)
-                 ? "is the journal of another scene, other meshes or other options; name another one, or remove it"
-                 : "is not a journal of snug; name another file");
+        fail(text.starts_with(title) ? "is the journal of another scene, other meshes or other options; name "
+                                       "another one, or remove it"
+                                     : "is not a journal of snug; name another file");
       }
       headed = text.size() >= head.size();
       offset = headed ? head.size() : 0;
@@ -107,7 +107,8 @@ std::optional<SceneAnswer> Journal::find(const PartPair& parts) const {
   PartPair read;
   SceneAnswer answer;
   const ssize_t got = ::pread(descriptor_, line.data(), line.size(), static_cast<off_t>(at->offset));
-  const bool whole = got == static_cast<ssize_t>(line.size()) && parse_line(line, read, answer) && read == parts;
+  const bool whole =
+      got == static_cast<ssize_t>(line.size()) && parse_line(line, read, answer) && read == parts;
   if (!whole) fail("was changed by somebody else; start again with a new journal");
   return answer;
 }

@@ -142,7 +142,8 @@ Option& OptionList::add(Group group, const std::string& usage, Target target, co
 }
 
 Option& OptionList::at(const std::string& name) {
-  return *std::find_if(options_.begin(), options_.end(), [&](const Option& option) { return option.name == name; });
+  return *std::find_if(options_.begin(), options_.end(),
+                       [&](const Option& option) { return option.name == name; });
 }
 
 void OptionList::assign(const std::map<std::string, std::vector<std::string>>& given) const {

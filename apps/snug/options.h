@@ -35,7 +35,7 @@ struct Option {
   std::map<std::string, std::string> aliases{};  ///< other names of choices, as spelling_of() has them
   std::optional<std::pair<double, double>> range{};
   std::vector<std::string> excluded{}, needed{};
-  bool must{};  ///< without it the command cannot run
+  bool must{};                ///< without it the command cannot run
   std::string replacement{};  ///< or without this other one
 
   /// The value is one of these words. Neither case nor '-' or '_' inside a word matters: edgeOnly is

@@ -15,7 +15,8 @@ void add_pair_options(OptionList& list, PairOptions& options) {
   list.add(Group::own, "A", &options.mesh_a, "First control mesh (OBJ, OFF, PLY or STL)").unless("--scene");
   list.add(Group::own, "B", &options.mesh_b, "Second control mesh").unless("--scene");
   list.add(Group::own, "--scene FILE", &options.scene,
-           "Ask about the parts that a JSON file names and places, in place of A and B; under mpirun on all its ranks");
+           "Ask about the parts that a JSON file names and places, in place of A and B; under mpirun on all "
+           "its ranks");
   list.add(Group::own, "--resume JOURNAL", &options.journal,
            "Keep finished answers of a scene in this file, and go on from those that it holds")
       .needs("--scene");
@@ -30,8 +31,10 @@ void add_pair_options(OptionList& list, PairOptions& options) {
       .excludes("--scene");
   add_common_options(list, options);
   add_bound_options(list, options);
-  add_scheme_option(list, "--scheme-a", options.scheme_a, "Scheme of A; overrides --scheme").excludes("--scene");
-  add_scheme_option(list, "--scheme-b", options.scheme_b, "Scheme of B; overrides --scheme").excludes("--scene");
+  add_scheme_option(list, "--scheme-a", options.scheme_a, "Scheme of A; overrides --scheme")
+      .excludes("--scene");
+  add_scheme_option(list, "--scheme-b", options.scheme_b, "Scheme of B; overrides --scheme")
+      .excludes("--scene");
 }
 
 void write_poses(JsonWriter& json, const PosePair& poses) {

@@ -23,7 +23,8 @@ const SnugRanks* functions() {
   void* library = nullptr;
   for (const char* folder : {".", SNUG_MPI_FOLDER}) {
     // Its names must be seen by what MPI loads by itself.
-    if (library == nullptr) library = dlopen((program / folder / "snug_mpi.so").c_str(), RTLD_NOW | RTLD_GLOBAL);
+    if (library == nullptr)
+      library = dlopen((program / folder / "snug_mpi.so").c_str(), RTLD_NOW | RTLD_GLOBAL);
   }
   if (library == nullptr) fail("snug_mpi.so is not there or cannot be loaded");
   void* const symbol = dlsym(library, "snug_ranks");

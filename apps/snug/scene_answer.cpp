@@ -19,8 +19,9 @@ bool read_number(std::string_view text, Integer& number, int base = 10) {
 }  // namespace
 
 std::string line_of(const PartPair& parts, const SceneAnswer& answer) {
-  std::string line = fmt::format("{}\t{}\t{}\t{}\t{}\t{}\t", parts.a, parts.b, static_cast<int>(answer.verdict),
-                                 answer.reached ? 1 : 0, answer.row, answer.json);
+  std::string line =
+      fmt::format("{}\t{}\t{}\t{}\t{}\t{}\t", parts.a, parts.b, static_cast<int>(answer.verdict),
+                  answer.reached ? 1 : 0, answer.row, answer.json);
   line += fmt::format("{:016x}\n", fingerprint(line));
   return line;
 }
@@ -39,7 +40,8 @@ bool parse_line(std::string_view line, PartPair& parts, SceneAnswer& answer) {
   const bool numbers = read_number(words[0], parts.a) && read_number(words[1], parts.b) &&
                        read_number(words[2], verdict) && read_number(words[3], reached) &&
                        words[6].size() == 16 && read_number(words[6], sum, 16);
-  if (!numbers || sum != fingerprint(line.substr(0, line.size() - 16)) || verdict < 0 || verdict > 3) return false;
+  if (!numbers || sum != fingerprint(line.substr(0, line.size() - 16)) || verdict < 0 || verdict > 3)
+    return false;
   answer = {static_cast<Verdict>(verdict), reached != 0, std::string(words[4]), std::string(words[5])};
   return true;
 }

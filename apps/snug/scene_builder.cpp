@@ -128,7 +128,8 @@ void add_polyhedron(PictureScene& scene, const Polyhedron& solid, Point3 eye, co
   }
 }
 
-void add_witness(PictureScene& scene, const std::array<Point3, 2>& points, const PictureUnits& units, double scale) {
+void add_witness(PictureScene& scene, const std::array<Point3, 2>& points, const PictureUnits& units,
+                 double scale) {
   std::array<Point3, 2> drawn;
   for (std::size_t i = 0; i < 2; ++i) {
     drawn[i] = units.from_scaled(Motion{}, units.scale().apply(points[i]));

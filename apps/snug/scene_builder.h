@@ -94,7 +94,8 @@ void add_polyhedron(PictureScene& scene, const Polyhedron& solid, Point3 eye, co
 /// Adds two points of the world and the segment between them; `scale` is the picture's smaller side over a
 /// thousand pixels.
 /// Errors:    InputError (value) for points so far away that the picture cannot hold them.
-void add_witness(PictureScene& scene, const std::array<Point3, 2>& points, const PictureUnits& units, double scale);
+void add_witness(PictureScene& scene, const std::array<Point3, 2>& points, const PictureUnits& units,
+                 double scale);
 
 /// The plane through the first of two points of the world, across from it to the second one.
 [[nodiscard]] CutPlane cut_plane(const std::array<Point3, 2>& points, const PictureUnits& units);

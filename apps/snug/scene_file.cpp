@@ -9,13 +9,13 @@
 #include <unordered_map>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 #include <snug/base/error.h>
 #include <snug/base/parallel.h>
 #include <snug/io/number.h>
 #include <snug/io/read_file.h>
 #include <snug/scheme/rules.h>
 #include <snug/search/surface_data.h>
+#include <nlohmann/json.hpp>
 
 #include "curve.h"
 #include "mesh_reading.h"
@@ -249,11 +249,13 @@ class SceneReader {
   [[nodiscard]] PartPair pair_at(const Json& value, const std::string& where, std::size_t size) const {
     if (!value.is_array() || value.size() != size) {
       fail_kind(where, value,
-                size == 2 ? "two parts, as in [0, 1] or [\"a\", \"b\"]" : "two parts and a length, as in [0, 1, 0.5]");
+                size == 2 ? "two parts, as in [0, 1] or [\"a\", \"b\"]"
+                          : "two parts and a length, as in [0, 1, 0.5]");
     }
     const PartPair pair{part_at(value[0], where + "[0]"), part_at(value[1], where + "[1]")};
     if (pair.a == pair.b) {
-      fail(fmt::format("{}: \"{}\" with itself; give two parts", where, shortened(scene_.parts[pair.a].name)));
+      fail(
+          fmt::format("{}: \"{}\" with itself; give two parts", where, shortened(scene_.parts[pair.a].name)));
     }
     return pair;
   }
@@ -324,9 +326,8 @@ std::uint64_t fingerprint(std::string_view bytes, std::uint64_t from) {
 SceneText parse_scene(const std::string& bytes, const std::string& path, const CommonOptions& options,
                       bool nearest_rigid) {
   SceneText scene;
-  naming(input_name(path), [&] {
-    scene = SceneReader(path, options, nearest_rigid).read(parse_document(bytes));
-  });
+  naming(input_name(path),
+         [&] { scene = SceneReader(path, options, nearest_rigid).read(parse_document(bytes)); });
   return scene;
 }
 

@@ -23,8 +23,8 @@ struct SceneMesh {
 /// What a scene file says.
 struct SceneText {
   struct Part {
-    std::string name;      ///< its place where the file gives none
-    std::uint32_t mesh;    ///< in `meshes`
+    std::string name;    ///< its place where the file gives none
+    std::uint32_t mesh;  ///< in `meshes`
     Motion pose;
   };
   std::vector<Part> parts;

@@ -60,7 +60,8 @@ class PairQueue {
     Range range{next_, next_};
     const double wanted = left_ / (8 * takers_);
     double cost = 0;
-    while (range.end < costs_.size() && range.end - range.begin < most_pairs && (cost == 0 || cost < wanted)) {
+    while (range.end < costs_.size() && range.end - range.begin < most_pairs &&
+           (cost == 0 || cost < wanted)) {
       cost += costs_[range.end++];
     }
     left_ -= cost;
@@ -103,14 +104,16 @@ std::vector<SceneAnswer> answers_of(const Ranks::Message& message, std::size_t c
   PartPair parts;
   for (std::size_t begin = 0; begin < text.size();) {
     const auto end = text.find('\n', begin);
-    if (end == std::string_view::npos || !parse_line(text.substr(begin, end - begin), parts, answers.emplace_back())) {
+    if (end == std::string_view::npos ||
+        !parse_line(text.substr(begin, end - begin), parts, answers.emplace_back())) {
       break;
     }
     begin = end + 1;
   }
   if (answers.size() != count) {
-    throw InputError(InputProblem::unreadable,
-                     fmt::format("rank {} sent what is no answer; are all ranks the same version?", message.from));
+    throw InputError(
+        InputProblem::unreadable,
+        fmt::format("rank {} sent what is no answer; are all ranks the same version?", message.from));
   }
   return answers;
 }
@@ -120,8 +123,8 @@ class Batch {
  public:
   using Ask = std::function<SceneAnswer(const ScenePair&, Workspace&)>;
   using Put = std::function<void(std::size_t, SceneAnswer)>;
-  Batch(const std::vector<ScenePair>& pairs, std::vector<double> costs, const Ranks* ranks, SceneWorkers& workers,
-        const Ask& ask, const Put& put)
+  Batch(const std::vector<ScenePair>& pairs, std::vector<double> costs, const Ranks* ranks,
+        SceneWorkers& workers, const Ask& ask, const Put& put)
       : pairs_(pairs),
         queue_(std::move(costs), workers.threads() * (ranks ? static_cast<std::size_t>(ranks->size()) : 1)),
         ranks_(ranks),

@@ -54,7 +54,8 @@ FclScene::FclScene(std::span<const TriangleMesh> meshes, std::span<const Part> p
   for (const TriangleMesh& mesh : meshes) trees.push_back(tree_of(mesh));
   std::vector<fcl::CollisionObjectd*> all;
   for (const Part& part : parts) {
-    state_->objects.push_back(std::make_unique<fcl::CollisionObjectd>(trees[part.mesh], transform(part.pose)));
+    state_->objects.push_back(
+        std::make_unique<fcl::CollisionObjectd>(trees[part.mesh], transform(part.pose)));
     all.push_back(state_->objects.back().get());
   }
   state_->manager.registerObjects(all);

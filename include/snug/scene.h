@@ -26,8 +26,9 @@ struct PairMargin {
 /// Parts, and which of them are asked about. Parts that share a Surface share its preparation: 120 bytes a part.
 struct Scene {
   std::vector<PlacedSurface> parts;
-  std::optional<std::vector<PartPair>> pairs{};  ///< default: every two parts, a < b, in the order of their places
-  std::vector<PairMargin> margins{};             ///< at most one for any two parts
+  std::optional<std::vector<PartPair>>
+      pairs{};                        ///< default: every two parts, a < b, in the order of their places
+  std::vector<PairMargin> margins{};  ///< at most one for any two parts
 };
 
 /// A pair of a scene.

@@ -25,7 +25,8 @@ TEST_F(scene_runs, go_on_after_being_killed_at_any_moment) {
   std::mt19937_64 random(12);
   for (int trial = 0; trial < 10; ++trial) {
     const std::string journal = folder_.file("journal" + std::to_string(trial));
-    const std::vector<std::string> words{"collide", "--scene", file_, "--json", "--resume", journal, "--threads", "2"};
+    const std::vector<std::string> words{"collide",  "--scene", file_,       "--json",
+                                         "--resume", journal,   "--threads", "2"};
     int killed = 0;
     while (true) {
       const auto kill_soon = [&](int process) {
@@ -48,9 +49,11 @@ TEST_F(scene_runs, go_on_after_being_killed_at_any_moment) {
 // What a line for the shell prints, and its status.
 Outcome shell(const std::string& line) {
   Outcome outcome;
-  FILE* const pipe = popen(("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " + line).c_str(), "r");
+  FILE* const pipe =
+      popen(("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " + line).c_str(), "r");
   std::array<char, 65536> text;
-  for (std::size_t got = 0; (got = fread(text.data(), 1, text.size(), pipe)) > 0;) outcome.out.append(text.data(), got);
+  for (std::size_t got = 0; (got = fread(text.data(), 1, text.size(), pipe)) > 0;)
+    outcome.out.append(text.data(), got);
   outcome.status = WEXITSTATUS(pclose(pipe));
   return outcome;
 }

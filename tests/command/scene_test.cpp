@@ -79,7 +79,8 @@ TEST_F(scenes, lists_what_boxes_do_not_separate_and_counts_the_rest) {
 }
 
 TEST_F(scenes, take_pairs_by_place_or_name_and_margins) {
-  const Json listed = answer({"collide", "--scene", three(R"(, "pairs": [["2", "b"], [1, 0]], "tolerance": 0.01)")});
+  const Json listed =
+      answer({"collide", "--scene", three(R"(, "pairs": [["2", "b"], [1, 0]], "tolerance": 0.01)")});
   EXPECT_EQ(listed["pairs"], 2);
   EXPECT_EQ(listed["tolerance"], 0.01);
   ASSERT_EQ(listed["results"].size(), 1u);
@@ -105,7 +106,8 @@ TEST_F(scenes, distances_up_to_a_limit) {
 // The twin: each pair asked about by itself, the poses as numbers.
 TEST_F(scenes, are_answered_as_pairs_are) {
   const Json scene = random_scene(14, 4, 5);
-  const Json found = answer({"collide", "--scene", write_scene(folder_.file("s.json"), scene), "--all-pairs"});
+  const Json found =
+      answer({"collide", "--scene", write_scene(folder_.file("s.json"), scene), "--all-pairs"});
   std::size_t next = 0, near = 0;
   for (std::size_t a = 0; a < 14; ++a) {
     for (std::size_t b = a + 1; b < 14; ++b) {
@@ -164,7 +166,8 @@ TEST_F(scenes, exit_with_the_gravest_verdict) {
 TEST_F(scenes, tell_people) {
   const Outcome outcome = run_snug({"collide", "--scene", three()});
   EXPECT_NE(outcome.out.find("\na b intersecting 0 "), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("3 pairs: 2 separated by boxes, 1 intersecting\n"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("3 pairs: 2 separated by boxes, 1 intersecting\n"), std::string::npos)
+      << outcome.out;
 }
 
 TEST_F(scenes, that_are_wrong_are_refused_in_one_line) {
@@ -205,16 +208,19 @@ TEST_F(scenes, that_are_wrong_are_refused_in_one_line) {
   expect_refusal(two(R"(, "pairs": [[0, 1.5]])"), "pairs[0][1] is a number");
   expect_refusal(two(R"(, "pairs": [["0", "y"]])"), "no part is called \"y\"");
   expect_refusal(two(R"(, "pairs": [[1, "x"]])"), "\"x\" with itself");
-  expect_refusal(two(R"(, "margins": [[0, 1, 1], ["x", 0, 2]])"), "margins[1]: these two have a margin before");
+  expect_refusal(two(R"(, "margins": [[0, 1, 1], ["x", 0, 2]])"),
+                 "margins[1]: these two have a margin before");
   expect_refusal(two(R"(, "margins": [[0, 1, -1]])"), "margins[0][2]: -1 is no length");
   expect_refusal(two(R"(, "margin": "1")"), "margin is a text");
   expect_refusal(two(R"(, "tolerance": "x%")"), "tolerance");
-  expect_refusal(R"({"parts": [{"name": "1", "mesh": "ball.obj"}, {"mesh": "ball.obj"}]})", "that of parts[0]");
+  expect_refusal(R"({"parts": [{"name": "1", "mesh": "ball.obj"}, {"mesh": "ball.obj"}]})",
+                 "that of parts[0]");
   expect_refusal(std::string(100'000, '['), "nested");
   expect_refusal(R"({"parts": )" + std::string(100'000, '[') + std::string(100'000, ']') + "}", "nested");
   EXPECT_NE(refusal(R"({"parts": [{"mesh": "gone.obj"}]})").find("gone.obj: "), std::string::npos);
   EXPECT_NE(refusal(two(R"(, "pairs": "all")"), 2, {"--tolerance", "1"}).find("exclude"), std::string::npos);
-  const std::string line = refusal(R"({"parts": [{"mesh": "ball.obj"}, {"mesh": "open.obj"}]})", 4, {"--solid"});
+  const std::string line =
+      refusal(R"({"parts": [{"mesh": "ball.obj"}, {"mesh": "open.obj"}]})", 4, {"--solid"});
   EXPECT_NE(line.find("open.obj: "), std::string::npos) << line;
 }
 

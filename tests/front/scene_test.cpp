@@ -8,10 +8,10 @@
 #include <stdexcept>
 
 #include <gtest/gtest.h>
-#include <snug/search/surface_data.h>
-#include <testing/placements.h>
 #include <oracle/contact_twin.h>
 #include <oracle/test_meshes.h>
+#include <snug/search/surface_data.h>
+#include <testing/placements.h>
 
 namespace snug {
 namespace {
@@ -29,8 +29,12 @@ Surface surface_of(const oracle::TwinMesh& twin, double size = 1) {
 Surface cube() {
   ControlMesh mesh;
   for (int i = 0; i < 8; ++i) mesh.points.push_back({double(i & 1), double(i >> 1 & 1), double(i >> 2)});
-  for (const auto& face : {std::array{0u, 2u, 3u, 1u}, {4u, 5u, 7u, 6u}, {0u, 1u, 5u, 4u}, {2u, 6u, 7u, 3u},
-                           {0u, 4u, 6u, 2u}, {1u, 3u, 7u, 5u}}) {
+  for (const auto& face : {std::array{0u, 2u, 3u, 1u},
+                           {4u, 5u, 7u, 6u},
+                           {0u, 1u, 5u, 4u},
+                           {2u, 6u, 7u, 3u},
+                           {0u, 4u, 6u, 2u},
+                           {1u, 3u, 7u, 5u}}) {
     mesh.add_face(std::array{VertexId(face[0]), VertexId(face[1]), VertexId(face[2])});
     mesh.add_face(std::array{VertexId(face[0]), VertexId(face[2]), VertexId(face[3])});
   }
@@ -66,15 +70,15 @@ double margin_of(const Scene& scene, const PartPair& pair, double margin) {
 }
 
 bool same(const Collision& x, const Collision& y) {
-  return x.verdict == y.verdict && x.distance == y.distance && x.witness == y.witness &&
-         x.inner == y.inner && x.stats.splits == y.stats.splits;
+  return x.verdict == y.verdict && x.distance == y.distance && x.witness == y.witness && x.inner == y.inner &&
+         x.stats.splits == y.stats.splits;
 }
 
 // Every pair by itself, with no broad phase.
 void expect_all_pairs(const Scene& scene, const CollideOptions& options, int threads) {
   std::vector<PairCollision> found;
-  const SceneCounts counts =
-      collide(scene, options, [&](const PairCollision& pair) { found.push_back(pair); }, threads);
+  const SceneCounts counts = collide(
+      scene, options, [&](const PairCollision& pair) { found.push_back(pair); }, threads);
   std::size_t next = 0;
   SceneCounts expected;
   for (const PartPair& pair : pairs_of(scene)) {
@@ -124,7 +128,8 @@ TEST(scene, answers_as_every_pair_by_itself) {
           scene.margins.push_back({pair, i % 3 == 0 ? 0 : spread});
         }
         for (const bool solid : {false, true}) {
-          expect_all_pairs(scene, {.tolerance = 0.01, .margin = margin, .budget = 500, .solid = solid}, 1 + int(random() % 3));
+          expect_all_pairs(scene, {.tolerance = 0.01, .margin = margin, .budget = 500, .solid = solid},
+                           1 + int(random() % 3));
           if (HasFatalFailure()) return;
         }
       }
@@ -139,8 +144,8 @@ TEST(scene, distances_are_those_of_every_pair_by_itself) {
   for (const double limit : {0.0, 0.7, 1e3}) {
     std::size_t next = 0;
     std::vector<PairDistance> found;
-    const SceneCounts counts =
-        distance(scene, limit, options, [&](const PairDistance& pair) { found.push_back(pair); }, 2);
+    const SceneCounts counts = distance(
+        scene, limit, options, [&](const PairDistance& pair) { found.push_back(pair); }, 2);
     for (const PartPair& pair : pairs_of(scene)) {
       const Distance answer = distance(scene.parts[pair.a], scene.parts[pair.b], options);
       if (next < found.size() && found[next].parts == pair) {
@@ -189,7 +194,6 @@ TEST(broad_phase, deals_out_parts_whose_distance_is_the_margin) {
   }
 }
 
-
 // All pairs of the cases that the boxes distinguish, against distances found by others.
 TEST(broad_phase, separates_nothing_that_the_twins_know_to_be_near) {
   std::mt19937_64 random(83);
@@ -208,7 +212,8 @@ TEST(broad_phase, separates_nothing_that_the_twins_know_to_be_near) {
   std::size_t near = 0, apart = 0;
   for (int trial = 0; trial < 1500; ++trial) {
     // Every pair of sizes and of turns, and every place.
-    const std::size_t cases[] = {static_cast<std::size_t>(trial % 3), static_cast<std::size_t>(trial / 3 % 3)};
+    const std::size_t cases[] = {static_cast<std::size_t>(trial % 3),
+                                 static_cast<std::size_t>(trial / 3 % 3)};
     const int turns[] = {trial / 9 % 3, trial / 27 % 3}, place = trial / 81 % 3;
     std::size_t names[2];
     Motion poses[2];
@@ -328,7 +333,8 @@ TEST(scene, names_the_pair_margin_or_part_that_is_wrong) {
   open.face_vertices.resize(open.face_offsets.back());
   scene.parts.emplace_back(Surface(open, {.scheme = Scheme::flat}));
   try {
-    collide(scene, {.solid = true}, [](const PairCollision&) {}, 1);
+    collide(
+        scene, {.solid = true}, [](const PairCollision&) {}, 1);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("parts 0 and 3"), std::string::npos) << error.what();
@@ -339,16 +345,18 @@ TEST(scene, ends_where_the_sink_throws_or_a_stop_is_requested) {
   Scene scene;
   scene.parts.assign(40, cube());
   int taken = 0;
-  EXPECT_THROW(collide(scene, {},
-                       [&](const PairCollision&) {
-                         if (++taken == 5) throw std::runtime_error("full");
-                       },
-                       2),
+  EXPECT_THROW(collide(
+                   scene, {},
+                   [&](const PairCollision&) {
+                     if (++taken == 5) throw std::runtime_error("full");
+                   },
+                   2),
                std::runtime_error);
   EXPECT_EQ(taken, 5);
   const std::atomic<bool> stop{true};
-  EXPECT_THROW(collide(scene, {}, [](const PairCollision&) { FAIL(); }, 2, {.on_progress = {}, .stop = &stop}),
-               Interrupted);
+  EXPECT_THROW(
+      collide(scene, {}, [](const PairCollision&) { FAIL(); }, 2, {.on_progress = {}, .stop = &stop}),
+      Interrupted);
 }
 
 }  // namespace

@@ -97,8 +97,8 @@ TEST(placed_box, contains_the_exact_images_of_vertices_and_is_tight) {
       }
       if (max_abs(pose.offset()) < 1e3 * size) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          widest = std::max(widest, (box.upper[axis] - box.lower[axis]) /
-                                        (image_box.upper[axis] - image_box.lower[axis]));
+          widest = std::max(
+              widest, (box.upper[axis] - box.lower[axis]) / (image_box.upper[axis] - image_box.lower[axis]));
         }
       }
     }

@@ -52,7 +52,8 @@ struct RenderOptions {
 /// Source:    edge functions in sheared coordinates [Woop13]; differs: a ray through an edge itself goes to
 /// one side
 ///            by the rule of rasterisers, and a pixel's rays search the hierarchy together, as a beam.
-[[nodiscard]] Image render(const PictureScene& scene, const Camera& camera, const RenderOptions& options = {});
+[[nodiscard]] Image render(const PictureScene& scene, const Camera& camera,
+                           const RenderOptions& options = {});
 
 /// A picture, and the rays that made it.
 struct CountedImage {

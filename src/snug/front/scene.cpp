@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <string>
+#include <thread>
 #include <unordered_map>
 
 #include <snug/base/error.h>
@@ -111,9 +112,8 @@ struct SceneBroadPhase::State {
     parallel_for(surfaces.size(), threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         monitor.checkpoint();
-        naming_parts("part " + std::to_string(surfaces[i]), [&] {
-          static_cast<void>(scene.parts[surfaces[i]].surface().data()->bvh());
-        });
+        naming_parts("part " + std::to_string(surfaces[i]),
+                     [&] { static_cast<void>(scene.parts[surfaces[i]].surface().data()->bvh()); });
       }
     });
     boxes.resize(scene.parts.size());
@@ -126,7 +126,8 @@ struct SceneBroadPhase::State {
 
   [[nodiscard]] double margin_of(const PartPair& pair) const {
     if (margins.empty()) return margin;
-    const auto at = std::lower_bound(margins.begin(), margins.end(), PairMargin{sorted(pair), 0}, margin_before);
+    const auto at =
+        std::lower_bound(margins.begin(), margins.end(), PairMargin{sorted(pair), 0}, margin_before);
     return at != margins.end() && at->parts == sorted(pair) ? at->margin : margin;
   }
   [[nodiscard]] ScenePair pair_of(const PartPair& parts) const {
@@ -215,22 +216,26 @@ double SceneBroadPhase::share() const {
 const Box3& SceneBroadPhase::box(std::uint32_t part) const { return state_->boxes.at(part); }
 
 SceneWorkers::SceneWorkers(int threads)
-    : workspaces_(static_cast<std::size_t>(threads > 0 ? threads : hardware_threads())) {}
+    : others_(static_cast<std::size_t>((threads > 0 ? threads : hardware_threads()) - 1)) {}
 
 void SceneWorkers::run(const std::function<void(Workspace&)>& work) {
-  std::atomic<std::size_t> taken{0};
-  share_ranges(workspaces_.size(), static_cast<int>(workspaces_.size()),
-               [&](SharedRanges&) { work(workspaces_[taken++]); });
+  share(threads(), [&](SharedRanges&, Workspace& workspace) { work(workspace); });
 }
 
-void SceneWorkers::for_each(std::size_t count,
-                            const std::function<void(Workspace&, std::size_t)>& answer) {
-  std::atomic<std::size_t> taken{0};
-  share_ranges(count, static_cast<int>(workspaces_.size()), [&](SharedRanges& ranges) {
-    Workspace& workspace = workspaces_[taken++];
+void SceneWorkers::for_each(std::size_t count, const std::function<void(Workspace&, std::size_t)>& answer) {
+  share(count, [&](SharedRanges& ranges, Workspace& workspace) {
     while (const auto range = ranges.next()) {
       for (std::size_t i = range->begin; i < range->end; ++i) answer(workspace, i);
     }
+  });
+}
+
+void SceneWorkers::share(std::size_t count, const std::function<void(SharedRanges&, Workspace&)>& work) {
+  const std::thread::id caller = std::this_thread::get_id();
+  std::atomic<std::size_t> taken{0};
+  share_ranges(count, static_cast<int>(threads()), [&](SharedRanges& ranges) {
+    const bool own = std::this_thread::get_id() == caller;
+    work(ranges, own ? Workspace::of_this_thread() : others_[taken++]);
   });
 }
 

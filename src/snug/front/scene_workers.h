@@ -4,11 +4,13 @@
 #include <optional>
 #include <vector>
 
+#include <snug/base/parallel.h>
 #include <snug/scene.h>
 
 namespace snug {
 
-/// Workspaces of some threads, kept from one batch of pairs to the next.
+/// Workspaces of some threads, kept from one batch of pairs to the next; the thread that calls uses its own
+/// Workspace::of_this_thread(), which lasts longer.
 class SceneWorkers {
  public:
   /// `threads`: 0 for all cores.
@@ -20,10 +22,12 @@ class SceneWorkers {
   /// Calls answer(workspace, i) for each i in [0, count), no two at once with the same workspace.
   /// Errors:    what `answer` throws ends the loop and is thrown again, of several one.
   void for_each(std::size_t count, const std::function<void(Workspace&, std::size_t)>& answer);
-  [[nodiscard]] std::size_t threads() const { return workspaces_.size(); }
+  [[nodiscard]] std::size_t threads() const { return others_.size() + 1; }
 
  private:
-  std::vector<Workspace> workspaces_;
+  void share(std::size_t count, const std::function<void(SharedRanges&, Workspace&)>& work);
+
+  std::vector<Workspace> others_;
 };
 
 /// Pairs of a scene that are answered between two calls of the broad phase.
