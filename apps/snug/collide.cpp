@@ -215,7 +215,7 @@ Command collide_command() {
   return {"collide",
           Topic::two_surfaces,
           "Do two limit surfaces touch? The verdict is a proof",
-          {"snug collide pawn.obj bust.obj --move-b \"3 0 0\""},
+          {"snug collide pawn.obj bust.obj --move-b \"3 0 0\"", "snug collide --scene assembly.json --json"},
           std::move(list),
           [options] { return run(*options); }};
 }

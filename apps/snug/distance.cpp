@@ -149,7 +149,8 @@ Command distance_command() {
   return {"distance",
           Topic::two_surfaces,
           "How far apart are two limit surfaces? Bounds and two points",
-          {"snug distance pawn.obj bust.obj --rotate-b \"z 30\" --move-b \"9 0 0\""},
+          {"snug distance pawn.obj bust.obj --rotate-b \"z 30\" --move-b \"9 0 0\"",
+           "snug distance --scene assembly.json --limit 0.5"},
           std::move(list),
           [options] { return run(*options); }};
 }

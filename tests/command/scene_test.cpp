@@ -299,6 +299,23 @@ TEST_F(journals, notice_a_mesh_that_changed) {
   EXPECT_EQ(run_snug(words()).status, 3);
 }
 
+TEST_F(journals, keep_what_was_finished_before_an_interrupt) {
+  write_scene(file_, random_scene(150, 6, 10));
+  const Json expected = answer({"collide", "--scene", file_});
+  int interrupted = 0;
+  for (int milliseconds = 10;; milliseconds += 20) {
+    const Outcome outcome = interrupt_snug(words({"--json"}), milliseconds);
+    if (outcome.status == 0) {
+      EXPECT_EQ(comparable(outcome.out), expected);
+      break;
+    }
+    ASSERT_EQ(outcome.status, 130) << outcome.err;
+    EXPECT_EQ(outcome.err.substr(0, 6), "snug: ");
+    ++interrupted;
+  }
+  EXPECT_GT(interrupted, 0);
+}
+
 TEST_F(journals, keep_what_was_finished_on_a_full_disk) {
   const Json expected = answer({"collide", "--scene", file_});
   const auto limit = [] {
