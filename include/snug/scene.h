@@ -48,7 +48,7 @@ struct ScenePair {
 /// Errors:    InputError: (value) naming the pair or margin for places beyond the parts, a part with itself, a second margin
 ///            for a pair, a margin that is negative or not finite; (refused) naming the part if no face of a mesh has a limit
 ///            surface. Interrupted.
-/// Cost:      to make: the preparation of surfaces that have not been asked about, and about a microsecond and 200 bytes a
+/// Cost:      to make: the preparation of surfaces that have not been asked about, and one to four microseconds and 200 bytes a
 ///            part; then some hundred nanoseconds a part and a pair dealt out, on all threads (bench/results/scenes.txt).
 class SNUG_API SceneBroadPhase {
  public:
