@@ -145,7 +145,7 @@ void compare_experiments(const Options& options) {
 
 #ifdef SNUG_BENCH_PICTURE
 void compare_picture(const Options& options, const ControlMesh& mesh) {
-  Scene scene;
+  PictureScene scene;
   scene.materials.emplace_back();
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
     ShadedTriangle triangle;

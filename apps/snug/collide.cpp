@@ -1,3 +1,4 @@
+#include <snug/front/scene_workers.h>
 #include <snug/query/pairs.h>
 
 #include <optional>
@@ -11,6 +12,7 @@
 #include "placed_pair.h"
 #include "pose_answers.h"
 #include "progress_bar.h"
+#include "scene_run.h"
 #include "solids.h"
 #include "witness.h"
 
@@ -24,6 +26,7 @@ struct Options : PairOptions {
   bool exit_code = false;
   bool all = false;
   std::string precision = "0.1%", curves;
+  bool all_pairs = false;
 };
 
 void write_answer(JsonWriter& json, const Sides& sides, const Collision& answer) {
@@ -125,7 +128,52 @@ std::optional<Contacts> all_contacts(const Options& options, double tolerance, d
       monitor);
 }
 
+// Fills the row, and writes the fields where they are wanted.
+void tell(const Collision& found, const SceneRun& run, const ScenePair& pair, SceneAnswer& answer,
+          JsonWriter* json) {
+  answer.verdict = found.verdict;
+  answer.reached = found.verdict != Verdict::undecided;
+  answer.row = row(found);
+  if (json) write_answer(*json, run.sides_of(pair.parts), found);
+}
+
+ExitStatus run_scene(const Options& options) {
+  ProgressBar bar("colliding", options.quiet);
+  const WorkMonitor monitor = bar.monitor();
+  SceneRun run(options, monitor);
+  if (options.solid) run.require_closed();
+  const SceneText& text = run.loaded().text;
+  const Length tolerance = text.tolerance.value_or(parse_length(options.tolerance, "--tolerance", true));
+  const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+  SceneQuestion question;
+  question.key =
+      fmt::format("{} {} {} {}", tolerance.number, tolerance.percent, options.solid, options.budget);
+  question.margin = text.margin;
+  question.all_pairs = options.all_pairs;
+  question.header = "verdict lower upper ax ay az bx by bz";
+  question.ask = [&](const ScenePair& pair, Workspace& workspace, SceneAnswer& answer, JsonWriter* json) {
+    CollideOptions wanted;
+    wanted.tolerance = tolerance.in_mesh_units(run.size_of(pair.parts));
+    wanted.budget = options.budget;
+    wanted.solid = options.solid;
+    tell(collide_pair(run.scene(), pair, wanted, stop_only, workspace), run, pair, answer, json);
+  };
+  question.separated = [&](const ScenePair& pair, SceneAnswer& answer, JsonWriter* json) {
+    Collision apart;
+    apart.verdict = Verdict::separated;
+    apart.distance.lower = pair.gap;
+    tell(apart, run, pair, answer, json);
+  };
+  question.head = [&](JsonWriter& json) {
+    json.key("tolerance");
+    tolerance.percent ? json.value(fmt::format("{}%", tolerance.number)) : json.value(tolerance.number);
+    json.field("margin", text.margin);
+  };
+  return run.answer(question, "collide", options.exit_code);
+}
+
 ExitStatus run(const Options& options) {
+  if (!options.scene.empty()) return run_scene(options);
   require_curves(options);
   const Length precision = parse_length(options.precision, "--precision");
   const Length tolerance = parse_length(options.tolerance, "--tolerance", true);
@@ -190,11 +238,13 @@ Command collide_command() {
   list.add(Group::own, "--penetration", &options->penetration,
            "Bound the shortest translation that separates the solids, and print one that does")
       .needs("--solid")
-      .excludes("--poses");
+      .excludes("--poses")
+      .excludes("--scene");
   list.add(Group::own, "--all", &options->all,
            "List every contact within the tolerance, in regions, and the curves in which the surfaces "
            "intersect")
       .excludes("--poses")
+      .excludes("--scene")
       .excludes("--solid");
   list.add(Group::own, "--precision LENGTH", &options->precision,
            "How near curves are to the lines between their points; mesh units, or percent of the larger mesh")
@@ -202,13 +252,19 @@ Command collide_command() {
   list.add(Group::own, "--curves FILE", &options->curves, "Write the curves as lines of an OBJ file")
       .needs("--all");
   list.add(Group::own, "--exit-code", &options->exit_code,
-           "Exit with 0 separated, 10 within, 11 intersecting, 12 undecided")
+           "Exit with 0 separated, 10 within, 11 intersecting, 12 undecided; of a scene the gravest: 11, 12, "
+           "10, 0")
       .excludes("--poses");
+  list.at("--tolerance").excludes("--scene");
+  list.at("--margin").excludes("--scene");
   add_pair_options(list, *options);
+  list.add(Group::own, "--all-pairs", &options->all_pairs,
+           "List also the pairs of a scene that boxes around its parts separate")
+      .needs("--scene");
   return {"collide",
           Topic::two_surfaces,
           "Do two limit surfaces touch? The verdict is a proof",
-          {"snug collide pawn.obj bust.obj --move-b \"3 0 0\""},
+          {"snug collide pawn.obj bust.obj --move-b \"3 0 0\"", "snug collide --scene assembly.json --json"},
           std::move(list),
           [options] { return run(*options); }};
 }

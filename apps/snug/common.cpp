@@ -115,16 +115,29 @@ Notes notes_for(const CommonOptions& options) {
   return [](const std::string& line) { tell("note: " + line); };
 }
 
-ControlMesh load_mesh(const std::string& path, const CommonOptions& options) {
-  const std::function<double(double)> weld = weld_distance(options);
-  const std::optional<double> sharp = sharp_angle(options);
-  ProgressBar bar("reading " + path, options.quiet);
-  ControlMesh mesh = read_mesh(path, {weld, notes_for(options), bar.monitor()});
+namespace {
+
+// A mesh that has been read and welded, sharpened as the options say.
+ControlMesh prepared(ControlMesh mesh, const std::string& path, const CommonOptions& options) {
   note_coincidences(mesh, path, options);
-  if (sharp) sharpen_mesh(mesh, path, *sharp, options);
+  if (const auto sharp = sharp_angle(options)) sharpen_mesh(mesh, path, *sharp, options);
   return mesh;
 }
 
+}  // namespace
+
+ControlMesh load_mesh(const std::string& path, const CommonOptions& options) {
+  static_cast<void>(weld_distance(options));  // what is wrong with options comes before any file
+  static_cast<void>(sharp_angle(options));
+  ProgressBar bar("reading " + path, options.quiet);
+  const ReadOptions reading{weld_distance(options), notes_for(options), bar.monitor()};
+  return prepared(read_mesh(path, reading), path, options);
+}
+
+ControlMesh mesh_of(std::string_view bytes, const std::string& path, const CommonOptions& options) {
+  const ReadOptions reading{weld_distance(options), notes_for(options), stopped_by_interrupts()};
+  return prepared(read_mesh(bytes, path, reading), path, options);
+}
 void naming(const std::string& path, const std::function<void()>& work) {
   try {
     work();

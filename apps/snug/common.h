@@ -63,6 +63,9 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 /// Reads a control mesh, welds and sharpens it as the options say.
 /// Errors:    UsageError for --weld that is no length and --sharp that is no angle, or for curves.
 [[nodiscard]] ControlMesh load_mesh(const std::string& path, const CommonOptions& options);
+/// The same for the bytes that the file holds.
+[[nodiscard]] ControlMesh mesh_of(std::string_view bytes, const std::string& path,
+                                  const CommonOptions& options);
 
 /// Reads a mesh and makes its surface. Refusals name the file.
 [[nodiscard]] LimitSurface load_surface(const std::string& path, const CommonOptions& options,

@@ -1,3 +1,4 @@
+#include <snug/front/scene_workers.h>
 #include <snug/query/pairs.h>
 
 #include <fmt/core.h>
@@ -6,6 +7,7 @@
 #include "placed_pair.h"
 #include "pose_answers.h"
 #include "progress_bar.h"
+#include "scene_run.h"
 #include "solids.h"
 #include "witness.h"
 
@@ -16,6 +18,7 @@ struct Options : PairOptions {
   std::string precision = "0.01%";
   double relative = 0;
   bool solid = false;
+  std::string limit;
 };
 
 void write_answer(JsonWriter& json, const Sides& sides, const Distance& answer) {
@@ -48,7 +51,48 @@ ExitStatus run_poses(PairArguments& pair, Report& report, const DistanceOptions&
   return answer_poses(pair, report, "lower upper ax ay az bx by bz", ask, monitor);
 }
 
+ExitStatus run_scene(const Options& options) {
+  if (options.limit.empty()) throw UsageError("--scene needs --limit: the largest clearance to list");
+  const Length precision = parse_length(options.precision, "--precision", true);
+  const Length limit = parse_length(options.limit, "--limit", true);
+  if (limit.percent) throw UsageError("--limit: give mesh units; parts of a scene differ in size");
+  ProgressBar bar("measuring", options.quiet);
+  const WorkMonitor monitor = bar.monitor();
+  SceneRun run(options, monitor);
+  if (options.solid) run.require_closed();
+  const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+  SceneQuestion question;
+  question.key = fmt::format("{} {} {} {} {}", precision.number, precision.percent, options.relative,
+                             options.solid, options.budget);
+  question.margin = limit.number;
+  question.margins = false;
+  question.header = "lower upper ax ay az bx by bz";
+  question.ask = [&](const ScenePair& pair, Workspace& workspace, SceneAnswer& answer, JsonWriter* json) {
+    DistanceOptions wanted;
+    wanted.absolute = precision.in_mesh_units(run.size_of(pair.parts));
+    wanted.relative = options.relative;
+    wanted.budget = options.budget;
+    wanted.solid = options.solid;
+    const std::optional<Distance> found = distance_of_pair(run.scene(), pair, wanted, stop_only, workspace);
+    if (!found) {
+      answer.verdict = Verdict::separated;
+      return;
+    }
+    answer.verdict = found->distance.upper == 0 ? Verdict::intersecting : Verdict::within;
+    answer.reached = found->reached;
+    answer.row = row(*found);
+    if (json) write_answer(*json, run.sides_of(pair.parts), *found);
+  };
+  question.head = [&](JsonWriter& json) {
+    json.field("limit", limit.number).key("precision");
+    precision.percent ? json.value(fmt::format("{}%", precision.number)) : json.value(precision.number);
+    json.field("relative", options.relative);
+  };
+  return run.answer(question, "distance", false);
+}
+
 ExitStatus run(const Options& options) {
+  if (!options.scene.empty()) return run_scene(options);
   const Length precision = parse_length(options.precision, "--precision", true);
   PairArguments pair(options);
   DistanceOptions wanted;
@@ -99,10 +143,14 @@ Command distance_command() {
   list.add(Group::own, "--solid", &options->solid,
            "Compare solids bounded by closed surfaces: 0 if one is inside the other");
   add_pair_options(list, *options);
+  list.add(Group::own, "--limit LENGTH", &options->limit,
+           "List the pairs of a scene that are not farther apart than this; mesh units")
+      .needs("--scene");
   return {"distance",
           Topic::two_surfaces,
           "How far apart are two limit surfaces? Bounds and two points",
-          {"snug distance pawn.obj bust.obj --rotate-b \"z 30\" --move-b \"9 0 0\""},
+          {"snug distance pawn.obj bust.obj --rotate-b \"z 30\" --move-b \"9 0 0\"",
+           "snug distance --scene assembly.json --limit 0.5"},
           std::move(list),
           [options] { return run(*options); }};
 }

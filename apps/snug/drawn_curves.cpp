@@ -69,7 +69,7 @@ std::vector<Tube> DrawnCurves::tubes(double deviation, double radius, const Work
   return result;
 }
 
-void DrawnCurves::add_polygons(Scene& scene, double line_width, Colour line_colour) const {
+void DrawnCurves::add_polygons(PictureScene& scene, double line_width, Colour line_colour) const {
   for (std::size_t p = 0; p + 1 < starts_.size(); ++p) {
     for (std::size_t i = starts_[p]; i + 1 < starts_[p + 1]; ++i) {
       scene.lines.push_back({vertices_[i], vertices_[i + 1], line_width, line_colour});

@@ -23,7 +23,7 @@ class DrawnCurves {
   /// Cost:      an evaluation a chord.
   [[nodiscard]] std::vector<Tube> tubes(double deviation, double radius, const WorkMonitor& monitor) const;
   /// Adds the edges of the control polygons.
-  void add_polygons(Scene& scene, double line_width, Colour line_colour) const;
+  void add_polygons(PictureScene& scene, double line_width, Colour line_colour) const;
 
  private:
   const CurveSet* curves_;

@@ -125,6 +125,11 @@ Option& Option::required() {
   return *this;
 }
 
+Option& Option::unless(const std::string& other) {
+  replacement = other;
+  return excludes(other);
+}
+
 std::string Option::text() const { return std::visit(TextOf{}, target); }
 
 Option& OptionList::add(Group group, const std::string& usage, Target target, const std::string& help) {
@@ -136,11 +141,18 @@ Option& OptionList::add(Group group, const std::string& usage, Target target, co
   return option;
 }
 
+Option& OptionList::at(const std::string& name) {
+  return *std::find_if(options_.begin(), options_.end(),
+                       [&](const Option& option) { return option.name == name; });
+}
+
 void OptionList::assign(const std::map<std::string, std::vector<std::string>>& given) const {
   for (const Option& option : options_) {
     const auto words = given.find(option.name);
     if (words == given.end()) {
-      if (option.must) throw UsageError(option.name + " is missing");
+      if (option.must && !given.contains(option.replacement)) {
+        throw UsageError(option.name + " is missing");
+      }
       continue;
     }
     for (const std::string& other : option.excluded) {

@@ -35,7 +35,8 @@ struct Option {
   std::map<std::string, std::string> aliases{};  ///< other names of choices, as spelling_of() has them
   std::optional<std::pair<double, double>> range{};
   std::vector<std::string> excluded{}, needed{};
-  bool must{};  ///< without it the command cannot run
+  bool must{};                ///< without it the command cannot run
+  std::string replacement{};  ///< or without this other one
 
   /// The value is one of these words. Neither case nor '-' or '_' inside a word matters: edgeOnly is
   /// edge-only.
@@ -49,6 +50,8 @@ struct Option {
   /// Only together with that one.
   Option& needs(const std::string& other);
   Option& required();
+  /// An argument that must be given unless that option is, and not together with it.
+  Option& unless(const std::string& other);
 
   [[nodiscard]] bool is_argument() const { return !name.starts_with('-'); }
   [[nodiscard]] bool is_flag() const { return std::holds_alternative<bool*>(target); }
@@ -66,6 +69,9 @@ class OptionList {
   /// Requires:  the target outlives the list.
   Option& add(Group group, const std::string& usage, Target target, const std::string& help);
   [[nodiscard]] const std::deque<Option>& all() const { return options_; }
+  /// The option of a name.
+  /// Requires:  there is one.
+  [[nodiscard]] Option& at(const std::string& name);
 
   /// Puts what the command line gave into the targets: words by the option's name; a flag that is set has one
   /// word.

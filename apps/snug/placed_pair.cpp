@@ -11,20 +11,35 @@ SurfaceBvhOptions model_options(const CommonOptions& options) {
   return result;
 }
 
-void add_pair_options(OptionList& list, PairOptions& options, bool many_poses) {
+void add_pair_options(OptionList& list, PairOptions& options, bool many) {
   list.add(Group::own, "A", &options.mesh_a, "First control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "B", &options.mesh_b, "Second control mesh");
+  if (many) {
+    list.at("A").unless("--scene");
+    list.at("B").unless("--scene");
+    list.add(Group::own, "--scene FILE", &options.scene,
+             "Ask about the parts that a JSON file names and places, in place of A and B; under mpirun on all "
+             "its ranks");
+    list.add(Group::own, "--resume JOURNAL", &options.journal,
+             "Keep finished answers of a scene in this file, and go on from those that it holds")
+        .needs("--scene");
+  }
   add_pose_options(list, "-a", "A", options.pose_a);
   add_pose_options(list, "-b", "B", options.pose_b);
   add_nearest_rigid_option(list, options.nearest_rigid);
-  if (many_poses) {
+  if (many) {
     list.add(Group::placement, "--poses FILE", &options.poses,
-             "Answer many poses, one per line: a pose of B, or JSON with a, b or both; - for standard input");
+             "Answer many poses, one per line: a pose of B, or JSON with a, b or both; - for standard input")
+        .excludes("--scene");
   }
   add_common_options(list, options);
   add_bound_options(list, options);
   add_scheme_option(list, "--scheme-a", options.scheme_a, "Scheme of A; overrides --scheme");
   add_scheme_option(list, "--scheme-b", options.scheme_b, "Scheme of B; overrides --scheme");
+  if (!many) return;
+  for (const char* name : {"--place", "--rotate", "--move", "--scheme"}) {
+    for (const char* side : {"-a", "-b"}) list.at(name + std::string(side)).excludes("--scene");
+  }
 }
 
 void write_poses(JsonWriter& json, const PosePair& poses) {

@@ -19,11 +19,13 @@ struct PairOptions : CommonOptions {
   std::string scheme_a, scheme_b;
   PoseOptions pose_a, pose_b;
   bool nearest_rigid = false;
-  std::string poses;   ///< a file of poses; empty for none
-  bool moves = false;  ///< other options have poses, too
+  std::string poses;    ///< a file of poses; empty for none
+  bool moves = false;   ///< other options have poses, too
+  std::string scene;    ///< a file of many parts, in place of both meshes; empty for none
+  std::string journal;  ///< --resume; empty for none
 };
-/// Those of two meshes and their poses; with --poses for commands that answer many.
-void add_pair_options(OptionList& list, PairOptions& options, bool many_poses = true);
+/// Those of two meshes and their poses; of commands that answer many, --poses and --scene too.
+void add_pair_options(OptionList& list, PairOptions& options, bool many = true);
 
 /// The fields place_a and place_b: the twelve numbers of each pose.
 void write_poses(JsonWriter& json, const PosePair& poses);

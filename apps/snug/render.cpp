@@ -360,7 +360,7 @@ double useful_deviation(std::span<const PartCurves> drawn, double scale) {
   return deviation * std::pow(std::max(1.0, chords / most_chords), 2);
 }
 
-void add_tubes(Scene& scene, std::span<const PartTube> tubes, double radius_in_pixels) {
+void add_tubes(PictureScene& scene, std::span<const PartTube> tubes, double radius_in_pixels) {
   const double side = 2 * std::acos(std::max(0.5, 1 - curve_deviation / radius_in_pixels));
   auto sides = static_cast<unsigned>(
       std::clamp(std::ceil(2 * std::numbers::pi / side), double{fewest_sides}, double{most_sides}));
@@ -405,7 +405,7 @@ void require_sound(const Options& options) {
 
 struct Shot {
   std::vector<std::unique_ptr<CasterTree>> trees;  // of the surfaces in the scene
-  Scene scene;
+  PictureScene scene;
   Camera camera;
   double tolerance = 0;  // of these, in units of the picture
 };

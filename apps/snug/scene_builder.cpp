@@ -96,7 +96,7 @@ std::vector<Polyhedron> enclosure_hulls(std::span<const IntervalTriangle> enclos
   return hulls;
 }
 
-void add_polyhedron(Scene& scene, const Polyhedron& solid, Point3 eye, const SolidStyle& style) {
+void add_polyhedron(PictureScene& scene, const Polyhedron& solid, Point3 eye, const SolidStyle& style) {
   const auto& points = solid.points;
   const std::size_t count = points.size();
   std::vector<bool> bordered(count * count, false);  // half-edges of facets towards the eye
@@ -128,7 +128,8 @@ void add_polyhedron(Scene& scene, const Polyhedron& solid, Point3 eye, const Sol
   }
 }
 
-void add_witness(Scene& scene, const std::array<Point3, 2>& points, const PictureUnits& units, double scale) {
+void add_witness(PictureScene& scene, const std::array<Point3, 2>& points, const PictureUnits& units,
+                 double scale) {
   std::array<Point3, 2> drawn;
   for (std::size_t i = 0; i < 2; ++i) {
     drawn[i] = units.from_scaled(Motion{}, units.scale().apply(points[i]));
@@ -148,7 +149,7 @@ CutPlane cut_plane(const std::array<Point3, 2>& points, const PictureUnits& unit
   return {normal, dot(normal, from - Point3{})};
 }
 
-void add_cage(Scene& scene, const PlacedSurface& part, const PictureUnits& units, double line_width,
+void add_cage(PictureScene& scene, const PlacedSurface& part, const PictureUnits& units, double line_width,
               Colour line_colour) {
   const Topology& topology = part.surface->topology();
   const auto place = [&](VertexId v) { return units(part.pose, part.surface->mesh().points[v.index()]); };

@@ -89,18 +89,19 @@ struct SolidStyle {
 };
 
 /// Adds what an eye sees of a convex solid by itself: the facets towards the eye and their edges.
-void add_polyhedron(Scene& scene, const Polyhedron& solid, Point3 eye, const SolidStyle& style);
+void add_polyhedron(PictureScene& scene, const Polyhedron& solid, Point3 eye, const SolidStyle& style);
 
 /// Adds two points of the world and the segment between them; `scale` is the picture's smaller side over a
 /// thousand pixels.
 /// Errors:    InputError (value) for points so far away that the picture cannot hold them.
-void add_witness(Scene& scene, const std::array<Point3, 2>& points, const PictureUnits& units, double scale);
+void add_witness(PictureScene& scene, const std::array<Point3, 2>& points, const PictureUnits& units,
+                 double scale);
 
 /// The plane through the first of two points of the world, across from it to the second one.
 [[nodiscard]] CutPlane cut_plane(const std::array<Point3, 2>& points, const PictureUnits& units);
 
 /// Adds the edges of the control mesh.
-void add_cage(Scene& scene, const PlacedSurface& part, const PictureUnits& units, double line_width,
+void add_cage(PictureScene& scene, const PlacedSurface& part, const PictureUnits& units, double line_width,
               Colour line_colour);
 
 }  // namespace snug::command

@@ -15,5 +15,6 @@
 #include <snug/mesh.h>
 #include <snug/motion.h>
 #include <snug/ray.h>
+#include <snug/scene.h>
 #include <snug/surface.h>
 #include <snug/tessellate.h>

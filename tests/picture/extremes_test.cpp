@@ -38,7 +38,7 @@ ShadedTriangle flat_triangle(Point3 a, Point3 b, Point3 c, std::uint32_t materia
 }
 
 // Two triangles that fill the square |x|, |y| <= half at height z, seen from z > 0 as counter-clockwise.
-void add_square(Scene& scene, double half, double z, std::uint32_t material) {
+void add_square(PictureScene& scene, double half, double z, std::uint32_t material) {
   const Point3 a{-half, -half, z}, b{half, -half, z}, c{half, half, z}, d{-half, half, z};
   scene.triangles.push_back(flat_triangle(a, b, c, material));
   scene.triangles.push_back(flat_triangle(a, c, d, material));
@@ -52,8 +52,8 @@ Point3 on_sphere(int i, int j, int steps) {
 }
 
 // A closed unit sphere; seen from outside its triangles run counter-clockwise.
-Scene sphere(int steps, const Material& material) {
-  Scene scene;
+PictureScene sphere(int steps, const Material& material) {
+  PictureScene scene;
   scene.materials = {material};
   const auto add = [&](Point3 a, Point3 b, Point3 c) {
     const Point3 centre;
@@ -132,7 +132,7 @@ SlowHit meet(const Camera& camera, double s, double t, const ShadedTriangle& tri
 }
 
 // Compares each pixel whose centre is clear of all borders with the nearest of slow hits; how many were hit.
-int expect_nearest_everywhere(const Scene& scene, const Camera& camera, int width, int height) {
+int expect_nearest_everywhere(const PictureScene& scene, const Camera& camera, int width, int height) {
   RenderOptions options = on_white(1);
   options.width = width;
   options.height = height;
@@ -163,7 +163,7 @@ int expect_nearest_everywhere(const Scene& scene, const Camera& camera, int widt
 }
 
 TEST(render, fills_the_part_of_a_triangle_that_is_in_front_of_the_eye) {
-  Scene scene;
+  PictureScene scene;
   scene.materials = {palette::flat(red)};
   scene.triangles = {flat_triangle({-9, -0.5, -30}, {9, -0.4, -30}, {0.1, -0.3, 30})};
   EXPECT_GT(expect_nearest_everywhere(scene, ahead(), 100, 100), 1000);
@@ -172,7 +172,7 @@ TEST(render, fills_the_part_of_a_triangle_that_is_in_front_of_the_eye) {
 TEST(render, shows_the_nearest_of_many_triangles_at_each_pixel) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> coordinate(-1, 1), size(-0.4, 0.4);
-  Scene scene;
+  PictureScene scene;
   for (std::uint32_t i = 0; i < 200; ++i) {
     const Point3 centre{coordinate(random), coordinate(random), coordinate(random)};
     const auto near = [&] { return centre + Vector3{size(random), size(random), size(random)}; };
@@ -186,7 +186,7 @@ TEST(render, shows_the_nearest_of_many_triangles_at_each_pixel) {
 }
 
 TEST(render, shows_a_closed_dense_sphere_without_pinholes) {
-  const Scene scene = sphere(120, palette::flat(blue));
+  const PictureScene scene = sphere(120, palette::flat(blue));
   for (const Vector3& direction : view_directions()) {
     const Image image = render(scene, around_unit_sphere(direction), on_white(301));
     EXPECT_GT(count(image, blue_pixel), 20'000);
@@ -207,7 +207,7 @@ TEST(render, shows_a_closed_transparent_sphere_without_seams) {
   Material glass = palette::flat(blue);
   glass.opacity = 0.5;
   glass.two_sided = false;
-  const Scene scene = sphere(60, glass);
+  const PictureScene scene = sphere(60, glass);
   for (const Vector3& direction : view_directions()) {
     const Image image = render(scene, around_unit_sphere(direction), on_white(201));
     const Pixel once = pixel(image, 100, 100);
@@ -217,30 +217,30 @@ TEST(render, shows_a_closed_transparent_sphere_without_seams) {
 }
 
 TEST(render, draws_a_line_without_length_as_a_dot) {
-  Scene scene;
+  PictureScene scene;
   scene.lines = {{{0, 0, 0}, {0, 0, 0}, 20, red}};
   EXPECT_NEAR(count(render(scene, ahead(), on_white(100)), red_pixel), std::numbers::pi * 100, 10);
 }
 
 TEST(render, draws_no_line_in_the_eye) {
-  Scene scene;
+  PictureScene scene;
   scene.lines = {{{0, 0, 4}, {0, 0, 4}, 4, red}};
   EXPECT_EQ(count(render(scene, ahead(), on_white(20)), white_pixel), 20 * 20);
 }
 
 TEST(render, draws_a_triangle_seen_edge_on_at_most_as_a_hairline) {
-  Scene scene;
+  PictureScene scene;
   scene.materials = {palette::surface()};
   scene.triangles = {flat_triangle({0, -0.5, -0.5}, {0, 0.5, -0.5}, {0, 0, 0.5})};
   EXPECT_EQ(count(render(scene, ahead(), on_white(20)), white_pixel), 20 * 20);
 }
 
 TEST(render, shades_by_the_directions_of_normals_not_their_lengths) {
-  const Scene scene = sphere(16, palette::surface());
+  const PictureScene scene = sphere(16, palette::surface());
   const Camera camera = around_unit_sphere({1, -1, -1});
   const Image image = render(scene, camera, on_white(60));
   for (const double scale : {-1.0, 0x1p-600, 0x1p-1030, 0x1p+1000}) {
-    Scene scaled = scene;
+    PictureScene scaled = scene;
     for (ShadedTriangle& t : scaled.triangles)
       for (Vector3& n : t.normal) n = scale * n;
     const Image other = render(scaled, camera, on_white(60));
@@ -252,7 +252,7 @@ TEST(render, shades_by_the_directions_of_normals_not_their_lengths) {
 }
 
 TEST(render, makes_pictures_of_any_shape) {
-  Scene scene;
+  PictureScene scene;
   scene.materials = {palette::flat(red)};
   add_square(scene, 500, 0, 0);
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 300}, {300, 1}, {7, 3}}) {

@@ -47,7 +47,7 @@ TEST(lettering, sets_one_letter_after_the_other) {
 }
 
 TEST(lettering, is_in_front_of_everything) {
-  Scene scene{{{.colour = {0, 0, 0}, .lit = false}}, {}, {}};
+  PictureScene scene{{{.colour = {0, 0, 0}, .lit = false}}, {}, {}};
   scene.triangles.push_back({{{-9, -9, -1}, {9, -9, -1}, {0, 18, -1}}, {}, 0});
   scene.labels.push_back({"I", 30, {1, 0, 0}});
   RenderOptions options;

@@ -32,18 +32,18 @@ Material unlit(Colour colour, double opacity = 1) {
   return {.colour = colour, .opacity = opacity, .lit = false};
 }
 
-void add_triangle(Scene& scene, Point3 a, Point3 b, Point3 c, std::uint32_t material = 0) {
+void add_triangle(PictureScene& scene, Point3 a, Point3 b, Point3 c, std::uint32_t material = 0) {
   scene.triangles.push_back({{a, b, c}, {}, material});
 }
 
 // The square |x|, |y| <= half at depth z before the eye, facing it.
-void add_square(Scene& scene, double half, double z, std::uint32_t material) {
+void add_square(PictureScene& scene, double half, double z, std::uint32_t material) {
   add_triangle(scene, {-half, -half, -z}, {half, -half, -z}, {half, half, -z}, material);
   add_triangle(scene, {-half, -half, -z}, {half, half, -z}, {-half, half, -z}, material);
 }
 
 // Longitudes and latitudes, smooth normals, the poles on the y axis.
-void add_sphere(Scene& scene, Point3 centre, double radius, int n, std::uint32_t material) {
+void add_sphere(PictureScene& scene, Point3 centre, double radius, int n, std::uint32_t material) {
   const auto direction = [n](int i, int j) {
     const double u = pi * (i % (2 * n)) / n, v = pi * j / n;
     return Vector3{std::sin(v) * std::cos(u), std::cos(v), std::sin(v) * std::sin(u)};
@@ -76,8 +76,8 @@ std::array<int, 3> shown(const Radiance& light) {
 }
 
 // A bit of everything, in an order that the seed decides.
-Scene mixed_scene(unsigned seed) {
-  Scene scene;
+PictureScene mixed_scene(unsigned seed) {
+  PictureScene scene;
   scene.materials = {palette::surface(), palette::enclosure(), palette::enclosure(palette::amber),
                      palette::flat()};
   add_sphere(scene, {0.1, 0, -3}, 1, 12, 0);
@@ -99,7 +99,7 @@ TEST(render, fills_exactly_the_projection_of_a_triangle) {
   // One sample a pixel: its middle decides.
   const int size = 64;
   const Point3 a{-1.31, -1.17, -2}, b{1.73, -0.39, -2.5}, c{-0.21, 2.43, -3};
-  Scene scene{{unlit(white)}, {}, {}};
+  PictureScene scene{{unlit(white)}, {}, {}};
   add_triangle(scene, a, b, c);
   const Image image = render(scene, plain_camera(), on_black(size, 1));
   const auto left_of = [](Point3 p, Point3 q, double s, double t) {
@@ -115,7 +115,7 @@ TEST(render, fills_exactly_the_projection_of_a_triangle) {
 }
 
 TEST(render, covers_the_analytic_area_of_a_sphere) {
-  Scene scene{{unlit(white)}, {}, {}};
+  PictureScene scene{{unlit(white)}, {}, {}};
   add_sphere(scene, {0, 0, -3}, 1.5, 100, 0);
   const int size = 200;
   // The cone of tangents meets the plane z = 1 in a circle of radius r / sqrt(d^2 - r^2).
@@ -125,7 +125,7 @@ TEST(render, covers_the_analytic_area_of_a_sphere) {
 }
 
 TEST(render, shows_no_pinholes_in_a_dense_closed_mesh) {
-  Scene scene{{unlit(white)}, {}, {}};
+  PictureScene scene{{unlit(white)}, {}, {}};
   add_sphere(scene, {0, 0, -3}, 1.5, 150, 0);
   const int size = 200;
   for (const int samples : {1, 3}) {
@@ -143,7 +143,7 @@ TEST(render, shows_no_pinholes_in_a_dense_closed_mesh) {
 TEST(render, rays_through_edges_and_vertices_meet_exactly_one_triangle) {
   // All edges of an 8 x 8 grid pass through pixel middles, and its vertices lie on them; half opaque, so that
   // a ray that meets two triangles or none shows.
-  Scene scene{{unlit(white, 0.5)}, {}, {}};
+  PictureScene scene{{unlit(white, 0.5)}, {}, {}};
   const int cells = 8, size = 33;
   const auto at = [](int i, int j) { return Point3{i / 4.0 - 1, j / 4.0 - 1, -33.0 / 32}; };
   for (int i = 0; i < cells; ++i)
@@ -165,7 +165,7 @@ TEST(render, rays_through_edges_and_vertices_meet_exactly_one_triangle) {
 
 TEST(render, nearer_surface_wins) {
   for (const bool near_first : {false, true}) {
-    Scene scene{{unlit(red), unlit(green)}, {}, {}};
+    PictureScene scene{{unlit(red), unlit(green)}, {}, {}};
     if (near_first) add_square(scene, 0.5, 2, 1);
     add_square(scene, 5, 3, 0);
     if (!near_first) add_square(scene, 0.5, 2, 1);
@@ -176,7 +176,7 @@ TEST(render, nearer_surface_wins) {
 }
 
 TEST(render, what_is_behind_the_eye_is_not_shown) {
-  Scene scene{{unlit(white)}, {}, {}};
+  PictureScene scene{{unlit(white)}, {}, {}};
   add_square(scene, 5, -2, 0);
   scene.lines.push_back({{-1, 0, 2}, {1, 0.1, 3}, 4, white});
   EXPECT_EQ(lit_area(render(scene, plain_camera(), on_black(20))), 0);
@@ -184,7 +184,7 @@ TEST(render, what_is_behind_the_eye_is_not_shown) {
 
 TEST(render, a_triangle_that_passes_the_eye_is_cut_there) {
   // A floor one below the eye, from behind it to the horizon: the lower half of the picture.
-  Scene scene{{unlit(white)}, {}, {}};
+  PictureScene scene{{unlit(white)}, {}, {}};
   add_triangle(scene, {-1e4, -1, 10}, {1e4, -1, 10}, {0, -1, -1e6});
   const Image image = render(scene, plain_camera(), on_black(40));
   EXPECT_EQ(pixel(image, 20, 5)[0], 0);
@@ -193,7 +193,7 @@ TEST(render, a_triangle_that_passes_the_eye_is_cut_there) {
 }
 
 TEST(render, transparent_layers_blend_front_to_back) {
-  Scene scene{{unlit(red, 0.5), unlit(green, 0.25), unlit(blue)}, {}, {}};
+  PictureScene scene{{unlit(red, 0.5), unlit(green, 0.25), unlit(blue)}, {}, {}};
   add_square(scene, 9, 4, 2);
   add_square(scene, 9, 2, 0);
   add_square(scene, 9, 3, 1);
@@ -203,7 +203,7 @@ TEST(render, transparent_layers_blend_front_to_back) {
 }
 
 TEST(render, a_one_sided_surface_is_seen_from_its_outside_only) {
-  Scene scene{{unlit(white)}, {}, {}};
+  PictureScene scene{{unlit(white)}, {}, {}};
   scene.materials[0].two_sided = false;
   add_square(scene, 9, 2, 0);
   EXPECT_EQ(pixel(render(scene, plain_camera(), on_black(10)), 5, 5)[0], 255);
@@ -212,10 +212,10 @@ TEST(render, a_one_sided_surface_is_seen_from_its_outside_only) {
 }
 
 TEST(render, shades_both_sides_and_both_normals_alike) {
-  Scene scene{{palette::surface()}, {}, {}};
+  PictureScene scene{{palette::surface()}, {}, {}};
   add_sphere(scene, {0, 0, -3}, 1.5, 20, 0);
   const Image image = render(scene, plain_camera(), on_black(40));
-  Scene turned = scene;
+  PictureScene turned = scene;
   for (ShadedTriangle& t : turned.triangles) {
     std::swap(t.corner[0], t.corner[1]);
     std::swap(t.normal[0], t.normal[1]);
@@ -230,7 +230,7 @@ TEST(render, shades_both_sides_and_both_normals_alike) {
 
 TEST(render, normals_smooth_the_facets) {
   // A coarse sphere: the shades of neighbouring pixels differ less with its normals than without.
-  Scene scene{{palette::surface()}, {}, {}};
+  PictureScene scene{{palette::surface()}, {}, {}};
   add_sphere(scene, {0, 0, -3}, 1.5, 8, 0);
   const auto steps = [](const Image& image) {
     int largest = 0;
@@ -247,7 +247,7 @@ TEST(render, normals_smooth_the_facets) {
 TEST(render, a_line_is_as_wide_as_asked_near_and_far) {
   for (const double depth : {1.0, 10.0})
     for (const double width : {1.0, 2.5, 6.0}) {
-      Scene scene;
+      PictureScene scene;
       scene.lines.push_back(
           {{-0.5 * depth, -0.3 * depth, -depth}, {0.5 * depth, 0.4 * depth, -depth}, width, white});
       const double across = std::hypot(1, 0.7) * 50;  // pixels, of a picture of 100
@@ -259,7 +259,7 @@ TEST(render, a_line_is_as_wide_as_asked_near_and_far) {
 
 TEST(render, a_line_is_hidden_behind_a_surface_and_shown_before_and_in_it) {
   const auto colour_at_centre = [](double line_depth, double opacity) {
-    Scene scene{{unlit(red, opacity)}, {}, {}};
+    PictureScene scene{{unlit(red, opacity)}, {}, {}};
     add_square(scene, 9, 2, 0);
     scene.lines.push_back({{-1, 0, -line_depth}, {1, 0, -line_depth}, 2, green});
     return pixel(render(scene, plain_camera(), on_black(41)), 20, 20);
@@ -273,7 +273,7 @@ TEST(render, a_line_is_hidden_behind_a_surface_and_shown_before_and_in_it) {
 TEST(render, the_depth_of_a_slanted_line_is_that_of_its_points) {
   // From before the surface to behind it: it disappears where it pierces it, here at the middle of the
   // picture.
-  Scene scene{{unlit(red)}, {}, {}};
+  PictureScene scene{{unlit(red)}, {}, {}};
   add_square(scene, 9, 4, 0);
   scene.lines.push_back({{-1, 0, -1}, {1, 0, -7}, 1, green});
   const Image image = render(scene, plain_camera(), on_black(401, 1));
@@ -284,7 +284,7 @@ TEST(render, the_depth_of_a_slanted_line_is_that_of_its_points) {
 }
 
 TEST(render, a_line_through_the_eye_plane_is_cut_there) {
-  Scene scene;
+  PictureScene scene;
   scene.lines.push_back({{0, -1, 5}, {0, -1, -1e3}, 3, white});
   const Image image = render(scene, plain_camera(), on_black(41));
   EXPECT_EQ(pixel(image, 20, 38)[0], 255);
@@ -300,7 +300,7 @@ TEST(render, the_order_of_the_scene_changes_no_byte) {
 TEST(render, coincident_transparent_layers_blend_the_same_in_either_order) {
   Image images[2];
   for (std::uint32_t first = 0; first < 2; ++first) {
-    Scene scene{{unlit(red, 0.5), unlit(green, 0.5)}, {}, {}};
+    PictureScene scene{{unlit(red, 0.5), unlit(green, 0.5)}, {}, {}};
     add_square(scene, 9, 2, first);
     add_square(scene, 9, 2, 1 - first);
     images[first] = render(scene, plain_camera(), on_black(10));
@@ -309,7 +309,7 @@ TEST(render, coincident_transparent_layers_blend_the_same_in_either_order) {
 }
 
 TEST(render, thread_count_changes_no_byte) {
-  const Scene scene = mixed_scene(1);
+  const PictureScene scene = mixed_scene(1);
   RenderOptions options = on_black(61);
   const Image image = render(scene, plain_camera(), options);
   for (const std::size_t count : {1, 2, 5, 61}) {
@@ -365,7 +365,7 @@ TEST(render, an_empty_scene_is_the_background) {
 }
 
 TEST(render, triangles_without_area_are_not_drawn) {
-  Scene scene{{palette::surface()}, {}, {}};
+  PictureScene scene{{palette::surface()}, {}, {}};
   add_triangle(scene, {-1, -1, -2}, {-1, -1, -2}, {1, 1, -2});
   add_triangle(scene, {-1, -1, -2}, {0, 0, -2}, {1, 1, -2});
   add_triangle(scene, {0, 0, -2}, {0, 0, -2}, {0, 0, -2});
@@ -374,28 +374,28 @@ TEST(render, triangles_without_area_are_not_drawn) {
 
 TEST(render, refuses_numbers_it_cannot_draw) {
   const auto broken = [](const auto& breaking) {
-    Scene scene = mixed_scene(1);
+    PictureScene scene = mixed_scene(1);
     Camera camera = plain_camera();
     RenderOptions options = on_black(2);
     breaking(scene, camera, options);
     EXPECT_THROW((void)render(scene, camera, options), InputError);
   };
-  broken([](Scene& s, Camera&, RenderOptions&) { s.triangles[5].corner[1].y = NAN; });
-  broken([](Scene& s, Camera&, RenderOptions&) { s.triangles[5].normal[2].z = INFINITY; });
-  broken([](Scene& s, Camera&, RenderOptions&) { s.triangles[5].material = 4; });
-  broken([](Scene& s, Camera&, RenderOptions&) { s.lines[0].a.x = -INFINITY; });
-  broken([](Scene& s, Camera&, RenderOptions&) { s.lines[0].width_in_pixels = 0; });
-  broken([](Scene& s, Camera&, RenderOptions&) { s.lines[0].colour.red = NAN; });
-  broken([](Scene& s, Camera&, RenderOptions&) { s.materials[0].opacity = 1.5; });
-  broken([](Scene& s, Camera&, RenderOptions&) { s.materials[0].gloss = NAN; });
-  broken([](Scene&, Camera& c, RenderOptions&) { c.eye.x = NAN; });
-  broken([](Scene&, Camera& c, RenderOptions&) { c.up = {0, 2, 0}; });
-  broken([](Scene&, Camera& c, RenderOptions&) { c.forward = {0, 0, 1}; });
-  broken([](Scene&, Camera& c, RenderOptions&) { c.tangent = 0; });
-  broken([](Scene&, Camera&, RenderOptions& o) { o.width = 0; });
-  broken([](Scene&, Camera&, RenderOptions& o) { o.samples = 17; });
-  broken([](Scene&, Camera&, RenderOptions& o) { o.background.foot.blue = 2; });
-  broken([](Scene&, Camera&, RenderOptions& o) {
+  broken([](PictureScene& s, Camera&, RenderOptions&) { s.triangles[5].corner[1].y = NAN; });
+  broken([](PictureScene& s, Camera&, RenderOptions&) { s.triangles[5].normal[2].z = INFINITY; });
+  broken([](PictureScene& s, Camera&, RenderOptions&) { s.triangles[5].material = 4; });
+  broken([](PictureScene& s, Camera&, RenderOptions&) { s.lines[0].a.x = -INFINITY; });
+  broken([](PictureScene& s, Camera&, RenderOptions&) { s.lines[0].width_in_pixels = 0; });
+  broken([](PictureScene& s, Camera&, RenderOptions&) { s.lines[0].colour.red = NAN; });
+  broken([](PictureScene& s, Camera&, RenderOptions&) { s.materials[0].opacity = 1.5; });
+  broken([](PictureScene& s, Camera&, RenderOptions&) { s.materials[0].gloss = NAN; });
+  broken([](PictureScene&, Camera& c, RenderOptions&) { c.eye.x = NAN; });
+  broken([](PictureScene&, Camera& c, RenderOptions&) { c.up = {0, 2, 0}; });
+  broken([](PictureScene&, Camera& c, RenderOptions&) { c.forward = {0, 0, 1}; });
+  broken([](PictureScene&, Camera& c, RenderOptions&) { c.tangent = 0; });
+  broken([](PictureScene&, Camera&, RenderOptions& o) { o.width = 0; });
+  broken([](PictureScene&, Camera&, RenderOptions& o) { o.samples = 17; });
+  broken([](PictureScene&, Camera&, RenderOptions& o) { o.background.foot.blue = 2; });
+  broken([](PictureScene&, Camera&, RenderOptions& o) {
     o.parallel_for = [](std::size_t, const std::function<void(std::size_t, std::size_t)>& body) {
       body(0, 1);
     };

@@ -49,7 +49,7 @@ constexpr Rows3 identity{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
 
 SceneSurface as_it_is(const CasterTree& tree) { return {&tree, identity, {}, identity, 0, {}}; }
 
-void add_triangles(Scene& scene, const Shape& shape) {
+void add_triangles(PictureScene& scene, const Shape& shape) {
   for (const Quad& f : shape.faces) {
     for (const auto& [a, b, c] : {std::array{f[0], f[1], f[2]}, std::array{f[0], f[2], f[3]}}) {
       scene.triangles.push_back({{shape.points[a], shape.points[b], shape.points[c]}, {}, 0});
@@ -85,14 +85,14 @@ TEST(surfaces_in_pictures, look_like_their_triangles) {
   const LimitSurface surface = surface_of(shape);
   const CasterTree tree(surface, surface.scale().apply(1e-5), 1, {});
   for (const double opacity : {1.0, 0.4}) {
-    Scene by_rays{{{.colour = {0.2, 0.5, 0.8}, .opacity = opacity, .gloss = 0.3}}, {}, {}},
+    PictureScene by_rays{{{.colour = {0.2, 0.5, 0.8}, .opacity = opacity, .gloss = 0.3}}, {}, {}},
         by_triangles = by_rays;
     by_rays.surfaces.push_back(as_it_is(tree));
     add_triangles(by_triangles, shape);
     const Image a = render(by_rays, camera_on(shape), plain(200)),
                 b = render(by_triangles, camera_on(shape), plain(200));
     EXPECT_LT(differing(a, b), a.rgb.size() / 200) << opacity;
-    EXPECT_GT(differing(a, render(Scene{by_rays.materials, {}, {}}, camera_on(shape), plain(200))),
+    EXPECT_GT(differing(a, render(PictureScene{by_rays.materials, {}, {}}, camera_on(shape), plain(200))),
               a.rgb.size() / 5);
   }
 }
@@ -105,7 +105,7 @@ TEST(surfaces_in_pictures, are_placed_by_their_similarity) {
   for (const Point3& p : shape.points) given.points.push_back({3 * p.y + 7, -3 * p.x + 1, 3 * p.z - 2});
   const LimitSurface surface = surface_of(given);
   const CasterTree tree(surface, surface.scale().apply(3e-5), 1, {});
-  Scene by_rays{{{.colour = {0.2, 0.5, 0.8}}}, {}, {}}, by_triangles = by_rays;
+  PictureScene by_rays{{{.colour = {0.2, 0.5, 0.8}}}, {}, {}}, by_triangles = by_rays;
   by_rays.surfaces.push_back({&tree,
                               {Vector3{0, 3, 0}, Vector3{-3, 0, 0}, Vector3{0, 0, 3}},
                               {7, 1, -2},
@@ -124,7 +124,7 @@ TEST(surfaces_in_pictures, hide_and_are_hidden_by_triangles) {
   for (const bool near_by_rays : {true, false}) {
     const LimitSurface surface = surface_of(near_by_rays ? near : far);
     const CasterTree tree(surface, surface.scale().apply(1e-5), 1, {});
-    Scene scene{{{.colour = {1, 0, 0}, .lit = false}, {.colour = {0, 1, 0}, .lit = false}}, {}, {}};
+    PictureScene scene{{{.colour = {1, 0, 0}, .lit = false}, {.colour = {0, 1, 0}, .lit = false}}, {}, {}};
     scene.surfaces.push_back(as_it_is(tree));
     add_triangles(scene, near_by_rays ? far : near);
     for (ShadedTriangle& t : scene.triangles) t.material = 1;
@@ -139,7 +139,7 @@ TEST(surfaces_in_pictures, are_cut_and_coloured) {
   const Shape shape = box({-0.4, -0.4, -0.4}, {0.4, 0.4, 0.4});
   const LimitSurface surface = surface_of(shape);
   const CasterTree tree(surface, surface.scale().apply(1e-5), 1, {});
-  Scene scene{{{.colour = {0.2, 0.5, 0.8}, .lit = false}}, {}, {}};
+  PictureScene scene{{{.colour = {0.2, 0.5, 0.8}, .lit = false}}, {}, {}};
   scene.surfaces.push_back(as_it_is(tree));
   // Green where the surface looks at the camera's side, red inside of the far wall.
   scene.surfaces[0].colour = [](const PatchHit& hit) {
@@ -162,7 +162,7 @@ TEST(surfaces_in_pictures, cast_shadows) {
   const LimitSurface floor_surface = surface_of(floor), lid_surface = surface_of(lid);
   const CasterTree floor_tree(floor_surface, floor_surface.scale().apply(1e-5), 1, {}),
       lid_tree(lid_surface, lid_surface.scale().apply(1e-5), 1, {});
-  Scene scene{{{.colour = {0.8, 0.8, 0.8}}}, {}, {}};
+  PictureScene scene{{{.colour = {0.8, 0.8, 0.8}}}, {}, {}};
   scene.surfaces = {as_it_is(floor_tree), as_it_is(lid_tree)};
   const Camera camera = frame(floor.points, {0, -1, -0.6}, {0, 1, 0}, 1);
   RenderOptions options = plain(120);

@@ -30,9 +30,9 @@ double distance_to(const Chain& chain, Point3 p) {
   return least;
 }
 
-Scene scene_of(const Chain& chain, double radius, unsigned sides) {
+PictureScene scene_of(const Chain& chain, double radius, unsigned sides) {
   const Tube tube(chain, radius);
-  Scene scene;
+  PictureScene scene;
   tube.add_to(scene, sides, 7);
   EXPECT_EQ(scene.triangles.size(), tube.triangle_count(sides));
   return scene;
@@ -49,7 +49,7 @@ Chain knot(int steps) {
 }
 
 // Is every edge between two triangles, which run along it in opposite directions?
-bool is_closed(const Scene& scene) {
+bool is_closed(const PictureScene& scene) {
   std::map<std::array<double, 6>, int> balance;
   for (const ShadedTriangle& t : scene.triangles) {
     for (int i = 0; i < 3; ++i) {
@@ -85,7 +85,7 @@ TEST(tube, stays_at_its_radius_and_faces_outwards) {
 
 TEST(tube, of_a_smooth_closed_chain_has_no_seam_and_no_ball) {
   for (const unsigned sides : {6u, 7u, 12u}) {
-    const Scene scene = scene_of(knot(150), 0.02, sides);
+    const PictureScene scene = scene_of(knot(150), 0.02, sides);
     EXPECT_EQ(scene.triangles.size(), 150u * 2 * sides);
     EXPECT_TRUE(is_closed(scene));
     // Where it closes, quads are twisted by half a side at most: so far from the chain is the middle of their
@@ -112,7 +112,7 @@ TEST(tube, is_round_at_ends_and_where_it_turns_sharply) {
   EXPECT_EQ(count({a, b, c, a}), 3 * tube + 3 * ball);
   // Every direction is reached around each of them.
   for (const Point3 end : {a, b, c}) {
-    const Scene scene = scene_of({a, b, c}, radius, sides);
+    const PictureScene scene = scene_of({a, b, c}, radius, sides);
     for (const Vector3 side : {Vector3{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}) {
       double farthest = 0;
       for (const ShadedTriangle& t : scene.triangles) {
@@ -128,7 +128,7 @@ TEST(tube, is_round_at_ends_and_where_it_turns_sharply) {
 TEST(tube, of_one_place_is_a_ball) {
   const Point3 p{1, 2, 3}, beside{1, 2, 3 + 1e-9};
   for (const Chain& chain : {Chain{p}, Chain{p, p}, Chain{p, p, p}, Chain{p, beside, p}, Chain{p, beside}}) {
-    const Scene scene = scene_of(chain, 0.5, 10);
+    const PictureScene scene = scene_of(chain, 0.5, 10);
     EXPECT_EQ(scene.triangles.size(), 10u * 2 * 4);
     EXPECT_TRUE(is_closed(scene));
     for (const ShadedTriangle& t : scene.triangles) {
@@ -140,7 +140,7 @@ TEST(tube, of_one_place_is_a_ball) {
 TEST(tube, keeps_its_ends_and_leaves_out_points_that_crowd) {
   Chain chain;
   for (int i = 0; i <= 1000; ++i) chain.push_back({i * 1e-4, 0, 0});
-  const Scene scene = scene_of(chain, 0.1, 6);
+  const PictureScene scene = scene_of(chain, 0.1, 6);
   EXPECT_LE(scene.triangles.size(), 60u * 12 + 2 * 24);
   double least = 1, most = 0;
   for (const ShadedTriangle& t : scene.triangles) {

@@ -75,7 +75,7 @@ bool in_unit(double x) { return 0 <= x && x <= 1; }
 bool in_unit(const Colour& c) { return in_unit(c.red) && in_unit(c.green) && in_unit(c.blue); }
 bool is_unit(Vector3 v) { return std::fabs(length_sq(v) - 1) < 1e-9; }
 
-void expect_sound(const Scene& scene, const Camera& camera, const RenderOptions& options) {
+void expect_sound(const PictureScene& scene, const Camera& camera, const RenderOptions& options) {
   require_value(options.width >= 1 && options.height >= 1, "render: width and height must be at least 1");
   require_value(1 <= options.samples && options.samples <= 16, "render: samples must be from 1 to 16");
   require_value(in_unit(options.background.top) && in_unit(options.background.foot),
@@ -142,7 +142,7 @@ bool crosses(const Sight& ray, const Face& face, Crossing& crossing) {
 
 class Renderer {
  public:
-  Renderer(const Scene& scene, const Camera& camera, const RenderOptions& options);
+  Renderer(const PictureScene& scene, const Camera& camera, const RenderOptions& options);
 
   // Scratch memory of one thread.
   struct Scratch {
@@ -184,7 +184,7 @@ class Renderer {
   [[nodiscard]] Reached light_reaching(Point3 at, Vector3 normal, Scratch& scratch) const;
   [[nodiscard]] Radiance composite(const Radiance& background, Scratch& scratch) const;
 
-  const Scene& scene_;
+  const PictureScene& scene_;
   const Camera& camera_;
   const RenderOptions& options_;
   double half_pixel_;  // of the plane z = 1
@@ -198,7 +198,7 @@ class Renderer {
   BeamHierarchy hierarchy_{std::span<const Box3>{}};
 };
 
-Renderer::Renderer(const Scene& scene, const Camera& camera, const RenderOptions& options)
+Renderer::Renderer(const PictureScene& scene, const Camera& camera, const RenderOptions& options)
     : scene_(scene), camera_(camera), options_(options), half_pixel_(camera.tangent / options.height) {
   // Each of the n * n samples has its own row and its own column among n * n: edges along the pixel grid,
   // too, get all n * n shades [Kensler13, without jitter].
@@ -577,7 +577,7 @@ void Renderer::draw_row(int row, Scratch& scratch, std::uint8_t* out) const {
 
 }  // namespace
 
-CountedImage render_counted(const Scene& scene, const Camera& camera, const RenderOptions& options) {
+CountedImage render_counted(const PictureScene& scene, const Camera& camera, const RenderOptions& options) {
   expect_sound(scene, camera, options);
   const Renderer renderer(scene, camera, options);
   const auto rows = static_cast<std::size_t>(options.height);
@@ -632,7 +632,7 @@ CountedImage render_counted(const Scene& scene, const Camera& camera, const Rend
   return {std::move(image), rays_a_pixel * options.width * rows, hits};
 }
 
-Image render(const Scene& scene, const Camera& camera, const RenderOptions& options) {
+Image render(const PictureScene& scene, const Camera& camera, const RenderOptions& options) {
   return render_counted(scene, camera, options).image;
 }
 

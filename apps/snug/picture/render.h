@@ -52,7 +52,8 @@ struct RenderOptions {
 /// Source:    edge functions in sheared coordinates [Woop13]; differs: a ray through an edge itself goes to
 /// one side
 ///            by the rule of rasterisers, and a pixel's rays search the hierarchy together, as a beam.
-[[nodiscard]] Image render(const Scene& scene, const Camera& camera, const RenderOptions& options = {});
+[[nodiscard]] Image render(const PictureScene& scene, const Camera& camera,
+                           const RenderOptions& options = {});
 
 /// A picture, and the rays that made it.
 struct CountedImage {
@@ -62,7 +63,7 @@ struct CountedImage {
 };
 
 /// The same picture as render() makes, with counts. Guarantee, requires, errors and cost: as render().
-[[nodiscard]] CountedImage render_counted(const Scene& scene, const Camera& camera,
+[[nodiscard]] CountedImage render_counted(const PictureScene& scene, const Camera& camera,
                                           const RenderOptions& options = {});
 
 }  // namespace snug

@@ -25,7 +25,7 @@ struct Material {
 struct ShadedTriangle {
   Point3 corner[3];
   Vector3 normal[3];  ///< interpolated, of any length and either side; a zero one makes the triangle flat
-  std::uint32_t material = 0;  ///< index into Scene::materials
+  std::uint32_t material = 0;  ///< index into PictureScene::materials
 };
 
 /// A straight stroke with round ends, equally wide on the picture near and far; opaque.
@@ -60,7 +60,7 @@ struct CutPlane {
 };
 
 /// What is drawn. Triangles that share an edge share its end points exactly, or the seam may show.
-struct Scene {
+struct PictureScene {
   std::vector<Material> materials;
   std::vector<ShadedTriangle> triangles;
   std::vector<Line> lines;

@@ -34,7 +34,7 @@ std::size_t ball_triangles(unsigned sides) { return std::size_t{2} * sides * (ba
 // Adds triangles whose corners are on a sphere or on rings of the same radius.
 class Builder {
  public:
-  Builder(Scene& scene, double radius, unsigned sides, std::uint32_t material)
+  Builder(PictureScene& scene, double radius, unsigned sides, std::uint32_t material)
       : scene_(&scene), radius_(radius), sides_(sides), material_(material) {
     for (unsigned i = 0; i < sides; ++i) {
       cosines_.push_back(std::cos(2 * pi * i / sides));
@@ -87,7 +87,7 @@ class Builder {
     scene_->triangles.push_back({{p + radius_ * a, q + radius_ * b, r + radius_ * c}, {a, b, c}, material_});
   }
 
-  Scene* scene_;
+  PictureScene* scene_;
   double radius_;
   unsigned sides_;
   std::uint32_t material_;
@@ -130,7 +130,7 @@ std::size_t Tube::triangle_count(unsigned sides) const {
   return count;
 }
 
-void Tube::add_to(Scene& scene, unsigned sides, std::uint32_t material) const {
+void Tube::add_to(PictureScene& scene, unsigned sides, std::uint32_t material) const {
   Builder builder(scene, radius_, sides, material);
   const std::size_t chords = chord_count();
   for (std::size_t i = closed_ ? 1 : 0; i < points_.size(); ++i) {

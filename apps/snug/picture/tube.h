@@ -22,7 +22,7 @@ class Tube {
   [[nodiscard]] std::size_t triangle_count(unsigned sides) const;
   /// Adds its triangles to the scene.
   /// Requires:  sides >= 5.
-  void add_to(Scene& scene, unsigned sides, std::uint32_t material) const;
+  void add_to(PictureScene& scene, unsigned sides, std::uint32_t material) const;
   /// Adds points whose hull contains the tube, whatever its number of sides.
   void add_outline(std::vector<Point3>& points) const;
 

@@ -107,9 +107,13 @@ ControlMesh parse_mesh(std::string_view bytes, const std::string& name, const No
 }
 
 ControlMesh read_mesh(const std::string& path, const ReadOptions& options) {
+  static_cast<void>(format_to_read(path));  // before the file is opened
+  return read_mesh(read_file(path, options.monitor), path, options);
+}
+
+ControlMesh read_mesh(std::string_view bytes, const std::string& path, const ReadOptions& options) {
   const std::string name = input_name(path);
-  std::string ending = format_to_read(path);  // before the file is opened
-  ControlMesh mesh = parsed(read_file(path, options.monitor), std::move(ending), name, options.notes);
+  ControlMesh mesh = parsed(bytes, format_to_read(path), name, options.notes);
   if (!options.weld) return mesh;
   try {
     const Welded welded = weld(mesh, options.weld(size_of(mesh)));

@@ -16,6 +16,10 @@ class AtomicFile;
 [[nodiscard]] ControlMesh parse_mesh(std::string_view bytes, const std::string& name,
                                      const Notes& notes = {});
 
+/// read_mesh() of the bytes that the file `path` holds.
+[[nodiscard]] ControlMesh read_mesh(std::string_view bytes, const std::string& path,
+                                    const ReadOptions& options);
+
 /// write_mesh() into a file that was opened for this name, and that is left to the caller to commit; with
 /// normals of the vertices if there are any and writes_normals(path).
 void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& path, const Notes& notes,

@@ -1,0 +1,66 @@
+#include "ranks.h"
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include <snug/error.h>
+
+namespace snug::command {
+namespace {
+
+[[noreturn]] void fail(const std::string& reason) {
+  throw InputError(InputProblem::unreadable,
+                   "started by mpirun, but " + reason +
+                       "; install libopenmpi-dev and build snug again, or start it without mpirun");
+}
+
+// Beside the program, or where it is installed.
+const SnugRanks* functions() {
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  void* library = nullptr;
+  for (const char* folder : {".", SNUG_MPI_FOLDER}) {
+    // Its names must be seen by what MPI loads by itself.
+    if (library == nullptr)
+      library = dlopen((program / folder / "snug_mpi.so").c_str(), RTLD_NOW | RTLD_GLOBAL);
+  }
+  if (library == nullptr) fail("snug_mpi.so is not there or cannot be loaded");
+  void* const symbol = dlsym(library, "snug_ranks");
+  if (symbol == nullptr) fail("snug_mpi.so is of another version");
+  return reinterpret_cast<SnugRanksFunction>(symbol)();
+}
+
+}  // namespace
+
+std::unique_ptr<Ranks> Ranks::join() {
+  const char* const size = std::getenv("OMPI_COMM_WORLD_SIZE");
+  if (size == nullptr || std::atoi(size) < 2) return nullptr;
+  std::unique_ptr<Ranks> ranks(new Ranks(functions()));
+  if (ranks->functions_->join(&ranks->rank_, &ranks->size_, &ranks->size_of_node_) != 0) {
+    fail("MPI cannot be started");
+  }
+  return ranks;
+}
+
+std::string Ranks::broadcast(std::string bytes) const {
+  std::size_t size = bytes.size();
+  functions_->broadcast(reinterpret_cast<char*>(&size), sizeof size);
+  bytes.resize(size);
+  functions_->broadcast(bytes.data(), size);
+  return bytes;
+}
+
+void Ranks::send(int to, std::string_view bytes) const { functions_->send(to, bytes.data(), bytes.size()); }
+
+std::optional<Ranks::Message> Ranks::receive(bool wait) const {
+  Message message{0, {}};
+  const long size = functions_->probe(wait, &message.from);
+  if (size < 0) return {};
+  message.bytes.resize(static_cast<std::size_t>(size));
+  functions_->receive(message.from, message.bytes.data(), message.bytes.size());
+  return message;
+}
+
+}  // namespace snug::command

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "ranks_interface.h"
+
+namespace snug::command {
+
+/// The processes that mpirun started together. For the thread that made it.
+class Ranks {
+ public:
+  /// Joins them; null for a process that mpirun did not start, or alone.
+  /// Errors:    InputError (unreadable) if the library for MPI is not there, or cannot join.
+  [[nodiscard]] static std::unique_ptr<Ranks> join();
+
+  [[nodiscard]] int rank() const { return rank_; }
+  [[nodiscard]] int size() const { return size_; }
+  /// How many of them share this machine.
+  [[nodiscard]] int size_of_node() const { return size_of_node_; }
+
+  /// What rank 0 has; to be called by all.
+  [[nodiscard]] std::string broadcast(std::string bytes) const;
+  void send(int to, std::string_view bytes) const;
+  struct Message {
+    int from;
+    std::string bytes;
+  };
+  /// The next message that is there; nothing if none is, unless it is to wait.
+  [[nodiscard]] std::optional<Message> receive(bool wait) const;
+  /// Waits until all have called it. Where one ends without it mpirun ends all.
+  void leave() const { functions_->leave(); }
+
+ private:
+  explicit Ranks(const SnugRanks* functions) : functions_(functions) {}
+  const SnugRanks* functions_;
+  int rank_ = 0, size_ = 1, size_of_node_ = 1;
+};
+
+}  // namespace snug::command

@@ -1,0 +1,365 @@
+#include "scene_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <tuple>
+#include <unordered_map>
+
+#include <fmt/core.h>
+#include <snug/base/error.h>
+#include <snug/base/parallel.h>
+#include <snug/io/number.h>
+#include <snug/io/read_file.h>
+#include <snug/scheme/rules.h>
+#include <snug/search/surface_data.h>
+#include <nlohmann/json.hpp>
+
+#include "curve.h"
+#include "mesh_reading.h"
+#include "nearest.h"
+#include "pose.h"
+
+namespace snug::command {
+namespace {
+
+using Json = nlohmann::json;
+
+// Deeper than any scene: parts, a part, a placement, its numbers.
+constexpr int most_levels = 8;
+
+[[noreturn]] void fail(const std::string& message) { throw InputError(InputProblem::unreadable, message); }
+
+std::string shortened(const std::string& text) {
+  return text.size() <= 40 ? text : text.substr(0, 40) + "...";
+}
+// What stands there, for messages.
+std::string quoted(const Json& value) {
+  return shortened(value.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+const char* kind_of(const Json& value) {
+  return value.is_object()   ? "an object"
+         : value.is_array()  ? "a list"
+         : value.is_string() ? "a text"
+         : value.is_number() ? "a number"
+         : value.is_null()   ? "null"
+                             : "true or false";
+}
+
+[[noreturn]] void fail_kind(const std::string& where, const Json& value, const std::string& wanted) {
+  fail(fmt::format("{} is {}; give {}", where, kind_of(value), wanted));
+}
+
+// The document, whose objects have no name twice.
+Json parse_document(const std::string& bytes) {
+  std::vector<std::set<std::string>> names;
+  const auto watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
+    if (depth > most_levels) fail(fmt::format("lists and objects nested more than {} deep", most_levels));
+    if (event == Json::parse_event_t::object_start) names.emplace_back();
+    if (event == Json::parse_event_t::object_end) names.pop_back();
+    if (event == Json::parse_event_t::key && !names.back().insert(parsed.get<std::string>()).second) {
+      fail("\"" + shortened(parsed.get<std::string>()) + "\" stands twice in one object");
+    }
+    return true;
+  };
+  try {
+    return Json::parse(bytes, watch);
+  } catch (const Json::exception& error) {
+    // "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error ..."
+    const std::string text = error.what();
+    const auto end = text.find("] ");
+    fail("not a scene in JSON: " + (end == std::string::npos ? text : text.substr(end + 2)));
+  }
+}
+
+void require_names(const Json& object, const std::string& where, const std::vector<std::string>& known) {
+  for (const auto& [name, value] : object.items()) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      fail(fmt::format("{}unknown name \"{}\"{}", where, shortened(name), did_you_mean(name, known)));
+    }
+  }
+}
+
+double number_of(const Json& value, const std::string& where) {
+  if (!value.is_number()) fail_kind(where, value, "a number");
+  return value.get<double>();
+}
+
+double length_of(const Json& value, const std::string& where) {
+  const double length = number_of(value, where);
+  if (!(length >= 0 && std::isfinite(length))) {
+    fail(fmt::format("{}: {} is no length; give a number >= 0", where, quoted(value)));
+  }
+  return length;
+}
+
+std::string text_of(const Json& value, const std::string& where) {
+  if (!value.is_string()) fail_kind(where, value, "a text");
+  return value.get<std::string>();
+}
+
+std::string text_of_numbers(const Json& value, const std::string& where, std::size_t count) {
+  if (value.size() != count) fail(fmt::format("{} has {} numbers, not {}", where, value.size(), count));
+  std::string text;
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    text += ' ';
+    append_real(text, number_of(value[i], fmt::format("{}[{}]", where, i)));
+  }
+  return text;
+}
+
+// A text as options have it, or a list of so many numbers.
+std::string words_of(const Json& value, const std::string& where, std::size_t count) {
+  if (value.is_array()) return text_of_numbers(value, where, count);
+  if (!value.is_string()) fail_kind(where, value, fmt::format("a text or a list of {} numbers", count));
+  return value.get<std::string>();
+}
+
+class SceneReader {
+ public:
+  SceneReader(const std::string& path, const CommonOptions& options, bool nearest_rigid)
+      : folder_(std::filesystem::path(path == "-" ? "" : path).parent_path()),
+        options_(options),
+        mending_{nearest_rigid, notes_for(options)} {}
+
+  SceneText read(const Json& document) {
+    if (!document.is_object()) fail_kind("the document", document, "an object with \"parts\"");
+    require_names(document, "", {"parts", "pairs", "tolerance", "margin", "margins"});
+    if (!document.contains("parts")) fail("\"parts\" is missing");
+    const Json& parts = document["parts"];
+    if (!parts.is_array()) fail_kind("parts", parts, "a list of parts");
+    if (parts.empty()) fail("parts is empty; give at least one part");
+    for (std::size_t i = 0; i < parts.size(); ++i) add_part(parts[i], fmt::format("parts[{}]", i));
+    if (document.contains("tolerance")) scene_.tolerance = tolerance_of(document["tolerance"]);
+    if (document.contains("margin")) scene_.margin = length_of(document["margin"], "margin");
+    if (document.contains("pairs")) add_pairs(document["pairs"]);
+    if (document.contains("margins")) add_margins(document["margins"]);
+    return std::move(scene_);
+  }
+
+ private:
+  void add_part(const Json& part, const std::string& where) {
+    if (!part.is_object()) fail_kind(where, part, "an object with \"mesh\"");
+    require_names(part, where + ": ", {"name", "mesh", "scheme", "boundary", "sharp", "weld", "place"});
+    if (!part.contains("mesh")) fail(where + ": \"mesh\" is missing");
+    const std::uint32_t place = static_cast<std::uint32_t>(scene_.parts.size());
+    const std::string name =
+        part.contains("name") ? text_of(part["name"], where + ".name") : std::to_string(place);
+    if (name.empty()) fail(where + ".name is empty");
+    const auto [known, fresh] = names_.emplace(name, place);
+    if (!fresh) {
+      fail(fmt::format("{}: the name \"{}\" is that of parts[{}]; give each part its own", where,
+                       shortened(name), known->second));
+    }
+    const std::uint32_t mesh = mesh_of_part(part, where);
+    scene_.parts.push_back({name, mesh, part.contains("place") ? pose_at(part["place"], where) : Motion()});
+  }
+
+  std::uint32_t mesh_of_part(const Json& part, const std::string& where) {
+    const std::string path = text_of(part["mesh"], where + ".mesh");
+    if (path.empty() || path == "-") fail(where + ".mesh: give the name of a file");
+    CommonOptions options = options_;
+    const auto take = [&](const char* name, std::string& option) {
+      if (part.contains(name)) option = text_of(part[name], where + "." + name);
+    };
+    take("scheme", options.scheme);
+    take("boundary", options.boundary);
+    for (const auto& [name, option] : {std::pair{"sharp", &options.sharp}, {"weld", &options.weld}}) {
+      if (!part.contains(name)) continue;
+      const Json& value = part[name];
+      *option = value.is_number() ? shortest(number_of(value, where)) : text_of(value, where + "." + name);
+    }
+    const auto key = std::tuple(path, options.scheme, options.boundary, options.sharp, options.weld);
+    const auto [known, fresh] = meshes_.emplace(key, static_cast<std::uint32_t>(scene_.meshes.size()));
+    if (fresh) {
+      require_words(options, where);
+      const std::filesystem::path own(path);
+      scene_.meshes.push_back({path, own.is_absolute() ? path : (folder_ / own).string(), options});
+    }
+    return known->second;
+  }
+
+  // Are words of options that the command line would take?
+  static void require_words(CommonOptions& options, const std::string& where) {
+    OptionList list;
+    CommonOptions words;
+    add_common_options(list, words);
+    try {
+      std::map<std::string, std::vector<std::string>> given;
+      if (!options.scheme.empty()) given["--scheme"] = {options.scheme};
+      if (!options.boundary.empty()) given["--boundary"] = {options.boundary};
+      list.assign(given);
+      options.scheme = words.scheme;
+      options.boundary = words.boundary;
+      static_cast<void>(weld_distance(options));
+      static_cast<void>(sharp_angle(options));
+    } catch (const UsageError& error) {
+      fail(where + ": " + error.what());
+    }
+  }
+
+  [[nodiscard]] Motion pose_at(const Json& place, const std::string& where) const {
+    const std::string here = where + ".place";
+    PoseOptions words;
+    if (place.is_array()) {
+      words.place = text_of_numbers(place, here, place.size() == 16 ? 16 : 12);
+    } else if (place.is_object()) {
+      require_names(place, here + ": ", {"move", "rotate"});
+      if (place.contains("move")) words.move = words_of(place["move"], here + ".move", 3);
+      if (place.contains("rotate")) words.rotate = words_of(place["rotate"], here + ".rotate", 4);
+    } else {
+      fail_kind(here, place, "12 numbers, a row-major 3x4 matrix, or {\"move\": ..., \"rotate\": ...}");
+    }
+    try {
+      return pose_of(words, "", mending_);
+    } catch (const InputError& error) {
+      throw InputError(error.problem(), where + error.what());
+    } catch (const UsageError& error) {
+      fail(where + error.what());
+    }
+  }
+
+  [[nodiscard]] static Length tolerance_of(const Json& value) {
+    if (value.is_number()) return {length_of(value, "tolerance"), false};
+    try {
+      return parse_length(text_of(value, "tolerance"), "tolerance", true);
+    } catch (const UsageError& error) {
+      fail(error.what());
+    }
+  }
+
+  [[nodiscard]] std::uint32_t part_at(const Json& value, const std::string& where) const {
+    if (value.is_string()) {
+      const auto known = names_.find(value.get<std::string>());
+      if (known == names_.end()) fail(fmt::format("{}: no part is called {}", where, quoted(value)));
+      return known->second;
+    }
+    if (!value.is_number_integer()) fail_kind(where, value, "the place of a part, from 0 on, or its name");
+    const bool there = value.is_number_unsigned() && value.get<std::uint64_t>() < scene_.parts.size();
+    if (!there) {
+      fail(fmt::format("{}: there is no part {}; places are 0 to {}", where, quoted(value),
+                       scene_.parts.size() - 1));
+    }
+    return static_cast<std::uint32_t>(value.get<std::uint64_t>());
+  }
+
+  [[nodiscard]] PartPair pair_at(const Json& value, const std::string& where, std::size_t size) const {
+    if (!value.is_array() || value.size() != size) {
+      fail_kind(where, value,
+                size == 2 ? "two parts, as in [0, 1] or [\"a\", \"b\"]"
+                          : "two parts and a length, as in [0, 1, 0.5]");
+    }
+    const PartPair pair{part_at(value[0], where + "[0]"), part_at(value[1], where + "[1]")};
+    if (pair.a == pair.b) {
+      fail(
+          fmt::format("{}: \"{}\" with itself; give two parts", where, shortened(scene_.parts[pair.a].name)));
+    }
+    return pair;
+  }
+
+  void add_pairs(const Json& pairs) {
+    if (pairs == "all") return;
+    if (!pairs.is_array()) fail_kind("pairs", pairs, "\"all\" or a list of pairs");
+    scene_.pairs.emplace();
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      scene_.pairs->push_back(pair_at(pairs[i], fmt::format("pairs[{}]", i), 2));
+    }
+  }
+
+  void add_margins(const Json& margins) {
+    if (!margins.is_array()) fail_kind("margins", margins, "a list of [i, j, length]");
+    std::set<std::pair<std::uint32_t, std::uint32_t>> known;
+    for (std::size_t i = 0; i < margins.size(); ++i) {
+      const std::string where = fmt::format("margins[{}]", i);
+      const PartPair pair = pair_at(margins[i], where, 3);
+      if (!known.insert(std::minmax(pair.a, pair.b)).second) fail(where + ": these two have a margin before");
+      scene_.margins.push_back({pair, length_of(margins[i][2], where + "[2]")});
+    }
+  }
+
+  std::filesystem::path folder_;
+  const CommonOptions& options_;
+  Mending mending_;
+  SceneText scene_;
+  std::unordered_map<std::string, std::uint32_t> names_;
+  std::map<std::tuple<std::string, std::string, std::string, std::string, std::string>, std::uint32_t>
+      meshes_;
+};
+
+// What is wrong with options is wrong with the scene file here.
+SchemeOptions rules_for(const SceneMesh& mesh, const ControlMesh& control) {
+  try {
+    return choose_rules(mesh.options, mesh.options.scheme, control);
+  } catch (const UsageError& error) {
+    throw InputError(InputProblem::refused, error.what());
+  }
+}
+
+Surface surface_of(std::string_view bytes, const SceneMesh& mesh, const WorkMonitor& monitor) {
+  ControlMesh control = mesh_of(bytes, mesh.file, mesh.options);
+  refuse_curves(control, mesh.options.scheme, mesh.file);
+  std::optional<Surface> surface;
+  naming(mesh.file, [&] {
+    const SchemeOptions rules = rules_for(mesh, control);
+    surface.emplace(std::move(control), SurfaceOptions{.scheme = rules.scheme,
+                                                       .boundary = rules.boundary,
+                                                       .bounds = bound_method(mesh.options),
+                                                       .tight = false,
+                                                       .threads = 1,
+                                                       .monitor = monitor});
+    static_cast<void>(surface->data()->bvh());  // with the file's name where that fails
+  });
+  note_distance_to_faces(surface->data()->limit(), mesh.file, mesh.options);
+  return *surface;
+}
+
+}  // namespace
+
+std::uint64_t fingerprint(std::string_view bytes, std::uint64_t from) {
+  for (const char c : bytes) from = (from ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return (from ^ bytes.size()) * 0x100000001b3u;
+}
+
+SceneText parse_scene(const std::string& bytes, const std::string& path, const CommonOptions& options,
+                      bool nearest_rigid) {
+  SceneText scene;
+  naming(input_name(path),
+         [&] { scene = SceneReader(path, options, nearest_rigid).read(parse_document(bytes)); });
+  return scene;
+}
+
+LoadedScene load_scene(const std::string& path, const CommonOptions& options, bool nearest_rigid,
+                       const ReadBytes& read, const WorkMonitor& monitor) {
+  LoadedScene loaded;
+  const std::string bytes = read(path);
+  loaded.fingerprint = fingerprint(bytes);
+  loaded.text = parse_scene(bytes, path, options, nearest_rigid);
+  std::map<std::string, std::string> files;
+  std::vector<const std::string*> contents;
+  for (const SceneMesh& mesh : loaded.text.meshes) {
+    const auto [file, fresh] = files.try_emplace(mesh.file);
+    if (fresh) {
+      file->second = read(mesh.file);
+      loaded.fingerprint = fingerprint(file->second, loaded.fingerprint);
+    }
+    contents.push_back(&file->second);
+  }
+  std::vector<std::optional<Surface>> surfaces(contents.size());
+  parallel_for(surfaces.size(), options.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      surfaces[i] = surface_of(*contents[i], loaded.text.meshes[i], monitor);
+    }
+  });
+  for (const std::optional<Surface>& surface : surfaces) loaded.surfaces.push_back(*surface);
+  for (const SceneText::Part& part : loaded.text.parts) {
+    loaded.scene.parts.emplace_back(loaded.surfaces[part.mesh], part.pose);
+  }
+  loaded.scene.pairs = loaded.text.pairs;
+  loaded.scene.margins = loaded.text.margins;
+  return loaded;
+}
+
+}  // namespace snug::command

@@ -1,0 +1,441 @@
+#include "scene_run.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <mutex>
+#include <thread>
+
+#include <fmt/core.h>
+#include <snug/base/in_order.h>
+#include <snug/base/parallel.h>
+#include <snug/front/scene_workers.h>
+#include <snug/io/read_file.h>
+#include <snug/search/surface_data.h>
+
+#include "journal.h"
+#include "progress_bar.h"
+#include "version.h"
+
+namespace snug::command {
+namespace {
+
+// Pairs that a rank is given at once, at most: their answers are one message.
+constexpr std::size_t most_pairs = 2048;
+
+// About how many patches of both parts lie where their boxes overlap: what an answer costs, up to a factor.
+double cost_of(const SceneBroadPhase& boxes, const Scene& scene, const ScenePair& pair) {
+  const Box3 &a = boxes.box(pair.parts.a), &b = boxes.box(pair.parts.b);
+  double share_a = 1, share_b = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double common = std::min(a.upper[axis], b.upper[axis]) - std::max(a.lower[axis], b.lower[axis]);
+    const double overlap = std::max(common, 0.0) + pair.margin;
+    const auto share = [&](const Box3& box) {
+      const double side = box.upper[axis] - box.lower[axis];
+      return side > overlap && side < INFINITY ? overlap / side : 1.0;
+    };
+    share_a *= share(a);
+    share_b *= share(b);
+  }
+  const auto patches = [&](std::uint32_t part) {
+    return static_cast<double>(scene.parts[part].surface().data()->limit().patch_count());
+  };
+  return 8 + share_a * patches(pair.parts.a) + share_b * patches(pair.parts.b);
+}
+
+// Pairs of a batch in their order, dealt out in parts of about the same cost, smaller ones towards the end.
+class PairQueue {
+ public:
+  PairQueue(std::vector<double> costs, std::size_t takers)
+      : costs_(std::move(costs)), takers_(static_cast<double>(takers)) {
+    for (const double cost : costs_) left_ += cost;
+  }
+  struct Range {
+    std::size_t begin, end;
+  };
+  // Empty at the end.
+  Range take() {
+    const std::lock_guard lock(mutex_);
+    Range range{next_, next_};
+    const double wanted = left_ / (8 * takers_);
+    double cost = 0;
+    while (range.end < costs_.size() && range.end - range.begin < most_pairs &&
+           (cost == 0 || cost < wanted)) {
+      cost += costs_[range.end++];
+    }
+    left_ -= cost;
+    next_ = range.end;
+    return range;
+  }
+  void end() {
+    const std::lock_guard lock(mutex_);
+    next_ = costs_.size();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<double> costs_;
+  double takers_, left_ = 0;
+  std::size_t next_ = 0;
+};
+
+std::string bytes_of(const std::vector<ScenePair>& pairs) {
+  return {reinterpret_cast<const char*>(pairs.data()), pairs.size() * sizeof(ScenePair)};
+}
+
+std::vector<ScenePair> pairs_of(const std::string& bytes) {
+  std::vector<ScenePair> pairs(bytes.size() / sizeof(ScenePair));
+  if (!pairs.empty()) std::memcpy(pairs.data(), bytes.data(), pairs.size() * sizeof(ScenePair));
+  return pairs;
+}
+
+// What a rank sends: answers after the first letter, or why it has ended.
+constexpr char answers_follow = 'A', failure_follows = 'F', interruption_follows = 'I';
+
+std::vector<SceneAnswer> answers_of(const Ranks::Message& message, std::size_t count) {
+  const std::string_view text = std::string_view(message.bytes).substr(1);
+  if (message.bytes.front() == interruption_follows) throw Interrupted();
+  if (message.bytes.front() == failure_follows) {
+    throw InputError(static_cast<InputProblem>(text.front() - '0'),
+                     fmt::format("rank {}: {}", message.from, text.substr(1)));
+  }
+  std::vector<SceneAnswer> answers;
+  PartPair parts;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const auto end = text.find('\n', begin);
+    if (end == std::string_view::npos ||
+        !parse_line(text.substr(begin, end - begin), parts, answers.emplace_back())) {
+      break;
+    }
+    begin = end + 1;
+  }
+  if (answers.size() != count) {
+    throw InputError(
+        InputProblem::unreadable,
+        fmt::format("rank {} sent what is no answer; are all ranks the same version?", message.from));
+  }
+  return answers;
+}
+
+// Runs one batch on this process, and on other ranks if there are any.
+class Batch {
+ public:
+  using Ask = std::function<SceneAnswer(const ScenePair&, Workspace&)>;
+  using Put = std::function<void(std::size_t, SceneAnswer)>;
+  Batch(const std::vector<ScenePair>& pairs, std::vector<double> costs, const Ranks* ranks,
+        SceneWorkers& workers, const Ask& ask, const Put& put)
+      : pairs_(pairs),
+        queue_(std::move(costs), workers.threads() * (ranks ? static_cast<std::size_t>(ranks->size()) : 1)),
+        ranks_(ranks),
+        workers_(workers),
+        ask_(ask),
+        put_(put) {}
+
+  // `idle`: ranks that wait for work; kept from one batch to the next.
+  void run(std::vector<int>& idle) {
+    if (ranks_ == nullptr) return work();
+    std::exception_ptr failure;
+    std::atomic<bool> ended{false};
+    std::thread own([&] {
+      try {
+        work();
+      } catch (...) {
+        failure = std::current_exception();
+        queue_.end();
+      }
+      ended = true;
+    });
+    try {
+      serve_ranks(idle, ended);
+    } catch (...) {
+      queue_.end();
+      own.join();
+      throw;
+    }
+    own.join();
+    if (failure) std::rethrow_exception(failure);
+  }
+
+ private:
+  void work() {
+    workers_.run([&](Workspace& workspace) {
+      try {
+        for (auto range = queue_.take(); range.begin < range.end; range = queue_.take()) {
+          for (std::size_t i = range.begin; i < range.end; ++i) put_(i, ask_(pairs_[i], workspace));
+        }
+      } catch (...) {
+        queue_.end();
+        throw;
+      }
+    });
+  }
+
+  // MPI knows this thread only. While it looks for messages the processor is left to the others.
+  void serve_ranks(std::vector<int>& idle, const std::atomic<bool>& ended) {
+    std::vector<PairQueue::Range> given(static_cast<std::size_t>(ranks_->size()), {0, 0});
+    std::size_t working = 0;
+    const auto give = [&](int rank) {
+      const PairQueue::Range range = queue_.take();
+      if (range.begin == range.end) return false;
+      given[static_cast<std::size_t>(rank)] = range;
+      ranks_->send(rank, bytes_of({pairs_.begin() + static_cast<std::ptrdiff_t>(range.begin),
+                                   pairs_.begin() + static_cast<std::ptrdiff_t>(range.end)}));
+      ++working;
+      return true;
+    };
+    const auto give_all = [&] { std::erase_if(idle, give); };
+    give_all();
+    while (working > 0 || !ended) {
+      const auto message = ranks_->receive(false);
+      if (!message) {
+        std::this_thread::sleep_for(std::chrono::microseconds(50));
+        continue;
+      }
+      PairQueue::Range& range = given[static_cast<std::size_t>(message->from)];
+      std::vector<SceneAnswer> answers = answers_of(*message, range.end - range.begin);
+      if (range.begin < range.end) --working;  // else it has just arrived
+      idle.push_back(message->from);
+      const PairQueue::Range done = range;
+      range = {0, 0};
+      give_all();
+      for (std::size_t i = done.begin; i < done.end; ++i) put_(i, std::move(answers[i - done.begin]));
+    }
+  }
+
+  const std::vector<ScenePair>& pairs_;
+  PairQueue queue_;
+  const Ranks* ranks_;
+  SceneWorkers& workers_;
+  const Ask& ask_;
+  const Put& put_;
+};
+
+// Writes answers in their order, and counts them.
+class Results {
+ public:
+  Results(const LoadedScene& loaded, Report& report) : loaded_(loaded), report_(report) {}
+
+  void begin(const SceneQuestion& question, const std::string& file) {
+    report_.text("# a b " + question.header);
+    if (!report_.json()) return;
+    JsonWriter& json = report_.write();
+    json.field("scene", file);
+    json.key("mesh").begin_array();
+    for (const SceneMesh& mesh : loaded_.text.meshes) json.value(mesh.path);
+    json.end_array().key("scheme").begin_array();
+    for (const Surface& surface : loaded_.surfaces) json.value(name_of(surface.scheme()));
+    json.end_array().field("parts", loaded_.scene.parts.size());
+    question.head(json);
+    json.key("results").begin_array();
+  }
+
+  void add(const ScenePair& pair, const SceneAnswer& answer, bool by_boxes) {
+    if (by_boxes) {
+      ++boxes_;
+    } else {
+      ++verdicts_[static_cast<std::size_t>(answer.verdict)];
+    }
+    reached_ = reached_ && answer.reached;
+    if (answer.row.empty()) return;
+    ++count_;
+    if (report_.json()) report_.write().spliced(answer.json);
+    report_.text(fmt::format("{} {} {}", name(pair.parts.a), name(pair.parts.b), answer.row));
+  }
+
+  ExitStatus finish(std::uint64_t pairs, bool exit_code) {
+    std::uint64_t answered = 0;
+    for (const std::uint64_t count : verdicts_) answered += count;
+    const std::uint64_t boxes = pairs - answered;
+    std::string sentence = fmt::format("{} pairs: {} separated by boxes", pairs, boxes);
+    if (report_.json()) {
+      JsonWriter& json = report_.write();
+      json.end_array().field("count", count_).field("pairs", pairs).field("separated_by_boxes", boxes);
+    }
+    for (std::size_t i = 0; i < verdicts_.size(); ++i) {
+      const char* const verdict = name_of(static_cast<Verdict>(i));
+      if (report_.json()) report_.write().field(verdict, verdicts_[i]);
+      if (verdicts_[i] > 0) sentence += fmt::format(", {} {}", verdicts_[i], verdict);
+    }
+    report_.text(sentence);
+    const ExitStatus status = report_.finish(reached_);
+    if (!exit_code) return status;
+    const auto some = [&](Verdict verdict) { return verdicts_[static_cast<std::size_t>(verdict)] > 0; };
+    return some(Verdict::intersecting) ? ExitStatus::intersecting
+           : some(Verdict::undecided)  ? ExitStatus::undecided
+           : some(Verdict::within)     ? ExitStatus::within
+                                       : ExitStatus::answered;
+  }
+  void flush() { report_.flush_text(); }
+
+ private:
+  [[nodiscard]] const std::string& name(std::uint32_t part) const { return loaded_.text.parts[part].name; }
+
+  const LoadedScene& loaded_;
+  Report& report_;
+  std::array<std::uint64_t, 4> verdicts_{};
+  std::uint64_t boxes_ = 0, count_ = 0;
+  bool reached_ = true;
+};
+
+// What a command line gives to one of several ranks on a machine: its share of the cores, and silence but for rank 0.
+PairOptions for_rank(PairOptions options, const Ranks* ranks) {
+  if (ranks == nullptr) return options;
+  if (options.threads == 0) options.threads = std::max(1, hardware_threads() / ranks->size_of_node());
+  options.quiet = options.quiet || ranks->rank() > 0;
+  return options;
+}
+
+}  // namespace
+
+SceneRun::SceneRun(const PairOptions& options, const WorkMonitor& monitor)
+    : monitor_(monitor), ranks_(Ranks::join()) {
+  options_ = for_rank(options, ranks_.get());
+  const ReadBytes read = [&](const std::string& path) {
+    if (!ranks_) return read_file(path, monitor_);
+    return ranks_->broadcast(ranks_->rank() == 0 ? read_file(path, monitor_) : std::string());
+  };
+  loaded_ = load_scene(options_.scene, options_, options_.nearest_rigid, read, monitor_);
+}
+
+void SceneRun::require_closed() const {
+  for (std::size_t i = 0; i < loaded_.surfaces.size(); ++i) {
+    naming(loaded_.text.meshes[i].file,
+           [&] { static_cast<void>(loaded_.surfaces[i].data()->bvh().solid()); });
+  }
+}
+
+double SceneRun::size_of(const PartPair& parts) const {
+  return std::max(scene().parts[parts.a].surface().size(), scene().parts[parts.b].surface().size());
+}
+
+Sides SceneRun::sides_of(const PartPair& parts) const {
+  const PlacedSurface &a = scene().parts[parts.a], &b = scene().parts[parts.b];
+  return {{&a.surface().data()->limit(), &b.surface().data()->limit()}, {a.pose(), b.pose()}};
+}
+
+SceneAnswer SceneRun::answer_pair(const SceneQuestion& question, const ScenePair& pair, Workspace* workspace,
+                                  bool wants_json) const {
+  SceneAnswer answer;
+  std::string text;
+  JsonWriter json([&](std::string_view part) { text += part; }, JsonWriter::Lines::one);
+  json.begin_object();
+  json.field("a", loaded_.text.parts[pair.parts.a].name).field("b", loaded_.text.parts[pair.parts.b].name);
+  JsonWriter* const writer = wants_json ? &json : nullptr;
+  workspace ? question.ask(pair, *workspace, answer, writer) : question.separated(pair, answer, writer);
+  json.end_object().finish();
+  if (wants_json && !answer.row.empty()) answer.json = std::move(text);
+  return answer;
+}
+
+// Answers what rank 0 sends, until that is nothing.
+void SceneRun::serve(const SceneQuestion& question) {
+  const bool json = options_.json || !options_.output.empty() || !options_.journal.empty();
+  try {
+    SceneWorkers workers(options_.threads);
+    ranks_->send(0, std::string(1, answers_follow));
+    while (true) {
+      const std::vector<ScenePair> pairs = pairs_of(ranks_->receive(true)->bytes);
+      if (pairs.empty()) return;
+      std::vector<std::string> lines(pairs.size());
+      workers.for_each(pairs.size(), [&](Workspace& workspace, std::size_t i) {
+        monitor_.checkpoint();
+        lines[i] = line_of(pairs[i].parts, answer_pair(question, pairs[i], &workspace, json));
+      });
+      std::string bytes(1, answers_follow);
+      for (const std::string& line : lines) bytes += line;
+      ranks_->send(0, bytes);
+    }
+  } catch (const Interrupted&) {
+    ranks_->send(0, std::string(1, interruption_follows));
+  } catch (const InputError& error) {
+    ranks_->send(0, failure_follows + std::to_string(static_cast<int>(error.problem())) + error.what());
+  } catch (const std::exception& error) {
+    const auto problem = std::to_string(static_cast<int>(InputProblem::refused));
+    ranks_->send(0, failure_follows + problem + error.what());
+  }
+  // Rank 0 tells, and ends all.
+  while (true) static_cast<void>(ranks_->receive(true));
+}
+
+ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, bool exit_code) {
+  if (ranks_ && ranks_->rank() > 0) {
+    serve(question);
+    ranks_->leave();
+    return ExitStatus::answered;
+  }
+  Scene scene = loaded_.scene;
+  if (!question.margins) scene.margins.clear();
+  std::optional<Journal> journal;
+  if (!options_.journal.empty()) {
+    std::string key = fmt::format("{} {} {} {}", version_number, command, question.margin, question.key);
+    for (const SceneMesh& mesh : loaded_.text.meshes) {
+      const CommonOptions& own = mesh.options;
+      key += fmt::format("\n{}\t{}\t{}\t{}\t{}", own.scheme, own.boundary, own.sharp, own.weld, own.bounds);
+    }
+    journal.emplace(options_.journal, fingerprint(key, loaded_.fingerprint));
+    const Notes notes = notes_for(options_);
+    if (notes && journal->found() > 0) {
+      notes(fmt::format("{}: {} pairs were answered before", options_.journal, journal->found()));
+    }
+  }
+  Report report(command, options_);
+  Results results(loaded_, report);
+  results.begin(question, options_.scene);
+  const bool json = report.json() || journal.has_value();
+  SceneBroadPhase broad(scene, question.margin, question.all_pairs, options_.threads, monitor_);
+  SceneWorkers workers(options_.threads);
+  std::vector<int> idle;
+  const std::size_t wanted = pairs_of_a_batch * static_cast<std::size_t>(ranks_ ? ranks_->size() : 1);
+  for (double before = 0;; before = broad.share()) {
+    const std::vector<ScenePair> batch = broad.next(wanted);
+    if (batch.empty()) break;
+    InOrder<SceneAnswer> answers(batch.size(), [&](std::size_t i, SceneAnswer& answer) {
+      results.add(batch[i], answer, batch[i].separated_by_boxes());
+    });
+    std::vector<ScenePair> todo;
+    std::vector<std::size_t> places;
+    std::vector<double> costs;
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      if (batch[i].separated_by_boxes()) {
+        answers.put(i, answer_pair(question, batch[i], nullptr, json));
+        continue;
+      }
+      std::optional<SceneAnswer> known;
+      if (journal) known = journal->find(batch[i].parts);
+      if (known) {
+        answers.put(i, std::move(*known));
+      } else {
+        todo.push_back(batch[i]);
+        places.push_back(i);
+        costs.push_back(cost_of(broad, scene, batch[i]));
+      }
+    }
+    std::atomic<std::size_t> done{0};
+    const Batch::Ask ask = [&](const ScenePair& pair, Workspace& workspace) {
+      monitor_.checkpoint();
+      return answer_pair(question, pair, &workspace, json);
+    };
+    const Batch::Put put = [&](std::size_t i, SceneAnswer answer) {
+      report_part(monitor_, before, broad.share(), done++, todo.size());
+      if (journal) journal->add(todo[i].parts, answer);
+      answers.put(places[i], std::move(answer));
+    };
+    Batch(todo, std::move(costs), ranks_.get(), workers, ask, put).run(idle);
+    results.flush();
+  }
+  const ExitStatus status = results.finish(broad.pair_count(), exit_code);
+  if (ranks_) {
+    // Those that have not yet told that they are there are waited for.
+    while (idle.size() + 1 < static_cast<std::size_t>(ranks_->size())) {
+      const Ranks::Message message = *ranks_->receive(true);
+      static_cast<void>(answers_of(message, 0));
+      idle.push_back(message.from);
+    }
+    for (const int rank : idle) ranks_->send(rank, {});
+    ranks_->leave();
+  }
+  return status;
+}
+
+}  // namespace snug::command

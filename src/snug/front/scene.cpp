@@ -1,0 +1,344 @@
+#include <snug/scene.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <string>
+#include <thread>
+#include <unordered_map>
+
+#include <snug/base/error.h>
+#include <snug/base/in_order.h>
+#include <snug/base/parallel.h>
+#include <snug/bvh/box_tree.h>
+#include <snug/front/scene_workers.h>
+#include <snug/search/placed_box.h>
+#include <snug/search/surface_data.h>
+
+namespace snug {
+namespace {
+
+// Parts whose neighbours are looked for between two looks at how many there are.
+constexpr std::size_t least_block = 16, most_block = 4096;
+
+PartPair sorted(const PartPair& pair) { return {std::min(pair.a, pair.b), std::max(pair.a, pair.b)}; }
+bool before(const PartPair& x, const PartPair& y) { return x.a < y.a || (x.a == y.a && x.b < y.b); }
+bool margin_before(const PairMargin& x, const PairMargin& y) { return before(x.parts, y.parts); }
+
+void require_parts(const PartPair& pair, std::size_t parts, const std::string& what) {
+  for (const std::uint32_t part : {pair.a, pair.b}) {
+    if (part >= parts) {
+      refuse_value(
+          (what + ": there is no part " + std::to_string(part) + "; the scene has " + std::to_string(parts))
+              .c_str());
+    }
+  }
+  if (pair.a == pair.b) {
+    refuse_value((what + ": part " + std::to_string(pair.a) + " with itself; give two parts").c_str());
+  }
+}
+
+std::vector<PairMargin> sorted_margins(const Scene& scene) {
+  std::vector<PairMargin> margins = scene.margins;
+  for (std::size_t i = 0; i < margins.size(); ++i) {
+    const std::string what = "margins[" + std::to_string(i) + "]";
+    require_parts(margins[i].parts, scene.parts.size(), what);
+    require_length(margins[i].margin, what.c_str());
+    margins[i].parts = sorted(margins[i].parts);
+  }
+  std::sort(margins.begin(), margins.end(), margin_before);
+  for (std::size_t i = 1; i < margins.size(); ++i) {
+    const PartPair& parts = margins[i].parts;
+    if (parts == margins[i - 1].parts) {
+      refuse_value(("margins: parts " + std::to_string(parts.a) + " and " + std::to_string(parts.b) +
+                    " have two; give one")
+                       .c_str());
+    }
+  }
+  return margins;
+}
+
+// What `work` does, with the part's place in front of refusals.
+template <class Work>
+auto naming_parts(const std::string& parts, const Work& work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    throw InputError(error.problem(), parts + ": " + error.what());
+  }
+}
+
+std::string names_of(const PartPair& pair) {
+  return "parts " + std::to_string(pair.a) + " and " + std::to_string(pair.b);
+}
+
+}  // namespace
+
+struct SceneBroadPhase::State {
+  State(const Scene& in_scene, double in_margin, bool in_all, int in_threads, const WorkMonitor& in_monitor)
+      : scene(in_scene),
+        margin(in_margin),
+        all(in_all),
+        threads(in_threads),
+        monitor{.on_progress = {}, .stop = in_monitor.stop},
+        margins(sorted_margins(in_scene)) {
+    require_length(margin, "the margin of a scene");
+    require_value(scene.parts.size() < UINT32_MAX, "a scene has fewer than 2^32 - 1 parts; take it apart");
+    if (scene.pairs) {
+      for (std::size_t i = 0; i < scene.pairs->size(); ++i) {
+        require_parts((*scene.pairs)[i], scene.parts.size(), "pairs[" + std::to_string(i) + "]");
+      }
+    }
+    make_boxes();
+    if (scene.pairs || all) return;
+    tree.emplace(boxes);
+    reach.assign(scene.parts.size(), margin);
+    for (const PairMargin& own : margins) {
+      for (const std::uint32_t part : {own.parts.a, own.parts.b}) {
+        reach[part] = std::max(reach[part], own.margin);
+      }
+    }
+  }
+
+  // Trees of all surfaces first, each by one thread: the first query would make them one after the other.
+  void make_boxes() {
+    std::unordered_map<const SurfaceData*, std::size_t> first;
+    for (std::size_t i = 0; i < scene.parts.size(); ++i) {
+      first.try_emplace(scene.parts[i].surface().data().get(), i);
+    }
+    std::vector<std::size_t> surfaces;
+    for (const auto& [surface, part] : first) surfaces.push_back(part);
+    std::sort(surfaces.begin(), surfaces.end());
+    parallel_for(surfaces.size(), threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        monitor.checkpoint();
+        naming_parts("part " + std::to_string(surfaces[i]),
+                     [&] { static_cast<void>(scene.parts[surfaces[i]].surface().data()->bvh()); });
+      }
+    });
+    boxes.resize(scene.parts.size());
+    parallel_for(boxes.size(), threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        boxes[i] = placed_box(scene.parts[i].surface().data()->bvh(), scene.parts[i].pose());
+      }
+    });
+  }
+
+  [[nodiscard]] double margin_of(const PartPair& pair) const {
+    if (margins.empty()) return margin;
+    const auto at =
+        std::lower_bound(margins.begin(), margins.end(), PairMargin{sorted(pair), 0}, margin_before);
+    return at != margins.end() && at->parts == sorted(pair) ? at->margin : margin;
+  }
+  [[nodiscard]] ScenePair pair_of(const PartPair& parts) const {
+    return {parts, margin_of(parts), gap_of(boxes[parts.a], boxes[parts.b])};
+  }
+
+  // What part `a` has to do with parts after it.
+  void add_pairs_of(std::uint32_t a, std::vector<ScenePair>& out) const {
+    const auto add = [&](std::uint32_t b) {
+      const ScenePair pair = pair_of({a, b});
+      if (all || !pair.separated_by_boxes()) out.push_back(pair);
+    };
+    if (all) {
+      for (std::uint32_t b = a + 1; b < boxes.size(); ++b) add(b);
+      return;
+    }
+    tree->find_near(boxes[a], reach[a], a, add);
+    std::sort(out.begin(), out.end(),
+              [](const ScenePair& x, const ScenePair& y) { return x.parts.b < y.parts.b; });
+  }
+
+  void add_listed(std::size_t count, std::vector<ScenePair>& out) {
+    for (; done < scene.pairs->size() && out.size() < count; ++done) {
+      const ScenePair pair = pair_of((*scene.pairs)[done]);
+      if (all || !pair.separated_by_boxes()) out.push_back(pair);
+    }
+  }
+
+  // Neighbours of some parts at once, of more the fewer they have.
+  void add_block(std::vector<ScenePair>& out) {
+    const std::size_t size = std::min(block, boxes.size() - done);
+    std::vector<std::vector<ScenePair>> found(size);
+    parallel_for(size, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) add_pairs_of(static_cast<std::uint32_t>(done + i), found[i]);
+    });
+    const std::size_t old = out.size();
+    for (const std::vector<ScenePair>& pairs : found) out.insert(out.end(), pairs.begin(), pairs.end());
+    done += size;
+    const bool few = out.size() - old < pairs_of_a_batch;
+    block = few ? std::min(2 * block, most_block) : std::max<std::size_t>(block / 2, 1);
+  }
+
+  const Scene& scene;
+  double margin;
+  bool all;
+  int threads;
+  WorkMonitor monitor;
+  std::vector<PairMargin> margins;  // in the order of parts
+  std::vector<Box3> boxes;
+  std::vector<double> reach;  // largest margin of a part; with a tree only
+  std::optional<BoxTree> tree;
+  std::size_t done = 0;  // pairs where they are listed, else parts
+  std::size_t block = least_block;
+};
+
+SceneBroadPhase::SceneBroadPhase(const Scene& scene, double margin, bool all, int threads,
+                                 const WorkMonitor& monitor)
+    : state_(std::make_unique<State>(scene, margin, all, threads, monitor)) {}
+SceneBroadPhase::~SceneBroadPhase() = default;
+
+std::vector<ScenePair> SceneBroadPhase::next(std::size_t count) {
+  State& state = *state_;
+  std::vector<ScenePair> result;
+  if (state.scene.pairs) {
+    state.add_listed(count, result);
+    return result;
+  }
+  while (result.size() < count && state.done < state.boxes.size()) {
+    state.monitor.checkpoint();
+    state.add_block(result);
+  }
+  return result;
+}
+
+std::uint64_t SceneBroadPhase::pair_count() const {
+  if (state_->scene.pairs) return state_->scene.pairs->size();
+  const std::uint64_t parts = state_->scene.parts.size();
+  return parts == 0 ? 0 : parts * (parts - 1) / 2;
+}
+
+double SceneBroadPhase::share() const {
+  const std::size_t all = state_->scene.pairs ? state_->scene.pairs->size() : state_->scene.parts.size();
+  return all == 0 ? 1 : static_cast<double>(state_->done) / static_cast<double>(all);
+}
+
+const Box3& SceneBroadPhase::box(std::uint32_t part) const { return state_->boxes.at(part); }
+
+SceneWorkers::SceneWorkers(int threads)
+    : others_(static_cast<std::size_t>((threads > 0 ? threads : hardware_threads()) - 1)) {}
+
+void SceneWorkers::run(const std::function<void(Workspace&)>& work) {
+  share(threads(), [&](SharedRanges&, Workspace& workspace) { work(workspace); });
+}
+
+void SceneWorkers::for_each(std::size_t count, const std::function<void(Workspace&, std::size_t)>& answer) {
+  share(count, [&](SharedRanges& ranges, Workspace& workspace) {
+    while (const auto range = ranges.next()) {
+      for (std::size_t i = range->begin; i < range->end; ++i) answer(workspace, i);
+    }
+  });
+}
+
+void SceneWorkers::share(std::size_t count, const std::function<void(SharedRanges&, Workspace&)>& work) {
+  const std::thread::id caller = std::this_thread::get_id();
+  std::atomic<std::size_t> taken{0};
+  share_ranges(count, static_cast<int>(threads()), [&](SharedRanges& ranges) {
+    const bool own = std::this_thread::get_id() == caller;
+    work(ranges, own ? Workspace::of_this_thread() : others_[taken++]);
+  });
+}
+
+void report_part(const WorkMonitor& monitor, double from, double to, std::size_t done, std::size_t count) {
+  if (done % 64 != 0) return monitor.checkpoint();
+  monitor.report(from + (to - from) * static_cast<double>(done) / static_cast<double>(count));
+}
+
+Collision collide_pair(const Scene& scene, const ScenePair& pair, CollideOptions options,
+                       const WorkMonitor& monitor, Workspace& workspace) {
+  const PlacedSurface &a = scene.parts[pair.parts.a], &b = scene.parts[pair.parts.b];
+  options.margin = pair.margin;
+  return naming_parts(names_of(pair.parts), [&] { return collide(a, b, options, monitor, workspace); });
+}
+
+std::optional<Distance> distance_of_pair(const Scene& scene, const ScenePair& pair,
+                                         const DistanceOptions& options, const WorkMonitor& monitor,
+                                         Workspace& workspace) {
+  const PlacedSurface &a = scene.parts[pair.parts.a], &b = scene.parts[pair.parts.b];
+  return naming_parts(names_of(pair.parts), [&]() -> std::optional<Distance> {
+    // Pairs beyond the limit are told sooner by a verdict than by a distance.
+    const CollideOptions beyond{.margin = pair.margin,
+                                .budget = options.budget,
+                                .witness = WitnessKind::none,
+                                .prove_contact = false,
+                                .solid = options.solid,
+                                .measure = false};
+    if (collide(a, b, beyond, monitor, workspace).verdict == Verdict::separated) return {};
+    Distance found = distance(a, b, options, monitor, workspace);
+    if (found.distance.lower > pair.margin) return {};
+    return found;
+  });
+}
+
+namespace {
+
+// Answers every pair with ask(pair, workspace) and passes the answers to take(pair, answer) in order.
+template <class Answer, class Ask, class Take>
+std::uint64_t answer_pairs(SceneBroadPhase& pairs, int threads, const WorkMonitor& monitor, const Ask& ask,
+                           const Take& take) {
+  SceneWorkers workers(threads);
+  std::uint64_t count = 0;
+  for (double before = 0;; before = pairs.share()) {
+    const std::vector<ScenePair> batch = pairs.next(pairs_of_a_batch);
+    if (batch.empty()) return count;
+    count += batch.size();
+    std::atomic<std::size_t> done{0};
+    InOrder<Answer> answers(batch.size(), [&](std::size_t i, Answer& answer) { take(batch[i], answer); });
+    workers.for_each(batch.size(), [&](Workspace& workspace, std::size_t i) {
+      report_part(monitor, before, pairs.share(), done++, batch.size());
+      answers.put(i, ask(batch[i], workspace));
+    });
+  }
+}
+
+}  // namespace
+
+SceneCounts collide(const Scene& scene, const CollideOptions& options,
+                    const std::function<void(const PairCollision&)>& sink, int threads,
+                    const WorkMonitor& monitor) {
+  SceneBroadPhase pairs(scene, options.margin, false, threads, monitor);
+  const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+  SceneCounts counts;
+  const auto ask = [&](const ScenePair& pair, Workspace& workspace) {
+    return collide_pair(scene, pair, options, stop_only, workspace);
+  };
+  const auto take = [&](const ScenePair& pair, Collision& answer) {
+    const Verdict verdict = answer.verdict;
+    ++(verdict == Verdict::separated      ? counts.separated
+       : verdict == Verdict::within       ? counts.within
+       : verdict == Verdict::intersecting ? counts.intersecting
+                                          : counts.undecided);
+    sink({pair.parts, std::move(answer)});
+  };
+  const std::uint64_t near = answer_pairs<Collision>(pairs, threads, monitor, ask, take);
+  counts.pairs = pairs.pair_count();
+  counts.separated_by_boxes = counts.pairs - near;
+  return counts;
+}
+
+SceneCounts distance(const Scene& scene, double limit, const DistanceOptions& options,
+                     const std::function<void(const PairDistance&)>& sink, int threads,
+                     const WorkMonitor& monitor) {
+  require_length(limit, "distance: the limit");
+  const Scene bare{scene.parts, scene.pairs, {}};
+  SceneBroadPhase pairs(bare, limit, false, threads, monitor);
+  const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
+  SceneCounts counts;
+  const auto ask = [&](const ScenePair& pair, Workspace& workspace) {
+    return distance_of_pair(bare, pair, options, stop_only, workspace);
+  };
+  const auto take = [&](const ScenePair& pair, std::optional<Distance>& answer) {
+    if (!answer) {
+      ++counts.separated;
+      return;
+    }
+    ++(answer->distance.upper == 0 ? counts.intersecting : counts.within);
+    sink({pair.parts, std::move(*answer)});
+  };
+  const std::uint64_t near = answer_pairs<std::optional<Distance>>(pairs, threads, monitor, ask, take);
+  counts.pairs = pairs.pair_count();
+  counts.separated_by_boxes = counts.pairs - near;
+  return counts;
+}
+
+}  // namespace snug

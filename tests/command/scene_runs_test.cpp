@@ -1,0 +1,104 @@
+// Scenes on several ranks, and runs that are killed.
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+#include "scene_testing.h"
+
+namespace snug::testing {
+namespace {
+
+class scene_runs : public ::testing::Test {
+ protected:
+  TemporaryFolder folder_;
+  std::string file_ = write_scene(folder_.file("s.json"), random_scene(200, 7, 11));
+};
+
+TEST_F(scene_runs, go_on_after_being_killed_at_any_moment) {
+  const Json expected = comparable(run_snug({"collide", "--scene", file_, "--json"}).out);
+  std::mt19937_64 random(12);
+  for (int trial = 0; trial < 10; ++trial) {
+    const std::string journal = folder_.file("journal" + std::to_string(trial));
+    const std::vector<std::string> words{"collide",  "--scene", file_,       "--json",
+                                         "--resume", journal,   "--threads", "2"};
+    int killed = 0;
+    while (true) {
+      const auto kill_soon = [&](int process) {
+        // Longer from time to time, so that it comes to an end.
+        std::this_thread::sleep_for(std::chrono::milliseconds(random() % 60 + 10 * killed));
+        kill(process, SIGKILL);
+      };
+      const Outcome outcome = run_snug_in({{}, kill_soon}, words);
+      if (outcome.status == 0) {
+        ASSERT_EQ(comparable(outcome.out), expected) << trial << ' ' << killed;
+        break;
+      }
+      ASSERT_EQ(outcome.status, 1000 + SIGKILL) << outcome.err;
+      ++killed;
+    }
+    EXPECT_GT(killed, 0);
+  }
+}
+
+// What a line for the shell prints, and its status.
+Outcome shell(const std::string& line) {
+  Outcome outcome;
+  FILE* const pipe =
+      popen(("OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " + line).c_str(), "r");
+  std::array<char, 65536> text;
+  for (std::size_t got = 0; (got = fread(text.data(), 1, text.size(), pipe)) > 0;)
+    outcome.out.append(text.data(), got);
+  outcome.status = WEXITSTATUS(pclose(pipe));
+  return outcome;
+}
+
+class ranks : public scene_runs {
+ protected:
+  void SetUp() override {
+    if (std::system("mpirun --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "mpirun is not installed";
+    if (access(SNUG_MPI, R_OK) != 0) GTEST_SKIP() << "built without MPI";
+  }
+  [[nodiscard]] static std::string mpirun(int count, const std::string& words) {
+    return "mpirun --oversubscribe -n " + std::to_string(count) + " " + SNUG_COMMAND + " " + words;
+  }
+};
+
+TEST_F(ranks, write_the_document_of_one_process) {
+  const Json expected = comparable(run_snug({"collide", "--scene", file_, "--json"}).out);
+  for (const int count : {2, 3}) {
+    const Outcome outcome = shell(mpirun(count, "collide --scene " + file_ + " --json"));
+    ASSERT_EQ(outcome.status, 0);
+    EXPECT_EQ(comparable(outcome.out), expected) << count;
+  }
+  const Outcome distances = shell(mpirun(2, "distance --limit 0.5 --scene " + file_ + " --json --threads 2"));
+  EXPECT_EQ(comparable(distances.out),
+            comparable(run_snug({"distance", "--limit", "0.5", "--scene", file_, "--json"}).out));
+}
+
+TEST_F(ranks, keep_a_journal_together) {
+  const Json expected = comparable(run_snug({"collide", "--scene", file_, "--json"}).out);
+  const std::string journal = folder_.file("journal");
+  const std::string line = mpirun(2, "collide --scene " + file_ + " --json --resume " + journal);
+  shell("timeout -s KILL 0.7 " + line + " 2> /dev/null");
+  const Outcome outcome = shell(line);
+  EXPECT_EQ(comparable(outcome.out), expected);
+}
+
+TEST_F(ranks, end_with_one_word_for_all_of_them) {
+  const Outcome gone = shell(mpirun(2, "collide --scene /gone.json 2>&1"));
+  EXPECT_EQ(gone.status, 3);
+  EXPECT_NE(gone.out.find("snug: /gone.json: cannot be read"), std::string::npos) << gone.out;
+  const std::string wrong = write_text(folder_.file("wrong.json"), "{");
+  const Outcome bad = shell(mpirun(2, "collide --scene " + wrong + " 2>&1"));
+  EXPECT_EQ(bad.status, 3);
+  EXPECT_NE(bad.out.find("not a scene in JSON"), std::string::npos) << bad.out;
+}
+
+}  // namespace
+}  // namespace snug::testing

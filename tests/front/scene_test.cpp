@@ -1,0 +1,363 @@
+#include <snug/scene.h>
+
+#include <cfloat>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <set>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+#include <oracle/contact_twin.h>
+#include <oracle/test_meshes.h>
+#include <snug/search/surface_data.h>
+#include <testing/placements.h>
+
+namespace snug {
+namespace {
+
+Surface surface_of(const oracle::TwinMesh& twin, double size = 1) {
+  ControlMesh mesh;
+  for (const oracle::Point& p : twin.points) mesh.points.push_back({size * p[0], size * p[1], size * p[2]});
+  for (const auto& face : twin.triangles) {
+    mesh.add_face(std::array{VertexId(face[0]), VertexId(face[1]), VertexId(face[2])});
+  }
+  return Surface(std::move(mesh), {.threads = 1});
+}
+
+// The cube [0, 1]^3, its faces as they are.
+Surface cube() {
+  ControlMesh mesh;
+  for (int i = 0; i < 8; ++i) mesh.points.push_back({double(i & 1), double(i >> 1 & 1), double(i >> 2)});
+  for (const auto& face : {std::array{0u, 2u, 3u, 1u},
+                           {4u, 5u, 7u, 6u},
+                           {0u, 1u, 5u, 4u},
+                           {2u, 6u, 7u, 3u},
+                           {0u, 4u, 6u, 2u},
+                           {1u, 3u, 7u, 5u}}) {
+    mesh.add_face(std::array{VertexId(face[0]), VertexId(face[1]), VertexId(face[2])});
+    mesh.add_face(std::array{VertexId(face[0]), VertexId(face[2]), VertexId(face[3])});
+  }
+  return Surface(std::move(mesh), {.scheme = Scheme::flat, .threads = 1});
+}
+
+Scene random_scene(std::mt19937_64& random, std::size_t parts, double spread) {
+  static const std::vector<Surface> shapes{surface_of(oracle::meshes::icosahedron()),
+                                           surface_of(oracle::meshes::octahedron(), 0.3), cube(),
+                                           surface_of(oracle::meshes::octahedron(), 1e-4)};
+  Scene scene;
+  for (std::size_t i = 0; i < parts; ++i) {
+    scene.parts.emplace_back(shapes[random() % shapes.size()],
+                             testing::random_placement(random, testing::random_vector(random, spread)));
+  }
+  return scene;
+}
+
+std::vector<PartPair> pairs_of(const Scene& scene) {
+  if (scene.pairs) return *scene.pairs;
+  std::vector<PartPair> pairs;
+  for (std::uint32_t a = 0; a < scene.parts.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < scene.parts.size(); ++b) pairs.push_back({a, b});
+  }
+  return pairs;
+}
+
+double margin_of(const Scene& scene, const PartPair& pair, double margin) {
+  for (const PairMargin& own : scene.margins) {
+    if (own.parts == pair || own.parts == PartPair{pair.b, pair.a}) return own.margin;
+  }
+  return margin;
+}
+
+bool same(const Collision& x, const Collision& y) {
+  return x.verdict == y.verdict && x.distance == y.distance && x.witness == y.witness && x.inner == y.inner &&
+         x.stats.splits == y.stats.splits;
+}
+
+// Every pair by itself, with no broad phase.
+void expect_all_pairs(const Scene& scene, const CollideOptions& options, int threads) {
+  std::vector<PairCollision> found;
+  const SceneCounts counts = collide(
+      scene, options, [&](const PairCollision& pair) { found.push_back(pair); }, threads);
+  std::size_t next = 0;
+  SceneCounts expected;
+  for (const PartPair& pair : pairs_of(scene)) {
+    CollideOptions own = options;
+    own.margin = margin_of(scene, pair, options.margin);
+    const Collision answer = collide(scene.parts[pair.a], scene.parts[pair.b], own);
+    ++expected.pairs;
+    if (next < found.size() && found[next].parts == pair) {
+      ASSERT_TRUE(same(found[next].answer, answer)) << pair.a << ' ' << pair.b;
+      ++next;
+      ++(answer.verdict == Verdict::separated      ? expected.separated
+         : answer.verdict == Verdict::within       ? expected.within
+         : answer.verdict == Verdict::intersecting ? expected.intersecting
+                                                   : expected.undecided);
+    } else {
+      ASSERT_EQ(answer.verdict, Verdict::separated) << pair.a << ' ' << pair.b;
+      ++expected.separated_by_boxes;
+    }
+  }
+  ASSERT_EQ(next, found.size());
+  EXPECT_EQ(counts.pairs, expected.pairs);
+  EXPECT_EQ(counts.separated_by_boxes, expected.separated_by_boxes);
+  EXPECT_EQ(counts.separated, expected.separated);
+  EXPECT_EQ(counts.within, expected.within);
+  EXPECT_EQ(counts.intersecting, expected.intersecting);
+  EXPECT_EQ(counts.undecided, expected.undecided);
+}
+
+TEST(scene, answers_as_every_pair_by_itself) {
+  std::mt19937_64 random(81);
+  for (const double spread : {0.5, 3.0, 30.0, 1e12}) {
+    for (const bool listed : {false, true}) {
+      for (const double margin : {0.0, 0.4}) {
+        Scene scene = random_scene(random, 24, spread);
+        if (listed) {
+          scene.pairs.emplace();
+          for (int i = 0; i < 100; ++i) {
+            const auto a = static_cast<std::uint32_t>(random() % 24);
+            scene.pairs->push_back({a, static_cast<std::uint32_t>((a + 1 + random() % 23) % 24)});
+          }
+        }
+        std::set<std::pair<std::uint32_t, std::uint32_t>> named;
+        for (int i = 0; i < 8; ++i) {
+          const auto a = static_cast<std::uint32_t>(random() % 23);
+          if (!named.emplace(a, 23).second) continue;
+          const PartPair pair = i % 2 == 0 ? PartPair{a, 23} : PartPair{23, a};
+          scene.margins.push_back({pair, i % 3 == 0 ? 0 : spread});
+        }
+        for (const bool solid : {false, true}) {
+          expect_all_pairs(scene, {.tolerance = 0.01, .margin = margin, .budget = 500, .solid = solid},
+                           1 + int(random() % 3));
+          if (HasFatalFailure()) return;
+        }
+      }
+    }
+  }
+}
+
+TEST(scene, distances_are_those_of_every_pair_by_itself) {
+  std::mt19937_64 random(82);
+  const Scene scene = random_scene(random, 30, 3);
+  const DistanceOptions options{.absolute = 1e-3};
+  for (const double limit : {0.0, 0.7, 1e3}) {
+    std::size_t next = 0;
+    std::vector<PairDistance> found;
+    const SceneCounts counts = distance(
+        scene, limit, options, [&](const PairDistance& pair) { found.push_back(pair); }, 2);
+    for (const PartPair& pair : pairs_of(scene)) {
+      const Distance answer = distance(scene.parts[pair.a], scene.parts[pair.b], options);
+      if (next < found.size() && found[next].parts == pair) {
+        EXPECT_EQ(found[next].answer.distance, answer.distance);
+        EXPECT_EQ(found[next++].answer.witness, answer.witness);
+      } else {
+        EXPECT_GT(answer.distance.upper, limit);
+      }
+    }
+    EXPECT_EQ(next, found.size());
+    EXPECT_EQ(counts.within + counts.intersecting, found.size());
+    EXPECT_EQ(counts.pairs, counts.separated_by_boxes + counts.separated + found.size());
+    if (limit == 1e3) {
+      EXPECT_EQ(found.size(), counts.pairs);
+    }
+  }
+}
+
+// Distances that equal a margin are not above it. All numbers here are exact.
+TEST(broad_phase, deals_out_parts_whose_distance_is_the_margin) {
+  const Surface shape = cube();
+  const double places[] = {0, 1, 2.25, -3, 1024};
+  for (const double x : places) {
+    for (const double y : places) {
+      for (const double z : places) {
+        const double gaps[] = {std::max(std::fabs(x) - 1, 0.0), std::max(std::fabs(y) - 1, 0.0),
+                               std::max(std::fabs(z) - 1, 0.0)};
+        // The distance of both cubes, where it is a double.
+        double margin = 0;
+        int axes = 0;
+        for (const double gap : gaps) {
+          margin += gap;
+          axes += gap > 0 ? 1 : 0;
+        }
+        if (axes > 1) continue;
+        Scene scene{{shape, shape.at(Motion::translation({x, y, z}))}};
+        EXPECT_EQ(SceneBroadPhase(scene, margin).next(1).size(), 1u) << x << ' ' << y << ' ' << z;
+        scene.margins = {{{1, 0}, margin}};
+        EXPECT_EQ(SceneBroadPhase(scene, 0).next(1).size(), 1u) << x << ' ' << y << ' ' << z;
+        if (margin == 0) continue;
+        scene.margins = {{{1, 0}, 0}};
+        EXPECT_EQ(SceneBroadPhase(scene, margin).next(1).size(), 0u) << x << ' ' << y << ' ' << z;
+        EXPECT_EQ(SceneBroadPhase(scene, margin, true).next(1).size(), 1u);
+      }
+    }
+  }
+}
+
+// All pairs of the cases that the boxes distinguish, against distances found by others.
+TEST(broad_phase, separates_nothing_that_the_twins_know_to_be_near) {
+  std::mt19937_64 random(83);
+  const std::vector<oracle::TwinMesh> meshes{oracle::meshes::icosahedron(), oracle::meshes::octahedron()};
+  std::vector<Surface> surfaces;
+  std::vector<std::unique_ptr<oracle::ContactSurface>> twins;
+  for (const double size : {1e-6, 1.0, 1e6}) {
+    for (oracle::TwinMesh mesh : meshes) {
+      surfaces.push_back(surface_of(mesh, size));
+      for (oracle::Point& p : mesh.points) {
+        for (double& x : p) x *= size;
+      }
+      twins.push_back(std::make_unique<oracle::ContactSurface>(mesh));
+    }
+  }
+  std::size_t near = 0, apart = 0;
+  for (int trial = 0; trial < 1500; ++trial) {
+    // Every pair of sizes and of turns, and every place.
+    const std::size_t cases[] = {static_cast<std::size_t>(trial % 3),
+                                 static_cast<std::size_t>(trial / 3 % 3)};
+    const int turns[] = {trial / 9 % 3, trial / 27 % 3}, place = trial / 81 % 3;
+    std::size_t names[2];
+    Motion poses[2];
+    double reach = 0;
+    for (std::size_t side = 0; side < 2; ++side) {
+      names[side] = 2 * cases[side] + random() % 2;
+      reach += surfaces[names[side]].size();
+      if (turns[side] == 1) poses[side] = Motion::rotation_degrees({0, 1, 0}, 90);
+      if (turns[side] == 2) poses[side] = testing::random_placement(random, {});
+    }
+    const Vector3 origin = place == 2 ? testing::random_vector(random, 1e12) : Vector3{};
+    poses[0] = poses[0].with_offset(origin);
+    const Vector3 away = testing::random_vector(random, place == 0 ? 0 : reach);
+    poses[1] = poses[1].with_offset({origin.x + away.x, origin.y + away.y, origin.z + away.z});
+    Scene scene{{surfaces[names[0]].at(poses[0]), surfaces[names[1]].at(poses[1])}};
+    const double margin = trial % 2 == 0 ? 0 : 0.2 * reach;
+    const std::vector<ScenePair> dealt = SceneBroadPhase(scene, margin, true).next(1);
+    ASSERT_EQ(dealt.size(), 1u);
+    oracle::Placement places[2];
+    for (std::size_t side = 0; side < 2; ++side) {
+      const auto& numbers = poses[side].numbers();
+      std::copy(numbers.begin(), numbers.end(), places[side].begin());
+    }
+    // The twins measure where numbers are small: both surfaces moved by the same exact vector.
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      places[1][4 * axis + 3] -= places[0][4 * axis + 3];
+      places[0][4 * axis + 3] = 0;
+    }
+    const oracle::ContactBounds truth = oracle::contact_bounds(
+        *twins[names[0]], places[0], *twins[names[1]], places[1], {.precision = {1e-3 * reach, 0.05}});
+    ASSERT_LE(dealt[0].gap, truth.upper) << trial;
+    const bool dealt_out = !SceneBroadPhase(scene, margin).next(1).empty();
+    ASSERT_EQ(dealt_out, !dealt[0].separated_by_boxes());
+    if (truth.upper <= margin) {
+      ASSERT_TRUE(dealt_out) << trial;
+      ++near;
+    }
+    apart += dealt_out ? 0u : 1u;
+  }
+  EXPECT_GT(near, 100u);
+  EXPECT_GT(apart, 100u);
+}
+
+TEST(broad_phase, deals_out_all_of_a_thousand_equal_parts) {
+  Scene scene;
+  scene.parts.assign(1000, cube());
+  SceneBroadPhase pairs(scene);
+  std::uint32_t a = 0, b = 1;
+  std::uint64_t count = 0;
+  while (true) {
+    const std::vector<ScenePair> batch = pairs.next(1000);
+    if (batch.empty()) break;
+    EXPECT_LT(batch.size(), 200'000u);
+    for (const ScenePair& pair : batch) {
+      ASSERT_EQ(pair.parts, (PartPair{a, b}));
+      ++count;
+      if (++b == 1000) b = ++a + 1;
+    }
+  }
+  EXPECT_EQ(count, pairs.pair_count());
+  EXPECT_EQ(pairs.share(), 1);
+}
+
+TEST(broad_phase, does_not_depend_on_threads) {
+  std::mt19937_64 random(84);
+  const Scene scene = random_scene(random, 3000, 20);
+  const auto all = [&](int threads) {
+    SceneBroadPhase pairs(scene, 0.1, false, threads);
+    std::vector<PartPair> result;
+    for (std::vector<ScenePair> batch; !(batch = pairs.next(777)).empty();) {
+      for (const ScenePair& pair : batch) result.push_back(pair.parts);
+    }
+    return result;
+  };
+  const std::vector<PartPair> expected = all(1);
+  EXPECT_GT(expected.size(), 1000u);
+  EXPECT_EQ(all(2), expected);
+  EXPECT_EQ(all(3), expected);
+}
+
+TEST(scene, of_no_part_one_part_and_no_pairs_is_answered) {
+  Scene scene;
+  const auto none = [](const PairCollision&) { FAIL(); };
+  EXPECT_EQ(collide(scene, {}, none).pairs, 0u);
+  scene.parts.emplace_back(cube());
+  EXPECT_EQ(collide(scene, {}, none).pairs, 0u);
+  scene.parts.emplace_back(cube());
+  scene.pairs.emplace();
+  EXPECT_EQ(collide(scene, {}, none).pairs, 0u);
+}
+
+std::string refusal(const Scene& scene, double margin = 0) {
+  try {
+    static_cast<void>(SceneBroadPhase(scene, margin));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(scene, names_the_pair_margin_or_part_that_is_wrong) {
+  Scene scene{{cube(), cube(), cube()}};
+  EXPECT_NE(refusal(scene, -1).find("margin"), std::string::npos);
+  EXPECT_NE(refusal(scene, NAN).find("margin"), std::string::npos);
+  scene.pairs = {{0, 1}, {2, 3}};
+  EXPECT_NE(refusal(scene).find("pairs[1]: there is no part 3; the scene has 3"), std::string::npos);
+  scene.pairs = {{1, 1}};
+  EXPECT_NE(refusal(scene).find("pairs[0]: part 1 with itself"), std::string::npos);
+  scene.pairs.reset();
+  scene.margins = {{{0, 1}, 1}, {{1, 0}, 2}};
+  EXPECT_NE(refusal(scene).find("parts 0 and 1 have two"), std::string::npos);
+  scene.margins = {{{0, 1}, INFINITY}};
+  EXPECT_NE(refusal(scene).find("margins[0]"), std::string::npos);
+  scene.margins.clear();
+  ControlMesh open = cube().mesh();
+  open.face_offsets.pop_back();
+  open.face_vertices.resize(open.face_offsets.back());
+  scene.parts.emplace_back(Surface(open, {.scheme = Scheme::flat}));
+  try {
+    collide(
+        scene, {.solid = true}, [](const PairCollision&) {}, 1);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("parts 0 and 3"), std::string::npos) << error.what();
+  }
+}
+
+TEST(scene, ends_where_the_sink_throws_or_a_stop_is_requested) {
+  Scene scene;
+  scene.parts.assign(40, cube());
+  int taken = 0;
+  EXPECT_THROW(collide(
+                   scene, {},
+                   [&](const PairCollision&) {
+                     if (++taken == 5) throw std::runtime_error("full");
+                   },
+                   2),
+               std::runtime_error);
+  EXPECT_EQ(taken, 5);
+  const std::atomic<bool> stop{true};
+  EXPECT_THROW(
+      collide(scene, {}, [](const PairCollision&) { FAIL(); }, 2, {.on_progress = {}, .stop = &stop}),
+      Interrupted);
+}
+
+}  // namespace
+}  // namespace snug
