@@ -36,6 +36,17 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     return _zipped(wheel_directory, files)
 
 
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    """Without it pip would build once more, to read them from a wheel."""
+    folder = pathlib.Path(metadata_directory) / f"snug-{version()}.dist-info"
+    folder.mkdir()
+    (folder / "METADATA").write_text(_metadata(), encoding="utf-8")
+    return folder.name
+
+
+prepare_metadata_for_build_editable = prepare_metadata_for_build_wheel
+
+
 def build_editable(wheel_directory, config_settings=None, metadata_directory=None):
     """The files in Python are links to those in the tree; C++ is built again by pip install -e."""
     staged = _built().parent.parent

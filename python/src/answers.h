@@ -152,7 +152,8 @@ class AnswerClass {
           }
           const auto bytes = state[3].cast<std::string>();
           std::vector<T> many(bytes.size() / sizeof(T));
-          std::memcpy(static_cast<void*>(many.data()), bytes.data(), many.size() * sizeof(T));
+          if (!many.empty())
+            std::memcpy(static_cast<void*>(many.data()), bytes.data(), many.size() * sizeof(T));
           if (!state[2].cast<bool>()) return Self(std::move(many));
           if (many.size() != 1) throw py::value_error("pickled by another version of snug");
           return Self(many[0]);

@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <string_view>
 
 #include <snug/error.h>
 
@@ -61,8 +62,10 @@ std::optional<double> number_of(const py::object& given, const char* what) {
 
 std::optional<double> length_of(const py::object& given, double size, const char* what) {
   if (!py::isinstance<py::str>(given)) return number_of(given, what);
-  const auto text = given.cast<std::string>();
-  std::string_view digits = text;
+  Py_ssize_t bytes = 0;
+  const char* const text = PyUnicode_AsUTF8AndSize(given.ptr(), &bytes);  // which the object keeps
+  if (text == nullptr) throw py::error_already_set();
+  std::string_view digits(text, static_cast<std::size_t>(bytes));
   while (digits.starts_with(' ')) digits.remove_prefix(1);
   while (digits.ends_with(' ')) digits.remove_suffix(1);
   const bool percent = digits.ends_with('%');
@@ -71,7 +74,7 @@ std::optional<double> length_of(const py::object& given, double size, const char
   double number = 0;
   const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   if (fault != std::errc() || end != digits.data() + digits.size() || !std::isfinite(number)) {
-    refuse(std::string(what) + ": '" + text +
+    refuse(std::string(what) + ": '" + std::string(text) +
            "' is not a length; give mesh units (0.01) or percent of the size (\"1%\")");
   }
   const double length = percent ? number / 100 * size : number;

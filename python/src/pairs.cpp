@@ -19,13 +19,12 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 template <class Enum>
 Enum named(const py::object& given, std::initializer_list<std::pair<const char*, Enum>> names,
            const char* what) {
-  std::string known;
   if (py::isinstance<py::str>(given)) {
-    const auto word = given.cast<std::string>();
     for (const auto& [name, value] : names) {
-      if (word == name) return value;
+      if (PyUnicode_CompareWithASCIIString(given.ptr(), name) == 0) return value;
     }
   }
+  std::string known;
   for (const auto& [name, value] : names) known += (known.empty() ? "'" : ", '") + std::string(name) + "'";
   throw InputError(InputProblem::value,
                    std::string(what) + ": " + py::repr(given).cast<std::string>() + " is none of " + known);

@@ -12,7 +12,9 @@ import snug
 
 HERE = pathlib.Path(__file__).resolve().parent
 PACKAGE = pathlib.Path(snug.__file__).parent.parent
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(PACKAGE), "MYPYPATH": str(PACKAGE), "MYPY_CACHE_DIR": os.devnull}
+ENVIRONMENT = {**os.environ, "MYPY_CACHE_DIR": os.devnull}
+if PACKAGE.name != "site-packages":  # there mypy finds it by itself
+    ENVIRONMENT.update(PYTHONPATH=str(PACKAGE), MYPYPATH=str(PACKAGE))
 
 pytestmark = pytest.mark.skipif(
     shutil.which("mypy") is None or shutil.which("stubtest") is None or "libasan" in os.environ.get("LD_PRELOAD", ""),
