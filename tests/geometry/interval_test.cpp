@@ -38,6 +38,35 @@ bool holds(const Interval& range, const Exact& x) {
   return mpfr_cmp_d(x.value_, range.lower) >= 0 && mpfr_cmp_d(x.value_, range.upper) <= 0;
 }
 
+TEST(interval, sines_cosines_and_roots_contain_the_exact_ones) {
+  std::mt19937_64 random(7);
+  for (int trial = 0; trial < 4000; ++trial) {
+    // Near multiples of a quarter turn on purpose.
+    const double quarters = static_cast<double>(random() % 41) - 20;
+    const double near =
+        quarters * 1.5707963267948966 + (random() % 2 ? std::ldexp(adversarial(random), -60) : 0);
+    const double x = random() % 3 ? std::fmod(adversarial(random), 1e6) : near;
+    const double width = random() % 2 ? 0 : 1e-3 * static_cast<double>(random() % 1000);
+    const Interval angle(x, x + width);
+    const auto [sine, cosine] = sine_cosine(angle);
+    for (const double y : {angle.lower, angle.upper, middle(angle)}) {
+      const Exact u(y);
+      Exact r(0);
+      mpfr_sin(r.value_, u.value_, MPFR_RNDN);
+      ASSERT_TRUE(holds(sine, r)) << "sin " << y;
+      mpfr_cos(r.value_, u.value_, MPFR_RNDN);
+      ASSERT_TRUE(holds(cosine, r)) << "cos " << y;
+      if (y < 0) continue;
+      mpfr_sqrt(r.value_, u.value_, MPFR_RNDN);
+      ASSERT_TRUE(holds(square_root(angle), r)) << "root " << y;
+    }
+    if (width == 0 && std::fabs(x) <= 4) {
+      ASSERT_LE(sine.upper - sine.lower, 64 * 0x1p-53);
+      ASSERT_LE(cosine.upper - cosine.lower, 64 * 0x1p-53);
+    }
+  }
+}
+
 TEST(interval, operations_contain_the_exact_results_of_their_ends) {
   std::mt19937_64 random(1);
   for (int trial = 0; trial < 20000; ++trial) {

@@ -86,7 +86,7 @@ ControlMesh lattice_part(std::mt19937_64& random) {
 TEST(time_of_contact, of_translated_polyhedra_holds_the_exact_one) {
   std::mt19937_64 random(1);
   int met = 0, missed = 0, proved = 0, touched = 0, reached = 0;
-  for (int trial = 0; trial < 400; ++trial) {
+  for (int trial = 0; trial < 300; ++trial) {
     Part a(lattice_part(random)), b(lattice_part(random));
     const auto whole = [&](int most) {
       return static_cast<double>(static_cast<int>(random() % static_cast<unsigned>(2 * most + 1)) - most);
