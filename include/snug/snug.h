@@ -13,5 +13,6 @@
 #include <snug/mesh.h>
 #include <snug/motion.h>
 #include <snug/ray.h>
+#include <snug/self.h>
 #include <snug/surface.h>
 #include <snug/tessellate.h>
