@@ -15,9 +15,13 @@ namespace snug {
 namespace {
 
 // Directions of the layout that are tried, and how many of the most promising are tried in full.
-constexpr int directions = 12, tried_directions = 3;
+constexpr int directions = 12, tried_layouts = 4;
+// Edges of the border that are less steep, and lead to its top or bottom, are laid out level there.
+constexpr std::array<double, 3> level_slopes{0, 0.35, 0.6};
 // Levels that a piece is split for its coefficients to tell, and rings around a corner looked at one by one.
-constexpr unsigned polynomial_levels = 2, passing_levels = 6, max_rings = 12;
+constexpr unsigned polynomial_levels = 2, passing_levels = 6, max_rings = 40;
+// Of a net that stands for all further rings, against its size: more would hardly do.
+constexpr double most_error = 0.02;
 // Layouts have so many bits: differences of their numbers, halves and products of two differences are exact.
 constexpr double layout_grain = 0x1p-20;
 
@@ -151,7 +155,8 @@ class SectorCheck {
         }
         return true;
       };
-      if (ring_holds(tip.lasting(patch))) return true;
+      const Patch lasting = tip.lasting(patch);
+      if (lasting.error < most_error * lasting.largest && ring_holds(lasting)) return true;
       if (!ring_holds(patch)) return false;
       patch = split(patch, corner);
       border &= ~(1u << ((corner + 1) % 3));
@@ -356,8 +361,9 @@ class StarCheck {
     return normal;
   }
 
-  // Places of the spokes' ends, turned; the border's heights rise once and fall once. False for no layout.
-  bool lay_out(const Turn& turn, std::vector<Point2>& ring) const {
+  // Places of the spokes' ends, turned; edges near the top and the bottom less steep than `slope` are level.
+  // False for no layout: the border's heights must rise once and fall once.
+  bool lay_out(const Turn& turn, double slope, std::vector<Point2>& ring) const {
     double largest = 0;
     ring.clear();
     for (const Vector3& spoke : spokes_) {
@@ -368,33 +374,71 @@ class StarCheck {
     if (!(largest > 1e-100) || !(largest < 1e100)) return false;
     const double grain = std::exp2(std::ceil(std::log2(largest))) * layout_grain;
     for (Point2& p : ring) p = {grain * std::round(p.x / grain), grain * std::round(p.y / grain)};
-    const std::size_t n = sectors_.size();
-    for (std::size_t s = 0; s < n; ++s) {
+    // The centre of an open star is a point of its border, too.
+    if (!closed_) ring.push_back({});
+    if (slope > 0) {
+      make_level(slope, 1, ring);
+      make_level(slope, -1, ring);
+    }
+    const bool shaped = rises_once(ring);
+    if (!closed_) ring.pop_back();
+    for (std::size_t s = 0; s < sectors_.size(); ++s) {
       if (!(cross(ring[s], ring[(s + 1) % ring.size()]) > 0)) return false;
     }
-    std::vector<double> heights;
-    if (!closed_) heights.push_back(0);
-    for (const Point2& p : ring) heights.push_back(p.y);
-    return rises_once(heights);
+    return shaped;
   }
 
-  // Once around, do the heights go up once and down once, and is no edge level?
-  static bool rises_once(const std::vector<double>& heights) {
-    const std::size_t n = heights.size();
-    std::size_t tops = 0;
+  // Raises (for side 1) what the top is reached from by edges that are less steep. The centre stays.
+  void make_level(double slope, double side, std::vector<Point2>& border) const {
+    const std::size_t n = border.size();
+    std::size_t top = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      const double before = heights[i], at = heights[(i + 1) % n], after = heights[(i + 2) % n];
-      if (at == before) return false;
-      if (at > before && at > after) ++tops;
+      if (side * border[i].y > side * border[top].y) top = i;
     }
-    return tops == 1;
+    double height = border[top].y;
+    std::vector<std::size_t> raised;
+    for (const std::size_t step : {std::size_t{1}, n - 1}) {
+      for (std::size_t k = 0, at = top; k + 2 < n; ++k) {
+        const std::size_t next = (at + step) % n;
+        const double dx = border[next].x - border[at].x, dy = border[next].y - border[at].y;
+        if (std::fabs(dy) >= slope * std::hypot(dx, dy)) break;
+        raised.push_back(next);
+        at = next;
+      }
+    }
+    if (!closed_ && (top == n - 1 || std::find(raised.begin(), raised.end(), n - 1) != raised.end())) height = 0;
+    border[top].y = height;
+    for (const std::size_t i : raised) border[i].y = height;
   }
 
-  // The least slope of an edge of the border.
+  // Once around, do the heights go up once and down once, with level edges at the top and the bottom alone?
+  static bool rises_once(const std::vector<Point2>& border) {
+    const std::size_t n = border.size();
+    double least = INFINITY, most = -INFINITY;
+    for (const Point2& p : border) {
+      least = std::min(least, p.y);
+      most = std::max(most, p.y);
+    }
+    std::size_t turns = 0;
+    double before = 0;  // the last direction but level; of the first edge it is found going around
+    for (std::size_t i = 0; i < 2 * n; ++i) {
+      const double from = border[i % n].y, to = border[(i + 1) % n].y;
+      if (from == to) {
+        if (from != least && from != most) return false;
+        continue;
+      }
+      const double now = to > from ? 1 : -1;
+      if (i >= n && now != before) ++turns;
+      before = now;
+    }
+    return turns == 2;
+  }
+
+  // The least slope of an edge of the border that is not level.
   double steepness(const std::vector<Point2>& ring) const {
-    double least = INFINITY;
+    double least = 1;
     const auto add = [&](Point2 a, Point2 b) {
-      least = std::min(least, std::fabs(b.y - a.y) / std::hypot(b.x - a.x, b.y - a.y));
+      if (a.y != b.y) least = std::min(least, std::fabs(b.y - a.y) / std::hypot(b.x - a.x, b.y - a.y));
     };
     for (std::size_t s = 0; s < sectors_.size(); ++s) add(ring[s], ring[(s + 1) % ring.size()]);
     if (!closed_) {
@@ -408,20 +452,24 @@ class StarCheck {
     struct Trial {
       double steepness;
       Turn turn;
+      double slope;
     };
     std::vector<Trial> trials;
     std::vector<Point2> ring;
-    for (int d = 0; d < 2 * directions; ++d) {
-      const double angle = std::numbers::pi * d / directions;
-      const Turn turn = d == 0 ? Turn{} : Turn{std::cos(angle), std::sin(angle)};
-      if (!turned_ && d != 0) break;
-      if (lay_out(turn, ring)) trials.push_back({steepness(ring), turn});
+    for (const double slope : level_slopes) {
+      for (int d = 0; d < 2 * directions; ++d) {
+        const double angle = std::numbers::pi * d / directions;
+        const Turn turn = d == 0 ? Turn{} : Turn{std::cos(angle), std::sin(angle)};
+        if (!turned_ && d != 0) break;
+        // What is level is paid for by sides that are not where they are seen.
+        if (lay_out(turn, slope, ring)) trials.push_back({steepness(ring) - 0.5 * slope, turn, slope});
+      }
     }
     std::stable_sort(trials.begin(), trials.end(),
                      [](const Trial& a, const Trial& b) { return a.steepness > b.steepness; });
-    if (trials.size() > tried_directions) trials.resize(tried_directions);
+    if (trials.size() > tried_layouts) trials.resize(tried_layouts);
     return std::any_of(trials.begin(), trials.end(), [&](const Trial& trial) {
-      static_cast<void>(lay_out(trial.turn, ring));
+      static_cast<void>(lay_out(trial.turn, trial.slope, ring));
       return monotone(trial.turn, ring);
     });
   }

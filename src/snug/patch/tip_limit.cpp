@@ -150,13 +150,18 @@ bool TipLimit::find_eigenvalues(const Kind& kind, const Stencils& step) {
   return true;
 }
 
-// By iteration: no proof rests on how near they come.
+// By iteration: no proof rests on how near they come. Constants, which no extent sees, would grow.
 bool TipLimit::find_directions(const Stencils& step) {
   for (std::size_t t = 0; t < 2; ++t) directions_[t] = rows_[t];
   std::array<std::vector<double>, 2> next;
   double before = INFINITY;
   for (int i = 0; i < max_iterations; ++i) {
-    for (std::size_t t = 0; t < 2; ++t) apply(step, directions_[t], next[t]);
+    for (std::size_t t = 0; t < 2; ++t) {
+      apply(step, directions_[t], next[t]);
+      const auto [least, most] = std::minmax_element(next[t].begin(), next[t].end());
+      const double middle = 0.5 * (*least + *most);
+      for (double& x : next[t]) x -= middle;
+    }
     const auto a = tangent(next[0]), b = tangent(next[1]);
     const double determinant = a[0] * b[1] - a[1] * b[0];
     if (!(std::fabs(determinant) > 1e-100)) return false;
