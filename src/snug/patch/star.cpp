@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <optional>
 
@@ -303,28 +304,37 @@ class StarCheck {
   // the tangent that shrinks less.
   bool suit_tips() {
     std::optional<std::size_t> at;
+    std::size_t dominant = 0;
+    std::optional<CornerFan> before;
     std::array<Vector3, 2> tangents;
     for (std::size_t s = 0; s < sectors_.size(); ++s) {
       const Patch& patch = *sectors_[s].patch;
       const TipLimit* tip = tips_.find(*patch.kind);
       if (tip == nullptr || tip->conformal()) continue;
       const std::size_t corner = (tip->corner() + patch.first) % 3;
-      if (corner != sectors_[s].centre) return false;
-      // All sectors around the centre have the same tangents, but for their lengths.
+      const std::size_t after = (corner + 3 - sectors_[s].centre) % 3;
+      const std::size_t vertex = after == 0 ? SIZE_MAX : (s + after - 1) % spokes_.size();
+      if (at && (*at != vertex || tip->dominant() != dominant)) return false;
+      dominant = tip->dominant();
+      // All sectors around one vertex have the same tangent along its border or crease, but for its length; the
+      // same one across it only on one side of a crease.
+      const CornerFan& fan = patch.kind->corner(tip->corner());
+      if (dominant == 1 && before && !follows(*before, fan, after == 0)) return false;
+      before = fan;
       const Stencils& rows = patch.kind->corner_tangents();
       double off = 0;
       for (std::size_t t = 0; t < 2; ++t) {
         const std::size_t which = t == 0 ? tip->dominant() : 1 - tip->dominant();
         const Vector3 tangent = rows.apply<Vector3>(2 * tip->corner() + which, patch.points);
         const Stencils::Row row = rows.row(2 * tip->corner() + which);
-        const double error = (row.error + gamma_bound(row.sources.size() + 2) * row.abs_sum) * patch.largest +
-                             (row.abs_sum + row.error) * patch.error;
+        const double row_error = TipLimit::row_error(row) + gamma_bound(row.sources.size() + 2) * row.abs_sum;
+        const double error = enlarged(row_error * patch.largest + (row.abs_sum + row_error) * patch.error);
         if (!(length(tangent) > 0x1p20 * error)) return false;
         if (!at) tangents[t] = tangent;
         if (t == 0) off = spatial_error(error) / length(tangent);
       }
       if (!at) {
-        at = s;
+        at = vertex;
         const Vector3 normal = cross(tangents[0], tangents[1]);
         // Dual to the tangents.
         const Vector3 x = normalized(cross(tangents[1], normal)), y = normalized(cross(normal, tangents[0]));
@@ -350,6 +360,14 @@ class StarCheck {
           enlarged(std::fabs(dot(frame_.axes[1], direction)) + size * (2 * off + gamma_bound(32))));
     }
     return true;
+  }
+
+  // Does a sector's fan show it to be the next one on the same side of all creases, or half of the same quad?
+  // Around the centre sectors come counter-clockwise, around any other vertex clockwise.
+  static bool follows(const CornerFan& before, const CornerFan& after, bool counter_clockwise) {
+    if (before == after) return true;
+    const CornerFan &first = counter_clockwise ? before : after, &second = counter_clockwise ? after : before;
+    return second.before == first.before + 1 && second.after + 1 == first.after;
   }
 
   Vector3 cross_of_spokes() const {

@@ -105,7 +105,7 @@ bool TipLimit::find_eigenvalues(const Kind& kind, const Stencils& step) {
     rows_[t].assign(size_, 0.0);
     for (std::size_t i = 0; i < row.sources.size(); ++i) rows_[t][row.sources[i]] += row.weights[i];
     row_sums_[t] = row.abs_sum;
-    row_errors_[t] = enlarged(row.error + gamma_bound(8) * row.abs_sum);
+    row_errors_[t] = row_error(row);
     const double largest = largest_of(rows_[t]);
     if (!(largest > 0)) return false;
     Interval value{0, 1};
@@ -285,6 +285,7 @@ Patch TipLimit::lasting(const Patch& values) const {
   net.first = values.first;
   net.points.resize(size_);
   std::array<std::vector<double>, 2> y;
+  std::array<double, 2> sizes{}, errors{};
   for (std::size_t c = 0; c < 2; ++c) {
     y[c].resize(size_);
     for (std::size_t i = 0; i < size_; ++i) y[c][i] = c == 0 ? values.points[i].x : values.points[i].y;
@@ -313,14 +314,25 @@ Patch TipLimit::lasting(const Patch& values) const {
       largest = std::max(largest, std::fabs(m[0] * directions_[0][i]) + std::fabs(m[1] * directions_[1][i]));
       const double value = kept[0] * directions_[0][i] + kept[1] * directions_[1][i];
       (c == 0 ? net.points[i].x : net.points[i].y) = value;
-      net.largest = std::max(net.largest, std::fabs(value));
+      sizes[c] = std::max(sizes[c], std::fabs(value));
     }
     for (std::size_t t = 0; t < 2; ++t) {
       error += direction_errors_[t] * (std::fabs(m[t]) + off[t]) + off[t] * extents_[t];
     }
     known = extent(rest) + values.error + gamma_bound(8) * 2 * largest;
-    net.error = std::max(net.error, enlarged(error + growth_ * (known + error) + gamma_bound(4) * 2 * largest));
+    errors[c] = enlarged(error + growth_ * (known + error) + gamma_bound(4) * 2 * largest);
   }
+  // The two values shrink at different rates: each is scaled by a power of two to a size of about 1.
+  if (!conformal_ && sizes[0] > 0x1p-900 && sizes[1] > 0x1p-900) {
+    const std::array<double, 2> scales{std::exp2(-std::ilogb(sizes[0])), std::exp2(-std::ilogb(sizes[1]))};
+    for (std::size_t c = 0; c < 2; ++c) {
+      sizes[c] *= scales[c];
+      errors[c] = enlarged(errors[c] * scales[c]);
+    }
+    for (Vector3& p : net.points) p = {p.x * scales[0], p.y * scales[1], 0};
+  }
+  net.largest = std::max(sizes[0], sizes[1]);
+  net.error = enlarged(std::max(errors[0], errors[1]));
   return net;
 }
 

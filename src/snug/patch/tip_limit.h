@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include <snug/geometry/rounding.h>
 #include <snug/patch/patch.h>
 
 namespace snug {
@@ -20,6 +21,11 @@ namespace snug {
 /// Source:    derivations/self_contact.md, "At extraordinary corners".
 class TipLimit {
  public:
+  /// Upper bound of the error of a tangent row's entries, in sum: those of creases and boundaries come from
+  /// sines in double precision, and from some ten operations and one sum over the faces each.
+  static double row_error(const Stencils::Row& row) {
+    return enlarged(row.error + 0x1p12 * unit_roundoff * row.abs_sum);
+  }
   [[nodiscard]] std::size_t corner() const { return corner_; }  ///< of the kind
   /// Are both eigenvalues proved to be equal? Then any two directions of space do.
   [[nodiscard]] bool conformal() const { return conformal_; }
