@@ -124,6 +124,9 @@ class SectorCheck {
       : tips_(tips), condition_(condition), place_(place) {}
 
   [[nodiscard]] bool holds(const Patch& patch, unsigned border) {
+    // The star's axes suit corners of its own pieces alone.
+    const TipLimit* const tip = patch.kind->polynomial() ? nullptr : tips_.find(*patch.kind);
+    if (tip != nullptr) return tip_holds(*tip, patch, border, 1, passing_levels);
     return holds(patch, border, 1, patch.kind->polynomial() ? 1 : passing_levels);
   }
 
@@ -132,7 +135,9 @@ class SectorCheck {
   bool holds(const Patch& patch, unsigned border, double side, unsigned levels) {
     if (patch.kind->polynomial()) return polynomial_holds(patch, border, side, levels);
     if (levels == 0) return false;
-    if (const TipLimit* tip = tips_.find(*patch.kind)) return tip_holds(*tip, patch, border, side, levels - 1);
+    if (const TipLimit* tip = tips_.find(*patch.kind)) {
+      return tip->conformal() && tip_holds(*tip, patch, border, side, levels - 1);
+    }
     for (unsigned child = 0; child < 4; ++child) {
       if (!child_holds(patch, child, border, side, levels - 1)) return false;
     }
@@ -319,7 +324,7 @@ class StarCheck {
       // All sectors around one vertex have the same tangent along its border or crease, but for its length; the
       // same one across it only on one side of a crease.
       const CornerFan& fan = patch.kind->corner(tip->corner());
-      if (dominant == 1 && before && !follows(*before, fan, after == 0)) return false;
+      if (dominant == 1 && (fan.faces() < 3 || (before && !beside(*before, fan)))) return false;
       before = fan;
       const Stencils& rows = patch.kind->corner_tangents();
       double off = 0;
@@ -362,12 +367,11 @@ class StarCheck {
     return true;
   }
 
-  // Does a sector's fan show it to be the next one on the same side of all creases, or half of the same quad?
-  // Around the centre sectors come counter-clockwise, around any other vertex clockwise.
-  static bool follows(const CornerFan& before, const CornerFan& after, bool counter_clockwise) {
-    if (before == after) return true;
-    const CornerFan &first = counter_clockwise ? before : after, &second = counter_clockwise ? after : before;
-    return second.before == first.before + 1 && second.after + 1 == first.after;
+  // Are sectors next to each other on the same side of all creases, or halves of the same quad? With three
+  // faces and more on a side no last face of one side looks like the neighbour of the first one of the other.
+  static bool beside(const CornerFan& a, const CornerFan& b) {
+    return a == b || (a.before + 1 == b.before && a.after == b.after + 1) ||
+           (b.before + 1 == a.before && b.after == a.after + 1);
   }
 
   Vector3 cross_of_spokes() const {

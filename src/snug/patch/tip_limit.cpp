@@ -279,6 +279,27 @@ std::optional<TipLimit> make_tip_limit(const Kind& kind) {
   return std::nullopt;
 }
 
+// Upper bound of the extents of A^j r over the least eigenvalue's powers: some powers are taken, the others
+// shrink what these leave. `rest` is r up to extents of `error`.
+double TipLimit::largest_rest(std::vector<double> rest, double error) const {
+  constexpr int powers = 16;
+  const Stencils& step = kind_->children()[corner_].stencils;
+  const double least = std::min(eigenvalues_[0].lower, eigenvalues_[1].lower);
+  const double rounding = step.max_error() + gamma_bound(size_ + 2) * step.max_abs_sum();
+  double best = INFINITY, before = 0, scale = 1;
+  std::vector<double> next;
+  for (int i = 0; i <= powers; ++i) {
+    const double now = enlarged((extent(rest) + error) / scale);
+    best = std::min(best, std::max(before, enlarged(growth_ * now)));
+    before = std::max(before, now);
+    apply(step, rest, next);
+    error = enlarged(step.max_abs_sum() * error + rounding * largest_of(rest));
+    rest.swap(next);
+    scale = scale * least * (1 - gamma_bound(2));
+  }
+  return best;
+}
+
 Patch TipLimit::lasting(const Patch& values) const {
   Patch net;
   net.kind = kind_;
@@ -305,7 +326,7 @@ Patch TipLimit::lasting(const Patch& values) const {
       if (c == 0) off[other] += std::fabs(m[other]);
       if (c == 1) m[other] = off[other] = 0;
     }
-    double error = 0, known = 0;
+    double error = 0;
     std::vector<double> rest(size_);
     double largest = values.largest;
     for (std::size_t i = 0; i < size_; ++i) {
@@ -319,8 +340,8 @@ Patch TipLimit::lasting(const Patch& values) const {
     for (std::size_t t = 0; t < 2; ++t) {
       error += direction_errors_[t] * (std::fabs(m[t]) + off[t]) + off[t] * extents_[t];
     }
-    known = extent(rest) + values.error + gamma_bound(8) * 2 * largest;
-    errors[c] = enlarged(error + growth_ * (known + error) + gamma_bound(4) * 2 * largest);
+    const double off_rest = enlarged(values.error + gamma_bound(8) * 2 * largest + error);
+    errors[c] = enlarged(error + largest_rest(std::move(rest), off_rest) + gamma_bound(4) * 2 * largest);
   }
   // The two values shrink at different rates: each is scaled by a power of two to a size of about 1.
   if (!conformal_ && sizes[0] > 0x1p-900 && sizes[1] > 0x1p-900) {

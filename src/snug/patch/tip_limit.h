@@ -44,6 +44,7 @@ class TipLimit {
   [[nodiscard]] bool find_eigenvalues(const Kind& kind, const Stencils& step);
   [[nodiscard]] bool find_directions(const Stencils& step);
   [[nodiscard]] bool bound_remainders(const Stencils& step);
+  [[nodiscard]] double largest_rest(std::vector<double> rest, double error) const;
   [[nodiscard]] std::array<double, 2> tangent(const std::vector<double>& values) const;
 
   const Kind* kind_ = nullptr;
