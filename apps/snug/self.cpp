@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "common.h"
 #include "length.h"
 #include "progress_bar.h"
@@ -13,14 +15,8 @@ struct Options : CommonOptions {
   std::string mesh;
 };
 
-void write_json(JsonWriter& json, const SelfContact& found, const SelfContactOptions& wanted, bool primal) {
+void write_json(JsonWriter& json, const SelfContact& found, bool primal) {
   json.field("verdict", name_of(found.verdict));
-  json.key("tolerance");
-  if (wanted.tolerance) {
-    json.value(*wanted.tolerance).field("radius", *wanted.along);
-  } else {
-    json.null().key("radius").null();
-  }
   json.key("pairs").begin_array();
   for (const SelfContactPair& pair : found.pairs) {
     json.begin_object().field("verdict", name_of(pair.verdict));
@@ -67,7 +63,7 @@ ExitStatus run(const Options& options) {
     naming(options.mesh, [&] { found = self_contact(surface, wanted, monitor); });
   }
   report.heads({options.mesh}, {name_of(surface.options().scheme)});
-  if (report.json()) write_json(report.write(), found, wanted, surface.rules().primal);
+  if (report.json()) write_json(report.write(), found, surface.rules().primal);
   write_text(report, found, surface.rules().owner());
   return report.finish(found.verdict != SelfVerdict::undecided);
 }

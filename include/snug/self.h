@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include <snug/surface.h>
@@ -11,30 +10,24 @@ namespace snug {
 
 /// Does a surface meet itself?
 enum class SelfVerdict : std::uint8_t {
-  clear,         ///< proved: no two parameters have one point, with a tolerance: none are near each other
-  near,          ///< two points are at most the tolerance apart, and farther along the surface
+  clear,         ///< proved: no two parameters have one point
   intersecting,  ///< proved: two pieces without a common corner cross each other
   undecided,     ///< none of these could be shown
 };
 [[nodiscard]] SNUG_API const char* name_of(SelfVerdict verdict);
 
 struct SelfContactOptions {
-  /// > 0, mesh units: points at most this far apart count as near. Without it only contact counts.
-  std::optional<double> tolerance{};
-  /// With a tolerance: nearness counts between points farther apart than this along the surface, at least twice
-  /// the tolerance. Default: four times the tolerance.
-  std::optional<double> along{};
   std::uint64_t budget = 1'000'000;  ///< most stars and pairs of pieces looked at, about
   unsigned levels = 10;              ///< most levels below the coarsest one at which stars are looked at
   int threads = 0;                   ///< 0: all cores
 };
 
-/// Two places of a surface that meet, are near each other, or are not known not to be.
+/// Two places of a surface that meet, or are not known not to.
 struct SelfContactPair {
-  SelfVerdict verdict = SelfVerdict::undecided;
+  SelfVerdict verdict = SelfVerdict::undecided;        ///< intersecting or undecided
   std::array<SurfaceParameter, 2> at;  ///< on the two pieces in question
   std::array<Point3, 2> points;        ///< the limit points there, in double precision
-  Interval distance;                   ///< contains the distance of the two pieces
+  Interval distance;                   ///< contains the distance of the two pieces; [0, 0] where they cross
 };
 
 /// The answer to "does this surface meet itself?"
@@ -54,13 +47,13 @@ struct SelfContact {
 /// Pieces without a common corner are proved to be apart, or to cross each other; those around a vertex are
 /// proved to have no two parameters with one point, or all are split.
 ///
-/// Guarantee: `clear` and `intersecting` hold in exact arithmetic for the given doubles, and `near` for points
-///            that have been evaluated with their errors. Results do not depend on threads. Places where the
-///            surface is no immersion (spikes, darts, folded creases, collapsed patches, smooth boundary
-///            vertices of many faces) are `undecided`, never `clear`.
-/// Errors:    InputError: (value) for a tolerance or a distance that is not finite and positive, or less than
-///            twice the tolerance; (refused) if no face has a limit surface. Interrupted.
-/// Cost:      about 0.1 ms a patch (docs/self_contact.md).
+/// Guarantee: `clear` and `intersecting` hold in exact arithmetic for the given doubles. Results do not depend
+///            on threads. Places where the surface is no immersion (spikes, folded creases, collapsed patches,
+///            vertices and edges that are not manifold) are `undecided`, never `clear`; so are darts and most
+///            smooth extraordinary vertices of boundaries and creases.
+/// Errors:    InputError: (value) for more than 20 levels; (refused) if no face has a limit surface; (unrepresentable) if a result
+///            does not fit a double. Interrupted.
+/// Cost:      0.3 to 1 ms a patch (docs/self_contact.md).
 /// Source:    derivations/self_contact.md.
 [[nodiscard]] SNUG_API SelfContact self_contact(const Surface& surface, const SelfContactOptions& options = {},
                                                 const WorkMonitor& monitor = {});

@@ -22,7 +22,6 @@ namespace snug {
 namespace {
 
 constexpr auto verdict_names = std::to_array<Named<SelfVerdict>>({{"clear", SelfVerdict::clear},
-                                                                  {"near", SelfVerdict::near},
                                                                   {"intersecting", SelfVerdict::intersecting},
                                                                   {"undecided", SelfVerdict::undecided}});
 
@@ -174,7 +173,9 @@ class SelfSearch {
           }
         });
     for (const QuadraticTriangle& set : sets) {
-      if (!std::isfinite(set.error)) throw InputError(InputProblem::refused, "self: the surface is too large");
+      if (!std::isfinite(set.error)) {
+        throw InputError(InputProblem::unrepresentable, "a bound of a patch does not fit a double; move the mesh nearer to the origin");
+      }
     }
     const QuadraticBvh tree(sets, options_.threads);
     std::vector<std::vector<NamePair>> found(pieces.size());
@@ -322,21 +323,25 @@ class SelfSearch {
     answer_.verdict = crossing_         ? SelfVerdict::intersecting
                       : found_.empty() ? SelfVerdict::clear
                                        : SelfVerdict::undecided;
-    const PowerOfTwo back = surface_.scale().inverse();
     for (const Found& found : found_) {
       const bool crossing = found.what == Found::What::crossing;
       if (crossing != crossing_ || answer_.pairs.size() == SelfContact::max_pairs) continue;
       SelfContactPair pair;
       pair.verdict = crossing ? SelfVerdict::intersecting : SelfVerdict::undecided;
       const std::array<PieceName, 2> names{found.pieces.first, found.pieces.second};
+      double error = 0;
       for (std::size_t s = 0; s < 2; ++s) {
         pair.at[s] = place_of(surface_, PatchId(names[s].patch), to_face(names[s].path(), found.at[s]));
-        pair.points[s] = evaluate(surface_, pair.at[s]).position;
+        const SurfacePoint point = evaluate(surface_, pair.at[s]);
+        pair.points[s] = point.position;
+        error += spatial_error(point.error);
       }
-      pair.distance = {0, crossing ? 0.0 : length(pair.points[1] - pair.points[0])};
+      if (!crossing) {
+        const double apart = length(pair.points[1] - pair.points[0]);
+        pair.distance.upper = enlarged(apart + error + gamma_bound(4) * max_abs(pair.points[0] - Point3{}));
+      }
       answer_.pairs.push_back(pair);
     }
-    static_cast<void>(back);
     return answer_;
   }
 
@@ -356,6 +361,7 @@ const char* name_of(SelfVerdict verdict) { return name_in(verdict_names, verdict
 
 SelfContact self_contact(const LimitSurface& surface, const SelfContactOptions& options,
                          const WorkMonitor& monitor) {
+  require_value(options.levels <= 20, "self: more than 20 levels; give fewer");
   return SelfSearch(surface, options, monitor).run();
 }
 
