@@ -24,10 +24,10 @@ struct SelfContactOptions {
 
 /// Two places of a surface that meet, or are not known not to.
 struct SelfContactPair {
-  SelfVerdict verdict = SelfVerdict::undecided;        ///< intersecting or undecided
-  std::array<SurfaceParameter, 2> at;  ///< on the two pieces in question
-  std::array<Point3, 2> points;        ///< the limit points there, in double precision
-  Interval distance;                   ///< contains the distance of the two pieces; [0, 0] where they cross
+  SelfVerdict verdict = SelfVerdict::undecided;  ///< intersecting or undecided
+  std::array<SurfaceParameter, 2> at;            ///< on the two pieces in question
+  std::array<Point3, 2> points;                  ///< the limit points there, in double precision
+  Interval distance;  ///< contains the distance of the two pieces; [0, 0] where they cross
 };
 
 /// The answer to "does this surface meet itself?"
@@ -55,7 +55,8 @@ struct SelfContact {
 ///            does not fit a double. Interrupted.
 /// Cost:      0.3 to 1 ms a patch (docs/self_contact.md).
 /// Source:    derivations/self_contact.md.
-[[nodiscard]] SNUG_API SelfContact self_contact(const Surface& surface, const SelfContactOptions& options = {},
+[[nodiscard]] SNUG_API SelfContact self_contact(const Surface& surface,
+                                                const SelfContactOptions& options = {},
                                                 const WorkMonitor& monitor = {});
 
 }  // namespace snug

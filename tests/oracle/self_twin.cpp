@@ -61,9 +61,11 @@ std::optional<std::pair<std::size_t, std::size_t>> crossing_triangles(
   for (std::size_t i = 0; i < items.size(); ++i) {
     for (std::size_t j = i + 1; j < items.size() && items[j].low[0] <= items[i].high[0]; ++j) {
       const Item &a = items[i], &b = items[j];
-      if (a.low[1] > b.high[1] || b.low[1] > a.high[1] || a.low[2] > b.high[2] || b.low[2] > a.high[2]) continue;
+      if (a.low[1] > b.high[1] || b.low[1] > a.high[1] || a.low[2] > b.high[2] || b.low[2] > a.high[2])
+        continue;
       const auto &x = triangles[a.index], &y = triangles[b.index];
-      if (std::any_of(x.begin(), x.end(), [&](auto v) { return std::find(y.begin(), y.end(), v) != y.end(); }))
+      if (std::any_of(x.begin(), x.end(),
+                      [&](auto v) { return std::find(y.begin(), y.end(), v) != y.end(); }))
         continue;
       for (std::size_t k = 0; k < 3; ++k) {
         if (passes(a.corners[k], a.corners[(k + 1) % 3], b.corners, margin) ||

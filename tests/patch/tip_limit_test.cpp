@@ -75,7 +75,8 @@ void expect_holds(const Kind& kind, const TipLimit& limit, std::mt19937_64& rand
       }
       at = split(at, static_cast<unsigned>((limit.corner() + at.first) % 3));
     }
-    for (int k = 0; k < 4; ++k) patch = split(patch, static_cast<unsigned>((limit.corner() + patch.first) % 3));
+    for (int k = 0; k < 4; ++k)
+      patch = split(patch, static_cast<unsigned>((limit.corner() + patch.first) % 3));
   }
 }
 
@@ -89,7 +90,8 @@ TEST(tip_limit, holds_all_levels_inside) {
       KindKey key;
       key.scheme = scheme;
       for (std::size_t k = 0; k < rules.corners; ++k) {
-        key.corners[k] = {0, static_cast<std::uint16_t>((rules.triangular() ? 6 : 4) - 1), true, false, false};
+        key.corners[k] = {0, static_cast<std::uint16_t>((rules.triangular() ? 6 : 4) - 1), true, false,
+                          false};
       }
       key.corners[0].after = static_cast<std::uint16_t>(valence - 1);
       const Kind& kind = kinds.find(key);

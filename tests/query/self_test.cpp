@@ -114,7 +114,8 @@ TEST(self_contact, two_bodies_in_each_other_apart_or_in_one_place) {
   for (const Scheme scheme : schemes_of(cube)) {
     EXPECT_EQ(ask(both(cube, cube, 0.3), scheme).verdict, SelfVerdict::intersecting) << name_of(scheme);
     EXPECT_NE(ask(both(cube, cube, 1.3), scheme).verdict, SelfVerdict::intersecting) << name_of(scheme);
-    EXPECT_NE(ask(both(cube, cube, 0), scheme, {.budget = 20'000}).verdict, SelfVerdict::clear) << name_of(scheme);
+    EXPECT_NE(ask(both(cube, cube, 0), scheme, {.budget = 20'000}).verdict, SelfVerdict::clear)
+        << name_of(scheme);
   }
   EXPECT_EQ(ask(both(cube, cube, 1.3), Scheme::catmark).verdict, SelfVerdict::clear);
 }
@@ -125,7 +126,8 @@ TEST(self_contact, what_touches_is_never_clear) {
   for (const auto& face : meshes::cube().polygons) {
     for (std::size_t k = 0; k < 4; ++k) cube.creases.push_back({face[k], face[(k + 1) % 4], 10});
   }
-  for (const auto& [dy, dz] : {std::pair{0.0, 0.0}, std::pair{0.5, 0.0}, std::pair{1.0, 0.0}, std::pair{1.0, 1.0}}) {
+  for (const auto& [dy, dz] :
+       {std::pair{0.0, 0.0}, std::pair{0.5, 0.0}, std::pair{1.0, 0.0}, std::pair{1.0, 1.0}}) {
     oracle::TaggedMesh other = cube;
     for (auto& p : other.points) {
       p[1] += dy;

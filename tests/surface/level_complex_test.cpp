@@ -90,8 +90,9 @@ void expect_complex(const LimitSurface& surface, const std::string& name) {
 
 TEST(level_complex, of_closed_surfaces_counts_as_euler_does) {
   std::mt19937_64 random(1);
-  for (const auto& closed : {testing::prism(3), testing::prism(5), testing::antiprism(5), testing::bipyramid(7),
-                             testing::torus(4, 5), testing::truncated(testing::tetrahedron())}) {
+  for (const auto& closed :
+       {testing::prism(3), testing::prism(5), testing::antiprism(5), testing::bipyramid(7),
+        testing::torus(4, 5), testing::truncated(testing::tetrahedron())}) {
     oracle::TaggedMesh mesh;
     for (std::uint32_t v = 0; v < closed.vertices; ++v) {
       const auto x = [&] { return static_cast<double>(random() % 1000) * 1e-3; };

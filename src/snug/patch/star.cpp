@@ -59,7 +59,8 @@ Derivatives derivatives_of(const BezierPoints& points, std::size_t degree, doubl
                    v = points[bezier_index(degree, i, j + 1)] - at;
       result.u[result.count] = u;
       result.v[result.count++] = v;
-      result.largest = std::max({result.largest, std::fabs(u.x), std::fabs(u.y), std::fabs(v.x), std::fabs(v.y)});
+      result.largest =
+          std::max({result.largest, std::fabs(u.x), std::fabs(u.y), std::fabs(v.x), std::fabs(v.y)});
     }
   }
   result.error = enlarged(2 * error + unit_roundoff * result.largest);
@@ -211,7 +212,8 @@ class SectorCheck {
   }
 
   // Two parts are 0, 1, m and m, 1, 2; m is the middle of the edge 02.
-  static std::array<Point2, 3> part_corners(const std::array<Point2, 3>& c, std::size_t parts, std::size_t part) {
+  static std::array<Point2, 3> part_corners(const std::array<Point2, 3>& c, std::size_t parts,
+                                            std::size_t part) {
     if (parts == 1) return c;
     const Point2 m{0.5 * c[0].x + 0.5 * c[2].x, 0.5 * c[0].y + 0.5 * c[2].y};
     return part == 0 ? std::array{c[0], c[1], m} : std::array{m, c[1], c[2]};
@@ -360,9 +362,8 @@ class StarCheck {
           normalized(rows.apply<Vector3>(2 * tip->corner() + tip->dominant(), patch.points));
       // |n2 . t| / |t| of the exact tangent: the exact axis that is meant is this far away.
       const double size = length(frame_.axes[1]);
-      frame_.second_error = std::max(
-          frame_.second_error,
-          enlarged(std::fabs(dot(frame_.axes[1], direction)) + size * (2 * off + gamma_bound(32))));
+      frame_.second_error = std::max(frame_.second_error, enlarged(std::fabs(dot(frame_.axes[1], direction)) +
+                                                                   size * (2 * off + gamma_bound(32))));
     }
     return true;
   }
@@ -428,7 +429,8 @@ class StarCheck {
         at = next;
       }
     }
-    if (!closed_ && (top == n - 1 || std::find(raised.begin(), raised.end(), n - 1) != raised.end())) height = 0;
+    if (!closed_ && (top == n - 1 || std::find(raised.begin(), raised.end(), n - 1) != raised.end()))
+      height = 0;
     border[top].y = height;
     for (const std::size_t i : raised) border[i].y = height;
   }

@@ -48,7 +48,8 @@ struct Power {
       : size(columns), matrix(columns * columns, 0.0), sum(rows.max_abs_sum()) {
     for (std::size_t r = 0; r < size; ++r) {
       const Stencils::Row row = rows.row(r);
-      for (std::size_t i = 0; i < row.sources.size(); ++i) matrix[r * size + row.sources[i]] += row.weights[i];
+      for (std::size_t i = 0; i < row.sources.size(); ++i)
+        matrix[r * size + row.sources[i]] += row.weights[i];
     }
     error = enlarged(rows.max_error() + gamma_bound(8) * sum);
   }
@@ -190,7 +191,8 @@ bool TipLimit::bound_remainders(const Stencils& step) {
     const double largest = largest_of(directions_[t]);
     for (std::size_t k = 0; k < 2; ++k) {
       const double off = std::fabs(image[k] - (k == t ? 1.0 : 0.0));
-      mixing = std::max(mixing, off + row_errors_[k] * largest + gamma_bound(size_ + 4) * row_sums_[k] * largest);
+      mixing =
+          std::max(mixing, off + row_errors_[k] * largest + gamma_bound(size_ + 4) * row_sums_[k] * largest);
     }
   }
   if (!(mixing < 0x1p-20)) return false;
@@ -221,8 +223,9 @@ bool TipLimit::bound_remainders(const Stencils& step) {
       }
     }
     // x powers * directions is rounded itself, but any X does: what counts is its product with W.
-    const double contraction = enlarged(growth_of(rest, size_) + power.error + projected_error * (1 + 0x1p-40) +
-                                        gamma_bound(8) * (power.sum + projected));
+    const double contraction =
+        enlarged(growth_of(rest, size_) + power.error + projected_error * (1 + 0x1p-40) +
+                 gamma_bound(8) * (power.sum + projected));
     const double factor = enlarged(contraction / scale);
     if (factor < enough_contraction) {
       for (std::size_t t = 0; t < 2; ++t) {

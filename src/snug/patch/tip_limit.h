@@ -51,7 +51,7 @@ class TipLimit {
   std::size_t corner_ = 0, size_ = 0;
   bool conformal_ = false;
   std::size_t dominant_ = 0;
-  std::array<std::vector<double>, 2> rows_;        // W
+  std::array<std::vector<double>, 2> rows_;          // W
   std::array<double, 2> row_errors_{}, row_sums_{};  // of all entries together
   std::array<Interval, 2> eigenvalues_{};
   std::array<std::vector<double>, 2> directions_;  // about V

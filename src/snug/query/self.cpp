@@ -42,7 +42,8 @@ class Pieces {
 
   [[nodiscard]] const Patch& patch(const PieceName& name) {
     if (const auto it = patches_.find(name); it != patches_.end()) return it->second;
-    Patch made = name.splits == 0 ? surface_->patch(PatchId(name.patch)) : split(patch(name.parent()), name.digit());
+    Patch made =
+        name.splits == 0 ? surface_->patch(PatchId(name.patch)) : split(patch(name.parent()), name.digit());
     return patches_.emplace(name, std::move(made)).first->second;
   }
   [[nodiscard]] const Piece& piece(const PieceName& name) {
@@ -174,7 +175,8 @@ class SelfSearch {
         });
     for (const QuadraticTriangle& set : sets) {
       if (!std::isfinite(set.error)) {
-        throw InputError(InputProblem::unrepresentable, "a bound of a patch does not fit a double; move the mesh nearer to the origin");
+        throw InputError(InputProblem::unrepresentable,
+                         "a bound of a patch does not fit a double; move the mesh nearer to the origin");
       }
     }
     const QuadraticBvh tree(sets, options_.threads);
@@ -183,7 +185,8 @@ class SelfSearch {
       for (std::size_t i = begin; i < end; ++i) {
         monitor_.checkpoint();
         tree.for_each_near(sets[i], [&](std::uint32_t other) {
-          if (other > i && !share_corner(pieces[i], pieces[other])) found[i].emplace_back(pieces[i], pieces[other]);
+          if (other > i && !share_corner(pieces[i], pieces[other]))
+            found[i].emplace_back(pieces[i], pieces[other]);
         });
         std::sort(found[i].begin(), found[i].end());
       }
@@ -237,7 +240,10 @@ class SelfSearch {
       TipLimits tips;
     };
     parallel_for_with(
-        vertices.size(), options_.threads, [&] { return State{Pieces(surface_), {}}; },
+        vertices.size(), options_.threads,
+        [&] {
+          return State{Pieces(surface_), {}};
+        },
         [&](State& state, std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             monitor_.checkpoint();
@@ -256,7 +262,8 @@ class SelfSearch {
     });
   }
 
-  [[nodiscard]] bool star_holds(Pieces& pieces, TipLimits& tips, const LevelVertex& vertex, unsigned level) const {
+  [[nodiscard]] bool star_holds(Pieces& pieces, TipLimits& tips, const LevelVertex& vertex,
+                                unsigned level) const {
     const LevelStar star = complex_.star(vertex, level);
     if (!star.fan) return false;
     for (const auto& sector : star.sectors) static_cast<void>(pieces.patch(sector.piece));
@@ -320,7 +327,7 @@ class SelfSearch {
   void spend(std::uint64_t work) { budget_ -= std::min(budget_, work); }
 
   SelfContact result() {
-    answer_.verdict = crossing_         ? SelfVerdict::intersecting
+    answer_.verdict = crossing_        ? SelfVerdict::intersecting
                       : found_.empty() ? SelfVerdict::clear
                                        : SelfVerdict::undecided;
     for (const Found& found : found_) {

@@ -167,7 +167,8 @@ std::vector<PieceName> LevelComplex::pieces() const {
 
 LevelVertex LevelComplex::vertex(std::uint32_t p, unsigned splits, std::uint32_t i, std::uint32_t j) const {
   const std::uint32_t n = 1u << splits, first = n - i - j;
-  const std::uint64_t vertices = surface_->topology().vertex_count(), edges = surface_->topology().edge_count();
+  const std::uint64_t vertices = surface_->topology().vertex_count(),
+                      edges = surface_->topology().edge_count();
   const unsigned level = splits + offset(p);
   const auto corner = [&](std::size_t k) -> LevelVertex {
     const std::uint64_t name = names_[p][k];
@@ -217,7 +218,8 @@ void LevelComplex::add_pieces(std::uint32_t p, unsigned splits, std::uint32_t i,
 
 LevelStar LevelComplex::star(const LevelVertex& vertex, unsigned level) const {
   LevelStar star;
-  const std::uint64_t kind = vertex.where >> kind_shift, id = vertex.where & ((std::uint64_t{1} << kind_shift) - 1);
+  const std::uint64_t kind = vertex.where >> kind_shift,
+                      id = vertex.where & ((std::uint64_t{1} << kind_shift) - 1);
   if (kind == in_patch) {
     const auto p = static_cast<std::uint32_t>(id);
     add_pieces(p, level - offset(p), static_cast<std::uint32_t>(vertex.place >> 32),

@@ -89,7 +89,8 @@ class LevelComplex {
     return surface_->after_first_split(PatchId(patch)) ? 1u : 0u;
   }
   [[nodiscard]] std::array<Side, 3> sides_of(std::uint32_t patch) const;
-  [[nodiscard]] LevelVertex vertex(std::uint32_t patch, unsigned splits, std::uint32_t i, std::uint32_t j) const;
+  [[nodiscard]] LevelVertex vertex(std::uint32_t patch, unsigned splits, std::uint32_t i,
+                                   std::uint32_t j) const;
   void add_pieces(std::uint32_t patch, unsigned splits, std::uint32_t i, std::uint32_t j,
                   std::vector<LevelStar::Sector>& out) const;
   void put_in_order(LevelStar& star) const;
