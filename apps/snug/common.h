@@ -136,6 +136,7 @@ class Report {
 [[nodiscard]] Command contact_command();
 [[nodiscard]] Command distance_command();
 [[nodiscard]] Command measure_command();
+[[nodiscard]] Command self_command();
 [[nodiscard]] Command closest_command();
 [[nodiscard]] Command ray_command();
 [[nodiscard]] Command deviation_command();

@@ -16,5 +16,6 @@
 #include <snug/motion.h>
 #include <snug/ray.h>
 #include <snug/scene.h>
+#include <snug/self.h>
 #include <snug/surface.h>
 #include <snug/tessellate.h>

@@ -11,6 +11,7 @@
 #include <snug/query/measure.h>
 #include <snug/query/pairs.h>
 #include <snug/query/ray.h>
+#include <snug/query/self.h>
 #include <snug/query/subdivide.h>
 #include <snug/query/tessellate.h>
 #include <snug/surface/evaluate.h>
@@ -153,6 +154,11 @@ std::optional<double> limit_to_faces(const Surface& surface, int threads) {
 
 Measures measure(const Surface& surface, const MeasureOptions& options, const WorkMonitor& monitor) {
   return measure(limit(surface), options, monitor);
+}
+
+SelfContact self_contact(const Surface& surface, const SelfContactOptions& options,
+                         const WorkMonitor& monitor) {
+  return self_contact(limit(surface), options, monitor);
 }
 
 ControlMesh subdivided(const Surface& surface, unsigned level, bool limit_positions,

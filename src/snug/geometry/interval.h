@@ -37,10 +37,6 @@ struct SineCosine {
 /// Requires:  n >= 1.
 [[nodiscard]] Interval cos_of_turn(unsigned k, unsigned n);
 
-struct SineCosine {
-  Interval sine, cosine;
-};
-
 /// Sine and cosine of an angle in degrees, exact for multiples of 90.
 /// Guarantee: inclusion; width at most 64 unit roundoffs.
 /// Requires:  a finite angle.

@@ -118,6 +118,12 @@ Crossed::Sides Crossed::sides(const Triangle& points, double error) const {
 
 namespace {
 
+// What bounds pieces.
+struct BoundedBy {
+  BoundsCache& library;
+  BoundMethod method;
+};
+
 // A piece, not kept, since surfaces that nearly lie in each other ask at every pair; and a parameter of it.
 struct Probe {
   Piece piece;
@@ -135,12 +141,12 @@ std::optional<TriangleParameter> in_middle_child(TriangleParameter p) {
 // Adds the children whose closed triangles hold the parameter: all have its limit point in common, so
 // together they are connected. False, with the child that descend() names alone, where its parameter there
 // rounds: what holds that need not hold the others'.
-bool add_children(const SurfaceBvh& model, const Probe& probe, std::vector<Probe>& out) {
+bool add_children(const BoundedBy& by, const Probe& probe, std::vector<Probe>& out) {
   thread_local HullPoints scratch;
   const auto [u, v] = probe.at;
   const Descent certain = descend(probe.at);
   const auto add = [&](unsigned child, TriangleParameter at) {
-    out.push_back({child_of(model.surface().library(), probe.piece, child, scratch, model.method()), at});
+    out.push_back({child_of(by.library, probe.piece, child, scratch, by.method), at});
   };
   if (certain.child == 3) {
     const bool exact = in_middle_child(probe.at).has_value();
@@ -161,7 +167,7 @@ bool add_children(const SurfaceBvh& model, const Probe& probe, std::vector<Probe
 
 // Do pieces of `whole` around a parameter cross, those that meet there together? Splits some levels down, and
 // keeps nothing. seen: the pieces' frame as seen from that of the crossed piece.
-bool crosses_near(const SurfaceBvh& model, const Piece& whole, TriangleParameter at, const Crossed& crossed,
+bool crosses_near(const BoundedBy& by, const Piece& whole, TriangleParameter at, const Crossed& crossed,
                   const RelativeFrame& seen) {
   if (!seen.comparable) return false;
   std::vector<Probe> probes{{whole, on_triangle(at)}}, children;
@@ -189,7 +195,7 @@ bool crosses_near(const SurfaceBvh& model, const Piece& whole, TriangleParameter
     if (2 * extent < crossed.thickness() || level == probe_levels || last) return false;
     children.clear();
     for (const Probe& probe : probes) {
-      if (!add_children(model, probe, children)) break;
+      if (!add_children(by, probe, children)) break;
     }
     probes.swap(children);
   }
@@ -212,12 +218,32 @@ bool certainly_cross(PairFrames& frames, const PiecePair& pieces) {
   }
   for (std::size_t s = 0; s < 2; ++s) {
     const Crossed crossed(whole[s], heights[s]);
-    if (crossed.possible() && crosses_near(frames.workspace(1 - s).model(), whole[1 - s], clamped(at[1 - s]),
-                                           crossed, frames.view(s).frame)) {
+    const SurfaceBvh& other = frames.workspace(1 - s).model();
+    if (crossed.possible() && crosses_near({other.surface().library(), other.method()}, whole[1 - s],
+                                           clamped(at[1 - s]), crossed, frames.view(s).frame)) {
       return true;
     }
   }
   return false;
+}
+
+std::optional<PairOfPoints> certain_crossing(BoundsCache& library, const Piece& a, const Piece& b) {
+  const std::optional<PairOfPoints> middle = middle_of_contact(a.offset.base, b.offset.base);
+  if (!middle) return std::nullopt;
+  const std::array<const Piece*, 2> pieces{&a, &b};
+  const std::array<Barycentric, 2> at{middle->on_a, middle->on_b};
+  thread_local HullPoints points;
+  RelativeFrame same;
+  same.rows = {Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
+  for (std::size_t s = 0; s < 2; ++s) {
+    const Piece whole = make_piece(library, pieces[s]->root, pieces[s]->patch, points);
+    const Crossed crossed(whole, heights_of(whole, points));
+    if (crossed.possible() &&
+        crosses_near({library, BoundMethod::rows}, *pieces[1 - s], clamped(at[1 - s]), crossed, same)) {
+      return middle;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace snug

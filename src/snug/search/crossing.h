@@ -51,5 +51,8 @@ class Crossed {
 /// Is it proved that two pieces, or smaller ones where their base triangles are nearest, cross each other?
 /// Source:    derivations/contact.md.
 [[nodiscard]] bool certainly_cross(PairFrames& frames, const PiecePair& pieces);
+/// The same of two pieces of one surface, by rows: about where, if it is proved.
+[[nodiscard]] std::optional<PairOfPoints> certain_crossing(BoundsCache& library, const Piece& a,
+                                                           const Piece& b);
 
 }  // namespace snug

@@ -1,0 +1,89 @@
+#include <snug/query/self.h>
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "common.h"
+#include "length.h"
+#include "progress_bar.h"
+
+namespace snug::command {
+namespace {
+
+struct Options : CommonOptions {
+  std::string mesh;
+};
+
+void write_json(JsonWriter& json, const SelfContact& found, bool primal) {
+  json.field("verdict", name_of(found.verdict));
+  json.key("pairs").begin_array();
+  for (const SelfContactPair& pair : found.pairs) {
+    json.begin_object().field("verdict", name_of(pair.verdict));
+    json.key("at").begin_array();
+    for (const SurfaceParameter& at : pair.at) {
+      json.begin_object().field(primal ? "face" : "vertex", at.owner).field("corner", at.corner);
+      json.field("u", at.u).field("v", at.v).end_object();
+    }
+    json.end_array().key("witness").begin_array();
+    for (const Point3& p : pair.points) json.value(p);
+    json.end_array().key("distance").begin_array();
+    json.value(pair.distance.lower).value(pair.distance.upper).end_array().end_object();
+  }
+  json.end_array().key("stats").begin_object();
+  json.field("stars", found.stars).field("pair_tests", found.pair_tests).field("levels", found.levels);
+  json.end_object();
+}
+
+void write_text(Report& report, const SelfContact& found, const char* owner) {
+  report.text(fmt::format("verdict   {}", name_of(found.verdict)));
+  constexpr std::size_t most_lines = 10;
+  for (std::size_t i = 0; i < std::min(most_lines, found.pairs.size()); ++i) {
+    const SelfContactPair& pair = found.pairs[i];
+    const Point3& p = pair.points[0];
+    report.text(fmt::format("{:<12}  {} {} and {}, near {} {} {}", name_of(pair.verdict), owner,
+                            pair.at[0].owner, pair.at[1].owner, p.x, p.y, p.z));
+  }
+  if (found.pairs.size() > most_lines) {
+    report.text(fmt::format("... {} more; --json tells all", found.pairs.size() - most_lines));
+  }
+}
+
+ExitStatus run(const Options& options) {
+  SelfContactOptions wanted;
+  wanted.budget = options.budget;
+  wanted.threads = options.threads;
+  const LimitSurface surface =
+      load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  Report report("self", options);
+  SelfContact found;
+  {
+    ProgressBar bar("looking", options.quiet);
+    const WorkMonitor monitor = bar.monitor();
+    naming(options.mesh, [&] { found = self_contact(surface, wanted, monitor); });
+  }
+  report.heads({options.mesh}, {name_of(surface.options().scheme)});
+  if (report.json()) write_json(report.write(), found, surface.rules().primal);
+  write_text(report, found, surface.rules().owner());
+  return report.finish(found.verdict != SelfVerdict::undecided);
+}
+
+}  // namespace
+
+Command self_command() {
+  auto options = std::make_shared<Options>();
+  options->budget = SelfContactOptions{}.budget;
+  OptionList list;
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL)");
+  list.add(Group::effort, "--budget N", &options->budget, "Look at most at N stars and pairs of pieces")
+      .between(0, std::uint64_t{1} << 40);
+  add_common_options(list, *options);
+  return {"self",
+          Topic::one_surface,
+          "Does a limit surface meet itself?",
+          {"snug self pawn.obj", "snug self part.stl --sharp auto --json"},
+          std::move(list),
+          [options] { return run(*options); }};
+}
+
+}  // namespace snug::command

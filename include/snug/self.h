@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <snug/surface.h>
+
+namespace snug {
+
+/// Does a surface meet itself?
+enum class SelfVerdict : std::uint8_t {
+  clear,         ///< proved: no two parameters have one point
+  intersecting,  ///< proved: two pieces without a common corner cross each other
+  undecided,     ///< none of these could be shown
+};
+[[nodiscard]] SNUG_API const char* name_of(SelfVerdict verdict);
+
+struct SelfContactOptions {
+  std::uint64_t budget = 1'000'000;  ///< most stars and pairs of pieces looked at, about
+  unsigned levels = 10;              ///< most levels below the coarsest one at which stars are looked at
+  int threads = 0;                   ///< 0: all cores
+};
+
+/// Two places of a surface that meet, or are not known not to.
+struct SelfContactPair {
+  SelfVerdict verdict = SelfVerdict::undecided;  ///< intersecting or undecided
+  std::array<SurfaceParameter, 2> at;            ///< on the two pieces in question
+  std::array<Point3, 2> points;                  ///< the limit points there, in double precision
+  Interval distance;  ///< contains the distance of the two pieces; [0, 0] where they cross
+};
+
+/// The answer to "does this surface meet itself?"
+struct SelfContact {
+  SelfVerdict verdict = SelfVerdict::undecided;
+  /// What the verdict rests on: the first places, at most max_pairs, in an order that depends on the surface
+  /// alone. None where it is clear.
+  std::vector<SelfContactPair> pairs;
+  static constexpr std::size_t max_pairs = 100;
+  std::uint64_t stars = 0;       ///< neighbourhoods of vertices looked at
+  std::uint64_t pair_tests = 0;  ///< pairs of pieces looked at
+  unsigned levels = 0;           ///< levels of subdivision that were needed
+};
+
+/// Does a limit surface meet itself?
+///
+/// Pieces without a common corner are proved to be apart, or to cross each other; those around a vertex are
+/// proved to have no two parameters with one point, or all are split.
+///
+/// Guarantee: `clear` and `intersecting` hold in exact arithmetic for the given doubles. Results do not depend
+///            on threads. Places where the surface is no immersion (spikes, folded creases, collapsed patches,
+///            vertices and edges that are not manifold) are `undecided`, never `clear`; so are darts and most
+///            smooth extraordinary vertices of boundaries and creases.
+/// Errors:    InputError: (value) for more than 20 levels; (refused) if no face has a limit surface; (unrepresentable) if a result
+///            does not fit a double. Interrupted.
+/// Cost:      0.3 to 1 ms a patch (docs/self_contact.md).
+/// Source:    derivations/self_contact.md.
+[[nodiscard]] SNUG_API SelfContact self_contact(const Surface& surface,
+                                                const SelfContactOptions& options = {},
+                                                const WorkMonitor& monitor = {});
+
+}  // namespace snug

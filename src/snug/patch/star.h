@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <snug/patch/tip_limit.h>
+
+namespace snug {
+
+/// A piece around a vertex of the subdivided surface.
+struct StarSector {
+  const Patch* patch;
+  std::size_t centre;  ///< its corner at the vertex
+};
+
+/// Is it proved that no two parameters of a star have one point?
+///
+/// Sectors follow each other counter-clockwise: corner centre + 2 of one is corner centre + 1 of the next. A
+/// closed star ends where it begins; the centre of an open one lies on the border of the star.
+///
+/// Guarantee: true only if the star is injective, in exact arithmetic.
+/// Requires:  one origin for all patches is not needed; none is a polygon; edges in common have the same points.
+/// Cost:      about 20 microseconds for six regular patches.
+/// Source:    derivations/self_contact.md, "A star".
+[[nodiscard]] bool certainly_injective(std::span<const StarSector> sectors, bool closed, TipLimits& tips);
+
+}  // namespace snug

@@ -1,0 +1,369 @@
+#include <snug/patch/tip_limit.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include <snug/geometry/interval.h>
+#include <snug/geometry/rounding.h>
+
+namespace snug {
+namespace {
+
+// Larger matrices are not worth their products.
+constexpr std::size_t largest_size = 200;
+constexpr unsigned max_squarings = 14;
+constexpr int max_iterations = 4000;
+
+// A bound that is not proved by much is of no use.
+constexpr double enough_contraction = 0.95;
+
+double extent(std::span<const double> values) {
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  return enlarged(0.5 * (*most - *least));
+}
+
+// An upper bound of the largest distance of two rows in sum, halved: by how much extents may grow.
+double growth_of(const std::vector<double>& matrix, std::size_t size) {
+  double widest = 0;
+  for (std::size_t a = 0; a < size; ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      double sum = 0;
+      for (std::size_t c = 0; c < size; ++c) {
+        sum += std::fabs(matrix[a * size + c] - matrix[b * size + c]);
+      }
+      widest = std::max(widest, sum);
+    }
+  }
+  return enlarged(0.5 * widest);
+}
+
+// Powers of a square matrix. `sum`: largest absolute sum of a row; `error`: largest sum of a row's errors.
+struct Power {
+  std::size_t size;
+  std::vector<double> matrix;
+  double sum, error;
+
+  Power(const Stencils& rows, std::size_t columns)
+      : size(columns), matrix(columns * columns, 0.0), sum(rows.max_abs_sum()) {
+    for (std::size_t r = 0; r < size; ++r) {
+      const Stencils::Row row = rows.row(r);
+      for (std::size_t i = 0; i < row.sources.size(); ++i)
+        matrix[r * size + row.sources[i]] += row.weights[i];
+    }
+    error = enlarged(rows.max_error() + gamma_bound(8) * sum);
+  }
+
+  void square() {
+    std::vector<double> product(size * size, 0.0);
+    for (std::size_t r = 0; r < size; ++r) {
+      for (std::size_t k = 0; k < size; ++k) {
+        const double weight = matrix[r * size + k];
+        if (weight == 0) continue;
+        for (std::size_t c = 0; c < size; ++c) product[r * size + c] += weight * matrix[k * size + c];
+      }
+    }
+    error = enlarged(error * (2 * sum + error) + gamma_bound(size + 2) * sum * sum);
+    sum = enlarged(sum * sum);
+    matrix = std::move(product);
+  }
+};
+
+void apply(const Stencils& rows, const std::vector<double>& from, std::vector<double>& to) {
+  to.assign(rows.row_count(), 0.0);
+  for (std::size_t r = 0; r < to.size(); ++r) {
+    const Stencils::Row row = rows.row(r);
+    for (std::size_t i = 0; i < row.sources.size(); ++i) to[r] += row.weights[i] * from[row.sources[i]];
+  }
+}
+
+double largest_of(std::span<const double> values) {
+  double largest = 0;
+  for (const double x : values) largest = std::max(largest, std::fabs(x));
+  return largest;
+}
+
+bool suitable(const Kind& kind, std::size_t corner) {
+  const CornerFan& fan = kind.corner(corner);
+  return !fan.odd && kind.control_count() <= largest_size;
+}
+
+}  // namespace
+
+std::array<double, 2> TipLimit::tangent(const std::vector<double>& values) const {
+  std::array<double, 2> sums{};
+  for (std::size_t t = 0; t < 2; ++t) {
+    for (std::size_t c = 0; c < size_; ++c) sums[t] += rows_[t][c] * values[c];
+  }
+  return sums;
+}
+
+// From (W A)_c = l W_c, where W_c is large.
+bool TipLimit::find_eigenvalues(const Kind& kind, const Stencils& step) {
+  const Power a(step, size_);
+  for (std::size_t t = 0; t < 2; ++t) {
+    const Stencils::Row row = kind.corner_tangents().row(2 * corner_ + t);
+    rows_[t].assign(size_, 0.0);
+    for (std::size_t i = 0; i < row.sources.size(); ++i) rows_[t][row.sources[i]] += row.weights[i];
+    row_sums_[t] = row.abs_sum;
+    row_errors_[t] = row_error(row);
+    const double largest = largest_of(rows_[t]);
+    if (!(largest > 0)) return false;
+    Interval value{0, 1};
+    for (std::size_t c = 0; c < size_; ++c) {
+      double product = 0;
+      for (std::size_t r = 0; r < size_; ++r) product += rows_[t][r] * a.matrix[r * size_ + c];
+      const double error = enlarged((row_sums_[t] + row_errors_[t]) * a.error + row_errors_[t] * a.sum +
+                                    gamma_bound(size_ + 2) * row_sums_[t] * a.sum);
+      const double w = rows_[t][c];
+      if (std::fabs(w) >= 0.5 * largest) {
+        const Interval found = Interval{rounded_down(product - error), rounded_up(product + error)} /
+                               Interval{rounded_down(w - row_errors_[t]), rounded_up(w + row_errors_[t])};
+        value = {std::max(value.lower, found.lower), std::min(value.upper, found.upper)};
+      }
+    }
+    if (!(value.lower <= value.upper) || !(value.lower > 0.05) || !(value.upper < 0.99)) return false;
+    // Are these rows what they are taken for? The claim W A = L W itself is derived, not measured.
+    for (std::size_t c = 0; c < size_; ++c) {
+      double product = 0;
+      for (std::size_t r = 0; r < size_; ++r) product += rows_[t][r] * a.matrix[r * size_ + c];
+      if (std::fabs(product - middle(value) * rows_[t][c]) > 1e-10 * largest) return false;
+    }
+    eigenvalues_[t] = value;
+  }
+  const CornerFan& fan = kind.corner(corner_);
+  // The two first modes of a closed fan; both edges of a sharp corner are halved.
+  if (fan.closed || fan.sharp) {
+    const Interval both{std::max(eigenvalues_[0].lower, eigenvalues_[1].lower),
+                        std::min(eigenvalues_[0].upper, eigenvalues_[1].upper)};
+    if (!(both.lower <= both.upper)) return false;
+    eigenvalues_ = {both, both};
+    conformal_ = true;
+    return true;
+  }
+  if (eigenvalues_[0].lower > eigenvalues_[1].upper) {
+    dominant_ = 0;
+  } else if (eigenvalues_[1].lower > eigenvalues_[0].upper) {
+    dominant_ = 1;
+  } else {
+    return false;
+  }
+  return true;
+}
+
+// By iteration: no proof rests on how near they come. Constants, which no extent sees, would grow.
+bool TipLimit::find_directions(const Stencils& step) {
+  for (std::size_t t = 0; t < 2; ++t) directions_[t] = rows_[t];
+  std::array<std::vector<double>, 2> next;
+  double before = INFINITY;
+  for (int i = 0; i < max_iterations; ++i) {
+    for (std::size_t t = 0; t < 2; ++t) {
+      apply(step, directions_[t], next[t]);
+      const auto [least, most] = std::minmax_element(next[t].begin(), next[t].end());
+      const double middle = 0.5 * (*least + *most);
+      for (double& x : next[t]) x -= middle;
+    }
+    const auto a = tangent(next[0]), b = tangent(next[1]);
+    const double determinant = a[0] * b[1] - a[1] * b[0];
+    if (!(std::fabs(determinant) > 1e-100)) return false;
+    double change = 0, size = 0;
+    for (std::size_t c = 0; c < size_; ++c) {
+      const double x = (b[1] * next[0][c] - a[1] * next[1][c]) / determinant;
+      const double y = (a[0] * next[1][c] - b[0] * next[0][c]) / determinant;
+      change = std::max({change, std::fabs(x - directions_[0][c]), std::fabs(y - directions_[1][c])});
+      size = std::max({size, std::fabs(x), std::fabs(y)});
+      directions_[0][c] = x;
+      directions_[1][c] = y;
+    }
+    if (!std::isfinite(change)) return false;
+    if (i > 40 && (change <= 4e-16 * size || (change <= 1e-13 * size && change >= before))) return true;
+    before = change;
+  }
+  return true;
+}
+
+bool TipLimit::bound_remainders(const Stencils& step) {
+  // How far the directions, made exact by V (W V)^-1, are from these.
+  double mixing = 0;
+  for (std::size_t t = 0; t < 2; ++t) {
+    extents_[t] = extent(directions_[t]);
+    const auto image = tangent(directions_[t]);
+    const double largest = largest_of(directions_[t]);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double off = std::fabs(image[k] - (k == t ? 1.0 : 0.0));
+      mixing =
+          std::max(mixing, off + row_errors_[k] * largest + gamma_bound(size_ + 4) * row_sums_[k] * largest);
+    }
+  }
+  if (!(mixing < 0x1p-20)) return false;
+  // |(1 + E)^-1 - 1| <= |E| / (1 - |E|) for row sums, of two entries.
+  mixing = enlarged(2 * mixing / (1 - 2 * mixing));
+  const double exact = enlarged(mixing * (extents_[0] + extents_[1]));
+
+  const double least = std::min(eigenvalues_[0].lower, eigenvalues_[1].lower);
+  Power power(step, size_);
+  double scale = least;  // least^(2^i), a lower bound
+  std::array<double, 2> shrink{eigenvalues_[0].lower, eigenvalues_[1].lower};
+  std::array<double, 2> sums{1, 1};
+  growth_ = 1;
+  std::array<double, 2> powers{middle(eigenvalues_[0]), middle(eigenvalues_[1])};
+  const double step_sum = power.sum;
+  for (unsigned i = 0;; ++i) {
+    std::vector<double> rest = power.matrix;
+    double projected = 0, projected_error = 0;
+    for (std::size_t t = 0; t < 2; ++t) {
+      const double largest = std::fabs(powers[t]) * largest_of(directions_[t]);
+      projected += largest * row_sums_[t];
+      projected_error += largest * row_errors_[t];
+    }
+    for (std::size_t r = 0; r < size_; ++r) {
+      for (std::size_t t = 0; t < 2; ++t) {
+        const double x = powers[t] * directions_[t][r];
+        for (std::size_t c = 0; c < size_; ++c) rest[r * size_ + c] -= x * rows_[t][c];
+      }
+    }
+    // x powers * directions is rounded itself, but any X does: what counts is its product with W.
+    const double contraction =
+        enlarged(growth_of(rest, size_) + power.error + projected_error * (1 + 0x1p-40) +
+                 gamma_bound(8) * (power.sum + projected));
+    const double factor = enlarged(contraction / scale);
+    if (factor < enough_contraction) {
+      for (std::size_t t = 0; t < 2; ++t) {
+        const double own = enlarged(contraction / shrink[t]);
+        sums[t] = enlarged(sums[t] / (1 - own));
+      }
+      break;
+    }
+    if (i == max_squarings) return false;
+    growth_ = enlarged(growth_ * std::max(1.0, factor));
+    for (std::size_t t = 0; t < 2; ++t) {
+      sums[t] = enlarged(sums[t] * (1 + contraction / shrink[t]));
+      shrink[t] = shrink[t] * shrink[t] * (1 - gamma_bound(2));
+      powers[t] *= powers[t];
+    }
+    scale = scale * scale * (1 - gamma_bound(2));
+    power.square();
+    if (!(scale > 1e-250) || !std::isfinite(growth_)) return false;
+  }
+  // r = A V / l - V, of V made exact; V itself is V + sum (A / l)^i r.
+  std::vector<double> image;
+  for (std::size_t t = 0; t < 2; ++t) {
+    apply(step, directions_[t], image);
+    const double largest = largest_of(directions_[t]), l = eigenvalues_[t].lower;
+    const double image_error = enlarged((step.max_error() + gamma_bound(size_ + 2) * step_sum) * largest);
+    const double middle_l = middle(eigenvalues_[t]);
+    std::vector<double> residual(size_);
+    for (std::size_t c = 0; c < size_; ++c) residual[c] = image[c] / middle_l - directions_[t][c];
+    const double spread = (eigenvalues_[t].upper - eigenvalues_[t].lower) / (l * l);
+    const double error = image_error / l + spread * (step_sum * largest + image_error) +
+                         gamma_bound(4) * (step_sum * largest / l + largest) + exact * (1 + step_sum / l);
+    direction_errors_[t] = enlarged(sums[t] * (extent(residual) + error) + exact);
+    if (!(direction_errors_[t] < 0x1p-20 * extents_[t])) return false;
+  }
+  return true;
+}
+
+std::optional<TipLimit> make_tip_limit(const Kind& kind) {
+  if (kind.polynomial() || kind.passing() || kind.key().polygon || !kind.key().plain()) return std::nullopt;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    if (kind.regular_corner(corner) || !suitable(kind, corner)) continue;
+    const KindChild& child = kind.children()[corner];
+    if (child.kind != &kind || child.first != 0) continue;
+    TipLimit limit;
+    limit.kind_ = &kind;
+    limit.corner_ = corner;
+    limit.size_ = kind.control_count();
+    if (limit.find_eigenvalues(kind, child.stencils) && limit.find_directions(child.stencils) &&
+        limit.bound_remainders(child.stencils)) {
+      return limit;
+    }
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+// Upper bound of the extents of A^j r over the least eigenvalue's powers: some powers are taken, the others
+// shrink what these leave. `rest` is r up to extents of `error`.
+double TipLimit::largest_rest(std::vector<double> rest, double error) const {
+  constexpr int powers = 16;
+  const Stencils& step = kind_->children()[corner_].stencils;
+  const double least = std::min(eigenvalues_[0].lower, eigenvalues_[1].lower);
+  const double rounding = step.max_error() + gamma_bound(size_ + 2) * step.max_abs_sum();
+  double best = INFINITY, before = 0, scale = 1;
+  std::vector<double> next;
+  for (int i = 0; i <= powers; ++i) {
+    const double now = enlarged((extent(rest) + error) / scale);
+    best = std::min(best, std::max(before, enlarged(growth_ * now)));
+    before = std::max(before, now);
+    apply(step, rest, next);
+    error = enlarged(step.max_abs_sum() * error + rounding * largest_of(rest));
+    rest.swap(next);
+    scale = scale * least * (1 - gamma_bound(2));
+  }
+  return best;
+}
+
+Patch TipLimit::lasting(const Patch& values) const {
+  Patch net;
+  net.kind = kind_;
+  net.first = values.first;
+  net.points.resize(size_);
+  std::array<std::vector<double>, 2> y;
+  std::array<double, 2> sizes{}, errors{};
+  for (std::size_t c = 0; c < 2; ++c) {
+    y[c].resize(size_);
+    for (std::size_t i = 0; i < size_; ++i) y[c][i] = c == 0 ? values.points[i].x : values.points[i].y;
+  }
+  for (std::size_t c = 0; c < 2; ++c) {
+    std::array<double, 2> m = tangent(y[c]);
+    std::array<double, 2> off{};  // what the exact ones differ by, at most
+    for (std::size_t t = 0; t < 2; ++t) {
+      off[t] = enlarged((row_errors_[t] + gamma_bound(size_ + 2) * row_sums_[t]) * values.largest +
+                        (row_sums_[t] + row_errors_[t]) * values.error);
+    }
+    std::array<double, 2> kept = m;
+    if (!conformal_) {
+      // Its own direction lasts. Of x the other one shrinks faster, from its share to none; y has none.
+      const std::size_t own = c == 0 ? dominant_ : 1 - dominant_, other = 1 - own;
+      kept[other] = 0;
+      if (c == 0) off[other] += std::fabs(m[other]);
+      if (c == 1) m[other] = off[other] = 0;
+    }
+    double error = 0;
+    std::vector<double> rest(size_);
+    double largest = values.largest;
+    for (std::size_t i = 0; i < size_; ++i) {
+      const double part = m[0] * directions_[0][i] + m[1] * directions_[1][i];
+      rest[i] = y[c][i] - part;
+      largest = std::max(largest, std::fabs(m[0] * directions_[0][i]) + std::fabs(m[1] * directions_[1][i]));
+      const double value = kept[0] * directions_[0][i] + kept[1] * directions_[1][i];
+      (c == 0 ? net.points[i].x : net.points[i].y) = value;
+      sizes[c] = std::max(sizes[c], std::fabs(value));
+    }
+    for (std::size_t t = 0; t < 2; ++t) {
+      error += direction_errors_[t] * (std::fabs(m[t]) + off[t]) + off[t] * extents_[t];
+    }
+    const double off_rest = enlarged(values.error + gamma_bound(8) * 2 * largest + error);
+    errors[c] = enlarged(error + largest_rest(std::move(rest), off_rest) + gamma_bound(4) * 2 * largest);
+  }
+  // The two values shrink at different rates: each is scaled by a power of two to a size of about 1.
+  if (!conformal_ && sizes[0] > 0x1p-900 && sizes[1] > 0x1p-900) {
+    const std::array<double, 2> scales{std::exp2(-std::ilogb(sizes[0])), std::exp2(-std::ilogb(sizes[1]))};
+    for (std::size_t c = 0; c < 2; ++c) {
+      sizes[c] *= scales[c];
+      errors[c] = enlarged(errors[c] * scales[c]);
+    }
+    for (Vector3& p : net.points) p = {p.x * scales[0], p.y * scales[1], 0};
+  }
+  net.largest = std::max(sizes[0], sizes[1]);
+  net.error = enlarged(std::max(errors[0], errors[1]));
+  return net;
+}
+
+const TipLimit* TipLimits::find(const Kind& kind) {
+  const auto [it, added] = known_.try_emplace(&kind);
+  if (added) it->second = make_tip_limit(kind);
+  return it->second ? &*it->second : nullptr;
+}
+
+}  // namespace snug

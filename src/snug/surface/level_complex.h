@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include <snug/surface/limit_surface.h>
+
+namespace snug {
+
+/// A piece of a root patch after some splits of it: the triangle (i, j), (i + 1, j), (i, j + 1) of the lattice
+/// that cuts each of its edges in 2^splits, or the one beside it that is turned: (i + 1, j + 1), (i, j + 1), (i
+/// + 1, j). Corners are in the order of PiecePath's.
+struct PieceName {
+  std::uint32_t patch = 0;
+  std::uint8_t splits = 0;
+  bool turned = false;
+  std::uint32_t i = 0, j = 0;
+
+  /// Requires:  splits > 0.
+  [[nodiscard]] PieceName parent() const;
+  /// Which child of its parent it is.
+  [[nodiscard]] unsigned digit() const;
+  [[nodiscard]] PieceName child(unsigned digit) const;
+  /// In the patch's lattice.
+  [[nodiscard]] std::array<std::array<std::uint32_t, 2>, 3> corners() const;
+  [[nodiscard]] PiecePath path() const;
+  friend auto operator<=>(const PieceName&, const PieceName&) = default;
+};
+struct PieceNameHash {
+  std::size_t operator()(const PieceName& name) const noexcept;
+};
+
+/// A vertex of the surface's triangulation of some level. Equal names, equal limit points.
+struct LevelVertex {
+  std::uint64_t where = 0;  ///< a corner of root patches, an edge of them, or a patch
+  std::uint64_t place = 0;  ///< there
+  friend auto operator<=>(const LevelVertex&, const LevelVertex&) = default;
+};
+struct LevelVertexHash {
+  std::size_t operator()(const LevelVertex& v) const noexcept;
+};
+
+/// The pieces around a vertex, counter-clockwise.
+struct LevelStar {
+  struct Sector {
+    PieceName piece;
+    std::uint8_t centre;  ///< corner of the piece at the vertex
+  };
+  std::vector<Sector> sectors;
+  bool closed = false;
+  bool fan = false;  ///< Do the sectors follow each other, once around or from one border to another?
+};
+
+/// A surface's pieces of each level as a triangulation, by names alone: what is beside what.
+///
+/// Level 0 are the root patches, if no owner has a first split; else the levels begin at 1, with the patches of
+/// first splits and the children of others.
+class LevelComplex {
+ public:
+  explicit LevelComplex(const LimitSurface& surface);
+
+  [[nodiscard]] unsigned first_level() const { return first_level_; }
+  static constexpr unsigned max_level = 24;
+  [[nodiscard]] unsigned level_of(const PieceName& piece) const { return piece.splits + offset(piece.patch); }
+  /// All pieces of the first level.
+  [[nodiscard]] std::vector<PieceName> pieces() const;
+  /// The names of a piece's corners, at its level.
+  [[nodiscard]] std::array<LevelVertex, 3> vertices(const PieceName& piece) const;
+  /// Requires:  a vertex of a piece of that level.
+  [[nodiscard]] LevelStar star(const LevelVertex& vertex, unsigned level) const;
+
+ private:
+  // An edge of a root patch from its corner k to k + 1, on the whole edge that it is a half of or all: in
+  // halves, from 0 to 2.
+  struct Side {
+    std::uint64_t edge;
+    std::uint8_t begin, end;
+  };
+  struct Incidence {
+    std::uint32_t patch;
+    std::uint8_t corner;  // or side
+  };
+  [[nodiscard]] unsigned offset(std::uint32_t patch) const {
+    return surface_->after_first_split(PatchId(patch)) ? 1u : 0u;
+  }
+  [[nodiscard]] std::array<Side, 3> sides_of(std::uint32_t patch) const;
+  [[nodiscard]] LevelVertex vertex(std::uint32_t patch, unsigned splits, std::uint32_t i,
+                                   std::uint32_t j) const;
+  void add_pieces(std::uint32_t patch, unsigned splits, std::uint32_t i, std::uint32_t j,
+                  std::vector<LevelStar::Sector>& out) const;
+  void put_in_order(LevelStar& star) const;
+
+  const LimitSurface* surface_;
+  unsigned first_level_ = 0;
+  std::vector<std::array<std::uint32_t, 3>> names_;
+  std::vector<std::array<Side, 3>> sides_;
+  std::unordered_map<std::uint64_t, std::vector<Incidence>> at_corner_, at_edge_;
+};
+
+}  // namespace snug

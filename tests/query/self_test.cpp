@@ -1,0 +1,189 @@
+// self_contact(): clear, crossing, touching and collapsed shapes; what does not change the answer.
+
+#include <snug/self.h>
+
+#include <gtest/gtest.h>
+#include <oracle/tagged_shapes.h>
+#include <snug/error.h>
+#include <testing/closed_meshes.h>
+#include <testing/tagged.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace snug {
+namespace {
+
+namespace meshes = oracle::meshes;
+
+SelfContact ask(const oracle::TaggedMesh& mesh, Scheme scheme, const SelfContactOptions& options = {}) {
+  return self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}), options);
+}
+
+// A tube around a figure of eight that passes itself at this height; radius 0.3, or less.
+oracle::TaggedMesh eight(double height, bool triangles, double radius = 0.3) {
+  constexpr std::uint32_t m = 32, n = 6;
+  oracle::TaggedMesh mesh;
+  for (std::uint32_t i = 0; i < m; ++i) {
+    const double t = 2 * std::numbers::pi * i / m;
+    const double dx = 3 * std::cos(t), dy = 4 * std::cos(2 * t), size = std::hypot(dx, dy);
+    for (std::uint32_t j = 0; j < n; ++j) {
+      const double s = 2 * std::numbers::pi * j / n;
+      const double out = radius * std::cos(s), up = radius * std::sin(s);
+      mesh.points.push_back({3 * std::sin(t) + out * dy / size, 2 * std::sin(2 * t) - out * dx / size,
+                             0.5 * height * std::cos(t) + up});
+      const std::uint32_t k = (i + 1) % m, l = (j + 1) % n;
+      const std::uint32_t a = i * n + j, b = k * n + j, c = k * n + l, d = i * n + l;
+      if (triangles) {
+        mesh.polygons.push_back({a, b, c});
+        mesh.polygons.push_back({a, c, d});
+      } else {
+        mesh.polygons.push_back({a, b, c, d});
+      }
+    }
+  }
+  return mesh;
+}
+
+oracle::TaggedMesh both(oracle::TaggedMesh a, const oracle::TaggedMesh& b, double dx) {
+  const auto first = static_cast<std::uint32_t>(a.points.size());
+  for (auto p : b.points) {
+    p[0] += dx;
+    a.points.push_back(p);
+  }
+  for (auto face : b.polygons) {
+    for (auto& v : face) v += first;
+    a.polygons.push_back(face);
+  }
+  return a;
+}
+
+std::vector<Scheme> schemes_of(const oracle::TaggedMesh& mesh) {
+  std::vector<Scheme> schemes{Scheme::catmark, Scheme::doo_sabin, Scheme::midedge};
+  if (std::all_of(mesh.polygons.begin(), mesh.polygons.end(), [](const auto& f) { return f.size() == 3; }))
+    schemes.push_back(Scheme::loop);
+  return schemes;
+}
+
+TEST(self_contact, round_shapes_of_every_valence_are_clear) {
+  for (std::uint32_t n = 3; n <= 9; ++n) {
+    oracle::TaggedMesh bipyramid;
+    bipyramid.points = {{0, 0, 1}, {0, 0, -1}};
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const double t = 2 * std::numbers::pi * i / n;
+      bipyramid.points.push_back({std::cos(t), std::sin(t), 0});
+      bipyramid.polygons.push_back({0, 2 + i, 2 + (i + 1) % n});
+      bipyramid.polygons.push_back({1, 2 + (i + 1) % n, 2 + i});
+    }
+    const SelfContact round = ask(bipyramid, Scheme::loop);
+    EXPECT_EQ(round.verdict, SelfVerdict::clear) << "bipyramid " << n;
+    EXPECT_TRUE(round.pairs.empty());
+    EXPECT_EQ(ask(meshes::prism(n), Scheme::catmark).verdict, SelfVerdict::clear) << "prism " << n;
+  }
+  EXPECT_EQ(ask(meshes::cube(), Scheme::catmark).verdict, SelfVerdict::clear);
+}
+
+TEST(self_contact, tubes_cross_where_they_meet) {
+  for (const bool triangles : {false, true}) {
+    for (const double height : {0.0, 0.1, 0.3, 0.9, 1.5}) {
+      const oracle::TaggedMesh mesh = eight(height, triangles);
+      for (const Scheme scheme : schemes_of(mesh)) {
+        if (triangles && scheme != Scheme::loop) continue;
+        const SelfContact found = ask(mesh, scheme);
+        const std::string name = std::string(name_of(scheme)) + " at " + std::to_string(height);
+        if (height < 0.5) {
+          EXPECT_EQ(found.verdict, SelfVerdict::intersecting) << name;
+          ASSERT_FALSE(found.pairs.empty());
+          const SelfContactPair& pair = found.pairs.front();
+          EXPECT_LT(std::hypot(pair.points[0].x, pair.points[0].y), 1) << name;
+          EXPECT_LT(length(pair.points[1] - pair.points[0]), 0.2) << name;
+          EXPECT_EQ(pair.distance.upper, 0) << name;
+        } else if (scheme != Scheme::doo_sabin && scheme != Scheme::midedge) {
+          EXPECT_EQ(found.verdict, SelfVerdict::clear) << name;
+        } else {
+          EXPECT_NE(found.verdict, SelfVerdict::intersecting) << name;
+        }
+      }
+    }
+  }
+}
+
+TEST(self_contact, two_bodies_in_each_other_apart_or_in_one_place) {
+  const oracle::TaggedMesh cube = meshes::cube();
+  for (const Scheme scheme : schemes_of(cube)) {
+    EXPECT_EQ(ask(both(cube, cube, 0.3), scheme).verdict, SelfVerdict::intersecting) << name_of(scheme);
+    EXPECT_NE(ask(both(cube, cube, 1.3), scheme).verdict, SelfVerdict::intersecting) << name_of(scheme);
+    EXPECT_NE(ask(both(cube, cube, 0), scheme, {.budget = 20'000}).verdict, SelfVerdict::clear)
+        << name_of(scheme);
+  }
+  EXPECT_EQ(ask(both(cube, cube, 1.3), Scheme::catmark).verdict, SelfVerdict::clear);
+}
+
+TEST(self_contact, what_touches_is_never_clear) {
+  // Sharp cubes side by side touch in a face, shifted ones in an edge or a vertex.
+  oracle::TaggedMesh cube = meshes::cube();
+  for (const auto& face : meshes::cube().polygons) {
+    for (std::size_t k = 0; k < 4; ++k) cube.creases.push_back({face[k], face[(k + 1) % 4], 10});
+  }
+  for (const auto& [dy, dz] :
+       {std::pair{0.0, 0.0}, std::pair{0.5, 0.0}, std::pair{1.0, 0.0}, std::pair{1.0, 1.0}}) {
+    oracle::TaggedMesh other = cube;
+    for (auto& p : other.points) {
+      p[1] += dy;
+      p[2] += dz;
+    }
+    oracle::TaggedMesh pair = both(cube, other, 1);
+    for (auto crease : cube.creases) {
+      crease.a += 8;
+      crease.b += 8;
+      pair.creases.push_back(crease);
+    }
+    EXPECT_NE(ask(pair, Scheme::catmark, {.budget = 20'000}).verdict, SelfVerdict::clear) << dy << " " << dz;
+  }
+}
+
+TEST(self_contact, collapsed_and_pinched_meshes_are_undecided) {
+  oracle::TaggedMesh point = meshes::cube(), flat = point;
+  for (auto& p : point.points) p = {1, 1, 1};
+  for (auto& p : flat.points) p[2] = 0;
+  for (const Scheme scheme : schemes_of(point)) {
+    EXPECT_EQ(ask(point, scheme, {.budget = 2000}).verdict, SelfVerdict::undecided) << name_of(scheme);
+    EXPECT_NE(ask(flat, scheme, {.budget = 20'000}).verdict, SelfVerdict::clear) << name_of(scheme);
+  }
+  EXPECT_EQ(ask(meshes::two_cubes_at_a_vertex(), Scheme::catmark).verdict, SelfVerdict::undecided);
+  EXPECT_NE(ask(meshes::back_to_back(), Scheme::catmark, {.budget = 20'000}).verdict, SelfVerdict::clear);
+  EXPECT_NE(ask(meshes::book(3), Scheme::catmark, {.budget = 20'000}).verdict, SelfVerdict::clear);
+}
+
+TEST(self_contact, does_not_depend_on_threads_scale_or_place) {
+  for (const double height : {0.1, 1.5}) {
+    const oracle::TaggedMesh mesh = eight(height, true);
+    const SelfContact one = ask(mesh, Scheme::loop, {.threads = 1});
+    const SelfContact four = ask(mesh, Scheme::loop, {.threads = 4});
+    EXPECT_EQ(one.verdict, four.verdict);
+    EXPECT_EQ(one.stars, four.stars);
+    EXPECT_EQ(one.pair_tests, four.pair_tests);
+    ASSERT_EQ(one.pairs.size(), four.pairs.size());
+    for (std::size_t i = 0; i < one.pairs.size(); ++i) EXPECT_EQ(one.pairs[i].points, four.pairs[i].points);
+    for (const double scale : {0x1p-600, 0x1p600}) {
+      oracle::TaggedMesh scaled = mesh;
+      for (auto& p : scaled.points) {
+        for (double& x : p) x *= scale;
+      }
+      EXPECT_EQ(ask(scaled, Scheme::loop).verdict, one.verdict);
+    }
+  }
+}
+
+TEST(self_contact, refuses_what_it_cannot_do) {
+  EXPECT_THROW(static_cast<void>(ask(meshes::cube(), Scheme::catmark, {.levels = 21})), InputError);
+  const Surface none(testing::control_mesh(meshes::quad_grid(1, 1)),
+                     {.scheme = Scheme::catmark, .boundary = BoundaryRule::none});
+  EXPECT_THROW(static_cast<void>(self_contact(none)), InputError);
+  // Without a budget nothing is decided.
+  EXPECT_EQ(ask(meshes::cube(), Scheme::catmark, {.budget = 0}).verdict, SelfVerdict::undecided);
+}
+
+}  // namespace
+}  // namespace snug
