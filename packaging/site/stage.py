@@ -108,8 +108,10 @@ class Site:
             text = self.moved((ROOT / readme).read_text(encoding="utf-8"), readme, page)
         else:
             text = f"# {path}\n"
+        shown = [file for file in inside if file != readme and file.suffix not in (".png", ".svg")
+                 and not any(part.startswith(".") for part in file.parts)]
         lines = [f"- [{file.relative_to(path)}]({os.path.relpath(self.page_of(file), page.parent)})"
-                 for file in inside if file != readme and file.suffix not in (".png", ".svg") and file.name[0] != "."]
+                 for file in shown]
         return text + "\n## Files\n\n" + "\n".join(lines) + "\n"
 
     def source(self, path):
