@@ -85,7 +85,8 @@ class SNUG_API Surface {
 /// Guarantee: frames never change: a handle to an earlier one shows that one as long as it is kept, and a query
 ///            about a frame uses nothing that was found out about another one. Once as many frames exist as
 ///            are held at a time and one more, move() and what it prepares take no memory, nor do collide(),
-///            distance() and closest_point() where earlier queries came as far.
+///            distance() and closest_point() where earlier queries came as far; the bounds of patch topologies
+///            that no other patch shares still do.
 /// Cost:      a frame and its BVH 0.06 microseconds a patch, see bench/results/moving.txt. The BVH is built
 ///            anew where its boxes would be half as large again for their patches as when it was last built.
 ///            SurfaceOptions::tight counts for the first surface alone. Memory: that of as many surfaces as
