@@ -457,6 +457,9 @@ TEST(time_of_contact, of_solids_counts_what_is_inside) {
   EXPECT_EQ(solids.verdict, Verdict::intersecting);
   EXPECT_EQ(solids.time.upper, 0);
   EXPECT_EQ(solids.inner, 1u);
+  // Along the wall inside, a rounding away from it: a point inside proves nothing of these surfaces.
+  const Trajectory along = translated({0, 0.5, 0}, Motion::translation({std::nextafter(0.8, 0.0), 0, 0}));
+  EXPECT_NE(ask(a, Motion(), b, along).verdict, Verdict::intersecting);
   // From inside to the wall, face on face.
   const TimeOfContact wall = ask(a, Motion(), b, out, {.tolerance = 1e-4});
   EXPECT_LE(wall.time.lower, 0.4);
