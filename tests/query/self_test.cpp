@@ -110,7 +110,7 @@ TEST(self_contact, tubes_cross_where_they_meet) {
 }
 
 TEST(self_contact, of_faces_that_all_have_common_corners_is_found_among_their_children) {
-  // A point of a double tetrahedron is pushed through it, and out again on the other side.
+  // One point of a double tetrahedron is pulled sideways through the other half.
   oracle::TaggedMesh mesh;
   mesh.points = {{0, 0, 1}, {0, 0, -1}};
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -120,7 +120,7 @@ TEST(self_contact, of_faces_that_all_have_common_corners_is_found_among_their_ch
     mesh.polygons.push_back({1, 2 + (i + 1) % 3, 2 + i});
   }
   EXPECT_EQ(ask(mesh, Scheme::loop).verdict, SelfVerdict::clear);
-  mesh.points[0] = {0.6, 0.3, -6};
+  mesh.points[0] = {6, 0, -1.6};
   EXPECT_EQ(ask(mesh, Scheme::loop).verdict, SelfVerdict::intersecting);
 }
 
