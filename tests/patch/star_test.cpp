@@ -8,6 +8,8 @@
 #include <snug/surface/level_complex.h>
 #include <testing/tagged.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -125,6 +127,71 @@ TEST(star, of_flat_quads_is_injective_unless_it_overlaps_itself) {
     }
   }
   EXPECT_GT(injective, 25);
+}
+
+using Plane = std::array<double, 2>;
+
+// Do two convex polygons that turn left have more than their borders in common?
+bool overlap(const std::vector<Plane>& a, const std::vector<Plane>& b) {
+  for (const auto& [x, y] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+    for (std::size_t k = 0; k < x->size(); ++k) {
+      const Plane &p = (*x)[k], &q = (*x)[(k + 1) % x->size()];
+      double most = -INFINITY;  // to the left of the edge
+      for (const Plane& r : *y) {
+        most = std::max(most, (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]));
+      }
+      if (most < 1e-6) return false;
+    }
+  }
+  return true;
+}
+
+TEST(star, whose_quads_overlap_is_never_injective) {
+  std::mt19937_64 random(5);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  int injective = 0, overlapping = 0;
+  for (int trial = 0; trial < 30'000; ++trial) {
+    const auto n = static_cast<std::uint32_t>(2 + random() % 4);
+    oracle::TaggedMesh mesh;
+    mesh.points.push_back({0, 0, 0});
+    double angle = 0;
+    const double wide = 0.5 + 1.5 * unit();
+    for (std::uint32_t i = 0; i < 2 * n + 1; ++i) {
+      const double size = 0.3 + 3 * unit() * unit();
+      mesh.points.push_back({size * std::cos(angle), size * std::sin(angle), 0});
+      // Outer corners may lie far to the side.
+      angle += wide * (unit() - 0.25);
+    }
+    std::vector<std::vector<Plane>> quads;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      mesh.polygons.push_back({0, 1 + 2 * i, 2 + 2 * i, 3 + 2 * i});
+      std::vector<Plane> quad;
+      for (const std::uint32_t v : mesh.polygons.back())
+        quad.push_back({mesh.points[v][0], mesh.points[v][1]});
+      quads.push_back(quad);
+    }
+    const bool convex = std::all_of(quads.begin(), quads.end(), [](const auto& q) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Plane &a = q[k], &b = q[(k + 1) % 4], &c = q[(k + 2) % 4];
+        if ((b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]) <= 1e-3) return false;
+      }
+      return true;
+    });
+    if (!convex) continue;
+    bool over = false;
+    for (std::size_t i = 0; i < quads.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) over = over || overlap(quads[i], quads[j]);
+    }
+    const LimitSurface surface = surface_of(mesh, Scheme::bilinear);
+    const CentreStar star = star_at_centre(surface, 0);
+    TipLimits tips;
+    const bool proved = certainly_injective(star.sectors, star.closed, tips);
+    EXPECT_FALSE(proved && over) << trial;
+    injective += proved ? 1 : 0;
+    overlapping += over ? 1 : 0;
+  }
+  EXPECT_GT(injective, 20);
+  EXPECT_GT(overlapping, 5);
 }
 
 TEST(star, that_is_folded_flat_is_never_injective) {
