@@ -51,9 +51,9 @@ struct SelfContact {
 ///            on threads. Places where the surface is no immersion (spikes, folded creases, collapsed patches,
 ///            vertices and edges that are not manifold) are `undecided`, never `clear`; so are darts and most
 ///            smooth extraordinary vertices of boundaries and creases.
-/// Errors:    InputError: (value) for more than 20 levels; (refused) if no face has a limit surface; (unrepresentable) if a result
-///            does not fit a double. Interrupted.
-/// Cost:      0.3 to 1 ms a patch (docs/self_contact.md).
+/// Errors:    InputError: (value) for more than 20 levels; (refused) if no face has a limit surface;
+///            (unrepresentable) if a result does not fit a double. Interrupted.
+/// Cost:      about 1 to 4 ms a face (docs/self_contact.md).
 /// Source:    derivations/self_contact.md.
 [[nodiscard]] SNUG_API SelfContact self_contact(const Surface& surface,
                                                 const SelfContactOptions& options = {},

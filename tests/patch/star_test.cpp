@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 #include <oracle/tagged_shapes.h>
+#include <snug/patch/evaluate.h>
 #include <snug/surface/level_complex.h>
 #include <testing/tagged.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -39,24 +42,43 @@ oracle::TaggedMesh disc(std::uint32_t n, double turns, const std::function<doubl
   return mesh;
 }
 
-// Is the star of vertex 0 proved to be injective, after some levels?
-bool injective_at_centre(const oracle::TaggedMesh& mesh, unsigned level) {
-  const LimitSurface surface(testing::control_mesh(mesh), {Scheme::loop}, std::make_shared<BoundsCache>());
+// The star of vertex 0 of a surface after some levels.
+struct CentreStar {
+  std::vector<Patch> patches;
+  std::vector<StarSector> sectors;
+  bool closed = false;
+};
+CentreStar star_at_centre(const LimitSurface& surface, unsigned level) {
   const LevelComplex complex(surface);
   PieceName piece{0};
   for (unsigned k = 0; k < level; ++k) piece = piece.child(0);
   const LevelStar star = complex.star(complex.vertices(piece)[0], level);
-  EXPECT_TRUE(star.fan && star.closed);
-  std::vector<Patch> patches;
+  EXPECT_TRUE(star.fan);
+  CentreStar result;
   for (const auto& sector : star.sectors) {
-    patches.push_back(surface.patch(PatchId(sector.piece.patch)));
+    result.patches.push_back(surface.patch(PatchId(sector.piece.patch)));
     const PiecePath path = sector.piece.path();
-    for (unsigned k = 0; k < path.level(); ++k) patches.back() = split(patches.back(), path.digit(k));
+    for (unsigned k = 0; k < path.level(); ++k) {
+      result.patches.back() = split(result.patches.back(), path.digit(k));
+    }
   }
-  std::vector<StarSector> sectors;
-  for (std::size_t s = 0; s < patches.size(); ++s) sectors.push_back({&patches[s], star.sectors[s].centre});
+  for (std::size_t s = 0; s < result.patches.size(); ++s) {
+    result.sectors.push_back({&result.patches[s], star.sectors[s].centre});
+  }
+  result.closed = star.closed;
+  return result;
+}
+
+LimitSurface surface_of(const oracle::TaggedMesh& mesh, Scheme scheme = Scheme::loop) {
+  return LimitSurface(testing::control_mesh(mesh), {scheme}, std::make_shared<BoundsCache>());
+}
+
+// Is it proved to be injective?
+bool injective_at_centre(const oracle::TaggedMesh& mesh, unsigned level) {
+  const LimitSurface surface = surface_of(mesh);
+  const CentreStar star = star_at_centre(surface, level);
   TipLimits tips;
-  return certainly_injective(sectors, star.closed, tips);
+  return certainly_injective(star.sectors, star.closed, tips);
 }
 
 TEST(star, of_any_common_valence_is_injective_where_it_is_smooth) {
@@ -73,12 +95,151 @@ TEST(star, that_winds_twice_is_never_injective) {
   }
 }
 
+// Bilinear quads around a vertex, in a plane: n of them, over an angle of so many turns.
+TEST(star, of_flat_quads_is_injective_unless_it_overlaps_itself) {
+  int injective = 0;
+  for (std::uint32_t n = 3; n <= 16; ++n) {
+    for (const bool closed : {true, false}) {
+      for (const double turns : {0.4, 0.6, 0.8, 0.9, 1.0, 1.1, 1.4, 2.0, 3.0}) {
+        if ((closed && turns != std::floor(turns)) || turns >= 0.45 * n) continue;
+        oracle::TaggedMesh mesh;
+        mesh.points.push_back({0, 0, 0});
+        const std::uint32_t spokes = closed ? n : n + 1;
+        for (std::uint32_t i = 0; i < 2 * spokes; ++i) {
+          const double angle = turns * std::numbers::pi * i / n, size = i % 2 == 0 ? 1 : 1.2;
+          mesh.points.push_back({size * std::cos(angle), size * std::sin(angle), 0});
+        }
+        for (std::uint32_t i = 0; i < n; ++i) {
+          const std::uint32_t a = 1 + 2 * i, b = 1 + 2 * ((i + 1) % spokes);
+          mesh.polygons.push_back({0, a, a + 1, b});
+        }
+        const LimitSurface surface = surface_of(mesh, Scheme::bilinear);
+        const CentreStar star = star_at_centre(surface, 0);
+        ASSERT_EQ(star.closed, closed);
+        TipLimits tips;
+        const bool proved = certainly_injective(star.sectors, star.closed, tips);
+        if (turns > 1 || (turns == 1 && !closed)) {
+          EXPECT_FALSE(proved) << n << " over " << turns;
+        } else {
+          injective += proved ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GT(injective, 25);
+}
+
+using Plane = std::array<double, 2>;
+
+// Do two convex polygons that turn left have more than their borders in common?
+bool overlap(const std::vector<Plane>& a, const std::vector<Plane>& b) {
+  for (const auto& [x, y] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+    for (std::size_t k = 0; k < x->size(); ++k) {
+      const Plane &p = (*x)[k], &q = (*x)[(k + 1) % x->size()];
+      double most = -INFINITY;  // to the left of the edge
+      for (const Plane& r : *y) {
+        most = std::max(most, (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]));
+      }
+      if (most < 1e-6) return false;
+    }
+  }
+  return true;
+}
+
+TEST(star, whose_quads_overlap_is_never_injective) {
+  std::mt19937_64 random(5);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+  int injective = 0, overlapping = 0;
+  for (int trial = 0; trial < 30'000; ++trial) {
+    const auto n = static_cast<std::uint32_t>(2 + random() % 4);
+    oracle::TaggedMesh mesh;
+    mesh.points.push_back({0, 0, 0});
+    double angle = 0;
+    const double wide = 0.5 + 1.5 * unit();
+    for (std::uint32_t i = 0; i < 2 * n + 1; ++i) {
+      const double size = 0.3 + 3 * unit() * unit();
+      mesh.points.push_back({size * std::cos(angle), size * std::sin(angle), 0});
+      // Outer corners may lie far to the side.
+      angle += wide * (unit() - 0.25);
+    }
+    std::vector<std::vector<Plane>> quads;
+    for (std::uint32_t i = 0; i < n; ++i) {
+      mesh.polygons.push_back({0, 1 + 2 * i, 2 + 2 * i, 3 + 2 * i});
+      std::vector<Plane> quad;
+      for (const std::uint32_t v : mesh.polygons.back())
+        quad.push_back({mesh.points[v][0], mesh.points[v][1]});
+      quads.push_back(quad);
+    }
+    const bool convex = std::all_of(quads.begin(), quads.end(), [](const auto& q) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Plane &a = q[k], &b = q[(k + 1) % 4], &c = q[(k + 2) % 4];
+        if ((b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]) <= 1e-3) return false;
+      }
+      return true;
+    });
+    if (!convex) continue;
+    bool over = false;
+    for (std::size_t i = 0; i < quads.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) over = over || overlap(quads[i], quads[j]);
+    }
+    const LimitSurface surface = surface_of(mesh, Scheme::bilinear);
+    const CentreStar star = star_at_centre(surface, 0);
+    TipLimits tips;
+    const bool proved = certainly_injective(star.sectors, star.closed, tips);
+    EXPECT_FALSE(proved && over) << trial;
+    injective += proved ? 1 : 0;
+    overlapping += over ? 1 : 0;
+  }
+  EXPECT_GT(injective, 20);
+  EXPECT_GT(overlapping, 5);
+}
+
 TEST(star, that_is_folded_flat_is_never_injective) {
   for (std::uint32_t n = 3; n <= 12; ++n) {
     auto folded = disc(n, 1, [](double, double) { return 0.0; });
     for (auto& p : folded.points) p[1] = std::fabs(p[1]);
     for (unsigned level = 1; level <= 5; ++level) EXPECT_FALSE(injective_at_centre(folded, level)) << n;
   }
+}
+
+// In a plane an injective star has all its normals on one side.
+TEST(star, that_turns_over_somewhere_in_a_plane_is_never_injective) {
+  std::mt19937_64 random(3);
+  const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; };
+  int injective = 0, turned = 0;
+  for (std::uint32_t n = 3; n <= 10; ++n) {
+    for (int trial = 0; trial < 60; ++trial) {
+      auto mesh = disc(n, 1, [](double, double) { return 0.0; });
+      // Points here and there, or the centre alone, are moved.
+      const double amount = 0.05 * trial;
+      for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+        if (trial % 3 != 0 && v > 0 && random() % 4 != 0) continue;
+        if (trial % 3 == 1 && v > 0) break;
+        mesh.points[v][0] += amount * unit();
+        mesh.points[v][1] += amount * unit();
+      }
+      const LimitSurface surface = surface_of(mesh);
+      for (unsigned level = 0; level <= 2; ++level) {
+        const CentreStar star = star_at_centre(surface, level);
+        TipLimits tips;
+        const bool proved = certainly_injective(star.sectors, star.closed, tips);
+        bool up = false, down = false;
+        for (const Patch& patch : star.patches) {
+          for (int i = 0; i <= 12; ++i) {
+            for (int j = 0; i + j <= 12; ++j) {
+              const LimitFrame frame = limit_frame(patch, {i / 12.0, j / 12.0});
+              if (frame.normal) (frame.normal->z > 0 ? up : down) = true;
+            }
+          }
+        }
+        injective += proved ? 1 : 0;
+        turned += up && down ? 1 : 0;
+        EXPECT_FALSE(proved && up && down) << n << " trial " << trial << " level " << level;
+      }
+    }
+  }
+  EXPECT_GT(injective, 200);
+  EXPECT_GT(turned, 100);
 }
 
 TEST(star, that_is_a_point_or_a_line_is_never_injective) {

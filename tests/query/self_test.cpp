@@ -109,6 +109,21 @@ TEST(self_contact, tubes_cross_where_they_meet) {
   }
 }
 
+TEST(self_contact, of_faces_that_all_have_common_corners_is_found_among_their_children) {
+  // One point of a double tetrahedron is pulled sideways through the other half.
+  oracle::TaggedMesh mesh;
+  mesh.points = {{0, 0, 1}, {0, 0, -1}};
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const double t = 2 * std::numbers::pi * i / 3;
+    mesh.points.push_back({std::cos(t), std::sin(t), 0});
+    mesh.polygons.push_back({0, 2 + i, 2 + (i + 1) % 3});
+    mesh.polygons.push_back({1, 2 + (i + 1) % 3, 2 + i});
+  }
+  EXPECT_EQ(ask(mesh, Scheme::loop).verdict, SelfVerdict::clear);
+  mesh.points[0] = {6, 0, -1.6};
+  EXPECT_EQ(ask(mesh, Scheme::loop).verdict, SelfVerdict::intersecting);
+}
+
 TEST(self_contact, two_bodies_in_each_other_apart_or_in_one_place) {
   const oracle::TaggedMesh cube = meshes::cube();
   for (const Scheme scheme : schemes_of(cube)) {

@@ -1,0 +1,66 @@
+// self, as people script it.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "run_snug.h"
+
+namespace snug::testing {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* box =
+    "v 0 0 0\nv 2 0 0\nv 0 3 0\nv 2 3 0\nv 0 0 4\nv 2 0 4\nv 0 3 4\nv 2 3 4\n"
+    "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+constexpr const char* another =
+    "v 1 1 1\nv 3 1 1\nv 1 4 1\nv 3 4 1\nv 1 1 5\nv 3 1 5\nv 1 4 5\nv 3 4 5\n"
+    "f 9 11 12 10\nf 13 14 16 15\nf 9 10 14 13\nf 11 15 16 12\nf 9 13 15 11\nf 10 12 16 14\n";
+
+class self_command : public ::testing::Test {
+ protected:
+  Outcome run(const std::string& obj, std::vector<std::string> more = {}) {
+    std::ofstream(folder_.file("mesh.obj")) << obj;
+    more.insert(more.begin(), {"self", folder_.file("mesh.obj")});
+    return run_snug(more);
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(self_command, of_a_box_is_clear) {
+  const Outcome outcome = run(box, {"--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json found = json::parse(outcome.out);
+  EXPECT_EQ(found["command"], "self");
+  EXPECT_EQ(found["verdict"], "clear");
+  EXPECT_TRUE(found["pairs"].empty());
+  EXPECT_GT(found["stats"]["stars"], 0);
+  EXPECT_NE(run(box).out.find("clear"), std::string::npos);
+}
+
+TEST_F(self_command, of_two_boxes_in_each_other_tells_where) {
+  const Outcome outcome = run(std::string(box) + another, {"--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json found = json::parse(outcome.out);
+  EXPECT_EQ(found["verdict"], "intersecting");
+  ASSERT_FALSE(found["pairs"].empty());
+  const json& pair = found["pairs"][0];
+  EXPECT_EQ(pair["verdict"], "intersecting");
+  EXPECT_LT(pair["at"][0]["face"], 6);
+  EXPECT_GE(pair["at"][1]["face"], 6);
+  EXPECT_EQ(pair["witness"].size(), 2U);
+  EXPECT_EQ(pair["distance"][1], 0);
+  EXPECT_NE(run(std::string(box) + another).out.find("intersecting"), std::string::npos);
+}
+
+TEST_F(self_command, ends_with_five_where_nothing_is_decided) {
+  const Outcome outcome = run(box, {"--json", "--budget", "0"});
+  EXPECT_EQ(outcome.status, 5);
+  EXPECT_EQ(json::parse(outcome.out)["verdict"], "undecided");
+}
+
+}  // namespace
+}  // namespace snug::testing
