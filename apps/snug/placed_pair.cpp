@@ -17,9 +17,10 @@ void add_pair_options(OptionList& list, PairOptions& options, bool many) {
   if (many) {
     list.at("A").unless("--scene");
     list.at("B").unless("--scene");
-    list.add(Group::own, "--scene FILE", &options.scene,
-             "Ask about the parts that a JSON file names and places, in place of A and B; under mpirun on all "
-             "its ranks");
+    list.add(
+        Group::own, "--scene FILE", &options.scene,
+        "Ask about the parts that a JSON file names and places, in place of A and B; under mpirun on all "
+        "its ranks");
     list.add(Group::own, "--resume JOURNAL", &options.journal,
              "Keep finished answers of a scene in this file, and go on from those that it holds")
         .needs("--scene");
