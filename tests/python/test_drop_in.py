@@ -1,15 +1,13 @@
 """snug.CollisionManager and snug.proximity: names and orders of trimesh's, answers of snug."""
 
 import itertools
-from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import MODELS
 
 import snug
 from snug import proximity
-
-MODELS = Path(__file__).parents[2] / "examples" / "models"
 
 
 class Mesh:
