@@ -19,14 +19,16 @@ void stop_and_pass_on(int signal) {
 
 bool is_main_thread() { return pthread_equal(pthread_self(), main_thread) != 0; }
 
-// Puts `handler` where `expected` is; otherwise changes nothing.
-bool replace_handler(Handler expected, Handler handler) {
+// Stands before Python's handler from now on; where the program has put another one, that stays. Not taken away after a
+// call: that would be a second system call, a sixth of a quick query.
+bool stand_before_pythons() {
   struct sigaction wanted {};
-  wanted.sa_handler = handler;
+  wanted.sa_handler = stop_and_pass_on;
   wanted.sa_flags = SA_ONSTACK;  // as Python's own
   struct sigaction former {};
   if (sigaction(SIGINT, &wanted, &former) != 0) return false;
-  if ((former.sa_flags & SA_SIGINFO) == 0 && former.sa_handler == expected) return true;
+  const bool plain = (former.sa_flags & SA_SIGINFO) == 0;
+  if (plain && (former.sa_handler == pythons_handler || former.sa_handler == stop_and_pass_on)) return true;
   sigaction(SIGINT, &former, nullptr);
   return false;
 }
@@ -63,14 +65,12 @@ Call::Call(const py::object& progress) {
   if (pythons_handler == nullptr || !is_main_thread()) return;
   std::atomic<bool>* none = nullptr;  // a call within a progress callback leaves it to the outer one
   if (!stop_of_call.compare_exchange_strong(none, &stop_)) return;
-  armed_ = replace_handler(pythons_handler, stop_and_pass_on);
+  armed_ = stand_before_pythons();
   if (!armed_) stop_of_call.store(nullptr);
 }
 
 Call::~Call() {
-  if (!armed_) return;
-  replace_handler(stop_and_pass_on, pythons_handler);
-  stop_of_call.store(nullptr);
+  if (armed_) stop_of_call.store(nullptr);
 }
 
 void Call::require_resumed() {

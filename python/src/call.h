@@ -12,8 +12,8 @@ namespace py = pybind11;
 
 /// One call of the library: without the GIL, stopped by Ctrl-C and by exceptions of the progress callback.
 ///
-/// On the main thread, while Python's own handler of SIGINT is in place, a handler stands before it that sets the stop
-/// flag and then calls Python's. The call ends at its next checkpoint, and Python raises what its handler says.
+/// On the main thread, where Python's own handler of SIGINT is in place, the first call puts a handler before it that sets
+/// the stop flag of the call under way, if any, and then calls Python's. The call ends at its next checkpoint, and Python raises what its handler says.
 class Call {
  public:
   /// `progress`: None, or callable with the fraction done; from any thread of the library, one at a time.
