@@ -168,7 +168,7 @@ ExitStatus run(const Options& options) {
   if (motion_a.duration() == 0 && motion_b.duration() == 0) {
     throw UsageError("nothing moves; give --to-b, --velocity-b, --spin-b or --path-b, or the same for A");
   }
-  ContactOptions wanted;
+  TimeOfContactOptions wanted;
   wanted.tolerance = tolerance.in_mesh_units(pair.size());
   wanted.budget = options.budget;
   wanted.solid = options.solid;
@@ -203,7 +203,7 @@ ExitStatus run(const Options& options) {
 Command contact_command() {
   auto options = std::make_shared<Options>();
   options->moves = true;
-  options->budget = ContactOptions{}.budget;
+  options->budget = TimeOfContactOptions{}.budget;
   OptionList list;
   add_move_options(list, "-a", "A", options->move_a);
   add_move_options(list, "-b", "B", options->move_b);

@@ -5,7 +5,6 @@
 #include <snug/bound.h>
 #include <snug/closest.h>
 #include <snug/collide.h>
-#include <snug/contact.h>
 #include <snug/contacts.h>
 #include <snug/deviation.h>
 #include <snug/distance.h>
@@ -19,3 +18,4 @@
 #include <snug/self.h>
 #include <snug/surface.h>
 #include <snug/tessellate.h>
+#include <snug/time_of_contact.h>

@@ -1,8 +1,8 @@
 """The types that the package declares: complete, true to the module, and enough for mypy --strict."""
 
+import importlib.util
 import os
 import pathlib
-import shutil
 import subprocess
 import sys
 
@@ -17,7 +17,7 @@ if PACKAGE.name != "site-packages":  # there mypy finds it by itself
     ENVIRONMENT.update(PYTHONPATH=str(PACKAGE), MYPYPATH=str(PACKAGE))
 
 pytestmark = pytest.mark.skipif(
-    shutil.which("mypy") is None or shutil.which("stubtest") is None or "libasan" in os.environ.get("LD_PRELOAD", ""),
+    importlib.util.find_spec("mypy") is None or "asan" in os.environ.get("LD_PRELOAD", ""),
     reason="mypy is not installed, or sanitizers run",
 )
 
@@ -29,14 +29,15 @@ snug\.(_snug\.|_view\.|collision\.|proximity\.)?_?[A-Z][A-Za-z]+
 
 
 def test_a_program():
-    done = subprocess.run(["mypy", "--strict", "--python-executable", sys.executable, str(HERE / "sample.py")],
+    done = subprocess.run([sys.executable, "-m", "mypy", "--strict", str(HERE / "sample.py")],
                           env=ENVIRONMENT, capture_output=True, text=True, cwd=HERE)
     assert done.returncode == 0, done.stdout
 
 
 def test_declarations_are_true(tmp_path):
     (tmp_path / "allowed").write_text(ALLOWED.strip())
-    done = subprocess.run(["stubtest", "snug", "--concise", "--allowlist", tmp_path / "allowed", "--ignore-unused-allowlist"],
+    done = subprocess.run([sys.executable, "-m", "mypy.stubtest", "snug", "--concise", "--allowlist", tmp_path / "allowed",
+                           "--ignore-unused-allowlist"],
                           env=ENVIRONMENT, capture_output=True, text=True, cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
 

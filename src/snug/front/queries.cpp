@@ -52,7 +52,7 @@ Penetration penetration(const PlacedSurface& a, const PlacedSurface& b, const Pe
 }
 
 TimeOfContact time_of_contact(const Surface& a, const Trajectory& motion_a, const Surface& b,
-                              const Trajectory& motion_b, const ContactOptions& options,
+                              const Trajectory& motion_b, const TimeOfContactOptions& options,
                               const WorkMonitor& monitor, Workspace& workspace) {
   const Workspace::Pieces::Pair pieces = workspace.pieces().of(a, b);
   return time_of_contact({pieces.a.model(), pieces.a, motion_a}, {pieces.b.model(), pieces.b, motion_b},

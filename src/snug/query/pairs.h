@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include <snug/contact.h>
 #include <snug/distance.h>
 #include <snug/search/workspace.h>
+#include <snug/time_of_contact.h>
 
 /// The questions of collide.h and distance.h about surfaces whose trees and workspaces are at hand.
 namespace snug {
@@ -32,7 +32,7 @@ struct MovingBvh {
   const Trajectory& motion;
 };
 [[nodiscard]] TimeOfContact time_of_contact(const MovingBvh& a, const MovingBvh& b,
-                                            const ContactOptions& options = {},
+                                            const TimeOfContactOptions& options = {},
                                             const WorkMonitor& monitor = {});
 
 /// Requires:  two workspaces.

@@ -2,10 +2,10 @@
 
 #include <array>
 
-#include <snug/contact.h>
 #include <snug/geometry/interval.h>
 #include <snug/geometry/motion.h>
 #include <snug/search/surface_bvh.h>
+#include <snug/time_of_contact.h>
 
 namespace snug {
 

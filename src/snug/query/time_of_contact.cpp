@@ -41,7 +41,8 @@ struct Look {
 // The first contact during one piece of both motions, and what came before.
 class Query {
  public:
-  Query(const MovingBvh& a, const MovingBvh& b, const ContactOptions& options, const WorkMonitor& monitor)
+  Query(const MovingBvh& a, const MovingBvh& b, const TimeOfContactOptions& options,
+        const WorkMonitor& monitor)
       : side_{&a, &b},
         options_(options),
         monitor_(monitor),
@@ -333,7 +334,7 @@ class Query {
   }
 
   std::array<const MovingBvh*, 2> side_;
-  const ContactOptions& options_;
+  const TimeOfContactOptions& options_;
   const WorkMonitor& monitor_;
   double tolerance_, size_, duration_;
   std::array<std::optional<PieceMotion>, 2> motion_;
@@ -358,9 +359,9 @@ class Query {
 
 }  // namespace
 
-TimeOfContact time_of_contact(const MovingBvh& a, const MovingBvh& b, const ContactOptions& options,
+TimeOfContact time_of_contact(const MovingBvh& a, const MovingBvh& b, const TimeOfContactOptions& options,
                               const WorkMonitor& monitor) {
-  ContactOptions wanted = options;
+  TimeOfContactOptions wanted = options;
   if (!wanted.tolerance) {
     wanted.tolerance = share_of_size(1e-3, a.model.surface().size(), b.model.surface().size());
   }

@@ -64,7 +64,7 @@ class SNUG_API Trajectory {
   std::vector<Piece> pieces_;
 };
 
-struct ContactOptions {
+struct TimeOfContactOptions {
   /// >= 0, mesh units. Surfaces this close may be reported as within, and times are told to what the surfaces
   /// move by so much in. With 0 only proofs of contact or separation count. Default: 0.1 % of the larger
   /// surface's size.
@@ -109,7 +109,7 @@ struct TimeOfContact {
 ///            too, and everything is rounded outward, see derivations/time_of_contact.md.
 [[nodiscard]] SNUG_API TimeOfContact time_of_contact(const Surface& a, const Trajectory& motion_a,
                                                      const Surface& b, const Trajectory& motion_b,
-                                                     const ContactOptions& options = {},
+                                                     const TimeOfContactOptions& options = {},
                                                      const WorkMonitor& monitor = {},
                                                      Workspace& workspace = Workspace::of_this_thread());
 

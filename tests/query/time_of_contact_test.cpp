@@ -40,7 +40,7 @@ struct Part {
 };
 
 TimeOfContact ask(Part& a, const Trajectory& motion_a, Part& b, const Trajectory& motion_b,
-                  const ContactOptions& options = {}) {
+                  const TimeOfContactOptions& options = {}) {
   return time_of_contact({a.model, a.scratch, motion_a}, {b.model, b.scratch, motion_b}, options);
 }
 
