@@ -19,8 +19,8 @@ namespace {
 constexpr int directions = 12, tried_layouts = 4;
 // Edges of the border that are less steep, and lead to its top or bottom, are laid out level there.
 constexpr std::array<double, 3> level_slopes{0, 0.35, 0.6};
-// Levels that a piece is split for its coefficients to tell, and rings around a corner looked at one by one.
-constexpr unsigned polynomial_levels = 2, passing_levels = 6, max_rings = 40;
+// Levels that a piece is split for its coefficients to tell.
+constexpr unsigned polynomial_levels = 2, passing_levels = 6;
 // Of a net that stands for all further rings, against its size: more would hardly do.
 constexpr double most_error = 0.02;
 // Layouts have so many bits: differences of their numbers, halves and products of two differences are exact.
@@ -153,19 +153,19 @@ class SectorCheck {
     return holds(piece, own, child == 3 ? -side : side, levels);
   }
 
-  bool tip_holds(const TipLimit& tip, Patch patch, unsigned border, double side, unsigned levels) {
-    for (unsigned ring = 0; ring < max_rings; ++ring) {
-      const auto corner = static_cast<unsigned>((tip.corner() + patch.first) % 3);
-      const auto ring_holds = [&](const Patch& net) {
-        for (unsigned child = 0; child < 4; ++child) {
-          if (child != corner && !child_holds(net, child, border, side, levels)) return false;
-        }
-        return true;
-      };
-      const Patch lasting = tip.lasting(patch);
+  bool tip_holds(const TipLimit& tip, const Patch& patch, unsigned border, double side, unsigned levels) {
+    const auto corner = static_cast<unsigned>((tip.corner() + patch.first) % 3);
+    const auto ring_holds = [&](const Patch& net) {
+      for (unsigned child = 0; child < 4; ++child) {
+        if (child != corner && !child_holds(net, child, border, side, levels)) return false;
+      }
+      return true;
+    };
+    const TipRings rings(tip, patch);
+    for (std::size_t ring = 0; ring < rings.count(); ++ring) {
+      const Patch lasting = rings.lasting(ring);
       if (lasting.error < most_error * lasting.largest && ring_holds(lasting)) return true;
-      if (!ring_holds(patch)) return false;
-      patch = split(patch, corner);
+      if (!ring_holds(rings.net(ring))) return false;
       border &= ~(1u << ((corner + 1) % 3));
     }
     return false;
@@ -227,7 +227,7 @@ class SectorCheck {
 // The vectors that a star is seen along, and by how much the exact ones that are meant may differ.
 struct Frame {
   std::array<Vector3, 2> axes;
-  double second_error = 0;  // length of what the second one is off
+  double error = 0;  // largest length of what one of them is off
 };
 
 // Control values along two vectors.
@@ -246,7 +246,7 @@ Patch seen(const Patch& patch, const Frame& frame) {
     flat.points.push_back(value);
   }
   flat.error = enlarged(weight * (patch.error + gamma_bound(4) * patch.largest) +
-                        spatial_error(patch.largest + patch.error) * frame.second_error) +
+                        spatial_error(patch.largest + patch.error) * frame.error) +
                4 * underflow_error;
   return flat;
 }
@@ -308,62 +308,74 @@ class StarCheck {
   }
 
   // A corner whose two tangents shrink at different rates wants axes of its own: the second one exactly across
-  // the tangent that shrinks less.
+  // the tangent along the border or crease, where that shrinks less; the first one exactly across the tangent
+  // across these, where that one does.
   bool suit_tips() {
+    struct Tip {
+      const Patch* patch;
+      std::size_t corner, dominant;  // the corner as the kind counts
+      std::array<Vector3, 2> tangents;
+      std::array<double, 2> errors;  // spatial
+    };
+    std::vector<Tip> found;
     std::optional<std::size_t> at;
-    std::size_t dominant = 0;
-    std::optional<CornerFan> before;
-    std::array<Vector3, 2> tangents;
     for (std::size_t s = 0; s < sectors_.size(); ++s) {
       const Patch& patch = *sectors_[s].patch;
-      const TipLimit* tip = tips_.find(*patch.kind);
-      if (tip == nullptr || tip->conformal()) continue;
-      const std::size_t corner = (tip->corner() + patch.first) % 3;
+      const TipLimit* limit = tips_.find(*patch.kind);
+      if (limit == nullptr || limit->conformal()) continue;
+      const std::size_t corner = (limit->corner() + patch.first) % 3;
       const std::size_t after = (corner + 3 - sectors_[s].centre) % 3;
       const std::size_t vertex = after == 0 ? SIZE_MAX : (s + after - 1) % spokes_.size();
-      if (at && (*at != vertex || tip->dominant() != dominant)) return false;
-      dominant = tip->dominant();
-      // All sectors around one vertex have the same tangent along its border or crease, but for its length; the
-      // same one across it only on one side of a crease.
-      const CornerFan& fan = patch.kind->corner(tip->corner());
-      if (dominant == 1 && (fan.faces() < 3 || (before && !beside(*before, fan)))) return false;
-      before = fan;
+      if (at && *at != vertex) return false;
+      at = vertex;
+      Tip tip{&patch, limit->corner(), limit->dominant(), {}, {}};
       const Stencils& rows = patch.kind->corner_tangents();
-      double off = 0;
       for (std::size_t t = 0; t < 2; ++t) {
-        const std::size_t which = t == 0 ? tip->dominant() : 1 - tip->dominant();
-        const Vector3 tangent = rows.apply<Vector3>(2 * tip->corner() + which, patch.points);
-        const Stencils::Row row = rows.row(2 * tip->corner() + which);
+        const Stencils::Row row = rows.row(2 * tip.corner + t);
         const double row_error = TipLimit::row_error(row) + gamma_bound(row.sources.size() + 2) * row.abs_sum;
-        const double error = enlarged(row_error * patch.largest + (row.abs_sum + row_error) * patch.error);
-        if (!(length(tangent) > 0x1p20 * error)) return false;
-        if (!at) tangents[t] = tangent;
-        if (t == 0) off = spatial_error(error) / length(tangent);
+        tip.tangents[t] = rows.apply<Vector3>(2 * tip.corner + t, patch.points);
+        tip.errors[t] =
+            spatial_error(enlarged(row_error * patch.largest + (row.abs_sum + row_error) * patch.error));
+        if (!(length(tip.tangents[t]) > 0x1p20 * tip.errors[t])) return false;
       }
-      if (!at) {
-        at = vertex;
-        const Vector3 normal = cross(tangents[0], tangents[1]);
-        // Dual to the tangents.
-        const Vector3 x = normalized(cross(tangents[1], normal)), y = normalized(cross(normal, tangents[0]));
-        if (x == Vector3{} || y == Vector3{}) return false;
-        double xx = 0, yy = 0;
-        for (const Vector3& spoke : spokes_) {
-          xx += dot(x, spoke) * dot(x, spoke);
-          yy += dot(y, spoke) * dot(y, spoke);
-        }
-        if (!(xx > 0) || !(yy > 0)) return false;
-        frame_.axes = {(1 / std::sqrt(xx)) * x, (1 / std::sqrt(yy)) * y};
-        if (dot(cross(frame_.axes[0], frame_.axes[1]), cross_of_spokes()) < 0) {
-          frame_.axes[0] = -frame_.axes[0];
-        }
-        turned_ = false;
-      }
-      const Vector3 direction =
-          normalized(rows.apply<Vector3>(2 * tip->corner() + tip->dominant(), patch.points));
-      // |n2 . t| / |t| of the exact tangent: the exact axis that is meant is this far away.
-      const double size = length(frame_.axes[1]);
-      frame_.second_error = std::max(frame_.second_error, enlarged(std::fabs(dot(frame_.axes[1], direction)) +
-                                                                   size * (2 * off + gamma_bound(32))));
+      found.push_back(tip);
+    }
+    if (found.empty()) return true;
+    // All sectors around one vertex have the same tangent along its border or crease, but for its length; the
+    // same one across it only on one side of a crease. Around the vertex a side ends once.
+    std::vector<const Tip*> across;
+    for (const Tip& tip : found) {
+      if (tip.dominant == 1) across.push_back(&tip);
+    }
+    std::size_t ends = 0;
+    for (std::size_t i = 0; i < across.size(); ++i) {
+      const CornerFan& fan = across[i]->patch->kind->corner(across[i]->corner);
+      const Tip& next = *across[(i + 1) % across.size()];
+      if (fan.faces() < 3) return false;
+      if (!beside(fan, next.patch->kind->corner(next.corner))) ++ends;
+    }
+    if (ends > 1) return false;
+    // Dual to the tangents.
+    const std::array<Vector3, 2>& tangents = (across.empty() ? &found.front() : across.front())->tangents;
+    const Vector3 normal = cross(tangents[0], tangents[1]);
+    const Vector3 x = normalized(cross(tangents[1], normal)), y = normalized(cross(normal, tangents[0]));
+    if (x == Vector3{} || y == Vector3{}) return false;
+    double xx = 0, yy = 0;
+    for (const Vector3& spoke : spokes_) {
+      xx += dot(x, spoke) * dot(x, spoke);
+      yy += dot(y, spoke) * dot(y, spoke);
+    }
+    if (!(xx > 0) || !(yy > 0)) return false;
+    frame_.axes = {(1 / std::sqrt(xx)) * x, (1 / std::sqrt(yy)) * y};
+    if (dot(cross(frame_.axes[0], frame_.axes[1]), cross_of_spokes()) < 0) frame_.axes[0] = -frame_.axes[0];
+    turned_ = false;
+    // |n . t| / |t| of the exact tangent t: the exact axis that is meant is this far from n.
+    for (const Tip& tip : found) {
+      const Vector3& axis = frame_.axes[1 - tip.dominant];
+      const Vector3& tangent = tip.tangents[tip.dominant];
+      const double off = tip.errors[tip.dominant] / length(tangent);
+      frame_.error = std::max(frame_.error, enlarged(std::fabs(dot(axis, normalized(tangent))) +
+                                                     length(axis) * (2 * off + gamma_bound(32))));
     }
     return true;
   }
@@ -472,6 +484,14 @@ class StarCheck {
     return least;
   }
 
+  // By so many parts of a half turn; exactly, by quarters.
+  static Turn turn_of(int parts) {
+    constexpr std::array<Turn, 4> quarters{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+    if (parts % (directions / 2) == 0) return quarters[static_cast<std::size_t>(2 * parts / directions)];
+    const double angle = std::numbers::pi * parts / directions;
+    return {std::cos(angle), std::sin(angle)};
+  }
+
   bool monotone() {
     struct Trial {
       double steepness;
@@ -482,9 +502,8 @@ class StarCheck {
     std::vector<Point2> ring;
     for (const double slope : level_slopes) {
       for (int d = 0; d < 2 * directions; ++d) {
-        const double angle = std::numbers::pi * d / directions;
-        const Turn turn = d == 0 ? Turn{} : Turn{std::cos(angle), std::sin(angle)};
-        if (!turned_ && d != 0) break;
+        if (!turned_ && d % (directions / 2) != 0) continue;
+        const Turn turn = turn_of(d);
         // What is level is paid for by sides that are not where they are seen.
         if (lay_out(turn, slope, ring)) trials.push_back({steepness(ring) - 0.5 * slope, turn, slope});
       }

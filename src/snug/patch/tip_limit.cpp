@@ -18,6 +18,10 @@ constexpr int max_iterations = 4000;
 // A bound that is not proved by much is of no use.
 constexpr double enough_contraction = 0.95;
 
+// Rings that are looked at. Rests against sizes that further ones would hardly make better.
+constexpr std::size_t max_rings = 120;
+constexpr double small_rest = 0x1p-13;
+
 double extent(std::span<const double> values) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   return enlarged(0.5 * (*most - *least));
@@ -96,6 +100,23 @@ std::array<double, 2> TipLimit::tangent(const std::vector<double>& values) const
     for (std::size_t c = 0; c < size_; ++c) sums[t] += rows_[t][c] * values[c];
   }
   return sums;
+}
+
+// How much larger extents may be after the part along V is taken off.
+double TipLimit::projection() const {
+  double sum = 0;
+  for (std::size_t t = 0; t < 2; ++t) {
+    sum += (extents_[t] + direction_errors_[t]) * (row_sums_[t] + row_errors_[t]);
+  }
+  return enlarged(sum);
+}
+
+// Extent of what the directions found, times these numbers, are off the plane of V: (V' - V) (W V') m, of the V'
+// that is dual to W in their plane.
+double TipLimit::off_plane(const std::array<double, 2>& m) const {
+  const double both = 0x1p-18 * (std::fabs(m[0]) + std::fabs(m[1]));
+  return enlarged(direction_errors_[0] * (std::fabs(m[0]) + both) +
+                  direction_errors_[1] * (std::fabs(m[1]) + both));
 }
 
 // From (W A)_c = l W_c, where W_c is large.
@@ -228,6 +249,7 @@ bool TipLimit::bound_remainders(const Stencils& step) {
                  gamma_bound(8) * (power.sum + projected));
     const double factor = enlarged(contraction / scale);
     if (factor < enough_contraction) {
+      period_ = std::size_t{1} << i;
       for (std::size_t t = 0; t < 2; ++t) {
         const double own = enlarged(contraction / shrink[t]);
         sums[t] = enlarged(sums[t] / (1 - own));
@@ -282,83 +304,165 @@ std::optional<TipLimit> make_tip_limit(const Kind& kind) {
   return std::nullopt;
 }
 
-// Upper bound of the extents of A^j r over the least eigenvalue's powers: some powers are taken, the others
-// shrink what these leave. `rest` is r up to extents of `error`.
-double TipLimit::largest_rest(std::vector<double> rest, double error) const {
-  constexpr int powers = 16;
-  const Stencils& step = kind_->children()[corner_].stencils;
-  const double least = std::min(eigenvalues_[0].lower, eigenvalues_[1].lower);
-  const double rounding = step.max_error() + gamma_bound(size_ + 2) * step.max_abs_sum();
-  double best = INFINITY, before = 0, scale = 1;
-  std::vector<double> next;
-  for (int i = 0; i <= powers; ++i) {
-    const double now = enlarged((extent(rest) + error) / scale);
-    best = std::min(best, std::max(before, enlarged(growth_ * now)));
-    before = std::max(before, now);
-    apply(step, rest, next);
-    error = enlarged(step.max_abs_sum() * error + rounding * largest_of(rest));
-    rest.swap(next);
-    scale = scale * least * (1 - gamma_bound(2));
+TipRings::TipRings(const TipLimit& limit, const Patch& values) : limit_(&limit), values_(&values) {
+  for (std::size_t c = 0; c < 2; ++c) decompose(c);
+  for (count_ = 1; count_ < max_rings && !(small(parts_[0]) && small(parts_[1])); ++count_) {
+    for (Value& part : parts_) descend(part);
   }
-  return best;
+  // Further ones cannot be larger than those of a period; nor than what one leaves, times the growth.
+  for (Value& part : parts_) {
+    const double fading = limit.growth_ * part.rests.back().fading;
+    const auto at = [&](std::size_t level) { return part.rests[level].extent + part.rests[level].along; };
+    part.largest_after.resize(count_);
+    double largest = INFINITY;
+    for (std::size_t level = count_; level-- > 0;) {
+      largest = enlarged(std::min(limit.growth_ * at(level), std::max(at(level), largest)));
+      if (level + limit.period_ <= count_) {
+        double widest = 0;
+        for (std::size_t k = level; k < level + limit.period_; ++k) widest = std::max(widest, at(k));
+        largest = std::min(largest, enlarged(widest));
+      }
+      part.largest_after[level] = enlarged(largest + fading);
+    }
+  }
 }
 
-Patch TipLimit::lasting(const Patch& values) const {
+void TipRings::decompose(std::size_t c) {
+  const TipLimit& limit = *limit_;
+  Value& part = parts_[c];
+  std::vector<double> y(limit.size_);
+  for (std::size_t i = 0; i < y.size(); ++i) y[i] = c == 0 ? values_->points[i].x : values_->points[i].y;
+  part.own = limit.conformal_ ? 0 : c;
+  part.m = limit.tangent(y);
+  for (std::size_t t = 0; t < 2; ++t) {
+    part.off[t] = enlarged((limit.row_errors_[t] + gamma_bound(limit.size_ + 2) * limit.row_sums_[t]) *
+                               values_->largest +
+                           (limit.row_sums_[t] + limit.row_errors_[t]) * values_->error);
+    part.ratios[t] = limit.conformal_ || t == part.own ? Interval{1}
+                                                       : limit.eigenvalues_[t] / limit.eigenvalues_[part.own];
+  }
+  if (!limit.conformal_ && limit.dominant_ != part.own) {
+    part.m[limit.dominant_] = part.off[limit.dominant_] = 0;
+  }
+  Rest rest;
+  rest.values = std::move(y);
+  double largest = values_->largest;
+  for (std::size_t i = 0; i < rest.values.size(); ++i) {
+    const double a = part.m[0] * limit.directions_[0][i], b = part.m[1] * limit.directions_[1][i];
+    largest = std::max(largest, std::fabs(a) + std::fabs(b));
+    rest.values[i] -= a + b;
+  }
+  rest.fading = enlarged((1 + limit.projection()) * (values_->error + gamma_bound(8) * 3 * largest) +
+                         limit.off_plane(part.m));
+  settle(rest);
+  part.rests.push_back(std::move(rest));
+}
+
+// One level on.
+void TipRings::descend(Value& part) const {
+  const TipLimit& limit = *limit_;
+  const Stencils& step = limit.kind_->children()[limit.corner_].stencils;
+  const Interval& eigenvalue = limit.eigenvalues_[part.own];
+  const Rest& before = part.rests.back();
+  Rest rest;
+  apply(step, before.values, rest.values);
+  const double divisor = middle(eigenvalue);
+  for (double& x : rest.values) x /= divisor;
+  const double largest = largest_of(before.values) / divisor;
+  const double error = (step.max_error() + gamma_bound(limit.size_ + 2) * step.max_abs_sum()) * largest +
+                       (gamma_bound(2) + (eigenvalue.upper - eigenvalue.lower) / eigenvalue.lower) *
+                           (step.max_abs_sum() + step.max_error()) * largest;
+  rest.fading = enlarged(before.fading + (1 + limit.projection()) * error);
+  settle(rest);
+  part.rests.push_back(std::move(rest));
+}
+
+// What it has along V goes: the exact rest has none.
+void TipRings::settle(Rest& rest) const {
+  const TipLimit& limit = *limit_;
+  // Constants last, and no extent sees them.
+  const auto centre = [&] {
+    const auto [least, most] = std::minmax_element(rest.values.begin(), rest.values.end());
+    const double middle = 0.5 * *least + 0.5 * *most;
+    for (double& x : rest.values) x -= middle;
+  };
+  double largest = largest_of(rest.values);
+  centre();
+  const std::array<double, 2> share = limit.tangent(rest.values);
+  for (std::size_t i = 0; i < rest.values.size(); ++i) {
+    const double a = share[0] * limit.directions_[0][i], b = share[1] * limit.directions_[1][i];
+    largest = std::max(largest, std::fabs(a) + std::fabs(b));
+    rest.values[i] -= a + b;
+  }
+  centre();
+  rest.fading = enlarged(rest.fading + (1 + limit.projection()) * gamma_bound(8) * 4 * largest +
+                         limit.off_plane(share));
+  rest.extent = extent(rest.values);
+  const std::array<double, 2> left = limit.tangent(rest.values);
+  const double size = largest_of(rest.values);
+  for (std::size_t t = 0; t < 2; ++t) {
+    const double most = std::fabs(left[t]) +
+                        (limit.row_errors_[t] + gamma_bound(limit.size_ + 2) * limit.row_sums_[t]) * size;
+    rest.along += (limit.extents_[t] + limit.direction_errors_[t]) * most;
+  }
+  rest.along = enlarged(rest.along);
+}
+
+// Would what is left hardly be seen beside the value's own direction?
+bool TipRings::small(const Value& part) const {
+  const double size = std::fabs(part.m[part.own]) * limit_->extents_[part.own];
+  return limit_->growth_ * part.rests.back().extent <= small_rest * size;
+}
+
+double TipRings::fill(std::size_t c, std::size_t level, bool all_further, Patch& net) const {
+  const TipLimit& limit = *limit_;
+  const Value& part = parts_[c];
+  std::array<double, 2> kept{};
+  double error = 0;
+  for (std::size_t t = 0; t < 2; ++t) {
+    Interval power{1};
+    for (std::size_t i = 0; i < level && part.ratios[t] != Interval{1}; ++i) power = power * part.ratios[t];
+    const double m = std::fabs(part.m[t]), exact_extent = limit.extents_[t] + limit.direction_errors_[t];
+    if (all_further && part.ratios[t] != Interval{1}) {
+      // It shrinks faster: from its share to none.
+      error += (m + part.off[t]) * power.upper * exact_extent;
+      continue;
+    }
+    kept[t] = part.m[t] * middle(power);
+    error +=
+        ((m + part.off[t]) * limit.direction_errors_[t] + part.off[t] * limit.extents_[t]) * power.upper +
+        m * (power.upper - power.lower) * limit.extents_[t];
+  }
+  const Rest& rest = part.rests[level];
+  error += all_further ? part.largest_after[level] : limit.growth_ * rest.fading + rest.along;
+  double largest = 0, sum = 0;
+  for (std::size_t i = 0; i < limit.size_; ++i) {
+    const double a = kept[0] * limit.directions_[0][i], b = kept[1] * limit.directions_[1][i];
+    const double own = all_further ? 0 : rest.values[i];
+    (c == 0 ? net.points[i].x : net.points[i].y) = a + b + own;
+    sum = std::max(sum, std::fabs(a) + std::fabs(b) + std::fabs(own));
+    largest = std::max(largest, std::fabs(a + b + own));
+  }
+  error = enlarged(error + gamma_bound(6) * sum);
+  // Each value is scaled by a power of two to a size of about 1.
+  if (!(largest > 0x1p-900)) return INFINITY;
+  const double scale = std::exp2(-std::ilogb(largest));
+  for (Vector3& p : net.points) (c == 0 ? p.x : p.y) *= scale;
+  net.largest = std::max(net.largest, scale * largest);
+  return enlarged(scale * error);
+}
+
+Patch TipRings::made(std::size_t level, bool all_further) const {
   Patch net;
-  net.kind = kind_;
-  net.first = values.first;
-  net.points.resize(size_);
-  std::array<std::vector<double>, 2> y;
-  std::array<double, 2> sizes{}, errors{};
-  for (std::size_t c = 0; c < 2; ++c) {
-    y[c].resize(size_);
-    for (std::size_t i = 0; i < size_; ++i) y[c][i] = c == 0 ? values.points[i].x : values.points[i].y;
-  }
-  for (std::size_t c = 0; c < 2; ++c) {
-    std::array<double, 2> m = tangent(y[c]);
-    std::array<double, 2> off{};  // what the exact ones differ by, at most
-    for (std::size_t t = 0; t < 2; ++t) {
-      off[t] = enlarged((row_errors_[t] + gamma_bound(size_ + 2) * row_sums_[t]) * values.largest +
-                        (row_sums_[t] + row_errors_[t]) * values.error);
-    }
-    std::array<double, 2> kept = m;
-    if (!conformal_) {
-      // Its own direction lasts. Of x the other one shrinks faster, from its share to none; y has none.
-      const std::size_t own = c == 0 ? dominant_ : 1 - dominant_, other = 1 - own;
-      kept[other] = 0;
-      if (c == 0) off[other] += std::fabs(m[other]);
-      if (c == 1) m[other] = off[other] = 0;
-    }
-    double error = 0;
-    std::vector<double> rest(size_);
-    double largest = values.largest;
-    for (std::size_t i = 0; i < size_; ++i) {
-      const double part = m[0] * directions_[0][i] + m[1] * directions_[1][i];
-      rest[i] = y[c][i] - part;
-      largest = std::max(largest, std::fabs(m[0] * directions_[0][i]) + std::fabs(m[1] * directions_[1][i]));
-      const double value = kept[0] * directions_[0][i] + kept[1] * directions_[1][i];
-      (c == 0 ? net.points[i].x : net.points[i].y) = value;
-      sizes[c] = std::max(sizes[c], std::fabs(value));
-    }
-    for (std::size_t t = 0; t < 2; ++t) {
-      error += direction_errors_[t] * (std::fabs(m[t]) + off[t]) + off[t] * extents_[t];
-    }
-    const double off_rest = enlarged(values.error + gamma_bound(8) * 2 * largest + error);
-    errors[c] = enlarged(error + largest_rest(std::move(rest), off_rest) + gamma_bound(4) * 2 * largest);
-  }
-  // The two values shrink at different rates: each is scaled by a power of two to a size of about 1.
-  if (!conformal_ && sizes[0] > 0x1p-900 && sizes[1] > 0x1p-900) {
-    const std::array<double, 2> scales{std::exp2(-std::ilogb(sizes[0])), std::exp2(-std::ilogb(sizes[1]))};
-    for (std::size_t c = 0; c < 2; ++c) {
-      sizes[c] *= scales[c];
-      errors[c] = enlarged(errors[c] * scales[c]);
-    }
-    for (Vector3& p : net.points) p = {p.x * scales[0], p.y * scales[1], 0};
-  }
-  net.largest = std::max(sizes[0], sizes[1]);
-  net.error = enlarged(std::max(errors[0], errors[1]));
+  net.kind = limit_->kind_;
+  net.first = values_->first;
+  net.points.resize(limit_->size_);
+  for (std::size_t c = 0; c < 2; ++c) net.error = std::max(net.error, fill(c, level, all_further, net));
   return net;
 }
+
+Patch TipRings::net(std::size_t level) const { return level == 0 ? *values_ : made(level, false); }
+Patch TipRings::lasting(std::size_t level) const { return made(level, true); }
 
 const TipLimit* TipLimits::find(const Kind& kind) {
   const auto [it, added] = known_.try_emplace(&kind);

@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include <snug/geometry/interval.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/patch.h>
 
@@ -22,9 +23,10 @@ namespace snug {
 class TipLimit {
  public:
   /// Upper bound of the error of a tangent row's entries, in sum: those of creases and boundaries come from
-  /// sines in double precision, and from some ten operations and one sum over the faces each.
+  /// sines in double precision (derivations/self_contact.md, "Rows").
   static double row_error(const Stencils::Row& row) {
-    return enlarged(row.error + 0x1p12 * unit_roundoff * row.abs_sum);
+    return enlarged(row.error +
+                    (64 + 8 * static_cast<double>(row.sources.size())) * unit_roundoff * row.abs_sum);
   }
   [[nodiscard]] std::size_t corner() const { return corner_; }  ///< of the kind
   /// Are both eigenvalues proved to be equal? Then any two directions of space do.
@@ -32,19 +34,14 @@ class TipLimit {
   /// The tangent whose eigenvalue is larger; only of a limit that is not conformal.
   [[nodiscard]] std::size_t dominant() const { return dominant_; }
 
-  /// A net of control values (x, y, 0) that stands for those of all levels from this patch on, each of its two
-  /// values scaled by a positive number and moved: rings of all levels lie within its error.
-  ///
-  /// Requires:  values of the kind's control points, in x and y. Of a limit that is not conformal y must not
-  ///            have a share of the dominant direction: W y = 0 for that row, in exact arithmetic.
-  [[nodiscard]] Patch lasting(const Patch& values) const;
-
  private:
   friend std::optional<TipLimit> make_tip_limit(const Kind& kind);
+  friend class TipRings;
   [[nodiscard]] bool find_eigenvalues(const Kind& kind, const Stencils& step);
   [[nodiscard]] bool find_directions(const Stencils& step);
   [[nodiscard]] bool bound_remainders(const Stencils& step);
-  [[nodiscard]] double largest_rest(std::vector<double> rest, double error) const;
+  [[nodiscard]] double projection() const;
+  [[nodiscard]] double off_plane(const std::array<double, 2>& m) const;
   [[nodiscard]] std::array<double, 2> tangent(const std::vector<double>& values) const;
 
   const Kind* kind_ = nullptr;
@@ -57,7 +54,55 @@ class TipLimit {
   std::array<std::vector<double>, 2> directions_;  // about V
   std::array<double, 2> extents_{};                // of these
   std::array<double, 2> direction_errors_{};       // extents of V less these
-  double growth_ = 1;  // of the extent of A^j r over that of r, over the least eigenvalue's power
+  std::size_t period_ = 1;  // the extent of A^period r is less than that power of the least eigenvalue
+  double growth_ = 1;       // of the extent of A^j r over that of r, over the least eigenvalue's power
+};
+
+/// The nets of control values (x, y, 0) at an extraordinary corner, level after level: each of its two values is
+/// scaled by a positive number, another one at each level, and moved.
+///
+/// Requires:  values of the kind's control points, in x and y. Of a limit that is not conformal x belongs to the
+///            first tangent and y to the second one: the value that does not belong to the dominant one has no
+///            share of it, W x = 0 or W y = 0 for that row, in exact arithmetic.
+/// Source:    derivations/self_contact.md, "All rings at once".
+class TipRings {
+ public:
+  TipRings(const TipLimit& limit, const Patch& values);
+  /// How many levels it is of use to look at; at least one.
+  [[nodiscard]] std::size_t count() const { return count_; }
+  /// The net of one level.
+  [[nodiscard]] Patch net(std::size_t level) const;
+  /// A net that stands for those of this level and all further ones: they lie within its error.
+  [[nodiscard]] Patch lasting(std::size_t level) const;
+
+ private:
+  // What is left of one value without the tangents' directions, over its eigenvalue's powers. The exact one less
+  // this: along V, and the rest of it, as large as its part of level 0 that A makes it of.
+  struct Rest {
+    std::vector<double> values;
+    double extent = 0;
+    double along = 0, fading = 0;  // extents
+  };
+  // One of the two values.
+  struct Value {
+    std::size_t own = 0;                // the tangent that it belongs to
+    std::array<double, 2> m{}, off{};   // W of it, and how far the exact ones are
+    std::array<Interval, 2> ratios{};   // of the eigenvalues to its own one
+    std::vector<Rest> rests;            // of all levels
+    std::vector<double> largest_after;  // extents of the exact rests from a level on
+  };
+  void decompose(std::size_t c);
+  void descend(Value& part) const;
+  void settle(Rest& rest) const;
+  [[nodiscard]] bool small(const Value& part) const;
+  // Points of a value with the shares of its directions, and its error.
+  [[nodiscard]] double fill(std::size_t c, std::size_t level, bool all_further, Patch& net) const;
+  [[nodiscard]] Patch made(std::size_t level, bool all_further) const;
+
+  const TipLimit* limit_;
+  const Patch* values_;
+  std::array<Value, 2> parts_;
+  std::size_t count_ = 0;
 };
 
 /// None where the kind does not come again at a corner, where the tangents' eigenvalues are not proved to be
