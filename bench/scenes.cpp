@@ -9,8 +9,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <random>
 
+#include <snug/geometry/direction.h>
 #include <snug/io/number.h>
 #include <snug/scene.h>
 #include <snug/tessellate.h>
@@ -41,17 +43,6 @@ ModelScene packed_scene(std::size_t parts, double density, std::size_t models, s
   return scene;
 }
 
-ModelScene gear_train(std::size_t parts) {
-  const auto row = static_cast<std::size_t>(std::sqrt(static_cast<double>(parts)));
-  ModelScene scene;
-  for (std::size_t i = 0; i < parts; ++i) {
-    const auto x = static_cast<double>(i % row), y = static_cast<double>(i / row);
-    scene.push_back(
-        {0, Motion::rotation_degrees({0, 0, 1}, i % 2 == 0 ? 0 : 180).with_offset({1.01 * x, 1.01 * y, 0})});
-  }
-  return scene;
-}
-
 ModelScene robot_cell(std::size_t parts, std::size_t models, std::uint64_t seed) {
   ModelScene scene = packed_scene(parts / 2, 0.3, models - 1, seed);
   const double side = std::cbrt(static_cast<double>(parts / 2) / 0.3);
@@ -67,13 +58,136 @@ ModelScene robot_cell(std::size_t parts, std::size_t models, std::uint64_t seed)
   return scene;
 }
 
-ModelScene layers(std::size_t parts) {
+namespace {
+
+// Rings of points one after the other, joined by quads: a torus, or a tube with two caps.
+ControlMesh joined_rings(const std::vector<std::vector<Point3>>& rings, bool closed) {
+  ControlMesh mesh;
+  const std::size_t size = rings[0].size();
+  const auto at = [&](std::size_t ring, std::size_t i) {
+    return VertexId(static_cast<std::uint32_t>(ring % rings.size() * size + i % size));
+  };
+  for (const std::vector<Point3>& ring : rings)
+    mesh.points.insert(mesh.points.end(), ring.begin(), ring.end());
+  for (std::size_t ring = 0; ring + (closed ? 0 : 1) < rings.size(); ++ring) {
+    for (std::size_t i = 0; i < size; ++i) {
+      mesh.add_face(std::array{at(ring, i), at(ring, i + 1), at(ring + 1, i + 1), at(ring + 1, i)});
+    }
+  }
+  return mesh;
+}
+
+// Outside and inside of a wheel, below and above. Teeth are at every thirty degrees from zero on.
+ControlMesh gear() {
+  constexpr int teeth = 12, steps = 4 * teeth;
+  std::vector<std::vector<Point3>> rings(4);
+  for (int i = 0; i < steps; ++i) {
+    const double angle = 2 * std::numbers::pi * (i - 0.5) / steps, outside = i % 4 < 2 ? 1.16 : 0.86;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double radius = k < 2 ? outside : 0.35;
+      rings[k].push_back(
+          {radius * std::cos(angle), radius * std::sin(angle), k == 0 || k == 3 ? -0.15 : 0.15});
+    }
+  }
+  return joined_rings(rings, true);
+}
+
+// A tube of length 1 along x with round ends.
+ControlMesh link() {
+  constexpr int around = 8;
+  std::vector<std::vector<Point3>> rings;
+  for (const auto& [x, radius] :
+       {std::pair{-0.55, 0.15}, {-0.5, 0.3}, {-0.2, 0.3}, {0.2, 0.3}, {0.5, 0.3}, {0.55, 0.15}}) {
+    std::vector<Point3>& ring = rings.emplace_back();
+    for (int i = 0; i < around; ++i) {
+      const double angle = 2 * std::numbers::pi * i / around;
+      ring.push_back({x, radius * std::cos(angle), radius * std::sin(angle)});
+    }
+  }
+  ControlMesh mesh = joined_rings(rings, false);
+  std::vector<VertexId> first, last;
+  for (std::uint32_t i = 0; i < around; ++i) {
+    first.emplace_back(around - 1 - i);
+    last.emplace_back(static_cast<std::uint32_t>(mesh.points.size()) - around + i);
+  }
+  mesh.add_face(first);
+  mesh.add_face(last);
+  return mesh;
+}
+
+ControlMesh sheet() {
+  constexpr std::uint32_t side = 24;
+  ControlMesh mesh;
+  for (std::uint32_t j = 0; j <= side; ++j) {
+    for (std::uint32_t i = 0; i <= side; ++i) {
+      const double x = static_cast<double>(i) / side - 0.5, y = static_cast<double>(j) / side - 0.5;
+      mesh.points.push_back({x, y, 0.02 * std::sin(14 * x + 3 * std::sin(5 * y)) + 0.01 * std::sin(17 * y)});
+    }
+  }
+  const auto at = [](std::uint32_t i, std::uint32_t j) { return VertexId(j * (side + 1) + i); };
+  for (std::uint32_t j = 0; j < side; ++j) {
+    for (std::uint32_t i = 0; i < side; ++i) {
+      mesh.add_face(std::array{at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  return mesh;
+}
+
+std::uint32_t made(MadeModel model) { return static_cast<std::uint32_t>(model); }
+
+}  // namespace
+
+std::vector<Model> make_models() { return {{"gear", gear()}, {"link", link()}, {"sheet", sheet()}}; }
+
+ModelScene gear_train(std::size_t parts) {
+  constexpr std::size_t row = 10, train = row * row, times = 10;
+  constexpr double tooth = 30;
+  ModelScene scene;
+  for (std::size_t i = 0; i < parts; ++i) {
+    const std::size_t x = i % row, y = i / row % row, time = i / train;
+    const double turn = tooth * static_cast<double>(time) / times;
+    // Every other one turns the other way, its gaps where the teeth of its neighbours are.
+    const double angle = (x + y) % 2 == 0 ? turn : tooth / 2 - turn;
+    scene.push_back(
+        {made(MadeModel::gear), Motion::rotation_degrees({0, 0, 1}, angle)
+                                    .with_offset({2 * static_cast<double>(x), 2 * static_cast<double>(y),
+                                                  0.4 * static_cast<double>(time)})});
+  }
+  return scene;
+}
+
+ModelScene hose(std::size_t parts) {
+  // Of a thousand links of length 1.
+  const double scale = std::sqrt(static_cast<double>(parts) / 1000), large = 7 * scale, small = 2.4 * scale;
+  const double windings = static_cast<double>(parts) / (2 * std::numbers::pi * small);
+  ModelScene scene;
+  for (std::size_t i = 0; i < parts; ++i) {
+    const double t = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(parts),
+                 s = windings * t;
+    const double radius = large + small * std::cos(s);
+    const Vector3 at{radius * std::cos(t), radius * std::sin(t), small * std::sin(s)};
+    // Along the winding; the quarter turn about its own axis is whatever comes out.
+    const Vector3 x = normalized(Vector3{-small * windings * std::sin(s) * std::cos(t) - radius * std::sin(t),
+                                         -small * windings * std::sin(s) * std::sin(t) + radius * std::cos(t),
+                                         small * windings * std::cos(s)});
+    const Vector3 y = normalized(cross({0.1, 0.2, 1}, x)), z = cross(x, y);
+    scene.push_back({made(MadeModel::link),
+                     Motion::from_3x4({x.x, y.x, z.x, at.x, x.y, y.y, z.y, at.y, x.z, y.z, z.z, at.z})});
+  }
+  return scene;
+}
+
+ModelScene sheets(std::size_t parts) {
   ModelScene scene;
   const auto row = static_cast<std::size_t>(std::cbrt(static_cast<double>(parts)));
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> unit(-1, 1);
   for (std::size_t i = 0; i < parts; ++i) {
     const auto x = static_cast<double>(i % row), y = static_cast<double>(i / row % row),
                z = static_cast<double>(i / (row * row));
-    scene.push_back({0, Motion::translation({0.97 * x, 0.97 * y, 0.35 * z + 0.01 * x})});
+    scene.push_back({made(MadeModel::sheet), Motion::rotation_degrees({0, 0, 1}, 3 * unit(random))
+                                                 .with_offset({0.97 * x + 0.01 * unit(random),
+                                                               0.97 * y + 0.01 * unit(random), 0.02 * z})});
   }
   return scene;
 }
@@ -83,6 +197,7 @@ namespace {
 struct NamedScene {
   std::string name;
   ModelScene parts;
+  std::vector<Model> models;
 };
 
 constexpr double tolerance = 1e-3;  // models have size 1
@@ -121,10 +236,9 @@ std::size_t near_pairs(const Scene& scene) {
   return near;
 }
 
-void measure_kinds(const std::vector<Model>& models, const std::vector<NamedScene>& scenes,
-                   const Options& options) {
-  const std::vector<Surface> surfaces = surfaces_of(models);
+void measure_kinds(const std::vector<NamedScene>& scenes, const Options& options) {
   for (const NamedScene& named : scenes) {
+    const std::vector<Surface> surfaces = surfaces_of(named.models);
     const Scene scene = scene_of(surfaces, named.parts);
     const SceneCounts counts = count(scene, all_answers());
     std::printf(
@@ -178,9 +292,9 @@ TriangleMesh triangles_of(const Model& model) {
 }
 
 // From control meshes to the count of pairs that meet: what is prepared is made anew each time.
-void measure_fcl(const std::vector<Model>& models, const std::vector<NamedScene>& scenes,
-                 const Options& options) {
+void measure_fcl(const std::vector<NamedScene>& scenes, const Options& options) {
   for (const NamedScene& named : scenes) {
+    const std::vector<Model>& models = named.models;
     Group group(named.name + ", from meshes to verdicts", "scene", options);
     group.limit_rounds(3);
     group.add("snug", 1,
@@ -277,16 +391,18 @@ int main(int argc, char** argv) {
   using namespace snug::bench;
   const Options options = start(argc, argv, any_files, " MODELS");
   const std::vector<Model> models = read_models(options.files);
-  const std::size_t parts = options.size(1000u, 100u);
-  const std::vector<NamedScene> scenes{{"packed loosely", packed_scene(parts, 0.5, models.size(), 1)},
-                                       {"packed", packed_scene(parts, 1, models.size(), 1)},
-                                       {"packed densely", packed_scene(parts, 4, models.size(), 1)},
-                                       {"gear train", gear_train(parts)},
-                                       {"robot cell", robot_cell(parts, models.size(), 2)},
-                                       {"layers", layers(parts)}};
-  measure_kinds(models, scenes, options);
+  const std::size_t parts = options.size(1000u, 100u), read = models.size();
+  // Each with the models that it has, so that no others are prepared.
+  const std::vector<NamedScene> scenes{{"packed loosely", packed_scene(parts, 0.5, read, 1), models},
+                                       {"packed", packed_scene(parts, 1, read, 1), models},
+                                       {"packed densely", packed_scene(parts, 4, read, 1), models},
+                                       {"robot cell", robot_cell(parts, read, 2), models},
+                                       {"gear train", gear_train(parts), make_models()},
+                                       {"hose", hose(parts), make_models()},
+                                       {"sheets", sheets(parts), make_models()}};
+  measure_kinds(scenes, options);
 #ifdef SNUG_BENCH_FCL
-  measure_fcl(models, scenes, options);
+  measure_fcl(scenes, options);
 #endif
   measure_sizes(models, options);
   measure_threads(models, options);

@@ -4,9 +4,11 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdlib>
+#include <iterator>
 #include <thread>
 
 #include "scene_testing.h"
@@ -67,6 +69,22 @@ class ranks : public scene_runs {
   [[nodiscard]] static std::string mpirun(int count, const std::string& words) {
     return "mpirun --oversubscribe -n " + std::to_string(count) + " " + SNUG_COMMAND + " " + words;
   }
+  // Two ranks, one of which does as `line` says before it becomes the command; a subshell of it outlives that.
+  [[nodiscard]] static std::string with_rank(int rank, const std::string& line, const std::string& words) {
+    return "mpirun --oversubscribe -n 2 sh -c 'if [ $OMPI_COMM_WORLD_RANK = " + std::to_string(rank) +
+           " ]; then " + line + "; fi; exec " + SNUG_COMMAND + " " + words + "'";
+  }
+  // Once so many lines are in a file.
+  [[nodiscard]] static std::string send_when(const std::string& journal, std::size_t lines,
+                                             const char* signal) {
+    return "(until [ $(cat " + journal + " 2> /dev/null | wc -l) -ge " + std::to_string(lines) +
+           " ]; do sleep 0.005; done; kill -" + signal + " $$) > /dev/null 2>&1 &";
+  }
+  static std::size_t lines_of(const std::string& path) {
+    std::ifstream stream(path);
+    return static_cast<std::size_t>(
+        std::count(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>(), '\n'));
+  }
 };
 
 TEST_F(ranks, write_the_document_of_one_process) {
@@ -88,6 +106,54 @@ TEST_F(ranks, keep_a_journal_together) {
   shell("timeout -s KILL 0.7 " + line + " 2> /dev/null");
   const Outcome outcome = shell(line);
   EXPECT_EQ(comparable(outcome.out), expected);
+}
+
+// Any of two ranks is killed while both work: mpirun says so and ends the job, and nothing that was finished is lost.
+TEST_F(ranks, go_on_after_one_of_them_was_killed) {
+  const Json expected = comparable(run_snug({"collide", "--scene", file_, "--json"}).out);
+  for (const int rank : {0, 1}) {
+    const std::string journal = folder_.file("journal" + std::to_string(rank)),
+                      words = "collide --scene " + file_ + " --json --threads 1 --resume " + journal;
+    std::size_t before = 1;
+    for (const std::size_t lines : {2u, 60u}) {
+      const Outcome outcome =
+          shell(with_rank(rank, send_when(journal, lines, "KILL") + " true", words) + " 2>&1");
+      ASSERT_EQ(outcome.status, 128 + SIGKILL) << outcome.out;
+      EXPECT_NE(outcome.out.find("rank " + std::to_string(rank)), std::string::npos) << outcome.out;
+      EXPECT_NE(outcome.out.find("signal 9"), std::string::npos) << outcome.out;
+      EXPECT_GE(lines_of(journal), std::max(lines, before));
+      before = lines_of(journal);
+    }
+    const Outcome outcome = shell(mpirun(2, words));
+    ASSERT_EQ(outcome.status, 0);
+    EXPECT_EQ(comparable(outcome.out), expected);
+    EXPECT_EQ(comparable(run_snug({"collide", "--scene", file_, "--json", "--resume", journal}).out),
+              expected);
+  }
+}
+
+TEST_F(ranks, go_on_after_one_of_them_was_interrupted) {
+  const Json expected = comparable(run_snug({"collide", "--scene", file_, "--json"}).out);
+  for (const int rank : {0, 1}) {
+    const std::string journal = folder_.file("journal" + std::to_string(rank)),
+                      words = "collide --scene " + file_ + " --json --threads 1 --resume " + journal;
+    const Outcome outcome = shell(with_rank(rank, send_when(journal, 30, "INT") + " true", words) + " 2>&1");
+    EXPECT_EQ(outcome.status, 130) << outcome.out;
+    EXPECT_NE(outcome.out.find("snug: "), std::string::npos) << outcome.out;
+    EXPECT_GE(lines_of(journal), 30u);
+    EXPECT_EQ(comparable(shell(mpirun(2, words)).out), expected);
+  }
+}
+
+TEST_F(ranks, go_on_after_a_full_disk) {
+  const Json expected = comparable(run_snug({"collide", "--scene", file_, "--json"}).out);
+  const std::string journal = folder_.file("journal"),
+                    words = "collide --scene " + file_ + " --json --resume " + journal;
+  const Outcome outcome = shell(with_rank(0, "ulimit -f 40", words) + " 2>&1");
+  EXPECT_EQ(outcome.status, 3) << outcome.out;
+  EXPECT_NE(outcome.out.find("make room, and run again"), std::string::npos) << outcome.out;
+  EXPECT_GT(lines_of(journal), 5u);
+  EXPECT_EQ(comparable(shell(mpirun(2, words)).out), expected);
 }
 
 TEST_F(ranks, end_with_one_word_for_all_of_them) {

@@ -1,7 +1,11 @@
 // Scenes: --scene, --all-pairs, --limit, --resume.
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <linux/capability.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
@@ -225,6 +229,26 @@ TEST_F(scenes, that_are_wrong_are_refused_in_one_line) {
   EXPECT_NE(line.find("open.obj: "), std::string::npos) << line;
 }
 
+TEST_F(scenes, of_a_thousand_equal_parts_end_soon_with_a_count) {
+  Json same{{"parts", Json::array()}};
+  for (int i = 0; i < 1000; ++i) same["parts"].push_back({{"mesh", "ball.obj"}});
+  const Outcome outcome = run_snug({"collide", "--scene", scene(same.dump())});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("499500 pairs: 0 separated by boxes, 499500 "), std::string::npos);
+}
+
+TEST_F(scenes, whose_meshes_are_none_are_refused) {
+  const auto mesh = [&](const std::string& name) {
+    return refusal(R"({"parts": [{"mesh": "ball.obj"}, {"mesh": ")" + name + R"("}]})");
+  };
+  std::filesystem::create_directory(folder_.file("folder.obj"));
+  write_text(folder_.file("empty.obj"), "");
+  EXPECT_NE(mesh("folder.obj").find("folder.obj: "), std::string::npos);
+  EXPECT_NE(mesh("empty.obj").find("empty.obj: "), std::string::npos);
+  EXPECT_NE(mesh("scene.json").find("scene.json: "), std::string::npos);  // it names itself
+  EXPECT_EQ(run_snug({"collide", "--scene", folder_.file("folder.obj")}).status, 3);
+}
+
 TEST_F(scenes, need_no_meshes_and_take_none) {
   EXPECT_EQ(run_snug({"collide"}).status, 2);
   EXPECT_EQ(run_snug({"collide", folder_.file("ball.obj"), "--scene", three()}).status, 2);
@@ -319,6 +343,37 @@ TEST_F(journals, keep_what_was_finished_before_an_interrupt) {
     ++interrupted;
   }
   EXPECT_GT(interrupted, 0);
+}
+
+TEST_F(journals, that_cannot_be_written_are_refused) {
+  const auto refused = [&](const std::string& journal, const std::string& part) {
+    // Without what lets root write everywhere.
+    const auto as_others = [] { prctl(PR_CAPBSET_DROP, CAP_DAC_OVERRIDE, 0, 0, 0); };
+    const Outcome outcome = run_snug_in({as_others, {}}, {"collide", "--scene", file_, "--resume", journal});
+    EXPECT_EQ(outcome.status, 3);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find(journal + ": cannot be opened"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
+  };
+  refused(folder_.file("no/journal"), "No such file");
+  std::filesystem::create_directory(folder_.file("folder"));
+  refused(folder_.file("folder"), "Is a directory");
+  ASSERT_EQ(run_snug(words()).status, 0);
+  const std::string before = text();
+  std::filesystem::permissions(journal_, std::filesystem::perms::owner_read);
+  refused(journal_, "Permission denied");
+  EXPECT_EQ(text(), before);
+}
+
+TEST_F(journals, keep_what_was_finished_where_the_document_cannot_be_written) {
+  const Json expected = answer({"collide", "--scene", file_});
+  const auto full = [] { dup2(open("/dev/full", O_WRONLY), STDOUT_FILENO); };
+  const Outcome outcome = run_snug_in({full, {}}, words({"--json"}));
+  EXPECT_EQ(outcome.status, 3) << outcome.err;
+  const std::string before = text();
+  EXPECT_GT(before.size(), 1000u);
+  EXPECT_EQ(answer(words()), expected);
+  EXPECT_EQ(text().substr(0, before.size()), before);
 }
 
 TEST_F(journals, keep_what_was_finished_on_a_full_disk) {

@@ -2,6 +2,7 @@
 
 #include <cfloat>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <random>
 #include <set>
@@ -275,6 +276,44 @@ TEST(broad_phase, deals_out_all_of_a_thousand_equal_parts) {
   }
   EXPECT_EQ(count, pairs.pair_count());
   EXPECT_EQ(pairs.share(), 1);
+}
+
+// Half a million pairs in one place, of which no two kinds differ but in margins, sides and signs of zero.
+TEST(scene, a_thousand_equal_parts_are_answered_soon) {
+  const Surface shape = surface_of(oracle::meshes::icosahedron());
+  Scene scene;
+  scene.parts.assign(1000, shape);
+  scene.parts[500] = shape.at(Motion::translation({0.1, 0, 0}));
+  scene.parts[600] = shape.at(Motion::translation({-0.0, 0, 0}));
+  scene.margins = {{{3, 4}, 0.5}};
+  const CollideOptions options{.tolerance = 1e-3};
+  std::map<std::array<int, 3>, Collision> kinds;
+  const auto kind_of = [](const PartPair& parts) {
+    const auto place = [](std::uint32_t part) { return part == 500 ? 1 : part == 600 ? 2 : 0; };
+    return std::array{place(parts.a), place(parts.b), parts == PartPair{3, 4} ? 1 : 0};
+  };
+  std::uint64_t seen = 0;
+  const SceneCounts counts = collide(
+      scene, options,
+      [&](const PairCollision& pair) {
+        const auto [known, fresh] = kinds.try_emplace(kind_of(pair.parts));
+        if (fresh) {
+          CollideOptions own = options;
+          if (known->first[2] != 0) own.margin = 0.5;
+          known->second = collide(scene.parts[pair.parts.a], scene.parts[pair.parts.b], own);
+        }
+        if (same(pair.answer, known->second)) ++seen;
+      },
+      2);
+  EXPECT_EQ(kinds.size(), 7u);
+  EXPECT_EQ(seen, 499'500u);
+  EXPECT_EQ(counts.pairs, seen);
+  EXPECT_EQ(counts.separated_by_boxes + counts.separated + counts.undecided, 0u);
+  std::uint64_t near = 0;
+  const SceneCounts distances = distance(
+      scene, 0.5, {.absolute = 1e-3}, [&](const PairDistance&) { ++near; }, 2);
+  EXPECT_EQ(near, 499'500u);
+  EXPECT_EQ(distances.within + distances.intersecting, near);
 }
 
 TEST(broad_phase, does_not_depend_on_threads) {

@@ -71,6 +71,30 @@ TEST(collide, honours_the_margin) {
   EXPECT_EQ(pair.ask(moved(2, 0, 0), testing::verdict_only(1e-6, 1.5)).verdict, Verdict::within);
 }
 
+// Points near each other are found on patches as they are, not on splits of them.
+TEST(collide, tells_that_patches_meet_with_few_splits) {
+  Pair pair(oracle::meshes::icosahedron(), oracle::meshes::icosahedron());
+  std::mt19937_64 random(31);
+  std::uint64_t splits = 0;
+  int met = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const Motion pose = testing::random_placement(random, testing::random_vector(random, 1));
+    CollideOptions options = testing::verdict_only(1e-3, 0);
+    const Collision found = pair.ask(pose, options);
+    options.prove_contact = true;
+    const Collision proved = pair.ask(pose, options);
+    ASSERT_EQ(found.verdict == Verdict::separated, proved.verdict == Verdict::separated) << trial;
+    if (found.verdict == Verdict::separated) continue;
+    ASSERT_EQ(found.verdict, Verdict::within);
+    ASSERT_LE(found.distance.upper, 1e-3);
+    ++met;
+    splits += found.stats.splits;
+    ASSERT_LE(distance((*found.witness)[0], (*found.witness)[1]), 1e-3);
+  }
+  EXPECT_GT(met, 100);
+  EXPECT_LT(splits, 3u * static_cast<unsigned>(met));
+}
+
 TEST(collide, finds_coincident_surfaces_at_once) {
   Pair pair(oracle::meshes::icosahedron(), oracle::meshes::icosahedron());
   EXPECT_EQ(pair.ask({}, testing::verdict_only(1e-9, 0)).verdict, Verdict::within);

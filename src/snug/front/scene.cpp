@@ -1,11 +1,16 @@
 #include <snug/scene.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <string>
 #include <thread>
+#include <tuple>
+#include <type_traits>
 #include <unordered_map>
+#include <utility>
 
 #include <snug/base/error.h>
 #include <snug/base/in_order.h>
@@ -244,17 +249,74 @@ void report_part(const WorkMonitor& monitor, double from, double to, std::size_t
   monitor.report(from + (to - from) * static_cast<double>(done) / static_cast<double>(count));
 }
 
+namespace {
+
+// All that an answer depends on: two surfaces, the bits of their poses, options.
+template <class... Options>
+struct Question {
+  std::array<std::uint64_t, 26> placed;
+  std::tuple<Options...> options;
+  Question(const PlacedSurface& a, const PlacedSurface& b, const Options&... in_options)
+      : options(in_options...) {
+    auto* next = placed.data();
+    for (const PlacedSurface* part : {&a, &b}) {
+      *next++ = part->surface().data()->number();
+      for (const double x : part->pose().numbers()) *next++ = std::bit_cast<std::uint64_t>(x);
+    }
+  }
+  friend bool operator==(const Question&, const Question&) = default;
+  [[nodiscard]] std::size_t hash() const {
+    std::uint64_t sum = 0;
+    for (const std::uint64_t word : placed) sum = (sum ^ word) * 0x9e3779b97f4a7c15u;
+    return static_cast<std::size_t>(sum >> 32);
+  }
+};
+
+// Some answers of a thread, for copies of parts in one place, whose pairs differ in nothing but names.
+template <class Question, class Answer>
+class KnownAnswers {
+ public:
+  [[nodiscard]] const Answer* find(const Question& question) const {
+    const auto& place = places_[question.hash() % places_.size()];
+    return place && place->first == question ? &place->second : nullptr;
+  }
+  void keep(const Question& question, const Answer& answer) {
+    places_[question.hash() % places_.size()].emplace(question, answer);
+  }
+
+ private:
+  std::array<std::optional<std::pair<Question, Answer>>, 64> places_;
+};
+
+auto question_of(const PlacedSurface& a, const PlacedSurface& b, const CollideOptions& options) {
+  const auto& [tolerance, margin, budget, witness, prove_contact, solid, measure] = options;
+  return Question(a, b, tolerance, margin, budget, witness, prove_contact, solid, measure);
+}
+
+}  // namespace
+
 Collision collide_pair(const Scene& scene, const ScenePair& pair, CollideOptions options,
                        const WorkMonitor& monitor, Workspace& workspace) {
   const PlacedSurface &a = scene.parts[pair.parts.a], &b = scene.parts[pair.parts.b];
   options.margin = pair.margin;
-  return naming_parts(names_of(pair.parts), [&] { return collide(a, b, options, monitor, workspace); });
+  const auto question = question_of(a, b, options);
+  thread_local KnownAnswers<std::remove_const_t<decltype(question)>, Collision> known;
+  if (const Collision* const answer = known.find(question)) return *answer;
+  const Collision answer =
+      naming_parts(names_of(pair.parts), [&] { return collide(a, b, options, monitor, workspace); });
+  // What their roots tell costs less than to keep it.
+  if (answer.stats.box_tests > 0) known.keep(question, answer);
+  return answer;
 }
 
 std::optional<Distance> distance_of_pair(const Scene& scene, const ScenePair& pair,
                                          const DistanceOptions& options, const WorkMonitor& monitor,
                                          Workspace& workspace) {
   const PlacedSurface &a = scene.parts[pair.parts.a], &b = scene.parts[pair.parts.b];
+  const auto& [absolute, relative, budget, solid] = options;
+  const Question question(a, b, pair.margin, absolute, relative, budget, solid);
+  thread_local KnownAnswers<std::remove_const_t<decltype(question)>, Distance> known;
+  if (const Distance* const answer = known.find(question)) return *answer;
   return naming_parts(names_of(pair.parts), [&]() -> std::optional<Distance> {
     // Pairs beyond the limit are told sooner by a verdict than by a distance.
     const CollideOptions beyond{.margin = pair.margin,
@@ -266,6 +328,7 @@ std::optional<Distance> distance_of_pair(const Scene& scene, const ScenePair& pa
     if (collide(a, b, beyond, monitor, workspace).verdict == Verdict::separated) return {};
     Distance found = distance(a, b, options, monitor, workspace);
     if (found.distance.lower > pair.margin) return {};
+    known.keep(question, found);
     return found;
   });
 }

@@ -24,6 +24,10 @@ constexpr auto verdict_names = std::to_array<Named<Verdict>>({{"separated", Verd
 // Attempts to prove that surfaces intersect: of surfaces that nearly lie in each other every pair looks like
 // a crossing.
 constexpr int max_attempts = 2000, max_attempts_within = 64;
+// Where nearness is all that is asked for: pairs of pieces that wait for others before one of them is split, and Newton
+// steps towards a common point of two pieces, on their quadratics and on the limit surfaces.
+constexpr std::size_t most_waiting = 16;
+constexpr int quadratic_steps = 2, limit_steps = 2;
 
 class Query {
  public:
@@ -36,31 +40,27 @@ class Query {
   // Depth first; the pair that overlaps more deeply first.
   Collision run() {
     thread_local std::vector<NodePair> stack;
+    thread_local std::vector<Waiting> waiting;
     stack.clear();
+    waiting.clear();
     const NodePair roots = walk_.roots();
     // Points so near cannot be found sooner than a crossing is proved.
     proving_ = options_.prove_contact ||
                reach_ <= 0x1p-14 * static_cast<double>(std::max(walk_.size(roots, 0), walk_.size(roots, 1)));
     stack.push_back(roots);
-    while (!stack.empty() && !finished()) {
-      const NodePair pair = stack.back();
-      stack.pop_back();
-      if (pair.bounded()) {
-        monitor_.checkpoint();
-        if (!look_at(pair, pieces_.nearest(pair))) continue;
-        if (PiecePairs::at_single_precision(pair) && !look_at(pair, pieces_.nearest_in_double(pair)))
-          continue;
-      }
-      const PairWalk::Opening opening = walk_.opening(pair);
-      if (opening == PairWalk::Opening::none) {
-        incomplete_ = true;
-        continue;
-      }
-      if (!walk_.may_open(pair, opening, options_.budget)) {
-        incomplete_ = true;
+    while (!finished()) {
+      std::optional<NodePair> pair;
+      if (!stack.empty()) {
+        pair = stack.back();
+        stack.pop_back();
+        if (pair->bounded()) pair = after_a_look(*pair, waiting);
+        if (!pair) continue;
+      } else if (waiting.empty()) {
         break;
+      } else {
+        pair = nearest_of(waiting);
       }
-      lower_ = std::min(lower_, static_cast<double>(walk_.open(pair, opening, margin_, stack)));
+      if (!open(*pair, stack)) break;
     }
     return result();
   }
@@ -69,6 +69,51 @@ class Query {
   [[nodiscard]] bool finished() const {
     if (crossing_) return true;
     return found_ && (!options_.prove_contact || attempts_ >= max_attempts_within);
+  }
+
+  // A pair of pieces as near as has waited.
+  struct Waiting {
+    NodePair pair;
+    double apart;
+  };
+
+  // What is to be opened next: a pair of pieces, or one that has waited in its place; nothing if it is done with, or waits.
+  std::optional<NodePair> after_a_look(const NodePair& pair, std::vector<Waiting>& waiting) {
+    monitor_.checkpoint();
+    const PiecePair pieces = pieces_.nearest(pair);
+    if (!look_at(pair, pieces)) return {};
+    if (PiecePairs::at_single_precision(pair)) {
+      if (!look_at(pair, pieces_.nearest_in_double(pair))) return {};
+      return pair;
+    }
+    // Others may show at once what a split may show.
+    if (proving_) return pair;
+    waiting.push_back({pair, length(pieces.between)});
+    if (waiting.size() <= most_waiting) return {};
+    return nearest_of(waiting);
+  }
+
+  static NodePair nearest_of(std::vector<Waiting>& waiting) {
+    const auto nearest = std::min_element(
+        waiting.begin(), waiting.end(), [](const Waiting& x, const Waiting& y) { return x.apart < y.apart; });
+    const NodePair pair = nearest->pair;
+    waiting.erase(nearest);
+    return pair;
+  }
+
+  // False when the budget ends.
+  bool open(const NodePair& pair, std::vector<NodePair>& out) {
+    const PairWalk::Opening opening = walk_.opening(pair);
+    if (opening == PairWalk::Opening::none) {
+      incomplete_ = true;
+      return true;
+    }
+    if (!walk_.may_open(pair, opening, options_.budget)) {
+      incomplete_ = true;
+      return false;
+    }
+    lower_ = std::min(lower_, static_cast<double>(walk_.open(pair, opening, margin_, out)));
+    return true;
   }
 
   // To prove a crossing both pieces must be flat.
@@ -95,6 +140,7 @@ class Query {
         if (witness.distance < best_.distance) best_ = witness;
         found_ = best_.distance <= reach_;
       }
+      if (!found_ && !proving_ && pieces.gap <= reach_) find_common_point(pieces);
     }
     if (worth_proving(pair, pieces.radii[0] + pieces.radii[1])) {
       if (pieces.near.certain_distance == 0) {
@@ -105,6 +151,22 @@ class Query {
       }
     }
     return !finished();
+  }
+
+  // Where pieces meet, points of them are near each other long before they are flat.
+  void find_common_point(PiecePair pieces) {
+    for (int i = 0; i < quadratic_steps && pieces.near_distance > reach_; ++i) {
+      pieces_.step_together(pieces, pieces.between);
+    }
+    if (pieces.near_distance < near_->near_distance) near_ = pieces;
+    found_ = near_->near_distance <= reach_;
+    if (found_ || length(pieces.between) > reach_) return;
+    for (int i = 0; i < limit_steps && !found_; ++i) {
+      const Witness witness = pieces_.witness(pieces);
+      if (witness.distance < best_.distance) best_ = witness;
+      found_ = best_.distance <= reach_;
+      pieces_.step_together(pieces, witness.points[1] - witness.points[0]);
+    }
   }
 
   Collision result() {

@@ -52,6 +52,14 @@ Vector3 PieceRecord::at(TriangleParameter at) const {
          (2 * r * u) * wide(net_[3]) + (2 * u * v) * wide(net_[4]) + (2 * r * v) * wide(net_[5]);
 }
 
+std::array<Vector3, 2> PieceRecord::derivatives(TriangleParameter at) const {
+  const double u = at.u, v = at.v, r = 1 - u - v;
+  std::array<Vector3, 6> net;
+  for (std::size_t k = 0; k < 6; ++k) net[k] = wide(net_[k]);
+  return {2 * (r * (net[3] - net[0]) + u * (net[1] - net[3]) + v * (net[4] - net[5])),
+          2 * (r * (net[5] - net[0]) + u * (net[4] - net[3]) + v * (net[2] - net[5]))};
+}
+
 // Over the Bezier points of the four parts after a split, those that are no means of others.
 double PieceRecord::extent(const Vector3& w) const {
   std::array<double, 6> f;

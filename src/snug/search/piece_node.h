@@ -27,6 +27,8 @@ class PieceRecord {
   /// The quadratic at a parameter, relative to the origin.
   /// Guarantee: the piece's point there is within error(), a length; rounding included.
   [[nodiscard]] Vector3 at(TriangleParameter at) const;
+  /// Its derivatives by u and v, but for roundings.
+  [[nodiscard]] std::array<Vector3, 2> derivatives(TriangleParameter at) const;
   /// Its Bezier points, relative to the origin: corners, then middles of the edges 01, 12, 20.
   [[nodiscard]] Vector3 bezier_point(std::size_t k) const { return wide(net_[k]); }
   /// Upper bound of dot(w, x) over the piece, x relative to the origin, but for |w| error().

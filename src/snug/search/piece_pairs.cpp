@@ -107,6 +107,34 @@ void PiecePairs::approach(PiecePair& pieces) const {
   set_points(pieces);
 }
 
+// The derivatives of both quadratics by their parameters, A's negated: three equations for four unknowns, whose shortest
+// solution is J' (J J')^-1 (-between).
+void PiecePairs::step_together(PiecePair& pieces, const Vector3& between) const {
+  std::array<Vector3, 4> by;
+  for (std::size_t s = 0; s < 2; ++s) {
+    const PieceRecord& record = SurfaceWorkspace::record(pieces.nodes[s]);
+    const PlacedFrame& frame = frames_.frame(s);
+    const double factor = (s == 0 ? -1 : 1) * frame.scale;
+    const std::array<Vector3, 2> own = record.derivatives(pieces.at[s]);
+    for (std::size_t k = 0; k < 2; ++k) by[2 * s + k] = factor * times(frame.rows, own[k]);
+  }
+  std::array<Vector3, 3> square;
+  for (const Vector3& column : by) {
+    for (std::size_t k = 0; k < 3; ++k) square[k] = square[k] + column[k] * column;
+  }
+  const std::array<Vector3, 3> adjugate{cross(square[1], square[2]), cross(square[2], square[0]),
+                                        cross(square[0], square[1])};
+  const double determinant = dot(square[0], adjugate[0]);
+  if (!(determinant > 0)) return;
+  const Vector3 solution = (-1 / determinant) * times(adjugate, between);
+  if (!is_finite(solution)) return;
+  for (std::size_t s = 0; s < 2; ++s) {
+    TriangleParameter& at = pieces.at[s];
+    at = clamped({at.u + dot(by[2 * s], solution), at.v + dot(by[2 * s + 1], solution)});
+  }
+  set_points(pieces);
+}
+
 double PiecePairs::placed_extent(std::size_t side, const Node& node, const Vector3& w) const {
   const PlacedFrame& frame = frames_.frame(side);
   const PieceRecord& record = SurfaceWorkspace::record(node);

@@ -53,6 +53,9 @@ class PiecePairs {
   [[nodiscard]] PiecePair nearest_in_double(const NodePair& pair);
   /// Moves the points on the quadratics to where these are about nearest.
   void approach(PiecePair& pieces) const;
+  /// Moves them by a Newton step to where `between`, the way from A's to B's or that of what they stand for, is about zero.
+  /// Stays where the pieces are parallel.
+  void step_together(PiecePair& pieces, const Vector3& between) const;
 
   /// Lower bound of the distance of two pieces: that of the planes across `direction` that hold their
   /// quadratics apart, less what these err. The best direction is that from the nearest point of A to that of
