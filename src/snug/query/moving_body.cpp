@@ -38,12 +38,19 @@ Box3 placed_box(const BoundedPose& pose, const Point3& p) {
 
 }  // namespace
 
+std::vector<Point3> points_between(std::span<const Point3> p, std::span<const Point3> q, double s) {
+  std::vector<Point3> points(p.size());
+  for (std::size_t v = 0; v < p.size(); ++v) {
+    for (std::size_t k = 0; k < 3; ++k) points[v][k] = (1 - s) * p[v][k] + s * q[v][k];
+  }
+  return points;
+}
+
 Deformation::Deformation(const SurfaceBvh& model, SurfaceWorkspace& scratch, std::span<const Point3> end)
     : model_(model), scratch_(scratch), end_(end) {
   // Says what is wrong with the points.
   surface_.emplace(model.surface(), end);
   const std::span<const Point3> begin = model.surface().mesh().points;
-  points_.assign(begin.begin(), begin.end());
   for (std::size_t v = 0; v < end.size(); ++v) {
     if (model.surface().topology().isolated(VertexId(v))) continue;
     largest_ = std::max({largest_, max_abs(begin[v] - Point3{}), max_abs(end[v] - Point3{})});
@@ -57,11 +64,7 @@ Deformation::Deformation(const SurfaceBvh& model, SurfaceWorkspace& scratch, std
 Deformation::Shape Deformation::at(double s) {
   if (s == 0) return {model_, scratch_, 0};
   if (s != time_) {
-    const std::span<const Point3> begin = model_.surface().mesh().points;
-    for (std::size_t v = 0; v < end_.size(); ++v) {
-      for (std::size_t k = 0; k < 3; ++k) points_[v][k] = (1 - s) * begin[v][k] + s * end_[v][k];
-    }
-    surface_->move(points_);
+    surface_->move(points_between(model_.surface().mesh().points, end_, s));
     if (moved_) {
       moved_->refit(plan_);
       moved_scratch_->renew(*moved_);

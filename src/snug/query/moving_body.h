@@ -12,6 +12,9 @@
 
 namespace snug {
 
+/// (1 - s) p + s q for each two points, in double precision; exact for s = 0 and s = 1.
+[[nodiscard]] std::vector<Point3> points_between(std::span<const Point3> p, std::span<const Point3> q, double s);
+
 /// Control points that go along lines from those of a model to others: the surface at any time between.
 class Deformation {
  public:
@@ -35,7 +38,6 @@ class Deformation {
   std::span<const Point3> end_;
   double largest_ = 0, speed_ = 0;
   double time_ = 0;  // of what follows
-  std::vector<Point3> points_;
   SharedPlan plan_;
   std::optional<LimitSurface> surface_;
   std::optional<SurfaceBvh> moved_;
