@@ -215,13 +215,13 @@ ExitStatus run(const Options& options) {
   const WorkMonitor monitor = bar.monitor();
   pair.prepare(monitor);
   const SurfaceBvh &model_a = pair.model_a(), &model_b = pair.model_b();
-  const std::vector<Point3> end_a =
-                                deformed(deform_a, options.mesh_a, model_a.surface().mesh(), options),
+  const std::vector<Point3> end_a = deformed(deform_a, options.mesh_a, model_a.surface().mesh(), options),
                             end_b = deformed(deform_b, options.mesh_b, model_b.surface().mesh(), options);
   if (options.solid) pair.require_closed();
   Report report("contact", options);
   pair.write_heads(report);
-  const MovingBvh a{model_a, pair.a().scratch, motion_a, end_a}, b{model_b, pair.b().scratch, motion_b, end_b};
+  const MovingBvh a{model_a, pair.a().scratch, motion_a, end_a},
+      b{model_b, pair.b().scratch, motion_b, end_b};
   const TimeOfContact answer = time_of_contact(a, b, wanted, monitor);
   // Where the witnesses are: at contact, or at the beginning.
   const double time = answer.time.upper < INFINITY ? answer.time.upper : 0;

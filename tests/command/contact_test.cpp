@@ -79,8 +79,7 @@ TEST_F(contact, of_meshes_that_deform_is_told) {
   const std::string longer = folder_.file("longer.obj");
   std::ofstream(longer) << cube(-3);
   // B's left side goes from x = 3 to 0: it meets x = 1 at two thirds of the time.
-  const json deforms =
-      answer({"--move-b", "3 0.1 0.2", "--deform-b", longer, "--tolerance", "1e-3"});
+  const json deforms = answer({"--move-b", "3 0.1 0.2", "--deform-b", longer, "--tolerance", "1e-3"});
   EXPECT_EQ(deforms["verdict"], "intersecting");
   EXPECT_EQ(deforms["duration"], 1);
   EXPECT_LE(deforms["time"][0], 2.0 / 3);

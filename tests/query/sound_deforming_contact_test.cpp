@@ -54,10 +54,12 @@ TEST(sound_deforming_contact, no_points_of_loop_surfaces_meet_before) {
     const LimitSurface a = testing::surface_of(twin[0]), b = testing::surface_of(twin[1]);
     const SurfaceBvh model_a(a), model_b(b);
     SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
-    const double size = std::max(a.size(), b.size()), tolerance = random() % 4 == 0 ? 1e-5 * size : 1e-3 * size;
+    const double size = std::max(a.size(), b.size()),
+                 tolerance = random() % 4 == 0 ? 1e-5 * size : 1e-3 * size;
     const Trajectory of_a(pose[0]), of_b(pose[1]);
-    const TimeOfContact found = time_of_contact({model_a, scratch_a, of_a, end[0]}, {model_b, scratch_b, of_b, end[1]},
-                                                {.tolerance = tolerance, .max_looks = 400});
+    const TimeOfContact found =
+        time_of_contact({model_a, scratch_a, of_a, end[0]}, {model_b, scratch_b, of_b, end[1]},
+                        {.tolerance = tolerance, .max_looks = 400});
     tally.add(found);
     const std::string what = "trial " + std::to_string(trial);
     const auto bounds_at = [&](double s) {

@@ -48,18 +48,18 @@ struct Shape {
         for (const auto& s : oracle::sample_faces(mesh, rules, 2)) points.push_back(point(s.position));
         return points;
       };
-      list.push_back({c.name + ", " + text_of(c.rules), control_mesh(c.mesh, c.rules),
-                      options_of(c.rules), c.mesh, sample});
+      list.push_back({c.name + ", " + text_of(c.rules), control_mesh(c.mesh, c.rules), options_of(c.rules),
+                      c.mesh, sample});
     }
   }
   namespace meshes = oracle::meshes;
   std::mt19937_64 random(seed);
   for (const Scheme scheme : {Scheme::doo_sabin, Scheme::midedge}) {
-    for (const auto& [name, plain] : std::vector<std::pair<std::string, oracle::TaggedMesh>>{
-             {"cube", meshes::cube()},
-             {"grid", meshes::quad_grid(4, 4)},
-             {"prism 5", meshes::prism(5)},
-             {"pyramid 7", meshes::pyramid(7)}}) {
+    for (const auto& [name, plain] :
+         std::vector<std::pair<std::string, oracle::TaggedMesh>>{{"cube", meshes::cube()},
+                                                                 {"grid", meshes::quad_grid(4, 4)},
+                                                                 {"prism 5", meshes::prism(5)},
+                                                                 {"pyramid 7", meshes::pyramid(7)}}) {
       const oracle::TaggedMesh mesh = meshes::shaken(plain, 0.2, random);
       const LimitSurface surface(control_mesh(mesh), {scheme}, std::make_shared<BoundsCache>());
       std::vector<bool> there;
@@ -69,7 +69,10 @@ struct Shape {
       }
       const auto sample = [scheme, there](const oracle::TaggedMesh& moved) {
         std::vector<Point3> points;
-        for (const auto& s : oracle::sample_dual(moved, scheme == Scheme::doo_sabin ? oracle::DualScheme::doo_sabin : oracle::DualScheme::midedge, 2)) {
+        for (const auto& s : oracle::sample_dual(
+                 moved,
+                 scheme == Scheme::doo_sabin ? oracle::DualScheme::doo_sabin : oracle::DualScheme::midedge,
+                 2)) {
           if (std::any_of(s.owners.begin(), s.owners.end(), [&](auto v) { return there[v]; })) {
             points.push_back(point(s.position));
           }
@@ -84,9 +87,11 @@ struct Shape {
 
 /// The ways to deform.
 inline constexpr int way_count = 9;
-[[nodiscard]] inline std::vector<Point3> deformed(const std::vector<Point3>& points, int way, std::mt19937_64& random) {
+[[nodiscard]] inline std::vector<Point3> deformed(const std::vector<Point3>& points, int way,
+                                                  std::mt19937_64& random) {
   Point3 centre{};
-  for (const Point3& p : points) centre = centre + (1.0 / static_cast<double>(points.size())) * (p - Point3{});
+  for (const Point3& p : points)
+    centre = centre + (1.0 / static_cast<double>(points.size())) * (p - Point3{});
   const Vector3 by = random_vector(random, 1);
   const Motion turn = Motion::rotation(random_vector(random, 1), 1 + 2 * unit(random));
   std::vector<Point3> result;
@@ -125,7 +130,8 @@ inline constexpr int way_count = 9;
   return result;
 }
 
-[[nodiscard]] inline oracle::TaggedMesh with_points(oracle::TaggedMesh mesh, const std::vector<Point3>& points) {
+[[nodiscard]] inline oracle::TaggedMesh with_points(oracle::TaggedMesh mesh,
+                                                    const std::vector<Point3>& points) {
   for (std::size_t v = 0; v < points.size(); ++v) mesh.points[v] = {points[v].x, points[v].y, points[v].z};
   return mesh;
 }
@@ -222,7 +228,8 @@ inline Tally points_that_meet(std::uint64_t seed, std::size_t count, std::uint64
   Tally tally;
   for (std::size_t trial = 0; trial < count; ++trial) {
     const Shape &shape_a = all[random() % all.size()], &shape_b = all[random() % all.size()];
-    const int way_a = static_cast<int>(trial % way_count), way_b = static_cast<int>(trial / way_count % way_count);
+    const int way_a = static_cast<int>(trial % way_count),
+              way_b = static_cast<int>(trial / way_count % way_count);
     const int placing_a = static_cast<int>(random() % placing_count),
               placing_b = static_cast<int>(random() % placing_count);
     const double s = trial % 7 == 0 ? 1 : trial % 11 == 0 ? 0 : 0.05 + 0.9 * unit(random);
@@ -244,10 +251,10 @@ inline Tally points_that_meet(std::uint64_t seed, std::size_t count, std::uint64
     const Trajectory motion_b = shifted(any_b, pose_a.apply(a.at(i, s)) - pose_b.apply(still.at(j, s)));
     const double tolerance = std::array{1e-3, 1e-5, 1e-2, 0.0}[trial % 4];
     SurfaceWorkspace scratch_a(a.model), scratch_b(still.model);
-    const TimeOfContact found = time_of_contact(
-        {a.model, scratch_a, motion_a, way_a == 0 ? std::span<const Point3>{} : a.end},
-        {still.model, scratch_b, motion_b, still.end},
-        {.tolerance = tolerance, .budget = budget, .max_looks = 300});
+    const TimeOfContact found =
+        time_of_contact({a.model, scratch_a, motion_a, way_a == 0 ? std::span<const Point3>{} : a.end},
+                        {still.model, scratch_b, motion_b, still.end},
+                        {.tolerance = tolerance, .budget = budget, .max_looks = 200});
     const std::string what = "trial " + std::to_string(trial) + ": " + a.name + " by way " +
                              std::to_string(way_a) + ", " + still.name + " by way " + std::to_string(way_b) +
                              ", placed by " + std::to_string(placing_a) + " and " + std::to_string(placing_b);

@@ -56,7 +56,7 @@ LinearPatches::LinearPatches(const LimitSurface& surface, std::span<const Box3> 
     }
     for (std::size_t p = first; p < last && surface.has_patch(PatchId(p)); ++p) {
       surface.control_vertices(PatchId(p), all);
-      const double weight = 
+      const double weight =
           surface.polygon_of(PatchId(p)) ? 1.0 : std::min(1.0, surface.kind(PatchId(p)).outer_weight());
       const auto around = [&](const auto& box_of) {
         Box3 inner, outer;
@@ -93,9 +93,9 @@ void LinearPatches::split(std::uint32_t node, std::span<Node> leaves) {
       spread[axis].upper = std::max(spread[axis].upper, middle(leaf, axis));
     }
   }
-  const auto widest = std::max_element(spread.begin(), spread.end(), [](const Interval& x, const Interval& y) {
-    return x.upper - x.lower < y.upper - y.lower;
-  });
+  const auto widest = std::max_element(
+      spread.begin(), spread.end(),
+      [](const Interval& x, const Interval& y) { return x.upper - x.lower < y.upper - y.lower; });
   const auto axis = static_cast<std::size_t>(widest - spread.begin());
   const std::size_t half = leaves.size() / 2;
   std::nth_element(leaves.begin(), leaves.begin() + static_cast<std::ptrdiff_t>(half), leaves.end(),
@@ -129,8 +129,8 @@ double LinearPatches::speed(const Node& a, const Node& b) {
                     Interval{against.lower.z, against.upper.z}});
 }
 
-std::optional<double> LinearPatches::meeting_speed(const LinearPatches& a, const LinearPatches& b, double from,
-                                                   double to) {
+std::optional<double> LinearPatches::meeting_speed(const LinearPatches& a, const LinearPatches& b,
+                                                   double from, double to) {
   struct Pair {
     double speed;
     std::uint32_t depth, a, b;

@@ -27,7 +27,7 @@ class LinearPatches {
  private:
   struct Node {
     Box3 start, end;
-    Box3 velocity;  // as points
+    Box3 velocity;            // as points
     std::uint32_t child = 0;  // the first of two; none for the patches of one owner
   };
   [[nodiscard]] static bool may_meet(const Node& a, const Node& b, double from, double to);

@@ -13,7 +13,8 @@
 namespace snug {
 
 /// (1 - s) p + s q for each two points, in double precision; exact for s = 0 and s = 1.
-[[nodiscard]] std::vector<Point3> points_between(std::span<const Point3> p, std::span<const Point3> q, double s);
+[[nodiscard]] std::vector<Point3> points_between(std::span<const Point3> p, std::span<const Point3> q,
+                                                 double s);
 
 /// Control points that go along lines from those of a model to others: the surface at any time between.
 class Deformation {

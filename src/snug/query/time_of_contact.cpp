@@ -245,7 +245,8 @@ class Query {
       const Look& next = ahead_.back();
       const double last = time_for(next.lower);
       if (rounded_up(next.time - last) > lower_ && next.time > lower_) return;
-      lower_ = std::clamp(rounded_down(next.time + last), std::max(lower_, next.time), std::max({lower_, next.time, std::min(end, crossing_)}));
+      lower_ = std::clamp(rounded_down(next.time + last), std::max(lower_, next.time),
+                          std::max({lower_, next.time, std::min(end, crossing_)}));
       if (last_ && last_->time < next.time && speed_ > 0) {
         const double share = (last_->likely() - next.likely()) / (next.time - last_->time) / speed_;
         closing_ = std::clamp(share, 0.0, 1.0);
