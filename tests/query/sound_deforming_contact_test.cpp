@@ -12,6 +12,7 @@
 #include <testing/twins.h>
 
 #include <iostream>
+#include <ranges>
 #include <string>
 #include <vector>
 
@@ -24,13 +25,18 @@ using testing::random_vector;
 TEST(sound_deforming_contact, is_not_later_than_points_that_meet_of_every_scheme_and_deformation) {
   testing::Tally tally = testing::points_that_meet(41, testing::trials(600), 20'000);
   tally.print();
-  EXPECT_GT(tally.sharp, static_cast<int>(tally.looks.size() / 4));
+  EXPECT_GT(tally.sharp, static_cast<int>(tally.looks.size() / 2));
   EXPECT_LE(tally.median(), 20);
 }
 
 TEST(sound_deforming_contact, no_points_of_loop_surfaces_meet_before) {
   std::mt19937_64 random(12);
-  const std::vector<oracle::TwinMesh> meshes = testing::assorted_meshes(6);
+  std::vector<oracle::TwinMesh> meshes = testing::assorted_meshes(6);
+  std::erase_if(meshes, [](const oracle::TwinMesh& mesh) {
+    const LimitSurface surface = testing::surface_of(mesh);
+    const auto faces = std::views::iota(std::size_t{0}, surface.patch_count());
+    return std::ranges::none_of(faces, [&](std::size_t f) { return surface.has_patch(PatchId(f)); });
+  });
   testing::Tally tally;
   int checked = 0;
   for (std::size_t trial = 0; trial < testing::trials(60); ++trial) {
