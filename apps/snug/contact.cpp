@@ -1,7 +1,11 @@
+#include <algorithm>
 #include <numbers>
+#include <optional>
+#include <ranges>
 #include <vector>
 
 #include <snug/base/error.h>
+#include <snug/query/moving_body.h>
 #include <snug/query/pairs.h>
 
 #include <fmt/core.h>
@@ -18,7 +22,7 @@ namespace {
 
 // How one mesh moves, as its options say it.
 struct MoveOptions {
-  std::string to, path, velocity, spin, about;
+  std::string to, path, velocity, spin, about, deform;
 };
 
 struct Options : PairOptions {
@@ -50,6 +54,9 @@ void add_move_options(OptionList& list, const std::string& suffix, const std::st
   list.add(Group::own, "--about" + suffix + " \"X Y Z\"", &options.about,
            "This point at time 0, in world coordinates; else the origin of the mesh where it is placed")
       .needs(spin);
+  list.add(Group::own, "--deform" + suffix + " MESH", &options.deform,
+           "The same mesh at time 1: control points of " + mesh + " go there along lines")
+      .excludes(path);
 }
 
 Trajectory read_path(const std::string& name, bool nearest_rigid) {
@@ -106,6 +113,29 @@ Trajectory motion_of(const MoveOptions& options, const std::string& suffix, cons
   return Trajectory::steady(from, motion);
 }
 
+// Where the control points go; none if they stay.
+std::vector<Point3> deformed(const std::string& path, const std::string& from, const ControlMesh& mesh,
+                             const CommonOptions& options) {
+  if (path.empty()) return {};
+  ControlMesh end = load_mesh(path, options);
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(InputProblem::refused,
+                     path + ": " + what + " " + from + "; give the same mesh with other coordinates");
+  };
+  if (end.vertex_count() != mesh.vertex_count()) {
+    refuse(fmt::format("{} vertices, not the {} of", end.vertex_count(), mesh.vertex_count()));
+  }
+  if (end.face_count() != mesh.face_count()) {
+    refuse(fmt::format("{} faces, not the {} of", end.face_count(), mesh.face_count()));
+  }
+  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+    if (!std::ranges::equal(end.face(FaceId(f)), mesh.face(FaceId(f)))) {
+      refuse(fmt::format("face {} has other vertices than that of", f));
+    }
+  }
+  return std::move(end.points);
+}
+
 std::string sentence(const TimeOfContact& answer, double tolerance) {
   const std::string lower = text_at_most(answer.time.lower), upper = text_at_most(answer.time.upper, true);
   switch (answer.verdict) {
@@ -125,6 +155,13 @@ std::string sentence(const TimeOfContact& answer, double tolerance) {
       "undecided: no contact before time {}, what comes later is open; give a larger --tolerance "
       "or --budget",
       lower);
+}
+
+// A surface that deforms, with its control points at a time.
+std::optional<LimitSurface> surface_at(const MovingBvh& moving, double time) {
+  if (moving.end.empty()) return std::nullopt;
+  const LimitSurface& surface = moving.model.surface();
+  return LimitSurface(surface, points_between(surface.mesh().points, moving.end, time));
 }
 
 // With --exit-code.
@@ -165,8 +202,10 @@ ExitStatus run(const Options& options) {
   const Mending mending{options.nearest_rigid, notes_for(options)};
   const Trajectory motion_a = motion_of(options.move_a, "-a", pair.pose_a(), mending),
                    motion_b = motion_of(options.move_b, "-b", pair.pose_b(), mending);
-  if (motion_a.duration() == 0 && motion_b.duration() == 0) {
-    throw UsageError("nothing moves; give --to-b, --velocity-b, --spin-b or --path-b, or the same for A");
+  const std::string &deform_a = options.move_a.deform, &deform_b = options.move_b.deform;
+  if (motion_a.duration() == 0 && motion_b.duration() == 0 && deform_a.empty() && deform_b.empty()) {
+    throw UsageError(
+        "nothing moves; give --to-b, --velocity-b, --spin-b, --path-b or --deform-b, or the same for A");
   }
   TimeOfContactOptions wanted;
   wanted.tolerance = tolerance.in_mesh_units(pair.size());
@@ -175,18 +214,25 @@ ExitStatus run(const Options& options) {
   ProgressBar bar("moving", options.quiet);
   const WorkMonitor monitor = bar.monitor();
   pair.prepare(monitor);
+  const SurfaceBvh &model_a = pair.model_a(), &model_b = pair.model_b();
+  const std::vector<Point3> end_a = deformed(deform_a, options.mesh_a, model_a.surface().mesh(), options),
+                            end_b = deformed(deform_b, options.mesh_b, model_b.surface().mesh(), options);
   if (options.solid) pair.require_closed();
   Report report("contact", options);
   pair.write_heads(report);
-  const TimeOfContact answer = time_of_contact({pair.model_a(), pair.a().scratch, motion_a},
-                                               {pair.model_b(), pair.b().scratch, motion_b}, wanted, monitor);
+  const MovingBvh a{model_a, pair.a().scratch, motion_a, end_a},
+      b{model_b, pair.b().scratch, motion_b, end_b};
+  const TimeOfContact answer = time_of_contact(a, b, wanted, monitor);
   // Where the witnesses are: at contact, or at the beginning.
   const double time = answer.time.upper < INFINITY ? answer.time.upper : 0;
   const PosePair at{motion_a.at(time), motion_b.at(time)};
-  const Sides sides{{&pair.model_a().surface(), &pair.model_b().surface()}, {at.a, at.b}};
+  const std::optional<LimitSurface> then_a = surface_at(a, time), then_b = surface_at(b, time);
+  const Sides sides{{then_a ? &*then_a : &model_a.surface(), then_b ? &*then_b : &model_b.surface()},
+                    {at.a, at.b}};
   if (report.json()) {
     report.write().field("tolerance", *wanted.tolerance);
-    report.write().field("duration", std::max(motion_a.duration(), motion_b.duration()));
+    const double last = end_a.empty() && end_b.empty() ? 0 : 1;
+    report.write().field("duration", std::max({motion_a.duration(), motion_b.duration(), last}));
     write_poses(report.write(), at);
     write_answer(report.write(), sides, answer);
   }
@@ -219,7 +265,8 @@ Command contact_command() {
   return {"contact",
           Topic::two_surfaces,
           "When do two moving limit surfaces first touch? Never later than told",
-          {"snug contact pawn.obj bust.obj --move-b \"3 0 0\" --velocity-b \"-3 0 0\" --spin-b \"z 90\""},
+          {"snug contact pawn.obj bust.obj --move-b \"3 0 0\" --velocity-b \"-3 0 0\" --spin-b \"z 90\"",
+           "snug contact ball.obj hand.obj --deform-b closed_hand.obj"},
           std::move(list),
           [options] { return run(*options); }};
 }

@@ -64,10 +64,18 @@ class SNUG_API Trajectory {
   std::vector<Piece> pieces_;
 };
 
+/// A surface whose control points go along lines, each at a constant speed, while a trajectory places it.
+struct DeformingSurface {
+  Surface surface;  ///< at time 0
+  /// The control points at time 1, one for each vertex of the mesh, kept by the caller. Empty: they stay.
+  std::span<const Point3> end{};
+  Trajectory motion = Motion();
+};
+
 struct TimeOfContactOptions {
   /// >= 0, mesh units. Surfaces this close may be reported as within, and times are told to what the surfaces
   /// move by so much in. With 0 only proofs of contact or separation count. Default: 0.1 % of the larger
-  /// surface's size.
+  /// surface's size, at time 0.
   std::optional<double> tolerance{};
   bool solid = false;  ///< of the solids that closed surfaces bound: one inside the other is in contact
   bool prove_contact = true;       ///< before returning `within`, try to prove `intersecting`
@@ -84,7 +92,7 @@ struct TimeOfContact {
   /// that they come near each other, as for `separated`, whose lower end is the end of the motion.
   Interval time{0, std::numeric_limits<double>::infinity()};
   /// Is `time` so short that no point of one surface moves by more than the tolerance, or 1e-10 of the size,
-  /// against the other one?
+  /// against the other one? Where control points move: none that could meet a point of it.
   bool reached = false;
   std::optional<std::array<Point3, 2>> witness;  ///< of the closest points found at time.upper, on A and on B
   double witness_error = 0;                      ///< as in Collision
@@ -109,6 +117,18 @@ struct TimeOfContact {
 ///            too, and everything is rounded outward, see derivations/time_of_contact.md.
 [[nodiscard]] SNUG_API TimeOfContact time_of_contact(const Surface& a, const Trajectory& motion_a,
                                                      const Surface& b, const Trajectory& motion_b,
+                                                     const TimeOfContactOptions& options = {},
+                                                     const WorkMonitor& monitor = {},
+                                                     Workspace& workspace = Workspace::of_this_thread());
+
+/// The same where control points move: at time s they are (1 - s) times those of the mesh plus s times `end`,
+/// in exact arithmetic, and so is the limit surface. A part that turns is cut short: give it as several steps.
+///
+/// Requires:  motions that stay or last for one unit of time.
+/// Errors:    also InputError (value) for another number of control points than the mesh has, (refused) for
+///            one that is not finite.
+/// Cost:      some dozen distance queries, and a BVH for each (bench/results/contact_time.txt).
+[[nodiscard]] SNUG_API TimeOfContact time_of_contact(const DeformingSurface& a, const DeformingSurface& b,
                                                      const TimeOfContactOptions& options = {},
                                                      const WorkMonitor& monitor = {},
                                                      Workspace& workspace = Workspace::of_this_thread());

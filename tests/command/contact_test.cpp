@@ -14,13 +14,15 @@ using nlohmann::json;
 
 class contact : public ::testing::Test {
  protected:
-  void SetUp() override {
+  void SetUp() override { std::ofstream(cube_) << cube(0); }
+  // With so much added to x where it is not 1.
+  static std::string cube(double x) {
     std::string text;
     for (int i = 0; i < 8; ++i) {
-      text += "v " + std::to_string(i & 1) + " " + std::to_string(i >> 1 & 1) + " " + std::to_string(i >> 2) +
-              "\n";
+      text += "v " + std::to_string((i & 1) != 0 ? 1 : x) + " " + std::to_string(i >> 1 & 1) + " " +
+              std::to_string(i >> 2) + "\n";
     }
-    std::ofstream(cube_) << text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    return text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
   }
   [[nodiscard]] json answer(std::vector<std::string> arguments, int status = 0) const {
     arguments.insert(arguments.begin(), {"contact", cube_, cube_, "--scheme", "bilinear", "--json"});
@@ -71,6 +73,38 @@ TEST_F(contact, of_solids_begins_inside) {
   const json out = answer({"--exit-code", "--move-b", "5 0 0", "--velocity-b", "1 0 0", "--solid"});
   EXPECT_EQ(out["verdict"], "separated");
   EXPECT_EQ(refused({"--exit-code", "--move-b", "3 0.1 0.2", "--velocity-b", "-4 0 0"}).status, 11);
+}
+
+TEST_F(contact, of_meshes_that_deform_is_told) {
+  const std::string longer = folder_.file("longer.obj");
+  std::ofstream(longer) << cube(-3);
+  // B's left side goes from x = 3 to 0: it meets x = 1 at two thirds of the time.
+  const json deforms = answer({"--move-b", "3 0.1 0.2", "--deform-b", longer, "--tolerance", "1e-3"});
+  EXPECT_EQ(deforms["verdict"], "intersecting");
+  EXPECT_EQ(deforms["duration"], 1);
+  EXPECT_LE(deforms["time"][0], 2.0 / 3);
+  EXPECT_GE(deforms["time"][1], 2.0 / 3 - 1e-12);
+  EXPECT_LE(deforms["time"][1], 2.0 / 3 + 1e-3);
+  EXPECT_NEAR(deforms["witness"][1][0].get<double>(), 1, 1e-2);
+  // And while it moves away, never.
+  EXPECT_EQ(answer({"--move-b", "3 0.1 0.2", "--velocity-b", "3 0 0", "--deform-b", longer})["verdict"],
+            "separated");
+  // Both move: A's left side goes to x = -3, and A by 2.
+  const json both =
+      answer({"--move-b", "3 0.1 0.2", "--deform-b", longer, "--deform-a", longer, "--velocity-a", "2 0 0"});
+  EXPECT_LE(both["time"][0], 0.4);
+  EXPECT_GE(both["time"][1], 0.4 - 1e-3);
+  const auto message = [&](const std::string& text) {
+    std::ofstream(folder_.file("other.obj")) << text;
+    const Outcome outcome = refused({"--deform-b", folder_.file("other.obj")});
+    EXPECT_EQ(outcome.status, 4);
+    return outcome.err;
+  };
+  const std::string same = cube(0);
+  EXPECT_NE(message("v 0 0 0\n" + same).find("9 vertices, not the 8 of"), std::string::npos);
+  EXPECT_NE(message(same.substr(0, same.find("f 2 4"))).find("5 faces, not the 6 of"), std::string::npos);
+  EXPECT_NE(message(same.substr(0, same.find("f 2 4")) + "f 4 8 6 2\n").find("face 5 has other vertices"),
+            std::string::npos);
 }
 
 TEST_F(contact, refusals_name_the_option_and_the_next_step) {

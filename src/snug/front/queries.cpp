@@ -54,9 +54,16 @@ Penetration penetration(const PlacedSurface& a, const PlacedSurface& b, const Pe
 TimeOfContact time_of_contact(const Surface& a, const Trajectory& motion_a, const Surface& b,
                               const Trajectory& motion_b, const TimeOfContactOptions& options,
                               const WorkMonitor& monitor, Workspace& workspace) {
-  const Workspace::Pieces::Pair pieces = workspace.pieces().of(a, b);
-  return time_of_contact({pieces.a.model(), pieces.a, motion_a}, {pieces.b.model(), pieces.b, motion_b},
-                         options, monitor);
+  return time_of_contact({a, {}, motion_a}, {b, {}, motion_b}, options, monitor, workspace);
+}
+
+TimeOfContact time_of_contact(const DeformingSurface& a, const DeformingSurface& b,
+                              const TimeOfContactOptions& options, const WorkMonitor& monitor,
+                              Workspace& workspace) {
+  const Workspace::Pieces::Pair pieces = workspace.pieces().of(a.surface, b.surface);
+  const MovingBvh moving_a{pieces.a.model(), pieces.a, a.motion, a.end},
+      moving_b{pieces.b.model(), pieces.b, b.motion, b.end};
+  return time_of_contact(moving_a, moving_b, options, monitor);
 }
 
 Distance distance(const PlacedSurface& a, const PlacedSurface& b, const DistanceOptions& options,

@@ -27,9 +27,10 @@ namespace snug {
 
 /// A model that moves, with a workspace as in PlacedBvh.
 struct MovingBvh {
-  const SurfaceBvh& model;
+  const SurfaceBvh& model;  ///< at time 0
   SurfaceWorkspace& scratch;
   const Trajectory& motion;
+  std::span<const Point3> end{};  ///< as in DeformingSurface
 };
 [[nodiscard]] TimeOfContact time_of_contact(const MovingBvh& a, const MovingBvh& b,
                                             const TimeOfContactOptions& options = {},

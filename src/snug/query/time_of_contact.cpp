@@ -6,8 +6,8 @@
 #include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/containment.h>
+#include <snug/query/moving_body.h>
 #include <snug/query/pairs.h>
-#include <snug/query/trajectory.h>
 #include <snug/search/pair_frames.h>
 #include <snug/search/precision.h>
 #include <snug/search/solid.h>
@@ -43,12 +43,12 @@ class Query {
  public:
   Query(const MovingBvh& a, const MovingBvh& b, const TimeOfContactOptions& options,
         const WorkMonitor& monitor)
-      : side_{&a, &b},
+      : body_{MovingBody(a), MovingBody(b)},
         options_(options),
         monitor_(monitor),
         tolerance_(*options.tolerance),
         size_(share_of_size(1, a.model.surface().size(), b.model.surface().size())),
-        duration_(std::max(a.motion.duration(), b.motion.duration())) {
+        duration_(std::max(body_[0].duration(), body_[1].duration())) {
     resolution_ = std::max(share_of_tolerance * tolerance_, least_resolution * size_);
   }
 
@@ -66,20 +66,44 @@ class Query {
  private:
   void enter_piece(std::size_t piece) {
     first_ = static_cast<double>(piece);
-    for (std::size_t side = 0; side < 2; ++side) {
-      const Trajectory& motion = side_[side]->motion;
-      motion_[side] =
-          motion.pieces().empty() ? PieceMotion(motion.start()) : PieceMotion(motion.pieces()[piece]);
-    }
-    const SurfaceBvh &model_a = side_[0]->model, &model_b = side_[1]->model;
-    const bool straight = motion_[0]->straight() && motion_[1]->straight();
-    const double apart = enlarged(motion_[0]->speed(model_a) + motion_[1]->speed(model_b));
-    speed_ = straight
-                 ? std::min(apart, PieceMotion::relative_speed(*motion_[0], model_a, *motion_[1], model_b))
-                 : apart;
+    for (MovingBody& body : body_) body.enter_piece(piece);
+    find_speed();
     ahead_.clear();
     last_.reset();
     closing_ = 1;
+  }
+
+  void find_speed() {
+    MovingBody &a = body_[0], &b = body_[1];
+    if (a.deforms() || b.deforms()) {
+      linear_ = {a.linear_patches(), b.linear_patches()};
+      if (linear_[0] && linear_[1]) {
+        speed_ = 0;
+        narrow(first_ + 1);
+        return;
+      }
+      linear_ = {};
+    }
+    speed_ = enlarged(a.speed() + b.speed());
+    if (!a.deforms() && !b.deforms() && a.piece().straight() && b.piece().straight()) {
+      speed_ = std::min(speed_, PieceMotion::relative_speed(a.piece(), a.model(), b.piece(), b.model()));
+    }
+  }
+
+  // Where all patches go along lines, only those count that may meet from lower_ on.
+  void narrow(double end) {
+    const double to = std::min(end, crossing_);
+    if (!linear_[0] || !linear_[1] || narrowed_ == Interval(lower_, to)) return;
+    narrowed_ = {lower_, to};
+    const std::optional<double> speed =
+        LinearPatches::meeting_speed(*linear_[0], *linear_[1], lower_ - first_, to - first_);
+    if (!speed) {
+      speed_ = 0;
+      lower_ = to;
+      return;
+    }
+    if (speed_ > 0 && *speed > 0) closing_ = std::min(1.0, closing_ * speed_ / *speed);
+    speed_ = *speed;
   }
 
   // Both as doubles, with what these are off by where the surfaces may meet.
@@ -87,17 +111,17 @@ class Query {
     PlacedBvh a, b;
     [[nodiscard]] double doubt() const { return a.deviation + b.deviation; }
   };
-  [[nodiscard]] Places places_at(double time) const {
+  [[nodiscard]] Places places_at(double time) {
     const double s = time - first_;  // exact: both are at most a factor of 2 apart, or first_ is 0
-    const BoundedPose pose_a = motion_[0]->at(s), pose_b = motion_[1]->at(s);
-    const Ball &ball_a = side_[0]->model.ball(), &ball_b = side_[1]->model.ball();
+    const MovingBody::Place a = body_[0].at(s), b = body_[1].at(s);
+    const Ball &ball_a = a.shape.model.ball(), &ball_b = b.shape.model.ball();
     // A common point is at most so far from the origin of either surface, and so are all its own.
-    const double between = distance(pose_a.pose.apply(ball_a.centre), pose_b.pose.apply(ball_b.centre));
-    const double beyond = 2 * (between + ball_a.radius + ball_b.radius);
+    const double between = distance(a.pose.pose.apply(ball_a.centre), b.pose.pose.apply(ball_b.centre));
+    const double beyond = 2 * (between + ball_a.radius + ball_b.radius + a.shape.error + b.shape.error);
     const double reach_a = enlarged(max_abs(ball_a.centre - Point3{}) + ball_a.radius + beyond),
                  reach_b = enlarged(max_abs(ball_b.centre - Point3{}) + ball_b.radius + beyond);
-    return {{side_[0]->model, side_[0]->scratch, pose_a.pose, pose_a.deviation(reach_a)},
-            {side_[1]->model, side_[1]->scratch, pose_b.pose, pose_b.deviation(reach_b)}};
+    return {{a.shape.model, a.shape.scratch, a.pose.pose, a.deviation(reach_a)},
+            {b.shape.model, b.shape.scratch, b.pose.pose, b.deviation(reach_b)}};
   }
 
   void count(const SearchStats& stats) {
@@ -149,8 +173,8 @@ class Query {
   // other one later has met it. Asked only where no crossing is found.
   bool outside() {
     if (!outside_) {
-      const auto closed = [](const MovingBvh& moving) { return !open_reason(moving.model.surface()); };
-      outside_ = apart_ && closed(*side_[0]) && closed(*side_[1]);
+      const auto closed = [](const MovingBody& body) { return !open_reason(body.model().surface()); };
+      outside_ = apart_ && closed(body_[0]) && closed(body_[1]);
       if (*outside_) {
         const Nesting found = nesting_at_start();
         outside_ = !found.inner && found.certain;
@@ -158,19 +182,16 @@ class Query {
     }
     return *outside_;
   }
-  // Poses are exact there.
-  [[nodiscard]] PlacedBvh at_start(std::size_t side) const {
-    return {side_[side]->model, side_[side]->scratch, side_[side]->motion.start()};
-  }
   [[nodiscard]] Nesting nesting_at_start() const {
-    return apart_ ? nesting(at_start(0), at_start(1), monitor_)
-                  : common_point(at_start(0), at_start(1), monitor_);
+    return apart_ ? nesting(body_[0].at_start(), body_[1].at_start(), monitor_)
+                  : common_point(body_[0].at_start(), body_[1].at_start(), monitor_);
   }
 
   // At time 0. True if that is the answer.
   bool start() {
+    const double clear = lower_;
     const Look look = look_at(0, duration_ > 0 ? 1 : 0);
-    apart_ = look.lower > 0;
+    apart_ = look.lower > 0 || clear > 0;
     if (options_.solid && !look.crossing) {
       inside_ = nesting_at_start();
       if (inside_.inner) crossing_ = 0;
@@ -224,7 +245,8 @@ class Query {
       const Look& next = ahead_.back();
       const double last = time_for(next.lower);
       if (rounded_up(next.time - last) > lower_ && next.time > lower_) return;
-      lower_ = std::clamp(rounded_down(next.time + last), std::max(lower_, next.time), std::max(lower_, end));
+      lower_ = std::clamp(rounded_down(next.time + last), std::max(lower_, next.time),
+                          std::max({lower_, next.time, std::min(end, crossing_)}));
       if (last_ && last_->time < next.time && speed_ > 0) {
         const double share = (last_->likely() - next.likely()) / (next.time - last_->time) / speed_;
         closing_ = std::clamp(share, 0.0, 1.0);
@@ -254,7 +276,7 @@ class Query {
 
   // To the end of a piece. False if there is an answer, or none can be found.
   bool cross_piece(double end) {
-    while (lower_ < end) {
+    for (narrow(end); lower_ < end; narrow(end)) {
       if (crossing_ <= end && short_enough(lower_, crossing_)) return false;
       const double near = std::min(within_, blocked_);
       if (near <= end && (short_enough(lower_, near) || blocks_ >= max_blocked)) {
@@ -333,13 +355,15 @@ class Query {
     answer.at = found.at;
   }
 
-  std::array<const MovingBvh*, 2> side_;
+  std::array<MovingBody, 2> body_;
   const TimeOfContactOptions& options_;
   const WorkMonitor& monitor_;
   double tolerance_, size_, duration_;
-  std::array<std::optional<PieceMotion>, 2> motion_;
   double first_ = 0;  // time at which the piece begins
-  double speed_ = 0;  // upper bound, of the surfaces against each other
+  // Upper bound, of any two points against each other that may be in one place from lower_ on.
+  double speed_ = 0;
+  std::array<std::optional<LinearPatches>, 2> linear_;  // both or none
+  Interval narrowed_{-1, -1};                           // the times that speed_ is of, if they are
   double resolution_ = 0;
   // At no time up to lower_ there is contact, or before it where it is 0 or an end of the answer.
   double lower_ = 0;
@@ -367,8 +391,11 @@ TimeOfContact time_of_contact(const MovingBvh& a, const MovingBvh& b, const Time
   }
   require_length(*wanted.tolerance, "time of contact: the tolerance");
   const double ends_a = a.motion.duration(), ends_b = b.motion.duration();
-  require_value(ends_a == ends_b || ends_a == 0 || ends_b == 0,
-                "time of contact: the motions last for different times; give both the same number of pieces");
+  const bool deforms = !a.end.empty() || !b.end.empty();
+  const double ends = std::max({ends_a, ends_b, deforms ? 1.0 : 0.0});
+  require_value((ends_a == ends || ends_a == 0) && (ends_b == ends || ends_b == 0) && (!deforms || ends == 1),
+                "time of contact: the motions last for different times; give both the same number of pieces, "
+                "and one where control points move");
   if (options.solid) {
     static_cast<void>(a.model.solid());
     static_cast<void>(b.model.solid());

@@ -34,16 +34,6 @@ IntervalVector cross(const IntervalVector& a, const IntervalVector& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 double largest(Interval a) { return std::max(std::fabs(a.lower), std::fabs(a.upper)); }
-// Upper bound of the length.
-double length_up(const IntervalVector& a) {
-  Vector3 most{largest(a[0]), largest(a[1]), largest(a[2])};
-  const double size = max_abs(most);
-  if (!std::isfinite(size)) return INFINITY;
-  if (size == 0) return 0;
-  const PowerOfTwo scale = PowerOfTwo::normalising(size);
-  return enlarged(scale.inverse().apply(enlarged(length(scale.apply(most)))));
-}
-
 IntervalVector rotated(const Motion& m, const IntervalVector& v) {
   return {dot(intervals(m.row(0)), v), dot(intervals(m.row(1)), v), dot(intervals(m.row(2)), v)};
 }
@@ -109,6 +99,15 @@ Trajectory::Piece screw_piece(const Motion& from, const Motion& to, const std::s
 }
 
 }  // namespace
+
+double length_up(const IntervalVector& a) {
+  Vector3 most{largest(a[0]), largest(a[1]), largest(a[2])};
+  const double size = max_abs(most);
+  if (!std::isfinite(size)) return INFINITY;
+  if (size == 0) return 0;
+  const PowerOfTwo scale = PowerOfTwo::normalising(size);
+  return enlarged(scale.inverse().apply(enlarged(length(scale.apply(most)))));
+}
 
 Trajectory::Trajectory(const Motion& pose) : start_(pose) {}
 
@@ -262,15 +261,22 @@ double PieceMotion::lever(const SurfaceBvh& model) const {
   return std::min(by_ball, std::isfinite(by_box) ? by_box : INFINITY);
 }
 
-// Of s (to - S(1)).
-double PieceMotion::closing_speed(const SurfaceBvh& model) const {
-  if (!piece_.ends) return 0;
+// Upper bound of what the matrix of to - S(1) makes of a vector of length 1.
+double PieceMotion::closing_growth() const {
   double matrix = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) matrix += largest(closing_[4 * i + j]);
   }
+  return matrix;
+}
+
+double PieceMotion::growth() const { return enlarged(1 + 2 * piece_.from.defect() + closing_growth()); }
+
+// Of s (to - S(1)).
+double PieceMotion::closing_speed(const SurfaceBvh& model) const {
+  if (!piece_.ends) return 0;
   const Ball& ball = model.ball();
-  return enlarged(matrix * (length_up(intervals(ball.centre - Point3{})) + ball.radius) +
+  return enlarged(closing_growth() * (length_up(intervals(ball.centre - Point3{})) + ball.radius) +
                   length_up({closing_[3], closing_[7], closing_[11]}));
 }
 

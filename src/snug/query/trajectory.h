@@ -9,6 +9,9 @@
 
 namespace snug {
 
+/// Upper bound of the length of every vector in three intervals.
+[[nodiscard]] double length_up(const std::array<Interval, 3>& vector);
+
 /// A pose in double precision, and upper bounds of what its numbers differ by from the one that is meant.
 struct BoundedPose {
   Motion pose;
@@ -34,6 +37,10 @@ class PieceMotion {
   [[nodiscard]] double speed(const SurfaceBvh& model) const;
   /// Does it only translate?
   [[nodiscard]] bool straight() const { return piece_.radians == 0; }
+  /// And without what a given end may turn it by?
+  [[nodiscard]] bool keeps_rotation() const { return straight() && !piece_.ends; }
+  /// Upper bound of what its poses may stretch lengths by.
+  [[nodiscard]] double growth() const;
   /// Of two that only translate: upper bound of their relative velocity.
   [[nodiscard]] static double relative_speed(const PieceMotion& a, const SurfaceBvh& model_a,
                                              const PieceMotion& b, const SurfaceBvh& model_b);
@@ -42,6 +49,7 @@ class PieceMotion {
   using Intervals = std::array<Interval, 12>;
   using IntervalVector = std::array<Interval, 3>;
   [[nodiscard]] Intervals screwed(double s) const;
+  [[nodiscard]] double closing_growth() const;
   [[nodiscard]] double closing_speed(const SurfaceBvh& model) const;
   [[nodiscard]] double lever(const SurfaceBvh& model) const;
   [[nodiscard]] IntervalVector lever_at(const IntervalVector& point) const;

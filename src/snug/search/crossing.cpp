@@ -13,7 +13,8 @@
 namespace snug {
 namespace {
 
-// Levels that a piece near an extraordinary corner is split before its whole net stands for its edge.
+// Levels that a piece near an extraordinary corner is split, if it can be, before its whole net stands for its
+// edge.
 constexpr unsigned edge_levels = 8;
 // Levels from the piece asked about to one that is small enough to pass between the strips.
 constexpr unsigned probe_levels = 16;
@@ -40,7 +41,7 @@ void visit_bezier_edge(const Patch& patch, std::size_t part, std::size_t edge, c
 template <class Visit>
 void visit_edge(const Patch& patch, std::size_t edge, unsigned level, const Visit& visit) {
   if (!patch.kind->polynomial()) {
-    if (level == edge_levels) {
+    if (level == edge_levels || patch.path.level() == PiecePath::max_level) {
       for (const Vector3& p : patch.points) visit(p, patch.error);
       return;
     }

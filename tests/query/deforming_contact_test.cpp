@@ -1,0 +1,338 @@
+// First times of contact where control points move, against limit points of the twins, which go along lines too: two of
+// them are brought together at a known time, of every scheme, tag and way to deform; walls and boxes have known times.
+
+#include <snug/query/pairs.h>
+
+#include <gtest/gtest.h>
+#include <snug/base/error.h>
+#include <testing/cad_parts.h>
+#include <testing/deformations.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace snug {
+namespace {
+
+using testing::Body;
+using testing::deformed;
+using testing::random_placement;
+using testing::random_vector;
+using testing::Shape;
+using testing::shapes;
+using testing::Tally;
+using testing::translated;
+using testing::unit;
+using testing::way_count;
+
+TEST(deforming_contact, is_not_later_than_points_that_meet) {
+  Tally tally = testing::points_that_meet(21, testing::trials(36), 1'000);
+  tally.print();
+  EXPECT_GT(tally.sharp, static_cast<int>(tally.looks.size() / 2));
+  EXPECT_LE(tally.median(), 20);
+}
+
+// A surface of flat faces before a wall meets it with a vertex, at the least of the times at which these are in its
+// plane; a curved one not later than any limit point.
+TEST(deforming_contact, with_a_wall_is_that_of_the_first_point) {
+  std::mt19937_64 random(22);
+  const std::vector<Shape> all = shapes(32);
+  Tally tally;
+  int proved = 0, misses = 0;
+  for (std::size_t trial = 0; trial < testing::trials(90); ++trial) {
+    const Shape& shape = all[random() % all.size()];
+    const bool flat = trial % 3 != 0;
+    SchemeOptions options = shape.options;
+    ControlMesh mesh = shape.mesh;
+    if (flat) {
+      mesh = ControlMesh{};
+      const oracle::TaggedMesh plain =
+          oracle::meshes::triangulated(oracle::meshes::prism(3 + static_cast<std::uint32_t>(trial % 5)));
+      mesh = testing::control_mesh(oracle::meshes::shaken(plain, 0.2, random));
+      options = {Scheme::flat};
+    }
+    const double far = 3 + unit(random);
+    mesh.points = translated(mesh.points, {far, 0, 0});
+    std::vector<Point3> end = deformed(mesh.points, static_cast<int>(trial % way_count), random);
+    end = translated(end, {random() % 5 == 0 ? 0.0 : -2 - 4 * unit(random), unit(random), 0});
+    // The wall's front comes from x = 0 to x = ahead, and its sides go apart.
+    const double ahead = random() % 2 ? 0 : unit(random);
+    const ControlMesh wall_mesh = testing::box({-1, -6, -6}, {0, 6, 6}, true);
+    std::vector<Point3> wall_end = wall_mesh.points;
+    for (Point3& p : wall_end) p = {p.x + ahead, 1.5 * p.y, 1.5 * p.z};
+    const LimitSurface surface(mesh, options, std::make_shared<BoundsCache>()),
+        wall(wall_mesh, {Scheme::flat}, std::make_shared<BoundsCache>());
+    std::vector<Point3> first = mesh.points, last = end;
+    if (!flat) {
+      first = shape.sample(testing::with_points(shape.twin, mesh.points));
+      last = shape.sample(testing::with_points(shape.twin, end));
+    }
+    long double exact = INFINITY;
+    for (std::size_t v = 0; v < first.size(); ++v) {
+      const long double gap = first[v].x, closing = gap - (static_cast<long double>(last[v].x) - ahead);
+      if (closing >= gap) exact = std::min(exact, gap / closing);
+    }
+    const SurfaceBvh model(surface), wall_model(wall);
+    SurfaceWorkspace scratch(model), wall_scratch(wall_model);
+    const double tolerance = trial % 2 ? 1e-3 : 1e-5;
+    const TimeOfContact found =
+        time_of_contact({wall_model, wall_scratch, Motion(), wall_end}, {model, scratch, Motion(), end},
+                        {.tolerance = tolerance, .max_looks = 500});
+    const std::string what = "trial " + std::to_string(trial) + (flat ? "" : ": " + shape.name);
+    tally.add(found);
+    if (!(exact <= 1)) {
+      ++misses;
+      if (flat) {
+        EXPECT_NE(found.verdict, Verdict::intersecting) << what;
+      }
+      continue;
+    }
+    const auto met = static_cast<double>(exact);
+    ASSERT_NE(found.verdict, Verdict::separated) << what << ", meets at " << met;
+    ASSERT_LE(found.time.lower, met * (1 + 1e-15)) << what;
+    if (!flat) continue;
+    if (found.verdict == Verdict::intersecting) {
+      ++proved;
+      EXPECT_GE(found.time.upper, met * (1 - 1e-12)) << what;
+    }
+    // Within the tolerance no later than it meets, and not long before.
+    EXPECT_TRUE(found.reached) << what;
+    EXPECT_LE(found.time.lower, met) << what;
+  }
+  tally.print();
+  std::cout << "  " << proved << " proved, " << misses << " miss\n";
+  EXPECT_GT(proved, 20);
+  EXPECT_GT(misses, 5);
+  EXPECT_LE(tally.median(), 20);
+}
+
+TEST(deforming_contact, that_is_a_translation_is_that_of_the_translation) {
+  std::mt19937_64 random(23);
+  for (int trial = 0; trial < 40; ++trial) {
+    const ControlMesh mesh_a = testing::l_prism(true), mesh_b = testing::box({0, 0, 0}, {1, 2, 1.5}, true);
+    const LimitSurface a(mesh_a, {Scheme::flat}, std::make_shared<BoundsCache>()),
+        b(mesh_b, {Scheme::flat}, std::make_shared<BoundsCache>());
+    const SurfaceBvh model_a(a), model_b(b);
+    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+    const Vector3 from = random_vector(random, 6), by = -2 * from;
+    const Motion pose = random_placement(random, from);
+    const Trajectory stays(Motion{});
+    const TimeOfContact rigid = time_of_contact(
+        {model_a, scratch_a, stays}, {model_b, scratch_b, Trajectory::steady(pose, {by, {0, 0, 1}, 0, {}})});
+    std::vector<Point3> end;
+    const Motion back = pose.with_offset({}).inverse();
+    for (const Point3& p : mesh_b.points) end.push_back(p + back.rotate(by));
+    const TimeOfContact found = time_of_contact({model_a, scratch_a, stays}, {model_b, scratch_b, pose, end});
+    EXPECT_EQ(found.verdict, rigid.verdict);
+    EXPECT_LE(found.time.lower, rigid.time.upper + 1e-12);
+    EXPECT_LE(rigid.time.lower, found.time.upper + 1e-12);
+  }
+}
+
+// Boxes with these corners at first and at the end.
+struct Boxes {
+  TimeOfContact ask(const TimeOfContactOptions& options = {}) const {
+    const LimitSurface a(first_a, {Scheme::flat}, std::make_shared<BoundsCache>()),
+        b(first_b, {Scheme::flat}, std::make_shared<BoundsCache>());
+    const SurfaceBvh model_a(a), model_b(b);
+    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+    return time_of_contact({model_a, scratch_a, Motion(), last_a.points},
+                           {model_b, scratch_b, Motion(), last_b.points}, options);
+  }
+  ControlMesh first_a, last_a, first_b, last_b;
+};
+ControlMesh cube(double half, const Vector3& at = {}) {
+  return testing::box(Point3{-half, -half, -half} + at, Point3{half, half, half} + at, true);
+}
+
+TEST(deforming_contact, of_one_that_grows_inside_the_other_is_known) {
+  // Halves from 0.2 to 2 in a cube of halves 1: faces come to lie in faces when 0.2 + 1.8 s = 1.
+  const Boxes grows{cube(1), cube(1), cube(0.2), cube(2)};
+  const double exact = 0.8 / 1.8;
+  for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
+    const TimeOfContact found = grows.ask({.tolerance = tolerance});
+    EXPECT_LE(found.time.lower, exact + 1e-15);
+    EXPECT_GE(found.time.upper, exact - tolerance);
+    EXPECT_TRUE(found.reached);
+    EXPECT_LE(found.looks, 40);
+  }
+  const TimeOfContact solid = grows.ask({.solid = true});
+  EXPECT_EQ(solid.verdict, Verdict::intersecting);
+  EXPECT_EQ(solid.time.upper, 0);
+  EXPECT_EQ(solid.inner, 1u);
+  // It may shrink into nothing, or turn inside out, and never meets the wall.
+  EXPECT_EQ((Boxes{cube(1), cube(1), cube(0.5), cube(0)}.ask().verdict), Verdict::separated);
+  EXPECT_EQ((Boxes{cube(1), cube(1), cube(0.5), cube(-0.5)}.ask().verdict), Verdict::separated);
+  // Both grow alike, side by side and one in the other.
+  EXPECT_EQ((Boxes{cube(1), cube(2), cube(0.9), cube(1.8)}.ask({.tolerance = 1e-3}).verdict),
+            Verdict::separated);
+  EXPECT_EQ(
+      (Boxes{cube(1), cube(2), cube(1, {2.1, 0, 0}), cube(2, {4.2, 0, 0})}.ask({.tolerance = 1e-3}).verdict),
+      Verdict::separated);
+}
+
+TEST(deforming_contact, of_solids_apart_at_first_is_that_of_their_surfaces) {
+  // The front of B, at x = 3, comes to x = 0; a corner of A to x = 1.5.
+  Boxes boxes{cube(1), cube(1), cube(1, {4, 0.1, 0.2}), cube(1, {1, 0.1, 0.2})};
+  for (const bool solid : {false, true}) {
+    const TimeOfContact found = boxes.ask({.tolerance = 1e-4, .solid = solid});
+    EXPECT_LE(found.time.lower, 2.0 / 3);
+    EXPECT_GE(found.time.upper, 2.0 / 3 - 1e-4);
+    EXPECT_LE(found.time.upper, 2.0 / 3 + 1e-3);
+    EXPECT_TRUE(found.reached);
+    EXPECT_EQ(found.verdict, Verdict::intersecting);
+  }
+}
+
+TEST(deforming_contact, that_touches_at_the_end_alone_or_passes_closely_is_told_apart) {
+  const auto to = [](double x) {
+    return Boxes{cube(1), cube(1), cube(0.5, {3, 0, 0}), cube(0.5, {x, 0, 0})};
+  };
+  EXPECT_NE(to(1.5).ask({.tolerance = 1e-6}).verdict, Verdict::separated);
+  EXPECT_LE(to(1.5).ask({.tolerance = 1e-6}).time.lower, 1);
+  EXPECT_EQ(to(1.5 + 1e-9).ask({.tolerance = 1e-10}).verdict, Verdict::separated);
+  // Past a face at a small distance.
+  const Boxes past{cube(1), cube(1), cube(0.5, {-3, 0, 1.5 + 1e-4}), cube(0.5, {3, 0, 1.5 + 1e-4})};
+  const TimeOfContact found = past.ask({.tolerance = 1e-6, .max_looks = 2000});
+  EXPECT_NE(found.verdict, Verdict::intersecting);
+  std::cout << "  past: " << found.looks << " looks, " << static_cast<int>(found.verdict) << '\n';
+}
+
+TEST(deforming_contact, knows_the_speed_of_all_that_meets) {
+  std::mt19937_64 random(24);
+  const std::vector<Shape> all = shapes(33);
+  for (std::size_t trial = 0; trial < testing::trials(120); ++trial) {
+    const Shape &shape_a = all[random() % all.size()], &shape_b = all[random() % all.size()];
+    const Body a(
+        shape_a, shape_a.mesh.points,
+        deformed(shape_a.mesh.points, trial % 3 == 1 ? 8 : static_cast<int>(trial % way_count), random));
+    // Mostly so small that it meets few patches of A.
+    std::vector<Point3> begin_b = shape_b.mesh.points;
+    for (Point3& p : begin_b) p = Point3{} + (trial % 4 == 0 ? 1.0 : 0.01) * (p - Point3{});
+    const Body b(
+        shape_b, begin_b,
+        translated(deformed(begin_b, trial % 4 == 0 ? static_cast<int>(random() % way_count) : 0, random),
+                   random_vector(random, trial % 4 == 0 ? 1 : 0)));
+    std::size_t i = random() % a.first.size();
+    const std::size_t j = random() % b.first.size();
+    for (std::size_t k = 0; k < a.first.size() && trial % 2 == 0; ++k) {
+      if (distance(a.first[k], a.last[k]) > distance(a.first[i], a.last[i])) i = k;
+    }
+    const double s = unit(random), before = s * unit(random), after = s + (1 - s) * unit(random);
+    const Trajectory of_a{random_placement(random, random_vector(random, 1))};
+    const Motion turn = random_placement(random, {});
+    const Trajectory of_b = turn.with_offset(of_a.start().apply(a.at(i, s)) - turn.apply(b.at(j, s)));
+    SurfaceWorkspace scratch_a(a.model), scratch_b(b.model);
+    const MovingBvh moving_a{a.model, scratch_a, of_a, a.end}, moving_b{b.model, scratch_b, of_b, b.end};
+    MovingBody body_a(moving_a), body_b(moving_b);
+    body_a.enter_piece(0);
+    body_b.enter_piece(0);
+    const Vector3 against =
+        of_b.start().rotate(b.last[j] - b.first[j]) - of_a.start().rotate(a.last[i] - a.first[i]);
+    const std::string what = a.name + " and " + b.name;
+    EXPECT_GE(body_a.speed() * (1 + 1e-12) + 1e-12, length(a.last[i] - a.first[i])) << what;
+    for (const Interval& times : {Interval{before, after}, Interval{s, s}, Interval{0, 1}}) {
+      const auto speed = LinearPatches::meeting_speed(*body_a.linear_patches(), *body_b.linear_patches(),
+                                                      times.lower, times.upper);
+      ASSERT_TRUE(speed) << what;
+      EXPECT_GE(*speed * (1 + 1e-12) + 1e-12, length(against)) << what;
+      EXPECT_LE(*speed, 1.0001 * (body_a.speed() + body_b.speed()) * std::sqrt(3.0) + 1e-9) << what;
+    }
+  }
+}
+
+TEST(deforming_contact, knows_the_speed_of_all_points_that_turn_too) {
+  std::mt19937_64 random(26);
+  const std::vector<Shape> all = shapes(34);
+  for (std::size_t trial = 0; trial < testing::trials(80); ++trial) {
+    const Shape& shape = all[random() % all.size()];
+    const std::vector<Point3>& begin = shape.mesh.points;
+    const int way = static_cast<int>(trial % way_count);
+    // Large at the beginning or at the end.
+    std::vector<Point3> end = deformed(begin, way, random);
+    for (Point3& p : end) p = Point3{} + (trial % 3 == 0 ? 5.0 : 1.0) * (p - Point3{});
+    const Body body(shape, begin, end);
+    const Motion from = random_placement(random, random_vector(random, 1));
+    const Trajectory motion =
+        trial % 2 ? testing::any_motion(3, random)
+                  : Trajectory::screw(from, random_placement(random, random_vector(random, 1)));
+    SurfaceWorkspace scratch(body.model);
+    const MovingBvh moving{body.model, scratch, motion, body.end};
+    MovingBody bounded(moving);
+    bounded.enter_piece(0);
+    const double speed = bounded.speed();
+    EXPECT_FALSE(bounded.linear_patches());
+    double fastest = 0;
+    for (const double s : {0.0, 0.3, 0.7, 1 - 0x1p-20}) {
+      const Motion now = motion.at(s), next = motion.at(s + 0x1p-20);
+      for (std::size_t i = 0; i < body.first.size(); ++i) {
+        const double way_there = distance(now.apply(body.at(i, s)), next.apply(body.at(i, s + 0x1p-20)));
+        fastest = std::max(fastest, way_there * 0x1p20);
+      }
+    }
+    EXPECT_LE(fastest, speed * (1 + 1e-6) + 1e-8) << shape.name << " by way " << way;
+    EXPECT_LE(speed, 8 * fastest) << shape.name << " by way " << way;
+  }
+}
+
+TEST(deforming_contact, looks_at_control_points_within_their_rounding) {
+  std::mt19937_64 random(25);
+  for (int trial = 0; trial < 300; ++trial) {
+    const double scale = std::exp2(static_cast<int>(random() % 40) - 20);
+    ControlMesh mesh = testing::box({0, 0, 0}, {1, 1, 1}, true);
+    std::vector<Point3> end = mesh.points;
+    for (Point3& p : mesh.points) p = Point3{} + scale * random_vector(random, 1);
+    for (Point3& p : end)
+      p = Point3{} + std::exp2(static_cast<int>(random() % 20) - 10) * scale * random_vector(random, 1);
+    const LimitSurface surface(mesh, {Scheme::flat}, std::make_shared<BoundsCache>());
+    const SurfaceBvh model(surface);
+    SurfaceWorkspace scratch(model);
+    Deformation deformation(model, scratch, end);
+    for (const double s : {0.0, 1.0, unit(random), std::nextafter(1.0, 0.0), 0x1p-60}) {
+      const Deformation::Shape shape = deformation.at(s);
+      for (std::size_t v = 0; v < end.size(); ++v) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          const long double begin = mesh.points[v][k], way = static_cast<long double>(end[v][k]) - begin;
+          const long double off = shape.model.surface().mesh().points[v][k] - (begin + s * way);
+          ASSERT_LE(std::fabs(off), shape.error * 0.6L) << s;
+        }
+      }
+    }
+  }
+}
+
+TEST(deforming_contact, says_what_it_cannot_do) {
+  const ControlMesh mesh = cube(1);
+  const LimitSurface a(mesh, {Scheme::flat}, std::make_shared<BoundsCache>());
+  const SurfaceBvh model(a), same(a);
+  SurfaceWorkspace one(model), other(same);
+  const auto refusal = [&](const std::vector<Point3>& end,
+                           const Trajectory& motion = Motion()) -> std::string {
+    const Trajectory stays(Motion{});
+    try {
+      static_cast<void>(time_of_contact({model, one, stays}, {same, other, motion, end}));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  std::vector<Point3> end = mesh.points;
+  EXPECT_EQ(refusal(end), "");
+  end.pop_back();
+  EXPECT_NE(refusal(end).find("not 7: give a point for each"), std::string::npos) << refusal(end);
+  end.push_back({0, std::numeric_limits<double>::quiet_NaN(), 0});
+  EXPECT_NE(refusal(end).find("vertex 7 has a coordinate that is not finite"), std::string::npos)
+      << refusal(end);
+  end.back() = {1e308, 0, 0};
+  EXPECT_NE(refusal(end).find("do not fit doubles"), std::string::npos) << refusal(end);
+  const Trajectory path = Trajectory::through(
+      std::vector<Motion>{Motion(), Motion::translation({1, 0, 0}), Motion::translation({2, 0, 0})});
+  EXPECT_NE(refusal(mesh.points, path).find("one where control points move"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace snug
