@@ -389,6 +389,34 @@ TEST(star, that_turns_over_at_a_boundary_in_a_plane_is_never_injective) {
   EXPECT_GT(turned, 200);
 }
 
+// Three bilinear quads around a vertex, the halves at it: their outer edges are diagonals, which are parabolas, the
+// more curved the farther out the fourth corner is. In the plane condition 1 holds for some layouts and condition
+// 2 for all; where the parabolas go up and down along edges of the layout that only rise, condition 3 does not.
+TEST(star, whose_border_goes_back_is_not_proved) {
+  for (const double out : {1.1, 1.6, 4.0, 6.0, 9.0}) {
+    oracle::TaggedMesh mesh;
+    mesh.points.push_back({0, 0, 0});
+    for (int i = 0; i < 6; ++i) {
+      const double angle = 0.1 + std::numbers::pi / 3 * i, size = i % 2 == 0 ? 1 : out;
+      mesh.points.push_back({size * std::cos(angle), size * std::sin(angle), 0});
+    }
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      mesh.polygons.push_back({1 + (2 * i + 2) % 6, 0, 1 + 2 * i, 2 + 2 * i});
+    }
+    const LimitSurface surface = surface_of(mesh, Scheme::bilinear);
+    const LevelComplex complex(surface);
+    const LevelStar star = complex.star(complex.vertices(PieceName{0})[1], 0);
+    ASSERT_TRUE(star.fan && star.closed);
+    ASSERT_EQ(star.sectors.size(), 3U);
+    std::vector<Patch> patches;
+    for (const auto& sector : star.sectors) patches.push_back(surface.patch(PatchId(sector.piece.patch)));
+    std::vector<StarSector> sectors;
+    for (std::size_t s = 0; s < 3; ++s) sectors.push_back({&patches[s], star.sectors[s].centre});
+    TipLimits tips;
+    EXPECT_EQ(certainly_injective(sectors, true, tips), out < 2) << out;
+  }
+}
+
 TEST(star, that_is_a_point_or_a_line_is_never_injective) {
   auto point = disc(7, 1, [](double, double) { return 0.0; });
   auto line = point;
