@@ -307,6 +307,26 @@ std::array<Vector3, 2> border_tangents(const oracle::TaggedMesh& mesh, const Sch
   return {rows.apply<Vector3>(2 * corner, patch.points), rows.apply<Vector3>(2 * corner + 1, patch.points)};
 }
 
+// Both sides of a crease in the plane: their tangents across it are opposite ones here, but no axis is known to be
+// across both, exactly, where both shrink less than the one along it.
+TEST(star, at_a_crease_of_two_wide_sides_is_not_proved) {
+  for (const std::uint32_t n : {4u, 6u, 8u, 10u}) {
+    for (const bool around : {false, true}) {
+      // Which sector is the first one must not matter.
+      auto flat = disc(n, 1, [](double, double) { return 0.0; });
+      for (std::uint32_t ring = 0; ring < 3; ++ring) {
+        for (const std::uint32_t i : {around ? 1u : 0u, n / 2 + (around ? 1u : 0u)}) {
+          const std::uint32_t here = 1 + ring * n + i;
+          flat.creases.push_back({ring == 0 ? 0 : here - n, here, 10});
+        }
+      }
+      for (unsigned level = 1; level <= 3; ++level) {
+        EXPECT_EQ(injective_at_centre(flat, level), n <= 6) << n << " level " << level;
+      }
+    }
+  }
+}
+
 // Patches with further extraordinary corners show one with two eigenvalues only after they are split: axes were not
 // chosen for it, and its limit would be that of another net. So such a star is not proved as it is.
 TEST(star, whose_boundary_corner_is_met_after_splits_is_not_proved_before) {
