@@ -327,6 +327,35 @@ TEST(star, at_a_crease_of_two_wide_sides_is_not_proved) {
   }
 }
 
+// One side wide, the other one not: each of the two axes is across a tangent of its own side.
+TEST(star, at_a_crease_of_two_different_sides_is_injective) {
+  for (std::uint32_t narrow = 2; narrow <= 3; ++narrow) {
+    for (std::uint32_t wide = 4; wide <= 5; ++wide) {
+      const std::uint32_t n = narrow + wide;
+      for (std::uint32_t first = 0; first < n; ++first) {
+        auto flat = disc(n, 1, [](double x, double y) { return 0.05 * x * y; });
+        // Both sides over half a turn, about.
+        for (std::uint32_t ring = 0; ring < 3; ++ring) {
+          for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint32_t spoke = (i + n - first) % n;
+            const double turns =
+                spoke <= narrow ? 0.45 * spoke / narrow : 0.45 + 0.55 * (spoke - narrow) / wide;
+            auto& p = flat.points[1 + ring * n + i];
+            p = {(ring + 1) * std::cos(2 * std::numbers::pi * turns),
+                 (ring + 1) * std::sin(2 * std::numbers::pi * turns), p[2]};
+            const std::uint32_t here = 1 + ring * n + i;
+            if (spoke == 0 || spoke == narrow) flat.creases.push_back({ring == 0 ? 0 : here - n, here, 10});
+          }
+        }
+        for (unsigned level = 2; level <= 4; ++level) {
+          EXPECT_TRUE(injective_at_centre(flat, level))
+              << narrow << " and " << wide << " faces, first " << first << ", level " << level;
+        }
+      }
+    }
+  }
+}
+
 // Patches with further extraordinary corners show one with two eigenvalues only after they are split: axes were not
 // chosen for it, and its limit would be that of another net. So such a star is not proved as it is.
 TEST(star, whose_boundary_corner_is_met_after_splits_is_not_proved_before) {
