@@ -50,7 +50,7 @@ struct SelfContact {
 /// Guarantee: `clear` and `intersecting` hold in exact arithmetic for the given doubles. Results do not depend
 ///            on threads. Places where the surface is no immersion (spikes, folded creases, collapsed patches,
 ///            vertices and edges that are not manifold) are `undecided`, never `clear`; so are darts, and smooth
-///            vertices of boundaries and creases with six faces and more (Catmull-Clark four) on a side.
+///            vertices of boundaries and creases with many faces (docs/self_contact.md).
 /// Errors:    InputError: (value) for more than 20 levels; (refused) if no face has a limit surface;
 ///            (unrepresentable) if a result does not fit a double. Interrupted.
 /// Cost:      about 1 to 4 ms a face (docs/self_contact.md).

@@ -307,6 +307,55 @@ std::array<Vector3, 2> border_tangents(const oracle::TaggedMesh& mesh, const Sch
   return {rows.apply<Vector3>(2 * corner, patch.points), rows.apply<Vector3>(2 * corner + 1, patch.points)};
 }
 
+// Both sides of a crease in the plane: their tangents across it are opposite ones here, but no axis is known to be
+// across both, exactly, where both shrink less than the one along it.
+TEST(star, at_a_crease_of_two_wide_sides_is_not_proved) {
+  for (const std::uint32_t n : {4u, 6u, 8u, 10u}) {
+    for (const bool around : {false, true}) {
+      // Which sector is the first one must not matter.
+      auto flat = disc(n, 1, [](double, double) { return 0.0; });
+      for (std::uint32_t ring = 0; ring < 3; ++ring) {
+        for (const std::uint32_t i : {around ? 1u : 0u, n / 2 + (around ? 1u : 0u)}) {
+          const std::uint32_t here = 1 + ring * n + i;
+          flat.creases.push_back({ring == 0 ? 0 : here - n, here, 10});
+        }
+      }
+      for (unsigned level = 1; level <= 3; ++level) {
+        EXPECT_EQ(injective_at_centre(flat, level), n <= 6) << n << " level " << level;
+      }
+    }
+  }
+}
+
+// One side wide, the other one not: each of the two axes is across a tangent of its own side.
+TEST(star, at_a_crease_of_two_different_sides_is_injective) {
+  for (std::uint32_t narrow = 2; narrow <= 3; ++narrow) {
+    for (std::uint32_t wide = 4; wide <= 5; ++wide) {
+      const std::uint32_t n = narrow + wide;
+      for (std::uint32_t first = 0; first < n; ++first) {
+        auto flat = disc(n, 1, [](double x, double y) { return 0.05 * x * y; });
+        // Both sides over half a turn, about.
+        for (std::uint32_t ring = 0; ring < 3; ++ring) {
+          for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint32_t spoke = (i + n - first) % n;
+            const double turns =
+                spoke <= narrow ? 0.45 * spoke / narrow : 0.45 + 0.55 * (spoke - narrow) / wide;
+            auto& p = flat.points[1 + ring * n + i];
+            p = {(ring + 1) * std::cos(2 * std::numbers::pi * turns),
+                 (ring + 1) * std::sin(2 * std::numbers::pi * turns), p[2]};
+            const std::uint32_t here = 1 + ring * n + i;
+            if (spoke == 0 || spoke == narrow) flat.creases.push_back({ring == 0 ? 0 : here - n, here, 10});
+          }
+        }
+        for (unsigned level = 2; level <= 4; ++level) {
+          EXPECT_TRUE(injective_at_centre(flat, level))
+              << narrow << " and " << wide << " faces, first " << first << ", level " << level;
+        }
+      }
+    }
+  }
+}
+
 // Patches with further extraordinary corners show one with two eigenvalues only after they are split: axes were not
 // chosen for it, and its limit would be that of another net. So such a star is not proved as it is.
 TEST(star, whose_boundary_corner_is_met_after_splits_is_not_proved_before) {
@@ -387,6 +436,62 @@ TEST(star, that_turns_over_at_a_boundary_in_a_plane_is_never_injective) {
   RecordProperty("turned", turned);
   EXPECT_GT(injective, 60);
   EXPECT_GT(turned, 200);
+}
+
+// Is the star of vertex 0 of bilinear quads proved? It is corner 0 or 1 of each: both halves, or one.
+bool proved_of_bilinear_quads(const oracle::TaggedMesh& mesh) {
+  const LimitSurface surface = surface_of(mesh, Scheme::bilinear);
+  const LevelComplex complex(surface);
+  const std::size_t corner = mesh.polygons[0][0] == 0 ? 0 : 1;
+  const LevelStar star = complex.star(complex.vertices(PieceName{0})[corner], 0);
+  EXPECT_TRUE(star.fan);
+  std::vector<Patch> patches;
+  for (const auto& sector : star.sectors) patches.push_back(surface.patch(PatchId(sector.piece.patch)));
+  std::vector<StarSector> sectors;
+  for (std::size_t s = 0; s < patches.size(); ++s) sectors.push_back({&patches[s], star.sectors[s].centre});
+  TipLimits tips;
+  return certainly_injective(sectors, star.closed, tips);
+}
+
+// Convex quads in the plane: condition 2 holds, and condition 3, too; but along lines of every layout that is tried
+// the first value somewhere falls, for fourth corners are far out to the side. Nothing but condition 1 says so.
+TEST(star, whose_lines_go_back_is_not_proved) {
+  oracle::TaggedMesh two;
+  two.points = {{0, 0, 0},         {0.97, -0.534, 0},  {0.388, 0.322, 0},
+                {0.813, 1.128, 0}, {0.934, -0.187, 0}, {0.874, 1.016, 0}};
+  two.polygons = {{2, 0, 1, 4}, {0, 2, 5, 3}};
+  EXPECT_FALSE(proved_of_bilinear_quads(two));
+  oracle::TaggedMesh wide = two;
+  wide.points = {{0, 0, 0},           {1.908, 1.432, 0}, {-0.254, 0.926, 0},
+                 {-0.403, -0.056, 0}, {3.441, 7.463, 0}, {-0.457, 0.475, 0}};
+  EXPECT_FALSE(proved_of_bilinear_quads(wide));
+  oracle::TaggedMesh closed;
+  closed.points = {{0, 0, 0},          {0.617, 0.012, 0}, {-0.726, 0.431, 0}, {-0.626, -0.301, 0},
+                   {-0.036, 0.724, 0}, {-3.598, 0.6, 0},  {-1.184, -0.724, 0}};
+  closed.polygons = {{2, 0, 1, 4}, {0, 2, 5, 3}, {0, 3, 6, 1}};
+  EXPECT_FALSE(proved_of_bilinear_quads(closed));
+  // Not so far out.
+  two.points[4] = {1.3, -0.2, 0};
+  two.points[5] = {1.1, 1.3, 0};
+  EXPECT_TRUE(proved_of_bilinear_quads(two));
+}
+
+// Three bilinear quads around a vertex, the halves at it: their outer edges are diagonals, which are parabolas, the
+// more curved the farther out the fourth corner is. In the plane condition 1 holds for some layouts and condition
+// 2 for all; where the parabolas go up and down along edges of the layout that only rise, condition 3 does not.
+TEST(star, whose_border_goes_back_is_not_proved) {
+  for (const double out : {1.1, 1.6, 4.0, 6.0, 9.0}) {
+    oracle::TaggedMesh mesh;
+    mesh.points.push_back({0, 0, 0});
+    for (int i = 0; i < 6; ++i) {
+      const double angle = 0.1 + std::numbers::pi / 3 * i, size = i % 2 == 0 ? 1 : out;
+      mesh.points.push_back({size * std::cos(angle), size * std::sin(angle), 0});
+    }
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      mesh.polygons.push_back({1 + (2 * i + 2) % 6, 0, 1 + 2 * i, 2 + 2 * i});
+    }
+    EXPECT_EQ(proved_of_bilinear_quads(mesh), out < 2) << out;
+  }
 }
 
 TEST(star, that_is_a_point_or_a_line_is_never_injective) {

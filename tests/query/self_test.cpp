@@ -171,6 +171,39 @@ TEST(self_contact, collapsed_and_pinched_meshes_are_undecided) {
   EXPECT_NE(ask(meshes::book(3), Scheme::catmark, {.budget = 20'000}).verdict, SelfVerdict::clear);
 }
 
+// Two faces with one vertex in common, in one plane, one turned against the other: they overlap, though each one's
+// angle at the vertex would follow the other's in a fan.
+TEST(self_contact, faces_that_only_have_a_vertex_in_common_are_no_fan) {
+  for (const Scheme scheme : {Scheme::catmark, Scheme::loop}) {
+    for (const double turn : {20.0, 60.0, 80.0, 100.0, 170.0}) {
+      for (const bool swapped : {false, true}) {
+        oracle::TaggedMesh mesh;
+        mesh.points.push_back({0, 0, 0});
+        for (const double first : {0.0, turn}) {
+          for (const double degrees : {0.0, 45.0, 90.0}) {
+            const double t = (first + degrees) * std::numbers::pi / 180,
+                         size = degrees == 45 ? std::sqrt(2) : 1;
+            mesh.points.push_back({size * std::cos(t), size * std::sin(t), 0});
+          }
+        }
+        for (const std::uint32_t face : {swapped ? 1u : 0u, swapped ? 0u : 1u}) {
+          const std::uint32_t a = 1 + 3 * face;
+          if (scheme == Scheme::loop) {
+            mesh.polygons.push_back({0, a, a + 2});
+          } else {
+            mesh.polygons.push_back({0, a, a + 1, a + 2});
+          }
+        }
+        const SelfVerdict verdict = ask(mesh, scheme, {.budget = 20'000}).verdict;
+        if (turn < 90) {
+          EXPECT_NE(verdict, SelfVerdict::clear) << name_of(scheme) << " turned by " << turn;
+        }
+        EXPECT_EQ(verdict, SelfVerdict::undecided) << name_of(scheme) << " turned by " << turn;
+      }
+    }
+  }
+}
+
 TEST(self_contact, does_not_depend_on_threads_scale_or_place) {
   for (const double height : {0.1, 1.5}) {
     const oracle::TaggedMesh mesh = eight(height, true);
