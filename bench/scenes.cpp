@@ -187,7 +187,7 @@ ModelScene sheets(std::size_t parts) {
                z = static_cast<double>(i / (row * row));
     scene.push_back({made(MadeModel::sheet), Motion::rotation_degrees({0, 0, 1}, 3 * unit(random))
                                                  .with_offset({0.97 * x + 0.01 * unit(random),
-                                                               0.97 * y + 0.01 * unit(random), 0.02 * z})});
+                                                               0.97 * y + 0.01 * unit(random), 0.06 * z})});
   }
   return scene;
 }

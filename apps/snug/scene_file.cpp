@@ -30,6 +30,19 @@ using Json = nlohmann::json;
 // Deeper than any scene: parts, a part, a placement, its numbers.
 constexpr int most_levels = 8;
 
+// Fit for a message of one line, as meshes' words are.
+std::string printable(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c >= ' ' && c <= '~') {
+      result += c;
+    } else {
+      result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    }
+  }
+  return result;
+}
+
 [[noreturn]] void fail(const std::string& message) { throw InputError(InputProblem::unreadable, message); }
 
 std::string shortened(const std::string& text) {
@@ -326,8 +339,13 @@ std::uint64_t fingerprint(std::string_view bytes, std::uint64_t from) {
 SceneText parse_scene(const std::string& bytes, const std::string& path, const CommonOptions& options,
                       bool nearest_rigid) {
   SceneText scene;
-  naming(input_name(path),
-         [&] { scene = SceneReader(path, options, nearest_rigid).read(parse_document(bytes)); });
+  naming(input_name(path), [&] {
+    try {
+      scene = SceneReader(path, options, nearest_rigid).read(parse_document(bytes));
+    } catch (const InputError& error) {
+      throw InputError(error.problem(), printable(error.what()));
+    }
+  });
   return scene;
 }
 
