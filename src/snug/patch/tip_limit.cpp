@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <span>
+#include <utility>
 
 #include <snug/geometry/interval.h>
 #include <snug/geometry/rounding.h>
@@ -303,48 +305,55 @@ double TipLimit::largest_rest(std::vector<double> rest, double error) const {
   return best;
 }
 
+TipLimit::Shares TipLimit::shares(const std::vector<double>& y, const Patch& values) const {
+  Shares shares{tangent(y), {}};
+  for (std::size_t t = 0; t < 2; ++t) {
+    shares.off[t] = enlarged((row_errors_[t] + gamma_bound(size_ + 2) * row_sums_[t]) * values.largest +
+                             (row_sums_[t] + row_errors_[t]) * values.error);
+  }
+  return shares;
+}
+
+// Upper bound, in extents, of what one value's net of these shares is off, and of all that shrinks faster.
+double TipLimit::left_out(const std::vector<double>& y, const Shares& shares, const Patch& values) const {
+  double error = 0, largest = values.largest;
+  std::vector<double> rest(size_);
+  for (std::size_t i = 0; i < size_; ++i) {
+    const double first = shares.m[0] * directions_[0][i], second = shares.m[1] * directions_[1][i];
+    rest[i] = y[i] - (first + second);
+    largest = std::max(largest, std::fabs(first) + std::fabs(second));
+  }
+  for (std::size_t t = 0; t < 2; ++t) {
+    error += direction_errors_[t] * (std::fabs(shares.m[t]) + shares.off[t]) + shares.off[t] * extents_[t];
+  }
+  const double off_rest = enlarged(values.error + gamma_bound(8) * 2 * largest + error);
+  return enlarged(error + largest_rest(std::move(rest), off_rest) + gamma_bound(4) * 2 * largest);
+}
+
 Patch TipLimit::lasting(const Patch& values) const {
   Patch net;
   net.kind = kind_;
   net.first = values.first;
   net.points.resize(size_);
-  std::array<std::vector<double>, 2> y;
   std::array<double, 2> sizes{}, errors{};
+  std::vector<double> y(size_);
   for (std::size_t c = 0; c < 2; ++c) {
-    y[c].resize(size_);
-    for (std::size_t i = 0; i < size_; ++i) y[c][i] = c == 0 ? values.points[i].x : values.points[i].y;
-  }
-  for (std::size_t c = 0; c < 2; ++c) {
-    std::array<double, 2> m = tangent(y[c]);
-    std::array<double, 2> off{};  // what the exact ones differ by, at most
-    for (std::size_t t = 0; t < 2; ++t) {
-      off[t] = enlarged((row_errors_[t] + gamma_bound(size_ + 2) * row_sums_[t]) * values.largest +
-                        (row_sums_[t] + row_errors_[t]) * values.error);
-    }
-    std::array<double, 2> kept = m;
+    for (std::size_t i = 0; i < size_; ++i) y[i] = values.points[i][c];
+    Shares own_shares = shares(y, values);
+    std::array<double, 2> kept = own_shares.m;
     if (!conformal_) {
       // Its own direction lasts. Of x the other one shrinks faster, from its share to none; y has none.
       const std::size_t own = c == 0 ? dominant_ : 1 - dominant_, other = 1 - own;
       kept[other] = 0;
-      if (c == 0) off[other] += std::fabs(m[other]);
-      if (c == 1) m[other] = off[other] = 0;
+      if (c == 0) own_shares.off[other] += std::fabs(own_shares.m[other]);
+      if (c == 1) own_shares.m[other] = own_shares.off[other] = 0;
     }
-    double error = 0;
-    std::vector<double> rest(size_);
-    double largest = values.largest;
     for (std::size_t i = 0; i < size_; ++i) {
-      const double part = m[0] * directions_[0][i] + m[1] * directions_[1][i];
-      rest[i] = y[c][i] - part;
-      largest = std::max(largest, std::fabs(m[0] * directions_[0][i]) + std::fabs(m[1] * directions_[1][i]));
       const double value = kept[0] * directions_[0][i] + kept[1] * directions_[1][i];
-      (c == 0 ? net.points[i].x : net.points[i].y) = value;
+      net.points[i][c] = value;
       sizes[c] = std::max(sizes[c], std::fabs(value));
     }
-    for (std::size_t t = 0; t < 2; ++t) {
-      error += direction_errors_[t] * (std::fabs(m[t]) + off[t]) + off[t] * extents_[t];
-    }
-    const double off_rest = enlarged(values.error + gamma_bound(8) * 2 * largest + error);
-    errors[c] = enlarged(error + largest_rest(std::move(rest), off_rest) + gamma_bound(4) * 2 * largest);
+    errors[c] = left_out(y, own_shares, values);
   }
   // The two values shrink at different rates: each is scaled by a power of two to a size of about 1.
   if (!conformal_ && sizes[0] > 0x1p-900 && sizes[1] > 0x1p-900) {
@@ -360,7 +369,37 @@ Patch TipLimit::lasting(const Patch& values) const {
   return net;
 }
 
+TipLimit::Lasting TipLimit::lasting_in_space(const Patch& patch) const {
+  Lasting lasting;
+  for (Patch* net : {&lasting.net, &lasting.dominant}) {
+    net->kind = kind_;
+    net->first = patch.first;
+    net->points.resize(size_);
+  }
+  std::vector<double> y(size_);
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t i = 0; i < size_; ++i) y[i] = patch.points[i][c];
+    const Shares own = shares(y, patch);
+    for (std::size_t i = 0; i < size_; ++i) {
+      const std::array<double, 2> parts{own.m[0] * directions_[0][i], own.m[1] * directions_[1][i]};
+      lasting.net.points[i][c] = parts[0] + parts[1];
+      lasting.dominant.points[i][c] = conformal_ ? parts[0] + parts[1] : parts[dominant_];
+    }
+    lasting.net.error = std::max(lasting.net.error, left_out(y, own, patch));
+  }
+  for (Patch* net : {&lasting.net, &lasting.dominant}) {
+    for (const Vector3& p : net->points) net->largest = std::max(net->largest, max_abs(p));
+  }
+  lasting.dominant.error = lasting.net.error;
+  return lasting;
+}
+
 const TipLimit* TipLimits::find(const Kind& kind) {
+  {
+    const std::shared_lock lock(mutex_);
+    if (const auto it = known_.find(&kind); it != known_.end()) return it->second ? &*it->second : nullptr;
+  }
+  const std::unique_lock lock(mutex_);
   const auto [it, added] = known_.try_emplace(&kind);
   if (added) it->second = make_tip_limit(kind);
   return it->second ? &*it->second : nullptr;

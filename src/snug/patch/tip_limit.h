@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <shared_mutex>
 #include <unordered_map>
 #include <vector>
 
@@ -39,8 +40,25 @@ class TipLimit {
   ///            have a share of the dominant direction: W y = 0 for that row, in exact arithmetic.
   [[nodiscard]] Patch lasting(const Patch& values) const;
 
+  /// What normals in rings of all levels come from, in space.
+  struct Lasting {
+    Patch net;       ///< of both tangents' parts; its error bounds all that is left out
+    Patch dominant;  ///< of the dominant tangent's part alone; of a conformal limit the same as `net`
+  };
+  /// Normals of a ring, scaled by a positive number, are those of `net` but for products of two differences of
+  /// which one is at most the error of `net` and the other lies between those of `net` and of `dominant`.
+  /// Source:    derivations/normals.md, "At extraordinary corners".
+  [[nodiscard]] Lasting lasting_in_space(const Patch& patch) const;
+
  private:
   friend std::optional<TipLimit> make_tip_limit(const Kind& kind);
+  // How much of each direction control values have, and what the exact shares differ by at most.
+  struct Shares {
+    std::array<double, 2> m, off;
+  };
+  [[nodiscard]] Shares shares(const std::vector<double>& y, const Patch& values) const;
+  [[nodiscard]] double left_out(const std::vector<double>& y, const Shares& shares,
+                                const Patch& values) const;
   [[nodiscard]] bool find_eigenvalues(const Kind& kind, const Stencils& step);
   [[nodiscard]] bool find_directions(const Stencils& step);
   [[nodiscard]] bool bound_remainders(const Stencils& step);
@@ -64,13 +82,14 @@ class TipLimit {
 /// the largest, and for darts and corners of very many faces.
 [[nodiscard]] std::optional<TipLimit> make_tip_limit(const Kind& kind);
 
-/// The limits of kinds, each made once. For one thread.
+/// The limits of kinds, each made once. Thread-safe.
 class TipLimits {
  public:
   /// Null where there is none.
   [[nodiscard]] const TipLimit* find(const Kind& kind);
 
  private:
+  std::shared_mutex mutex_;
   std::unordered_map<const Kind*, std::optional<TipLimit>> known_;
 };
 

@@ -1,0 +1,260 @@
+#include <snug/patch/normal_cone.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include <snug/geometry/bernstein.h>
+#include <snug/geometry/direction.h>
+#include <snug/geometry/interval.h>
+#include <snug/geometry/rounding.h>
+
+namespace snug {
+namespace {
+
+// Times that polynomials are split where their coefficients have no cone; levels until sharpness has decayed,
+// and rings around a corner that are looked at one by one.
+constexpr unsigned most_splits = 2, passing_levels = 6, max_rings = 60;
+// Of a net that stands for all further rings: its error against its size, and the angle that this adds.
+constexpr double most_error = 0.02, most_widening = 1.0 / 32;
+constexpr int axis_steps = 24;
+
+// Contains a vector. All normals are sums of such vectors, weighted by numbers that are not negative.
+struct Ball {
+  Vector3 centre;
+  double radius;
+};
+
+// Differences along two edges of the parameters' triangle, as polynomials by axis, scaled to about 1.
+template <std::size_t degree>
+struct Derivatives {
+  using Polynomial = Bernstein<Domain::triangle, degree - 1>;
+  std::array<Polynomial, 3> u, v;
+  double longest = 0;  // of all coefficients' vectors
+  double error = 0;    // of each coefficient
+};
+
+class NormalBalls {
+ public:
+  // Polynomials are split so many times first.
+  NormalBalls(TipLimits& tips, unsigned splits) : tips_(tips), splits_(splits) {}
+
+  // False where no set of vectors is found.
+  [[nodiscard]] bool add(const Patch& patch) { return add(patch, passing_levels); }
+  [[nodiscard]] std::span<const Ball> balls() const { return balls_; }
+
+ private:
+  bool add(const Patch& patch, unsigned levels) {
+    if (patch.kind->polynomial()) return add_polynomial(patch, nullptr, splits_);
+    if (levels == 0) return false;
+    if (const TipLimit* tip = tips_.find(*patch.kind)) return add_tip(*tip, patch, levels - 1);
+    for (unsigned child = 0; child < 4; ++child) {
+      if (!add(split(patch, child), levels - 1)) return false;
+    }
+    return true;
+  }
+
+  // Ring after ring, until a net stands for all that are left.
+  bool add_tip(const TipLimit& tip, Patch patch, unsigned levels) {
+    patch.path = {};
+    const auto corner = static_cast<unsigned>((tip.corner() + patch.first) % 3);
+    for (unsigned ring = 0; ring < max_rings; ++ring) {
+      const std::size_t before = balls_.size();
+      const TipLimit::Lasting lasting = tip.lasting_in_space(patch);
+      if (lasting.net.error < most_error * lasting.net.largest && add_lasting(lasting, corner) &&
+          widening(before) < most_widening) {
+        return true;
+      }
+      balls_.resize(before);
+      for (unsigned child = 0; child < 4; ++child) {
+        if (child != corner && !add(split(patch, child), levels)) return false;
+      }
+      patch = split(patch, corner);
+    }
+    return false;
+  }
+
+  bool add_lasting(const TipLimit::Lasting& lasting, unsigned corner) {
+    for (unsigned child = 0; child < 4; ++child) {
+      if (child == corner) continue;
+      const Patch net = split(lasting.net, child), dominant = split(lasting.dominant, child);
+      if (!net.kind->polynomial() || !add_polynomial(net, &dominant, splits_)) return false;
+    }
+    return true;
+  }
+
+  // Tangent of the largest angle that balls from this one on take.
+  double widening(std::size_t begin) const {
+    double widest = 0;
+    for (std::size_t i = begin; i < balls_.size(); ++i) {
+      widest = std::max(widest, balls_[i].radius / length(balls_[i].centre));
+    }
+    return widest;
+  }
+
+  // With `dominant`: what errors are multiplied by may be differences of either net.
+  bool add_polynomial(const Patch& patch, const Patch* dominant, unsigned splits) {
+    if (splits > 0) {
+      for (unsigned child = 0; child < 4; ++child) {
+        const Patch piece = split(patch, child);
+        const std::optional<Patch> other =
+            dominant != nullptr ? std::optional(split(*dominant, child)) : std::nullopt;
+        if (!add_polynomial(piece, other ? &*other : nullptr, splits - 1)) return false;
+      }
+      return true;
+    }
+    switch (patch.kind->form().degree) {
+      case 1:
+        return add_coefficients<1>(patch, dominant);
+      case 2:
+        return add_coefficients<2>(patch, dominant);
+      case 4:
+        return add_coefficients<4>(patch, dominant);
+      case 6:
+        return add_coefficients<6>(patch, dominant);
+      default:
+        return false;
+    }
+  }
+
+  template <std::size_t degree>
+  bool add_coefficients(const Patch& patch, const Patch* dominant) {
+    for (std::size_t part = 0; part < patch.kind->form().parts; ++part) {
+      Derivatives<degree> d;
+      const PowerOfTwo scale = differences(patch, part, nullptr, d);
+      if (!(d.longest > 0)) return false;
+      if (dominant != nullptr) {
+        Derivatives<degree> other;
+        static_cast<void>(differences(*dominant, part, &scale, other));
+        d.longest = std::max(d.longest, other.longest);
+      }
+      if (!add_products(d)) return false;
+    }
+    return true;
+  }
+
+  // Scaled by this power of two, or by one of their own.
+  template <std::size_t degree>
+  static PowerOfTwo differences(const Patch& patch, std::size_t part, const PowerOfTwo* given,
+                                Derivatives<degree>& d) {
+    using Polynomial = typename Derivatives<degree>::Polynomial;
+    const BezierRows& form = patch.kind->form();
+    std::array<Vector3, bezier_count(degree)> points;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i] = form.rows.apply<Vector3>(part * points.size() + i, patch.points);
+    }
+    const auto each = [&](const auto& visit) {
+      Polynomial::for_each([&](std::size_t i, std::size_t j) {
+        const Vector3 at = points[bezier_index(degree, i, j)];
+        visit(Polynomial::place(i, j), points[bezier_index(degree, i + 1, j)] - at,
+              points[bezier_index(degree, i, j + 1)] - at);
+      });
+    };
+    double largest = 0;
+    each([&](std::size_t, Vector3 u, Vector3 v) { largest = std::max({largest, max_abs(u), max_abs(v)}); });
+    const PowerOfTwo scale = given != nullptr ? *given : PowerOfTwo::normalising(largest);
+    d.error = enlarged(2 * form.rows.result_error(patch.largest, patch.error) + unit_roundoff * largest);
+    d.error = enlarged(scale.apply(d.error));
+    each([&](std::size_t place, Vector3 u, Vector3 v) {
+      u = scale.apply(u);
+      v = scale.apply(v);
+      d.longest = std::max({d.longest, length(u), length(v)});
+      for (std::size_t a = 0; a < 3; ++a) {
+        d.u[a].scaled[place] = u[a] * binomials<Polynomial>[place];
+        d.v[a].scaled[place] = v[a] * binomials<Polynomial>[place];
+      }
+    });
+    d.longest = enlarged(d.longest);
+    return scale;
+  }
+
+  template <std::size_t degree>
+  bool add_products(const Derivatives<degree>& d) {
+    using Polynomial = typename Derivatives<degree>::Polynomial;
+    using Product = ProductOf<Polynomial, Polynomial>;
+    std::array<Product, 3> normal{};
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+      add_product(d.u[b], d.v[c], 1, normal[a]);
+      add_product(d.u[c], d.v[b], -1, normal[a]);
+    }
+    const double off = spatial_error(d.error);
+    const double radius =
+        enlarged(off * (2 * d.longest + off) + spatial_error(gamma_bound(64) * 2 * d.longest * d.longest));
+    for (std::size_t k = 0; k < Product::count; ++k) {
+      const double by = 1 / binomials<Product>[k];
+      const Vector3 centre = by * Vector3{normal[0].scaled[k], normal[1].scaled[k], normal[2].scaled[k]};
+      // Nor where this is not a number.
+      if (!(length(centre) > radius)) return false;
+      balls_.push_back({centre, radius});
+    }
+    return true;
+  }
+
+  TipLimits& tips_;
+  unsigned splits_;
+  std::vector<Ball> balls_;
+};
+
+// Near the one whose largest angle with the balls' centres is least: of the ball around their directions.
+Vector3 axis_of(std::span<const Ball> balls) {
+  std::vector<Vector3> directions;
+  directions.reserve(balls.size());
+  Vector3 centre;
+  for (const Ball& ball : balls) {
+    directions.push_back(normalized(ball.centre));
+    centre = centre + directions.back();
+  }
+  centre = (1 / static_cast<double>(balls.size())) * centre;
+  for (int step = 2; step < axis_steps; ++step) {
+    const Vector3 axis = normalized(centre);
+    const auto farthest =
+        std::min_element(directions.begin(), directions.end(), [&](const Vector3& a, const Vector3& b) {
+          return dot(axis, a) < dot(axis, b);
+        });
+    centre = centre + (1.0 / step) * (*farthest - centre);
+  }
+  return normalized(centre);
+}
+
+// Upper bound of the tangent of the angle between an axis of length 1 and any vector of a ball; infinite unless
+// the angle is less than a quarter turn.
+double tangent_from(Vector3 axis, const Ball& ball) {
+  const double size = length(ball.centre), rounding = gamma_bound(16) * size;
+  const double across = length(cross(axis, ball.centre)) + rounding, along = dot(axis, ball.centre) - rounding;
+  const double least = size * (1 - gamma_bound(8));
+  if (!(along > 0) || !(least > ball.radius)) return INFINITY;
+  const double centre = enlarged(across / along);
+  const double more = enlarged(ball.radius / std::sqrt((least - ball.radius) * (least + ball.radius)));
+  const double rest = 1 - enlarged(centre * more);
+  return rest > 0 ? enlarged((centre + more) / rest) : INFINITY;
+}
+
+std::optional<NormalCone> cone_around(std::span<const Ball> balls) {
+  const Vector3 axis = axis_of(balls);
+  double tangent = 0;
+  for (const Ball& ball : balls) tangent = std::max(tangent, tangent_from(axis, ball));
+  if (!(tangent < INFINITY)) return std::nullopt;
+  // Whatever the C library's arc tangent is off by.
+  const double angle = std::atan(tangent) + 0x1p-44;
+  const SineCosine exact = sine_cosine(Interval(angle));
+  if (!(exact.cosine.lower > 0) || !(exact.sine.lower >= rounded_up(tangent * exact.cosine.upper))) {
+    return std::nullopt;
+  }
+  return NormalCone{axis, angle};
+}
+
+}  // namespace
+
+std::optional<NormalCone> normal_cone(const Patch& patch, TipLimits& tips) {
+  for (unsigned splits = 0; splits <= most_splits; ++splits) {
+    NormalBalls normals(tips, splits);
+    if (!normals.add(patch)) continue;
+    if (const auto cone = cone_around(normals.balls())) return cone;
+  }
+  return std::nullopt;
+}
+
+}  // namespace snug
