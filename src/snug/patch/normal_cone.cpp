@@ -14,11 +14,13 @@
 namespace snug {
 namespace {
 
-// Times that polynomials are split where their coefficients have no cone; levels until sharpness has decayed,
-// and rings around a corner that are looked at one by one.
-constexpr unsigned most_splits = 2, passing_levels = 6, max_rings = 60;
+// Times that a polynomial is split where its coefficients have no cone; levels until sharpness has decayed, and
+// rings around a corner that are looked at one by one.
+constexpr unsigned most_splits = 2, passing_levels = 6, max_rings = 50;
 // Of a net that stands for all further rings: its error against its size, and the angle that this adds.
-constexpr double most_error = 0.02, most_widening = 1.0 / 32;
+constexpr double most_error = 1.0 / 512, most_widening = 1.0 / 32;
+// Angles between the axis of a first trial and vectors of the second one have larger cosines.
+constexpr double least_cosine = 1.0 / 64;
 constexpr int axis_steps = 24;
 
 // Contains a vector. All normals are sums of such vectors, weighted by numbers that are not negative.
@@ -36,18 +38,27 @@ struct Derivatives {
   double error = 0;    // of each coefficient
 };
 
+// Collects such vectors of a patch, at first all, then with a given axis those near it: polynomials whose vectors
+// are not are split.
 class NormalBalls {
  public:
-  // Polynomials are split so many times first.
-  NormalBalls(TipLimits& tips, unsigned splits) : tips_(tips), splits_(splits) {}
+  explicit NormalBalls(TipLimits& tips) : tips_(tips) {}
 
   // False where no set of vectors is found.
   [[nodiscard]] bool add(const Patch& patch) { return add(patch, passing_levels); }
+  [[nodiscard]] bool add_near(Vector3 axis, const Patch& patch) {
+    axis_ = axis;
+    balls_.clear();
+    next_tip_ = 0;
+    return add(patch, passing_levels);
+  }
   [[nodiscard]] std::span<const Ball> balls() const { return balls_; }
+  // Do they hold all vectors? Those that may be zero are left out at first.
+  [[nodiscard]] bool complete() const { return complete_; }
 
  private:
   bool add(const Patch& patch, unsigned levels) {
-    if (patch.kind->polynomial()) return add_polynomial(patch, nullptr, splits_);
+    if (patch.kind->polynomial()) return add_polynomial(patch, nullptr, most_splits);
     if (levels == 0) return false;
     if (const TipLimit* tip = tips_.find(*patch.kind)) return add_tip(*tip, patch, levels - 1);
     for (unsigned child = 0; child < 4; ++child) {
@@ -60,14 +71,16 @@ class NormalBalls {
   bool add_tip(const TipLimit& tip, Patch patch, unsigned levels) {
     patch.path = {};
     const auto corner = static_cast<unsigned>((tip.corner() + patch.first) % 3);
+    if (!axis_) last_rings_.push_back(0);
+    unsigned& last = last_rings_[axis_ ? next_tip_++ : last_rings_.size() - 1];
     for (unsigned ring = 0; ring < max_rings; ++ring) {
-      const std::size_t before = balls_.size();
-      const TipLimit::Lasting lasting = tip.lasting_in_space(patch);
-      if (lasting.net.error < most_error * lasting.net.largest && add_lasting(lasting, corner) &&
-          widening(before) < most_widening) {
-        return true;
+      if (ring >= last) {
+        const double far = add_lasting(tip, patch, corner);
+        if (far <= 1) return true;
+        if (axis_) return false;
+        // What is left out shrinks to a half a level, or to more.
+        last = ring + 1 + static_cast<unsigned>(std::min(8.0, std::log2(far)));
       }
-      balls_.resize(before);
       for (unsigned child = 0; child < 4; ++child) {
         if (child != corner && !add(split(patch, child), levels)) return false;
       }
@@ -76,13 +89,26 @@ class NormalBalls {
     return false;
   }
 
-  bool add_lasting(const TipLimit::Lasting& lasting, unsigned corner) {
-    for (unsigned child = 0; child < 4; ++child) {
+  // Adds the vectors of all rings from this patch on, if what is left out is small enough. Returns how many times
+  // too large it is.
+  double add_lasting(const TipLimit& tip, const Patch& patch, unsigned corner) {
+    const TipLimit::Lasting lasting = tip.lasting_in_space(patch);
+    const double error = lasting.net.error / (most_error * lasting.net.largest);
+    if (!(error <= 1)) return std::isfinite(error) ? error : 0x1p8;
+    const std::size_t before = balls_.size();
+    const bool was_complete = complete_;
+    bool added = true;
+    complete_ = true;
+    for (unsigned child = 0; added && child < 4; ++child) {
       if (child == corner) continue;
       const Patch net = split(lasting.net, child), dominant = split(lasting.dominant, child);
-      if (!net.kind->polynomial() || !add_polynomial(net, &dominant, splits_)) return false;
+      added = net.kind->polynomial() && add_polynomial(net, &dominant, most_splits);
     }
-    return true;
+    const double wide = added && complete_ ? widening(before) / most_widening : 2;
+    complete_ = was_complete;
+    if (wide > 1 && !axis_) balls_.resize(before);
+    // With an axis nets are what they were without, or pieces of these.
+    return axis_ ? (added ? 1 : 2) : wide;
   }
 
   // Tangent of the largest angle that balls from this one on take.
@@ -96,15 +122,21 @@ class NormalBalls {
 
   // With `dominant`: what errors are multiplied by may be differences of either net.
   bool add_polynomial(const Patch& patch, const Patch* dominant, unsigned splits) {
-    if (splits > 0) {
-      for (unsigned child = 0; child < 4; ++child) {
-        const Patch piece = split(patch, child);
-        const std::optional<Patch> other =
-            dominant != nullptr ? std::optional(split(*dominant, child)) : std::nullopt;
-        if (!add_polynomial(piece, other ? &*other : nullptr, splits - 1)) return false;
-      }
-      return true;
+    const std::size_t before = balls_.size();
+    if (add_by_degree(patch, dominant) || !axis_) return true;
+    if (splits == 0) return false;
+    balls_.resize(before);
+    for (unsigned child = 0; child < 4; ++child) {
+      const Patch piece = split(patch, child);
+      const std::optional<Patch> other =
+          dominant != nullptr ? std::optional(split(*dominant, child)) : std::nullopt;
+      if (!add_polynomial(piece, other ? &*other : nullptr, splits - 1)) return false;
     }
+    return true;
+  }
+
+  // Are all vectors there, and near the axis if there is one?
+  bool add_by_degree(const Patch& patch, const Patch* dominant) {
     switch (patch.kind->form().degree) {
       case 1:
         return add_coefficients<1>(patch, dominant);
@@ -115,7 +147,7 @@ class NormalBalls {
       case 6:
         return add_coefficients<6>(patch, dominant);
       default:
-        return false;
+        return complete_ = false;
     }
   }
 
@@ -124,7 +156,7 @@ class NormalBalls {
     for (std::size_t part = 0; part < patch.kind->form().parts; ++part) {
       Derivatives<degree> d;
       const PowerOfTwo scale = differences(patch, part, nullptr, d);
-      if (!(d.longest > 0)) return false;
+      if (!(d.longest > 0)) return complete_ = false;
       if (dominant != nullptr) {
         Derivatives<degree> other;
         static_cast<void>(differences(*dominant, part, &scale, other));
@@ -183,19 +215,29 @@ class NormalBalls {
     const double off = spatial_error(d.error);
     const double radius =
         enlarged(off * (2 * d.longest + off) + spatial_error(gamma_bound(64) * 2 * d.longest * d.longest));
+    bool near = true;
     for (std::size_t k = 0; k < Product::count; ++k) {
       const double by = 1 / binomials<Product>[k];
       const Vector3 centre = by * Vector3{normal[0].scaled[k], normal[1].scaled[k], normal[2].scaled[k]};
+      const double size = length(centre);
       // Nor where this is not a number.
-      if (!(length(centre) > radius)) return false;
+      if (!(size > radius)) {
+        near = complete_ = false;
+        continue;
+      }
+      if (axis_ && !(dot(*axis_, centre) > least_cosine * size + radius)) return false;
       balls_.push_back({centre, radius});
     }
-    return true;
+    return near;
   }
 
   TipLimits& tips_;
-  unsigned splits_;
+  std::optional<Vector3> axis_;
+  bool complete_ = true;
   std::vector<Ball> balls_;
+  // Of each corner in turn the first ring of which a net is taken for all others.
+  std::vector<unsigned> last_rings_;
+  std::size_t next_tip_ = 0;
 };
 
 // Near the one whose largest angle with the balls' centres is least: of the ball around their directions.
@@ -232,8 +274,7 @@ double tangent_from(Vector3 axis, const Ball& ball) {
   return rest > 0 ? enlarged((centre + more) / rest) : INFINITY;
 }
 
-std::optional<NormalCone> cone_around(std::span<const Ball> balls) {
-  const Vector3 axis = axis_of(balls);
+std::optional<NormalCone> cone_around(Vector3 axis, std::span<const Ball> balls) {
   double tangent = 0;
   for (const Ball& ball : balls) tangent = std::max(tangent, tangent_from(axis, ball));
   if (!(tangent < INFINITY)) return std::nullopt;
@@ -248,13 +289,17 @@ std::optional<NormalCone> cone_around(std::span<const Ball> balls) {
 
 }  // namespace
 
-std::optional<NormalCone> normal_cone(const Patch& patch, TipLimits& tips) {
-  for (unsigned splits = 0; splits <= most_splits; ++splits) {
-    NormalBalls normals(tips, splits);
-    if (!normals.add(patch)) continue;
-    if (const auto cone = cone_around(normals.balls())) return cone;
+std::optional<NormalCone> normal_cone(const Patch& piece, TipLimits& tips) {
+  Patch patch = piece;
+  patch.path = {};  // room for its pieces
+  NormalBalls normals(tips);
+  if (!normals.add(patch) || normals.balls().empty()) return std::nullopt;
+  const Vector3 axis = axis_of(normals.balls());
+  if (normals.complete()) {
+    if (const auto cone = cone_around(axis, normals.balls())) return cone;
   }
-  return std::nullopt;
+  if (!normals.add_near(axis, patch)) return std::nullopt;
+  return cone_around(axis_of(normals.balls()), normals.balls());
 }
 
 }  // namespace snug

@@ -15,6 +15,6 @@ namespace snug {
 /// Requires:  no polygon.
 /// Cost:      @N microseconds for a regular patch; with an extraordinary corner @N.
 /// Source:    derivations/normals.md.
-[[nodiscard]] std::optional<NormalCone> normal_cone(const Patch& patch, TipLimits& tips);
+[[nodiscard]] std::optional<NormalCone> normal_cone(const Patch& piece, TipLimits& tips);
 
 }  // namespace snug
