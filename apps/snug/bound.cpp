@@ -140,7 +140,8 @@ class ConeCount {
   [[nodiscard]] std::string text() const {
     std::string text = fmt::format("normals: {} of {} pieces have a cone", cones_, pieces_);
     if (cones_ > 0) {
-      text += ", the widest one of half-angle " + text_at_most(widest_ * (180 / std::numbers::pi), true) + " degrees";
+      text += ", the widest one of half-angle " + text_at_most(widest_ * (180 / std::numbers::pi), true) +
+              " degrees";
     }
     return text;
   }

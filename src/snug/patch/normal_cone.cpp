@@ -250,12 +250,17 @@ Vector3 axis_of(std::span<const Ball> balls) {
     centre = centre + directions.back();
   }
   centre = (1 / static_cast<double>(balls.size())) * centre;
+  // Those near the mean hardly matter.
+  const Vector3 mean = normalized(centre);
+  double least = 1;
+  for (const Vector3& d : directions) least = std::min(least, dot(mean, d));
+  std::erase_if(directions, [&](const Vector3& d) { return dot(mean, d) > 0.5 * (1 + least); });
+  if (directions.empty()) return mean;
   for (int step = 2; step < axis_steps; ++step) {
     const Vector3 axis = normalized(centre);
     const auto farthest =
-        std::min_element(directions.begin(), directions.end(), [&](const Vector3& a, const Vector3& b) {
-          return dot(axis, a) < dot(axis, b);
-        });
+        std::min_element(directions.begin(), directions.end(),
+                         [&](const Vector3& a, const Vector3& b) { return dot(axis, a) < dot(axis, b); });
     centre = centre + (1.0 / step) * (*farthest - centre);
   }
   return normalized(centre);
@@ -265,7 +270,8 @@ Vector3 axis_of(std::span<const Ball> balls) {
 // the angle is less than a quarter turn.
 double tangent_from(Vector3 axis, const Ball& ball) {
   const double size = length(ball.centre), rounding = gamma_bound(16) * size;
-  const double across = length(cross(axis, ball.centre)) + rounding, along = dot(axis, ball.centre) - rounding;
+  const double across = length(cross(axis, ball.centre)) + rounding,
+               along = dot(axis, ball.centre) - rounding;
   const double least = size * (1 - gamma_bound(8));
   if (!(along > 0) || !(least > ball.radius)) return INFINITY;
   const double centre = enlarged(across / along);
