@@ -69,6 +69,10 @@ oracle::TaggedMesh fan(std::uint32_t n, bool triangles, Centre centre, double am
       }
     }
   }
+  // The vertex is any corner of its faces.
+  for (auto& face : mesh.polygons) {
+    std::rotate(face.begin(), face.begin() + static_cast<std::ptrdiff_t>(random() % face.size()), face.end());
+  }
   const double sharpness = centre == Centre::semi_sharp ? 1.5 : 10;
   const std::uint32_t edges = centre == Centre::crease || centre == Centre::semi_sharp ? 2
                               : centre == Centre::dart                                 ? 1

@@ -16,7 +16,7 @@ namespace {
 
 // Times that a polynomial is split where its coefficients have no cone; levels until sharpness has decayed, and
 // rings around a corner that are looked at one by one.
-constexpr unsigned most_splits = 2, passing_levels = 6, max_rings = 50;
+constexpr unsigned most_splits = 2, passing_levels = 6, net_levels = 2, max_rings = 50;
 // Of a net that stands for all further rings: its error against its size, and the angle that this adds.
 constexpr double most_error = 1.0 / 512, most_widening = 1.0 / 32;
 // Angles between the axis of a first trial and vectors of the second one have larger cosines.
@@ -100,15 +100,24 @@ class NormalBalls {
     bool added = true;
     complete_ = true;
     for (unsigned child = 0; added && child < 4; ++child) {
-      if (child == corner) continue;
-      const Patch net = split(lasting.net, child), dominant = split(lasting.dominant, child);
-      added = net.kind->polynomial() && add_polynomial(net, &dominant, most_splits);
+      if (child != corner)
+        added = add_nets(split(lasting.net, child), split(lasting.dominant, child), net_levels);
     }
     const double wide = added && complete_ ? widening(before) / most_widening : 2;
     complete_ = was_complete;
     if (wide > 1 && !axis_) balls_.resize(before);
     // With an axis nets are what they were without, or pieces of these.
     return axis_ ? (added ? 1 : 2) : wide;
+  }
+
+  // Halves of quads whose fourth corner is extraordinary are split before they are polynomial.
+  bool add_nets(const Patch& net, const Patch& dominant, unsigned levels) {
+    if (net.kind->polynomial()) return add_polynomial(net, &dominant, most_splits);
+    if (levels == 0 || tips_.find(*net.kind) != nullptr) return false;
+    for (unsigned child = 0; child < 4; ++child) {
+      if (!add_nets(split(net, child), split(dominant, child), levels - 1)) return false;
+    }
+    return true;
   }
 
   // Tangent of the largest angle that balls from this one on take.

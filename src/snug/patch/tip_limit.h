@@ -82,7 +82,7 @@ class TipLimit {
 /// the largest, and for darts and corners of very many faces.
 [[nodiscard]] std::optional<TipLimit> make_tip_limit(const Kind& kind);
 
-/// The limits of kinds, each made once. Thread-safe.
+/// The limits of kinds, each made once; for as long as these live. Thread-safe.
 class TipLimits {
  public:
   /// Null where there is none.
