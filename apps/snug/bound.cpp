@@ -5,6 +5,9 @@
 #include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
 
+#include <algorithm>
+#include <numbers>
+
 #include "common.h"
 #include "curve.h"
 #include "length.h"
@@ -21,6 +24,7 @@ struct Options : CommonOptions {
   std::string tolerance;
   std::string polyhedra;
   unsigned level = 0;
+  bool normals = false;
 };
 
 template <std::size_t N>
@@ -47,13 +51,23 @@ void write_enclosure(JsonWriter& json, const Enclosure<N>& piece, unsigned level
   write_points(json, "corners", piece.corners);
 }
 
-void write_piece(JsonWriter& json, const LimitSurface& surface, const PieceEnclosure& piece) {
+void write_cone(JsonWriter& json, const std::optional<NormalCone>& cone) {
+  json.key("normals");
+  if (!cone) {
+    json.null();
+    return;
+  }
+  json.begin_object().field("axis", cone->axis).field("angle", cone->angle).end_object();
+}
+
+void write_piece(JsonWriter& json, const LimitSurface& surface, const PieceEnclosure& piece, bool normals) {
   const SchemeRules& rules = surface.rules();
   const PatchPlace place = surface.place(piece.patch);
   json.begin_object();
   json.field(rules.owner(), place.owner);
   if (!rules.triangular()) json.field("part", place.part);
   write_enclosure(json, piece, piece.path.level() + (surface.after_first_split(piece.patch) ? 1 : 0));
+  if (normals) write_cone(json, piece.normals);
   json.end_object();
 }
 
@@ -114,6 +128,29 @@ void write_polyhedra(const Polyhedra& polyhedra, const Options& options, AtomicF
                           polyhedra.count(), polyhedra.mesh().face_count()));
 }
 
+// How many pieces have a cone of normals, and how wide the widest is.
+class ConeCount {
+ public:
+  void add(const std::optional<NormalCone>& cone) {
+    ++pieces_;
+    if (!cone) return;
+    ++cones_;
+    widest_ = std::max(widest_, cone->angle);
+  }
+  [[nodiscard]] std::string text() const {
+    std::string text = fmt::format("normals: {} of {} pieces have a cone", cones_, pieces_);
+    if (cones_ > 0) {
+      text += ", the widest one of half-angle " + text_at_most(widest_ * (180 / std::numbers::pi), true) +
+              " degrees";
+    }
+    return text;
+  }
+
+ private:
+  std::uint64_t pieces_ = 0, cones_ = 0;
+  double widest_ = 0;
+};
+
 // The end of the command, after its last enclosure: the fields of the summary, the sentence `found` with the
 // largest radius, and why not all was reached.
 void write_bound_summary(Report& report, const BoundSummary& summary, const BoundOptions& how,
@@ -140,6 +177,7 @@ ExitStatus run(const Options& options) {
   how.level = options.level;
   how.budget = options.budget;
   how.threads = options.threads;
+  how.normals = options.normals;
   std::optional<Length> tolerance;
   if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--tolerance");
   ControlMesh mesh = load_mesh(options.mesh, options);
@@ -147,7 +185,7 @@ ExitStatus run(const Options& options) {
   std::optional<LimitSurface> surface;
   if (asks_for_curves("bound", mesh, options.mesh, options, options.degree)) {
     for (const auto& [asked, option] :
-         {std::pair(!options.polyhedra.empty(), "--polyhedra"),
+         {std::pair(!options.polyhedra.empty(), "--polyhedra"), std::pair(options.normals, "--normals"),
           std::pair(bound_method(options) == BoundMethod::table, "--bounds table")}) {
       if (!asked) continue;
       throw UsageError(
@@ -163,6 +201,7 @@ ExitStatus run(const Options& options) {
   curves ? curve_heads(report, options.mesh, curve_degree(options.degree))
          : report.heads({options.mesh}, {name_of(surface->options().scheme)});
   BoundSummary summary;
+  ConeCount cones;
   naming(options.mesh, [&] {
     if (tolerance) how.tolerance = tolerance->in_mesh_units(curves ? curves->size() : surface->size());
     if (report.json()) report.write().key("enclosures").begin_array();
@@ -171,7 +210,8 @@ ExitStatus run(const Options& options) {
       if (report.json()) write_piece(report.write(), *curves, piece);
     };
     const auto keep = [&](const PieceEnclosure& piece) {
-      if (report.json()) write_piece(report.write(), *surface, piece);
+      if (report.json()) write_piece(report.write(), *surface, piece, options.normals);
+      if (options.normals) cones.add(piece.normals);
       if (!options.polyhedra.empty()) polyhedra.add(piece);
     };
     summary = curves ? bound(*curves, how, keep_curve, bar.monitor())
@@ -183,6 +223,7 @@ ExitStatus run(const Options& options) {
                                                  surface->rules().primal ? "faces" : "vertices");
   write_bound_summary(report, summary, how,
                       fmt::format("{}: {} enclosures of {}", options.mesh, summary.count, whole));
+  if (options.normals) report.text(cones.text());
   std::optional<AtomicFile> file;
   if (!options.polyhedra.empty()) {
     file.emplace(options.polyhedra);
@@ -207,6 +248,7 @@ Command bound_command() {
       .excludes("--tolerance");
   list.add(Group::own, "--polyhedra FILE", &options->polyhedra,
            "Also write the enclosures as one mesh, for pictures: .obj, .off, .ply, .stl or .glb");
+  list.add(Group::own, "--normals", &options->normals, "Also enclose the normals of each piece in a cone");
   add_degree_option(list, options->degree);
   add_common_options(list, *options);
   add_bound_options(list, *options);

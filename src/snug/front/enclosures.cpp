@@ -20,7 +20,7 @@ BoundSummary bound(const Surface& surface, const BoundOptions& options,
       [&](const PieceEnclosure& piece) {
         sink({limit.place(piece.patch), piece.path.text(),
               piece.path.level() + (limit.after_first_split(piece.patch) ? 1 : 0), piece.corners,
-              piece.offset, piece.interval});
+              piece.offset, piece.interval, piece.normals});
       },
       monitor, surface.data()->method());
 }

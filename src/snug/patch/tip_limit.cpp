@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <span>
+#include <utility>
 
 #include <snug/geometry/interval.h>
 #include <snug/geometry/rounding.h>
@@ -304,6 +306,77 @@ std::optional<TipLimit> make_tip_limit(const Kind& kind) {
   return std::nullopt;
 }
 
+// Upper bound of the extents of A^j r over the least eigenvalue's powers: some powers are taken, the others
+// shrink what these leave. `rest` is r up to extents of `error`.
+double TipLimit::largest_rest(std::vector<double> rest, double error) const {
+  constexpr int powers = 16;
+  const Stencils& step = kind_->children()[corner_].stencils;
+  const double least = std::min(eigenvalues_[0].lower, eigenvalues_[1].lower);
+  const double rounding = step.max_error() + gamma_bound(size_ + 2) * step.max_abs_sum();
+  double best = INFINITY, before = 0, scale = 1;
+  std::vector<double> next;
+  for (int i = 0; i <= powers; ++i) {
+    const double now = enlarged((extent(rest) + error) / scale);
+    best = std::min(best, std::max(before, enlarged(growth_ * now)));
+    before = std::max(before, now);
+    apply(step, rest, next);
+    error = enlarged(step.max_abs_sum() * error + rounding * largest_of(rest));
+    rest.swap(next);
+    scale = scale * least * (1 - gamma_bound(2));
+  }
+  return best;
+}
+
+TipLimit::Shares TipLimit::shares(const std::vector<double>& y, const Patch& values) const {
+  Shares shares{tangent(y), {}};
+  for (std::size_t t = 0; t < 2; ++t) {
+    shares.off[t] = enlarged((row_errors_[t] + gamma_bound(size_ + 2) * row_sums_[t]) * values.largest +
+                             (row_sums_[t] + row_errors_[t]) * values.error);
+  }
+  return shares;
+}
+
+// Upper bound, in extents, of what one value's net of these shares is off, and of all that shrinks faster.
+double TipLimit::left_out(const std::vector<double>& y, const Shares& shares, const Patch& values) const {
+  double error = 0, largest = values.largest;
+  std::vector<double> rest(size_);
+  for (std::size_t i = 0; i < size_; ++i) {
+    const double first = shares.m[0] * directions_[0][i], second = shares.m[1] * directions_[1][i];
+    rest[i] = y[i] - (first + second);
+    largest = std::max(largest, std::fabs(first) + std::fabs(second));
+  }
+  for (std::size_t t = 0; t < 2; ++t) {
+    error += direction_errors_[t] * (std::fabs(shares.m[t]) + shares.off[t]) + shares.off[t] * extents_[t];
+  }
+  const double off_rest = enlarged(values.error + gamma_bound(8) * 2 * largest + error);
+  return enlarged(error + largest_rest(std::move(rest), off_rest) + gamma_bound(4) * 2 * largest);
+}
+
+TipLimit::Lasting TipLimit::lasting(const Patch& patch) const {
+  Lasting lasting;
+  for (Patch* net : {&lasting.net, &lasting.dominant}) {
+    net->kind = kind_;
+    net->first = patch.first;
+    net->points.resize(size_);
+  }
+  std::vector<double> y(size_);
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t i = 0; i < size_; ++i) y[i] = patch.points[i][c];
+    const Shares own = shares(y, patch);
+    for (std::size_t i = 0; i < size_; ++i) {
+      const std::array<double, 2> parts{own.m[0] * directions_[0][i], own.m[1] * directions_[1][i]};
+      lasting.net.points[i][c] = parts[0] + parts[1];
+      lasting.dominant.points[i][c] = conformal_ ? parts[0] + parts[1] : parts[dominant_];
+    }
+    lasting.net.error = std::max(lasting.net.error, left_out(y, own, patch));
+  }
+  for (Patch* net : {&lasting.net, &lasting.dominant}) {
+    for (const Vector3& p : net->points) net->largest = std::max(net->largest, max_abs(p));
+  }
+  lasting.dominant.error = lasting.net.error;
+  return lasting;
+}
+
 TipRings::TipRings(const TipLimit& limit, const Patch& values) : limit_(&limit), values_(&values) {
   for (std::size_t c = 0; c < 2; ++c) decompose(c);
   for (count_ = 1; count_ < max_rings && !(small(parts_[0]) && small(parts_[1])); ++count_) {
@@ -333,11 +406,10 @@ void TipRings::decompose(std::size_t c) {
   std::vector<double> y(limit.size_);
   for (std::size_t i = 0; i < y.size(); ++i) y[i] = c == 0 ? values_->points[i].x : values_->points[i].y;
   part.own = limit.conformal_ ? 0 : c;
-  part.m = limit.tangent(y);
+  const TipLimit::Shares shares = limit.shares(y, *values_);
+  part.m = shares.m;
+  part.off = shares.off;
   for (std::size_t t = 0; t < 2; ++t) {
-    part.off[t] = enlarged((limit.row_errors_[t] + gamma_bound(limit.size_ + 2) * limit.row_sums_[t]) *
-                               values_->largest +
-                           (limit.row_sums_[t] + limit.row_errors_[t]) * values_->error);
     part.ratios[t] = limit.conformal_ || t == part.own ? Interval{1}
                                                        : limit.eigenvalues_[t] / limit.eigenvalues_[part.own];
   }
@@ -465,6 +537,11 @@ Patch TipRings::net(std::size_t level) const { return level == 0 ? *values_ : ma
 Patch TipRings::lasting(std::size_t level) const { return made(level, true); }
 
 const TipLimit* TipLimits::find(const Kind& kind) {
+  {
+    const std::shared_lock lock(mutex_);
+    if (const auto it = known_.find(&kind); it != known_.end()) return it->second ? &*it->second : nullptr;
+  }
+  const std::unique_lock lock(mutex_);
   const auto [it, added] = known_.try_emplace(&kind);
   if (added) it->second = make_tip_limit(kind);
   return it->second ? &*it->second : nullptr;

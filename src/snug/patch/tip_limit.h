@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <shared_mutex>
 #include <unordered_map>
 #include <vector>
 
@@ -34,14 +35,33 @@ class TipLimit {
   /// The tangent whose eigenvalue is larger; only of a limit that is not conformal.
   [[nodiscard]] std::size_t dominant() const { return dominant_; }
 
+  /// What rings of all levels come from, in space.
+  struct Lasting {
+    Patch net;       ///< of both tangents' parts; its error bounds all that is left out
+    Patch dominant;  ///< of the dominant tangent's part alone; of a conformal limit the same as `net`
+  };
+  /// Of a conformal limit, nets of all levels over powers of the eigenvalue lie within the error of `net`, moved.
+  /// Normals of a ring, scaled by a positive number, are those of `net` but for products of two differences of
+  /// which one is at most the error of `net` and the other lies between those of `net` and of `dominant`.
+  /// Source:    derivations/normals.md, "At extraordinary corners".
+  [[nodiscard]] Lasting lasting(const Patch& patch) const;
+
  private:
   friend std::optional<TipLimit> make_tip_limit(const Kind& kind);
   friend class TipRings;
+  // How much of each direction control values have, and what the exact shares differ by at most.
+  struct Shares {
+    std::array<double, 2> m, off;
+  };
+  [[nodiscard]] Shares shares(const std::vector<double>& y, const Patch& values) const;
+  [[nodiscard]] double left_out(const std::vector<double>& y, const Shares& shares,
+                                const Patch& values) const;
   [[nodiscard]] bool find_eigenvalues(const Kind& kind, const Stencils& step);
   [[nodiscard]] bool find_directions(const Stencils& step);
   [[nodiscard]] bool bound_remainders(const Stencils& step);
   [[nodiscard]] double projection() const;
   [[nodiscard]] double off_plane(const std::array<double, 2>& m) const;
+  [[nodiscard]] double largest_rest(std::vector<double> rest, double error) const;
   [[nodiscard]] std::array<double, 2> tangent(const std::vector<double>& values) const;
 
   const Kind* kind_ = nullptr;
@@ -109,13 +129,14 @@ class TipRings {
 /// the largest, and for darts and corners of very many faces.
 [[nodiscard]] std::optional<TipLimit> make_tip_limit(const Kind& kind);
 
-/// The limits of kinds, each made once. For one thread.
+/// The limits of kinds, each made once; for as long as these live. Thread-safe.
 class TipLimits {
  public:
   /// Null where there is none.
   [[nodiscard]] const TipLimit* find(const Kind& kind);
 
  private:
+  std::shared_mutex mutex_;
   std::unordered_map<const Kind*, std::optional<TipLimit>> known_;
 };
 

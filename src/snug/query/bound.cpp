@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include <snug/bounds/table_triangle.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <snug/patch/normal_cone.h>
 #include <snug/surface/unscale.h>
 
 namespace snug {
@@ -32,7 +34,10 @@ class SurfacePieces {
   static constexpr unsigned children = 4;
 
   SurfacePieces(const LimitSurface& surface, BoundMethod method)
-      : surface_(surface), method_(method), back_(surface.scale().inverse()) {}
+      : surface_(surface),
+        method_(method),
+        back_(surface.scale().inverse()),
+        tips_(std::make_shared<TipLimits>()) {}
 
   [[nodiscard]] std::optional<Patch> whole(std::size_t i) const {
     return surface_.has_patch(PatchId(i)) ? std::optional(surface_.patch(PatchId(i))) : std::nullopt;
@@ -51,10 +56,13 @@ class SurfacePieces {
     return snug::enclose(corners, patch.origin, offset, interval_simplex(points_, corners), back_, out);
   }
 
+  void add_normals(const Patch& patch, PieceEnclosure& out) { out.normals = normal_cone(patch, *tips_); }
+
  private:
   const LimitSurface& surface_;
   BoundMethod method_;
   PowerOfTwo back_;
+  std::shared_ptr<TipLimits> tips_;  // of all threads
   HullPoints points_;
 };
 
@@ -76,6 +84,7 @@ class CurvePieces {
     return snug::enclose(ends, piece.origin, offset_segment(points_, ends), interval_simplex(points_, ends),
                          back_, out);
   }
+  void add_normals(const CurvePiece&, CurveEnclosure&) {}
 
  private:
   const CurveSet& curves_;
@@ -120,6 +129,7 @@ class Bounder {
     if (!more || !room || (options_.tolerance && stuck)) {
       result_.reached = result_.reached && !more;
       result_.max_radius = std::max(result_.max_radius, radius);
+      if (options_.normals) pieces_.add_normals(piece, enclosure);
       result_.enclosures.push_back(std::move(enclosure));
       return;
     }

@@ -22,6 +22,7 @@ struct Enclosure {
 /// Of a limit surface.
 struct PieceEnclosure : Enclosure<3> {
   PatchId patch;
+  std::optional<NormalCone> normals{};
 };
 /// Of a limit curve.
 struct CurveEnclosure : Enclosure<2> {
