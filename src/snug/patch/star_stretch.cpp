@@ -23,12 +23,13 @@ constexpr double bend = 0.05;
 // Least sine of an angle, and least length of two sides, of a piece in the layout.
 constexpr double least_sine = 0.02, least_side = 0x1p10;
 // Rounding and the layout's own error, against products of sizes: see derivations/self_contact.md.
-constexpr double layout_slack = 0x1p-30;
+constexpr double layout_slack = 0x1p-20;
 constexpr unsigned max_rings = 40;
-// Of a net that stands for all further rings, against its size.
-constexpr double most_error = 0.005;
+// What a net that stands for all further rings may add to what is known of those before: its error shrinks
+// from ring to ring.
+constexpr double widening = 1.3;
 // Eigenvalues are known this well, and equal ones are equal up to this.
-constexpr double eigenvalue_error = 1e-13, same_eigenvalue = 1e-9;
+constexpr double eigenvalue_error = 1e-10, same_eigenvalue = 1e-9;
 
 struct Point2 {
   double x = 0, y = 0;
@@ -214,13 +215,13 @@ class StretchCheck {
     Derivatives all;
     double scale = 1;
     for (unsigned ring = 0; ring < max_rings; ++ring, scale /= cut.eigenvalue) {
-      const Patch net = lasting(tip, patch);
-      if (net.error < most_error * net.largest) {
-        all.add(of_ring(net, places, cut, scale));
-        return all;
-      }
       all.add(of_ring(patch, places, cut, scale));
       if (!(all.least > 0)) return unknown;
+      const Derivatives others = of_ring(lasting(tip, patch), places, cut, scale);
+      if (others.least * widening >= all.least && others.most <= widening * all.most) {
+        all.add(others);
+        return all;
+      }
       patch = split(patch, static_cast<unsigned>(*cut.tip));
     }
     return unknown;

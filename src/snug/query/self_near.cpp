@@ -7,6 +7,7 @@
 #include <optional>
 #include <queue>
 #include <span>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -25,6 +26,10 @@ namespace {
 
 // Pieces around one, at most, that ways along the surface are looked for in.
 constexpr std::size_t most_around = 20'000;
+// That a thread keeps between two searches.
+constexpr std::size_t most_nodes = 50'000;
+// Looked at in the time of a pair.
+constexpr std::uint64_t pieces_a_pair = 8;
 
 struct NearPair {
   PieceName first, second;
@@ -49,31 +54,68 @@ double distance_at_most(const Patch& a, const Patch& b, const std::array<Triangl
   return enlarged(length(y.position - x.position) + spatial_error(x.error) + spatial_error(y.error));
 }
 
-// The pieces of one level as a thread knows them.
+// The pieces of one level as a thread knows them, each with its neighbours.
 class LevelPieces {
  public:
+  struct Vertex;
+  struct Node {
+    PieceName name;
+    OffsetTriangle offset;
+    std::array<Vertex*, 3> corners{};
+    std::optional<PatchLengths> lengths;
+    std::uint64_t seen = 0, partner = 0;  // in which search
+    bool within = false;                  // in that search
+    double gap = 0;                       // to its centre
+    std::uint64_t known_gap = 0;          // in which search
+    std::size_t which = 0;                // partner
+  };
+  struct Vertex {
+    LevelVertex name;
+    bool known = false;
+    std::vector<Node*> around;
+    std::uint64_t seen = 0;
+    double way = 0;
+  };
+
   LevelPieces(const LimitSurface& surface, const LevelComplex& complex, unsigned level)
       : complex_(&complex), level_(level), pieces_(surface) {}
 
   [[nodiscard]] const Piece& piece(const PieceName& name) { return pieces_.piece(name); }
-  [[nodiscard]] const Patch& patch(const PieceName& name) { return pieces_.patch(name); }
-  [[nodiscard]] const PatchLengths& lengths(const PieceName& name) {
-    const auto [it, made] = lengths_.try_emplace(name);
-    if (made) it->second = patch_lengths(pieces_.patch(name), tips_);
-    return it->second;
-  }
-  [[nodiscard]] const std::vector<PieceName>& around(const LevelVertex& vertex) {
-    const auto [it, made] = around_.try_emplace(vertex);
-    if (made) {
-      for (const auto& sector : complex_->star(vertex, level_).sectors) it->second.push_back(sector.piece);
+  [[nodiscard]] Node& node(const PieceName& name) {
+    const auto [it, made] = nodes_.try_emplace(name);
+    Node& node = it->second;
+    if (!made) return node;
+    node.name = name;
+    node.offset = pieces_.piece(name).offset;
+    const auto corners = complex_->vertices(name);
+    for (std::size_t k = 0; k < 3; ++k) {
+      node.corners[k] = &vertices_.try_emplace(corners[k]).first->second;
+      node.corners[k]->name = corners[k];
     }
-    return it->second;
+    return node;
   }
+  [[nodiscard]] const std::vector<Node*>& around(Vertex& vertex) {
+    if (!vertex.known) {
+      for (const auto& sector : complex_->star(vertex.name, level_).sectors) {
+        vertex.around.push_back(&node(sector.piece));
+      }
+      vertex.known = true;
+    }
+    return vertex.around;
+  }
+  [[nodiscard]] const PatchLengths& lengths(Node& node) {
+    if (!node.lengths) node.lengths = patch_lengths(pieces_.patch(node.name), tips_);
+    return *node.lengths;
+  }
+  // Where many have come together. What was returned is gone.
   void drop_many() {
-    if (!pieces_.drop_many()) return;
-    lengths_.clear();
-    around_.clear();
+    pieces_.drop_many();
+    if (nodes_.size() < most_nodes) return;
+    nodes_.clear();
+    vertices_.clear();
   }
+  [[nodiscard]] std::uint64_t next_search() { return ++searches_; }
+  [[nodiscard]] std::uint64_t this_search() const { return searches_; }
   [[nodiscard]] const LevelComplex& complex() const { return *complex_; }
 
  private:
@@ -81,106 +123,138 @@ class LevelPieces {
   unsigned level_;
   SelfPieces pieces_;
   TipLengths tips_;
-  std::unordered_map<PieceName, PatchLengths, PieceNameHash> lengths_;
-  std::unordered_map<LevelVertex, std::vector<PieceName>, LevelVertexHash> around_;
+  std::unordered_map<PieceName, Node, PieceNameHash> nodes_;
+  std::unordered_map<LevelVertex, Vertex, LevelVertexHash> vertices_;
+  std::uint64_t searches_ = 0;
 };
 
-// What ways from one piece lead to, while they stay within some distance of it.
+// What ways along the surface lead from one piece to, and how long they are.
 class Surroundings {
  public:
-  // Finds the pieces that such ways can come to; not all of them if there are more than `most`.
-  Surroundings(LevelPieces& pieces, const PieceName& centre, double reach, std::size_t most)
-      : pieces_(pieces), centre_(centre) {
-    const OffsetTriangle middle = pieces.piece(centre).offset;
-    std::vector<PieceName> open{centre};
-    around_.emplace(centre, true);
-    while (!open.empty() && complete_) {
-      const PieceName at = open.back();
-      open.pop_back();
-      for (const LevelVertex& v : pieces.complex().vertices(at)) {
-        for (const PieceName& next : pieces.around(v)) {
-          const auto [it, added] = around_.try_emplace(next, false);
-          if (!added) continue;
-          it->second = gap_of(middle, pieces.piece(next).offset).least <= reach;
-          if (it->second) open.push_back(next);
-          complete_ = complete_ && around_.size() <= most;
-        }
+  Surroundings(LevelPieces& pieces, const PieceName& centre)
+      : pieces_(pieces), centre_(pieces.node(centre)) {}
+
+  [[nodiscard]] std::uint64_t looked_at() const { return looked_at_; }
+
+  // Which of the pieces have ways of at most this length from any point of the centre to any of theirs?
+  // Looks for shortest ways along edges until it knows, or has looked at `most` pieces.
+  std::vector<bool> near_by_ways(std::span<const PieceName> partners, double longest, std::uint64_t most) {
+    const std::uint64_t search = pieces_.next_search();
+    std::vector<bool> found(partners.size(), false);
+    std::size_t open_partners = 0;
+    const PatchLengths& own = pieces_.lengths(centre_);
+    for (std::size_t i = 0; i < partners.size(); ++i) {
+      LevelPieces::Node& node = pieces_.node(partners[i]);
+      if (&node == &centre_) {
+        found[i] = own.diameter <= longest;
+      } else {
+        node.partner = search;
+        node.which = i;
+        ++open_partners;
       }
     }
-  }
-
-  [[nodiscard]] std::size_t size() const { return around_.size(); }
-  // False: no such way leads there.
-  [[nodiscard]] bool may_reach(const PieceName& piece) const {
-    if (!complete_) return true;
-    const auto it = around_.find(piece);
-    return it != around_.end() && it->second;
-  }
-
-  // Distances along edges to the corners of all pieces, up to `most`.
-  void find_ways(double most) {
-    using Entry = std::pair<double, LevelVertex>;
+    using Entry = std::tuple<double, LevelVertex, LevelPieces::Vertex*>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-    const auto reach = [&](const LevelVertex& v, double d) {
-      if (!(d <= most)) return;
-      const auto [it, added] = ways_.try_emplace(v, d);
-      if (!added && it->second <= d) return;
-      it->second = d;
-      open.emplace(d, v);
+    const auto reach = [&](LevelPieces::Vertex& v, double d) {
+      if (!(d <= longest) || (v.seen == search && v.way <= d)) return;
+      v.seen = search;
+      v.way = d;
+      open.emplace(d, v.name, &v);
     };
-    const PatchLengths& own = pieces_.lengths(centre_);
-    const auto corners = pieces_.complex().vertices(centre_);
-    for (std::size_t k = 0; k < 3; ++k) reach(corners[k], own.from_corner[k]);
-    while (!open.empty()) {
-      const auto [d, v] = open.top();
+    for (std::size_t k = 0; k < 3; ++k) reach(*centre_.corners[k], own.from_corner[k]);
+    while (!open.empty() && open_partners > 0 && looked_at_ < most) {
+      const auto [d, name, v] = open.top();
       open.pop();
-      if (ways_.at(v) < d) continue;
-      for (const PieceName& piece : pieces_.around(v)) {
-        const auto at = around_.find(piece);
-        if (at == around_.end() || !at->second) continue;
-        const auto ends = pieces_.complex().vertices(piece);
-        const PatchLengths& lengths = pieces_.lengths(piece);
+      if (v->way < d) continue;
+      for (LevelPieces::Node* node : pieces_.around(*v)) {
+        ++looked_at_;
+        const PatchLengths& lengths = pieces_.lengths(*node);
         for (std::size_t i = 0; i < 3; ++i) {
-          if (!(ends[i] == v)) continue;
+          if (node->corners[i] != v) continue;
+          if (node->partner == search && !found[node->which] &&
+              enlarged(d + lengths.from_corner[i]) <= longest) {
+            found[node->which] = true;
+            --open_partners;
+          }
           for (std::size_t k = 0; k < 3; ++k) {
-            if (k != i) reach(ends[k], enlarged(d + lengths.between(i, k)));
+            if (k != i) reach(*node->corners[k], enlarged(d + lengths.between(i, k)));
           }
         }
       }
     }
+    return found;
   }
 
-  // An upper bound of the distance along the surface of any two points, the second one of this piece.
-  [[nodiscard]] double way_to(const PieceName& piece) {
-    const PatchLengths& lengths = pieces_.lengths(piece);
-    double least = piece == centre_ ? lengths.diameter : INFINITY;
-    const auto corners = pieces_.complex().vertices(piece);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto it = ways_.find(corners[k]);
-      if (it != ways_.end()) least = std::min(least, enlarged(it->second + lengths.from_corner[k]));
+  // May the pieces have ways of at most `longest` to points of the centre at most `chord` from theirs? True,
+  // too, where `most` is not enough to tell. Such ways stay within half the sum of both from the centre; and
+  // the sum of distances from both ends is at most their length, which is looked at for each piece where the
+  // centre is small.
+  std::vector<bool> may_reach(std::span<const PieceName> partners, double longest, double chord,
+                              std::uint64_t most) {
+    const double distance = enlarged(0.5 * (longest + chord));
+    centre_.gap = 0;
+    const bool told = spread(most, [&](LevelPieces::Node& node) {
+      node.gap = gap_of(centre_.offset, node.offset).least;
+      node.known_gap = pieces_.this_search();
+      return node.gap <= distance;
+    });
+    std::vector<bool> may(partners.size(), true);
+    if (!told) return may;
+    const std::uint64_t search = pieces_.this_search();
+    for (std::size_t i = 0; i < partners.size(); ++i) {
+      const LevelPieces::Node& node = pieces_.node(partners[i]);
+      may[i] = node.seen == search && node.within;
     }
-    return least;
+    if (4 * pieces_.lengths(centre_).diameter > chord) return may;
+    for (std::size_t i = 0; i < partners.size(); ++i) {
+      const LevelPieces::Node& partner = pieces_.node(partners[i]);
+      if (!may[i] || &partner == &centre_ || share_corner(pieces_.complex(), centre_.name, partner.name))
+        continue;
+      may[i] = !spread(most, [&](LevelPieces::Node& node) {
+        // Of pieces that were not reached above the distance is not known, but more than that.
+        if (node.known_gap != search) return false;
+        return node.gap <= distance &&
+               node.gap + gap_of(partner.offset, node.offset).least <= enlarged(longest);
+      }) || (partner.seen == pieces_.this_search() && partner.within);
+    }
+    return may;
   }
 
  private:
+  // From the centre on, to all pieces that are let in. False if `most` ended it.
+  template <class LetIn>
+  bool spread(std::uint64_t most, const LetIn& let_in) {
+    const std::uint64_t search = pieces_.next_search();
+    std::vector<LevelPieces::Node*> open{&centre_};
+    centre_.seen = search;
+    centre_.within = true;
+    while (!open.empty()) {
+      if (looked_at_ > most) return false;
+      LevelPieces::Node& at = *open.back();
+      open.pop_back();
+      for (LevelPieces::Vertex* v : at.corners) {
+        for (LevelPieces::Node* next : pieces_.around(*v)) {
+          if (next->seen == search) continue;
+          next->seen = search;
+          ++looked_at_;
+          next->within = let_in(*next);
+          if (next->within) open.push_back(next);
+        }
+      }
+    }
+    return true;
+  }
+
   LevelPieces& pieces_;
-  PieceName centre_;
-  bool complete_ = true;
-  std::unordered_map<PieceName, bool, PieceNameHash> around_;  // looked at: within reach?
-  std::unordered_map<LevelVertex, double, LevelVertexHash> ways_;
+  LevelPieces::Node& centre_;
+  std::uint64_t looked_at_ = 0;
 };
 
 class NearSearch {
  public:
   NearSearch(const LimitSurface& surface, const LevelComplex& complex, const NearnessOptions& options,
              const WorkMonitor& monitor)
-      : surface_(surface),
-        complex_(complex),
-        options_(options),
-        monitor_(monitor),
-        budget_(options.budget),
-        // Where the distance of two points is at most T, ways of length R between them stay this near to both.
-        reach_(enlarged(0.5 * (options.radius + options.tolerance))) {}
+      : surface_(surface), complex_(complex), options_(options), monitor_(monitor), budget_(options.budget) {}
 
   [[nodiscard]] Nearness run() {
     std::vector<NearPair> live = first_pairs();
@@ -325,7 +399,7 @@ class NearSearch {
     const std::size_t count = groups.size();
     groups.push_back(live.size());
     const std::size_t most =
-        std::min<std::uint64_t>(most_around, std::max<std::uint64_t>(100, budget_ / count));
+        std::min<std::uint64_t>(most_around, std::max<std::uint64_t>(200, pieces_a_pair * budget_ / count));
     std::vector<std::uint64_t> work(count, 0);
     std::vector<std::uint8_t> keep(live.size(), 1);
     std::vector<std::optional<NearPieces>> near(live.size());
@@ -342,7 +416,7 @@ class NearSearch {
             }
           }
         });
-    for (const std::uint64_t one : work) spend(one);
+    for (const std::uint64_t one : work) spend(one / pieces_a_pair);
     for (const auto& one : near) {
       if (one) answer_.near.push_back(*one);
     }
@@ -352,19 +426,25 @@ class NearSearch {
   // The pairs of one piece. Returns how many pieces around it were looked at.
   std::uint64_t look_around(LevelPieces& pieces, std::span<NearPair> group, std::size_t most,
                             std::uint8_t* keep) const {
-    if (std::all_of(group.begin(), group.end(), [](const NearPair& pair) { return pair.far; })) return 0;
-    Surroundings around(pieces, group.front().first, reach_, most);
-    around.find_ways(options_.radius);
+    std::vector<std::size_t> which;
+    std::vector<PieceName> partners;
     for (std::size_t i = 0; i < group.size(); ++i) {
-      NearPair& pair = group[i];
-      if (pair.far) continue;
-      if (!around.may_reach(pair.second)) {
-        pair.far = true;
-      } else if (around.way_to(pair.second) <= options_.radius) {
-        keep[i] = 0;
-      }
+      if (group[i].far) continue;
+      which.push_back(i);
+      partners.push_back(group[i].second);
     }
-    return around.size();
+    if (partners.empty()) return 0;
+    Surroundings around(pieces, group.front().first);
+    const std::vector<bool> found = around.near_by_ways(partners, options_.radius, most);
+    bool others = false;  // that are no neighbours
+    for (std::size_t i = 0; i < partners.size(); ++i) {
+      keep[which[i]] = found[i] ? 0 : 1;
+      others = others || (!found[i] && !share_corner(complex_, group.front().first, partners[i]));
+    }
+    if (!others) return around.looked_at();
+    const std::vector<bool> may = around.may_reach(partners, options_.radius, options_.tolerance, 4 * most);
+    for (std::size_t i = 0; i < partners.size(); ++i) group[which[i]].far = !may[i];
+    return around.looked_at();
   }
 
   std::optional<NearPieces> proved_near(LevelPieces& pieces, const NearPair& pair) const {
@@ -411,7 +491,6 @@ class NearSearch {
   const NearnessOptions& options_;
   const WorkMonitor& monitor_;
   std::uint64_t budget_;
-  double reach_;
   Nearness answer_;
 };
 

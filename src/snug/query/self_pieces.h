@@ -21,7 +21,7 @@ class SelfPieces {
   [[nodiscard]] const Patch& patch(const PieceName& name);
   [[nodiscard]] const Piece& piece(const PieceName& name);
   /// Where many have come together. What was returned is gone.
-  /// Returns whether any were dropped.
+  /// Drops all where many have come together: what was returned is gone. Were any dropped?
   bool drop_many();
 
  private:
