@@ -29,7 +29,7 @@ constexpr std::size_t most_around = 20'000;
 // That a thread keeps between two searches.
 constexpr std::size_t most_nodes = 50'000;
 // Looked at in the time of a pair.
-constexpr std::uint64_t pieces_a_pair = 8;
+constexpr std::uint64_t pieces_a_pair = 16;
 
 struct NearPair {
   PieceName first, second;
