@@ -24,7 +24,7 @@ constexpr double bend = 0.05;
 constexpr double least_sine = 0.02, least_side = 0x1p10;
 // Rounding and the layout's own error, against products of sizes: see derivations/self_contact.md.
 constexpr double layout_slack = 0x1p-20;
-constexpr unsigned max_rings = 40;
+constexpr unsigned max_rings = 40, plain_levels = 2;
 // What a net that stands for all further rings may add to what is known of those before: its error shrinks
 // from ring to ring.
 constexpr double widening = 1.3;
@@ -104,8 +104,13 @@ class StretchCheck {
       const Patch& patch = *sector.patch;
       Cut cut;
       if (!patch.kind->polynomial()) {
+        // Half a quad whose fourth corner alone is extraordinary has no tip: a few splits make it polynomial.
         const TipLimit* const tip = tips_.find(*patch.kind);
-        if (tip == nullptr || !tip->conformal()) return false;
+        if (tip == nullptr) {
+          cuts_.push_back(cut);
+          continue;
+        }
+        if (!tip->conformal()) return false;
         const Interval value = tip->eigenvalue();
         if (!(value.upper - value.lower < eigenvalue_error)) return false;
         cut.tip = (tip->corner() + patch.first) % 3;
@@ -205,8 +210,7 @@ class StretchCheck {
     places[(sector.centre + 1) % 3] = ring_[s];
     places[(sector.centre + 2) % 3] = ring_[(s + 1) % ring_.size()];
     const Patch patch = seen(*sector.patch);
-    if (patch.kind->polynomial()) return of_polynomial(patch, places, 1);
-    return of_tip(patch, places, cuts_[s]);
+    return cuts_[s].tip ? of_tip(patch, places, cuts_[s]) : of_plain(patch, places, 1, plain_levels);
   }
 
   // Rings of pieces around a corner, each laid out smaller by its eigenvalue than the one before.
@@ -243,8 +247,19 @@ class StretchCheck {
     for (unsigned child = 0; child < 4; ++child) {
       if (child == cut.tip) continue;
       const Patch piece = split(patch, child);
-      if (!piece.kind->polynomial()) return unknown;
-      all.add(of_polynomial(piece, cut.child(places, child), scale));
+      all.add(of_plain(piece, cut.child(places, child), scale, plain_levels));
+    }
+    return all;
+  }
+
+  // Of what some splits make polynomial; its layout is the same affine one all over.
+  static Derivatives of_plain(const Patch& patch, const Places& places, double scale, unsigned levels) {
+    if (patch.kind->polynomial()) return of_polynomial(patch, places, scale);
+    if (levels == 0) return unknown;
+    Derivatives all;
+    for (unsigned child = 0; child < 4; ++child) {
+      all.add(of_plain(split(patch, child), Cut{}.child(places, child), scale, levels - 1));
+      if (!(all.least > 0)) return unknown;
     }
     return all;
   }
