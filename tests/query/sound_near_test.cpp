@@ -78,19 +78,19 @@ TEST(sound_near, verdicts_are_those_of_refined_meshes) {
   std::map<std::string, int> counts;
   for (int trial = 0; trial < trials; ++trial) {
     for (const Scheme scheme : {Scheme::loop, Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
-      for (const std::uint32_t n : {3u, 4u, 5u, 7u}) {
-        for (const double gap : {0.05, 0.4, 1.0}) {
+      for (const std::uint32_t n : {4u, 5u}) {
+        for (const double gap : {0.05, 0.8}) {
           for (const double shake : {0.0, 0.2}) {
             const bool triangles = scheme == Scheme::loop || random() % 3 == 0;
             oracle::TaggedMesh mesh = horseshoe(gap, n, triangles);
             for (auto& p : mesh.points) {
               for (double& x : p) x += shake * (unit(random) - 0.5);
             }
-            const double tolerance = 0.03 * std::exp2(5 * unit(random)),
-                         radius = (2 + 3 * unit(random)) * tolerance;
+            const double tolerance = 0.08 * std::exp2(3 * unit(random)),
+                         radius = (2.5 + 2 * unit(random)) * tolerance;
             const SelfContact found =
                 self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}),
-                             {.tolerance = tolerance, .radius = radius, .budget = 20'000});
+                             {.tolerance = tolerance, .radius = radius, .budget = 300'000});
             ++counts[std::string(name_of(scheme)) + " " + name_of(found.verdict)];
             const std::string name = std::string(name_of(scheme)) + ", " + std::to_string(n) + ", " +
                                      std::to_string(gap) + ", " + std::to_string(shake) + ", " +
