@@ -20,6 +20,8 @@ constexpr double layout_size = 0x1p20;
 // How much a layout is bent to be convex where the surface's ring has straight angles: points far from the
 // centre come nearer, the centre of an open star goes outwards.
 constexpr double bend = 0.05;
+// Points at reflex angles are pushed outwards, at most this far.
+constexpr double most_push = 1.6;
 // Least sine of an angle, and least length of two sides, of a piece in the layout.
 constexpr double least_sine = 0.02, least_side = 0x1p10;
 // Rounding and the layout's own error, against products of sizes: see derivations/self_contact.md.
@@ -169,6 +171,16 @@ class StretchCheck {
       p = whole(layout_size / largest / (1 + bend * far * far) * p);
     }
     if (!closed_) centre_ = whole(-bend * layout_size / largest * mean);
+    for (int pass = 0; pass < 3; ++pass) {
+      for (std::size_t i = closed_ ? 0 : 1; i + (closed_ ? 0 : 1) < ring_.size(); ++i) {
+        Point2& p = ring_[i];
+        const Point2 before = ring_[(i + ring_.size() - 1) % ring_.size()];
+        const Point2 chord = ring_[(i + 1) % ring_.size()] - before;
+        // Where its ray leaves the triangle with its neighbours; 1.02: with a margin.
+        const double far = cross(before - centre_, chord) / cross(p - centre_, chord);
+        if (far > 0.99 && far < most_push) p = whole(centre_ + 1.02 * far * (p - centre_));
+      }
+    }
     std::vector<Point2> border = ring_;
     if (!closed_) border.push_back(centre_);
     for (std::size_t s = 0; s < sectors_.size(); ++s) {
