@@ -187,5 +187,38 @@ TEST(star_stretch, of_smooth_vertices_is_small_and_of_folds_what_their_angle_say
   }
 }
 
+// In a plane: where the surface turns over, places on both sides of the turn have one point.
+TEST(star_stretch, of_what_turns_over_is_infinite) {
+  std::mt19937_64 random(3);
+  int turned = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    oracle::TaggedMesh mesh = meshes::shaken(meshes::quad_grid(4, 4), 1.2, random);
+    for (auto& p : mesh.points) p[2] = 0;
+    const LimitSurface surface = surface_of(mesh, Scheme::catmark);
+    const LevelComplex complex(surface);
+    for (const PieceName& piece : complex.pieces()) {
+      for (const LevelVertex& vertex : complex.vertices(piece)) {
+        const LevelStar star = complex.star(vertex, complex.level_of(piece));
+        bool left = false, right = false;
+        for (const auto& sector : star.sectors) {
+          const Patch patch = surface.patch(PatchId(sector.piece.patch));
+          for (const double u : {0.1, 0.4, 0.7}) {
+            for (const double v : {0.1, 0.2}) {
+              const LimitFrame frame = limit_frame(patch, {u, v});
+              const double area = cross(frame.tangents[0], frame.tangents[1]).z;
+              left = left || area > 1e-3;
+              right = right || area < -1e-3;
+            }
+          }
+        }
+        if (!left || !right) continue;
+        ++turned;
+        EXPECT_EQ(stretch_at(surface, vertex, complex.level_of(piece)), INFINITY) << trial;
+      }
+    }
+  }
+  EXPECT_GT(turned, 50);
+}
+
 }  // namespace
 }  // namespace snug

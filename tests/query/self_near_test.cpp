@@ -194,6 +194,32 @@ TEST(self_near, a_wedge_is_near_where_ways_around_its_edge_are_long) {
   }
 }
 
+// A sharp wedge: a polyhedron, which without a tolerance is clear.
+TEST(self_near, a_sharp_body_is_near_itself_where_its_edge_is_acute) {
+  for (const double degrees : {12.0, 20.0, 40.0, 60.0}) {
+    const double half = degrees / 2 * std::numbers::pi / 180;
+    oracle::TaggedMesh mesh;
+    for (const double y : {0.0, 1.0}) {
+      mesh.points.push_back({0, y, 0});
+      mesh.points.push_back({std::cos(half), y, -std::sin(half)});
+      mesh.points.push_back({std::cos(half), y, std::sin(half)});
+    }
+    mesh.polygons = {{0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}};
+    for (const auto& face : mesh.polygons) {
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        mesh.creases.push_back({face[k], face[(k + 1) % face.size()], 10});
+      }
+    }
+    EXPECT_EQ(ask(mesh, Scheme::catmark, {.budget = 20'000}).verdict, SelfVerdict::clear) << degrees;
+    const SelfContact found = ask(mesh, Scheme::catmark, {.tolerance = 0.02, .budget = 100'000});
+    if (std::sin(half) < 0.25) {
+      EXPECT_NE(found.verdict, SelfVerdict::clear) << degrees;
+    } else {
+      EXPECT_NE(found.verdict, SelfVerdict::near) << degrees;
+    }
+  }
+}
+
 TEST(self_near, flat_sheets_with_boundaries_are_clear) {
   const oracle::TaggedMesh sheet = meshes::quad_grid(4, 3);
   for (const Scheme scheme : {Scheme::catmark, Scheme::doo_sabin, Scheme::midedge, Scheme::loop}) {
