@@ -194,28 +194,26 @@ TEST(self_near, a_wedge_is_near_where_ways_around_its_edge_are_long) {
   }
 }
 
-// A sharp wedge: a polyhedron, which without a tolerance is clear.
-TEST(self_near, a_sharp_body_is_near_itself_where_its_edge_is_acute) {
-  for (const double degrees : {12.0, 20.0, 40.0, 60.0}) {
-    const double half = degrees / 2 * std::numbers::pi / 180;
-    oracle::TaggedMesh mesh;
-    for (const double y : {0.0, 1.0}) {
-      mesh.points.push_back({0, y, 0});
-      mesh.points.push_back({std::cos(half), y, -std::sin(half)});
-      mesh.points.push_back({std::cos(half), y, std::sin(half)});
-    }
-    mesh.polygons = {{0, 1, 2}, {3, 5, 4}, {0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 3, 0}};
-    for (const auto& face : mesh.polygons) {
-      for (std::size_t k = 0; k < face.size(); ++k) {
-        mesh.creases.push_back({face[k], face[(k + 1) % face.size()], 10});
+TEST(self_near, thin_discs_are_near_themselves_inside) {
+  for (const double height : {0.05, 0.1, 0.2, 0.3}) {
+    for (std::uint32_t n = 4; n <= 8; ++n) {
+      oracle::TaggedMesh disc;
+      disc.points = {{0, 0, height}, {0, 0, -height}};
+      for (std::uint32_t i = 0; i < n; ++i) {
+        const double t = 2 * std::numbers::pi * i / n;
+        disc.points.push_back({std::cos(t), std::sin(t), 0});
+        disc.polygons.push_back({0, 2 + i, 2 + (i + 1) % n});
+        disc.polygons.push_back({1, 2 + (i + 1) % n, 2 + i});
       }
-    }
-    EXPECT_EQ(ask(mesh, Scheme::catmark, {.budget = 20'000}).verdict, SelfVerdict::clear) << degrees;
-    const SelfContact found = ask(mesh, Scheme::catmark, {.tolerance = 0.02, .budget = 100'000});
-    if (std::sin(half) < 0.25) {
-      EXPECT_NE(found.verdict, SelfVerdict::clear) << degrees;
-    } else {
-      EXPECT_NE(found.verdict, SelfVerdict::near) << degrees;
+      // Thinner than the tolerance, and the way around the rim is at least as long as the disc is wide.
+      const double tolerance = 1.05 * height;
+      const SelfContact found =
+          ask(disc, Scheme::loop, {.tolerance = tolerance, .radius = 2 * tolerance, .budget = 50'000});
+      if (height <= 0.1) {
+        EXPECT_EQ(found.verdict, SelfVerdict::near) << n << " " << height;
+      } else {
+        EXPECT_NE(found.verdict, SelfVerdict::intersecting) << n << " " << height;
+      }
     }
   }
 }
