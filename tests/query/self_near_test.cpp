@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 #include <oracle/tagged_shapes.h>
 #include <snug/error.h>
+#include <snug/query/self_near.h>
 #include <testing/tagged.h>
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <string>
@@ -191,6 +193,26 @@ TEST(self_near, a_wedge_is_near_where_ways_around_its_edge_are_long) {
         }
       }
     }
+  }
+}
+
+// Nearness alone, whatever else is undecided of such wedges.
+TEST(self_near, of_wedges_hangs_on_the_stretch_of_their_edge) {
+  for (const double degrees : {24.0, 26.0, 60.0, 90.0}) {
+    const double half = degrees / 2 * std::numbers::pi / 180;
+    std::vector<std::array<double, 2>> profile;
+    for (int i = -4; i <= 4; ++i) {
+      profile.push_back({0.25 * std::abs(i) * std::cos(half), 0.25 * i * std::sin(half)});
+    }
+    oracle::TaggedMesh mesh = strip(profile, 0.5, 2, Faces::quads);
+    for (std::uint32_t j = 0; j < 2; ++j) mesh.creases.push_back({4 * 3 + j, 4 * 3 + j + 1, 10});
+    const LimitSurface surface(testing::control_mesh(mesh), {Scheme::catmark},
+                               std::make_shared<BoundsCache>());
+    const double tolerance = surface.scale().apply(0.06);
+    const Nearness found =
+        find_nearness(surface, LevelComplex(surface),
+                      {.tolerance = tolerance, .radius = 4 * tolerance, .budget = 100'000, .levels = 12}, {});
+    EXPECT_EQ(found.near.empty() && found.open.empty(), std::sin(half) > 0.25) << degrees;
   }
 }
 
