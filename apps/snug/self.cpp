@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "common.h"
 #include "length.h"
@@ -13,10 +14,12 @@ namespace {
 
 struct Options : CommonOptions {
   std::string mesh;
+  std::string tolerance, radius;
 };
 
-void write_json(JsonWriter& json, const SelfContact& found, bool primal) {
+void write_json(JsonWriter& json, const SelfContact& found, std::optional<double> tolerance, bool primal) {
   json.field("verdict", name_of(found.verdict));
+  if (tolerance) json.field("tolerance", *tolerance).field("radius", found.radius);
   json.key("pairs").begin_array();
   for (const SelfContactPair& pair : found.pairs) {
     json.begin_object().field("verdict", name_of(pair.verdict));
@@ -53,8 +56,14 @@ ExitStatus run(const Options& options) {
   SelfContactOptions wanted;
   wanted.budget = options.budget;
   wanted.threads = options.threads;
+  std::optional<Length> tolerance, radius;
+  if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--tolerance");
+  if (!options.radius.empty()) radius = parse_length(options.radius, "--radius");
+  if (radius && !tolerance) throw UsageError("--radius: there is no --tolerance; give both");
   const LimitSurface surface =
       load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  if (tolerance) wanted.tolerance = tolerance->in_mesh_units(surface.size());
+  if (radius) wanted.radius = radius->in_mesh_units(surface.size());
   Report report("self", options);
   SelfContact found;
   {
@@ -63,7 +72,7 @@ ExitStatus run(const Options& options) {
     naming(options.mesh, [&] { found = self_contact(surface, wanted, monitor); });
   }
   report.heads({options.mesh}, {name_of(surface.options().scheme)});
-  if (report.json()) write_json(report.write(), found, surface.rules().primal);
+  if (report.json()) write_json(report.write(), found, wanted.tolerance, surface.rules().primal);
   write_text(report, found, surface.rules().owner());
   return report.finish(found.verdict != SelfVerdict::undecided);
 }
@@ -75,15 +84,22 @@ Command self_command() {
   options->budget = SelfContactOptions{}.budget;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL)");
+  list.add(
+      Group::own, "--tolerance T", &options->tolerance,
+      "Also: are places at most T apart (mesh units, or percent of the size) that are far apart along the "
+      "surface?");
+  list.add(Group::own, "--radius R", &options->radius,
+           "That far: more than R along the surface, at least 2 T; default 4 T");
   list.add(Group::effort, "--budget N", &options->budget, "Look at most at N stars and pairs of pieces")
       .between(0, std::uint64_t{1} << 40);
   add_common_options(list, *options);
-  return {"self",
-          Topic::one_surface,
-          "Does a limit surface meet itself?",
-          {"snug self pawn.obj", "snug self part.stl --sharp auto --json"},
-          std::move(list),
-          [options] { return run(*options); }};
+  return {
+      "self",
+      Topic::one_surface,
+      "Does a limit surface meet itself, or come near itself?",
+      {"snug self pawn.obj", "snug self pawn.obj --tolerance 1%", "snug self part.stl --sharp auto --json"},
+      std::move(list),
+      [options] { return run(*options); }};
 }
 
 }  // namespace snug::command

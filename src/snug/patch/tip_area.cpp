@@ -113,17 +113,18 @@ class DenseRows {
 };
 
 // The least factor, by one period, two, four, ... at once, `other` being that of all that one period splits
-// off.
-double repeated(DenseRows period, double other) {
+// off. Factors grow by a power of extents' growth.
+template <class Power>
+double repeated(DenseRows period, double other, const Power& power) {
   constexpr unsigned enough = 8, most = 4096;
   double best = INFINITY;
-  double sum = 1;  // of squared growths of 0, 1, ... times - 1 periods
+  double sum = 1;  // of the factors' growths by 0, 1, ... times - 1 periods
   for (unsigned times = 1;; times *= 2) {
-    const double growth = period.growth(), growth_sq = enlarged(growth * growth);
-    if (growth_sq < 1) best = std::min(best, enlarged(other * sum / (1 - growth_sq)));
+    const double growth = enlarged(power(period.growth()));
+    if (growth < 1) best = std::min(best, enlarged(other * sum / (1 - growth)));
     const std::size_t limit = best == INFINITY ? largest_size : common_size;
     if (period.columns() > limit || times >= most || (best < INFINITY && times >= enough)) return best;
-    sum *= 1 + growth_sq;
+    sum *= 1 + growth;
     period.square();
   }
 }
@@ -146,19 +147,20 @@ bool comes_again(const Kind& kind, const Kind& from, std::unordered_set<const Ki
 
 }  // namespace
 
-double TipAreas::factor(const Kind& kind) {
+double TipFactors::factor(const Kind& kind) {
   const double factor = find(kind);
   known_[&kind] = factor;
   return factor;
 }
 
-double TipAreas::find(const Kind& kind) {
+double TipFactors::find(const Kind& kind) {
   if (const auto it = known_.find(&kind); it != known_.end()) return it->second;
   if (kind.polynomial()) {
     // Derivatives along u and v are averages of differences of lattice points.
     const double domain = kind.rules().triangular() ? 0.5 : 1;
     const double stretch = std::max(1.0, kind.lattice().ghosts.max_abs_sum());
-    return known_[&kind] = enlarged(domain * stretch * stretch);
+    // Of two points u and v differ by at most 1.
+    return known_[&kind] = enlarged(areas_ ? domain * stretch * stretch : 2 * stretch);
   }
   if (!open_.insert(&kind).second) return INFINITY;
   const double factor = find_new(kind);
@@ -167,7 +169,7 @@ double TipAreas::find(const Kind& kind) {
   return factor;
 }
 
-double TipAreas::find_new(const Kind& kind) {
+double TipFactors::find_new(const Kind& kind) {
   Path path;
   std::unordered_set<const Kind*> seen;
   const bool again = !kind.passing() && comes_again(kind, kind, seen, path);
@@ -182,13 +184,13 @@ double TipAreas::find_new(const Kind& kind) {
       if (k == next) continue;
       const KindStep::Piece& piece = step.pieces[k];
       const double grows = growth * growth_of(step.stencils, piece.control, at->control_count());
-      factor += grows * grows * find(*piece.kind);
+      factor += power(grows) * find(*piece.kind);
     }
     if (!again) return enlarged(factor);
     rows.step(step.stencils, step.pieces[next].control);
     at = step.pieces[next].kind;
   }
-  return repeated(std::move(rows), enlarged(factor));
+  return repeated(std::move(rows), enlarged(factor), [&](double growth) { return power(growth); });
 }
 
 }  // namespace snug

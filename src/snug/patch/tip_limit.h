@@ -32,6 +32,8 @@ class TipLimit {
   [[nodiscard]] std::size_t corner() const { return corner_; }  ///< of the kind
   /// Are both eigenvalues proved to be equal? Then any two directions of space do.
   [[nodiscard]] bool conformal() const { return conformal_; }
+  /// Contains that eigenvalue; only of a limit that is conformal.
+  [[nodiscard]] Interval eigenvalue() const { return eigenvalues_[0]; }
   /// The tangent whose eigenvalue is larger; only of a limit that is not conformal.
   [[nodiscard]] std::size_t dominant() const { return dominant_; }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -12,6 +13,8 @@
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/patch/star.h>
+#include <snug/query/self_near.h>
+#include <snug/query/self_pieces.h>
 #include <snug/search/crossing.h>
 #include <snug/search/quadratic_bvh.h>
 #include <snug/surface/evaluate.h>
@@ -23,10 +26,13 @@ namespace {
 
 constexpr auto verdict_names = std::to_array<Named<SelfVerdict>>({{"clear", SelfVerdict::clear},
                                                                   {"intersecting", SelfVerdict::intersecting},
+                                                                  {"near", SelfVerdict::near},
                                                                   {"undecided", SelfVerdict::undecided}});
 
-// Pieces that a thread keeps between two pairs or stars.
-constexpr std::size_t most_kept = 20'000;
+// Levels that pieces are compared at for nearness, beside those for stars.
+constexpr unsigned further_levels = 6;
+// Distances along the surface that count, against the tolerance.
+constexpr double least_radius = 2, default_radius = 4;
 // Of one pair: pieces compared, crossings tried.
 constexpr std::uint64_t most_tests = 4000;
 constexpr int most_attempts = 40;
@@ -34,35 +40,6 @@ constexpr int most_attempts = 40;
 constexpr unsigned deepest = 20;
 
 using NamePair = std::pair<PieceName, PieceName>;
-
-// Patches and their pieces, by name.
-class Pieces {
- public:
-  explicit Pieces(const LimitSurface& surface) : surface_(&surface) {}
-
-  [[nodiscard]] const Patch& patch(const PieceName& name) {
-    if (const auto it = patches_.find(name); it != patches_.end()) return it->second;
-    Patch made =
-        name.splits == 0 ? surface_->patch(PatchId(name.patch)) : split(patch(name.parent()), name.digit());
-    return patches_.emplace(name, std::move(made)).first->second;
-  }
-  [[nodiscard]] const Piece& piece(const PieceName& name) {
-    if (const auto it = pieces_.find(name); it != pieces_.end()) return it->second;
-    Piece made = make_piece(surface_->library(), PatchId(name.patch), patch(name), scratch_);
-    return pieces_.emplace(name, std::move(made)).first->second;
-  }
-  void drop_many() {
-    if (patches_.size() + pieces_.size() < most_kept) return;
-    patches_.clear();
-    pieces_.clear();
-  }
-
- private:
-  const LimitSurface* surface_;
-  std::unordered_map<PieceName, Patch, PieceNameHash> patches_;
-  std::unordered_map<PieceName, Piece, PieceNameHash> pieces_;
-  HullPoints scratch_;
-};
 
 // What became of a pair of pieces: apart, or where it is not.
 struct Found {
@@ -79,7 +56,7 @@ double size_of(const Piece& piece) {
 }
 
 // Proves two pieces without a common corner to be apart, or some in them to cross.
-Found compare(Pieces& pieces, BoundsCache& library, const NamePair& whole, std::uint64_t budget) {
+Found compare(SelfPieces& pieces, BoundsCache& library, const NamePair& whole, std::uint64_t budget) {
   Found found;
   std::vector<NamePair> stack{whole};
   int attempts = 0;
@@ -125,7 +102,12 @@ Found compare(Pieces& pieces, BoundsCache& library, const NamePair& whole, std::
 class SelfSearch {
  public:
   SelfSearch(const LimitSurface& surface, const SelfContactOptions& options, const WorkMonitor& monitor)
-      : surface_(surface), options_(options), monitor_(monitor), complex_(surface), budget_(options.budget) {}
+      : surface_(surface), options_(options), monitor_(monitor), complex_(surface), budget_(options.budget) {
+    if (options.tolerance) {
+      answer_.radius = options.radius.value_or(
+          std::min(default_radius * *options.tolerance, std::numeric_limits<double>::max()));
+    }
+  }
 
   [[nodiscard]] SelfContact run() {
     const std::vector<PieceName> pieces = complex_.pieces();
@@ -150,42 +132,36 @@ class SelfSearch {
       compare_far(far);
       answer_.levels = depth + 1;
     }
+    if (options_.tolerance && !crossing_) look_for_near();
     return result();
   }
 
  private:
-  [[nodiscard]] bool share_corner(const PieceName& a, const PieceName& b) const {
-    const auto x = complex_.vertices(a), y = complex_.vertices(b);
-    return std::any_of(x.begin(), x.end(),
-                       [&](const LevelVertex& v) { return std::find(y.begin(), y.end(), v) != y.end(); });
+  void look_for_near() {
+    // In scaled units all distances are below 16; a radius is 1e100 at most: only other components are so far.
+    const PowerOfTwo scale = surface_.scale();
+    NearnessOptions wanted{.tolerance = std::min(enlarged(scale.apply(*options_.tolerance)), 64.0),
+                           .radius = std::min(scale.apply(answer_.radius), 1e100),
+                           .budget = options_.budget,
+                           .levels = options_.levels + further_levels,
+                           .threads = options_.threads};
+    if (scale.exact(*options_.tolerance)) wanted.tolerance = std::min(scale.apply(*options_.tolerance), 64.0);
+    nearness_ = find_nearness(surface_, complex_, wanted, monitor_);
+    answer_.stars += nearness_.stars;
+    answer_.pair_tests += nearness_.pair_tests;
+    answer_.levels = std::max(answer_.levels, nearness_.levels);
   }
 
   // All pairs of the first level whose enclosures are near and that have no corner in common.
   std::vector<NamePair> far_pairs(const std::vector<PieceName>& pieces) {
-    std::vector<QuadraticTriangle> sets(pieces.size());
-    parallel_for_with(
-        pieces.size(), options_.threads, [&] { return Pieces(surface_); },
-        [&](Pieces& kept, std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            kept.drop_many();
-            const OffsetTriangle& offset = kept.piece(pieces[i]).offset;
-            sets[i] = flat_quadratic(offset.base);
-            sets[i].error = enlarged(sets[i].error + offset.radius);
-          }
-        });
-    for (const QuadraticTriangle& set : sets) {
-      if (!std::isfinite(set.error)) {
-        throw InputError(InputProblem::unrepresentable,
-                         "a bound of a patch does not fit a double; move the mesh nearer to the origin");
-      }
-    }
+    const std::vector<QuadraticTriangle> sets = enclosures_of(surface_, pieces, options_.threads, monitor_);
     const QuadraticBvh tree(sets, options_.threads);
     std::vector<std::vector<NamePair>> found(pieces.size());
     parallel_for(pieces.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         monitor_.checkpoint();
         tree.for_each_near(sets[i], [&](std::uint32_t other) {
-          if (other > i && !share_corner(pieces[i], pieces[other]))
+          if (other > i && !share_corner(complex_, pieces[i], pieces[other]))
             found[i].emplace_back(pieces[i], pieces[other]);
         });
         std::sort(found[i].begin(), found[i].end());
@@ -215,34 +191,24 @@ class SelfSearch {
     return pairs;
   }
 
-  // Of two pieces of one level.
-  [[nodiscard]] std::vector<LevelVertex> common_corners(const NamePair& pair) const {
-    const auto x = complex_.vertices(pair.first), y = complex_.vertices(pair.second);
-    std::vector<LevelVertex> common;
-    for (const LevelVertex& v : x) {
-      if (std::find(y.begin(), y.end(), v) != y.end()) common.push_back(v);
-    }
-    return common;
-  }
-
   // Leaves pairs no common corner of which has a star that is proved to be injective.
   void drop_proved(std::vector<NamePair>& live, unsigned level) {
     std::vector<LevelVertex> vertices;
     for (const NamePair& pair : live) {
-      for (const LevelVertex& v : common_corners(pair)) vertices.push_back(v);
+      for (const LevelVertex& v : common_corners(complex_, pair.first, pair.second)) vertices.push_back(v);
     }
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     if (vertices.size() > budget_) return;
     std::vector<std::uint8_t> proved(vertices.size(), 0);
     struct State {
-      Pieces pieces;
+      SelfPieces pieces;
       TipLimits tips;
     };
     parallel_for_with(
         vertices.size(), options_.threads,
         [&] {
-          return State{Pieces(surface_), {}};
+          return State{SelfPieces(surface_), {}};
         },
         [&](State& state, std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
@@ -254,7 +220,7 @@ class SelfSearch {
     spend(vertices.size());
     answer_.stars += vertices.size();
     std::erase_if(live, [&](const NamePair& pair) {
-      const auto common = common_corners(pair);
+      const auto common = common_corners(complex_, pair.first, pair.second);
       return std::any_of(common.begin(), common.end(), [&](const LevelVertex& v) {
         return proved[static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), v) -
                                                vertices.begin())] != 0;
@@ -262,7 +228,7 @@ class SelfSearch {
     });
   }
 
-  [[nodiscard]] bool star_holds(Pieces& pieces, TipLimits& tips, const LevelVertex& vertex,
+  [[nodiscard]] bool star_holds(SelfPieces& pieces, TipLimits& tips, const LevelVertex& vertex,
                                 unsigned level) const {
     const LevelStar star = complex_.star(vertex, level);
     if (!star.fan) return false;
@@ -280,7 +246,7 @@ class SelfSearch {
         for (unsigned j = a == b ? i : 0; j < 4; ++j) {
           NamePair pair{a.child(i), b.child(j)};
           if (pair.second < pair.first) std::swap(pair.first, pair.second);
-          (share_corner(pair.first, pair.second) ? next : far).push_back(pair);
+          (share_corner(complex_, pair.first, pair.second) ? next : far).push_back(pair);
         }
       }
     }
@@ -294,8 +260,8 @@ class SelfSearch {
     const std::uint64_t each = std::min(most_tests, budget_ / pairs.size());
     std::vector<Found> found(pairs.size());
     parallel_for_with(
-        pairs.size(), options_.threads, [&] { return Pieces(surface_); },
-        [&](Pieces& kept, std::size_t begin, std::size_t end) {
+        pairs.size(), options_.threads, [&] { return SelfPieces(surface_); },
+        [&](SelfPieces& kept, std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             monitor_.checkpoint();
             kept.drop_many();
@@ -314,7 +280,7 @@ class SelfSearch {
     Found found;
     found.what = Found::What::unknown;
     found.pieces = pair;
-    const auto common = common_corners(pair);
+    const auto common = common_corners(complex_, pair.first, pair.second);
     const auto corner_at = [&](const PieceName& piece) {
       const auto corners = complex_.vertices(piece);
       const auto k = std::find(corners.begin(), corners.end(), common.front()) - corners.begin();
@@ -327,29 +293,56 @@ class SelfSearch {
   void spend(std::uint64_t work) { budget_ -= std::min(budget_, work); }
 
   SelfContact result() {
-    answer_.verdict = crossing_        ? SelfVerdict::intersecting
-                      : found_.empty() ? SelfVerdict::clear
-                                       : SelfVerdict::undecided;
-    for (const Found& found : found_) {
-      const bool crossing = found.what == Found::What::crossing;
-      if (crossing != crossing_ || answer_.pairs.size() == SelfContact::max_pairs) continue;
-      SelfContactPair pair;
-      pair.verdict = crossing ? SelfVerdict::intersecting : SelfVerdict::undecided;
-      const std::array<PieceName, 2> names{found.pieces.first, found.pieces.second};
-      double error = 0;
-      for (std::size_t s = 0; s < 2; ++s) {
-        pair.at[s] = place_of(surface_, PatchId(names[s].patch), to_face(names[s].path(), found.at[s]));
-        const SurfacePoint point = evaluate(surface_, pair.at[s]);
-        pair.points[s] = point.position;
-        error += spatial_error(point.error);
+    answer_.verdict = crossing_                                  ? SelfVerdict::intersecting
+                      : !nearness_.near.empty()                  ? SelfVerdict::near
+                      : found_.empty() && nearness_.open.empty() ? SelfVerdict::clear
+                                                                 : SelfVerdict::undecided;
+    if (answer_.verdict != SelfVerdict::near) {
+      for (const Found& found : found_) {
+        if ((found.what == Found::What::crossing) == crossing_) add_place(found);
       }
-      if (!crossing) {
-        const double apart = length(pair.points[1] - pair.points[0]);
-        pair.distance.upper = enlarged(apart + error + gamma_bound(4) * max_abs(pair.points[0] - Point3{}));
-      }
-      answer_.pairs.push_back(pair);
+    }
+    if (answer_.verdict == SelfVerdict::near) {
+      for (const NearPieces& pieces : nearness_.near) add_place(pieces, SelfVerdict::near);
+    } else if (!crossing_) {
+      for (const NearPieces& pieces : nearness_.open) add_place(pieces, SelfVerdict::undecided);
     }
     return answer_;
+  }
+
+  // The limit points at two places of pieces; returns an upper bound of what both are off, as lengths.
+  double set_points(SelfContactPair& pair, const std::array<PieceName, 2>& names,
+                    const std::array<TriangleParameter, 2>& at) const {
+    double error = 0;
+    for (std::size_t s = 0; s < 2; ++s) {
+      pair.at[s] = place_of(surface_, PatchId(names[s].patch), to_face(names[s].path(), at[s]));
+      const SurfacePoint point = evaluate(surface_, pair.at[s]);
+      pair.points[s] = point.position;
+      error += spatial_error(point.error);
+    }
+    return error;
+  }
+
+  void add_place(const Found& found) {
+    if (answer_.pairs.size() == SelfContact::max_pairs) return;
+    SelfContactPair pair;
+    pair.verdict = crossing_ ? SelfVerdict::intersecting : SelfVerdict::undecided;
+    const double error = set_points(pair, {found.pieces.first, found.pieces.second}, found.at);
+    if (!crossing_) {
+      const double apart = length(pair.points[1] - pair.points[0]);
+      pair.distance.upper = enlarged(apart + error + gamma_bound(4) * max_abs(pair.points[0] - Point3{}));
+    }
+    answer_.pairs.push_back(pair);
+  }
+
+  void add_place(const NearPieces& pieces, SelfVerdict verdict) {
+    if (answer_.pairs.size() == SelfContact::max_pairs) return;
+    SelfContactPair pair;
+    pair.verdict = verdict;
+    static_cast<void>(set_points(pair, pieces.pieces, pieces.at));
+    const PowerOfTwo back = surface_.scale().inverse();
+    pair.distance = {unscaled_down(pieces.distance.lower, back), unscaled_up(pieces.distance.upper, back)};
+    answer_.pairs.push_back(pair);
   }
 
   const LimitSurface& surface_;
@@ -359,6 +352,7 @@ class SelfSearch {
   std::uint64_t budget_;
   std::vector<Found> found_;
   bool crossing_ = false;
+  Nearness nearness_;
   SelfContact answer_;
 };
 
@@ -369,6 +363,19 @@ const char* name_of(SelfVerdict verdict) { return name_in(verdict_names, verdict
 SelfContact self_contact(const LimitSurface& surface, const SelfContactOptions& options,
                          const WorkMonitor& monitor) {
   require_value(options.levels <= 20, "self: more than 20 levels; give fewer");
+  if (options.tolerance) {
+    require_length(*options.tolerance, "self: the tolerance");
+    require_value(*options.tolerance > 0, "self: the tolerance is 0; give a positive length, or none");
+  }
+  if (options.radius) {
+    require_value(options.tolerance.has_value(),
+                  "self: a radius without a tolerance; give both, or no radius");
+    require_length(*options.radius, "self: the radius");
+    require_value(
+        *options.radius / least_radius >= *options.tolerance,
+        "self: the radius is less than twice the tolerance, where even flat places are near each other "
+        "beyond it; give a longer one");
+  }
   return SelfSearch(surface, options, monitor).run();
 }
 

@@ -1,0 +1,504 @@
+#include <snug/query/self_near.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <queue>
+#include <span>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <snug/base/parallel.h>
+#include <snug/geometry/rounding.h>
+#include <snug/geometry/triangle_distance.h>
+#include <snug/patch/evaluate.h>
+#include <snug/patch/patch_lengths.h>
+#include <snug/patch/star_stretch.h>
+#include <snug/query/self_pieces.h>
+#include <snug/search/quadratic_bvh.h>
+
+namespace snug {
+namespace {
+
+// Pieces around one, at most, that ways along the surface are looked for in.
+constexpr std::size_t most_around = 20'000;
+// That a thread keeps between two searches.
+constexpr std::size_t most_nodes = 50'000;
+// Looked at in the time of a pair.
+constexpr std::uint64_t pieces_a_pair = 16;
+
+struct NearPair {
+  PieceName first, second;
+  bool far = false;  // every way from one to the other whose ends are near each other is long
+  friend auto operator<=>(const NearPair&, const NearPair&) = default;
+};
+
+// A lower bound of the distance of two pieces, and where their triangles are nearest.
+struct Gap {
+  double least = 0;
+  std::array<TriangleParameter, 2> at;
+};
+Gap gap_of(const OffsetTriangle& a, const OffsetTriangle& b) {
+  const NearestTriangles near = nearest(a.base, b.base);
+  const double least = rounded_down(rounded_down(near.certain_distance - a.radius) - b.radius);
+  return {std::max(0.0, least), {clamped(near.on_a), clamped(near.on_b)}};
+}
+
+// An upper bound of the distance of two points of pieces.
+double distance_at_most(const Patch& a, const Patch& b, const std::array<TriangleParameter, 2>& at) {
+  const BoundedPoint x = limit_point(a, at[0]).from(a.origin), y = limit_point(b, at[1]).from(b.origin);
+  return enlarged(length(y.position - x.position) + spatial_error(x.error) + spatial_error(y.error));
+}
+
+// The pieces of one level as a thread knows them, each with its neighbours.
+class LevelPieces {
+ public:
+  struct Vertex;
+  struct Node {
+    PieceName name;
+    OffsetTriangle offset;
+    std::array<Vertex*, 3> corners{};
+    std::optional<PatchLengths> lengths;
+    std::uint64_t seen = 0, partner = 0;  // in which search
+    bool within = false;                  // in that search
+    double gap = 0;                       // to its centre
+    std::uint64_t known_gap = 0;          // in which search
+    std::size_t which = 0;                // partner
+  };
+  struct Vertex {
+    LevelVertex name;
+    bool known = false;
+    std::vector<Node*> around;
+    std::uint64_t seen = 0;
+    double way = 0;
+  };
+
+  LevelPieces(const LimitSurface& surface, const LevelComplex& complex, unsigned level)
+      : complex_(&complex), level_(level), pieces_(surface) {}
+
+  [[nodiscard]] const Piece& piece(const PieceName& name) { return pieces_.piece(name); }
+  [[nodiscard]] Node& node(const PieceName& name) {
+    const auto [it, made] = nodes_.try_emplace(name);
+    Node& node = it->second;
+    if (!made) return node;
+    node.name = name;
+    node.offset = pieces_.piece(name).offset;
+    const auto corners = complex_->vertices(name);
+    for (std::size_t k = 0; k < 3; ++k) {
+      node.corners[k] = &vertices_.try_emplace(corners[k]).first->second;
+      node.corners[k]->name = corners[k];
+    }
+    return node;
+  }
+  [[nodiscard]] const std::vector<Node*>& around(Vertex& vertex) {
+    if (!vertex.known) {
+      for (const auto& sector : complex_->star(vertex.name, level_).sectors) {
+        vertex.around.push_back(&node(sector.piece));
+      }
+      vertex.known = true;
+    }
+    return vertex.around;
+  }
+  [[nodiscard]] const PatchLengths& lengths(Node& node) {
+    if (!node.lengths) node.lengths = patch_lengths(pieces_.patch(node.name), tips_);
+    return *node.lengths;
+  }
+  // Where many have come together. What was returned is gone.
+  void drop_many() {
+    pieces_.drop_many();
+    if (nodes_.size() < most_nodes) return;
+    nodes_.clear();
+    vertices_.clear();
+  }
+  [[nodiscard]] std::uint64_t next_search() { return ++searches_; }
+  [[nodiscard]] std::uint64_t this_search() const { return searches_; }
+  [[nodiscard]] const LevelComplex& complex() const { return *complex_; }
+
+ private:
+  const LevelComplex* complex_;
+  unsigned level_;
+  SelfPieces pieces_;
+  TipLengths tips_;
+  std::unordered_map<PieceName, Node, PieceNameHash> nodes_;
+  std::unordered_map<LevelVertex, Vertex, LevelVertexHash> vertices_;
+  std::uint64_t searches_ = 0;
+};
+
+// What ways along the surface lead from one piece to, and how long they are.
+class Surroundings {
+ public:
+  Surroundings(LevelPieces& pieces, const PieceName& centre)
+      : pieces_(pieces), centre_(pieces.node(centre)) {}
+
+  [[nodiscard]] std::uint64_t looked_at() const { return looked_at_; }
+
+  // Which of the pieces have ways of at most this length from any point of the centre to any of theirs?
+  // Looks for shortest ways along edges until it knows, or has looked at `most` pieces.
+  std::vector<bool> near_by_ways(std::span<const PieceName> partners, double longest, std::uint64_t most) {
+    const std::uint64_t search = pieces_.next_search();
+    std::vector<bool> found(partners.size(), false);
+    std::size_t open_partners = 0;
+    const PatchLengths& own = pieces_.lengths(centre_);
+    for (std::size_t i = 0; i < partners.size(); ++i) {
+      LevelPieces::Node& node = pieces_.node(partners[i]);
+      if (&node == &centre_) {
+        found[i] = own.diameter <= longest;
+      } else {
+        node.partner = search;
+        node.which = i;
+        ++open_partners;
+      }
+    }
+    using Entry = std::tuple<double, LevelVertex, LevelPieces::Vertex*>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+    const auto reach = [&](LevelPieces::Vertex& v, double d) {
+      if (!(d <= longest) || (v.seen == search && v.way <= d)) return;
+      v.seen = search;
+      v.way = d;
+      open.emplace(d, v.name, &v);
+    };
+    for (std::size_t k = 0; k < 3; ++k) reach(*centre_.corners[k], own.from_corner[k]);
+    while (!open.empty() && open_partners > 0 && looked_at_ < most) {
+      const auto [d, name, v] = open.top();
+      open.pop();
+      if (v->way < d) continue;
+      for (LevelPieces::Node* node : pieces_.around(*v)) {
+        ++looked_at_;
+        const PatchLengths& lengths = pieces_.lengths(*node);
+        for (std::size_t i = 0; i < 3; ++i) {
+          if (node->corners[i] != v) continue;
+          if (node->partner == search && !found[node->which] &&
+              enlarged(d + lengths.from_corner[i]) <= longest) {
+            found[node->which] = true;
+            --open_partners;
+          }
+          for (std::size_t k = 0; k < 3; ++k) {
+            if (k != i) reach(*node->corners[k], enlarged(d + lengths.between(i, k)));
+          }
+        }
+      }
+    }
+    return found;
+  }
+
+  // May the pieces have ways of at most `longest` to points of the centre at most `chord` from theirs? True,
+  // too, where `most` is not enough to tell. Such ways stay within half the sum of both from the centre; and
+  // the sum of distances from both ends is at most their length, which is looked at for each piece where the
+  // centre is small.
+  std::vector<bool> may_reach(std::span<const PieceName> partners, double longest, double chord,
+                              std::uint64_t most) {
+    const double distance = enlarged(0.5 * (longest + chord));
+    centre_.gap = 0;
+    const bool told = spread(most, [&](LevelPieces::Node& node) {
+      node.gap = gap_of(centre_.offset, node.offset).least;
+      node.known_gap = pieces_.this_search();
+      return node.gap <= distance;
+    });
+    std::vector<bool> may(partners.size(), true);
+    if (!told) return may;
+    const std::uint64_t search = pieces_.this_search();
+    for (std::size_t i = 0; i < partners.size(); ++i) {
+      const LevelPieces::Node& node = pieces_.node(partners[i]);
+      may[i] = node.seen == search && node.within;
+    }
+    if (4 * pieces_.lengths(centre_).diameter > chord) return may;
+    for (std::size_t i = 0; i < partners.size(); ++i) {
+      const LevelPieces::Node& partner = pieces_.node(partners[i]);
+      if (!may[i] || &partner == &centre_ || share_corner(pieces_.complex(), centre_.name, partner.name))
+        continue;
+      may[i] = !spread(most, [&](LevelPieces::Node& node) {
+        // Of pieces that were not reached above the distance is not known, but more than that.
+        if (node.known_gap != search) return false;
+        return node.gap <= distance &&
+               node.gap + gap_of(partner.offset, node.offset).least <= enlarged(longest);
+      }) || (partner.seen == pieces_.this_search() && partner.within);
+    }
+    return may;
+  }
+
+ private:
+  // From the centre on, to all pieces that are let in. False if `most` ended it.
+  template <class LetIn>
+  bool spread(std::uint64_t most, const LetIn& let_in) {
+    const std::uint64_t search = pieces_.next_search();
+    std::vector<LevelPieces::Node*> open{&centre_};
+    centre_.seen = search;
+    centre_.within = true;
+    while (!open.empty()) {
+      if (looked_at_ > most) return false;
+      LevelPieces::Node& at = *open.back();
+      open.pop_back();
+      for (LevelPieces::Vertex* v : at.corners) {
+        for (LevelPieces::Node* next : pieces_.around(*v)) {
+          if (next->seen == search) continue;
+          next->seen = search;
+          ++looked_at_;
+          next->within = let_in(*next);
+          if (next->within) open.push_back(next);
+        }
+      }
+    }
+    return true;
+  }
+
+  LevelPieces& pieces_;
+  LevelPieces::Node& centre_;
+  std::uint64_t looked_at_ = 0;
+};
+
+class NearSearch {
+ public:
+  NearSearch(const LimitSurface& surface, const LevelComplex& complex, const NearnessOptions& options,
+             const WorkMonitor& monitor)
+      : surface_(surface), complex_(complex), options_(options), monitor_(monitor), budget_(options.budget) {}
+
+  [[nodiscard]] Nearness run() {
+    std::vector<NearPair> live = first_pairs();
+    const unsigned first = complex_.first_level();
+    for (unsigned depth = 0; !live.empty(); ++depth) {
+      monitor_.report(static_cast<double>(depth) / (options_.levels + 1));
+      const unsigned level = first + depth;
+      if (live.size() <= budget_) {
+        drop_apart(live);
+        drop_stretched(live, level);
+        drop_by_ways(live, level);
+      }
+      if (!answer_.near.empty()) break;
+      if (depth >= options_.levels || 16 * live.size() > budget_ || level + 1 >= LevelComplex::max_level) {
+        leave(live);
+        break;
+      }
+      live = children_of(live);
+      if (!live.empty()) answer_.levels = depth + 1;
+    }
+    return std::move(answer_);
+  }
+
+ private:
+  // All pairs of pieces that may be near each other, each piece with itself too.
+  std::vector<NearPair> first_pairs() {
+    const std::vector<PieceName> pieces = complex_.pieces();
+    const std::vector<QuadraticTriangle> sets = enclosures_of(surface_, pieces, options_.threads, monitor_);
+    const QuadraticBvh tree(sets, options_.threads);
+    std::vector<std::vector<NearPair>> found(pieces.size());
+    std::atomic<std::uint64_t> count{0};
+    parallel_for(pieces.size(), options_.threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        monitor_.checkpoint();
+        if (count.load(std::memory_order_relaxed) > budget_) return;
+        QuadraticTriangle grown = sets[i];
+        grown.error = enlarged(grown.error + options_.tolerance);
+        tree.for_each_near(grown, [&](std::uint32_t other) {
+          if (other >= i) found[i].push_back({pieces[i], pieces[other]});
+        });
+        std::sort(found[i].begin(), found[i].end());
+        count.fetch_add(found[i].size(), std::memory_order_relaxed);
+      }
+    });
+    std::vector<NearPair> all;
+    // Too many: each piece with itself stands for what is not looked at.
+    if (count > budget_) {
+      for (const PieceName& piece : pieces) all.push_back({piece, piece});
+      budget_ = 0;
+      return all;
+    }
+    for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+    return all;
+  }
+
+  void spend(std::uint64_t work) { budget_ -= std::min(budget_, work); }
+
+  template <class Keep>
+  void keep_if(std::vector<NearPair>& live, const Keep& keep) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < live.size(); ++i) {
+      if (keep(i)) live[kept++] = live[i];
+    }
+    live.resize(kept);
+  }
+
+  // Those more than the tolerance apart.
+  void drop_apart(std::vector<NearPair>& live) {
+    std::vector<std::uint8_t> keep(live.size(), 0);
+    parallel_for_with(
+        live.size(), options_.threads, [&] { return SelfPieces(surface_); },
+        [&](SelfPieces& pieces, std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            monitor_.checkpoint();
+            pieces.drop_many();
+            const Piece& a = pieces.piece(live[i].first);
+            const Gap gap = gap_of(a.offset, pieces.piece(live[i].second).offset);
+            keep[i] = gap.least <= options_.tolerance ? 1 : 0;
+          }
+        });
+    spend(live.size());
+    answer_.pair_tests += live.size();
+    keep_if(live, [&](std::size_t i) { return keep[i] != 0; });
+  }
+
+  // Those in a star along which ways are not much longer than distances.
+  void drop_stretched(std::vector<NearPair>& live, unsigned level) {
+    std::vector<LevelVertex> vertices;
+    for (const NearPair& pair : live) {
+      if (pair.far) continue;
+      for (const LevelVertex& v : common_corners(complex_, pair.first, pair.second)) vertices.push_back(v);
+    }
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    if (vertices.size() > budget_) return;
+    std::vector<std::uint8_t> short_ways(vertices.size(), 0);
+    struct State {
+      SelfPieces pieces;
+      TipLimits tips;
+    };
+    parallel_for_with(
+        vertices.size(), options_.threads,
+        [&] {
+          return State{SelfPieces(surface_), {}};
+        },
+        [&](State& state, std::size_t begin, std::size_t end) {
+          for (std::size_t i = begin; i < end; ++i) {
+            monitor_.checkpoint();
+            state.pieces.drop_many();
+            const double stretch = stretch_of(state.pieces, state.tips, vertices[i], level);
+            short_ways[i] = enlarged(stretch * options_.tolerance) <= options_.radius ? 1 : 0;
+          }
+        });
+    spend(vertices.size());
+    answer_.stars += vertices.size();
+    keep_if(live, [&](std::size_t i) {
+      if (live[i].far) return true;
+      const auto common = common_corners(complex_, live[i].first, live[i].second);
+      return std::none_of(common.begin(), common.end(), [&](const LevelVertex& v) {
+        return short_ways[static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), v) -
+                                                   vertices.begin())] != 0;
+      });
+    });
+  }
+
+  double stretch_of(SelfPieces& pieces, TipLimits& tips, const LevelVertex& vertex, unsigned level) const {
+    const LevelStar star = complex_.star(vertex, level);
+    if (!star.fan) return INFINITY;
+    for (const auto& sector : star.sectors) static_cast<void>(pieces.patch(sector.piece));
+    std::vector<StarSector> sectors;
+    for (const auto& sector : star.sectors) sectors.push_back({&pieces.patch(sector.piece), sector.centre});
+    return star_stretch(sectors, star.closed, tips);
+  }
+
+  // Those that short ways along the surface lead between; tells which others are far, and near each other.
+  void drop_by_ways(std::vector<NearPair>& live, unsigned level) {
+    std::vector<std::size_t> groups;  // pairs with the same first piece
+    for (std::size_t i = 0; i < live.size(); ++i) {
+      if (i == 0 || live[i].first != live[i - 1].first) groups.push_back(i);
+    }
+    if (groups.empty()) return;
+    const std::size_t count = groups.size();
+    groups.push_back(live.size());
+    const std::size_t most =
+        std::min<std::uint64_t>(most_around, std::max<std::uint64_t>(200, pieces_a_pair * budget_ / count));
+    std::vector<std::uint64_t> work(count, 0);
+    std::vector<std::uint8_t> keep(live.size(), 1);
+    std::vector<std::optional<NearPieces>> near(live.size());
+    parallel_for_with(
+        count, options_.threads, [&] { return LevelPieces(surface_, complex_, level); },
+        [&](LevelPieces& pieces, std::size_t begin, std::size_t end) {
+          for (std::size_t g = begin; g < end; ++g) {
+            monitor_.checkpoint();
+            pieces.drop_many();
+            const std::span group(live.data() + groups[g], groups[g + 1] - groups[g]);
+            work[g] = look_around(pieces, group, most, keep.data() + groups[g]);
+            for (std::size_t i = groups[g]; i < groups[g + 1]; ++i) {
+              if (keep[i] != 0 && live[i].far) near[i] = proved_near(pieces, live[i]);
+            }
+          }
+        });
+    for (const std::uint64_t one : work) spend(one / pieces_a_pair);
+    for (const auto& one : near) {
+      if (one) answer_.near.push_back(*one);
+    }
+    keep_if(live, [&](std::size_t i) { return keep[i] != 0; });
+  }
+
+  // The pairs of one piece. Returns how many pieces around it were looked at.
+  std::uint64_t look_around(LevelPieces& pieces, std::span<NearPair> group, std::size_t most,
+                            std::uint8_t* keep) const {
+    std::vector<std::size_t> which;
+    std::vector<PieceName> partners;
+    for (std::size_t i = 0; i < group.size(); ++i) {
+      if (group[i].far) continue;
+      which.push_back(i);
+      partners.push_back(group[i].second);
+    }
+    if (partners.empty()) return 0;
+    Surroundings around(pieces, group.front().first);
+    const std::vector<bool> found = around.near_by_ways(partners, options_.radius, most);
+    bool others = false;  // that are no neighbours
+    for (std::size_t i = 0; i < partners.size(); ++i) {
+      keep[which[i]] = found[i] ? 0 : 1;
+      others = others || (!found[i] && !share_corner(complex_, group.front().first, partners[i]));
+    }
+    if (!others) return around.looked_at();
+    const std::vector<bool> may = around.may_reach(partners, options_.radius, options_.tolerance, 4 * most);
+    for (std::size_t i = 0; i < partners.size(); ++i) group[which[i]].far = !may[i];
+    return around.looked_at();
+  }
+
+  std::optional<NearPieces> proved_near(LevelPieces& pieces, const NearPair& pair) const {
+    const NearPieces near = measured(pieces, pair);
+    if (near.distance.upper <= options_.tolerance) return near;
+    return {};
+  }
+
+  template <class AnyPieces>
+  static NearPieces measured(AnyPieces& pieces, const NearPair& pair) {
+    const Piece &a = pieces.piece(pair.first), &b = pieces.piece(pair.second);
+    const Gap gap = gap_of(a.offset, b.offset);
+    const double upper = distance_at_most(a.patch, b.patch, gap.at);
+    return {{pair.first, pair.second}, gap.at, {std::min(gap.least, upper), upper}};
+  }
+
+  void leave(const std::vector<NearPair>& live) {
+    constexpr std::size_t enough = 100;
+    SelfPieces pieces(surface_);
+    for (const NearPair& pair : live) {
+      if (answer_.open.size() == enough) break;
+      pieces.drop_many();
+      answer_.open.push_back(measured(pieces, pair));
+    }
+  }
+
+  static std::vector<NearPair> children_of(const std::vector<NearPair>& live) {
+    std::vector<NearPair> next;
+    for (const NearPair& pair : live) {
+      for (unsigned i = 0; i < 4; ++i) {
+        for (unsigned j = pair.first == pair.second ? i : 0; j < 4; ++j) {
+          NearPair child{pair.first.child(i), pair.second.child(j), pair.far};
+          if (child.second < child.first) std::swap(child.first, child.second);
+          next.push_back(child);
+        }
+      }
+    }
+    std::sort(next.begin(), next.end());
+    return next;
+  }
+
+  const LimitSurface& surface_;
+  const LevelComplex& complex_;
+  const NearnessOptions& options_;
+  const WorkMonitor& monitor_;
+  std::uint64_t budget_;
+  Nearness answer_;
+};
+
+}  // namespace
+
+Nearness find_nearness(const LimitSurface& surface, const LevelComplex& complex,
+                       const NearnessOptions& options, const WorkMonitor& monitor) {
+  return NearSearch(surface, complex, options, monitor).run();
+}
+
+}  // namespace snug
