@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <snug/base/error.h>
+#include <snug/search/crossing.h>
 #include <testing/cad_parts.h>
 #include <testing/deformations.h>
 
@@ -322,6 +323,19 @@ TEST(deforming_contact, looks_at_control_points_within_their_rounding) {
         }
       }
     }
+  }
+}
+
+// Parts that come to a point with a corner are split down to the last level there.
+TEST(deforming_contact, may_ask_for_crossings_of_pieces_at_the_last_levels) {
+  const LimitSurface surface(testing::control_mesh(oracle::meshes::triangulated(oracle::meshes::cube())),
+                             {Scheme::loop}, std::make_shared<BoundsCache>());
+  HullPoints scratch;
+  Piece piece = make_piece(surface.library(), PatchId(0), surface.patch(PatchId(0)), scratch);
+  for (unsigned level = 0; level < PiecePath::max_level; ++level) {
+    piece = child_of(surface.library(), piece, 0, scratch);
+    const Crossed crossed(piece, heights_of(piece, scratch));
+    EXPECT_FALSE(crossed.possible() && crossed.holds(piece.offset.base, piece.offset.radius)) << level;
   }
 }
 
