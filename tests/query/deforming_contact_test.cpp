@@ -326,16 +326,24 @@ TEST(deforming_contact, looks_at_control_points_within_their_rounding) {
   }
 }
 
-// Parts that come to a point with a corner are split down to the last level there.
+// Down there pieces keep their size beside the origin alone.
 TEST(deforming_contact, may_ask_for_crossings_of_pieces_at_the_last_levels) {
-  const LimitSurface surface(testing::control_mesh(oracle::meshes::triangulated(oracle::meshes::cube())),
-                             {Scheme::loop}, std::make_shared<BoundsCache>());
+  ControlMesh mesh = testing::control_mesh(oracle::meshes::triangulated(oracle::meshes::pyramid(7)));
   HullPoints scratch;
-  Piece piece = make_piece(surface.library(), PatchId(0), surface.patch(PatchId(0)), scratch);
-  for (unsigned level = 0; level < PiecePath::max_level; ++level) {
-    piece = child_of(surface.library(), piece, 0, scratch);
-    const Crossed crossed(piece, heights_of(piece, scratch));
-    EXPECT_FALSE(crossed.possible() && crossed.holds(piece.offset.base, piece.offset.radius)) << level;
+  for (int round = 0; round < 3; ++round) {
+    // Vertex 0, the apex, is a corner of face 0: its limit point comes to the origin.
+    const LimitSurface surface(mesh, {Scheme::loop}, std::make_shared<BoundsCache>());
+    Piece piece = make_piece(surface.library(), PatchId(0), surface.patch(PatchId(0)), scratch);
+    const std::span<const VertexId> face = mesh.face(FaceId(0));
+    const auto apex = static_cast<unsigned>(std::find(face.begin(), face.end(), VertexId(0)) - face.begin());
+    ASSERT_LT(apex, 3u);
+    const Point3 at = surface.scale().inverse().apply(limit_triangle(piece.patch).corners[apex]);
+    for (unsigned level = 0; level < PiecePath::max_level; ++level) {
+      piece = child_of(surface.library(), piece, apex, scratch);
+      const Crossed crossed(piece, heights_of(piece, scratch));
+      EXPECT_FALSE(crossed.possible() && crossed.holds(piece.offset.base, piece.offset.radius)) << level;
+    }
+    for (Point3& p : mesh.points) p = p - (at - Point3{});
   }
 }
 
