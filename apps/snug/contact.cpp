@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <numbers>
 #include <optional>
-#include <ranges>
 #include <vector>
 
 #include <snug/base/error.h>
@@ -129,7 +128,8 @@ std::vector<Point3> deformed(const std::string& path, const std::string& from, c
     refuse(fmt::format("{} faces, not the {} of", end.face_count(), mesh.face_count()));
   }
   for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    if (!std::ranges::equal(end.face(FaceId(f)), mesh.face(FaceId(f)))) {
+    const auto face = end.face(FaceId(f)), expected = mesh.face(FaceId(f));
+    if (!std::equal(face.begin(), face.end(), expected.begin(), expected.end())) {
       refuse(fmt::format("face {} has other vertices than that of", f));
     }
   }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <snug/base/error.h>
+#include <snug/search/crossing.h>
 #include <testing/cad_parts.h>
 #include <testing/deformations.h>
 
@@ -175,6 +176,26 @@ TEST(deforming_contact, of_one_that_grows_inside_the_other_is_known) {
       Verdict::separated);
 }
 
+TEST(deforming_contact, of_public_surfaces_is_the_same_again_and_again) {
+  const Surface a(cube(1), {.scheme = Scheme::flat}), b(cube(0.5, {3, 0.1, 0.2}), {.scheme = Scheme::flat});
+  const std::vector<Point3> end = cube(1.5, {3, 0.1, 0.2}).points;
+  // The front of B goes from x = 2.5 to 1.5, and by its motion to 0.5.
+  const Trajectory motion = Trajectory::steady({}, {{-1, 0, 0}, {0, 0, 1}, 0, {}});
+  EXPECT_EQ(time_of_contact({a}, {.surface = b, .end = end}).verdict, Verdict::separated);
+  const TimeOfContact found = time_of_contact({a}, {b, end, motion}, {.tolerance = 1e-4});
+  EXPECT_EQ(found.verdict, Verdict::intersecting);
+  EXPECT_LE(found.time.lower, 0.75);
+  EXPECT_GE(found.time.upper, 0.75 - 1e-12);
+  EXPECT_LE(found.time.upper, 0.75 + 1e-3);
+  const TimeOfContact again = time_of_contact({b, end, motion}, {a}, {.tolerance = 1e-4});
+  EXPECT_LE(again.time.lower, 0.75);
+  EXPECT_GE(again.time.upper, 0.75 - 1e-12);
+  Workspace other;
+  const TimeOfContact same = time_of_contact({a}, {b, end, motion}, {.tolerance = 1e-4}, {}, other);
+  EXPECT_EQ(same.time, found.time);
+  EXPECT_EQ(same.looks, found.looks);
+}
+
 TEST(deforming_contact, of_solids_apart_at_first_is_that_of_their_surfaces) {
   // The front of B, at x = 3, comes to x = 0; a corner of A to x = 1.5.
   Boxes boxes{cube(1), cube(1), cube(1, {4, 0.1, 0.2}), cube(1, {1, 0.1, 0.2})};
@@ -302,6 +323,27 @@ TEST(deforming_contact, looks_at_control_points_within_their_rounding) {
         }
       }
     }
+  }
+}
+
+// Down there pieces keep their size beside the origin alone.
+TEST(deforming_contact, may_ask_for_crossings_of_pieces_at_the_last_levels) {
+  ControlMesh mesh = testing::control_mesh(oracle::meshes::triangulated(oracle::meshes::pyramid(7)));
+  HullPoints scratch;
+  for (int round = 0; round < 3; ++round) {
+    // Vertex 0, the apex, is a corner of face 0: its limit point comes to the origin.
+    const LimitSurface surface(mesh, {Scheme::loop}, std::make_shared<BoundsCache>());
+    Piece piece = make_piece(surface.library(), PatchId(0), surface.patch(PatchId(0)), scratch);
+    const std::span<const VertexId> face = mesh.face(FaceId(0));
+    const auto apex = static_cast<unsigned>(std::find(face.begin(), face.end(), VertexId(0)) - face.begin());
+    ASSERT_LT(apex, 3u);
+    const Point3 at = surface.scale().inverse().apply(limit_triangle(piece.patch).corners[apex]);
+    for (unsigned level = 0; level < PiecePath::max_level; ++level) {
+      piece = child_of(surface.library(), piece, apex, scratch);
+      const Crossed crossed(piece, heights_of(piece, scratch));
+      EXPECT_FALSE(crossed.possible() && crossed.holds(piece.offset.base, piece.offset.radius)) << level;
+    }
+    for (Point3& p : mesh.points) p = p - (at - Point3{});
   }
 }
 
