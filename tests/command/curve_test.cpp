@@ -158,6 +158,7 @@ TEST(curve, other_commands_refuse_in_one_sentence) {
   expect_refused({"render", mesh, "--scheme", "loop", "-o", folder.file("a.png")}, "", 4, about);
   expect_refused({"bound", mesh, "--scheme", "loop"}, "", 4, about);
   expect_refused({"bound", mesh, "--bounds", "table"}, "", 2, "--bounds table is for surfaces");
+  expect_refused({"bound", mesh, "--normals"}, "", 2, "--normals is for surfaces");
   expect_refused({"bound", mesh, "--polyhedra", folder.file("a.obj")}, "", 2, "--polyhedra is for surfaces");
   expect_refused({"bound", mesh, "--degree", "4"}, "", 2, "--degree");
   expect_refused({"collide", model("star.obj"), model("star.obj"), "--tolerance", "1%", "--scheme", "curve"},

@@ -59,9 +59,28 @@ TEST(bound, has_the_fields_of_the_contract) {
     EXPECT_LT(e["face"].get<int>(), 24);
     for (const char* key : {"lower", "upper", "base", "corners"}) expect_points(e[key], 3);
     EXPECT_FALSE(e.contains("growth"));
+    EXPECT_FALSE(e.contains("normals"));
     largest = std::max(largest, e["radius"].get<double>());
   }
   EXPECT_EQ(document["max_radius"], largest);
+}
+
+TEST(bound, gives_cones_of_normals_or_null) {
+  const json document = answer({"bound", model("bracket.obj"), "--normals"});
+  std::size_t cones = 0;
+  for (const json& e : document["enclosures"]) {
+    ASSERT_TRUE(e.contains("normals"));
+    if (e["normals"].is_null()) continue;
+    ++cones;
+    expect_points(json::array({e["normals"]["axis"]}), 1);
+    EXPECT_GT(e["normals"]["angle"].get<double>(), 0);
+    EXPECT_LT(e["normals"]["angle"].get<double>(), 1.5708);
+  }
+  EXPECT_GT(cones, 20U);
+  EXPECT_LT(cones, document["enclosures"].size());
+  const Outcome text = run_snug({"bound", model("bracket.obj"), "--normals"});
+  EXPECT_NE(text.out.find("normals: " + std::to_string(cones) + " of 28 pieces have a cone"),
+            std::string::npos);
 }
 
 TEST(bound, that_runs_out_of_budget_ends_with_5_and_prints_what_holds) {

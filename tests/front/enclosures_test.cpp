@@ -1,5 +1,7 @@
 #include <snug/bound.h>
 
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -33,6 +35,22 @@ TEST(enclosures, name_their_patches_and_hold_their_corners) {
     EXPECT_EQ(summary.count, count);
     EXPECT_TRUE(summary.reached);
   }
+}
+
+TEST(enclosures, have_cones_of_normals_where_asked) {
+  const Surface surface = model("star.obj");
+  std::size_t cones = 0;
+  static_cast<void>(bound(surface, {.normals = true}, [&](const PatchEnclosure& piece) {
+    ASSERT_TRUE(piece.normals);
+    ++cones;
+    for (const auto& [u, v] : {std::pair{0.25, 0.25}, std::pair{0.5, 0.125}, std::pair{0.0, 1.0}}) {
+      const SurfacePoint point = evaluate(surface, {piece.patch.owner, 0, u, v});
+      const Vector3 &a = piece.normals->axis, &n = *point.normal;
+      EXPECT_GE(a.x * n.x + a.y * n.y + a.z * n.z, std::cos(piece.normals->angle) - 1e-12);
+    }
+  }));
+  EXPECT_EQ(cones, 24U);
+  static_cast<void>(bound(surface, {}, [](const PatchEnclosure& piece) { EXPECT_FALSE(piece.normals); }));
 }
 
 // Tables of a cage make other sets than rows do, and PatchBounds makes those of bound().

@@ -22,7 +22,7 @@ struct NormalSample {
 ///
 /// Returns:   those of `levels` steps of the whole mesh.
 /// Requires:  an oriented manifold; with Loop triangles. No face is a neighbour of another one twice.
-/// Source:    [Loop87]; [Halstead93] for Catmull-Clark.
+/// Source:    [Loop87]; [HalsteadKassDeRose93] for Catmull-Clark.
 [[nodiscard]] std::vector<NormalSample> sample_normals(const TaggedMesh& mesh, const Rules& rules,
                                                        int levels);
 

@@ -26,9 +26,12 @@ bool same(const Collected& a, const Collected& b) {
   for (std::size_t i = 0; i < a.pieces.size(); ++i) {
     const PieceEnclosure &x = a.pieces[i], &y = b.pieces[i];
     if (x.patch != y.patch || !(x.path == y.path) || x.offset.base != y.offset.base ||
-        x.offset.radius != y.offset.radius || x.interval.corner != y.interval.corner) {
+        x.offset.radius != y.offset.radius || x.interval.corner != y.interval.corner ||
+        x.normals.has_value() != y.normals.has_value()) {
       return false;
     }
+    if (x.normals && (x.normals->axis != y.normals->axis || x.normals->angle != y.normals->angle))
+      return false;
   }
   return true;
 }
@@ -39,6 +42,7 @@ TEST(bound, is_the_same_for_any_number_of_threads) {
       oracle::meshes::disturbed(oracle::meshes::quartered(oracle::meshes::icosahedron()), 20, 0.1, random));
   BoundOptions options;
   options.tolerance = 0.005;
+  options.normals = true;
   options.threads = 1;
   const Collected serial = collect(surface, options);
   for (const int threads : {0, 2, 4}) {
