@@ -10,6 +10,7 @@
 #include <snug/geometry/direction.h>
 #include <snug/geometry/interval.h>
 #include <snug/geometry/rounding.h>
+#include <snug/patch/evaluate.h>
 
 namespace snug {
 namespace {
@@ -37,6 +38,17 @@ struct Derivatives {
   double longest = 0;  // of all coefficients' vectors
   double error = 0;    // of each coefficient
 };
+
+// Moves a corner about to the origin: normals do not see it, and what shrinks from ring to ring is rounded less.
+void centre_at(std::size_t corner, Patch& patch) {
+  const Vector3 place = limit_corners(patch)[corner];
+  patch.largest = 0;
+  for (Vector3& p : patch.points) {
+    p = p - place;
+    patch.largest = std::max(patch.largest, max_abs(p));
+  }
+  patch.error = enlarged(patch.error + unit_roundoff * patch.largest);
+}
 
 // Collects such vectors of a patch, at first all, then with a given axis those near it: polynomials whose vectors
 // are not are split.
@@ -74,6 +86,7 @@ class NormalBalls {
     if (!axis_) last_rings_.push_back(0);
     unsigned& last = last_rings_[axis_ ? next_tip_++ : last_rings_.size() - 1];
     for (unsigned ring = 0; ring < max_rings; ++ring) {
+      centre_at(corner, patch);
       if (ring >= last) {
         const double far = add_lasting(tip, patch, corner);
         if (far <= 1) return true;
@@ -249,30 +262,43 @@ class NormalBalls {
   std::size_t next_tip_ = 0;
 };
 
-// Near the one whose largest angle with the balls' centres is least: of the ball around their directions.
+// Near the one whose largest angle with the balls' centres is least: to the centre of the ball around their
+// directions, by steps to the farthest one [Badoiu03].
 Vector3 axis_of(std::span<const Ball> balls) {
   std::vector<Vector3> directions;
   directions.reserve(balls.size());
-  Vector3 centre;
+  Vector3 sum;
   for (const Ball& ball : balls) {
     directions.push_back(normalized(ball.centre));
-    centre = centre + directions.back();
+    sum = sum + directions.back();
   }
-  centre = (1 / static_cast<double>(balls.size())) * centre;
-  // Those near the mean hardly matter.
-  const Vector3 mean = normalized(centre);
-  double least = 1;
-  for (const Vector3& d : directions) least = std::min(least, dot(mean, d));
-  std::erase_if(directions, [&](const Vector3& d) { return dot(mean, d) > 0.5 * (1 + least); });
-  if (directions.empty()) return mean;
-  for (int step = 2; step < axis_steps; ++step) {
-    const Vector3 axis = normalized(centre);
-    const auto farthest =
-        std::min_element(directions.begin(), directions.end(),
-                         [&](const Vector3& a, const Vector3& b) { return dot(axis, a) < dot(axis, b); });
-    centre = centre + (1.0 / step) * (*farthest - centre);
+  const auto farthest = [&](const Vector3& axis) {
+    const Vector3* far = &directions.front();
+    double least = INFINITY;
+    for (const Vector3& d : directions) {
+      const double cosine = dot(axis, d);
+      if (cosine < least) far = &d;
+      least = std::min(least, cosine);
+    }
+    return *far;
+  };
+  // Between two that are far apart; those within half their angle hardly matter.
+  const Vector3 one = farthest(normalized(sum)), other = farthest(one);
+  Vector3 centre = 0.5 * (one + other), best = normalized(centre);
+  if (best == Vector3{}) return normalized(sum);
+  double most = dot(best, farthest(best));
+  const double near = std::sqrt(0.5 * (1 + std::max(-1.0, most)));
+  std::erase_if(directions, [&](const Vector3& d) { return dot(best, d) > near; });
+  for (int step = 0; step < axis_steps && !directions.empty(); ++step) {
+    const Vector3 axis = normalized(centre), far = farthest(axis);
+    const double least = dot(axis, far);
+    if (least > most) {
+      most = least;
+      best = axis;
+    }
+    centre = centre + (1.0 / (step + 4)) * (far - centre);
   }
-  return normalized(centre);
+  return best;
 }
 
 // Upper bound of the tangent of the angle between an axis of length 1 and any vector of a ball; infinite unless

