@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -332,8 +333,21 @@ Surface surface_of(std::string_view bytes, const SceneMesh& mesh, const WorkMoni
 }  // namespace
 
 std::uint64_t fingerprint(std::string_view bytes, std::uint64_t from) {
-  for (const char c : bytes) from = (from ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return (from ^ bytes.size()) * 0x100000001b3u;
+  const auto mix = [&](std::uint64_t word) {
+    from = (from ^ word) * 0x9e3779b97f4a7c15u;
+    from ^= from >> 32;
+  };
+  std::uint64_t word = 0;
+  std::size_t i = 0;
+  for (; i + sizeof word <= bytes.size(); i += sizeof word) {
+    std::memcpy(&word, bytes.data() + i, sizeof word);
+    mix(word);
+  }
+  word = 0;
+  std::memcpy(&word, bytes.data() + i, bytes.size() - i);
+  mix(word);
+  mix(bytes.size());
+  return from;
 }
 
 SceneText parse_scene(const std::string& bytes, const std::string& path, const CommonOptions& options,

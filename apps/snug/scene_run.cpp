@@ -6,6 +6,7 @@
 #include <cstring>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 #include <fmt/core.h>
 #include <snug/base/in_order.h>
@@ -23,6 +24,9 @@ namespace {
 
 // Pairs that a rank is given at once, at most: their answers are one message.
 constexpr std::size_t most_pairs = 2048;
+// How long rank 0 waits before it looks for messages again, at first and at most: a look takes some microseconds from a core
+// that works.
+constexpr std::chrono::microseconds shortest_wait{50}, longest_wait{1000};
 
 // About how many patches of both parts lie where their boxes overlap: what an answer costs, up to a factor.
 double cost_of(const SceneBroadPhase& boxes, const Scene& scene, const ScenePair& pair) {
@@ -93,14 +97,19 @@ std::vector<ScenePair> pairs_of(const std::string& bytes) {
 // What a rank sends: answers after the first letter, or why it has ended.
 constexpr char answers_follow = 'A', failure_follows = 'F', interruption_follows = 'I';
 
-std::vector<SceneAnswer> answers_of(const Ranks::Message& message, std::size_t count) {
+void throw_failure(const Ranks::Message& message) {
   const std::string_view text = std::string_view(message.bytes).substr(1);
   if (message.bytes.front() == interruption_follows) throw Interrupted();
   if (message.bytes.front() == failure_follows) {
     throw InputError(static_cast<InputProblem>(text.front() - '0'),
                      fmt::format("rank {}: {}", message.from, text.substr(1)));
   }
+}
+
+std::vector<SceneAnswer> answers_of(const Ranks::Message& message, std::size_t count) {
+  const std::string_view text = std::string_view(message.bytes).substr(1);
   std::vector<SceneAnswer> answers;
+  answers.reserve(count);
   PartPair parts;
   for (std::size_t begin = 0; begin < text.size();) {
     const auto end = text.find('\n', begin);
@@ -186,19 +195,22 @@ class Batch {
     };
     const auto give_all = [&] { std::erase_if(idle, give); };
     give_all();
+    auto wait = shortest_wait;
     while (working > 0 || !ended) {
       const auto message = ranks_->receive(false);
       if (!message) {
-        std::this_thread::sleep_for(std::chrono::microseconds(50));
+        std::this_thread::sleep_for(wait);
+        wait = std::min(2 * wait, longest_wait);
         continue;
       }
-      PairQueue::Range& range = given[static_cast<std::size_t>(message->from)];
-      std::vector<SceneAnswer> answers = answers_of(*message, range.end - range.begin);
-      if (range.begin < range.end) --working;  // else it has just arrived
+      wait = shortest_wait;
+      throw_failure(*message);
+      // More work first: what it sent is read meanwhile.
+      const PairQueue::Range done = std::exchange(given[static_cast<std::size_t>(message->from)], {0, 0});
+      if (done.begin < done.end) --working;  // else it has just arrived
       idle.push_back(message->from);
-      const PairQueue::Range done = range;
-      range = {0, 0};
       give_all();
+      std::vector<SceneAnswer> answers = answers_of(*message, done.end - done.begin);
       for (std::size_t i = done.begin; i < done.end; ++i) put_(i, std::move(answers[i - done.begin]));
     }
   }
