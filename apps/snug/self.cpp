@@ -38,14 +38,21 @@ void write_json(JsonWriter& json, const SelfContact& found, std::optional<double
   json.end_object();
 }
 
-void write_text(Report& report, const SelfContact& found, const char* owner) {
+void write_text(Report& report, const SelfContact& found, std::optional<double> tolerance,
+                const char* owner) {
   report.text(fmt::format("verdict   {}", name_of(found.verdict)));
+  if (tolerance) {
+    report.text(fmt::format("near      at most {} apart, and more than {} along the surface", *tolerance,
+                            found.radius));
+  }
   constexpr std::size_t most_lines = 10;
   for (std::size_t i = 0; i < std::min(most_lines, found.pairs.size()); ++i) {
     const SelfContactPair& pair = found.pairs[i];
     const Point3& p = pair.points[0];
-    report.text(fmt::format("{:<12}  {} {} and {}, near {} {} {}", name_of(pair.verdict), owner,
-                            pair.at[0].owner, pair.at[1].owner, p.x, p.y, p.z));
+    std::string line = fmt::format("{:<12}  {} {} and {}, at {} {} {}", name_of(pair.verdict), owner,
+                                   pair.at[0].owner, pair.at[1].owner, p.x, p.y, p.z);
+    if (pair.verdict == SelfVerdict::near) line += fmt::format(", at most {} apart", pair.distance.upper);
+    report.text(line);
   }
   if (found.pairs.size() > most_lines) {
     report.text(fmt::format("... {} more; --json tells all", found.pairs.size() - most_lines));
@@ -73,7 +80,7 @@ ExitStatus run(const Options& options) {
   }
   report.heads({options.mesh}, {name_of(surface.options().scheme)});
   if (report.json()) write_json(report.write(), found, wanted.tolerance, surface.rules().primal);
-  write_text(report, found, surface.rules().owner());
+  write_text(report, found, wanted.tolerance, surface.rules().owner());
   return report.finish(found.verdict != SelfVerdict::undecided);
 }
 

@@ -56,6 +56,37 @@ TEST_F(self_command, of_two_boxes_in_each_other_tells_where) {
   EXPECT_NE(run(std::string(box) + another).out.find("intersecting"), std::string::npos);
 }
 
+TEST_F(self_command, of_two_boxes_beside_each_other_tells_whether_they_are_near) {
+  // Half a unit apart, as faces are.
+  const std::string boxes =
+      std::string(box) +
+      "v 2.5 0 0\nv 4.5 0 0\nv 2.5 3 0\nv 4.5 3 0\nv 2.5 0 4\nv 4.5 0 4\nv 2.5 3 4\nv 4.5 3 4\n"
+      "f 9 11 12 10\nf 13 14 16 15\nf 9 10 14 13\nf 11 15 16 12\nf 9 13 15 11\nf 10 12 16 14\n";
+  const auto found = [&](const char* tolerance) {
+    const Outcome outcome = run(boxes, {"--scheme", "bilinear", "--tolerance", tolerance, "--json"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return json::parse(outcome.out);
+  };
+  const json clear = found("0.4"), near = found("0.6");
+  EXPECT_EQ(clear["verdict"], "clear");
+  EXPECT_EQ(clear["radius"], 1.6);
+  EXPECT_EQ(near["verdict"], "near");
+  ASSERT_FALSE(near["pairs"].empty());
+  EXPECT_EQ(near["pairs"][0]["verdict"], "near");
+  EXPECT_LE(near["pairs"][0]["distance"][0], 0.5);
+  EXPECT_LE(near["pairs"][0]["distance"][1], 0.6);
+  EXPECT_NE(run(boxes, {"--scheme", "bilinear", "--tolerance", "0.6"}).out.find("apart"), std::string::npos);
+}
+
+TEST_F(self_command, refuses_lengths_that_make_no_sense) {
+  EXPECT_EQ(run(box, {"--tolerance", "-1"}).status, 2);
+  EXPECT_EQ(run(box, {"--tolerance", "nan"}).status, 2);
+  EXPECT_EQ(run(box, {"--radius", "1"}).status, 2);
+  const Outcome short_radius = run(box, {"--tolerance", "0.1", "--radius", "0.1"});
+  EXPECT_EQ(short_radius.status, 4);
+  EXPECT_NE(short_radius.err.find("twice the tolerance"), std::string::npos) << short_radius.err;
+}
+
 TEST_F(self_command, ends_with_five_where_nothing_is_decided) {
   const Outcome outcome = run(box, {"--json", "--budget", "0"});
   EXPECT_EQ(outcome.status, 5);
