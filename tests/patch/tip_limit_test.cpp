@@ -21,7 +21,8 @@ Patch random_values(const Kind& kind, const TipLimit& limit, std::mt19937_64& ra
   Patch patch;
   patch.kind = &kind;
   patch.points.resize(kind.control_count());
-  for (Vector3& p : patch.points) p = {unit(random), unit(random), 0};
+  const double wide = std::exp2(2 * unit(random));
+  for (Vector3& p : patch.points) p = {wide * unit(random), unit(random), 0};
   if (!limit.conformal()) {
     const auto value = [&](std::size_t i) -> double& {
       return limit.dominant() == 1 ? patch.points[i].x : patch.points[i].y;
@@ -66,6 +67,19 @@ double distance(const Patch& is, const Patch& was, bool second) {
   return 0.5 * (*high - *low);
 }
 
+// What a level's value is the net's times, about.
+double factor(const Patch& net, const Patch& level, bool second) {
+  const auto width = [&](const Patch& patch) {
+    double low = INFINITY, high = -INFINITY;
+    for (const Vector3& p : patch.points) {
+      low = std::min(low, second ? p.y : p.x);
+      high = std::max(high, second ? p.y : p.x);
+    }
+    return high - low;
+  };
+  return width(level) / width(net);
+}
+
 // Down to where a level is hardly more than rounding.
 void expect_holds(const Kind& kind, const TipLimit& limit, std::mt19937_64& random) {
   const Patch values = random_values(kind, limit, random);
@@ -89,6 +103,15 @@ void expect_holds(const Kind& kind, const TipLimit& limit, std::mt19937_64& rand
   ASSERT_GT(direct.size(), std::min<std::size_t>(rings.count(), 8) - 1);
   for (std::size_t level = 0; level < direct.size(); ++level) {
     const Patch net = rings.net(level), lasting = rings.lasting(level);
+    // Turned axes mix both values.
+    if (limit.conformal()) {
+      EXPECT_NEAR(factor(net, direct[level], false) / factor(net, direct[level], true), 1, 1e-3)
+          << "level " << level;
+      if (lasting.error < 1e-4 * lasting.largest) {
+        EXPECT_NEAR(factor(lasting, direct[level], false) / factor(lasting, direct[level], true), 1, 0.05)
+            << "level " << level;
+      }
+    }
     for (const bool second : {false, true}) {
       // Least squares is not what comes nearest in extent, and late levels are mostly rounding.
       EXPECT_LE(distance(direct[level], net, second), 2 * net.error + 1e-6 * net.largest)

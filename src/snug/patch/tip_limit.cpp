@@ -486,7 +486,7 @@ bool TipRings::small(const Value& part) const {
   return limit_->growth_ * part.rests.back().extent <= small_rest * size;
 }
 
-double TipRings::fill(std::size_t c, std::size_t level, bool all_further, Patch& net) const {
+TipRings::Filled TipRings::fill(std::size_t c, std::size_t level, bool all_further, Patch& net) const {
   const TipLimit& limit = *limit_;
   const Value& part = parts_[c];
   std::array<double, 2> kept{};
@@ -515,13 +515,7 @@ double TipRings::fill(std::size_t c, std::size_t level, bool all_further, Patch&
     sum = std::max(sum, std::fabs(a) + std::fabs(b) + std::fabs(own));
     largest = std::max(largest, std::fabs(a + b + own));
   }
-  error = enlarged(error + gamma_bound(6) * sum);
-  // Each value is scaled by a power of two to a size of about 1.
-  if (!(largest > 0x1p-900)) return INFINITY;
-  const double scale = std::exp2(-std::ilogb(largest));
-  for (Vector3& p : net.points) (c == 0 ? p.x : p.y) *= scale;
-  net.largest = std::max(net.largest, scale * largest);
-  return enlarged(scale * error);
+  return {largest, enlarged(error + gamma_bound(6) * sum)};
 }
 
 Patch TipRings::made(std::size_t level, bool all_further) const {
@@ -529,7 +523,23 @@ Patch TipRings::made(std::size_t level, bool all_further) const {
   net.kind = limit_->kind_;
   net.first = values_->first;
   net.points.resize(limit_->size_);
-  for (std::size_t c = 0; c < 2; ++c) net.error = std::max(net.error, fill(c, level, all_further, net));
+  std::array<Filled, 2> filled;
+  for (std::size_t c = 0; c < 2; ++c) filled[c] = fill(c, level, all_further, net);
+  // By powers of two to a size of about 1. With turned axes a condition mixes both values: then one for both.
+  if (limit_->conformal_) {
+    filled[0].largest = filled[1].largest = std::max(filled[0].largest, filled[1].largest);
+  }
+  std::array<double, 2> scales{};
+  for (std::size_t c = 0; c < 2; ++c) {
+    if (!(filled[c].largest > 0x1p-900)) {
+      net.error = INFINITY;
+      return net;
+    }
+    scales[c] = std::exp2(-std::ilogb(filled[c].largest));
+    net.largest = std::max(net.largest, scales[c] * filled[c].largest);
+    net.error = std::max(net.error, enlarged(scales[c] * filled[c].error));
+  }
+  for (Vector3& p : net.points) p = {scales[0] * p.x, scales[1] * p.y, 0};
   return net;
 }
 

@@ -80,8 +80,8 @@ class TipLimit {
   double growth_ = 1;       // of the extent of A^j r over that of r, over the least eigenvalue's power
 };
 
-/// The nets of control values (x, y, 0) at an extraordinary corner, level after level: each of its two values is
-/// scaled by a positive number, another one at each level, and moved.
+/// The nets of control values (x, y, 0) at an extraordinary corner, level after level, moved and scaled: by a
+/// positive number for each level, of a limit that is not conformal by one for each of the two values.
 ///
 /// Requires:  values of the kind's control points, in x and y. Of a limit that is not conformal x belongs to the
 ///            first tangent and y to the second one: the value that does not belong to the dominant one has no
@@ -117,8 +117,11 @@ class TipRings {
   void descend(Value& part) const;
   void settle(Rest& rest) const;
   [[nodiscard]] bool small(const Value& part) const;
-  // Points of a value with the shares of its directions, and its error.
-  [[nodiscard]] double fill(std::size_t c, std::size_t level, bool all_further, Patch& net) const;
+  // Points of a value with the shares of its directions, not scaled.
+  struct Filled {
+    double largest = 0, error = 0;
+  };
+  [[nodiscard]] Filled fill(std::size_t c, std::size_t level, bool all_further, Patch& net) const;
   [[nodiscard]] Patch made(std::size_t level, bool all_further) const;
 
   const TipLimit* limit_;
