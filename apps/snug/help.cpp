@@ -98,7 +98,9 @@ std::string help_of(const Program& program, const Command& command) {
     if (option.is_argument() && option.is_list()) usage += "...";
     width = std::max(width, std::min(name_in_help(option).size(), widest_name));
   }
-  std::string text = std::string(command.summary) + ".\n\n" + usage + " [OPTIONS]\n";
+  std::string text(command.summary);
+  if (!text.ends_with('?')) text += '.';
+  text += "\n\n" + usage + " [OPTIONS]\n";
   for (const Option& option : command.options.all()) {
     if (option.is_argument()) text += entry(option.name, text_in_help(option), width);
   }
