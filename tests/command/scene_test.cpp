@@ -195,6 +195,9 @@ TEST_F(scenes, that_are_wrong_are_refused_in_one_line) {
   expect_refusal(one(R"(, "boundary": "x")"), "--boundary");
   expect_refusal(one(R"(, "sharp": "x")"), "--sharp");
   expect_refusal(one(R"(, "weld": -1)"), "--weld");
+  expect_refusal(R"({"parts": [{"mesh": "ball.obj\u0000.obj"}]})", "parts[0].mesh: give the name of a file");
+  expect_refusal({"\xff\xfe{\0}\0", 6}, "this is UTF-16 text: save it as UTF-8");
+  expect_refusal({"{\0}\0", 4}, "this is UTF-16 text: save it as UTF-8");
   expect_refusal(one(R"(, "name": "")"), "parts[0].name is empty");
   expect_refusal(one(R"(, "mesh": "ball.obj")"), "\"mesh\" stands twice");
   expect_refusal(one(R"(, "place": [1, 2, 3])"), "parts[0].place has 3 numbers, not 12");
@@ -235,6 +238,27 @@ TEST_F(scenes, of_a_thousand_equal_parts_end_soon_with_a_count) {
   const Outcome outcome = run_snug({"collide", "--scene", scene(same.dump())});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("499500 pairs: 0 separated by boxes, 499500 "), std::string::npos);
+}
+
+// The processor's time, which others on the machine do not lengthen much.
+TEST_F(scenes, are_read_in_a_time_that_grows_with_their_parts) {
+  const auto seconds = [&](int parts) {
+    std::string text = R"({"pairs": [], "parts": [)";
+    for (int i = 0; i < parts; ++i) {
+      text += i == 0 ? "" : ",\n";
+      text += R"({"mesh": "ball.obj", "place": {"move": [)" + std::to_string(i) + ", 0, 0]}}";
+    }
+    const std::string file = scene(text + "]}");
+    const auto spent = [] {
+      rusage usage{};
+      getrusage(RUSAGE_CHILDREN, &usage);
+      return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+    };
+    const double before = spent();
+    EXPECT_EQ(run_snug({"collide", "--scene", file}).status, 0);
+    return spent() - before;
+  };
+  EXPECT_LT(seconds(80'000), 7 * seconds(20'000));
 }
 
 TEST_F(scenes, whose_meshes_are_none_are_refused) {
