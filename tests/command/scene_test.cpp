@@ -293,7 +293,7 @@ class journals : public scenes {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
-  std::string file_, journal_ = folder_.file("journal");
+  std::string file_, journal_ = folder_.file("journal.json");
 };
 
 TEST_F(journals, go_on_from_any_torn_end) {
@@ -395,9 +395,43 @@ TEST_F(journals, keep_what_was_finished_where_the_document_cannot_be_written) {
   const Outcome outcome = run_snug_in({full, {}}, words({"--json"}));
   EXPECT_EQ(outcome.status, 3) << outcome.err;
   const std::string before = text();
-  EXPECT_GT(before.size(), 1000u);
+  EXPECT_GT(std::count(before.begin(), before.end(), '\n'), 1);
   EXPECT_EQ(answer(words()), expected);
   EXPECT_EQ(text().substr(0, before.size()), before);
+}
+
+TEST_F(journals, are_not_replaced_by_the_document) {
+  const Outcome outcome = run_snug(words({"-o", journal_}));
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("--resume and -o name the same file"), std::string::npos) << outcome.err;
+  const Json expected = answer({"collide", "--scene", file_});
+  EXPECT_EQ(answer(words()), expected);
+}
+
+// A reader of the document has an answer while the others are looked for.
+TEST_F(journals, stand_beside_a_document_that_is_streamed) {
+  for (const bool json : {true, false}) {
+    journal_ = folder_.file(json ? "journal.a" : "journal.b");
+    const std::string out = folder_.file("out");
+    const auto into_file = [&] {
+      dup2(open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
+    };
+    std::string seen;
+    const auto look = [&](int process) {
+      while (std::count_if(seen.begin(), seen.end(), [](char c) { return c == '\n'; }) < 8) {
+        usleep(500);
+        seen = text();
+      }
+      kill(process, SIGSTOP);
+      std::ifstream stream(out, std::ios::binary);
+      seen.assign(std::istreambuf_iterator<char>(stream), {});
+      kill(process, SIGCONT);
+    };
+    Words all = words({"--threads", "1"});
+    if (json) all.emplace_back("--json");
+    EXPECT_EQ(run_snug_in({into_file, look}, all).status, 0);
+    EXPECT_NE(seen.find(json ? "\"verdict\": " : "part 0 part"), std::string::npos) << seen;
+  }
 }
 
 TEST_F(journals, keep_what_was_finished_on_a_full_disk) {
@@ -411,6 +445,7 @@ TEST_F(journals, keep_what_was_finished_on_a_full_disk) {
   EXPECT_NE(outcome.err.find("make room, and run again"), std::string::npos) << outcome.err;
   EXPECT_GT(text().size(), 10'000u);
   EXPECT_LE(text().size(), 20'000u);
+  EXPECT_EQ(text().back(), '\n');  // half a line would cost those that other threads write after it
   EXPECT_EQ(answer(words()), expected);
 }
 
