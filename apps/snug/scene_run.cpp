@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
+#include <future>
 #include <mutex>
 #include <span>
 #include <thread>
@@ -51,6 +52,23 @@ double cost_of(const SceneBroadPhase& boxes, const Scene& scene, const ScenePair
     return static_cast<double>(scene.parts[part].surface().data()->limit().patch_count());
   };
   return 8 + share_a * patches(pair.parts.a) + share_b * patches(pair.parts.b);
+}
+
+// Pairs that are answered before further ones are.
+struct PairBatch {
+  std::vector<ScenePair> pairs;
+  std::vector<double> costs;  // of each that boxes do not separate
+  double share;               // of all pairs, with these
+};
+
+PairBatch next_batch(SceneBroadPhase& broad, const Scene& scene, std::size_t count) {
+  PairBatch batch{broad.next(count), {}, 0};
+  batch.costs.reserve(batch.pairs.size());
+  for (const ScenePair& pair : batch.pairs) {
+    batch.costs.push_back(pair.separated_by_boxes() ? 0 : cost_of(broad, scene, pair));
+  }
+  batch.share = broad.share();
+  return batch;
 }
 
 // Pairs of a batch in their order, dealt out in parts of about the same cost, smaller ones towards the end.
@@ -471,9 +489,15 @@ ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, 
   SceneWorkers workers(options_.threads);
   std::vector<int> idle;
   const std::size_t wanted = pairs_of_a_batch * static_cast<std::size_t>(ranks_ ? ranks_->size() : 1);
-  for (double before = 0;; before = broad.share()) {
-    const std::vector<ScenePair> batch = broad.next(wanted);
+  // Other ranks would wait for rank 0 between two batches.
+  const auto policy = ranks_ ? std::launch::async : std::launch::deferred;
+  const auto deal = [&] { return next_batch(broad, scene, wanted); };
+  std::future<PairBatch> coming = std::async(policy, deal);
+  for (double before = 0;;) {
+    const PairBatch now = coming.get();
+    const std::vector<ScenePair>& batch = now.pairs;
     if (batch.empty()) break;
+    coming = std::async(policy, deal);
     InOrder<SceneAnswer> answers(batch.size(), [&](std::size_t i, SceneAnswer& answer) {
       results.add(batch[i], answer, batch[i].separated_by_boxes());
     });
@@ -492,7 +516,7 @@ ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, 
       } else {
         todo.push_back(batch[i]);
         places.push_back(i);
-        costs.push_back(cost_of(broad, scene, batch[i]));
+        costs.push_back(now.costs[i]);
       }
     }
     std::atomic<std::size_t> done{0};
@@ -501,12 +525,13 @@ ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, 
       return answer_pair(question, pair, &workspace, json);
     };
     const Batch::Put put = [&](std::size_t i, SceneAnswer answer) {
-      report_part(monitor_, before, broad.share(), done++, todo.size());
+      report_part(monitor_, before, now.share, done++, todo.size());
       if (journal) journal->add(todo[i].parts, answer);
       answers.put(places[i], std::move(answer));
     };
     Batch(todo, std::move(costs), ranks_.get(), workers, monitor_, ask, put).run(idle);
     results.flush();
+    before = now.share;
   }
   const ExitStatus status = results.finish(broad.pair_count(), exit_code);
   if (ranks_) {
