@@ -206,8 +206,11 @@ void Report::text(const std::string& line) {
   if (text_) text_->file.write(one_line(line) + "\n");
 }
 
-void Report::flush_text() {
-  if (text_) text_->file.complete();
+void Report::flush() {
+  if (text_) text_->file.send();
+  if (!writer_) return;
+  writer_->flush();
+  target_->file.send();
 }
 
 ExitStatus Report::finish(bool reached, const std::vector<AtomicFile*>& others) {

@@ -102,8 +102,8 @@ class Report {
   void heads(const std::vector<std::string>& meshes, const std::vector<std::string>& schemes);
   /// One line for people on standard output; nothing with --json, or where the document goes there.
   void text(const std::string& line);
-  /// Lets lines of text out at once.
-  void flush_text();
+  /// Lets out what stands so far at once: lines, and a document where it goes to a stream.
+  void flush();
   /// The end of a command: ends the document and puts the file in place, and others that the command has
   /// written. Where anything cannot be written, none is left. What the command ends with: was all
   /// `reached` that was asked for?

@@ -95,6 +95,7 @@ void Journal::read_entries(const std::string& head) {
       ::lseek(descriptor_, static_cast<off_t>(offset), SEEK_SET) < 0) {
     fail("cannot be written: " + reason());
   }
+  end_ = offset;
   if (!headed) write(head);
 }
 
@@ -120,15 +121,20 @@ void Journal::add(const PartPair& parts, const SceneAnswer& answer) {
 }
 
 void Journal::write(std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t done = ::write(descriptor_, text.data(), text.size());
+  for (std::string_view left = text; !left.empty();) {
+    const ssize_t done = ::write(descriptor_, left.data(), left.size());
     if (done < 0 && errno == EINTR) continue;
     if (done <= 0) {
-      fail("cannot be written: " + reason() +
+      const std::string why = reason();
+      // Half a line would cost those that other threads write after it.
+      const auto end = static_cast<off_t>(end_);
+      if (::ftruncate(descriptor_, end) == 0) static_cast<void>(::lseek(descriptor_, end, SEEK_SET));
+      fail("cannot be written: " + why +
            "; what was finished stays in it: make room, and run again with the same --resume");
     }
-    text.remove_prefix(static_cast<std::size_t>(done));
+    left.remove_prefix(static_cast<std::size_t>(done));
   }
+  end_ += text.size();
 }
 
 }  // namespace snug::command

@@ -44,6 +44,7 @@ class Journal {
 
   std::string path_;
   int descriptor_ = -1;
+  std::uint64_t end_ = 0;       // of the last whole line
   std::vector<Entry> entries_;  // by key
   std::mutex mutex_;
 };

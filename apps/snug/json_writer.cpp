@@ -106,7 +106,10 @@ JsonWriter& JsonWriter::value(const Vector3& v) {
 JsonWriter& JsonWriter::value(const Point3& p) { return value(p - Point3{}); }
 
 void JsonWriter::flush_if_long() {
-  if (buffer_.size() < 65536) return;
+  if (buffer_.size() >= 65536) flush();
+}
+
+void JsonWriter::flush() {
   sink_(buffer_);
   buffer_.clear();
 }
@@ -114,8 +117,7 @@ void JsonWriter::flush_if_long() {
 void JsonWriter::finish() {
   SNUG_EXPECT(has_items_.empty());
   if (lines_ == Lines::many) buffer_ += '\n';
-  sink_(buffer_);
-  buffer_.clear();
+  flush();
 }
 
 }  // namespace snug::command

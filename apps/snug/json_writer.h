@@ -49,6 +49,8 @@ class JsonWriter {
   /// A value that another writer made, of one line.
   JsonWriter& spliced(std::string_view document);
 
+  /// Hands out what stands so far.
+  void flush();
   /// Ends the document, with a line feed where it has several lines, and hands out what is left.
   void finish();
 

@@ -70,7 +70,7 @@ class PoseAnswers {
                         },
                         {.on_progress = {}, .stop = monitor.stop});
     for (std::size_t i = 0; i < lines.size(); ++i) write(items_[i], file, lines[i].number);
-    report_.flush_text();
+    report_.flush();
   }
 
   void finish(const PoseFile& file) const { mended_.tell(pair_.notes(), file.name()); }
@@ -93,7 +93,7 @@ class PoseAnswers {
 
   void write(const Item& item, const PoseFile& file, std::size_t line) {
     if (item.error) {
-      report_.flush_text();  // answers before it stand
+      report_.flush();  // answers before it stand
       throw InputError(item.error->problem(), file.name_of(line) + ": " + item.error->what());
     }
     if (report_.json()) report_.write().spliced(item.json);

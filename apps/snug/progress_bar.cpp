@@ -62,6 +62,8 @@ void tell_interrupted() noexcept {
   if (!told.exchange(true)) to_standard_error("snug: interrupted\n");
 }
 
+void leave_interruption_to_others() noexcept { told = true; }
+
 WorkMonitor stopped_by_interrupts() {
   WorkMonitor result;
   result.stop = &stop_requested;

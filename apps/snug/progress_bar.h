@@ -42,5 +42,7 @@ extern std::atomic<bool> stop_requested;
 [[nodiscard]] WorkMonitor stopped_by_interrupts();
 /// "snug: interrupted" on standard error, once a process. Async-signal-safe.
 void tell_interrupted() noexcept;
+/// From here on another process tells: of several ranks one does.
+void leave_interruption_to_others() noexcept;
 
 }  // namespace snug::command

@@ -67,26 +67,52 @@ const char* kind_of(const Json& value) {
   fail(fmt::format("{} is {}; give {}", where, kind_of(value), wanted));
 }
 
-// The document, whose objects have no name twice.
-Json parse_document(const std::string& bytes) {
-  std::vector<std::set<std::string>> names;
-  const auto watch = [&](int depth, Json::parse_event_t event, Json& parsed) {
-    if (depth > most_levels) fail(fmt::format("lists and objects nested more than {} deep", most_levels));
-    if (event == Json::parse_event_t::object_start) names.emplace_back();
-    if (event == Json::parse_event_t::object_end) names.pop_back();
-    if (event == Json::parse_event_t::key && !names.back().insert(parsed.get<std::string>()).second) {
-      fail("\"" + shortened(parsed.get<std::string>()) + "\" stands twice in one object");
-    }
+// Looks a text over before a document is made of it: how deep it is, and whether an object has a name twice. A callback of
+// Json::parse() could see the same, but with one the parser searches a list anew for each object that it ends.
+class Overseer : public nlohmann::json_sax<Json> {
+ public:
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override {
+    names_.emplace_back();
+    return deeper();
+  }
+  bool key(string_t& name) override {
+    if (!names_.back().insert(name).second) fail("\"" + shortened(name) + "\" stands twice in one object");
     return true;
-  };
-  try {
-    return Json::parse(bytes, watch);
-  } catch (const Json::exception& error) {
+  }
+  bool end_object() override {
+    names_.pop_back();
+    return --depth_, true;
+  }
+  bool start_array(std::size_t) override { return deeper(); }
+  bool end_array() override { return --depth_, true; }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& error) override {
     // "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error ..."
     const std::string text = error.what();
     const auto end = text.find("] ");
     fail("not a scene in JSON: " + (end == std::string::npos ? text : text.substr(end + 2)));
   }
+
+ private:
+  bool deeper() {
+    if (++depth_ > most_levels) fail(fmt::format("lists and objects nested more than {} deep", most_levels));
+    return true;
+  }
+
+  std::vector<std::set<std::string>> names_;  // of the objects that are open
+  int depth_ = 0;
+};
+
+Json parse_document(const std::string& bytes) {
+  Overseer overseer;
+  Json::sax_parse(bytes, &overseer);
+  return Json::parse(bytes);
 }
 
 void require_names(const Json& object, const std::string& where, const std::vector<std::string>& known) {
@@ -174,7 +200,10 @@ class SceneReader {
 
   std::uint32_t mesh_of_part(const Json& part, const std::string& where) {
     const std::string path = text_of(part["mesh"], where + ".mesh");
-    if (path.empty() || path == "-") fail(where + ".mesh: give the name of a file");
+    // The system would read a name as far as its first NUL.
+    if (path.empty() || path == "-" || path.find('\0') != std::string::npos) {
+      fail(where + ".mesh: give the name of a file");
+    }
     CommonOptions options = options_;
     const auto take = [&](const char* name, std::string& option) {
       if (part.contains(name)) option = text_of(part[name], where + "." + name);
@@ -353,6 +382,7 @@ std::uint64_t fingerprint(std::string_view bytes, std::uint64_t from) {
 SceneText parse_scene(const std::string& bytes, const std::string& path, const CommonOptions& options,
                       bool nearest_rigid) {
   SceneText scene;
+  if (!bytes.empty()) static_cast<void>(plain_text(bytes, input_name(path)));
   naming(input_name(path), [&] {
     try {
       scene = SceneReader(path, options, nearest_rigid).read(parse_document(bytes));

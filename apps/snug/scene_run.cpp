@@ -4,7 +4,10 @@
 #include <atomic>
 #include <chrono>
 #include <cstring>
+#include <filesystem>
+#include <future>
 #include <mutex>
+#include <span>
 #include <thread>
 #include <utility>
 
@@ -22,8 +25,11 @@
 namespace snug::command {
 namespace {
 
-// Pairs that a rank is given at once, at most: their answers are one message.
+// Pairs that a rank is given at once, at most.
 constexpr std::size_t most_pairs = 2048;
+// A rank sends its answers that often, or once there are so many bytes of them.
+constexpr std::chrono::milliseconds between_messages{100};
+constexpr std::size_t most_bytes = std::size_t{1} << 26;
 // How long rank 0 waits before it looks for messages again, at first and at most: a look takes some microseconds from a core
 // that works.
 constexpr std::chrono::microseconds shortest_wait{50}, longest_wait{1000};
@@ -46,6 +52,23 @@ double cost_of(const SceneBroadPhase& boxes, const Scene& scene, const ScenePair
     return static_cast<double>(scene.parts[part].surface().data()->limit().patch_count());
   };
   return 8 + share_a * patches(pair.parts.a) + share_b * patches(pair.parts.b);
+}
+
+// Pairs that are answered before further ones are.
+struct PairBatch {
+  std::vector<ScenePair> pairs;
+  std::vector<double> costs;  // of each that boxes do not separate
+  double share;               // of all pairs, with these
+};
+
+PairBatch next_batch(SceneBroadPhase& broad, const Scene& scene, std::size_t count) {
+  PairBatch batch{broad.next(count), {}, 0};
+  batch.costs.reserve(batch.pairs.size());
+  for (const ScenePair& pair : batch.pairs) {
+    batch.costs.push_back(pair.separated_by_boxes() ? 0 : cost_of(broad, scene, pair));
+  }
+  batch.share = broad.share();
+  return batch;
 }
 
 // Pairs of a batch in their order, dealt out in parts of about the same cost, smaller ones towards the end.
@@ -72,13 +95,17 @@ class PairQueue {
     next_ = range.end;
     return range;
   }
+  // No more for anybody, and what was taken is to be left.
   void end() {
     const std::lock_guard lock(mutex_);
     next_ = costs_.size();
+    ended_ = true;
   }
+  [[nodiscard]] bool ended() const { return ended_; }
 
  private:
   std::mutex mutex_;
+  std::atomic<bool> ended_{false};
   std::vector<double> costs_;
   double takers_, left_ = 0;
   std::size_t next_ = 0;
@@ -106,23 +133,27 @@ void throw_failure(const Ranks::Message& message) {
   }
 }
 
-std::vector<SceneAnswer> answers_of(const Ranks::Message& message, std::size_t count) {
-  const std::string_view text = std::string_view(message.bytes).substr(1);
+std::size_t count_of_answers(const Ranks::Message& message) {
+  return static_cast<std::size_t>(std::count(message.bytes.begin(), message.bytes.end(), '\n'));
+}
+
+// Answers to `pairs`.
+std::vector<SceneAnswer> answers_of(const Ranks::Message& message, std::span<const ScenePair> pairs) {
+  std::string_view text = std::string_view(message.bytes).substr(1);
   std::vector<SceneAnswer> answers;
-  answers.reserve(count);
-  PartPair parts;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const auto end = text.find('\n', begin);
-    if (end == std::string_view::npos ||
-        !parse_line(text.substr(begin, end - begin), parts, answers.emplace_back())) {
-      break;
+  answers.reserve(pairs.size());
+  while (!text.empty()) {
+    const auto end = text.find('\n');
+    PartPair parts;
+    SceneAnswer answer;
+    if (end == std::string_view::npos || answers.size() == pairs.size() ||
+        !parse_line(text.substr(0, end), parts, answer) || parts != pairs[answers.size()].parts) {
+      throw InputError(
+          InputProblem::unreadable,
+          fmt::format("rank {} sent what is no answer; are all ranks the same version?", message.from));
     }
-    begin = end + 1;
-  }
-  if (answers.size() != count) {
-    throw InputError(
-        InputProblem::unreadable,
-        fmt::format("rank {} sent what is no answer; are all ranks the same version?", message.from));
+    answers.push_back(std::move(answer));
+    text.remove_prefix(end + 1);
   }
   return answers;
 }
@@ -133,11 +164,12 @@ class Batch {
   using Ask = std::function<SceneAnswer(const ScenePair&, Workspace&)>;
   using Put = std::function<void(std::size_t, SceneAnswer)>;
   Batch(const std::vector<ScenePair>& pairs, std::vector<double> costs, const Ranks* ranks,
-        SceneWorkers& workers, const Ask& ask, const Put& put)
+        SceneWorkers& workers, const WorkMonitor& monitor, const Ask& ask, const Put& put)
       : pairs_(pairs),
         queue_(std::move(costs), workers.threads() * (ranks ? static_cast<std::size_t>(ranks->size()) : 1)),
         ranks_(ranks),
         workers_(workers),
+        monitor_(monitor),
         ask_(ask),
         put_(put) {}
 
@@ -171,7 +203,9 @@ class Batch {
     workers_.run([&](Workspace& workspace) {
       try {
         for (auto range = queue_.take(); range.begin < range.end; range = queue_.take()) {
-          for (std::size_t i = range.begin; i < range.end; ++i) put_(i, ask_(pairs_[i], workspace));
+          for (std::size_t i = range.begin; i < range.end && !queue_.ended(); ++i) {
+            put_(i, ask_(pairs_[i], workspace));
+          }
         }
       } catch (...) {
         queue_.end();
@@ -196,7 +230,8 @@ class Batch {
     const auto give_all = [&] { std::erase_if(idle, give); };
     give_all();
     auto wait = shortest_wait;
-    while (working > 0 || !ended) {
+    while ((working > 0 || !ended) && !queue_.ended()) {
+      monitor_.checkpoint();
       const auto message = ranks_->receive(false);
       if (!message) {
         std::this_thread::sleep_for(wait);
@@ -205,13 +240,17 @@ class Batch {
       }
       wait = shortest_wait;
       throw_failure(*message);
-      // More work first: what it sent is read meanwhile.
-      const PairQueue::Range done = std::exchange(given[static_cast<std::size_t>(message->from)], {0, 0});
-      if (done.begin < done.end) --working;  // else it has just arrived
-      idle.push_back(message->from);
-      give_all();
-      std::vector<SceneAnswer> answers = answers_of(*message, done.end - done.begin);
-      for (std::size_t i = done.begin; i < done.end; ++i) put_(i, std::move(answers[i - done.begin]));
+      PairQueue::Range& left = given[static_cast<std::size_t>(message->from)];
+      const std::size_t begin = left.begin, end = std::min(begin + count_of_answers(*message), left.end);
+      left.begin = end;
+      if (left.begin == left.end) {
+        if (begin < end) --working;  // else it has just arrived
+        // More work first: what it sent is read meanwhile.
+        idle.push_back(message->from);
+        give_all();
+      }
+      std::vector<SceneAnswer> answers = answers_of(*message, std::span(pairs_).subspan(begin, end - begin));
+      for (std::size_t i = begin; i < end; ++i) put_(i, std::move(answers[i - begin]));
     }
   }
 
@@ -219,6 +258,7 @@ class Batch {
   PairQueue queue_;
   const Ranks* ranks_;
   SceneWorkers& workers_;
+  const WorkMonitor& monitor_;
   const Ask& ask_;
   const Put& put_;
 };
@@ -253,6 +293,11 @@ class Results {
     ++count_;
     if (report_.json()) report_.write().spliced(answer.json);
     report_.text(fmt::format("{} {} {}", name(pair.parts.a), name(pair.parts.b), answer.row));
+    // Whoever reads along sees answers soon.
+    const auto now = std::chrono::steady_clock::now();
+    if (now < flushed_ + between_messages) return;
+    report_.flush();
+    flushed_ = now;
   }
 
   ExitStatus finish(std::uint64_t pairs, bool exit_code) {
@@ -278,7 +323,7 @@ class Results {
            : some(Verdict::within)     ? ExitStatus::within
                                        : ExitStatus::answered;
   }
-  void flush() { report_.flush_text(); }
+  void flush() { report_.flush(); }
 
  private:
   [[nodiscard]] const std::string& name(std::uint32_t part) const { return loaded_.text.parts[part].name; }
@@ -288,6 +333,7 @@ class Results {
   std::array<std::uint64_t, 4> verdicts_{};
   std::uint64_t boxes_ = 0, count_ = 0;
   bool reached_ = true;
+  std::chrono::steady_clock::time_point flushed_{};
 };
 
 // What a command line gives to one of several ranks on a machine: its share of the cores, and silence but for rank 0.
@@ -303,18 +349,36 @@ PairOptions for_rank(PairOptions options, const Ranks* ranks) {
 SceneRun::SceneRun(const PairOptions& options, const WorkMonitor& monitor)
     : monitor_(monitor), ranks_(Ranks::join()) {
   options_ = for_rank(options, ranks_.get());
+  if (ranks_ && ranks_->rank() > 0) leave_interruption_to_others();
   const ReadBytes read = [&](const std::string& path) {
     if (!ranks_) return read_file(path, monitor_);
     return ranks_->broadcast(ranks_->rank() == 0 ? read_file(path, monitor_) : std::string());
   };
-  loaded_ = load_scene(options_.scene, options_, options_.nearest_rigid, read, monitor_);
+  told_once([&] { loaded_ = load_scene(options_.scene, options_, options_.nearest_rigid, read, monitor_); });
+}
+
+// All ranks refuse the same bytes: rank 0 tells, and ends all.
+void SceneRun::told_once(const std::function<void()>& work) const {
+  try {
+    work();
+  } catch (const InputError& error) {
+    if (!ranks_ || ranks_->rank() == 0) throw;
+    tell_rank_0(error.problem(), error.what());
+  }
+}
+
+void SceneRun::tell_rank_0(InputProblem problem, const char* reason) const {
+  ranks_->send(0, failure_follows + std::to_string(static_cast<int>(problem)) + reason);
+  while (true) static_cast<void>(ranks_->receive(true));
 }
 
 void SceneRun::require_closed() const {
-  for (std::size_t i = 0; i < loaded_.surfaces.size(); ++i) {
-    naming(loaded_.text.meshes[i].file,
-           [&] { static_cast<void>(loaded_.surfaces[i].data()->bvh().solid()); });
-  }
+  told_once([&] {
+    for (std::size_t i = 0; i < loaded_.surfaces.size(); ++i) {
+      naming(loaded_.text.meshes[i].file,
+             [&] { static_cast<void>(loaded_.surfaces[i].data()->bvh().solid()); });
+    }
+  });
 }
 
 double SceneRun::size_of(const PartPair& parts) const {
@@ -340,34 +404,56 @@ SceneAnswer SceneRun::answer_pair(const SceneQuestion& question, const ScenePair
   return answer;
 }
 
+// Answers some pairs, which go to rank 0 a few times a second: what is lost with a rank is no more than that.
+void SceneRun::serve(const SceneQuestion& question, const std::vector<ScenePair>& pairs,
+                     SceneWorkers& workers) const {
+  const bool json = options_.json || !options_.output.empty() || !options_.journal.empty();
+  std::vector<std::string> lines(pairs.size());
+  std::size_t sent = 0;
+  const auto send = [&] {
+    std::string bytes(1, answers_follow);
+    for (; sent < lines.size() && !lines[sent].empty(); ++sent) bytes += std::exchange(lines[sent], {});
+    if (bytes.size() > 1) ranks_->send(0, bytes);
+  };
+  while (sent < pairs.size()) {
+    const auto until = std::chrono::steady_clock::now() + between_messages;
+    std::atomic<std::size_t> next{sent}, bytes{0};
+    try {
+      workers.run([&](Workspace& workspace) {
+        do {
+          const std::size_t i = next++;
+          if (i >= pairs.size()) break;
+          monitor_.checkpoint();
+          lines[i] = line_of(pairs[i].parts, answer_pair(question, pairs[i], &workspace, json));
+          bytes += lines[i].size();
+        } while (bytes < most_bytes && std::chrono::steady_clock::now() < until);
+      });
+    } catch (...) {
+      send();
+      throw;
+    }
+    send();
+  }
+}
+
 // Answers what rank 0 sends, until that is nothing.
 void SceneRun::serve(const SceneQuestion& question) {
-  const bool json = options_.json || !options_.output.empty() || !options_.journal.empty();
   try {
     SceneWorkers workers(options_.threads);
     ranks_->send(0, std::string(1, answers_follow));
     while (true) {
       const std::vector<ScenePair> pairs = pairs_of(ranks_->receive(true)->bytes);
       if (pairs.empty()) return;
-      std::vector<std::string> lines(pairs.size());
-      workers.for_each(pairs.size(), [&](Workspace& workspace, std::size_t i) {
-        monitor_.checkpoint();
-        lines[i] = line_of(pairs[i].parts, answer_pair(question, pairs[i], &workspace, json));
-      });
-      std::string bytes(1, answers_follow);
-      for (const std::string& line : lines) bytes += line;
-      ranks_->send(0, bytes);
+      serve(question, pairs, workers);
     }
   } catch (const Interrupted&) {
     ranks_->send(0, std::string(1, interruption_follows));
+    while (true) static_cast<void>(ranks_->receive(true));
   } catch (const InputError& error) {
-    ranks_->send(0, failure_follows + std::to_string(static_cast<int>(error.problem())) + error.what());
+    tell_rank_0(error.problem(), error.what());
   } catch (const std::exception& error) {
-    const auto problem = std::to_string(static_cast<int>(InputProblem::refused));
-    ranks_->send(0, failure_follows + problem + error.what());
+    tell_rank_0(InputProblem::refused, error.what());
   }
-  // Rank 0 tells, and ends all.
-  while (true) static_cast<void>(ranks_->receive(true));
 }
 
 ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, bool exit_code) {
@@ -386,6 +472,10 @@ ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, 
       key += fmt::format("\n{}\t{}\t{}\t{}\t{}", own.scheme, own.boundary, own.sharp, own.weld, own.bounds);
     }
     journal.emplace(options_.journal, fingerprint(key, loaded_.fingerprint));
+    std::error_code none;
+    if (std::filesystem::equivalent(options_.journal, options_.output, none)) {
+      throw UsageError("--resume and -o name the same file; the document would take the journal's place");
+    }
     const Notes notes = notes_for(options_);
     if (notes && journal->found() > 0) {
       notes(fmt::format("{}: {} pairs were answered before", options_.journal, journal->found()));
@@ -399,9 +489,15 @@ ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, 
   SceneWorkers workers(options_.threads);
   std::vector<int> idle;
   const std::size_t wanted = pairs_of_a_batch * static_cast<std::size_t>(ranks_ ? ranks_->size() : 1);
-  for (double before = 0;; before = broad.share()) {
-    const std::vector<ScenePair> batch = broad.next(wanted);
+  // Other ranks would wait for rank 0 between two batches.
+  const auto policy = ranks_ ? std::launch::async : std::launch::deferred;
+  const auto deal = [&] { return next_batch(broad, scene, wanted); };
+  std::future<PairBatch> coming = std::async(policy, deal);
+  for (double before = 0;;) {
+    const PairBatch now = coming.get();
+    const std::vector<ScenePair>& batch = now.pairs;
     if (batch.empty()) break;
+    coming = std::async(policy, deal);
     InOrder<SceneAnswer> answers(batch.size(), [&](std::size_t i, SceneAnswer& answer) {
       results.add(batch[i], answer, batch[i].separated_by_boxes());
     });
@@ -420,7 +516,7 @@ ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, 
       } else {
         todo.push_back(batch[i]);
         places.push_back(i);
-        costs.push_back(cost_of(broad, scene, batch[i]));
+        costs.push_back(now.costs[i]);
       }
     }
     std::atomic<std::size_t> done{0};
@@ -429,19 +525,21 @@ ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, 
       return answer_pair(question, pair, &workspace, json);
     };
     const Batch::Put put = [&](std::size_t i, SceneAnswer answer) {
-      report_part(monitor_, before, broad.share(), done++, todo.size());
+      report_part(monitor_, before, now.share, done++, todo.size());
       if (journal) journal->add(todo[i].parts, answer);
       answers.put(places[i], std::move(answer));
     };
-    Batch(todo, std::move(costs), ranks_.get(), workers, ask, put).run(idle);
+    Batch(todo, std::move(costs), ranks_.get(), workers, monitor_, ask, put).run(idle);
     results.flush();
+    before = now.share;
   }
   const ExitStatus status = results.finish(broad.pair_count(), exit_code);
   if (ranks_) {
     // Those that have not yet told that they are there are waited for.
     while (idle.size() + 1 < static_cast<std::size_t>(ranks_->size())) {
       const Ranks::Message message = *ranks_->receive(true);
-      static_cast<void>(answers_of(message, 0));
+      throw_failure(message);
+      static_cast<void>(answers_of(message, {}));
       idle.push_back(message.from);
     }
     for (const int rank : idle) ranks_->send(rank, {});

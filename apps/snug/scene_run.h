@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include <snug/front/scene_workers.h>
+
 #include "placed_pair.h"
 #include "ranks.h"
 #include "scene_answer.h"
@@ -53,7 +55,10 @@ class SceneRun {
   [[nodiscard]] ExitStatus answer(const SceneQuestion& question, const char* command, bool exit_code);
 
  private:
+  void told_once(const std::function<void()>& work) const;
+  [[noreturn]] void tell_rank_0(InputProblem problem, const char* reason) const;
   void serve(const SceneQuestion& question);
+  void serve(const SceneQuestion& question, const std::vector<ScenePair>& pairs, SceneWorkers& workers) const;
   [[nodiscard]] SceneAnswer answer_pair(const SceneQuestion& question, const ScenePair& pair,
                                         Workspace* workspace, bool json) const;
 

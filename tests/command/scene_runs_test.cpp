@@ -132,6 +132,26 @@ TEST_F(ranks, go_on_after_one_of_them_was_killed) {
   }
 }
 
+// Pairs in one place, which take long: a rank is given forty of them at once, and is killed before it has answered all.
+TEST_F(ranks, keep_what_a_rank_found_of_its_share) {
+  Json scene{{"parts", Json::array()}, {"tolerance", 0}, {"pairs", Json::array()}};
+  for (int i = 0; i < 1280; ++i)
+    scene["parts"].push_back({{"mesh", model("pawn.obj")}, {"place", {{"move", {i / 2, 0, 0}}}}});
+  for (int i = 0; i < 640; ++i) scene["pairs"].push_back({2 * i, 2 * i + 1});
+  const std::string journal = folder_.file("journal"),
+                    words = "collide --scene " + write_scene(folder_.file("slow.json"), scene) +
+                            " --budget 60000 --threads 1 --resume " + journal;
+  const Outcome outcome = shell(with_rank(1, send_when(journal, 7, "KILL") + " true", words) + " 2>&1");
+  ASSERT_EQ(outcome.status, 128 + SIGKILL) << outcome.out;
+  std::ifstream stream(journal);
+  std::string line;
+  std::getline(stream, line);
+  int first = 0, count = 0;
+  for (; std::getline(stream, line); ++count) first += std::stoi(line) < 80 ? 1 : 0;
+  EXPECT_GT(first, 0);
+  EXPECT_LT(first, count);  // of the second share
+}
+
 TEST_F(ranks, go_on_after_one_of_them_was_interrupted) {
   const Json expected = comparable(run_snug({"collide", "--scene", file_, "--json"}).out);
   for (const int rank : {0, 1}) {
@@ -164,6 +184,16 @@ TEST_F(ranks, end_with_one_word_for_all_of_them) {
   const Outcome bad = shell(mpirun(2, "collide --scene " + wrong + " 2>&1"));
   EXPECT_EQ(bad.status, 3);
   EXPECT_NE(bad.out.find("not a scene in JSON"), std::string::npos) << bad.out;
+  const std::string mesh = write_text(folder_.file("bad.obj"), "v 0 0 0\n");
+  const Outcome none = shell(mpirun(
+      2, "collide --scene " +
+             write_text(folder_.file("s2.json"), R"({"parts": [{"mesh": ")" + mesh + R"("}]})") + " 2>&1"));
+  EXPECT_EQ(none.status, 3);
+  for (const Outcome* outcome : {&gone, &bad, &none}) {
+    const auto first = outcome->out.find("snug: ");
+    ASSERT_NE(first, std::string::npos) << outcome->out;
+    EXPECT_EQ(outcome->out.find("snug: ", first + 1), std::string::npos) << outcome->out;
+  }
 }
 
 }  // namespace

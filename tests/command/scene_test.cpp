@@ -195,6 +195,9 @@ TEST_F(scenes, that_are_wrong_are_refused_in_one_line) {
   expect_refusal(one(R"(, "boundary": "x")"), "--boundary");
   expect_refusal(one(R"(, "sharp": "x")"), "--sharp");
   expect_refusal(one(R"(, "weld": -1)"), "--weld");
+  expect_refusal(R"({"parts": [{"mesh": "ball.obj\u0000.obj"}]})", "parts[0].mesh: give the name of a file");
+  expect_refusal({"\xff\xfe{\0}\0", 6}, "this is UTF-16 text: save it as UTF-8");
+  expect_refusal({"{\0}\0", 4}, "this is UTF-16 text: save it as UTF-8");
   expect_refusal(one(R"(, "name": "")"), "parts[0].name is empty");
   expect_refusal(one(R"(, "mesh": "ball.obj")"), "\"mesh\" stands twice");
   expect_refusal(one(R"(, "place": [1, 2, 3])"), "parts[0].place has 3 numbers, not 12");
@@ -237,6 +240,27 @@ TEST_F(scenes, of_a_thousand_equal_parts_end_soon_with_a_count) {
   EXPECT_NE(outcome.out.find("499500 pairs: 0 separated by boxes, 499500 "), std::string::npos);
 }
 
+// The processor's time, which others on the machine do not lengthen much.
+TEST_F(scenes, are_read_in_a_time_that_grows_with_their_parts) {
+  const auto seconds = [&](int parts) {
+    std::string text = R"({"pairs": [], "parts": [)";
+    for (int i = 0; i < parts; ++i) {
+      text += i == 0 ? "" : ",\n";
+      text += R"({"mesh": "ball.obj", "place": {"move": [)" + std::to_string(i) + ", 0, 0]}}";
+    }
+    const std::string file = scene(text + "]}");
+    const auto spent = [] {
+      rusage usage{};
+      getrusage(RUSAGE_CHILDREN, &usage);
+      return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+    };
+    const double before = spent();
+    EXPECT_EQ(run_snug({"collide", "--scene", file}).status, 0);
+    return spent() - before;
+  };
+  EXPECT_LT(seconds(80'000), 7 * seconds(20'000));
+}
+
 TEST_F(scenes, whose_meshes_are_none_are_refused) {
   const auto mesh = [&](const std::string& name) {
     return refusal(R"({"parts": [{"mesh": "ball.obj"}, {"mesh": ")" + name + R"("}]})");
@@ -269,7 +293,7 @@ class journals : public scenes {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
-  std::string file_, journal_ = folder_.file("journal");
+  std::string file_, journal_ = folder_.file("journal.json");
 };
 
 TEST_F(journals, go_on_from_any_torn_end) {
@@ -371,9 +395,43 @@ TEST_F(journals, keep_what_was_finished_where_the_document_cannot_be_written) {
   const Outcome outcome = run_snug_in({full, {}}, words({"--json"}));
   EXPECT_EQ(outcome.status, 3) << outcome.err;
   const std::string before = text();
-  EXPECT_GT(before.size(), 1000u);
+  EXPECT_GT(std::count(before.begin(), before.end(), '\n'), 1);
   EXPECT_EQ(answer(words()), expected);
   EXPECT_EQ(text().substr(0, before.size()), before);
+}
+
+TEST_F(journals, are_not_replaced_by_the_document) {
+  const Outcome outcome = run_snug(words({"-o", journal_}));
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("--resume and -o name the same file"), std::string::npos) << outcome.err;
+  const Json expected = answer({"collide", "--scene", file_});
+  EXPECT_EQ(answer(words()), expected);
+}
+
+// A reader of the document has an answer while the others are looked for.
+TEST_F(journals, stand_beside_a_document_that_is_streamed) {
+  for (const bool json : {true, false}) {
+    journal_ = folder_.file(json ? "journal.a" : "journal.b");
+    const std::string out = folder_.file("out");
+    const auto into_file = [&] {
+      dup2(open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
+    };
+    std::string seen;
+    const auto look = [&](int process) {
+      while (std::count_if(seen.begin(), seen.end(), [](char c) { return c == '\n'; }) < 8) {
+        usleep(500);
+        seen = text();
+      }
+      kill(process, SIGSTOP);
+      std::ifstream stream(out, std::ios::binary);
+      seen.assign(std::istreambuf_iterator<char>(stream), {});
+      kill(process, SIGCONT);
+    };
+    Words all = words({"--threads", "1"});
+    if (json) all.emplace_back("--json");
+    EXPECT_EQ(run_snug_in({into_file, look}, all).status, 0);
+    EXPECT_NE(seen.find(json ? "\"verdict\": " : "part 0 part"), std::string::npos) << seen;
+  }
 }
 
 TEST_F(journals, keep_what_was_finished_on_a_full_disk) {
@@ -387,6 +445,7 @@ TEST_F(journals, keep_what_was_finished_on_a_full_disk) {
   EXPECT_NE(outcome.err.find("make room, and run again"), std::string::npos) << outcome.err;
   EXPECT_GT(text().size(), 10'000u);
   EXPECT_LE(text().size(), 20'000u);
+  EXPECT_EQ(text().back(), '\n');  // half a line would cost those that other threads write after it
   EXPECT_EQ(answer(words()), expected);
 }
 

@@ -13,6 +13,7 @@
 #include <oracle/test_meshes.h>
 #include <snug/search/surface_data.h>
 #include <testing/placements.h>
+#include <testing/scheme_surfaces.h>
 
 namespace snug {
 namespace {
@@ -71,8 +72,16 @@ double margin_of(const Scene& scene, const PartPair& pair, double margin) {
 }
 
 bool same(const Collision& x, const Collision& y) {
-  return x.verdict == y.verdict && x.distance == y.distance && x.witness == y.witness && x.inner == y.inner &&
-         x.stats.splits == y.stats.splits;
+  const auto same_place = [](const std::optional<SurfaceParameter>& p,
+                             const std::optional<SurfaceParameter>& q) {
+    return p.has_value() == q.has_value() &&
+           (!p || (p->owner == q->owner && p->corner == q->corner && p->u == q->u && p->v == q->v));
+  };
+  const SearchStats &s = x.stats, &t = y.stats;
+  return x.verdict == y.verdict && x.distance == y.distance && x.witness == y.witness &&
+         x.witness_error == y.witness_error && same_place(x.at[0], y.at[0]) && same_place(x.at[1], y.at[1]) &&
+         x.inner == y.inner && s.box_tests == t.box_tests && s.triangle_tests == t.triangle_tests &&
+         s.evaluations == t.evaluations && s.splits == t.splits;
 }
 
 // Every pair by itself, with no broad phase.
@@ -135,6 +144,72 @@ TEST(scene, answers_as_every_pair_by_itself) {
         }
       }
     }
+  }
+}
+
+// Surfaces of every scheme, tagged and plain, some of them as large and as small as doubles go.
+std::vector<Surface> surfaces_of_every_sort(std::uint64_t seed) {
+  std::vector<Surface> surfaces;
+  testing::for_each_surface(seed, [&](const testing::NamedSurface& named) {
+    constexpr double sizes[] = {1, 1, 1, 1e-3, 1e3, 0x1p-1040, 1e-300, 1e-160, 1e160, 1e300};
+    ControlMesh mesh = named.surface.mesh();
+    const double size = sizes[surfaces.size() % std::size(sizes)];
+    for (Point3& p : mesh.points) p = {size * p.x, size * p.y, size * p.z};
+    try {
+      const Surface surface(std::move(mesh), {.scheme = named.surface.options().scheme,
+                                              .boundary = named.surface.options().boundary,
+                                              .threads = 1});
+      static_cast<void>(surface.data()->bvh());
+      surfaces.push_back(surface);
+    } catch (const InputError&) {
+      // No face has a limit surface.
+    }
+  });
+  return surfaces;
+}
+
+// A turn that is rigid to 1e-9 and no better, at times with entries of every size.
+Motion slack_placement(std::mt19937_64& random, const Vector3& to) {
+  if (random() % 4 == 0) {
+    constexpr double specks[] = {0, -0.0, 5e-324, -1e-300, 1e-40, 1e-12, -3e-10};
+    const auto speck = [&] { return specks[random() % std::size(specks)]; };
+    return Motion::from_3x4(
+        {1, speck(), speck(), to.x, speck(), -1, speck(), to.y, speck(), speck(), -1, to.z});
+  }
+  std::array<double, 12> numbers = testing::random_placement(random, to).numbers();
+  for (std::size_t k = 0; k < 12; ++k) {
+    if (k % 4 != 3) numbers[k] += testing::random_vector(random, 2e-10).x;
+  }
+  return Motion::from_3x4(numbers);
+}
+
+// All pairs of surfaces meet in the course of the trials: schemes, tags, sizes, copies in one place, margins.
+TEST(scene, answers_as_every_pair_by_itself_whatever_the_parts_are) {
+  const std::vector<Surface> surfaces = surfaces_of_every_sort(85);
+  ASSERT_GT(surfaces.size(), 100u);
+  std::mt19937_64 random(86);
+  for (int trial = 0; trial < 40; ++trial) {
+    constexpr double spreads[] = {0, 1e-3, 1, 3, 20, 1e9, 1e160, 1e300};
+    const double spread = spreads[random() % std::size(spreads)];
+    Scene scene;
+    for (int i = 0; i < 24; ++i) {
+      const Surface& surface = surfaces[random() % surfaces.size()];
+      scene.parts.push_back(
+          i > 0 && random() % 4 == 0
+              ? scene.parts[random() % scene.parts.size()]
+              : surface.at(slack_placement(random, testing::random_vector(random, spread))));
+    }
+    constexpr double margins[] = {0, 0, 0.1, 1e-300, 1e300};
+    for (std::uint32_t a = 0; a + 1 < 24; a += 2) {
+      if (random() % 3 == 0) scene.margins.push_back({{a + 1, a}, margins[random() % std::size(margins)]});
+    }
+    const CollideOptions options{.tolerance = trial % 3 == 0 ? 0.1 : 1e-3,
+                                 .margin = margins[random() % std::size(margins)],
+                                 .budget = 60,
+                                 .prove_contact = trial % 2 == 0,
+                                 .measure = trial % 5 != 0};
+    expect_all_pairs(scene, options, 1 + int(random() % 2));
+    if (HasFatalFailure()) FAIL() << trial << ' ' << spread;
   }
 }
 

@@ -221,7 +221,8 @@ double SceneBroadPhase::share() const {
 const Box3& SceneBroadPhase::box(std::uint32_t part) const { return state_->boxes.at(part); }
 
 SceneWorkers::SceneWorkers(int threads)
-    : others_(static_cast<std::size_t>((threads > 0 ? threads : hardware_threads()) - 1)) {}
+    : own_(Workspace::of_this_thread()),
+      others_(static_cast<std::size_t>((threads > 0 ? threads : hardware_threads()) - 1)) {}
 
 void SceneWorkers::run(const std::function<void(Workspace&)>& work) {
   share(threads(), [&](SharedRanges&, Workspace& workspace) { work(workspace); });
@@ -240,7 +241,7 @@ void SceneWorkers::share(std::size_t count, const std::function<void(SharedRange
   std::atomic<std::size_t> taken{0};
   share_ranges(count, static_cast<int>(threads()), [&](SharedRanges& ranges) {
     const bool own = std::this_thread::get_id() == caller;
-    work(ranges, own ? Workspace::of_this_thread() : others_[taken++]);
+    work(ranges, own ? own_ : others_[taken++]);
   });
 }
 

@@ -9,7 +9,7 @@
 
 namespace snug {
 
-/// Workspaces of some threads, kept from one batch of pairs to the next; the thread that calls uses its own
+/// Workspaces of some threads, kept from one batch of pairs to the next; one of them is that of the thread which made this,
 /// Workspace::of_this_thread(), which lasts longer.
 class SceneWorkers {
  public:
@@ -27,6 +27,7 @@ class SceneWorkers {
  private:
   void share(std::size_t count, const std::function<void(SharedRanges&, Workspace&)>& work);
 
+  Workspace& own_;
   std::vector<Workspace> others_;
 };
 

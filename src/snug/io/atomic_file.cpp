@@ -159,6 +159,11 @@ void AtomicFile::flush() {
   buffer_.clear();
 }
 
+void AtomicFile::send() {
+  require_value(!finished_, "a file to write is used after commit() or a failure; open another one");
+  if (temporary_.empty()) flush();
+}
+
 void AtomicFile::complete() {
   require_value(!finished_, "a file to write is used after commit() or a failure; open another one");
   flush();

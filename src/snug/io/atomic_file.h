@@ -31,6 +31,8 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   void write(std::string_view bytes);
+  /// Hands a target that receives bytes as they come all that it has not had; does nothing for a file.
+  void send();
   /// Brings all bytes to the disk, or to where the target takes them: what commit() has left to do is a
   /// rename. For several files of which all are to be written or none.
   void complete();
