@@ -4,6 +4,7 @@
 
 #include "answers.h"
 #include "call.h"
+#include "signatures.h"
 #include "surface.h"
 
 namespace snug::python {
@@ -29,4 +30,5 @@ PYBIND11_MODULE(_snug, module) {
   add_errors(module);
   add_surface(module);
   add_pair_queries(module);
+  add_signatures(module);
 }
