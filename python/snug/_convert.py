@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, Tuple
+import warnings
+from typing import Any, List, Tuple
 
 import numpy as np
 import numpy.typing as npt
+
+from ._errors import MeshWarning
 
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.uint32]
@@ -105,7 +108,11 @@ def _parts(given: Any) -> Tuple[Any, Any]:
 
 def _flat_cells(block: Any) -> Any:
     kind = block.type
-    return block.data if kind in ("triangle", "quad") or kind.startswith("polygon") else ()
+    if kind in ("triangle", "quad") or kind.startswith("polygon"):
+        return block.data
+    if kind not in ("vertex", "line"):
+        warnings.warn(f"cells of the kind {kind} are left out: {len(block.data)}", MeshWarning, stacklevel=5)
+    return ()
 
 
 def triangles(candidate: Any) -> Doubles:
@@ -121,6 +128,14 @@ def triangles(candidate: Any) -> Doubles:
     if flat.size and flat.max() >= len(points):
         raise ValueError(f"candidate uses vertex {flat.max()} of {len(points)}")
     return np.ascontiguousarray(points[flat].reshape(-1, 3, 3))
+
+
+def pairs(poses: List[Any], what: str) -> Tuple[Doubles, Doubles]:
+    """Rotations or quaternions, and translations, of a list of pairs."""
+    if not all(isinstance(pose, tuple) and len(pose) == 2 for pose in poses):
+        raise ValueError(f"{what}: give matrices, or tuples (rotation, translation), not both in one list")
+    rotations, translations = zip(*poses)
+    return doubles(list(rotations), what), doubles(list(translations), what)
 
 
 def parameters(face: Any, u: Any, v: Any, corner: Any) -> Tuple[Indices, Doubles, Doubles, Indices, bool]:

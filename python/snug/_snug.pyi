@@ -17,7 +17,7 @@ Flag = Union[bool, Bools]
 Index = Union[int, Ids]
 
 Length = Union[float, str, None]
-Pose = Union[npt.ArrayLike, Tuple[npt.ArrayLike, npt.ArrayLike], None]
+Pose = Union[npt.ArrayLike, Tuple[npt.ArrayLike, npt.ArrayLike], Sequence[Tuple[npt.ArrayLike, npt.ArrayLike]], None]
 Progress = Optional[Callable[[float], object]]
 Path = Union[str, bytes, PathLike[str], PathLike[bytes]]
 
@@ -87,7 +87,7 @@ class Surface(_Tagged):
         threads: int = 0,
         progress: Progress = None,
     ) -> SignedDistance: ...
-    def contains(self, points: npt.ArrayLike, *, progress: Progress = None) -> Containment: ...
+    def contains(self, points: npt.ArrayLike, *, threads: int = 0, progress: Progress = None) -> Containment: ...
     def cast_rays(
         self,
         origins: npt.ArrayLike,
@@ -102,7 +102,14 @@ class Surface(_Tagged):
         progress: Progress = None,
     ) -> Any: ...
     def evaluate(
-        self, face: npt.ArrayLike, u: npt.ArrayLike, v: npt.ArrayLike, corner: npt.ArrayLike = 0, *, threads: int = 0
+        self,
+        face: npt.ArrayLike,
+        u: npt.ArrayLike,
+        v: npt.ArrayLike,
+        corner: npt.ArrayLike = 0,
+        *,
+        threads: int = 0,
+        progress: Progress = None,
     ) -> SurfacePoint: ...
     def bound(
         self,
@@ -430,6 +437,7 @@ def read(
     threads: int = 0,
     progress: Progress = None,
 ) -> Surface: ...
+def _pose(pose: Pose, name: str, rigid: Optional[str] = None) -> Floats: ...
 def collide(
     a: Surface,
     b: Surface,

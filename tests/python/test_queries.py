@@ -59,6 +59,15 @@ def test_every_form_of_pose(bracket, pin):
     assert len(snug.distance(bracket, pin, pose_a=moved(), pose_b=[pose] * 3)) == 3
     assert len(snug.distance(bracket, pin, pose_a=[moved()] * 3, pose_b=pose)) == 3
     assert (snug.distance(bracket, pin, pose_a=[moved()] * 3, pose_b=[pose] * 3).lower == expected).all()
+    pairs = [(quaternion, move), (np.array([1.0, 0, 0, 0]), [9, 0, 0])]
+    of_pairs = snug.distance(bracket, pin, pose_b=pairs)
+    assert list(of_pairs.lower) == [snug.distance(bracket, pin, pose_b=pair).lower for pair in pairs]
+    assert (snug.distance(bracket, pin, pose_b=[(pose[:3, :3], move)] * 2).lower == expected).all()
+    with pytest.raises(ValueError, match="not both"):
+        snug.distance(bracket, pin, pose_b=[(quaternion, move), pose])
+    for wrong in ([(quaternion, move), (pose[:3, :3], move)], [(quaternion, move, 1)], [((1, 2), move)], [(quaternion, "x")]):
+        with pytest.raises((ValueError, TypeError)):
+            snug.distance(bracket, pin, pose_b=wrong)
     for wrong in (np.eye(3), np.zeros((2, 2, 4, 4)), (quaternion, [move]), (pose, move), (pose[:3, :3],), 3, "abc", [[1], [1, 2]]):
         with pytest.raises((ValueError, TypeError)):
             snug.collide(bracket, pin, pose_b=wrong)
@@ -124,6 +133,8 @@ def test_points(cube):
     one = cube.closest_point(points[3], relative=1e-6)
     assert one.lower == near.lower[3] and one.face == near.face[3] and isinstance(one.lower, float) and isinstance(one.face, int)
     signed, inside = cube.signed_distance(points), cube.contains(points)
+    np.testing.assert_array_equal(cube.contains(points, threads=1).inside, inside.inside)
+    assert [bool(cube.contains(p)) for p in points[:50]] == inside.inside[:50].tolist()
     decided = ~inside.undecided
     assert decided.all() and ((signed.upper < 0) <= inside.inside).all() and ((signed.lower > 0) <= inside.outside).all()
     assert cube.contains([0, 0, 0]) and not cube.contains([3, 0, 0])
