@@ -103,8 +103,9 @@ def _answer(answer: Union[Collision, Distance], places: Sequence[Optional[List[f
 
 def _filled(template: Union[str, "os.PathLike[str]", None], data: str) -> str:
     folder = Path(__file__).parent
-    # In the package; in a clone, where `make page` puts it.
-    candidates = [Path(template)] if template is not None else [folder / "view.html", folder / "../../../web/snug.html"]
+    # In the package; in a clone, where `make page` puts it; beside the command of the Debian package snug.
+    places = ("view.html", "../../../web/snug.html", "../../../../share/snug/view.html")
+    candidates = [Path(template)] if template is not None else [folder / place for place in places]
     for candidate in candidates:
         if candidate.exists():
             break

@@ -370,10 +370,31 @@ void add_rays(py::module_& module) {
   add_place(quick, [](const QuickHit& t) -> const SurfaceParameter& { return t.at; });
 }
 
+// The parameter that plain numbers of Python give, without numpy's help.
+std::optional<SurfaceParameter> plain_parameter(const py::object& face, const py::object& u,
+                                                const py::object& v, const py::object& corner) {
+  const auto index = [](const py::object& given) -> std::optional<std::uint32_t> {
+    if (Py_TYPE(given.ptr()) != &PyLong_Type) return {};
+    int overflow = 0;
+    const long long number = PyLong_AsLongLongAndOverflow(given.ptr(), &overflow);
+    if (overflow != 0 || number < 0 || number >= UINT32_MAX) return {};
+    return static_cast<std::uint32_t>(number);
+  };
+  const std::optional<std::uint32_t> owner = index(face), at_corner = index(corner);
+  const std::optional<double> s = plain_number(u.ptr()), t = plain_number(v.ptr());
+  if (!owner || !at_corner || !s || !t) return {};
+  return SurfaceParameter{*owner, *at_corner, *s, *t};
+}
+
 Answers<SurfacePoint> evaluated(const PySurface& self, const py::object& face, const py::object& u,
                                 const py::object& v, const py::object& corner, const py::object& threads,
                                 const py::object& progress) {
   const Surface surface = self.surface();
+  if (const auto at = plain_parameter(face, u, v, corner)) {
+    static_cast<void>(threads_of(threads));
+    Call call(progress);
+    return call.run([&](const WorkMonitor&) { return Answers<SurfacePoint>(evaluate(surface, *at)); });
+  }
   const py::tuple arrays = convert("parameters")(face, u, v, corner);
   const auto owners = arrays[0].cast<py::array_t<std::uint32_t>>(),
              corners = arrays[3].cast<py::array_t<std::uint32_t>>();

@@ -120,6 +120,7 @@ Motion Poses::mended(std::size_t i, std::string_view fault) const {
   const auto refuse_pose = [&](std::string_view why, double defect, const char* next_step) {
     constexpr std::string_view prefix = "pose: ";
     if (why.starts_with(prefix)) why.remove_prefix(prefix.size());
+    why = why.substr(0, why.find("; take the nearest rotation (--"));  // the command's next step
     throw PoseFault(name_ + (count_ ? "[" + std::to_string(i) + "]: " : ": ") + std::string(why) + next_step,
                     defect);
   };

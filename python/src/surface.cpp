@@ -23,7 +23,7 @@ PySurface::PySurface(const PySurface& other)
       caster_tolerance_(other.caster_tolerance_) {}
 
 void PySurface::update(std::span<const Point3> points) {
-  const std::size_t count = surface_.mesh().points.size();
+  const std::size_t count = surface().mesh().points.size();
   if (points.size() != count) {
     throw InputError(InputProblem::value, "update: " + std::to_string(points.size()) +
                                               " vertices; the surface has " + std::to_string(count));
@@ -41,7 +41,7 @@ void PySurface::update(std::span<const Point3> points) {
 
 std::shared_ptr<const RayCaster> PySurface::caster(double tolerance, int threads) {
   if (!caster_ || caster_tolerance_ != tolerance) {
-    const Surface surface = surface_;
+    const Surface surface = this->surface();
     Call call;
     auto made = call.run([&](const WorkMonitor& monitor) {
       return std::make_shared<const RayCaster>(surface, tolerance, threads, monitor);
@@ -186,7 +186,7 @@ ControlMesh mesh_of(const Points& points, std::vector<std::uint32_t> offsets,
 ControlMesh mesh_of(const py::object& vertices, const py::object& faces) {
   if (faces.is_none() && py::isinstance<PySurface>(vertices))
     return vertices.cast<const PySurface&>().surface().mesh();
-  if (faces.is_none() && py::isinstance<PyMesh>(vertices)) return vertices.cast<const PyMesh&>().mesh;
+  if (faces.is_none() && py::isinstance<PyMesh>(vertices)) return vertices.cast<const PyMesh&>().whole();
   const py::tuple arrays = convert("mesh")(vertices, faces);
   const Points points(arrays[0], "vertices");
   return mesh_of(points, indices_of(arrays[1]), indices_of(arrays[2]));
@@ -419,13 +419,13 @@ void add_surface(py::module_& module) {
   py::class_<PyMesh> mesh(module, "Mesh", "A control mesh with its tags, such as one that was subdivided.");
   mesh.attr("__module__") = "snug";
   add_mesh_properties(
-      mesh, [](const py::object& self) -> const ControlMesh& { return self.cast<const PyMesh&>().mesh; },
+      mesh, [](const py::object& self) -> const ControlMesh& { return self.cast<const PyMesh&>().whole(); },
       [](const py::object& self) { return self; });
   mesh.def("__repr__", [](const PyMesh& self) {
-    return "<snug.Mesh " + counted_faces(self.mesh) + ", " + std::to_string(self.mesh.vertex_count()) +
+    return "<snug.Mesh " + counted_faces(self.whole()) + ", " + std::to_string(self.mesh.vertex_count()) +
            " vertices>";
   });
-  mesh.def(py::pickle([](const PyMesh& self) { return state_of(self.mesh); },
+  mesh.def(py::pickle([](const PyMesh& self) { return state_of(self.whole()); },
                       [](const py::tuple& state) { return PyMesh{mesh_of_state(state)}; }));
 
   py::class_<PySurface> surface(

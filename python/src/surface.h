@@ -19,7 +19,11 @@ class PySurface {
   PySurface(const PySurface& other);
   PySurface& operator=(const PySurface&) = delete;
 
-  [[nodiscard]] const Surface& surface() const { return surface_; }
+  /// Errors:    TypeError for an object whose __init__ never ran.
+  [[nodiscard]] const Surface& surface() const {
+    if (!surface_.data()) throw py::type_error("this Surface was not made: its __init__ has not run");
+    return surface_;
+  }
   [[nodiscard]] const SurfaceOptions& options() const { return options_; }
   /// The surface of the same faces, tags and options with these control points. Without the GIL.
   /// Errors:    those of MovingSurface; nothing is changed then.
@@ -44,6 +48,12 @@ class PySurface {
 /// A control mesh as a value, such as one that was subdivided.
 struct PyMesh {
   ControlMesh mesh;
+
+  /// Errors:    TypeError for an object that __new__ alone made.
+  [[nodiscard]] const ControlMesh& whole() const {
+    if (mesh.face_offsets.empty()) throw py::type_error("this Mesh was not made: subdivided() makes meshes");
+    return mesh;
+  }
 };
 
 void add_errors(py::module_& module);

@@ -81,6 +81,25 @@ def test_names_of_files_may_have_any_bytes(tmp_path):
     np.testing.assert_array_equal(snug.read(name).vertices, CUBE)
 
 
+def test_objects_that_were_never_made():
+    """__new__ alone: pybind11 would show memory as it is."""
+    with pytest.raises(TypeError, match="__init__"):
+        snug.Surface.__new__(snug.Surface).closest_point([1, 2, 3])
+    for name in snug.__all__:
+        cls = getattr(snug, name)
+        if not isinstance(cls, type) or cls.__module__ != "snug" or issubclass(cls, Exception):
+            continue
+        for member in dir(cls):
+            thing = cls.__new__(cls)
+            try:
+                value = getattr(thing, member)
+                repr(value)
+                if callable(value) and not member.startswith("__"):
+                    value(*[[[1, 2, 3]]] * (member in ("update", "closest_point", "signed_distance", "contains")))
+            except (TypeError, ValueError, AttributeError, IndexError):
+                pass
+
+
 def test_a_pose_error_is_pickled():
     again = pickle.loads(pickle.dumps(snug.PoseError("pose_b: bad", 0.5)))
     assert str(again) == "pose_b: bad" and again.defect == 0.5

@@ -47,6 +47,13 @@ def test_faces_of_several_sizes():
     faces = [list(face) for face in CUBE_FACES if list(face) != [1, 5, 7, 3]] + [[1, 5, 8], [5, 7, 8], [7, 3, 8], [3, 1, 8]]
     made = snug.Surface(vertices, faces)
     assert [list(face) for face in made.faces] == faces and made.is_closed
+    for same in (tuple(map(tuple, faces)), [np.array(face) for face in faces], [np.array(face, np.uint8) for face in faces], iter(faces),
+                 [np.array(faces[0], "u1"), *faces[1:]], [[np.int8(i) for i in face] for face in faces], np.array([*map(list, faces)], object)):
+        assert [list(face) for face in snug.Surface(vertices, same).faces] == faces
+    for wrong, error, said in (([[0, 1, 2], [0, -1, 2]], ValueError, "face 1 has the index -1"), ([[0, 1, 2], [0, 1, 10**30]], ValueError, "face 1"),
+                               ([[0, 1, 2], [0, 1.5, 2]], TypeError, "face 1"), ([[0, 1, 2], [True, False, True]], TypeError, "face 1")):
+        with pytest.raises((error, TypeError), match=said):
+            snug.Surface(vertices, wrong)
 
 
 def test_objects_with_meshes(cube):
