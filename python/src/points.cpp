@@ -199,12 +199,13 @@ struct RayInput {
     }
   }
   [[nodiscard]] bool single() const { return from.single() && along.single(); }
-  [[nodiscard]] std::vector<Ray> rays() const {
+  [[nodiscard]] std::size_t count() const { return from.single() ? along.all().size() : from.all().size(); }
+  [[nodiscard]] std::vector<Ray> rays(std::size_t begin, std::size_t n, const WorkMonitor& monitor) const {
     const std::span<const Point3> o = from.all(), d = along.all();
-    const std::size_t n = from.single() ? d.size() : o.size();
     std::vector<Ray> result;
     result.reserve(n);
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = begin; i < begin + n; ++i) {
+      if (i % 65536 == 0) monitor.checkpoint();
       const Point3& direction = d[along.single() ? 0 : i];
       result.push_back(
           {.origin = o[from.single() ? 0 : i], .direction = {direction.x, direction.y, direction.z}});
@@ -220,7 +221,8 @@ Hits traced(const PySurface& self, const RayInput& input, const RayOptions& opti
   const Surface surface = self.surface();
   Call call(progress);
   return call.run([&](const WorkMonitor& monitor) {
-    const std::vector<RayHits> all = trace(surface, input.rays(), options, threads, monitor);
+    const std::vector<RayHits> all =
+        trace(surface, input.rays(0, input.count(), monitor), options, threads, monitor);
     Hits result;
     result.single = input.single();
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -262,10 +264,9 @@ py::object cast_rays(PySurface& self, const py::object& origins, const py::objec
       self.caster(length_of(tolerance, self.surface().size(), "tolerance").value_or(0), all_threads);
   Call call(progress);
   std::vector<QuickHit> hits = call.run([&](const WorkMonitor& monitor) {
-    const std::vector<Ray> rays = input.rays();
-    std::vector<QuickHit> all(rays.size());
+    std::vector<QuickHit> all(input.count());
     in_blocks(all.size(), monitor, [&](std::size_t begin, std::size_t count) {
-      caster->cast(std::span(rays).subspan(begin, count), std::span(all).subspan(begin, count), all_threads);
+      caster->cast(input.rays(begin, count, monitor), std::span(all).subspan(begin, count), all_threads);
     });
     return all;
   });

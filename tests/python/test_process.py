@@ -102,7 +102,9 @@ LONG = """
 
 def interrupted(handler="", error="MemoryError"):
     program = textwrap.dedent(LONG).format(model=str(MODELS / "bust.obj"), handler=handler, error=error)
-    process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+    # As from a terminal: what a shell puts into the background ignores SIGINT.
+    heard = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)  # noqa: E731
+    process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, preexec_fn=heard)
     watch = threading.Timer(30, process.kill)
     watch.start()
     assert process.stdout.readline() == "ready\n"
