@@ -62,6 +62,7 @@ if(TARGET snug_python)
   list(GET minors 1 next_minor)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
       "python3 (>= 3.${minor}~), python3 (<< 3.${next_minor}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS snug)  # for the page that snug.view() fills
   set(CPACK_DEBIAN_PYTHON_DESCRIPTION "proved answers about subdivision surfaces - Python module
 ${about}
 .

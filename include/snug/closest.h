@@ -56,6 +56,11 @@ struct ClosestPoint {
 [[nodiscard]] SNUG_API std::optional<bool> contains(const Surface& surface, const Point3& point,
                                                     const WorkMonitor& monitor = {},
                                                     Workspace& workspace = Workspace::of_this_thread());
+/// The same for many points, in the same order; results do not depend on threads.
+[[nodiscard]] SNUG_API std::vector<std::optional<bool>> contains(const Surface& surface,
+                                                                 std::span<const Point3> points,
+                                                                 int threads = 0,
+                                                                 const WorkMonitor& monitor = {});
 
 /// How far a point is from a closed limit surface, negative inside the solid that it bounds, in mesh units.
 struct SignedDistance {

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, Tuple
+import itertools
+import warnings
+from typing import Any, List, Optional, Tuple
 
 import numpy as np
 import numpy.typing as npt
+
+from ._errors import MeshWarning
 
 Doubles = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.uint32]
@@ -73,12 +77,39 @@ def _faces(faces: Any) -> Tuple[Indices, Indices]:
         return _offsets(np.full(len(array), array.shape[1], np.uint64)), array.reshape(-1)
     if isinstance(faces, (str, bytes)) or not hasattr(faces, "__iter__"):
         raise TypeError("faces: give an array (m, k), or a sequence of sequences of vertices")
+    faces = list(faces)
+    quick = _plain_faces(faces)
+    if quick is not None:
+        return quick
     rows = [_indices(face, f"face {i}") for i, face in enumerate(faces)]
     for i, row in enumerate(rows):
         if row.ndim != 1:
             raise ValueError(f"face {i} has the shape {row.shape}; give a sequence of vertices")
     corners = np.concatenate(rows) if rows else np.empty(0, np.uint32)
     return _offsets(np.array([len(row) for row in rows], np.uint64)), corners
+
+
+def _plain_faces(faces: List[Any]) -> Optional[Tuple[Indices, Indices]]:
+    """What most lists are, ints of Python in lists or tuples, or arrays of indices, in one go; None for others."""
+    if not faces:
+        return None
+    if all(type(face) is np.ndarray and face.ndim == 1 and face.dtype.kind in "iu" for face in faces):
+        if len({face.dtype for face in faces}) > 1:
+            return None
+        flat = np.concatenate(faces)
+    elif all(type(face) in (list, tuple) for face in faces):
+        items = list(itertools.chain.from_iterable(faces))
+        if not all(type(item) is int for item in items):
+            return None
+        try:
+            flat = np.array(items, dtype=np.int64)
+        except OverflowError:
+            return None
+    else:
+        return None
+    if ((flat < 0) | (flat > _MOST)).any():
+        return None  # to be told which face has it
+    return _offsets(np.fromiter(map(len, faces), np.uint64, len(faces))), flat.astype(np.uint32)
 
 
 def _offsets(counts: npt.NDArray[np.uint64]) -> Indices:
@@ -105,7 +136,11 @@ def _parts(given: Any) -> Tuple[Any, Any]:
 
 def _flat_cells(block: Any) -> Any:
     kind = block.type
-    return block.data if kind in ("triangle", "quad") or kind.startswith("polygon") else ()
+    if kind in ("triangle", "quad") or kind.startswith("polygon"):
+        return block.data
+    if kind not in ("vertex", "line"):
+        warnings.warn(f"cells of the kind {kind} are left out: {len(block.data)}", MeshWarning, stacklevel=5)
+    return ()
 
 
 def triangles(candidate: Any) -> Doubles:
@@ -121,6 +156,14 @@ def triangles(candidate: Any) -> Doubles:
     if flat.size and flat.max() >= len(points):
         raise ValueError(f"candidate uses vertex {flat.max()} of {len(points)}")
     return np.ascontiguousarray(points[flat].reshape(-1, 3, 3))
+
+
+def pairs(poses: List[Any], what: str) -> Tuple[Doubles, Doubles]:
+    """Rotations or quaternions, and translations, of a list of pairs."""
+    if not all(isinstance(pose, tuple) and len(pose) == 2 for pose in poses):
+        raise ValueError(f"{what}: give matrices, or tuples (rotation, translation), not both in one list")
+    rotations, translations = zip(*poses)
+    return doubles(list(rotations), what), doubles(list(translations), what)
 
 
 def parameters(face: Any, u: Any, v: Any, corner: Any) -> Tuple[Indices, Doubles, Doubles, Indices, bool]:

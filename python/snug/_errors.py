@@ -24,10 +24,20 @@ def elements_of(message: str) -> List[Element]:
 class MeshError(ValueError):
     """A mesh that has no limit surface, or is not supported."""
 
+    def __init__(self, message: str = "", filename: Optional[str] = None) -> None:
+        super().__init__(message)
+        #: The file that the mesh was read from or written to; None where there is none.
+        self.filename = filename
+
     @property
     def elements(self) -> List[Element]:
         """What is wrong, at most the first ten: (kind, index), or ("edge", (vertex, vertex))."""
-        return elements_of(str(self))
+        # The name of the file may have any text.
+        message, name = str(self), self.filename
+        return elements_of(message[len(name) :] if name and message.startswith(name) else message)
+
+    def __reduce__(self) -> Any:
+        return type(self), (str(self), self.filename)
 
 
 class FileError(OSError):

@@ -13,7 +13,7 @@ from typing import Any, Dict, List, Optional, Sequence, Union
 import numpy as np
 
 from ._errors import FileError
-from ._snug import Collision, Distance, Surface
+from ._snug import Collision, Distance, Surface, _pose
 
 _BEGIN = '<script type="application/json" id="snug-data">'
 _END = "</script>"
@@ -40,10 +40,11 @@ def view(
 ) -> Page:
     """A page with surfaces and, at the end, an answer about the first two: snug.view(a, b, hit, poses=[None, T]).
 
-    path: where it is written, too. poses: (4, 4), (3, 4) or None for each surface. template: the page to fill, if not the
-    installed one.
+    path: where it is written, too. poses: for each surface None or a pose as collide() takes it, (4, 4), (3, 4), (R, t) or
+    (quaternion w x y z, t); an answer does not know the poses that it was asked about. template: the page to fill, if not
+    the installed one.
 
-    Raises FileError if the page to fill is missing, TypeError, ValueError.
+    Raises FileError if the page to fill is missing or `path` cannot be written, PoseError, TypeError, ValueError.
     """
     surfaces = [part for part in parts if isinstance(part, Surface)]
     answers = [part for part in parts if not isinstance(part, Surface)]
@@ -62,17 +63,17 @@ def view(
         data["answer"] = json.dumps(_answer(answers[0], places + [None, None]))
     page = _filled(template, json.dumps(data).replace("<", "\\u003c"))
     if path is not None:
-        Path(path).write_text(page, encoding="utf-8")
+        try:
+            Path(path).write_text(page, encoding="utf-8")
+        except OSError as error:
+            raise FileError(f"{path}: {error.strerror}", str(path)) from error
     return Page(page)
 
 
 def _place(pose: Any, i: int) -> Optional[List[float]]:
     if pose is None:
         return None
-    matrix = np.asarray(pose, dtype=np.float64)
-    if matrix.shape not in ((3, 4), (4, 4)):
-        raise ValueError(f"view: pose {i} has the shape {matrix.shape}; give (4, 4) or (3, 4)")
-    return [float(number) for number in matrix[:3].reshape(-1)]
+    return [float(number) for number in _pose(pose, f"poses[{i}]")[:3].reshape(-1)]
 
 
 def _part(surface: Surface, i: int) -> Dict[str, Any]:
@@ -102,8 +103,9 @@ def _answer(answer: Union[Collision, Distance], places: Sequence[Optional[List[f
 
 def _filled(template: Union[str, "os.PathLike[str]", None], data: str) -> str:
     folder = Path(__file__).parent
-    # In the package; in a clone, where `make page` puts it.
-    candidates = [Path(template)] if template is not None else [folder / "view.html", folder / "../../../web/snug.html"]
+    # In the package; in a clone, where `make page` puts it; beside the command of the Debian package snug.
+    places = ("view.html", "../../../web/snug.html", "../../../../share/snug/view.html")
+    candidates = [Path(template)] if template is not None else [folder / place for place in places]
     for candidate in candidates:
         if candidate.exists():
             break

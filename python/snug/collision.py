@@ -19,12 +19,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ._errors import UndecidedError
-from ._snug import Collision, Distance, Surface, collide, distance, penetration
+from ._snug import Collision, Distance, Surface, _pose, collide, distance, penetration
 from .proximity import as_surface
 
 Floats = npt.NDArray[np.float64]
 
-__all__ = ["CollisionManager", "ContactData", "DistanceData"]
+__all__ = ["CollisionManager", "ContactData", "DistanceData", "scene_to_collision"]
 
 _EXTERNAL = "__external"
 
@@ -37,10 +37,14 @@ class _Placed(NamedTuple):
     upper: Floats
 
 
-def _placed(name: str, surface: Surface, transform: Optional[npt.ArrayLike]) -> _Placed:
-    pose = np.eye(4) if transform is None else np.array(transform, dtype=np.float64)
-    if pose.shape != (4, 4):
-        raise ValueError(f"transform has the shape {pose.shape}; give (4, 4)")
+def _placed(name: str, surface: Surface, transform: Optional[npt.ArrayLike], rigid: Optional[str] = None) -> _Placed:
+    pose = np.eye(4)
+    if transform is not None:
+        given = np.asarray(transform)
+        if given.shape != (4, 4):
+            raise ValueError(f"transform has the shape {given.shape}; give (4, 4)")
+        # Here, not at the first query: boxes placed by what is not rigid would rule pairs out.
+        pose = _pose(given, f"the transform of {name!r}", rigid)
     vertices = surface.vertices
     world = vertices @ pose[:3, :3].T + pose[:3, 3]
     room = 1e-9 * (np.abs(world).max(initial=0.0) + np.abs(vertices).max(initial=0.0) + np.abs(pose[:3, 3]).max())
@@ -69,7 +73,7 @@ class _Row(NamedTuple):
         lower, upper = self.group.lower[self.begin :], self.group.upper[self.begin :]
         apart = np.maximum(np.maximum(self.one.lower - upper, lower - self.one.upper), 0.0)
         gaps: Floats = np.linalg.norm(apart, axis=1) * (1 - 1e-12)
-        return gaps
+        return np.nan_to_num(gaps, nan=0.0, posinf=np.inf)  # boxes beyond the range of doubles rule nothing out
 
     def sizes(self) -> Floats:
         """The larger one's, of each pair."""
@@ -161,19 +165,27 @@ Names = Union[Set[str], Set[Tuple[str, str]]]
 class CollisionManager:
     """Objects by name, each a surface and a transform (4, 4).
 
-    tolerance, solid: as in snug.collide(). relative: as in snug.distance().
+    tolerance, solid: as in snug.collide(). relative: as in snug.distance(). rigid="nearest": transforms that are not rigid
+    within 1e-9, such as those of single precision, are replaced by the nearest ones; without it they raise PoseError.
     """
 
-    def __init__(self, tolerance: Union[float, str] = "0.1%", solid: bool = False, relative: float = 1e-4) -> None:
+    def __init__(
+        self,
+        tolerance: Union[float, str] = "0.1%",
+        solid: bool = False,
+        relative: float = 1e-4,
+        rigid: Optional[str] = None,
+    ) -> None:
         self._tolerance = tolerance
         self._solid = solid
         self._relative = relative
+        self._rigid = rigid
         self._objects: Dict[str, _Placed] = {}
 
     def add_object(self, name: str, mesh: Any, transform: Optional[npt.ArrayLike] = None) -> Surface:
         """Adds a surface, or a mesh that snug.Surface() takes, in place of an object of that name. Returns the surface."""
         surface = as_surface(mesh)
-        self._objects[name] = _placed(name, surface, transform)
+        self._objects[name] = self._place(name, surface, transform)
         return surface
 
     def remove_object(self, name: str) -> None:
@@ -183,7 +195,7 @@ class CollisionManager:
 
     def set_transform(self, name: str, transform: npt.ArrayLike) -> None:
         """Places an object anew. Raises ValueError if there is none of that name."""
-        self._objects[name] = _placed(name, self._require(name).surface, transform)
+        self._objects[name] = self._place(name, self._require(name).surface, transform)
 
     def in_collision_single(
         self,
@@ -197,7 +209,7 @@ class CollisionManager:
         Returns bool; with return_names also the set of names of those that it touches, with return_data also a list of
         ContactData.
         """
-        other = _placed(_EXTERNAL, as_surface(mesh), transform)
+        other = self._place(_EXTERNAL, as_surface(mesh), transform)
         found = list(self._contacts(_between(self._all(), [other]), return_names or return_data))
         return self._answer(found, {a.name for a, _, _ in found}, return_names, return_data)
 
@@ -219,7 +231,7 @@ class CollisionManager:
     ) -> Any:
         """How far a surface is from the objects, at least; with return_name also the nearest one's name, with
         return_data also DistanceData."""
-        other = _placed(_EXTERNAL, as_surface(mesh), transform)
+        other = self._place(_EXTERNAL, as_surface(mesh), transform)
         return self._nearest(_between(self._all(), [other]), return_name, return_data, lambda a, b: a)
 
     def min_distance_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
@@ -235,6 +247,9 @@ class CollisionManager:
         return self._nearest(
             _between(self._all(), other_manager._all()), return_names, return_data, lambda a, b: (a, b)
         )
+
+    def _place(self, name: str, surface: Surface, transform: Optional[npt.ArrayLike]) -> _Placed:
+        return _placed(name, surface, transform, self._rigid)
 
     def _require(self, name: str) -> _Placed:
         try:
@@ -267,9 +282,10 @@ class CollisionManager:
 
     def _reach(self, row: _Row) -> Floats:
         """At least the tolerance for each of a row's pairs, mesh units."""
-        if isinstance(self._tolerance, str):
-            return 1.01 * float(self._tolerance.rstrip("% ")) / 100 * row.sizes()
-        return np.broadcast_to(float(self._tolerance), row.sizes().shape)
+        text = str(self._tolerance).strip()
+        if text.endswith("%"):
+            return 1.01 * float(text[:-1]) / 100 * row.sizes()
+        return np.broadcast_to(float(text), row.sizes().shape)
 
     def _answer(
         self, found: List[Tuple[_Placed, _Placed, Collision]], names: Names, return_names: bool, return_data: bool
@@ -307,3 +323,16 @@ class CollisionManager:
         if return_data:
             result.append(DistanceData(*best))
         return result[0] if len(result) == 1 else tuple(result)
+
+
+def scene_to_collision(scene: Any) -> Tuple[CollisionManager, Dict[str, Surface]]:
+    """A manager with the objects of a trimesh.Scene, and their surfaces, by the names of its nodes."""
+    manager = CollisionManager()
+    surfaces: Dict[str, Surface] = {}
+    made: Dict[Any, Surface] = {}
+    for node in scene.graph.nodes_geometry:
+        transform, geometry = scene.graph[node]
+        if geometry not in made:
+            made[geometry] = as_surface(scene.geometry[geometry])
+        surfaces[node] = manager.add_object(node, made[geometry], transform)
+    return manager, surfaces

@@ -45,7 +45,8 @@ class AnswerClass {
       : class_(module, name, doc), name_(name) {
     class_.attr("__module__") = "snug";
     class_.def("__len__", [](const Self& self) {
-      if (self.single()) throw py::type_error("a single answer has no length");
+      if (self.single())
+        throw py::type_error("a single answer has no length and no truth value; see its numbers");
       return self.all().size();
     });
     class_.def("__getitem__", [](const Self& self, py::ssize_t i) {
@@ -53,6 +54,15 @@ class AnswerClass {
       const auto n = static_cast<py::ssize_t>(self.all().size());
       if (i < -n || i >= n) throw py::index_error("answer " + std::to_string(i) + " of " + std::to_string(n));
       return Self(self.all()[static_cast<std::size_t>(i < 0 ? i + n : i)]);
+    });
+    class_.def("__getitem__", [](const Self& self, const py::slice& rows) {
+      if (self.single()) throw py::type_error("a single answer has no items");
+      std::size_t begin = 0, end = 0, step = 0, count = 0;
+      if (!rows.compute(self.all().size(), &begin, &end, &step, &count)) throw py::error_already_set();
+      std::vector<T> taken;
+      taken.reserve(count);
+      for (std::size_t i = 0; i < count; ++i) taken.push_back(self.all()[begin + i * step]);
+      return Self(std::move(taken));
     });
     if constexpr (std::is_trivially_copyable_v<T>) def_pickle();
     const auto itself = [](const py::object& self, const py::args&) { return self; };  // answers never change

@@ -21,6 +21,20 @@ bool is_plain(py::handle numbers) {
   return type->type_num == py::detail::npy_api::NPY_DOUBLE_ && type->byteorder != '>';
 }
 
+std::optional<Point3> plain_point(PyObject* given) {
+  const bool is_list = PyList_CheckExact(given) != 0;
+  if (!is_list && PyTuple_CheckExact(given) == 0) return {};
+  if ((is_list ? PyList_GET_SIZE(given) : PyTuple_GET_SIZE(given)) != 3) return {};
+  Point3 point;
+  for (Py_ssize_t k = 0; k < 3; ++k) {
+    const std::optional<double> number =
+        plain_number(is_list ? PyList_GET_ITEM(given, k) : PyTuple_GET_ITEM(given, k));
+    if (!number) return {};
+    point[static_cast<std::size_t>(k)] = *number;
+  }
+  return point;
+}
+
 [[noreturn]] void refuse(const std::string& message) { throw InputError(InputProblem::value, message); }
 
 }  // namespace
@@ -39,15 +53,27 @@ std::string Doubles::shape_text() const {
   return text + (dimensions() == 1 ? ",)" : ")");
 }
 
-Points::Points(py::handle numbers, const char* what) : numbers_(numbers, what) {
-  const std::size_t dimensions = numbers_.dimensions();
-  if ((dimensions == 1 || dimensions == 2) && numbers_.last(0) == 3) return;
-  refuse(std::string(what) + " has the shape " + numbers_.shape_text() + "; give (3,) or (n, 3)");
+std::optional<double> plain_number(PyObject* given) {
+  if (Py_TYPE(given) == &PyFloat_Type) return PyFloat_AS_DOUBLE(given);
+  if (Py_TYPE(given) != &PyLong_Type) return {};
+  int overflow = 0;
+  const long long number = PyLong_AsLongLongAndOverflow(given, &overflow);
+  if (overflow != 0) return {};
+  return static_cast<double>(number);
+}
+
+Points::Points(py::handle numbers, const char* what) : plain_(plain_point(numbers.ptr())) {
+  if (plain_) return;
+  numbers_.emplace(numbers, what);
+  const std::size_t dimensions = numbers_->dimensions();
+  if ((dimensions == 1 || dimensions == 2) && numbers_->last(0) == 3) return;
+  refuse(std::string(what) + " has the shape " + numbers_->shape_text() + "; give (3,) or (n, 3)");
 }
 
 std::span<const Point3> Points::all() const {
   static_assert(sizeof(Point3) == 3 * sizeof(double));
-  return {reinterpret_cast<const Point3*>(numbers_.data()), single() ? 1 : numbers_.extent(0)};  // NOLINT
+  if (plain_) return {&*plain_, 1};
+  return {reinterpret_cast<const Point3*>(numbers_->data()), single() ? 1 : numbers_->extent(0)};  // NOLINT
 }
 
 std::optional<double> number_of(const py::object& given, const char* what) {

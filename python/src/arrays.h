@@ -35,15 +35,20 @@ class Doubles {
   py::array array_;
 };
 
+/// A float or a small int of Python's own; empty for everything else.
+[[nodiscard]] std::optional<double> plain_number(PyObject* given);
+
 /// A point (3,) or n points (n, 3).
 class Points {
  public:
   Points(py::handle numbers, const char* what);
-  [[nodiscard]] bool single() const { return numbers_.dimensions() == 1; }
+  [[nodiscard]] bool single() const { return plain_ || numbers_->dimensions() == 1; }
   [[nodiscard]] std::span<const Point3> all() const;
 
  private:
-  Doubles numbers_;
+  std::optional<Point3>
+      plain_;  // a list or tuple of three plain numbers, which numpy takes ten times as long for
+  std::optional<Doubles> numbers_;
 };
 
 /// How the numbers of a value lie in memory.

@@ -48,6 +48,11 @@ void add_errors(py::module_&) {
   });
 }
 
+py::object file_text(const std::string& bytes) {
+  return py::reinterpret_steal<py::object>(
+      PyUnicode_DecodeFSDefaultAndSize(bytes.data(), static_cast<py::ssize_t>(bytes.size())));
+}
+
 void refuse_undecided(const std::string& message) {
   const py::object type = error_class("UndecidedError");
   raise(type, type(message));
@@ -56,10 +61,9 @@ void refuse_undecided(const std::string& message) {
 
 void warn(const std::vector<std::string>& lines) {
   if (lines.empty()) return;
-  const py::object category = error_class("MeshWarning");
-  for (const std::string& line : lines) {
-    if (PyErr_WarnEx(category.ptr(), line.c_str(), 1) != 0) throw py::error_already_set();
-  }
+  const py::object category = error_class("MeshWarning"),
+                   issue = py::module_::import("warnings").attr("warn");
+  for (const std::string& line : lines) issue(file_text(line), category);
 }
 
 }  // namespace snug::python

@@ -1,9 +1,12 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
+#include <new>
 
 #include "answers.h"
 #include "call.h"
+#include "signatures.h"
 #include "surface.h"
 
 namespace snug::python {
@@ -18,6 +21,23 @@ std::string text_of(const Interval& interval) {
   return text_of(interval.lower) + " to " + text_of(interval.upper);
 }
 
+namespace {
+
+// pybind11 gives an object that __new__ made and __init__ did not a value of memory as it is; a class of Python can get
+// at it. Zeros are an answer, a mesh or triangles without content, and a surface that says what is amiss.
+void* zeros(std::size_t size) { return std::memset(::operator new(size), 0, size); }
+
+void zero_what_is_not_made(const py::module_& module) {
+  for (const auto& item : py::dict(module.attr("__dict__"))) {
+    if (!py::isinstance<py::type>(item.second)) continue;
+    py::detail::type_info* const info =
+        py::detail::get_type_info(reinterpret_cast<PyTypeObject*>(item.second.ptr()));  // NOLINT
+    if (info != nullptr) info->operator_new = zeros;
+  }
+}
+
+}  // namespace
+
 }  // namespace snug::python
 
 PYBIND11_MODULE(_snug, module) {
@@ -29,4 +49,6 @@ PYBIND11_MODULE(_snug, module) {
   add_errors(module);
   add_surface(module);
   add_pair_queries(module);
+  add_signatures(module);
+  zero_what_is_not_made(module);
 }

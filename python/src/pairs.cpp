@@ -308,8 +308,9 @@ void add_penetration(py::module_& module) {
 constexpr const char* pose_doc =
     "pose_a, pose_b: rigid transforms x -> R x + t as (4, 4), (3, 4), a tuple (R, t) or (quaternion w x y z, "
     "t); or n of\n"
-    "them with n in front of each shape, and then the answer has n. One pose on one side stands beside n on "
-    "the other.\n"
+    "them with n in front of each shape, or a list of them, and then the answer has n. One pose on one side "
+    "stands beside n\n"
+    "on the other.\n"
     "rigid=\"nearest\": what is not rigid within 1e-9 is replaced by the nearest rotation.\n"
     "progress: called with the fraction done; what it raises ends the work.\n\n";
 
@@ -348,6 +349,8 @@ void add_pair_queries(py::module_& module) {
               "Guarantee: [lower, upper] contains the distance, whether that was reached or not.\n"
               "Raises as collide().")
                  .c_str());
+  module.def("_pose", matrix_of_pose, arg("pose"), arg("name"),
+             arg("rigid") = none);  // for the package alone
   module.def("penetration", penetration_of_surfaces, arg("a"), arg("b"), py::kw_only(), arg("pose_a") = none,
              arg("pose_b") = none, arg("relative") = none, arg("budget") = none, arg("progress") = none,
              arg("rigid") = none,

@@ -1,5 +1,6 @@
 // One surface and points, rays, parameters: closest_point, signed_distance, contains, cast_rays, evaluate.
 
+#include <algorithm>
 #include <cmath>
 
 #include <snug/closest.h>
@@ -8,6 +9,7 @@
 
 #include "answers.h"
 #include "call.h"
+#include "state.h"
 #include "surface.h"
 
 namespace snug::python {
@@ -26,6 +28,16 @@ Answers<T> for_points(const PySurface& self, const py::object& given, const py::
     if (points.single()) return Answers<T>(one(surface, points.all()[0], monitor));
     return Answers<T>(many(surface, points.all(), monitor));
   });
+}
+
+// work(begin, count) on [0, n), block by block, for what the library does not stop in between.
+template <class Work>
+void in_blocks(std::size_t n, const WorkMonitor& monitor, const Work& work) {
+  constexpr std::size_t most = std::size_t{1} << 18;  // a quarter of a second at most
+  for (std::size_t begin = 0; begin < n; begin += most) {
+    monitor.report(static_cast<double>(begin) / static_cast<double>(n));
+    work(begin, std::min(most, n - begin));
+  }
 }
 
 ClosestOptions closest_options(const PySurface& self, const py::object& relative, const py::object& absolute,
@@ -72,22 +84,20 @@ struct Side {
   std::int8_t inside;
 };
 
-Side side_of(const Surface& surface, const Point3& p, const WorkMonitor& monitor) {
-  const std::optional<bool> inside = contains(surface, p, monitor);
-  return {static_cast<std::int8_t>(inside ? *inside : -1)};
-}
+Side side_of(const std::optional<bool>& inside) { return {static_cast<std::int8_t>(inside ? *inside : -1)}; }
 
-Answers<Side> contained(const PySurface& self, const py::object& points, const py::object& progress) {
+Answers<Side> contained(const PySurface& self, const py::object& points, const py::object& threads,
+                        const py::object& progress) {
+  const int all_threads = threads_of(threads);
   return for_points<Side>(
-      self, points, progress, side_of,
-      [](const Surface& surface, std::span<const Point3> all, const WorkMonitor& monitor) {
-        std::vector<Side> sides;
-        sides.reserve(all.size());
-        const WorkMonitor stop{.on_progress = {}, .stop = monitor.stop};
-        for (std::size_t i = 0; i < all.size(); ++i) {
-          if (i % 1024 == 0) monitor.report(static_cast<double>(i) / static_cast<double>(all.size()));
-          sides.push_back(side_of(surface, all[i], stop));
-        }
+      self, points, progress,
+      [](const Surface& surface, const Point3& p, const WorkMonitor& monitor) {
+        return side_of(contains(surface, p, monitor));
+      },
+      [&](const Surface& surface, std::span<const Point3> all, const WorkMonitor& monitor) {
+        const std::vector<std::optional<bool>> inside = contains(surface, all, all_threads, monitor);
+        std::vector<Side> sides(inside.size());
+        std::ranges::transform(inside, sides.begin(), side_of);
         return sides;
       });
 }
@@ -175,6 +185,10 @@ struct Hits {
   std::vector<std::uint8_t> complete, certain_hit, certain_miss;
 };
 
+auto members_of(Either<Hits> auto& t) {
+  return std::tie(t.single, t.hits, t.ray, t.complete, t.certain_hit, t.certain_miss);
+}
+
 struct RayInput {
   RayInput(const py::object& origins, const py::object& directions)
       : from(origins, "origins"), along(directions, "directions") {
@@ -185,12 +199,13 @@ struct RayInput {
     }
   }
   [[nodiscard]] bool single() const { return from.single() && along.single(); }
-  [[nodiscard]] std::vector<Ray> rays() const {
+  [[nodiscard]] std::size_t count() const { return from.single() ? along.all().size() : from.all().size(); }
+  [[nodiscard]] std::vector<Ray> rays(std::size_t begin, std::size_t n, const WorkMonitor& monitor) const {
     const std::span<const Point3> o = from.all(), d = along.all();
-    const std::size_t n = from.single() ? d.size() : o.size();
     std::vector<Ray> result;
     result.reserve(n);
-    for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t i = begin; i < begin + n; ++i) {
+      if (i % 65536 == 0) monitor.checkpoint();
       const Point3& direction = d[along.single() ? 0 : i];
       result.push_back(
           {.origin = o[from.single() ? 0 : i], .direction = {direction.x, direction.y, direction.z}});
@@ -206,7 +221,8 @@ Hits traced(const PySurface& self, const RayInput& input, const RayOptions& opti
   const Surface surface = self.surface();
   Call call(progress);
   return call.run([&](const WorkMonitor& monitor) {
-    const std::vector<RayHits> all = trace(surface, input.rays(), options, threads, monitor);
+    const std::vector<RayHits> all =
+        trace(surface, input.rays(0, input.count(), monitor), options, threads, monitor);
     Hits result;
     result.single = input.single();
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -246,13 +262,14 @@ py::object cast_rays(PySurface& self, const py::object& origins, const py::objec
                      "query: without proof (certified=False) only 'nearest' can be asked");
   const auto caster =
       self.caster(length_of(tolerance, self.surface().size(), "tolerance").value_or(0), all_threads);
-  std::vector<QuickHit> hits;
-  {
-    const py::gil_scoped_release released;
-    const std::vector<Ray> rays = input.rays();
-    hits.resize(rays.size());
-    caster->cast(rays, hits, all_threads);
-  }
+  Call call(progress);
+  std::vector<QuickHit> hits = call.run([&](const WorkMonitor& monitor) {
+    std::vector<QuickHit> all(input.count());
+    in_blocks(all.size(), monitor, [&](std::size_t begin, std::size_t count) {
+      caster->cast(input.rays(begin, count, monitor), std::span(all).subspan(begin, count), all_threads);
+    });
+    return all;
+  });
   if (input.single()) return py::cast(Answers<QuickHit>(hits[0]));
   return py::cast(Answers<QuickHit>(std::move(hits)));
 }
@@ -263,6 +280,7 @@ void add_rays(py::module_& module) {
                        "certified one holds a hit.\n"
                        "Hits of all rays follow one another, m in all, in the order of rays and of t.");
   cls.attr("__module__") = "snug";
+  add_state(cls);
   const auto hit_view = [&](const char* name, const auto& member, const char* doc) {
     cls.def_property_readonly(
         name,
@@ -281,7 +299,7 @@ void add_rays(py::module_& module) {
         name,
         [flags](const py::object& object) -> py::object {
           const Hits& self = object.cast<const Hits&>();
-          if (self.single) return py::bool_((self.*flags)[0] != 0);
+          if (self.single) return py::bool_((self.*flags).at(0) != 0);
           return column(self.*flags, object).attr("view")("bool");
         },
         doc);
@@ -353,9 +371,31 @@ void add_rays(py::module_& module) {
   add_place(quick, [](const QuickHit& t) -> const SurfaceParameter& { return t.at; });
 }
 
+// The parameter that plain numbers of Python give, without numpy's help.
+std::optional<SurfaceParameter> plain_parameter(const py::object& face, const py::object& u,
+                                                const py::object& v, const py::object& corner) {
+  const auto index = [](const py::object& given) -> std::optional<std::uint32_t> {
+    if (Py_TYPE(given.ptr()) != &PyLong_Type) return {};
+    int overflow = 0;
+    const long long number = PyLong_AsLongLongAndOverflow(given.ptr(), &overflow);
+    if (overflow != 0 || number < 0 || number >= UINT32_MAX) return {};
+    return static_cast<std::uint32_t>(number);
+  };
+  const std::optional<std::uint32_t> owner = index(face), at_corner = index(corner);
+  const std::optional<double> s = plain_number(u.ptr()), t = plain_number(v.ptr());
+  if (!owner || !at_corner || !s || !t) return {};
+  return SurfaceParameter{*owner, *at_corner, *s, *t};
+}
+
 Answers<SurfacePoint> evaluated(const PySurface& self, const py::object& face, const py::object& u,
-                                const py::object& v, const py::object& corner, const py::object& threads) {
+                                const py::object& v, const py::object& corner, const py::object& threads,
+                                const py::object& progress) {
   const Surface surface = self.surface();
+  if (const auto at = plain_parameter(face, u, v, corner)) {
+    static_cast<void>(threads_of(threads));
+    Call call(progress);
+    return call.run([&](const WorkMonitor&) { return Answers<SurfacePoint>(evaluate(surface, *at)); });
+  }
   const py::tuple arrays = convert("parameters")(face, u, v, corner);
   const auto owners = arrays[0].cast<py::array_t<std::uint32_t>>(),
              corners = arrays[3].cast<py::array_t<std::uint32_t>>();
@@ -366,9 +406,18 @@ Answers<SurfacePoint> evaluated(const PySurface& self, const py::object& face, c
   }
   const bool single = arrays[4].cast<bool>();
   const int all_threads = threads_of(threads);
-  const py::gil_scoped_release released;
-  if (single) return Answers<SurfacePoint>(evaluate(surface, at[0]));
-  return Answers<SurfacePoint>(evaluate(surface, at, all_threads));
+  Call call(progress);
+  return call.run([&](const WorkMonitor& monitor) {
+    if (single) return Answers<SurfacePoint>(evaluate(surface, at[0]));
+    std::vector<SurfacePoint> all;
+    all.reserve(at.size());
+    in_blocks(at.size(), monitor, [&](std::size_t begin, std::size_t count) {
+      const std::vector<SurfacePoint> block =
+          evaluate(surface, std::span(at).subspan(begin, count), all_threads);
+      all.insert(all.end(), block.begin(), block.end());
+    });
+    return Answers<SurfacePoint>(std::move(all));
+  });
 }
 
 void add_evaluated(py::module_& module) {
@@ -430,8 +479,9 @@ void add_point_queries(py::class_<PySurface>& surface, py::module_& module) {
                         "surface.\n\n") +
             narrow + "\nRaises as closest_point(); MeshError for a surface that is not closed.")
                .c_str())
-      .def("contains", &contained, arg("points"), py::kw_only(), arg("progress") = none,
+      .def("contains", &contained, arg("points"), py::kw_only(), arg("threads") = 0, arg("progress") = none,
            "Is a point (3,), or each of (n, 3), inside of the closed surface? Proved, or undecided.\n\n"
+           "threads: for many points; 0 takes all cores.\n"
            "Raises ValueError; MeshError for a surface that is not closed.")
       .def("cast_rays", &cast_rays, arg("origins"), arg("directions"), py::kw_only(),
            arg("query") = "nearest", arg("certified") = true, arg("precision") = none,
@@ -443,7 +493,7 @@ void add_point_queries(py::class_<PySurface>& surface, py::module_& module) {
            "certified=False: a QuickHit for pictures, within the tolerance; nothing is proved.\n\n"
            "Raises ValueError, MeshError, OverflowError.")
       .def("evaluate", &evaluated, arg("face"), arg("u"), arg("v"), arg("corner") = 0, py::kw_only(),
-           arg("threads") = 0,
+           arg("threads") = 0, arg("progress") = none,
            "Limit points at parameters: numbers, or arrays that are broadcast against each other.\n\n"
            "Loop: (1 - u - v) c0 + u c1 + v c2 on a face. Other schemes: u, v in [0, 1] on a quad; on other "
            "faces on the quad at\n"

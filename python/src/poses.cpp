@@ -19,6 +19,13 @@ double defect_of(const std::array<double, 12>& m) {
   return most;
 }
 
+// [(rotation, translation), ...]
+bool is_list_of_pairs(py::handle given) {
+  return PyList_Check(given.ptr()) && PyList_GET_SIZE(given.ptr()) > 0 &&
+         PyTuple_Check(PyList_GET_ITEM(given.ptr(), 0)) &&
+         PyTuple_GET_SIZE(PyList_GET_ITEM(given.ptr(), 0)) == 2;
+}
+
 }  // namespace
 
 Poses::Poses(const py::object& given, const char* name, const py::object& rigid) : name_(name) {
@@ -28,6 +35,10 @@ Poses::Poses(const py::object& given, const char* name, const py::object& rigid)
     nearest_ = true;
   }
   if (given.is_none()) return;
+  if (is_list_of_pairs(given)) {
+    *this = Poses(convert("pairs")(given, name), name, rigid);
+    return;
+  }
   if (!PyTuple_Check(given.ptr())) {
     numbers_.emplace(given, name);
     const std::size_t dimensions = numbers_->dimensions();
@@ -109,6 +120,7 @@ Motion Poses::mended(std::size_t i, std::string_view fault) const {
   const auto refuse_pose = [&](std::string_view why, double defect, const char* next_step) {
     constexpr std::string_view prefix = "pose: ";
     if (why.starts_with(prefix)) why.remove_prefix(prefix.size());
+    why = why.substr(0, why.find("; take the nearest rotation (--"));  // the command's next step
     throw PoseFault(name_ + (count_ ? "[" + std::to_string(i) + "]: " : ": ") + std::string(why) + next_step,
                     defect);
   };
@@ -125,6 +137,16 @@ Motion Poses::mended(std::size_t i, std::string_view fault) const {
   }
   refuse_pose(fault, defect_of(numbers), "; rigid=\"nearest\" takes the nearest rotation");
   return {};
+}
+
+py::object matrix_of_pose(const py::object& given, const std::string& name, const py::object& rigid) {
+  const Poses poses(given, name.c_str(), rigid);
+  if (poses.count()) refuse(name + ": give one pose");
+  const Motion motion = poses.at(0);
+  py::array_t<double> result({4, 4});
+  std::ranges::copy(motion.numbers(), result.mutable_data());
+  std::ranges::copy(std::array{0.0, 0.0, 0.0, 1.0}, result.mutable_data() + 12);
+  return result;
 }
 
 std::optional<std::size_t> common_count(const Poses& a, const Poses& b) {

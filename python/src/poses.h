@@ -24,7 +24,7 @@ class PoseFault : public InputError {
 };
 
 /// The poses of one side, as Python gives them: None, matrices (4, 4) or (3, 4), a tuple of rotation matrices (3, 3) or
-/// quaternions w x y z (4,) and translations (3,); or n of them, with n in front of each shape.
+/// quaternions w x y z (4,) and translations (3,); or n of them, with n in front of each shape or in a list.
 class Poses {
  public:
   /// `rigid`: None, or "nearest": what is not rigid is replaced by the nearest motion.
@@ -48,6 +48,10 @@ class Poses {
   std::optional<std::size_t> count_;
   std::optional<Doubles> numbers_, translations_;
 };
+
+/// The pose as the doubles that queries take, (4, 4). Errors: those of Poses; ValueError for more than one.
+[[nodiscard]] py::object matrix_of_pose(const py::object& given, const std::string& name,
+                                        const py::object& rigid);
 
 /// The poses of both sides; one on one side stands beside each of the other's.
 /// Errors:    ValueError where their numbers differ.

@@ -11,7 +11,27 @@
 
 #include "answers.h"
 #include "call.h"
+#include "state.h"
 #include "surface.h"
+
+namespace snug {
+
+// What is pickled of the structs that own memory; looked up beside them.
+using python::Either;
+
+auto members_of(Either<PatchEnclosure> auto& t) {
+  return std::tie(t.patch, t.piece, t.level, t.corners, t.offset, t.interval, t.normals);
+}
+auto members_of(Either<Tessellation> auto& t) {
+  return std::tie(t.positions, t.normals, t.parameters, t.position_error, t.triangles, t.owners, t.corners,
+                  t.error_bound, t.reached);
+}
+auto members_of(Either<Hull> auto& t) { return std::tie(t.positions, t.triangles, t.owners, t.gap); }
+auto members_of(Either<Hulls> auto& t) {
+  return std::tie(t.inner, t.outer, t.verified, t.problems, t.closed);
+}
+
+}  // namespace snug
 
 namespace snug::python {
 namespace {
@@ -24,6 +44,7 @@ struct Enclosures {
   std::vector<PatchEnclosure> pieces;
   BoundSummary summary;
 };
+auto members_of(Either<Enclosures> auto& t) { return std::tie(t.pieces, t.summary); }
 
 Enclosures bounded(const PySurface& self, const py::object& tolerance, unsigned level,
                    const py::object& budget, const py::object& threads, const py::object& progress) {
@@ -67,6 +88,7 @@ void add_enclosures(py::module_& module) {
   py::class_<Enclosures> cls(module, "Enclosures",
                              "Sets that contain the pieces of a surface, n in all, in mesh units.");
   cls.attr("__module__") = "snug";
+  add_state(cls);
   const auto view = [&](const char* name, const auto& member, const char* doc) {
     cls.def_property_readonly(
         name,
@@ -137,6 +159,7 @@ template <class Class>
 void add_triangles(Class& cls) {
   using T = typename Class::type;
   cls.attr("__module__") = "snug";
+  add_state(cls);
   cls.def_property_readonly(
          "vertices", [](const py::object& self) { return column(self.cast<const T&>().positions, self); },
          "Corners, (n, 3) float64, mesh units.")
@@ -277,6 +300,7 @@ void add_hulls(py::module_& module) {
   });
   py::class_<Hulls> cls(module, "Hulls", "The inner and the outer hull of a surface: inner, outer = hulls.");
   cls.attr("__module__") = "snug";
+  add_state(cls);
   cls.def_property_readonly(
          "inner", [](const py::object& self) { return hull_in(self, &Hulls::inner); }, "Hull, or None.")
       .def_property_readonly(
@@ -337,6 +361,7 @@ py::object intervals(const std::optional<std::array<Interval, N>>& given) {
 void add_measures(py::module_& module) {
   py::class_<Measures> cls(module, "Measures", "Intervals (lower, upper) that contain the exact values.");
   cls.attr("__module__") = "snug";
+  add_state(cls);
   cls.def_property_readonly(
          "area", [](const Measures& self) { return pair_of(self.area); }, "Area: (lower, upper).")
       .def_property_readonly(
@@ -412,6 +437,7 @@ void add_deviation(py::module_& module) {
   py::class_<Deviation> cls(module, "Deviation",
                             "How far a surface and a candidate that is to stand for it deviate.");
   cls.attr("__module__") = "snug";
+  add_state(cls);
   cls.def_property_readonly(
          "from_surface", [](const Deviation& self) { return Answers<OneSidedDistance>(self.from_surface); },
          "Of points of the surface from the candidate.")

@@ -16,25 +16,32 @@ PySurface::PySurface(ControlMesh mesh, const SurfaceOptions& options)
   options_.monitor = {};
 }
 
+PySurface::PySurface(const PySurface& other)
+    : surface_(other.surface_),
+      options_(other.options_),
+      caster_(other.caster_),
+      caster_tolerance_(other.caster_tolerance_) {}
+
 void PySurface::update(std::span<const Point3> points) {
-  ControlMesh mesh = surface_.mesh();
-  if (points.size() != mesh.points.size()) {
+  const std::size_t count = surface().mesh().points.size();
+  if (points.size() != count) {
     throw InputError(InputProblem::value, "update: " + std::to_string(points.size()) +
-                                              " vertices; the surface has " +
-                                              std::to_string(mesh.points.size()));
+                                              " vertices; the surface has " + std::to_string(count));
   }
-  mesh.points.assign(points.begin(), points.end());
-  SurfaceOptions options = options_;
-  options.scheme = surface_.scheme();
-  options.boundary = surface_.boundary();
-  Surface next(std::move(mesh), options);
+  if (!moving_) moving_ = std::make_shared<Moving>(surface_);
+  const std::shared_ptr<Moving> moving = moving_;
+  const Surface next = [&] {
+    const py::gil_scoped_release released;
+    const std::lock_guard lock(moving->mutex);
+    return moving->frames.move(points);
+  }();
   surface_ = next;
   caster_.reset();
 }
 
 std::shared_ptr<const RayCaster> PySurface::caster(double tolerance, int threads) {
   if (!caster_ || caster_tolerance_ != tolerance) {
-    const Surface surface = surface_;
+    const Surface surface = this->surface();
     Call call;
     auto made = call.run([&](const WorkMonitor& monitor) {
       return std::make_shared<const RayCaster>(surface, tolerance, threads, monitor);
@@ -179,7 +186,7 @@ ControlMesh mesh_of(const Points& points, std::vector<std::uint32_t> offsets,
 ControlMesh mesh_of(const py::object& vertices, const py::object& faces) {
   if (faces.is_none() && py::isinstance<PySurface>(vertices))
     return vertices.cast<const PySurface&>().surface().mesh();
-  if (faces.is_none() && py::isinstance<PyMesh>(vertices)) return vertices.cast<const PyMesh&>().mesh;
+  if (faces.is_none() && py::isinstance<PyMesh>(vertices)) return vertices.cast<const PyMesh&>().whole();
   const py::tuple arrays = convert("mesh")(vertices, faces);
   const Points points(arrays[0], "vertices");
   return mesh_of(points, indices_of(arrays[1]), indices_of(arrays[2]));
@@ -226,15 +233,14 @@ auto naming(const std::string& path, const Work& work) {
   try {
     return work();
   } catch (const InputError& error) {
-    const std::string message = error.what();
-    if (error.problem() == InputProblem::unreadable) {
-      const py::object type = py::module_::import("snug._errors").attr("FileError");
-      const py::object fault =
-          type(message, py::reinterpret_steal<py::object>(PyUnicode_DecodeFSDefault(path.c_str())));
-      PyErr_SetObject(type.ptr(), fault.ptr());
-      throw py::error_already_set();
-    }
-    throw InputError(error.problem(), message.starts_with(path) ? message : path + ": " + message);
+    const bool unreadable = error.problem() == InputProblem::unreadable;
+    std::string message = error.what();
+    if (!unreadable && !message.starts_with(path)) message = path + ": " + message;
+    if (!unreadable && error.problem() != InputProblem::refused) throw InputError(error.problem(), message);
+    const py::object type = py::module_::import("snug._errors").attr(unreadable ? "FileError" : "MeshError");
+    const py::object fault = type(file_text(message), file_text(path));
+    PyErr_SetObject(type.ptr(), fault.ptr());
+    throw py::error_already_set();
   }
 }
 
@@ -397,9 +403,9 @@ void add_mesh_properties(Class& cls, const MeshOf& mesh, const Keep& keep) {
       .def(
           "write", [=](const py::object& self, const py::object& path) { write(mesh(self), path); },
           py::arg("path"),
-          "Writes the control mesh, completely or not at all: .obj, .off, .ply, .stl or .glb. What the "
-          "format cannot hold\n"
-          "becomes a MeshWarning. Raises FileError, MeshError.");
+          "Writes the control mesh, completely or not at all: .obj, .off, .ply, .stl, .usda or .glb. What "
+          "the format cannot\n"
+          "hold becomes a MeshWarning. Raises FileError, MeshError.");
 }
 
 const PySurface& native(const py::object& self) { return self.cast<const PySurface&>(); }
@@ -413,13 +419,13 @@ void add_surface(py::module_& module) {
   py::class_<PyMesh> mesh(module, "Mesh", "A control mesh with its tags, such as one that was subdivided.");
   mesh.attr("__module__") = "snug";
   add_mesh_properties(
-      mesh, [](const py::object& self) -> const ControlMesh& { return self.cast<const PyMesh&>().mesh; },
+      mesh, [](const py::object& self) -> const ControlMesh& { return self.cast<const PyMesh&>().whole(); },
       [](const py::object& self) { return self; });
   mesh.def("__repr__", [](const PyMesh& self) {
-    return "<snug.Mesh " + counted_faces(self.mesh) + ", " + std::to_string(self.mesh.vertex_count()) +
+    return "<snug.Mesh " + counted_faces(self.whole()) + ", " + std::to_string(self.mesh.vertex_count()) +
            " vertices>";
   });
-  mesh.def(py::pickle([](const PyMesh& self) { return state_of(self.mesh); },
+  mesh.def(py::pickle([](const PyMesh& self) { return state_of(self.whole()); },
                       [](const py::tuple& state) { return PyMesh{mesh_of_state(state)}; }));
 
   py::class_<PySurface> surface(
@@ -468,13 +474,14 @@ void add_surface(py::module_& module) {
       .def(
           "update",
           [](PySurface& self, const py::object& vertices) {
-            self.update(Points(vertices, "vertices").all());
+            const Points points(vertices, "vertices");
+            self.update(points.all());
           },
           arg("vertices"),
           "Moves the control points to vertices (n, 3); faces, tags and options stay. Later queries are "
-          "about the new surface;\n"
-          "arrays that were handed out keep the old one's memory. For now the surface is made anew.\n"
-          "Raises as Surface does, and then nothing has changed.")
+          "about the new surface,\n"
+          "whose tree is refitted; arrays that were handed out keep the old one's memory.\n"
+          "Raises ValueError, MeshError, and then nothing has changed.")
       .def("__repr__",
            [](const PySurface& self) {
              const Surface& s = self.surface();
@@ -499,9 +506,9 @@ void add_surface(py::module_& module) {
   module.def("read", &read, arg("path"), py::kw_only(), arg("scheme") = "auto", arg("boundary") = none,
              arg("sharp") = none, arg("weld") = none, arg("bounds") = "rows", arg("tight") = false,
              arg("threads") = 0, arg("progress") = none,
-             "The limit surface of a mesh file: OBJ, OFF, PLY or STL. Keywords are those of Surface and come "
-             "before the\n"
-             "file's own rules. Notes of the reader become MeshWarnings.\n\n"
+             "The limit surface of a mesh file: OBJ, OFF, PLY, STL, USD (.usda) or glTF (.glb). Keywords are "
+             "those of Surface\n"
+             "and come before the file's own rules. Notes of the reader become MeshWarnings.\n\n"
              "Raises FileError (.filename, .line), MeshError, ValueError.");
   add_point_queries(surface, module);
   add_shapes(surface, module);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include <snug/ray.h>
@@ -14,18 +15,32 @@ namespace snug::python {
 class PySurface {
  public:
   PySurface(ControlMesh mesh, const SurfaceOptions& options);
+  /// The same surface; each of the two is updated by itself.
+  PySurface(const PySurface& other);
+  PySurface& operator=(const PySurface&) = delete;
 
-  [[nodiscard]] const Surface& surface() const { return surface_; }
+  /// Errors:    TypeError for an object whose __init__ never ran.
+  [[nodiscard]] const Surface& surface() const {
+    if (!surface_.data()) throw py::type_error("this Surface was not made: its __init__ has not run");
+    return surface_;
+  }
   [[nodiscard]] const SurfaceOptions& options() const { return options_; }
-  /// The surface of the same faces, tags and options with these control points.
-  /// Errors:    those of Surface; nothing is changed then.
+  /// The surface of the same faces, tags and options with these control points. Without the GIL.
+  /// Errors:    those of MovingSurface; nothing is changed then.
   void update(std::span<const Point3> points);
   /// Made on first use, and anew for another tolerance or after an update.
   [[nodiscard]] std::shared_ptr<const RayCaster> caster(double tolerance, int threads);
 
  private:
+  struct Moving {
+    explicit Moving(const Surface& first) : frames(first) {}
+    std::mutex mutex;
+    MovingSurface frames;
+  };
+
   Surface surface_;
   SurfaceOptions options_;
+  std::shared_ptr<Moving> moving_;  // made by the first update()
   std::shared_ptr<const RayCaster> caster_;
   double caster_tolerance_ = 0;
 };
@@ -33,6 +48,12 @@ class PySurface {
 /// A control mesh as a value, such as one that was subdivided.
 struct PyMesh {
   ControlMesh mesh;
+
+  /// Errors:    TypeError for an object that __new__ alone made.
+  [[nodiscard]] const ControlMesh& whole() const {
+    if (mesh.face_offsets.empty()) throw py::type_error("this Mesh was not made: subdivided() makes meshes");
+    return mesh;
+  }
 };
 
 void add_errors(py::module_& module);
@@ -43,6 +64,8 @@ void add_shapes(py::class_<PySurface>& surface, py::module_& module);
 
 /// Raises snug.UndecidedError.
 [[noreturn]] void refuse_undecided(const std::string& message);
+/// Text that may have the name of a file in it, whose bytes need not be UTF-8.
+[[nodiscard]] py::object file_text(const std::string& bytes);
 /// Issues a snug.MeshWarning for each line.
 void warn(const std::vector<std::string>& lines);
 

@@ -119,6 +119,12 @@ TEST(handles, know_inside_from_outside) {
   EXPECT_EQ(*inside, signed_one.distance.upper < 0);
   EXPECT_EQ(signed_distances(ball, std::vector{middle})[0].distance, signed_one.distance);
   EXPECT_EQ(contains(ball, {1e3, 0, 0}), false);
+  const std::vector<Point3> several{middle, {1e3, 0, 0}, {0, 1e-3, 0}};
+  for (const int threads : {1, 2}) {
+    const std::vector<std::optional<bool>> answers = contains(ball, several, threads);
+    ASSERT_EQ(answers.size(), several.size());
+    for (std::size_t i = 0; i < several.size(); ++i) EXPECT_EQ(answers[i], contains(ball, several[i]));
+  }
   const Penetration deep = penetration(ball, ball.at(Motion::translation({0.01 * ball.size(), 0, 0})));
   EXPECT_GT(deep.depth.upper, 0);
   EXPECT_EQ(collide(ball,

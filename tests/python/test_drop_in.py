@@ -196,8 +196,49 @@ def test_shapes_are_refused(pawn, points):
 
 
 def test_odd_transforms_are_refused(manager):
+    """At once: boxes that they place would rule pairs out, and nobody would be asked."""
     with pytest.raises(ValueError, match="shape"):
         manager.add_object("odd", cube(), np.eye(3))
-    manager.add_object("sheared", cube(), np.eye(4) + np.eye(4, k=1) * 0.1)
-    with pytest.raises(snug.PoseError):
-        manager.in_collision_internal(return_names=True)
+    far = moved(1000.0)
+    for wrong in (np.eye(4) + np.eye(4, k=1) * 0.1, np.full((4, 4), np.nan), 2 * far, far @ np.diag([1.0, 1, -1, 1])):
+        for attempt in (
+            lambda: manager.add_object("odd", cube(), wrong),
+            lambda: manager.set_transform("left", wrong),
+            lambda: manager.in_collision_single(cube(), wrong),
+            lambda: manager.min_distance_single(cube(), wrong),
+        ):
+            with pytest.raises(snug.PoseError):
+                attempt()
+    assert manager.in_collision_internal(return_names=True) == (True, {("left", "middle")})
+
+
+def test_transforms_in_single_precision():
+    turned = moved(1.5)
+    turned[:2, :2] = [[np.cos(1), -np.sin(1)], [np.sin(1), np.cos(1)]]
+    turned = turned.astype(np.float32)
+    with pytest.raises(snug.PoseError, match="'a'"):
+        snug.CollisionManager().add_object("a", cube(), turned)
+    manager = snug.CollisionManager(rigid="nearest")
+    manager.add_object("a", cube(), turned)
+    assert manager.in_collision_single(cube()) is True
+
+
+def test_other_names_of_trimesh(pawn):
+    points = np.random.default_rng(5).normal(scale=2, size=(40, 3))
+    for x, y in zip(proximity.closest_point_naive(pawn, points), proximity.closest_point(pawn, points)):
+        np.testing.assert_array_equal(x, y)
+    near, face = proximity.nearby_faces(pawn, points), proximity.closest_point(pawn, points)[2]
+    assert all(f in faces for f, faces in zip(face, near)) and sum(map(len, near)) < 40 * len(pawn.faces) / 2
+
+
+def test_a_scene():
+    class Graph(dict):
+        nodes_geometry = ["one", "two", "far"]
+
+    class Scene:
+        geometry = {"box": cube()}
+        graph = Graph(one=(moved(), "box"), two=(moved(1.5), "box"), far=(moved(9), "box"))
+
+    manager, objects = snug.collision.scene_to_collision(Scene())
+    assert set(objects) == {"one", "two", "far"} and objects["one"] is objects["far"]
+    assert manager.in_collision_internal(return_names=True) == (True, {("one", "two")})

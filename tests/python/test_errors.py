@@ -1,6 +1,7 @@
 """What is refused: with which exception, and what it names."""
 
 import copy
+import os
 import pickle
 
 import numpy as np
@@ -53,6 +54,50 @@ def test_a_file_error_names_file_and_line(tmp_path):
     for wrong in ("a\0b.obj", 3, None):
         with pytest.raises((ValueError, TypeError)):
             snug.read(wrong)
+
+
+def test_a_mesh_error_of_a_file_names_no_element_of_its_name(tmp_path):
+    broken = tmp_path / "face 7, edge (1, 2).off"
+    broken.write_text("OFF 3 1 0\n0 0 0\n1 0 0\n0 nan 0\n3 0 1 2\n")
+    with pytest.raises((snug.MeshError, snug.FileError)):
+        snug.read(broken)
+    broken.write_text("OFF 4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 0 2\n")
+    with pytest.raises(snug.MeshError) as caught:
+        snug.read(broken)
+    assert caught.value.filename == str(broken) and str(broken) in str(caught.value)
+    assert caught.value.elements and ("face", 7) not in caught.value.elements and ("edge", (1, 2)) not in caught.value.elements
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert (str(again), again.filename, again.elements) == (str(caught.value), str(broken), caught.value.elements)
+
+
+def test_names_of_files_may_have_any_bytes(tmp_path):
+    name = os.fsencode(tmp_path) + b"/\xff.off"
+    with pytest.raises(snug.FileError) as caught:
+        snug.read(name)
+    assert os.fsencode(caught.value.filename) == name
+    tagged = snug.Surface(CUBE, CUBE_FACES, creases=[(0, 1, 2.5)])
+    with pytest.warns(snug.MeshWarning):
+        tagged.write(name)
+    np.testing.assert_array_equal(snug.read(name).vertices, CUBE)
+
+
+def test_objects_that_were_never_made():
+    """__new__ alone: pybind11 would show memory as it is."""
+    with pytest.raises(TypeError, match="__init__"):
+        snug.Surface.__new__(snug.Surface).closest_point([1, 2, 3])
+    for name in snug.__all__:
+        cls = getattr(snug, name)
+        if not isinstance(cls, type) or cls.__module__ != "snug" or issubclass(cls, Exception):
+            continue
+        for member in dir(cls):
+            thing = cls.__new__(cls)
+            try:
+                value = getattr(thing, member)
+                repr(value)
+                if callable(value) and not member.startswith("__"):
+                    value(*[[[1, 2, 3]]] * (member in ("update", "closest_point", "signed_distance", "contains")))
+            except (TypeError, ValueError, AttributeError, IndexError):
+                pass
 
 
 def test_a_pose_error_is_pickled():

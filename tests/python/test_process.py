@@ -69,6 +69,17 @@ def test_progress(cube):
         cube.tessellate("0.01%", progress=fail)
     with pytest.raises(LookupError):
         snug.collide(cube, cube, pose_b=[moved(3)] * 5000, progress=fail)
+    many = np.zeros(300_000)
+    for work in (
+        lambda progress: cube.evaluate(np.zeros(len(many), int), many, many, progress=progress),
+        lambda progress: cube.cast_rays(np.full((len(many), 3), 9.0), [0, 0, -1], certified=False, progress=progress),
+        lambda progress: cube.contains(np.full((len(many), 3), [0.3, 0.2, 0.1]), progress=progress),
+    ):
+        seen.clear()
+        work(seen.append)
+        assert seen and all(0 <= done <= 1 for done in seen)
+        with pytest.raises(LookupError, match="enough"):
+            work(fail)
     # A query within the callback.
     cube.tessellate("0.5%", progress=lambda done: cube.contains([0, 0, 0]))
 
@@ -91,7 +102,9 @@ LONG = """
 
 def interrupted(handler="", error="MemoryError"):
     program = textwrap.dedent(LONG).format(model=str(MODELS / "bust.obj"), handler=handler, error=error)
-    process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+    # As from a terminal: what a shell puts into the background ignores SIGINT.
+    heard = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)  # noqa: E731
+    process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, preexec_fn=heard)
     watch = threading.Timer(30, process.kill)
     watch.start()
     assert process.stdout.readline() == "ready\n"

@@ -35,6 +35,8 @@ def test_many_verdicts(bracket, pin):
         for name in ("lower", "upper", "points", "faces", "parameters", "point_error", "stats", "verdict"):
             np.testing.assert_equal(getattr(hits[i], name), getattr(one, name))
             np.testing.assert_equal(getattr(hits, name)[i], getattr(one, name))
+    for rows in (slice(10, 20), slice(None, None, -7), slice(100, 200)):
+        np.testing.assert_array_equal(hits[rows].lower, hits.lower[rows])
     with pytest.raises(IndexError):
         hits[60]
     some = snug.collide(bracket, pin, pose_b=poses, tolerance=0, budget=0)
@@ -59,6 +61,15 @@ def test_every_form_of_pose(bracket, pin):
     assert len(snug.distance(bracket, pin, pose_a=moved(), pose_b=[pose] * 3)) == 3
     assert len(snug.distance(bracket, pin, pose_a=[moved()] * 3, pose_b=pose)) == 3
     assert (snug.distance(bracket, pin, pose_a=[moved()] * 3, pose_b=[pose] * 3).lower == expected).all()
+    pairs = [(quaternion, move), (np.array([1.0, 0, 0, 0]), [9, 0, 0])]
+    of_pairs = snug.distance(bracket, pin, pose_b=pairs)
+    assert list(of_pairs.lower) == [snug.distance(bracket, pin, pose_b=pair).lower for pair in pairs]
+    assert (snug.distance(bracket, pin, pose_b=[(pose[:3, :3], move)] * 2).lower == expected).all()
+    with pytest.raises(ValueError, match="not both"):
+        snug.distance(bracket, pin, pose_b=[(quaternion, move), pose])
+    for wrong in ([(quaternion, move), (pose[:3, :3], move)], [(quaternion, move, 1)], [((1, 2), move)], [(quaternion, "x")]):
+        with pytest.raises((ValueError, TypeError)):
+            snug.distance(bracket, pin, pose_b=wrong)
     for wrong in (np.eye(3), np.zeros((2, 2, 4, 4)), (quaternion, [move]), (pose, move), (pose[:3, :3],), 3, "abc", [[1], [1, 2]]):
         with pytest.raises((ValueError, TypeError)):
             snug.collide(bracket, pin, pose_b=wrong)
@@ -71,7 +82,7 @@ def test_poses_that_are_not_rigid(bracket, pin):
     bent[0, 0] += 1e-6
     with pytest.raises(snug.PoseError, match=r"pose_b\[1\].*nearest") as caught:
         snug.collide(bracket, pin, pose_b=[turned(30), bent])
-    assert caught.value.defect == pytest.approx(2 * np.cos(np.pi / 6) * 1e-6, rel=1e-3)
+    assert caught.value.defect == pytest.approx(2 * np.cos(np.pi / 6) * 1e-6, rel=1e-3) and "--" not in str(caught.value)
     mended = snug.collide(bracket, pin, pose_b=bent, rigid="nearest")
     assert mended.upper == pytest.approx(snug.collide(bracket, pin, pose_b=turned(30, 3)).upper, abs=1e-5)
     mirrored = np.diag([1.0, 1, -1, 1])
@@ -124,6 +135,8 @@ def test_points(cube):
     one = cube.closest_point(points[3], relative=1e-6)
     assert one.lower == near.lower[3] and one.face == near.face[3] and isinstance(one.lower, float) and isinstance(one.face, int)
     signed, inside = cube.signed_distance(points), cube.contains(points)
+    np.testing.assert_array_equal(cube.contains(points, threads=1).inside, inside.inside)
+    assert [bool(cube.contains(p)) for p in points[:50]] == inside.inside[:50].tolist()
     decided = ~inside.undecided
     assert decided.all() and ((signed.upper < 0) <= inside.inside).all() and ((signed.lower > 0) <= inside.outside).all()
     assert cube.contains([0, 0, 0]) and not cube.contains([3, 0, 0])
@@ -140,6 +153,9 @@ def test_points(cube):
 def test_points_are_not_copied(cube):
     points = np.random.default_rng(1).uniform(-2, 2, (100, 3))
     expected = cube.closest_point(points).lower
+    for one in (points[3].tolist(), tuple(points[3]), points[3], list(points[3])):
+        assert cube.closest_point(one).lower == expected[3]
+    assert cube.closest_point([1, -2, 3.5]).lower == cube.closest_point(np.array([1.0, -2, 3.5])).lower
     for same in (points.astype(">f8"), np.asfortranarray(points), points.tolist(), np.hstack([points, points])[:, :3]):
         np.testing.assert_array_equal(cube.closest_point(same).lower, expected)
 
@@ -171,8 +187,11 @@ def test_evaluate(cube):
     np.testing.assert_allclose(one.position, [-0.6875, 0, 0], atol=1)
     np.testing.assert_allclose(np.abs(one.normal), [1, 0, 0], atol=1e-9)
     assert one.tangents.shape == (2, 3) and one.differentiable and one.error < 1e-12
+    for same in ((np.int8(0), np.float32(0.5), 0.5), (np.array(0), 0.5, np.float64(0.5)), (0, 0.5, 0.5, np.uint8(0))):
+        np.testing.assert_array_equal(cube.evaluate(*same).position, one.position)
+    np.testing.assert_array_equal(cube.evaluate(0, 0, 1).position, cube.evaluate(0, 0.0, 1.0).position)
     many = cube.evaluate([0, 1], 0.5, [0.5, 0.5])
     np.testing.assert_array_equal(many.position[0], one.position)
-    for wrong in ((6, 0.5, 0.5), (0, 2, 0), (0, np.nan, 0), (-1, 0, 0), (0.5, 0, 0), ([[0]], 0, 0), ([0, 1], [0, 0, 0], 0)):
-        with pytest.raises((ValueError, TypeError)):
+    for wrong in ((6, 0.5, 0.5), (2**32 - 1, 0, 0), (2**70, 0, 0), (0, 0, 10**400), (0, 0, 0, 9), (0, 0, 0, -1), (0, 2, 0), (0, np.nan, 0), (-1, 0, 0), (0.5, 0, 0), ([[0]], 0, 0), ([0, 1], [0, 0, 0], 0)):
+        with pytest.raises((ValueError, TypeError, OverflowError)):
             cube.evaluate(*wrong)

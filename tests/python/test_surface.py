@@ -47,6 +47,13 @@ def test_faces_of_several_sizes():
     faces = [list(face) for face in CUBE_FACES if list(face) != [1, 5, 7, 3]] + [[1, 5, 8], [5, 7, 8], [7, 3, 8], [3, 1, 8]]
     made = snug.Surface(vertices, faces)
     assert [list(face) for face in made.faces] == faces and made.is_closed
+    for same in (tuple(map(tuple, faces)), [np.array(face) for face in faces], [np.array(face, np.uint8) for face in faces], iter(faces),
+                 [np.array(faces[0], "u1"), *faces[1:]], [[np.int8(i) for i in face] for face in faces], np.array([*map(list, faces)], object)):
+        assert [list(face) for face in snug.Surface(vertices, same).faces] == faces
+    for wrong, error, said in (([[0, 1, 2], [0, -1, 2]], ValueError, "face 1 has the index -1"), ([[0, 1, 2], [0, 1, 10**30]], ValueError, "face 1"),
+                               ([[0, 1, 2], [0, 1.5, 2]], TypeError, "face 1"), ([[0, 1, 2], [True, False, True]], TypeError, "face 1")):
+        with pytest.raises((error, TypeError), match=said):
+            snug.Surface(vertices, wrong)
 
 
 def test_objects_with_meshes(cube):
@@ -64,6 +71,9 @@ def test_objects_with_meshes(cube):
     assert snug.Surface(cube.subdivided(1)).is_closed
     with pytest.raises(TypeError, match="neither"):
         snug.Surface(object())
+    meshio.cells.append(types.SimpleNamespace(type="quad8", data=np.zeros((3, 8), int)))
+    with pytest.warns(snug.MeshWarning, match="quad8 are left out: 3"):
+        snug.Surface(meshio)
 
 
 def test_tags():
@@ -85,6 +95,11 @@ def test_update(cube):
     np.testing.assert_array_equal(cube.vertices, CUBE * 2)
     assert cube.closest_point([9, 0, 0]).upper < far.lower
     assert copied.closest_point([9, 0, 0]).lower == far.lower
+    for other, points in ((copied, CUBE * 4), (cube, CUBE * 3), (copied, CUBE), (cube, CUBE * 2)):  # each by itself
+        other.update(points)
+        np.testing.assert_array_equal(other.vertices, points)
+    assert copied.closest_point([9, 0, 0]).lower == far.lower
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(cube)).vertices, CUBE * 2)
     quick = cube.cast_rays([0, 0, 9], [0, 0, -1], certified=False, tolerance=1e-3).t
     cube.update(CUBE)
     assert cube.cast_rays([0, 0, 9], [0, 0, -1], certified=False, tolerance=1e-3).t > quick + 0.5
@@ -126,8 +141,41 @@ def test_pickle_and_copies(bracket, pin):
         snug.Collision.__new__(snug.Collision).__setstate__(("0", 1, True, b""))
 
 
+def properties(answer):
+    return {
+        name: getattr(answer, name)
+        for name in dir(type(answer))
+        if not name.startswith("_") and isinstance(getattr(type(answer), name), property)
+    }
+
+
+def test_every_answer_is_pickled_and_copied(cube):
+    one, many = [0.25, 0.5, 3.0], [[0.25, 0.5, 3.0], [0, 0, 0.1]]
+    hulls = cube.hull("5%")
+    answers = [
+        cube.bound(level=1), cube.bound(tolerance="5%"), cube.tessellate("5%", corners=True), hulls, hulls.inner, cube.hull("5%", inner=False),
+        cube.measure(), snug.Surface(CUBE, CUBE_FACES[1:]).measure(), snug.deviation(cube, cube.tessellate("5%"), solid=True),
+        snug.deviation(cube, cube).from_surface, cube.evaluate(0, 0.5, 0.5), cube.evaluate([0, 1], 0.25, 0.5),
+    ]
+    for points in (one, many, np.empty((0, 3))):
+        answers += [cube.closest_point(points), cube.signed_distance(points), cube.contains(points)]
+        answers += [cube.cast_rays(points, [0, 0, -1], query="all"), cube.cast_rays(points, [0, 0, -1], certified=False)]
+    for answer in answers:
+        for again in (pickle.loads(pickle.dumps(answer)), pickle.loads(pickle.dumps(answer, protocol=5)), copy.copy(answer), copy.deepcopy(answer)):
+            assert type(again) is type(answer) and repr(again) == repr(answer)
+            for (name, x), (_, y) in zip(properties(answer).items(), properties(again).items()):
+                if type(x).__module__ == "snug":  # hulls within hulls
+                    np.testing.assert_equal(properties(x), properties(y), name)
+                else:
+                    np.testing.assert_equal(x, y, name)
+    for cls in (type(cube.bound()), snug.Tessellation, snug.Hulls, snug.RayHits, snug.Measures):
+        for state in ((), ("0", 1, b""), (snug.__version__, 1, ())):
+            with pytest.raises((ValueError, TypeError)):
+                cls.__new__(cls).__setstate__(state)
+
+
 def test_files(tmp_path, cube):
-    for name in ("a.obj", "b.off", "c.ply", "ä.obj"):
+    for name in ("a.obj", "b.off", "c.ply", "d.usda", "ä.obj"):
         cube.write(tmp_path / name)
         np.testing.assert_array_equal(snug.read(tmp_path / name).vertices, CUBE)
     tagged = snug.Surface(CUBE, CUBE_FACES, creases=[(0, 1, 2.5)], boundary="edge-only")
@@ -178,6 +226,17 @@ def test_view(cube, tmp_path):
     assert (tmp_path / "page.html").read_text() == page.html and "v 1 1 1" not in page.html
     assert page.html.startswith("<p><script") and page.html.endswith("</script></p>") and "separated" in page.html
     assert page._repr_html_().startswith("<iframe srcdoc=") and repr(page).startswith("<snug.Page")
+    turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    for pose in ((turn, [9, 0, 0]), ([np.sqrt(0.5), 0, 0, np.sqrt(0.5)], [9, 0, 0]), np.hstack([turn, [[9], [0], [0]]])):
+        assert '"place": [' in snug.view(cube, poses=[pose], template=template).html
+    for wrong in (np.eye(3), "abc", np.eye(4)[None]):
+        with pytest.raises((ValueError, TypeError), match=r"poses\[0\]"):
+            snug.view(cube, poses=[wrong], template=template)
+    with pytest.raises(snug.PoseError, match=r"poses\[1\]"):
+        snug.view(cube, cube, poses=[None, 2 * np.eye(4)], template=template)
+    with pytest.raises(snug.FileError) as caught:
+        snug.view(cube, template=template, path=tmp_path / "no" / "page.html")
+    assert caught.value.filename == str(tmp_path / "no" / "page.html")
     with pytest.raises(TypeError):
         snug.view(hit, cube, template=template)
     with pytest.raises(snug.FileError, match="make page"):

@@ -1,14 +1,17 @@
 """The types that the package declares: complete, true to the module, and enough for mypy --strict."""
 
 import importlib.util
+import inspect
 import os
 import pathlib
+import pydoc
 import subprocess
 import sys
 
 import pytest
 
 import snug
+from conftest import CUBE, CUBE_FACES
 
 HERE = pathlib.Path(__file__).resolve().parent
 PACKAGE = pathlib.Path(snug.__file__).parent.parent
@@ -40,6 +43,21 @@ def test_declarations_are_true(tmp_path):
                            "--ignore-unused-allowlist"],
                           env=ENVIRONMENT, capture_output=True, text=True, cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_help_shows_names_and_defaults():
+    assert str(inspect.signature(snug.Surface)).startswith("(vertices, faces=None, *, scheme='auto', creases=None")
+    assert str(inspect.signature(snug.Surface.hull)).startswith("(self, tolerance, *, inner=True")
+    cube = snug.Surface(CUBE, CUBE_FACES)
+    assert str(inspect.signature(cube.contains)) == "(points, *, threads=0, progress=None)"
+    assert "tolerance='0.1%'" in pydoc.plain(pydoc.render_doc(snug.collide)) and snug.collide.__doc__.startswith("Do two")
+    for name in snug.__all__:
+        thing = getattr(snug, name)
+        if inspect.isbuiltin(thing):
+            inspect.signature(thing)
+        for member in vars(thing) if isinstance(thing, type) else ():
+            if not member.startswith("_") and callable(getattr(thing, member)):
+                inspect.signature(getattr(thing, member))
 
 
 def test_every_name_is_explained():

@@ -292,7 +292,8 @@ TEST(self_near, does_not_depend_on_threads_scale_or_place) {
 
 TEST(self_near, refuses_lengths_that_are_none) {
   const oracle::TaggedMesh mesh = meshes::cube();
-  constexpr double infinite = std::numeric_limits<double>::infinity(), none = std::numeric_limits<double>::quiet_NaN();
+  constexpr double infinite = std::numeric_limits<double>::infinity(),
+                   none = std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> lengths{none, infinite, -infinite, -1, -0.0, 0, 1e-320, 0.1, 1, 1e300, 1.7e308};
   std::vector<std::optional<double>> all{std::nullopt};
   all.insert(all.end(), lengths.begin(), lengths.end());

@@ -99,6 +99,11 @@ std::optional<bool> contains(const Surface& surface, const Point3& point, const 
   return contains(workspace.pieces().of(surface), point, monitor);
 }
 
+std::vector<std::optional<bool>> contains(const Surface& surface, std::span<const Point3> points, int threads,
+                                          const WorkMonitor& monitor) {
+  return contains(bvh(surface), points, threads, monitor);
+}
+
 SignedDistance signed_distance(const Surface& surface, const Point3& point, const ClosestOptions& options,
                                const WorkMonitor& monitor, Workspace& workspace) {
   return signed_distance(workspace.pieces().of(surface), point, options, monitor);

@@ -207,6 +207,16 @@ std::vector<ClosestPoint> closest_points(const SurfaceBvh& model, std::span<cons
   return results;
 }
 
+std::vector<std::optional<bool>> contains(const SurfaceBvh& model, std::span<const Point3> points,
+                                          int threads, const WorkMonitor& monitor) {
+  static_cast<void>(model.solid());
+  std::vector<std::optional<bool>> results(points.size());
+  for_each_point(model, points, threads, monitor, [&](SurfaceWorkspace& workspace, std::size_t i) {
+    results[i] = contains(workspace, points[i], monitor);
+  });
+  return results;
+}
+
 std::vector<SignedDistance> signed_distances(const SurfaceBvh& model, std::span<const Point3> points,
                                              const ClosestOptions& options, int threads,
                                              const WorkMonitor& monitor) {

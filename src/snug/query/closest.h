@@ -14,6 +14,9 @@ namespace snug {
 
 [[nodiscard]] std::optional<bool> contains(SurfaceWorkspace& workspace, const Point3& point,
                                            const WorkMonitor& monitor = {});
+[[nodiscard]] std::vector<std::optional<bool>> contains(const SurfaceBvh& model,
+                                                        std::span<const Point3> points, int threads = 0,
+                                                        const WorkMonitor& monitor = {});
 
 [[nodiscard]] SignedDistance signed_distance(SurfaceWorkspace& workspace, const Point3& point,
                                              const ClosestOptions& options, const WorkMonitor& monitor = {});

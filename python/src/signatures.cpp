@@ -1,0 +1,80 @@
+#include "signatures.h"
+
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+namespace snug::python {
+namespace {
+
+using Record = py::detail::function_record;
+
+/// What pybind11 keeps about a function; null for what it did not make, and for overloads.
+const Record* record_of(py::handle object) {
+  const py::handle function = py::detail::get_function(object);
+  if (!function || PyCFunction_Check(function.ptr()) == 0) return nullptr;
+  const py::handle self = PyCFunction_GET_SELF(function.ptr());
+  if (!self || !py::isinstance<py::capsule>(self)) return nullptr;
+  const Record* const record = py::reinterpret_borrow<py::capsule>(self).get_pointer<Record>();
+  return record->next == nullptr && !record->has_args && !record->has_kwargs ? record : nullptr;
+}
+
+/// "(vertices, faces=None, *, scheme='auto')", from the argument `first` on.
+std::string parameters_of(const Record& record, std::size_t first) {
+  std::string text = "(";
+  const auto add = [&](const std::string& word) { text += (text.size() > 1 ? ", " : "") + word; };
+  if (record.args.empty()) {  // no names were declared
+    for (std::size_t i = first; i < record.nargs; ++i)
+      add(i == 0 && record.is_method ? "self" : "_" + std::to_string(i));
+    return text + ")";
+  }
+  for (std::size_t i = first; i < record.args.size(); ++i) {
+    if (i == record.nargs_pos) add("*");
+    const py::detail::argument_record& argument = record.args[i];
+    add(std::string(argument.name) + (argument.value ? std::string("=") + argument.descr : ""));
+  }
+  return text + ")";
+}
+
+/// How CPython keeps a signature: before the text, which it tells apart from it.
+std::string with_signature(const std::string& name, const std::string& parameters, const char* text) {
+  return name + parameters + "\n--\n\n" + (text != nullptr ? text : "");
+}
+
+void sign(py::handle object) {
+  const Record* const record = record_of(object);
+  if (record == nullptr) return;
+  const std::string text = with_signature(record->name, parameters_of(*record, 0), record->def->ml_doc);
+  std::free(const_cast<char*>(record->def->ml_doc));  // NOLINT: as pybind11 does, who made it by strdup()
+  record->def->ml_doc = strdup(text.c_str());
+}
+
+/// A class is called as its constructor is.
+void sign_class(py::handle cls) {
+  const Record* const record = record_of(cls.attr("__init__"));
+  auto* const type = reinterpret_cast<PyTypeObject*>(cls.ptr());  // NOLINT
+  if (record == nullptr || type->tp_doc == nullptr) return;
+  const std::string text = with_signature(record->scope.attr("__name__").cast<std::string>(),
+                                          parameters_of(*record, 1), type->tp_doc);
+  auto* const kept = static_cast<char*>(PyObject_Malloc(text.size() + 1));
+  if (kept == nullptr) throw std::bad_alloc();
+  std::memcpy(kept, text.c_str(), text.size() + 1);
+  PyObject_Free(const_cast<char*>(type->tp_doc));  // NOLINT: a class of Python's heap owns it
+  type->tp_doc = kept;
+}
+
+}  // namespace
+
+void add_signatures(const py::module_& module) {
+  for (const auto& [name, thing] : py::reinterpret_borrow<py::dict>(module.attr("__dict__"))) {
+    sign(thing);
+    if (!py::isinstance<py::type>(thing)) continue;
+    for (const auto& item : py::dict(thing.attr("__dict__"))) {
+      const auto member = item.first.cast<std::string>();
+      if (member == "__init__") sign_class(thing);
+      if (!member.starts_with("_") || member == "__init__") sign(item.second);
+    }
+  }
+}
+
+}  // namespace snug::python
