@@ -453,7 +453,8 @@ TEST(time_of_contact, of_thousands_of_poses_is_found_at_the_end_of_the_path) {
   Part a = box(1, 1, 1), b = box(0.5, 0.5, 0.5);
   const auto path = [](double from, double to) {
     std::vector<Motion> poses;
-    for (int i = 0; i <= 2500; ++i) poses.push_back(Motion::translation({from + (to - from) * i / 2500, 0, 0}));
+    for (int i = 0; i <= 2500; ++i)
+      poses.push_back(Motion::translation({from + (to - from) * i / 2500, 0, 0}));
     return Trajectory::through(poses);
   };
   const TimeOfContact meet = ask(a, Motion(), b, path(3.5, 1.4), {.tolerance = 1e-4});

@@ -170,6 +170,7 @@ class Query {
     const Collision found = collide(at.a, at.b, wanted, monitor_);
     count(found.stats);
     if (found.verdict == Verdict::intersecting) return true;
+    if (enlarged(found.distance.upper + at.doubt()) <= tolerance_) within_ = std::min(within_, time);
     return found.verdict != Verdict::separated && (options_.solid || outside()) &&
            common_point(at.a, at.b, monitor_).inner.has_value();
   }
@@ -393,10 +394,10 @@ class Query {
   double lower_ = 0;
   // The first times known with contact at or before, within the tolerance, and of which nothing can be told.
   double crossing_ = INFINITY, within_ = INFINITY, blocked_ = INFINITY;
-  double blocked_to_ = 0;     // the last of these
-  std::vector<Look> ahead_;   // times without contact beyond lower_, the first one last
-  std::optional<Look> last_;  // the last one that raised it
-  double closing_ = 1;        // share of speed_ at which the distance shrank
+  double blocked_to_ = 0;                          // the last of these
+  std::vector<Look> ahead_;                        // times without contact beyond lower_, the first one last
+  std::optional<Look> last_;                       // the last one that raised it
+  double closing_ = 1;                             // share of speed_ at which the distance shrank
   int looks_ = 0, looks_before_ = 0, blocks_ = 0;  // before: until the piece began
   bool probed_ = false, over_ = false;
   bool apart_ = false;           // at first, as surfaces
