@@ -264,7 +264,7 @@ Command contact_command() {
   add_pair_options(list, *options, false);
   return {"contact",
           Topic::two_surfaces,
-          "When do two moving limit surfaces first touch? Never later than told",
+          "When do two moving limit surfaces first touch? The time told is never too late",
           {"snug contact pawn.obj bust.obj --move-b \"3 0 0\" --velocity-b \"-3 0 0\" --spin-b \"z 90\"",
            "snug contact ball.obj hand.obj --deform-b closed_hand.obj"},
           std::move(list),

@@ -80,7 +80,7 @@ struct TimeOfContactOptions {
   bool solid = false;  ///< of the solids that closed surfaces bound: one inside the other is in contact
   bool prove_contact = true;       ///< before returning `within`, try to prove `intersecting`
   std::uint64_t budget = 100'000;  ///< most splits for each time that is looked at
-  int max_looks = 1000;            ///< most times that are looked at
+  int max_looks = 1000;            ///< most times that are looked at in each unit of time
 };
 
 /// The first contact of two moving surfaces.

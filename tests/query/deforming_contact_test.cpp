@@ -176,6 +176,23 @@ TEST(deforming_contact, of_one_that_grows_inside_the_other_is_known) {
       Verdict::separated);
 }
 
+// Curved faces that come to lie in each other are too near each other for the budget before they are within the tolerance.
+TEST(deforming_contact, has_an_upper_end_where_surfaces_come_to_lie_in_each_other) {
+  const auto round = [](double half) {
+    return testing::box({-half, -half, -half}, {half, half, half}, false);
+  };
+  const Surface a(round(1), {.scheme = Scheme::catmark}), b(round(0.1), {.scheme = Scheme::catmark});
+  const std::vector<Point3> end = round(3).points;
+  for (const std::uint64_t budget : {1'000u, 10'000u}) {
+    const TimeOfContact found =
+        time_of_contact({a}, {.surface = b, .end = end}, {.tolerance = 2e-3, .budget = budget});
+    EXPECT_LE(found.time.lower, 0.9 / 2.9);
+    EXPECT_NE(found.verdict, Verdict::undecided);
+    EXPECT_GE(found.time.upper, 0.9 / 2.9 - 1e-3);
+    EXPECT_LE(found.time.upper, 0.9 / 2.9 + 0.05);
+  }
+}
+
 TEST(deforming_contact, of_public_surfaces_is_the_same_again_and_again) {
   const Surface a(cube(1), {.scheme = Scheme::flat}), b(cube(0.5, {3, 0.1, 0.2}), {.scheme = Scheme::flat});
   const std::vector<Point3> end = cube(1.5, {3, 0.1, 0.2}).points;

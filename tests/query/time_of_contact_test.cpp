@@ -449,6 +449,49 @@ TEST(time_of_contact, that_touches_at_the_end_alone_is_not_called_separated) {
   EXPECT_EQ(short_of_it.verdict, Verdict::separated);
 }
 
+TEST(time_of_contact, of_thousands_of_poses_is_found_at_the_end_of_the_path) {
+  Part a = box(1, 1, 1), b = box(0.5, 0.5, 0.5);
+  const auto path = [](double from, double to) {
+    std::vector<Motion> poses;
+    for (int i = 0; i <= 2500; ++i)
+      poses.push_back(Motion::translation({from + (to - from) * i / 2500, 0, 0}));
+    return Trajectory::through(poses);
+  };
+  const TimeOfContact meet = ask(a, Motion(), b, path(3.5, 1.4), {.tolerance = 1e-4});
+  EXPECT_NE(meet.verdict, Verdict::undecided);
+  EXPECT_NEAR(meet.time.lower, 2500 / 2.1 * 2, 1);
+  EXPECT_EQ(ask(a, Motion(), b, path(1.6, 3)).verdict, Verdict::separated);
+}
+
+// On a path of short pieces the time at which they are near enough may lie in another piece than the end of the search.
+TEST(time_of_contact, comes_with_points_of_the_time_that_it_names) {
+  std::mt19937_64 random(6);
+  Part a = box(1, 1, 1), b = box(1, 1, 1);
+  int within = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    const std::size_t count = 10 + random() % 200;
+    const double way = 0.1 + 0.4 * unit(random);
+    std::vector<Motion> poses;
+    for (std::size_t i = 0; i <= count; ++i) {
+      const double s = static_cast<double>(i) / static_cast<double>(count);
+      poses.push_back(Motion::rotation({1, 1, 0}, 0.3 * s).with_offset({2.4 - way * s, 0.1 * s, 0.05}));
+    }
+    const Trajectory motion = Trajectory::through(poses);
+    const double tolerance = std::pow(10, -4 + 2.5 * unit(random));
+    const TimeOfContact found =
+        ask(a, Motion(), b, motion, {.tolerance = tolerance, .prove_contact = trial % 2 == 0});
+    if (found.verdict != Verdict::within) continue;
+    ++within;
+    ASSERT_TRUE(found.witness);
+    const Motion back = motion.at(found.time.upper).inverse();
+    const std::string what = "trial " + std::to_string(trial);
+    EXPECT_NEAR(max_abs((*found.witness)[0] - Point3{}), 1, 1e-12) << what;
+    EXPECT_NEAR(max_abs(back.apply((*found.witness)[1]) - Point3{}), 1, 1e-12) << what;
+    EXPECT_LE(distance((*found.witness)[0], (*found.witness)[1]), tolerance * (1 + 1e-12)) << what;
+  }
+  EXPECT_GT(within, 20);
+}
+
 TEST(time_of_contact, of_solids_counts_what_is_inside) {
   Part a = box(1, 1, 1), b = box(0.2, 0.2, 0.2);
   const Trajectory inside = translated({0.5, 0, 0}), out = translated({2, 0, 0});

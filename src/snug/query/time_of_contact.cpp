@@ -65,12 +65,17 @@ class Query {
 
  private:
   void enter_piece(std::size_t piece) {
-    first_ = static_cast<double>(piece);
-    for (MovingBody& body : body_) body.enter_piece(piece);
+    place_in_piece(piece);
     find_speed();
+    looks_before_ = looks_;
     ahead_.clear();
     last_.reset();
     closing_ = 1;
+  }
+
+  void place_in_piece(std::size_t piece) {
+    first_ = static_cast<double>(piece);
+    for (MovingBody& body : body_) body.enter_piece(piece);
   }
 
   void find_speed() {
@@ -165,6 +170,7 @@ class Query {
     const Collision found = collide(at.a, at.b, wanted, monitor_);
     count(found.stats);
     if (found.verdict == Verdict::intersecting) return true;
+    if (enlarged(found.distance.upper + at.doubt()) <= tolerance_) within_ = std::min(within_, time);
     return found.verdict != Verdict::separated && (options_.solid || outside()) &&
            common_point(at.a, at.b, monitor_).inner.has_value();
   }
@@ -194,8 +200,14 @@ class Query {
     apart_ = look.lower > 0 || clear > 0;
     if (options_.solid && !look.crossing) {
       inside_ = nesting_at_start();
-      if (inside_.inner) crossing_ = 0;
-      if (inside_.inner || (apart_ && !inside_.certain)) return true;
+      if (inside_.inner) {
+        crossing_ = 0;
+        return true;
+      }
+      if (apart_ && !inside_.certain) {
+        lower_ = 0;  // of the surfaces it may be known to be later
+        return true;
+      }
       outside_ = apart_;
     }
     take(look, duration_ > 0 ? 1 : 0);
@@ -283,7 +295,7 @@ class Query {
         if (!probed_ && options_.prove_contact && find_crossing(std::min(end, crossing_))) continue;
         if (crossing_ > end || blocks_ >= max_blocked) return false;
       }
-      if (looks_ >= options_.max_looks) return false;
+      if (looks_ - looks_before_ >= options_.max_looks) return false;
       const double before = lower_;
       const Look look = look_at(next_time(end), end);
       take(look, end);
@@ -316,7 +328,18 @@ class Query {
     return false;
   }
 
+  // Solids whose surfaces turned out to be apart at first only later: what is inside is asked now.
+  void settle_nesting() {
+    if (!options_.solid || outside_.value_or(true) || lower_ == 0) return;
+    inside_ = nesting(body_[0].at_start(), body_[1].at_start(), monitor_);
+    if (inside_.inner) crossing_ = 0;
+    if (!inside_.inner && inside_.certain) return;
+    lower_ = 0;
+    over_ = false;
+  }
+
   TimeOfContact result() {
+    settle_nesting();
     TimeOfContact answer;
     answer.looks = looks_;
     if (crossing_ < INFINITY) {
@@ -339,6 +362,8 @@ class Query {
   }
 
   void tell_witness(TimeOfContact& answer) {
+    // Surfaces may have come within the tolerance in a piece before.
+    if (answer.time.upper < first_) place_in_piece(static_cast<std::size_t>(answer.time.upper));
     const Places at = places_at(answer.time.upper);
     if (options_.solid && inside_.inner) {
       answer.witness = {inside_.point.position, inside_.point.position};
@@ -369,11 +394,11 @@ class Query {
   double lower_ = 0;
   // The first times known with contact at or before, within the tolerance, and of which nothing can be told.
   double crossing_ = INFINITY, within_ = INFINITY, blocked_ = INFINITY;
-  double blocked_to_ = 0;     // the last of these
-  std::vector<Look> ahead_;   // times without contact beyond lower_, the first one last
-  std::optional<Look> last_;  // the last one that raised it
-  double closing_ = 1;        // share of speed_ at which the distance shrank
-  int looks_ = 0, blocks_ = 0;
+  double blocked_to_ = 0;                          // the last of these
+  std::vector<Look> ahead_;                        // times without contact beyond lower_, the first one last
+  std::optional<Look> last_;                       // the last one that raised it
+  double closing_ = 1;                             // share of speed_ at which the distance shrank
+  int looks_ = 0, looks_before_ = 0, blocks_ = 0;  // before: until the piece began
   bool probed_ = false, over_ = false;
   bool apart_ = false;           // at first, as surfaces
   std::optional<bool> outside_;  // of outside(), once known

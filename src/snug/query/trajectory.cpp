@@ -39,8 +39,10 @@ IntervalVector rotated(const Motion& m, const IntervalVector& v) {
 }
 
 [[noreturn]] void refuse_range() {
-  throw InputError(InputProblem::unrepresentable,
-                   "trajectory: its poses do not fit doubles; scale the meshes and the motion down");
+  throw InputError(
+      InputProblem::unrepresentable,
+      "trajectory: poses or velocities do not fit doubles; bring meshes and motion to a moderate "
+      "scale");
 }
 
 // The unit quaternion w, x, y, z of a rotation, w not negative, to some roundings.
