@@ -66,6 +66,59 @@ TEST(dop26, no_point_reaches_farther_than_it_says) {
   }
 }
 
+// Hulls that are larger than the boxes here and smaller there, on either side of the centre, near it and far away.
+TEST(dop26, no_point_of_boxes_and_hull_reaches_farther_than_it_says) {
+  std::mt19937_64 random(27);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const double spread = std::ldexp(1.0, -static_cast<int>(random() % 40)), off = random() % 2 == 0 ? 0 : 1;
+    const Point3 from{off, 0, -off};
+    const auto point = [&](double size) {
+      return from + size * spread * Vector3{unit(random), unit(random), unit(random)};
+    };
+    std::vector<Point3> set, hull;
+    for (std::size_t i = 0; i < 1 + random() % 12; ++i) set.push_back(point(1));
+    // Around the set: each of its points is a mean of some of these.
+    for (const Point3& p : set) {
+      const Vector3 away = point(1) - from;
+      hull.push_back(p + away);
+      hull.push_back(p - away);
+    }
+    std::vector<Obb> boxes;
+    for (const Point3& p : set) boxes.push_back(box_around({p}, random() % 2 == 0));
+    for (Obb& box : boxes) {
+      for (std::size_t k = 0; k < 3; ++k)
+        box.half[k] += random() % 2 == 0 ? spread * std::fabs(unit(random)) : 0;
+    }
+    Dop26 dop(boxes, point(2));
+    const Dop26 boxes_alone = dop;
+    dop.narrow(hull);
+    EXPECT_EQ(dop.centre(), boxes_alone.centre());
+    for (int i = 0; i < 100; ++i) {
+      const Vector3 d = random_direction(random);
+      const double sum = std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z);
+      const long double slack = 16 * 0x1p-53L * sum * dop.radius();
+      // Hulls' points are rounded.
+      const double rounded = 16 * 0x1p-53 * sum;
+      for (const Point3& p : set) {
+        ASSERT_LE(exact_dot(d, p - dop.centre()), dop.reach(d) + slack + rounded) << "trial " << trial;
+        ASSERT_LE(max_abs(p - dop.centre()), dop.radius() * (1 + 0x1p-50) + 16 * 0x1p-53);
+      }
+      ASSERT_LE(dop.reach(d), boxes_alone.reach(d) + 64 * 0x1p-53 * sum * boxes_alone.radius());
+    }
+  }
+}
+
+// An edge's reach from the boxes, and those of its two axes from boxes and hull.
+TEST(dop26, no_direction_reaches_farther_than_its_axes) {
+  const Obb box = box_around({{-1, -9, -1}, {1, 9, 1}}, true);
+  Dop26 dop({&box, 1}, {});
+  dop.narrow(std::vector<Point3>{{-9, -1, -9}, {9, -1, 9}, {9, 1, -9}, {-9, 1, 9}});
+  EXPECT_NEAR(dop.radius(), 1, 1e-11);
+  EXPECT_LE(dop.reach({1, 1, 0}), 2 + 1e-11);
+  EXPECT_LE(dop.reach({-1, 1, -1}), 3 + 1e-11);
+}
+
 TEST(dop26, is_as_far_as_the_points_along_its_own_directions) {
   const Obb box = box_around({{-1, -2, -3}, {1, 2, 3}}, true);
   const Dop26 dop({&box, 1}, {});
@@ -82,7 +135,10 @@ TEST(dop26, what_is_not_finite_reaches_no_number) {
   const Dop26 dop({&box, 1}, {});
   EXPECT_FALSE(std::isfinite(dop.reach({1, 2, 3})));
   EXPECT_FALSE(std::isfinite(dop.radius()));
-  EXPECT_FALSE(std::isfinite(Dop26(std::vector{Obb{}, box}, {}).reach({0, 0, -1})));
+  Dop26 narrowed(std::vector{Obb{}, box}, {});
+  EXPECT_FALSE(std::isfinite(narrowed.reach({0, 0, -1})));
+  narrowed.narrow(std::vector<Point3>{{1, 2, 3}, {-1, 0, 2}});
+  EXPECT_NEAR(narrowed.reach({0, 0, -1}), -2, 1e-12);
 }
 
 }  // namespace

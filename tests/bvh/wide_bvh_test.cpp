@@ -94,7 +94,7 @@ void expect_every_item_once(const WideBvh& tree, const std::vector<Point3>& poin
       EXPECT_LE(std::fabs(dot(tree.box().axes[k], p - tree.box().centre)), tree.box().half[k] + 1e-14);
     }
     for (const Vector3& d : {Vector3{1, 0, 0}, Vector3{-0.3, 0.4, 0.8}}) {
-      EXPECT_LE(dot(d, p - tree.box().centre), tree.dop().reach(d) * (1 + 1e-12));
+      EXPECT_LE(dot(d, p - tree.dop().centre()), tree.dop().reach(d) * (1 + 1e-12));
     }
   }
 }
@@ -110,6 +110,39 @@ TEST(bounding_tree, holds_every_item_once_below_boxes_that_contain_it) {
     for (Point3& p : far) p = Point3{1.5, -0.7, 0.1} + 0x1p-30 * (p - Point3{});
     expect_every_item_once(tree_of(far), far);
     expect_every_item_once(lazy_tree_of(far, 1), far);
+  }
+}
+
+TEST(bounding_tree, narrowed_to_a_hull_holds_every_item_and_no_more_than_the_hull) {
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> normal;
+  for (const std::size_t count : {1u, 9u, 500u}) {
+    for (const double spread : {1.0, 0x1p-30}) {
+      std::vector<Point3> points = scattered(count), hull;
+      for (Point3& p : points) p = Point3{1.5, -0.7, 0.1} + spread * (p - Point3{});
+      for (const Point3& p : points) {
+        const Vector3 away = 1e-3 * spread * Vector3{normal(random), normal(random), normal(random)};
+        hull.push_back(p + away);
+        hull.push_back(p - away);
+      }
+      // Leaves whose boxes are far too large, some without end.
+      const auto loose = [&](std::size_t leaf, std::span<const std::uint32_t> items,
+                             std::vector<Obb>& boxes) {
+        boxes.push_back({points[items[0]], Obb{}.axes, {9, 9, leaf % 7 == 6 ? INFINITY : 9}});
+      };
+      WideBvh tree(points, 1, loose), tight = tree_of(points);
+      tree.narrow(hull);
+      tight.narrow(hull);
+      expect_every_item_once(tree, points);
+      expect_every_item_once(tight, points);
+      for (const Vector3& axis : Obb{}.axes) {
+        double farthest = -INFINITY;
+        for (const Point3& p : hull) farthest = std::max(farthest, dot(axis, p - tree.dop().centre()));
+        EXPECT_NEAR(tree.dop().reach(axis), farthest, 1e-12);
+      }
+      EXPECT_LT(length(tree.box().half), 4 * spread);
+      EXPECT_LT(tree.root().size_of(0), 8 * spread);
+    }
   }
 }
 

@@ -118,5 +118,29 @@ TEST(placed_box, is_infinite_where_doubles_do_not_reach) {
   }
 }
 
+// Boxes of leaves stick out of a thin plate by more than it is thick; a vertex that no face uses is not part of it.
+TEST(placed_box, of_a_thin_wavy_plate_is_no_thicker_than_its_control_points) {
+  ControlMesh mesh;
+  constexpr std::uint32_t side = 12;
+  mesh.points.push_back({0, 0, 100});
+  for (std::uint32_t j = 0; j <= side; ++j) {
+    for (std::uint32_t i = 0; i <= side; ++i) {
+      mesh.points.push_back({0.1 * i, 0.1 * j, (i + j) % 2 == 0 ? 0.01 : -0.01});
+    }
+  }
+  const auto at = [](std::uint32_t i, std::uint32_t j) { return VertexId(1 + j * (side + 1) + i); };
+  for (std::uint32_t j = 0; j < side; ++j) {
+    for (std::uint32_t i = 0; i < side; ++i) {
+      mesh.add_face(std::array{at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  const LimitSurface surface(mesh, {.scheme = Scheme::catmark}, std::make_shared<BoundsCache>());
+  const SurfaceBvh model(surface, SurfaceBvhOptions{.threads = 1});
+  const Box3 box = placed_box(model, Motion::rotation_degrees({0, 0, 1}, 90));
+  EXPECT_NEAR(box.lower.z, -0.01, 1e-12);
+  EXPECT_NEAR(box.upper.z, 0.01, 1e-12);
+  EXPECT_NEAR(box.upper.y - box.lower.y, 1.2, 1e-12);
+}
+
 }  // namespace
 }  // namespace snug

@@ -78,7 +78,7 @@ void expect_all_inside(const SurfaceBvh& model, std::mt19937_64& random) {
       EXPECT_LE(root[0], 0);
       const Vector3 direction{testing::unit(random) - 0.5, testing::unit(random) - 0.5,
                               testing::unit(random) - 0.5};
-      EXPECT_LE(dot(direction, p - tree.box().centre), tree.dop().reach(direction) + 1e-14);
+      EXPECT_LE(dot(direction, p - tree.dop().centre()), tree.dop().reach(direction) + 1e-14);
     }
   }
 }

@@ -11,6 +11,8 @@ namespace {
 
 // Half of the places: the others are their opposites, at 26 minus theirs.
 constexpr std::size_t half = 13;
+// Those of the coordinate axes x, y and z, backwards.
+constexpr std::array<std::size_t, 3> axes{12, 10, 4};
 
 Vector3 direction_at(std::size_t place) {
   return {static_cast<double>(place % 3) - 1, static_cast<double>(place / 3 % 3) - 1,
@@ -19,7 +21,7 @@ Vector3 direction_at(std::size_t place) {
 
 }  // namespace
 
-Dop26::Dop26(std::span<const Obb> boxes, const Point3& centre) {
+Dop26::Dop26(std::span<const Obb> boxes, const Point3& centre) : centre_(centre) {
   SNUG_EXPECT(!boxes.empty());
   reach_.fill(-INFINITY);
   reach_[half] = 0;
@@ -44,9 +46,44 @@ Dop26::Dop26(std::span<const Obb> boxes, const Point3& centre) {
       reach_[26 - place] = std::max(reach_[26 - place], reach - dot(d, from));
     }
   }
-  for (const std::size_t place : {4u, 10u, 12u}) {
-    radius_ = std::max({radius_, reach_[place], reach_[26 - place]});
+  find_radius();
+}
+
+void Dop26::narrow(std::span<const Point3> hull) {
+  SNUG_EXPECT(!hull.empty());
+  std::array<Extent, half> extents;
+  for (const Point3& point : hull) {
+    const auto [x, y, z] = point - centre_;
+    // In the order of places: those of direction_at().
+    const std::array<double, half> heights{-x - y - z, -y - z,    x - y - z, -x - z, -z,    x - z, y - x - z,
+                                           y - z,      x + y - z, -x - y,    -y,     x - y, -x};
+    for (std::size_t place = 0; place < half; ++place) extents[place].add(heights[place]);
   }
+  double largest = 0;
+  for (const std::size_t place : axes) {
+    largest = std::max({largest, extents[place].upper, -extents[place].lower});
+  }
+  // Differences and two sums of what is at most three times as large.
+  const double error = 64 * unit_roundoff * largest + 16 * underflow_error;
+  for (std::size_t place = 0; place < half; ++place) {
+    reach_[place] = std::min(reach_[place], extents[place].upper + error);
+    reach_[26 - place] = std::min(reach_[26 - place], error - extents[place].lower);
+  }
+  // No reach is more than those along its axes, which may be narrower now on either account: reach() counts on it.
+  for (std::size_t place = 0; place < reach_.size(); ++place) {
+    const Vector3 d = direction_at(place);
+    double sum = error;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (d[k] != 0) sum += reach_[d[k] > 0 ? 26 - axes[k] : axes[k]];
+    }
+    if (place != half) reach_[place] = std::min(reach_[place], sum);
+  }
+  find_radius();
+}
+
+void Dop26::find_radius() {
+  radius_ = 0;
+  for (const std::size_t place : axes) radius_ = std::max({radius_, reach_[place], reach_[26 - place]});
 }
 
 }  // namespace snug

@@ -15,10 +15,14 @@ class Dop26 {
  public:
   /// Holds nothing.
   Dop26() = default;
-  /// Around one or more boxes, relative to `centre`.
+  /// Around one or more boxes, seen from `centre`.
   Dop26(std::span<const Obb> boxes, const Point3& centre);
+  /// The set lies in the convex hull of these points, too: planes beyond it move to it.
+  /// Requires:  at least one point, all finite; each may be off by underflow_error a coordinate.
+  void narrow(std::span<const Point3> hull);
 
-  /// Upper bound of dot(direction, x - centre) over the set, but for roundings.
+  [[nodiscard]] const Point3& centre() const { return centre_; }
+  /// Upper bound of dot(direction, x - centre()) over the set, but for roundings.
   ///
   /// Guarantee: the exact maximum is at most the result plus 16 u |direction|_1 radius(), for doubles between
   ///            2^-400 and 2^400 in size, or 0. Infinite or NaN where a box is not finite.
@@ -35,7 +39,7 @@ class Dop26 {
     return (s0 - s1) * reach_[static_cast<std::size_t>(axis)] +
            (s1 - s2) * reach_[static_cast<std::size_t>(edge)] + s2 * reach_[static_cast<std::size_t>(corner)];
   }
-  /// Upper bound of |x - centre| a coordinate.
+  /// Upper bound of |x - centre()| a coordinate.
   [[nodiscard]] double radius() const { return radius_; }
 
  private:
@@ -46,8 +50,11 @@ class Dop26 {
     const int first = less ? step_y : step_x, second = less ? step_x : step_y;
     x = larger, y = smaller, step_x = first, step_y = second;
   }
+  void find_radius();
+
   std::array<double, 27> reach_{};  // along (i - 1, j - 1, k - 1) at i + 3 j + 9 k
   double radius_ = 0;
+  Point3 centre_;
 };
 
 }  // namespace snug

@@ -267,8 +267,39 @@ void WideBvh::finish(const Obb& box, const Ball& ball, std::span<const Obb> part
   box_ = box;
   ball_ = ball;
   dop_ = Dop26(parts, box_.centre);
+  set_root();
+}
+
+void WideBvh::set_root() {
   const std::uint32_t name = name_of(whole());
-  root_ = TreeNode(std::span(&box, 1), std::span(&name, 1));
+  root_ = TreeNode(std::span(&box_, 1), std::span(&name, 1));
+}
+
+void WideBvh::narrow(std::span<const Point3> hull) {
+  dop_.narrow(hull);
+  std::array<Extent, 3> extents;
+  double largest = 0, radius_sq = 0;
+  for (const Point3& point : hull) {
+    for (std::size_t k = 0; k < 3; ++k) extents[k].add(dot(box_.axes[k], point - Point3{}));
+    largest = std::max(largest, max_abs(point - Point3{}));
+    radius_sq = std::max(radius_sq, length_sq(point - ball_.centre));
+  }
+  // Squares of what is shorter lose digits to the end of the range.
+  const double radius = enlarged(std::sqrt(radius_sq)) + 0x1p-480;
+  ball_.radius = std::min(ball_.radius, radius);
+  // Products and sums of three, and what axes lack of their length.
+  const double error = 64 * unit_roundoff * largest + 16 * underflow_error;
+  const bool known = std::isfinite(box_.half.x + box_.half.y + box_.half.z);
+  for (std::size_t k = 0; k < 3; ++k) {
+    extents[k] = {extents[k].lower - error, extents[k].upper + error};
+    if (!known) continue;
+    const double middle = dot(box_.axes[k], box_.centre - Point3{}),
+                 off = 64 * unit_roundoff * (max_abs(box_.centre - Point3{}) + box_.half[k]);
+    extents[k].lower = std::max(extents[k].lower, middle - box_.half[k] - off);
+    extents[k].upper = std::min(extents[k].upper, middle + box_.half[k] + off);
+  }
+  box_ = box_of(box_.axes, extents);
+  set_root();
 }
 
 WideBvh::Subtree WideBvh::subtree(std::uint32_t name) const {

@@ -43,8 +43,7 @@ struct Outline {
       : dop(placed.model.tree().dop()),
         rows{placed.pose.row(0), placed.pose.row(1), placed.pose.row(2)},
         scale(in_scale) {
-    const Vector3 local = scale * (placed.model.tree().box().centre - Point3{}),
-                  translation = world.apply(placed.pose.offset());
+    const Vector3 local = scale * (dop.centre() - Point3{}), translation = world.apply(placed.pose.offset());
     centre = Point3{} + (times(rows, local) + translation);
     size = 2 * max_abs(local) + max_abs(translation) + scale * dop.radius();
   }

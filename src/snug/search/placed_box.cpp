@@ -25,7 +25,7 @@ Box3 placed_box(const SurfaceBvh& model, const Motion& pose) {
   const PowerOfTwo scale = model.surface().scale();
   if (!scale.moderate()) return everywhere;
   const Dop26& dop = model.tree().dop();
-  const Vector3 centre = model.tree().box().centre - Point3{};
+  const Vector3 centre = dop.centre() - Point3{};
   const double back = scale.inverse_factor(), size = back * (max_abs(centre) + dop.radius());
   Box3 box;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -181,7 +181,30 @@ void SurfaceBvh::refit(SharedPlan& plan) {
   find_extents();
 }
 
+namespace {
+
+// The control points that faces use.
+std::span<const Point3> used_points(const LimitSurface& surface) {
+  const std::span<const Point3> all = surface.scaled_points();
+  if (surface.isolated().empty()) return all;
+  thread_local std::vector<Point3> used;
+  used.clear();
+  std::size_t begin = 0;
+  const auto add_up_to = [&](std::size_t end) {
+    used.insert(used.end(), all.begin() + static_cast<std::ptrdiff_t>(begin),
+                all.begin() + static_cast<std::ptrdiff_t>(end));
+    begin = end + 1;
+  };
+  for (const VertexId v : surface.isolated()) add_up_to(v.index());
+  if (begin < all.size()) add_up_to(all.size());
+  return used;
+}
+
+}  // namespace
+
 void SurfaceBvh::find_extents() {
+  // Limit points are convex combinations of control points; leaves' boxes stick out at their corners.
+  tree_.narrow(used_points(*surface_));
   const PowerOfTwo back = surface_->scale().inverse();
   const Ball scaled = tree_.ball();
   ball_ = {back.apply(scaled.centre), enlarged(back.apply(scaled.radius))};

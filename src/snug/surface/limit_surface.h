@@ -102,6 +102,8 @@ class LimitSurface {
   [[nodiscard]] const Point3& scaled_point(VertexId v) const { return scaled_[v.index()]; }
   /// Those of all vertices.
   [[nodiscard]] std::span<const Point3> scaled_points() const { return scaled_; }
+  /// Vertices that no face uses, in rising order.
+  [[nodiscard]] std::span<const VertexId> isolated() const { return layout_->isolated; }
   /// The middle of its owner's corners, in scaled units.
   [[nodiscard]] Point3 middle(PatchId p) const;
   /// The whole patch, in scaled units. InputError (value) unless has_patch(p).
@@ -132,7 +134,7 @@ class LimitSurface {
     std::shared_ptr<BoundsCache> library;
     Topology topology;
     Sharpness sharpness;
-    std::vector<VertexId> isolated;  // vertices that no face uses, in rising order
+    std::vector<VertexId> isolated;
     std::size_t patch_count = 0;
     std::vector<bool> bare;             // owners without a surface; empty where there are none
     std::vector<std::uint32_t> begins;  // first patch of each owner and the end; empty for triangles
