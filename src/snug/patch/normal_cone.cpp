@@ -84,15 +84,15 @@ class NormalBalls {
     patch.path = {};
     const auto corner = static_cast<unsigned>((tip.corner() + patch.first) % 3);
     if (!axis_) last_rings_.push_back(0);
-    unsigned& last = last_rings_[axis_ ? next_tip_++ : last_rings_.size() - 1];
+    const std::size_t place = axis_ ? next_tip_++ : last_rings_.size() - 1;
     for (unsigned ring = 0; ring < max_rings; ++ring) {
       centre_at(corner, patch);
-      if (ring >= last) {
+      if (ring >= last_rings_[place]) {
         const double far = add_lasting(tip, patch, corner);
         if (far <= 1) return true;
         if (axis_) return false;
         // What is left out shrinks to a half a level, or to more.
-        last = ring + 1 + static_cast<unsigned>(std::min(8.0, std::log2(far)));
+        last_rings_[place] = ring + 1 + static_cast<unsigned>(std::min(8.0, std::log2(far)));
       }
       for (unsigned child = 0; child < 4; ++child) {
         if (child != corner && !add(split(patch, child), levels)) return false;
