@@ -11,18 +11,18 @@ namespace snug {
 
 /// Does a surface meet itself?
 enum class SelfVerdict : std::uint8_t {
-  clear,         ///< proved: no two parameters have one point
+  clear,         ///< proved: no two parameters have the same limit point
   intersecting,  ///< proved: two pieces without a common corner cross each other
-  near,  ///< proved: two places are within the tolerance, and farther apart than the radius along the surface
+  near,  ///< proved: two points are within the tolerance, but farther apart than the radius along the surface
   undecided,  ///< none of these could be shown
 };
 [[nodiscard]] SNUG_API const char* name_of(SelfVerdict verdict);
 
 struct SelfContactOptions {
-  /// > 0, in mesh units: places at most this far apart are near each other. None: only those with one point.
+  /// > 0, in mesh units: points at most this far apart are near each other. Default: contact alone is asked about.
   std::optional<double> tolerance{};
-  /// Only places farther apart along the surface than this count as near; other components count, too. At least
-  /// twice the tolerance. Below pi/2 times it a sphere of that diameter would be near itself. Default: 4
+  /// Only points farther apart along the surface than this count as near; those of other components always do. At
+  /// least twice the tolerance; below pi/2 times it a sphere of that diameter is near itself. Default: 4
   /// tolerances.
   std::optional<double> radius{};
   std::uint64_t budget = 1'000'000;  ///< most stars and pairs of pieces looked at, about
@@ -30,7 +30,7 @@ struct SelfContactOptions {
   int threads = 0;                   ///< 0: all cores
 };
 
-/// Two places of a surface that meet or are near each other, or are not known not to.
+/// Two places of a surface that meet, are near each other, or could not be proved apart.
 struct SelfContactPair {
   SelfVerdict verdict = SelfVerdict::undecided;  ///< all but clear
   std::array<SurfaceParameter, 2> at;            ///< on the two pieces in question
@@ -53,11 +53,11 @@ struct SelfContact {
 
 /// Does a limit surface meet itself?
 ///
-/// Pieces without a common corner are proved to be apart, or to cross each other; those around a vertex are
-/// proved to have no two parameters with one point, or all are split.
+/// Pieces without a common corner are proved apart or proved to cross. The pieces around a vertex are together proved
+/// not to meet except along shared edges, or are split.
 ///
-/// With a tolerance, `clear` also says that all points at most so far apart have a way along the surface of at
-/// most the radius between them, and `near` that two of them have none.
+/// With a tolerance, `clear` also proves that any two points within it are joined by a path on the surface no longer
+/// than the radius, and `near` that two such points are not.
 ///
 /// Guarantee: `clear`, `intersecting` and `near` hold in exact arithmetic for the given doubles. Results do not
 ///            depend on threads. Places where the surface is no immersion (spikes, folded creases, collapsed patches,
