@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -6,11 +7,14 @@
 #include <fmt/core.h>
 #include <snug/base/error.h>
 #include <snug/io/atomic_file.h>
+#include <snug/io/formats.h>
 #include <snug/io/read_file.h>
 
 #include "common.h"
 #include "mesh_reading.h"
 #include "pose.h"
+#include "progress_bar.h"
+#include "scene_file.h"
 
 namespace snug::command {
 namespace {
@@ -18,7 +22,7 @@ namespace {
 struct Options : CommonOptions {
   std::vector<std::string> meshes, poses;
   bool nearest_rigid = false;
-  std::string answer, page;
+  std::string answer, page, scene;
 };
 
 constexpr std::string_view data_begins = R"(<script type="application/json" id="snug-data">)";
@@ -67,27 +71,79 @@ std::string read_answer(const std::string& path) {
   return text;
 }
 
-// The meshes and the answer as a JSON document without '<', which might look like an end of the script.
-std::string data_of(const Options& options, const std::vector<Motion>& poses) {
-  std::string text;
-  JsonWriter json([&](std::string_view part) { text += part; }, JsonWriter::Lines::one);
-  json.begin_object().key("parts").begin_array();
+void write_place(JsonWriter& json, const Motion& pose) {
+  json.key("place").begin_array();
+  for (const double number : pose.numbers()) json.value(number);
+  json.end_array();
+}
+
+// A file's content; parts name it by its place among all.
+void write_file(JsonWriter& json, const std::string& name, std::string_view bytes) {
+  json.begin_object().field("name", name).field("base64", base64(bytes)).end_object();
+}
+
+// `files` and `parts` of the meshes on the command line; equal names are one file.
+void write_meshes(JsonWriter& json, const Options& options, const std::vector<Motion>& poses) {
   const auto cache = std::make_shared<BoundsCache>();
-  for (std::size_t part = 0; part < options.meshes.size(); ++part) {
-    const std::string& path = options.meshes[part];
+  std::map<std::string, std::size_t> files;
+  json.key("files").begin_array();
+  for (const std::string& path : options.meshes) {
+    if (!files.emplace(path, files.size()).second) continue;
     // Refused here, not in the page.
     static_cast<void>(load_surface(path, options, options.scheme, cache));
-    json.begin_object().field("name", path).field("scheme", options.scheme);
-    json.field("base64", base64(read_file(path)));
-    if (part < poses.size()) {
-      json.key("place").begin_array();
-      for (const double number : poses[part].numbers()) json.value(number);
-      json.end_array();
-    }
+    write_file(json, path, read_file(path));
+  }
+  json.end_array().key("parts").begin_array();
+  for (std::size_t part = 0; part < options.meshes.size(); ++part) {
+    const std::string& path = options.meshes[part];
+    json.begin_object().field("name", path).field("scheme", options.scheme).field("file", files.at(path));
+    if (part < poses.size()) write_place(json, poses[part]);
     json.end_object();
   }
   json.end_array();
-  if (const std::optional<double> angle = sharp_angle(options)) json.field("sharp", *angle);
+}
+
+// A mesh of a scene as its part has it read: with the scheme and the boundary rule as tags, welded and sharpened.
+std::string as_read(const SceneMesh& mesh, const Surface& surface) {
+  ControlMesh control = surface.mesh();
+  control.tags.scheme = surface.scheme();
+  if (!mesh.options.boundary.empty()) control.tags.boundary = surface.boundary();
+  return format_obj(control);
+}
+
+// `files` and `parts` of a scene. `options`: what the command about two parts needs, to read a mesh in the same way.
+void write_scene(JsonWriter& json, const LoadedScene& loaded) {
+  const std::vector<SceneMesh>& meshes = loaded.text.meshes;
+  json.key("files").begin_array();
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    write_file(json, meshes[i].file, as_read(meshes[i], loaded.surfaces[i]));
+  }
+  json.end_array().key("parts").begin_array();
+  for (const SceneText::Part& part : loaded.text.parts) {
+    const SceneMesh& mesh = meshes[part.mesh];
+    json.begin_object().field("name", part.name).field("file", part.mesh);
+    write_place(json, part.pose);
+    json.key("options").begin_object();
+    if (mesh.options.scheme != "auto") json.field("--scheme", mesh.options.scheme);
+    if (!mesh.options.boundary.empty()) json.field("--boundary", mesh.options.boundary);
+    if (!mesh.options.sharp.empty()) json.field("--sharp", mesh.options.sharp);
+    if (!mesh.options.weld.empty()) json.field("--weld", mesh.options.weld);
+    json.end_object().end_object();
+  }
+  json.end_array();
+}
+
+// What the page shows, as a JSON document without '<', which might look like an end of the script.
+std::string data_of(const Options& options, const std::vector<Motion>& poses, const LoadedScene* scene) {
+  std::string text;
+  JsonWriter json([&](std::string_view part) { text += part; }, JsonWriter::Lines::one);
+  json.begin_object();
+  if (scene) {
+    write_scene(json, *scene);
+  } else {
+    write_meshes(json, options, poses);
+    if (const std::optional<double> angle = sharp_angle(options)) json.field("sharp", *angle);
+  }
   if (!options.answer.empty()) json.field("answer", read_answer(options.answer));
   json.end_object().finish();
   std::string safe;
@@ -110,10 +166,16 @@ void require_sound(const Options& options) {
   if (options.json && options.output == "-") {
     throw UsageError("view: --json and -o - both want standard output");
   }
+  if (!options.scene.empty() && !options.meshes.empty()) {
+    throw UsageError("view: give meshes or --scene, not both");
+  }
   for (const std::string& path : options.meshes) {
     if (path == "-") throw UsageError("view: give the meshes as files, not on standard input");
   }
-  if (options.poses.size() > options.meshes.size()) {
+  if (options.nearest_rigid && options.poses.empty() && options.scene.empty()) {
+    throw UsageError("view: --nearest-rigid needs --place or --scene");
+  }
+  if (options.scene.empty() && options.poses.size() > options.meshes.size()) {
     throw UsageError(
         fmt::format("view: {} times --place, but {} meshes", options.poses.size(), options.meshes.size()));
   }
@@ -124,20 +186,34 @@ ExitStatus run(const Options& options) {
   const Mending mending{options.nearest_rigid, notes_for(options)};
   std::vector<Motion> poses;
   for (const std::string& text : options.poses) poses.push_back(parse_pose(text, "--place", mending));
+  const WorkMonitor monitor = stopped_by_interrupts();
+  std::optional<LoadedScene> scene;
+  if (!options.scene.empty()) {
+    scene = load_scene(
+        options.scene, options, options.nearest_rigid,
+        [&](const std::string& path) { return read_file(path, monitor); }, monitor);
+  }
   const std::string name = options.page.empty() ? find_page() : options.page;
-  const std::string page = filled(read_file(name), name, data_of(options, poses));
+  const std::string page = filled(read_file(name), name, data_of(options, poses, scene ? &*scene : nullptr));
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("view", to_standard_output);
-  report.heads(options.meshes, std::vector<std::string>(options.meshes.size(), options.scheme));
+  std::vector<std::string> meshes = options.meshes, schemes(meshes.size(), options.scheme);
+  if (scene) {
+    for (std::size_t i = 0; i < scene->surfaces.size(); ++i) {
+      meshes.push_back(scene->text.meshes[i].file);
+      schemes.push_back(name_of(scene->surfaces[i].scheme()));
+    }
+  }
+  const std::size_t parts = scene ? scene->text.parts.size() : meshes.size();
+  report.heads(meshes, schemes);
   AtomicFile file(options.output);
   file.write(page);
   if (report.json()) {
     report.write().field("bytes", page.size());
   } else if (options.output != "-") {
-    report.text(fmt::format("{}: {} {} in a page of {:.1f} MB; open it in a browser", options.output,
-                            options.meshes.size(), options.meshes.size() == 1 ? "part" : "parts",
-                            static_cast<double>(page.size()) / 1e6));
+    report.text(fmt::format("{}: {} {} in a page of {:.1f} MB; open it in a browser", options.output, parts,
+                            parts == 1 ? "part" : "parts", static_cast<double>(page.size()) / 1e6));
   }
   return report.finish(true, {&file});
 }
@@ -147,13 +223,18 @@ ExitStatus run(const Options& options) {
 Command view_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
-  list.add(Group::own, "MESH", &options->meshes, "Control meshes (OBJ, OFF, PLY, STL, USD or glTF)");
+  list.add(Group::own, "MESH", &options->meshes, "Control meshes (OBJ, OFF, PLY, STL, USD or glTF)")
+      .unless("--scene");
+  list.add(Group::own, "--scene FILE", &options->scene,
+           "Show the parts that a JSON file names and places, in place of meshes");
   list.add(Group::own, "--answer FILE", &options->answer,
-           "JSON of collide or distance about the first two: shown, with its poses");
+           "JSON of collide or distance about the first two: shown, with its poses")
+      .excludes("--scene");
   list.add(Group::own, "--template FILE", &options->page, "The page to fill, if not the installed one");
   list.add(Group::placement, "--place \"NUMBERS\"", &options->poses,
-           "Pose of the first mesh; again for the second, and so on");
-  add_nearest_rigid_option(list, options->nearest_rigid).needs("--place");
+           "Pose of the first mesh; again for the second, and so on")
+      .excludes("--scene");
+  add_nearest_rigid_option(list, options->nearest_rigid);
   add_scheme_option(list, "--scheme", options->scheme,
                     "Subdivision scheme; auto: loop if all faces are triangles, else catmark");
   list.add(Group::mesh, "--sharp ANGLE", &options->sharp,
@@ -162,7 +243,8 @@ Command view_command() {
   return {"view",
           Topic::two_surfaces,
           "Make a page, to move parts in a browser with live answers",
-          {"snug view bracket.obj pin.obj --answer answer.json -o parts.html"},
+          {"snug view bracket.obj pin.obj --answer answer.json -o parts.html",
+           "snug view --scene assembly.json -o assembly.html"},
           std::move(list),
           [options] { return run(*options); }};
 }

@@ -68,19 +68,68 @@ TEST_F(View, holds_the_files_their_poses_and_the_answer) {
       data({star, pin, "--answer", answer, "--place", "1 0 0 0 0 1 0 0 0 0 1 0.1", "--sharp", "auto"});
   ASSERT_EQ(json["parts"].size(), 2u);
   EXPECT_EQ(json["parts"][1]["name"], pin);
-  EXPECT_EQ(decoded(json["parts"][0]["base64"]), content(star));
-  EXPECT_EQ(decoded(json["parts"][1]["base64"]), content(pin));
+  ASSERT_EQ(json["files"].size(), 2u);
+  EXPECT_EQ(decoded(json["files"][json["parts"][0]["file"].get<std::size_t>()]["base64"]), content(star));
+  EXPECT_EQ(decoded(json["files"][json["parts"][1]["file"].get<std::size_t>()]["base64"]), content(pin));
   EXPECT_EQ(json["parts"][0]["place"], (std::vector<double>{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0.1}));
   EXPECT_FALSE(json["parts"][1].contains("place"));
   EXPECT_EQ(json["sharp"], 30);
   EXPECT_EQ(json["answer"], content(answer));
 }
 
+TEST_F(View, holds_a_file_once_that_is_several_parts) {
+  const std::string pin = model("pin.obj");
+  const auto json = data({pin, model("star.obj"), pin});
+  EXPECT_EQ(json["files"].size(), 2u);
+  EXPECT_EQ(json["parts"][0]["file"], 0);
+  EXPECT_EQ(json["parts"][1]["file"], 1);
+  EXPECT_EQ(json["parts"][2]["file"], 0);
+}
+
+// Meshes are those that the command about the scene has: welded, sharpened, with scheme and boundary rule as tags.
+TEST_F(View, holds_the_parts_of_a_scene_as_they_are_read) {
+  const std::string scene = folder.file("scene.json"), sheet = folder.file("sheet.obj");
+  put(sheet,
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 1 1 1\nv 1 0 1\nf 1 2 3 4\nf 5 6 7 8\n");
+  put(scene, R"({"parts": [
+    {"name": "one </script>", "mesh": "sheet.obj", "weld": 0, "sharp": 30, "boundary": "edge-only"},
+    {"mesh": ")" +
+                 model("pin.obj") + R"(", "place": {"move": [1, 2, 3]}},
+    {"mesh": "sheet.obj", "scheme": "bilinear"},
+    {"mesh": ")" +
+                 model("pin.obj") + R"("}]})");
+  const auto json = data({"--scene", scene});
+  ASSERT_EQ(json["files"].size(), 3u);
+  ASSERT_EQ(json["parts"].size(), 4u);
+  EXPECT_EQ(json["parts"][0]["name"], "one </script>");
+  EXPECT_EQ(json["parts"][0]["options"],
+            (nlohmann::json{{"--boundary", "edge-only"}, {"--sharp", "30"}, {"--weld", "0"}}));
+  EXPECT_EQ(json["parts"][1]["file"], json["parts"][3]["file"]);
+  EXPECT_EQ(json["parts"][1]["place"], (std::vector<double>{1, 0, 0, 1, 0, 1, 0, 2, 0, 0, 1, 3}));
+  EXPECT_EQ(json["parts"][2]["options"], (nlohmann::json{{"--scheme", "bilinear"}}));
+  EXPECT_EQ(json["parts"][3]["options"], nlohmann::json::object());
+  EXPECT_EQ(json["files"][0]["name"], sheet);
+
+  // The same answers without options.
+  const auto ask = [&](const std::string& mesh, std::vector<std::string> more) {
+    more.insert(more.begin(), {"closest", mesh, "--points", folder.file("points.txt"), "--json"});
+    auto answer = nlohmann::json::parse(run_snug(more).out);
+    for (const char* name : {"seconds", "mesh", "stats"}) answer.erase(name);
+    return answer;
+  };
+  put(folder.file("points.txt"), "0.3 0.2 1\n2 2 0.4\n");
+  const std::string kept = folder.file("kept.obj");
+  put(kept, decoded(json["files"][0]["base64"]));
+  EXPECT_EQ(ask(kept, {}), ask(sheet, {"--weld", "0", "--sharp", "30", "--boundary", "edge-only"}));
+  put(kept, decoded(json["files"][2]["base64"]));
+  EXPECT_EQ(ask(kept, {}), ask(sheet, {"--scheme", "bilinear"}));
+}
+
 TEST_F(View, takes_files_of_any_length_and_any_bytes) {
   for (const std::string more : {"", "#", "# \xff\xfe", "# </script>"}) {
     const std::string mesh = folder.file("mesh.obj");
     put(mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" + more);
-    EXPECT_EQ(decoded(data({mesh})["parts"][0]["base64"]), content(mesh));
+    EXPECT_EQ(decoded(data({mesh})["files"][0]["base64"]), content(mesh));
   }
 }
 
@@ -100,6 +149,15 @@ TEST_F(View, refuses_what_it_cannot_show_and_writes_nothing) {
   outcome = refused({star, "--template", page, "--answer", star, "-o", made});
   EXPECT_EQ(outcome.status, 3);
   EXPECT_NE(outcome.err.find("is not an answer of collide or distance"), std::string::npos) << outcome.err;
+  const std::string scene = folder.file("scene.json");
+  put(scene, R"({"parts": [{"mesh": "bad.obj"}]})");
+  outcome = refused({"--scene", scene, "--template", page, "-o", made});
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_NE(outcome.err.find("bad.obj:1"), std::string::npos) << outcome.err;
+  EXPECT_EQ(refused({star, "--scene", scene, "--template", page, "-o", made}).status, 2);
+  EXPECT_EQ(refused({"--scene", scene, "--place", "1", "--template", page, "-o", made}).status, 2);
+  EXPECT_EQ(refused({star, "--nearest-rigid", "--template", page, "-o", made}).status, 2);
+  EXPECT_EQ(refused({"--template", page, "-o", made}).status, 2);
   EXPECT_EQ(refused({star, "--template", page}).status, 2);
   EXPECT_EQ(refused({star, "--template", page, "-o", folder.file("made.json")}).status, 2);
   EXPECT_EQ(refused({"-", "--template", page, "-o", made}).status, 2);

@@ -28,6 +28,13 @@ const edgesOf = ({ points, offsets, corners }) => {
   return Float32Array.from(lines);
 };
 
+// Parts may share a surface.
+function keep(part, surface) {
+  const before = parts.get(part);
+  parts.set(part, surface);
+  if (before && ![...parts.values()].includes(before)) before.delete();
+}
+
 const texts = ([lower, upper]) => [snug.textAtMost(lower), Number.isFinite(upper) ? snug.textAtLeast(upper) : null];
 
 const operations = {
@@ -46,8 +53,7 @@ const operations = {
       surface.delete();
       throw error;
     }
-    parts.get(part)?.delete();
-    parts.set(part, surface);
+    keep(part, surface);
     return {
       size: surface.size,
       scheme: surface.scheme,
@@ -57,6 +63,10 @@ const operations = {
       edges: edgesOf(cage),
       shape,
     };
+  },
+  // The part has the surface of another one.
+  share({ part, from }) {
+    keep(part, parts.get(from));
   },
   ask({ a, b, poseA, poseB, tolerance, solid }) {
     const start = performance.now();

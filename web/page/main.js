@@ -53,7 +53,9 @@ const bytesOf = (base64) => {
 // What there is.
 
 const state = {
-  parts: [], // {name, bytes, scheme, pose, home, size, info}
+  // {name, bytes, scheme, path, options, pose, home, size, source, info}. Of a scene's part: `path` is its file and `options`
+  // are those that the command needs to read it so. Parts with one `source` have the same surface.
+  parts: [],
   pair: [0, 1],
   moves: 1,
   answer: null,
@@ -168,13 +170,20 @@ const quoted = (word) => (/^[\w.+:%/-]+$/.test(word) ? word : `"${word.replace(/
 function commands({ question, percent }) {
   const [a, b] = state.pair.map((p) => state.parts[p]);
   const options = [];
+  for (const [side, part] of [["a", a], ["b", b]]) {
+    for (const [name, value] of Object.entries(part.options ?? {})) {
+      if (name === "--scheme") part.scheme === "auto" && options.push(`--scheme-${side}`, value);
+      else if (a.options?.[name] !== b.options?.[name] || (name === "--sharp" && $("sharp").checked)) return ["# These parts are read with options of their own, which only a scene file can give."];
+      else if (side === "a") options.push(name, value);
+    }
+  }
   for (const [side, part, pose] of [["a", a, question.poseA], ["b", b, question.poseB]]) {
     if (part.scheme !== "auto") options.push(`--scheme-${side}`, part.scheme);
     if (pose.some((x, i) => x !== identity[i])) options.push(`--place-${side}`, pose.join(" "));
   }
   if ($("sharp").checked) options.push("--sharp", String(angle()));
   if (question.solid) options.push("--solid");
-  const line = (command, how) => ["snug", command, a.name, b.name, ...options, how, `${percent}%`].map(quoted).join(" ");
+  const line = (command, how) => ["snug", command, a.path ?? a.name, b.path ?? b.name, ...options, how, `${percent}%`].map(quoted).join(" ");
   return [line("collide", "--tolerance"), line("distance", "--precision")];
 }
 
@@ -391,13 +400,20 @@ const eventInit = ({ pointerId, pointerType, clientX, clientY, screenX, screenY,
 
 const angle = () => Math.min(179, Math.max(0, Number($("angle").value) || 0));
 
-async function read(index, { name, bytes, scheme }) {
-  const options = { scheme };
-  if ($("sharp").checked) options.sharp = angle();
+async function read(index, { name, bytes, scheme, path, options }) {
+  const how = { scheme };
+  if ($("sharp").checked) how.sharp = angle();
   const level = Number($("level").value);
-  const info = await engine.ask("read", { part: index, name, bytes, options, level });
   const part = state.parts[index];
-  Object.assign(part, { name, bytes, scheme, info, size: info.size });
+  const like = state.parts.findIndex(({ source }, i) => i !== index && source?.bytes === bytes && source.scheme === scheme && source.sharp === how.sharp);
+  let { source, info } = state.parts[like] ?? {};
+  if (source) {
+    await engine.ask("share", { part: index, from: like });
+  } else {
+    info = await engine.ask("read", { part: index, name: path ?? name, bytes, options: how, level });
+    source = { bytes, ...how };
+  }
+  Object.assign(part, { name, bytes, scheme, path, options, source, info, size: info.size });
   if (view) {
     const seen = view.part(index);
     seen.shape(info.shape);
@@ -410,22 +426,30 @@ async function read(index, { name, bytes, scheme }) {
 async function layers() {
   const level = Number($("level").value);
   const told = [];
+  const made = new Map();
   for (const [index, part] of state.parts.entries()) {
     if (!part.info || !view) continue;
+    // Once for all parts with the same surface.
+    const ask = async (op, how) => {
+      if (!made.has(part.source)) made.set(part.source, new Map());
+      const known = made.get(part.source);
+      if (!known.has(op)) known.set(op, await engine.ask(op, { part: index, ...how }));
+      return known.get(op);
+    };
     const seen = view.part(index);
     const letter = state.pair.includes(index) ? "AB"[state.pair.indexOf(index)] : part.name;
     try {
       const how = $("adaptive").checked ? { adaptive: true, tolerance: (Number(percent()) / 100) * part.size } : { level };
       const key = JSON.stringify(how);
       if (part.shapeKey !== key) {
-        const shape = await engine.ask("shape", { part: index, ...how });
+        const shape = await ask("shape", how);
         part.shapeKey = key;
         part.shapeText = `${shape.triangles.length / 3} triangles` + (shape.errorBound === undefined ? "" : ` within ${shape.errorBound.toPrecision(3)}`);
         seen.shape(shape);
       }
       const told_here = [part.shapeText];
       if ($("show-enclosures").checked) {
-        const shapes = await engine.ask("enclosures", { part: index, level: Math.min(level, 3) });
+        const shapes = await ask("enclosures", { level: Math.min(level, 3) });
         seen.enclosures(shapes);
         told_here.push(`${shapes.count} enclosures`);
       } else {
@@ -433,7 +457,7 @@ async function layers() {
       }
       if ($("show-hulls").checked) {
         $("shown").textContent = `${letter}: making hulls\u2026`;
-        const hulls = await engine.ask("hulls", { part: index, tolerance: Math.max(0.005, Number(percent()) / 100) * part.size });
+        const hulls = await ask("hulls", { tolerance: Math.max(0.005, Number(percent()) / 100) * part.size });
         seen.hulls(hulls);
         const gaps = [hulls.inner, hulls.outer].filter(Boolean).map((hull) => hull.gap.toPrecision(3));
         told_here.push(`hulls ${hulls.verified ? "proved" : "not proved"}, gaps ${gaps.join(" and ")}`);
@@ -669,7 +693,8 @@ function listenToControls() {
   $("example").onchange = () => openExample(examples[$("example").value]);
 }
 
-// What `snug view` put in: {parts: [{name, base64, place, scheme}], sharp, answer}.
+// What `snug view` put in: {files: [{name, base64}], parts: [{name, file, place, scheme, options}], sharp, answer}. Parts of a
+// scene have `options`.
 async function openData(data) {
   $("example-row").hidden = true;
   if (data.answer) {
@@ -686,9 +711,15 @@ async function openData(data) {
     $("angle").value = data.sharp;
   }
   const places = [state.file?.place_a, state.file?.place_b];
+  const contents = data.files.map((file) => bytesOf(file.base64));
+  // Of many parts not every triangle is drawn at first.
+  if (data.parts.length > 8) $("level").value = data.parts.length > 100 ? 0 : 1;
+  $("level-text").textContent = $("level").value;
   const parts = data.parts.map((part, i) => ({
     name: part.name,
-    bytes: bytesOf(part.base64),
+    path: part.options && data.files[part.file].name,
+    options: part.options,
+    bytes: contents[part.file],
     scheme: (part.scheme ?? "auto") === "auto" && schemes.includes(state.file?.scheme?.[i]) ? state.file.scheme[i] : (part.scheme ?? "auto"),
     pose: part.place ?? places[i] ?? identity.slice(),
   }));
@@ -706,7 +737,14 @@ async function start() {
   listenToControls();
   try {
     view = new View($("stage"), overlay);
-    view.onScheme(() => state.parts.forEach((part, i) => part.info && read(i, part).then(visibility)));
+    view.onScheme(() => {
+      for (const [index, part] of state.parts.entries()) {
+        if (!part.info) continue;
+        part.shapeKey = undefined;
+        view.part(index).cage(part.info.edges, part.info.size);
+      }
+      showLayers();
+    });
     listenToPointers();
   } catch (error) {
     view = null;

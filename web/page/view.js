@@ -13,7 +13,13 @@ const colours = () =>
     ? { parts: [0x4f9fd0, 0xf2b673], cage: 0xdfe7ed, enclosure: 0xb9c8d2 }
     : { parts: [0x1d5f8a, 0xe39a4f], cage: 0x16202a, enclosure: 0x33424e };
 
-const geometryOf = ({ positions, normals, triangles }) => {
+// One for each shape, which several parts may have: disposing of it frees what the next picture makes again.
+const geometries = new WeakMap();
+const geometryOf = (shape) => {
+  if (!geometries.has(shape)) geometries.set(shape, newGeometry(shape));
+  return geometries.get(shape);
+};
+const newGeometry = ({ positions, normals, triangles }) => {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(positions, 3));
   if (normals) geometry.setAttribute("normal", new BufferAttribute(normals, 3));
@@ -59,8 +65,8 @@ class SeenPart {
       polygonOffsetFactor: 1, polygonOffsetUnits: 1 }));
     surface.userData.part = this.index;
     this.put("surface", surface);
-    this.put("mesh", new Mesh(geometry.clone(), new MeshBasicMaterial({ color: colours().cage, wireframe: true, transparent: true, opacity: 0.55 })));
-    geometry.computeBoundingSphere();
+    this.put("mesh", new Mesh(geometry, new MeshBasicMaterial({ color: colours().cage, wireframe: true, transparent: true, opacity: 0.55 })));
+    if (!geometry.boundingSphere) geometry.computeBoundingSphere();
     this.sphere = geometry.boundingSphere.clone();
   }
   // A's cage in whole lines, B's in dashes.
@@ -74,7 +80,7 @@ class SeenPart {
   enclosures(shapes) {
     if (!shapes) return this.put("enclosures");
     const glass = new MeshLambertMaterial({ color: this.colour(), transparent: true, opacity: 0.18, side: DoubleSide, depthWrite: false });
-    this.put("enclosures", new Mesh(geometryOf({ positions: shapes.positions }), glass),
+    this.put("enclosures", new Mesh(geometryOf(shapes), glass),
       new LineSegments(linesOf(shapes.edges), new LineBasicMaterial({ color: colours().enclosure, transparent: true, opacity: 0.4 })));
   }
   hulls(hulls) {
@@ -84,7 +90,7 @@ class SeenPart {
       if (!hull) continue;
       const geometry = geometryOf(hull);
       drawn.push(new Mesh(geometry, new MeshLambertMaterial({ color: this.colour(), transparent: true, opacity, side: DoubleSide, depthWrite: false })),
-        new Mesh(geometry.clone(), new MeshBasicMaterial({ color: colours().enclosure, wireframe: true, transparent: true, opacity: 0.25 })));
+        new Mesh(geometry, new MeshBasicMaterial({ color: colours().enclosure, wireframe: true, transparent: true, opacity: 0.25 })));
     }
     this.put("hulls", ...drawn);
   }

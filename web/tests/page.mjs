@@ -3,7 +3,7 @@
 
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, dirname, join, resolve } from "node:path";
 import { after, before, test } from "node:test";
@@ -316,3 +316,37 @@ test("`snug view` makes the page of one's own parts and answer", { skip }, async
   await one.picture("one");
   await one.close();
 });
+
+test("a scene is shown with its placed parts, and any two of them are asked about", { skip }, async () => {
+  const scene = join(scratch, "scene.json"), made = join(scratch, "scene.html");
+  const mesh = (name) => join(models, `${name}.obj`);
+  const parts = [];
+  for (let i = 0; i < 10; ++i) parts.push({ mesh: mesh(i % 2 ? "pin" : "bracket"), place: { rotate: `z ${20 * i}`, move: [2 * i, 0, i % 3] } });
+  parts.push({ name: "faceted star", mesh: mesh("star"), sharp: 20, place: { move: [3, 9, 0] } });
+  parts.push({ name: "faceted pawn", mesh: mesh("pawn"), sharp: 20, place: { move: [9, 9, 0] } });
+  writeFileSync(scene, JSON.stringify({ parts }));
+  execFileSync(command, ["view", "--scene", scene, "--template", page_file, "--quiet", "-o", made]);
+  const { page, picture, close } = await open({ file: made });
+  await holdAgainstCommand(page);
+  for (const [a, b] of [[2, 3], [4, 9], [0, 2], [10, 11]]) {
+    await page.selectOption("#pair-a", String(a));
+    await page.selectOption("#pair-b", String(b));
+    await holdAgainstCommand(page);
+  }
+  assert.match((await page.evaluate(() => window.snugPage.commands()))[0], /star.obj .*pawn.obj .*--sharp 20/);
+  assert.equal(await page.inputValue("#level"), "1");
+  await page.check("#show-enclosures");
+  await idle(page);
+  await picture("scene");
+  await page.selectOption("#pair-a", "0");
+  await idle(page);
+  assert.match((await page.evaluate(() => window.snugPage.commands()))[0], /options of their own/);
+  // Another scheme for one of the parts that share a surface leaves the others as they are.
+  await page.selectOption("#pair-b", "2");
+  await page.selectOption("#scheme-b", "bilinear");
+  await holdAgainstCommand(page);
+  await page.selectOption("#pair-b", "4");
+  await holdAgainstCommand(page);
+  await close();
+});
+
