@@ -11,6 +11,7 @@ import figure from "../../examples/models/figure.obj";
 const $ = (id) => document.getElementById(id);
 const identity = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0];
 const tolerances = ["0.001", "0.002", "0.005", "0.01", "0.02", "0.05", "0.1", "0.2", "0.5", "1", "2", "5", "10"];
+const many_parts = 8;
 const usual_tolerance = tolerances.indexOf("0.1");
 const schemes = ["auto", "loop", "catmark", "doo-sabin", "midedge", "bilinear", "flat"];
 const examples = [
@@ -426,6 +427,7 @@ async function read(index, { name, bytes, scheme, path, options }) {
 async function layers() {
   const level = Number($("level").value);
   const told = [];
+  const few = state.parts.length <= many_parts;
   const made = new Map();
   for (const [index, part] of state.parts.entries()) {
     if (!part.info || !view) continue;
@@ -444,7 +446,8 @@ async function layers() {
       if (part.shapeKey !== key) {
         const shape = await ask("shape", how);
         part.shapeKey = key;
-        part.shapeText = `${shape.triangles.length / 3} triangles` + (shape.errorBound === undefined ? "" : ` within ${shape.errorBound.toPrecision(3)}`);
+        part.triangles = shape.triangles.length / 3;
+        part.shapeText = `${part.triangles} triangles` + (shape.errorBound === undefined ? "" : ` within ${shape.errorBound.toPrecision(3)}`);
         seen.shape(shape);
       }
       const told_here = [part.shapeText];
@@ -464,12 +467,13 @@ async function layers() {
       } else {
         seen.hulls(null);
       }
-      told.push(`${letter}: ${told_here.join(", ")}`);
+      if (few || state.pair.includes(index)) told.push(`${letter}: ${told_here.join(", ")}`);
     } catch (error) {
       tell(`${letter}: ${error.message}`);
     }
     visibility();
   }
+  if (!few) told.push(`${state.parts.length} parts: ${state.parts.reduce((sum, part) => sum + (part.triangles ?? 0), 0)} triangles`);
   $("shown").textContent = told.join("; ");
 }
 let redoing = false;
@@ -713,7 +717,7 @@ async function openData(data) {
   const places = [state.file?.place_a, state.file?.place_b];
   const contents = data.files.map((file) => bytesOf(file.base64));
   // Of many parts not every triangle is drawn at first.
-  if (data.parts.length > 8) $("level").value = data.parts.length > 100 ? 0 : 1;
+  if (data.parts.length > many_parts) $("level").value = data.parts.length > 100 ? 0 : 1;
   $("level-text").textContent = $("level").value;
   const parts = data.parts.map((part, i) => ({
     name: part.name,

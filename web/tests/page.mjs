@@ -337,6 +337,7 @@ test("a scene is shown with its placed parts, and any two of them are asked abou
   assert.equal(await page.inputValue("#level"), "1");
   await page.check("#show-enclosures");
   await idle(page);
+  assert.match(await page.textContent("#shown"), /^A: \d+ triangles, \d+ enclosures; B: [^;]*; 12 parts: \d+ triangles$/);
   await picture("scene");
   await page.selectOption("#pair-a", "0");
   await idle(page);
