@@ -16,15 +16,15 @@ struct BoundOptions {
   std::optional<double> tolerance{};
   /// Without a tolerance: split every patch this many times. The first split of a face into quads counts.
   unsigned level = 0;
-  std::uint64_t budget = 1'000'000;  ///< most splits in all; spent patch by patch
+  std::uint64_t budget = 1'000'000;  ///< most splits in total, spent patch by patch
   int threads = 0;                   ///< 0: all cores
   bool normals = false;              ///< fill PatchEnclosure::normals
 };
 
-/// A patch of a surface; every patch is a triangle. Triangle schemes have one for each face, part 0. The
-/// others have two for each quad c0 c1 c2 c3: part 0 is c0 c1 c2, part 1 is c2 c3 c0. A face with n != 4
-/// corners is first split into n quads; parts 2 k and 2 k + 1 are those of the quad at corner k. In a dual
-/// scheme the same holds for a vertex, with the faces around it as corners.
+/// A patch of a surface; every patch is a triangle. Triangle schemes have one patch for each face, part 0. The
+/// other schemes have two for each quad c0 c1 c2 c3: part 0 is c0 c1 c2, part 1 is c2 c3 c0. A face with n != 4
+/// corners is first split into n quads; parts 2 k and 2 k + 1 belong to the quad at corner k. In a dual scheme
+/// the same holds for a vertex, with the faces around it as corners.
 struct PatchPlace {
   std::uint32_t owner = 0;  ///< face, or vertex of a dual scheme
   std::uint32_t part = 0;
@@ -47,7 +47,7 @@ struct PatchEnclosure {
   OffsetTriangle offset;      ///< contains the piece
   IntervalTriangle interval;  ///< contains the piece, too
   /// With BoundOptions::normals: contains all normals of the piece, on the side from which faces look
-  /// counter-clockwise. Empty where no cone is proved: then the piece may have places without a normal.
+  /// counter-clockwise. Empty if no cone is proved: then the piece may have points without a normal.
   std::optional<NormalCone> normals{};
 };
 
@@ -58,27 +58,27 @@ struct BoundSummary {
   bool reached = true;  ///< false if the budget, 60 levels or rounding ended splitting before the tolerance
 };
 
-/// Enclosures of the whole limit surface by its SurfaceOptions::bounds, passed to `sink` patch by patch.
+/// Enclosures of the whole limit surface, made by its SurfaceOptions::bounds and passed to `sink` patch by patch.
 ///
-/// Guarantee: every limit point of a patch lies in the union of its pieces' offset triangles, and in that of
-///            their interval triangles, rounding included, even if `reached` is false. The limit surface
-///            has a normal at every point of a piece with a cone, and the cone contains it. The output does
-///            not depend on threads.
+/// Guarantee: every limit point of a patch lies in the union of its pieces' offset triangles, and in the union
+///            of their interval triangles, rounding included, even if `reached` is false. At every point of a
+///            piece with a cone the limit surface has a normal, and the cone contains it. The output does not
+///            depend on threads.
 /// Errors:    InputError: (value) for a tolerance that is not finite and positive or a level above 60,
 ///            (unrepresentable) if a result does not fit a double; whatever `sink` throws. Interrupted.
-/// Cost:      3 to 5 microseconds a piece of a regular patch, twice that with normals; a tenth to half a
+/// Cost:      3 to 5 microseconds per piece of a regular patch, twice that with normals; a tenth to half a
 ///            millisecond more beside extraordinary vertices. Memory does not grow with the output.
 SNUG_API BoundSummary bound(const Surface& surface, const BoundOptions& options,
                             const std::function<void(const PatchEnclosure&)>& sink,
                             const WorkMonitor& monitor = {});
 
-/// Offset triangles of whole patches, updated while control points move and connectivity stays. Also the
+/// Offset triangles of whole patches, updated as control points move while connectivity stays the same. Also the
 /// fastest way to bound a large mesh once.
 ///
-/// Cost:      see bench/results/refit.txt. Memory: 4 bytes for each control point of each patch, 24 a vertex.
+/// Cost:      see bench/results/refit.txt. Memory: 4 bytes for each control point of each patch, 24 per vertex.
 class SNUG_API PatchBounds {
  public:
-  /// Prepares everything that depends on connectivity alone. Uses the surface's BoundMethod.
+  /// Prepares everything that depends only on connectivity. Uses the surface's BoundMethod.
   explicit PatchBounds(const Surface& surface, int threads = 0);
   ~PatchBounds();
   PatchBounds(PatchBounds&&) noexcept;
@@ -96,13 +96,13 @@ class SNUG_API PatchBounds {
   ///            result does not fit a double, and the contents of `out` are then unspecified.
   void update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads = 1);
 
-  /// Boxes of all patches while every control point goes along a line from its place in `begin` to that in
-  /// `end`, in mesh units: for motion blur.
+  /// Boxes of all patches while every control point moves along a line from its position in `begin` to that in
+  /// `end`, in mesh units, for motion blur.
   ///
   /// Guarantee: every limit point of a patch is in its box at every time in between, both ends and rounding
-  ///            included; so is the hull of all of them.
+  ///            included; so is the hull of all these points.
   /// Errors:    those of the other update(), with out.size() == patches().size().
-  /// Cost:      that of two of them. Memory: 96 bytes a patch from the first call on.
+  /// Cost:      that of two calls of the other update(). Memory: 96 bytes per patch from the first call on.
   /// Source:    docs/derivations/moving.md.
   void update(std::span<const Point3> begin, std::span<const Point3> end, std::span<Box3> out,
               int threads = 1);

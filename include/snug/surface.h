@@ -30,7 +30,7 @@ struct SurfaceOptions {
   std::optional<BoundaryRule> boundary{};  ///< default: the mesh's tag, else edge_and_corner
   BoundMethod bounds = BoundMethod::rows;  ///< how pieces are bounded
   /// Bound every patch at the first query, some microseconds each. The BVH becomes tighter, which pays off
-  /// for surfaces that are queried thousands of times. Otherwise it is built from control points alone.
+  /// for surfaces that are queried thousands of times. Otherwise the BVH is built only from control points.
   bool tight = false;
   int threads = 0;  ///< for preparation; 0: all cores
   WorkMonitor monitor{};
@@ -39,8 +39,8 @@ struct SurfaceOptions {
 /// The limit surface of a control mesh: a handle that is cheap to copy. The surface never changes and lives
 /// as long as any handle to it. Any number of threads may use it at once.
 ///
-/// Cost:      linear in the mesh. The first query also builds a BVH, half a microsecond a patch, and a tenth
-///            of large meshes, whose BVH is built where queries come.
+/// Cost:      linear in the mesh. The first query also builds a BVH: half a microsecond per patch, a tenth
+///            for large meshes, whose BVH is built only where queries need it.
 class SNUG_API Surface {
  public:
   /// The mesh's tags give creases, corners, holes, the crease method and how Catmull-Clark treats triangles.
@@ -74,23 +74,23 @@ class SNUG_API Surface {
 };
 
 /// The limit surface of a mesh file, with the file's rules and tags unless `options` overrides them. Notes of
-/// the reader, such as about tags that snug does not know, are lost; read_mesh() passes them on.
+/// the reader, such as about tags that snug does not know, are discarded; read_mesh() passes them on.
 /// Errors:    those of read_mesh() and Surface, with the name of the file.
 [[nodiscard]] SNUG_API Surface load(const std::string& path, const SurfaceOptions& options = {});
 
-/// A surface whose control points move while its faces, tags and rules stay. Each position is a Surface of its
-/// own, a frame, which keeps the patch topologies and the order of the BVH of those before: its boxes alone are
-/// made anew, at the first query. For one thread at a time; its frames are Surfaces like all others.
+/// A surface whose control points move while its faces, tags and rules stay the same. Each set of positions is a
+/// Surface of its own, a frame, which reuses the patch topologies and the order of the BVH of earlier frames: only
+/// its boxes are recomputed, at the first query. For one thread at a time; its frames are Surfaces like all others.
 ///
-/// Guarantee: frames never change: a handle to an earlier one shows that one as long as it is kept, and a query
-///            about a frame uses nothing that was found out about another one. Once as many frames exist as
-///            are held at a time and one more, move() and what it prepares take no memory, nor do collide(),
-///            distance() and closest_point() where earlier queries came as far; the bounds of patch topologies
-///            that no other patch shares still do.
-/// Cost:      a frame and its BVH 0.06 microseconds a patch, see bench/results/moving.txt. The BVH is built
-///            anew where its boxes would be half as large again for their patches as when it was last built.
-///            SurfaceOptions::tight counts for the first surface alone. Memory: that of as many surfaces as
-///            frames were ever held at a time, and one or two more.
+/// Guarantee: frames never change: a handle to an earlier frame shows that frame as long as it is kept, and a query
+///            of one frame uses no results computed for another. Once one more frame exists than are held at the
+///            same time, move() and the preparation of its frames allocate no memory, nor do collide(), distance()
+///            and closest_point() where earlier queries reached as far; the bounds of patch topologies that no
+///            other patch shares still do.
+/// Cost:      0.06 microseconds per patch for a frame and its BVH, see bench/results/moving.txt. The BVH is rebuilt
+///            when its boxes would be half as large again, relative to their patches, as when it was last built.
+///            SurfaceOptions::tight affects only the first surface. Memory: that of as many surfaces as frames were
+///            ever held at the same time, plus one or two.
 class SNUG_API MovingSurface {
  public:
   /// The first frame is `first` itself.
@@ -101,8 +101,8 @@ class SNUG_API MovingSurface {
 
   /// The next frame: the surface with these control points, one for each vertex of the mesh.
   ///
-  /// Errors:    InputError: (value) for another number of points; (refused) for a coordinate that is not
-  ///            finite. now() is then as it was.
+  /// Errors:    InputError: (value) for a wrong number of points; (refused) for a coordinate that is not
+  ///            finite. now() is then unchanged.
   const Surface& move(std::span<const Point3> points);
   /// The last frame.
   [[nodiscard]] const Surface& now() const { return now_; }
@@ -110,7 +110,7 @@ class SNUG_API MovingSurface {
  private:
   Surface now_;
   std::shared_ptr<SharedPlan> plan_;
-  std::vector<std::shared_ptr<SurfaceData>> frames_;  // those in use, and those to be used again
+  std::vector<std::shared_ptr<SurfaceData>> frames_;  // frames in use, and frames to be reused
 };
 
 /// A surface and its pose. A Surface alone has the identity as its pose.
@@ -126,10 +126,10 @@ class PlacedSurface {
   Motion pose_;
 };
 
-/// Parameters of a point on a surface. For Loop, (1 - u - v) c0 + u c1 + v c2 on a face. For the other
-/// schemes, (u, v) on a quad, from corner 0 with u towards corner 1: of the face itself if it is a quad (in a
-/// dual scheme, of the faces around the vertex), else of the quad that its first split makes at `corner`,
-/// from there with u along the edge that follows.
+/// Parameters of a point on a surface. For Loop, (1 - u - v) c0 + u c1 + v c2 on a face. For the other schemes,
+/// (u, v) on a quad, from corner 0 with u towards corner 1. The quad is the face itself if that has four corners
+/// (in a dual scheme, the faces around the vertex). Else it is the quad that the first split makes at `corner`,
+/// and u runs from there along the edge that follows.
 struct SurfaceParameter {
   std::uint32_t owner = 0;  ///< face; in a dual scheme, vertex
   std::uint32_t corner = 0;
