@@ -32,7 +32,7 @@ struct PatchContact {
 /// A connected part of a contact.
 ///
 /// Two pairs of pieces are neighbours if, on A and on B, their patches are the same or share a corner, and the boxes
-/// around their pieces overlap; a region is a connected component of this relation. A connected set of contacts is in
+/// around their pieces intersect; a region is a connected component of this relation. A connected set of contacts is in
 /// one region; two sets that are closer to each other than the size of pieces may be in one region, too.
 struct ContactRegion {
   /// `intersecting`: proved, a curve runs through the region or a crossing was found; `within`: the witnesses are at

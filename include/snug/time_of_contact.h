@@ -32,7 +32,7 @@ class SNUG_API Trajectory {
   /// From one pose to another in one unit of time, with a constant twist: along and about the axis of the
   /// screw that takes `from` to `to`, with the shorter rotation.
   /// Errors:    InputError (pose) if the rotations differ by half a turn, up to 4e-8: there is no shorter one;
-  ///            (unrepresentable) if the translation between the poses does not fit a double.
+  ///            (unrepresentable) if the motion between the poses does not fit a double.
   [[nodiscard]] static Trajectory screw(const Motion& from, const Motion& to);
   /// The same through a list of poses, one unit of time from each pose to the next.
   /// Errors:    those of screw(), with the number of the pose; (value) if there is no pose.
