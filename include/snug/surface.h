@@ -39,8 +39,8 @@ struct SurfaceOptions {
 /// The limit surface of a control mesh: a handle that is cheap to copy. The surface never changes and lives
 /// as long as any handle to it. Any number of threads may use it at once.
 ///
-/// Cost:      linear in the mesh. The first query also builds a BVH: half a microsecond per patch, a tenth
-///            for large meshes, whose BVH is built only where queries need it.
+/// Cost:      linear in the mesh. The first query also builds a BVH: half a microsecond per patch; a tenth
+///            of a microsecond for large meshes, whose BVH is built only where queries need it.
 class SNUG_API Surface {
  public:
   /// The mesh's tags give creases, corners, holes, the crease method and how Catmull-Clark treats triangles.
