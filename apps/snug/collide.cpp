@@ -247,7 +247,8 @@ Command collide_command() {
       .excludes("--scene")
       .excludes("--solid");
   list.add(Group::own, "--precision LENGTH", &options->precision,
-           "How near curves are to the lines between their points; mesh units, or percent of the larger mesh")
+           "Largest distance of a curve from the lines between its points; mesh units, or percent of the "
+           "larger mesh")
       .needs("--all");
   list.add(Group::own, "--curves FILE", &options->curves, "Write the curves as lines of an OBJ file")
       .needs("--all");

@@ -254,9 +254,8 @@ Command contact_command() {
   add_move_options(list, "-a", "A", options->move_a);
   add_move_options(list, "-b", "B", options->move_b);
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
-           "Surfaces this close may be reported as within, and times are told to a motion of so much; mesh "
-           "units, or percent "
-           "of the larger mesh");
+           "Surfaces this close may be reported as within; the time is narrowed down until no point moves "
+           "farther meanwhile; mesh units, or percent of the larger mesh");
   list.add(Group::own, "--solid", &options->solid,
            "Compare solids bounded by closed surfaces: one inside the other is in contact");
   list.add(Group::own, "--exit-code", &options->exit_code,
@@ -264,7 +263,7 @@ Command contact_command() {
   add_pair_options(list, *options, false);
   return {"contact",
           Topic::two_surfaces,
-          "When do two moving limit surfaces first touch? The time told is never too late",
+          "Bound the time when two moving limit surfaces first touch; the lower bound is never too late",
           {"snug contact pawn.obj bust.obj --move-b \"3 0 0\" --velocity-b \"-3 0 0\" --spin-b \"z 90\"",
            "snug contact ball.obj hand.obj --deform-b closed_hand.obj"},
           std::move(list),

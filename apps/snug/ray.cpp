@@ -138,11 +138,10 @@ Command ray_command() {
            "an array of NumPy (.npy); - for standard input")
       .required();
   list.add(Group::own, "--all", &options->all, "All hits, not only the nearest one");
-  list.add(Group::own, "--any", &options->any,
-           "Some hit, not always the nearest one: is anything in the way?")
+  list.add(Group::own, "--any", &options->any, "Any hit, not always the nearest one: is the ray blocked?")
       .excludes("--all");
   list.add(Group::own, "--precision LENGTH", &options->precision,
-           "Aimed-at length of a hit's interval; mesh units, or percent of the mesh");
+           "Intended length of the interval of a hit; mesh units, or percent of the mesh");
   add_common_options(list, *options);
   add_bound_options(list, *options);
   return {"ray",

@@ -90,14 +90,14 @@ Command self_command() {
   auto options = std::make_shared<Options>();
   options->budget = SelfContactOptions{}.budget;
   OptionList list;
-  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY or STL)");
+  list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(
       Group::own, "--tolerance T", &options->tolerance,
       "Also: are places at most T apart (mesh units, or percent of the size) that are far apart along the "
       "surface?");
   list.add(Group::own, "--radius R", &options->radius,
-           "That far: more than R along the surface, at least 2 T; default 4 T");
-  list.add(Group::effort, "--budget N", &options->budget, "Look at most at N stars and pairs of pieces")
+           "Far apart along the surface: more than R, at least 2 T; default 4 T");
+  list.add(Group::effort, "--budget N", &options->budget, "Compare at most N stars and pairs of pieces")
       .between(0, std::uint64_t{1} << 40);
   add_common_options(list, *options);
   return {
