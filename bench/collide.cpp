@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include <experiments/kdop_tree.h>
 #include <experiments/printed_hierarchy.h>
 #include <experiments/quantile.h>
 
@@ -246,45 +245,6 @@ std::vector<Times> run_contest(Contest& contest, const std::string& title, const
   return times;
 }
 
-// The same queries by a plain walk over trees of each sort of volume, in scalars and a pair at a time: how
-// many tests each sort needs (docs/decisions/0010).
-void bench_volumes(const std::vector<Model>& models, const std::string& room, const PlacementsOfPairs& at,
-                   const Options& options) {
-  const Library library = std::make_shared<BoundsCache>();
-  Group group("boolean query, 1 %, " + room + ", by volume", "query", options);
-  std::vector<LimitSurface> surfaces;
-  for (const auto& pair : model_pairs) {
-    for (const char* name : pair) surfaces.emplace_back(named(models, name).mesh, loop_rules(), library);
-  }
-  double items = 0;
-  for (const auto& list : at) items += static_cast<double>(list.size());
-  std::vector<std::vector<KdopTree>> trees(all_volumes.size());
-  std::vector<KdopTree::Answer> sums(all_volumes.size());
-  for (std::size_t v = 0; v < all_volumes.size(); ++v) {
-    for (const LimitSurface& surface : surfaces) trees[v].emplace_back(surface, all_volumes[v]);
-    group.add(name_of(all_volumes[v]), items, [&, v] {
-      double separated = 0;
-      sums[v] = {};
-      for (std::size_t p = 0; p < at.size(); ++p) {
-        for (const PosePair& placed : at[p]) {
-          const KdopTree::Answer found =
-              KdopTree::compare(trees[v][2 * p], placed.a, trees[v][2 * p + 1], placed.b, one_percent);
-          separated += found.separated;
-          sums[v].volume_tests += found.volume_tests;
-          sums[v].triangle_tests += found.triangle_tests;
-        }
-      }
-      return separated;
-    });
-  }
-  static_cast<void>(group.run());
-  for (std::size_t v = 0; v < all_volumes.size(); ++v) {
-    std::printf("# %s, a query: %.1f volume tests, %.2f triangle tests\n", name_of(all_volumes[v]),
-                static_cast<double>(sums[v].volume_tests) / items,
-                static_cast<double>(sums[v].triangle_tests) / items);
-  }
-}
-
 void bench_queries(const std::vector<Model>& models, const Options& options) {
   Contest contest(models);
   for (const double side : {3.0, 6.0}) {
@@ -315,7 +275,6 @@ void bench_queries(const std::vector<Model>& models, const Options& options) {
       static_cast<void>(
           run_contest(contest, "boolean query, 1 %, " + room + ", " + name_of(nearness), some, options));
     }
-    bench_volumes(models, room, all, options);
   }
 }
 

@@ -111,7 +111,7 @@ std::vector<OffsetTriangle> leaves(const LimitSurface& surface, const LeafOption
 
 PrintedHierarchy::PrintedHierarchy(const LimitSurface& surface, const LeafOptions& options,
                                    const WorkMonitor& monitor)
-    : leaves_(leaves(surface, options, monitor)) {
+    : leaves_(snug::leaves(surface, options, monitor)) {
   std::vector<const OffsetTriangle*> members;
   for (const OffsetTriangle& leaf : leaves_) members.push_back(&leaf);
   struct Task {

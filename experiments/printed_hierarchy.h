@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <snug/bounds/enclosure.h>
@@ -38,7 +39,13 @@ class PrintedHierarchy {
  public:
   PrintedHierarchy(const LimitSurface& surface, const LeafOptions& options, const WorkMonitor& monitor = {});
 
-  [[nodiscard]] std::size_t leaf_count() const { return leaves_.size(); }
+  struct Node {
+    Obb box;
+    std::uint32_t first_child = 0;  // its two children follow each other, and it; 0 for a leaf
+    std::uint32_t leaf = 0;
+  };
+  [[nodiscard]] std::span<const Node> nodes() const { return nodes_; }
+  [[nodiscard]] std::span<const OffsetTriangle> leaves() const { return leaves_; }
 
   /// Does no pair of leaves stop the descent as printed? `epsilon` is what the pair test adds to the radii.
   ///
@@ -48,11 +55,6 @@ class PrintedHierarchy {
                                            const PrintedHierarchy& b, const Motion& place_b, double epsilon);
 
  private:
-  struct Node {
-    Obb box;
-    std::uint32_t first_child = 0;  // its two children follow each other; 0 for a leaf
-    std::uint32_t leaf = 0;
-  };
   [[nodiscard]] static bool apart(const Node& a, const Motion& place_a, const Node& b, const Motion& place_b,
                                   double epsilon);
 

@@ -12,6 +12,7 @@
 #include <experiments/printed_hierarchy.h>
 #include <experiments/quantile.h>
 #include <experiments/rooms.h>
+#include <snug/base/contract.h>
 #include <snug/base/error.h>
 #include <snug/query/pairs.h>
 #include <snug/search/workspace.h>
@@ -23,6 +24,8 @@ namespace {
 constexpr double moeller_epsilon = 1e-6;
 // Surfaces this near are counted as hits.
 constexpr double contact = 1e-7;
+// Of the checksum FNV-1a.
+constexpr std::uint64_t fnv_offset = 0xcbf29ce484222325, fnv_prime = 0x100000001b3;
 
 constexpr LeafOptions with_rows(double tolerance) { return {tolerance, BoundMethod::rows, false}; }
 constexpr LeafOptions with_tables(double tolerance) { return {tolerance, BoundMethod::table, false}; }
@@ -40,6 +43,13 @@ SurfaceBvhOptions model_options(BoundMethod method, bool tight) {
   options.tight = tight;
   options.threads = 1;
   return options;
+}
+
+std::vector<PosePair> placements_in(const RoomOptions& options) {
+  std::mt19937_64 random(options.seed);
+  std::vector<PosePair> placements(options.placements);
+  for (PosePair& placed : placements) placed = place_in_room(options.side, random);
+  return placements;
 }
 
 // Two models and the memory of their queries.
@@ -108,9 +118,7 @@ RoomRow measure_room(const LimitSurface& a, const LimitSurface& b, const RoomOpt
   QueryPair rows(a, b, BoundMethod::rows), tables(a, b, BoundMethod::table);
   const PrintedHierarchy printed_a(a, as_printed(tolerance), monitor),
       printed_b(b, as_printed(tolerance), monitor);
-  std::mt19937_64 random(options.seed);
-  std::vector<PosePair> placements(options.placements);
-  for (PosePair& placed : placements) placed = place_in_room(options.side, random);
+  const std::vector<PosePair> placements = placements_in(options);
 
   // Each method answers all placements; the first ones beforehand, too.
   using Ask = std::function<Verdict(const PosePair&)>;
@@ -160,6 +168,59 @@ RoomRow measure_room(const LimitSurface& a, const LimitSurface& b, const RoomOpt
     row.printed_alarms += !printed_apart && rows.ask(placements[i], contact, tolerance) == Verdict::separated;
   }
   return row;
+}
+
+std::vector<VolumeRow> measure_volumes(const LimitSurface& a, const LimitSurface& b,
+                                       const RoomOptions& options, const WorkMonitor& monitor) {
+  require_value(options.placements >= 1, "room: give at least one placement");
+  constexpr std::size_t rounds = 5;
+  const std::vector<PosePair> placements = placements_in(options);
+  const PrintedHierarchy hierarchy_a(a, with_rows(options.tolerance), monitor),
+      hierarchy_b(b, with_rows(options.tolerance), monitor);
+  struct Subject {
+    VolumeRow row;
+    VolumeTree a, b;
+    std::vector<double> times;
+  };
+  std::vector<Subject> subjects;
+  for (const Volume volume : all_volumes) {
+    for (const Turning turning : {Turning::bounded, Turning::refitted}) {
+      if (volume == Volume::obb && turning == Turning::refitted) continue;
+      subjects.push_back(
+          {{volume, turning}, VolumeTree(hierarchy_a, volume), VolumeTree(hierarchy_b, volume), {}});
+    }
+  }
+  const double count = static_cast<double>(placements.size());
+  for (std::size_t round = 0; round < rounds; ++round) {
+    for (std::size_t s = 0; s < subjects.size(); ++s) {
+      monitor.report(static_cast<double>(round * subjects.size() + s) /
+                     static_cast<double>(rounds * subjects.size()));
+      auto& [row, tree_a, tree_b, times] = subjects[s];
+      std::uint64_t volume_tests = 0, triangle_tests = 0;
+      row.possible = 0;
+      row.verdicts_sum = fnv_offset;
+      times.push_back(seconds_of([&] {
+        for (const PosePair& at : placements) {
+          const VolumeTree::Answer answer = VolumeTree::compare(tree_a, at.a, tree_b, at.b, row.turning);
+          volume_tests += answer.volume_tests;
+          triangle_tests += answer.triangle_tests;
+          row.possible += !answer.separated;
+          row.verdicts_sum = (row.verdicts_sum ^ static_cast<std::uint64_t>(answer.separated)) * fnv_prime;
+        }
+      }));
+      row.volume_tests = static_cast<double>(volume_tests) / count;
+      row.triangle_tests = static_cast<double>(triangle_tests) / count;
+    }
+  }
+  std::vector<VolumeRow> rows;
+  for (const Subject& subject : subjects) {
+    VolumeRow row = subject.row;
+    row.bytes = subject.a.bytes() + subject.b.bytes();
+    row.seconds = quantile(subject.times, 0.5) / count;
+    SNUG_EXPECT(row.verdicts_sum == subjects[0].row.verdicts_sum);
+    rows.push_back(row);
+  }
+  return rows;
 }
 
 }  // namespace snug

@@ -3,11 +3,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
+#include <experiments/volume_tree.h>
 #include <snug/monitor.h>
 #include <snug/surface/limit_surface.h>
 
-/// The measurements behind the dissertation's tables 5.1 to 5.3: triangles, creation, queries in rooms.
+/// The measurements behind the dissertation's tables 5.1 to 5.3: triangles, creation, queries in rooms; and of
+/// sorts of volumes, of which its text speaks.
 namespace snug {
 
 /// Tolerances of the tables, of models of size 1.
@@ -69,5 +72,25 @@ struct RoomRow {
 /// Guarantee: the counts depend on the surfaces and options alone.
 [[nodiscard]] RoomRow measure_room(const LimitSurface& a, const LimitSurface& b, const RoomOptions& options,
                                    const WorkMonitor& monitor = {});
+
+/// The queries of one room by a tree of one sort of volumes over hull rows' leaves.
+struct VolumeRow {
+  Volume volume = Volume::obb;
+  Turning turning = Turning::bounded;
+  std::uint64_t bytes = 0;         ///< of the volumes of both trees
+  double volume_tests = 0;         ///< a query
+  double triangle_tests = 0;       ///< a query
+  double seconds = 0;              ///< processor time a query, the median of five rounds in turn
+  std::uint64_t possible = 0;      ///< placements in which a pair of leaves is not apart
+  std::uint64_t verdicts_sum = 0;  ///< a checksum of all verdicts, the same for all rows
+};
+/// What remains when hierarchy, leaves, order and test at leaves are the same: how many tests each sort needs,
+/// and what following a rotation costs. A row for each sort, and each turning of the k-DOPs.
+/// Requires:  unit models (rooms.h).
+/// Errors:    InputError (value) unless placements >= 1.
+/// Guarantee: all but the times depends on the surfaces and options alone.
+[[nodiscard]] std::vector<VolumeRow> measure_volumes(const LimitSurface& a, const LimitSurface& b,
+                                                     const RoomOptions& options,
+                                                     const WorkMonitor& monitor = {});
 
 }  // namespace snug

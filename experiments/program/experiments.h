@@ -8,6 +8,7 @@ namespace snug::command {
 [[nodiscard]] Command leaves_command();      ///< table-5-1
 [[nodiscard]] Command creation_command();    ///< table-5-2
 [[nodiscard]] Command rooms_command();       ///< table-5-3
+[[nodiscard]] Command volumes_command();     ///< volumes
 [[nodiscard]] Command rates_command();       ///< rates
 [[nodiscard]] Command tightness_command();   ///< tightness
 [[nodiscard]] Command pair_test_command();   ///< pair-test

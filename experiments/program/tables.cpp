@@ -64,6 +64,11 @@ Models load_models(const Options& options) {
   return models;
 }
 
+void require_pairs(const char* command, const Models& models) {
+  if (models.meshes.size() % 2 == 0) return;
+  throw UsageError(fmt::format("{}: models meet two by two; give an even number of them", command));
+}
+
 void write_number(JsonWriter& json, const char* key, const std::optional<double>& number) {
   json.key(key);
   number ? json.value(*number) : json.null();
@@ -182,9 +187,7 @@ ExitStatus creation_table(const Options& options) {
 ExitStatus room_table(const Options& options) {
   Report report("table-5-3", options);
   const Models models = load_models(options);
-  if (models.meshes.size() % 2 != 0) {
-    throw UsageError("table-5-3: models meet two by two; give an even number of them");
-  }
+  require_pairs("table-5-3", models);
   // Rooms, then pairs, then tolerances.
   struct Cell {
     double side, tolerance;
@@ -255,13 +258,79 @@ ExitStatus room_table(const Options& options) {
   return ExitStatus::answered;
 }
 
-// The options of all three.
+ExitStatus volumes_table(const Options& options) {
+  Report report("volumes", options);
+  const Models models = load_models(options);
+  require_pairs("volumes", models);
+  constexpr double tolerance = 0.01;
+  struct Cell {
+    double side;
+    std::size_t pair;
+    std::vector<VolumeRow> rows;
+  };
+  std::vector<Cell> cells;
+  {
+    ProgressBar bar("colliding", options.quiet);
+    const WorkMonitor monitor = bar.monitor();
+    const auto library = std::make_shared<BoundsCache>();
+    std::vector<LimitSurface> surfaces;
+    for (const ControlMesh& mesh : models.meshes) surfaces.emplace_back(mesh, rules(), library);
+    const std::size_t pairs = surfaces.size() / 2;
+    for (const double side : {room_sides[0], room_sides[1]}) {
+      for (std::size_t pair = 0; pair < pairs; ++pair) {
+        cells.push_back({side, pair,
+                         measure_volumes(surfaces[2 * pair], surfaces[2 * pair + 1],
+                                         {side, tolerance, options.placements, options.seed},
+                                         part_of(monitor, cells.size(), 2 * pairs))});
+      }
+    }
+  }
+  if (report.json()) {
+    report.write().field("seed", options.seed).field("placements", options.placements);
+    report.write().field("tolerance", tolerance).key("rows").begin_array();
+  }
+  report.text("a query: pairs of volumes and of leaves tested, microseconds; KB: the volumes of both trees");
+  report.text(fmt::format("{:>4} {:<16} {:<6} {:<9} {:>7} {:>9} {:>9} {:>9} {:>8}  {}", "room", "models",
+                          "volume", "turning", "KB", "volumes", "leaves", "us", "possible", "verdicts"));
+  for (const auto& [side, pair, rows] : cells) {
+    const std::string &a = models.names[2 * pair], &b = models.names[2 * pair + 1];
+    for (const VolumeRow& row : rows) {
+      const char* turning = row.volume == Volume::obb ? "turned" : name_of(row.turning);
+      const std::string verdicts = fmt::format("{:016x}", row.verdicts_sum);
+      if (report.json()) {
+        JsonWriter& json = report.write();
+        json.begin_object().key("pair").begin_array().value(a).value(b).end_array();
+        json.field("room", side).field("volume", name_of(row.volume)).field("turning", turning);
+        json.field("bytes", row.bytes).field("volume_tests", row.volume_tests);
+        json.field("triangle_tests", row.triangle_tests).field("query_us", 1e6 * row.seconds);
+        json.field("possible", row.possible).field("verdicts", verdicts).end_object();
+      }
+      report.text(fmt::format("{:>4} {:<16} {:<6} {:<9} {:>7} {:>9.1f} {:>9.2f} {:>9.2f} {:>8}  {}", side,
+                              a + "/" + b, name_of(row.volume), turning, (row.bytes + 512) / 1024,
+                              row.volume_tests, row.triangle_tests, 1e6 * row.seconds, row.possible,
+                              verdicts));
+    }
+  }
+  if (report.json()) report.write().end_array();
+  report.finish();
+  return ExitStatus::answered;
+}
+
+// The options of all.
 OptionList table_options(Options& options) {
   OptionList list;
   list.add(Group::own, "MODEL", &options.models,
-           "Triangle meshes, taken in pairs by table-5-3; default: six of examples/models")
+           "Triangle meshes, taken in pairs by table-5-3 and volumes; default: six of examples/models")
       .must = false;
   add_output_options(list, options);
+  return list;
+}
+
+OptionList room_options(Options& options) {
+  OptionList list = table_options(options);
+  list.add(Group::own, "--placements N", &options.placements, "Random poses of each pair in each room")
+      .between(1, 100'000'000);
+  list.add(Group::own, "--seed N", &options.seed, "Random seed");
   return list;
 }
 
@@ -289,16 +358,25 @@ Command creation_command() {
 
 Command rooms_command() {
   auto options = std::make_shared<Options>();
-  OptionList list = table_options(*options);
-  list.add(Group::own, "--placements N", &options->placements, "Random poses of each pair in each room")
-      .between(1, 100'000'000);
-  list.add(Group::own, "--seed N", &options->seed, "Random seed");
+  OptionList list = room_options(*options);
   return {"table-5-3",
           Topic::tables,
           "Query times for two models at random poses in a room",
           {"snug-experiments table-5-3 --placements 2000"},
           std::move(list),
           [options] { return room_table(*options); }};
+}
+
+Command volumes_command() {
+  auto options = std::make_shared<Options>();
+  options->placements = 5000;
+  OptionList list = room_options(*options);
+  return {"volumes",
+          Topic::tables,
+          "Trees of boxes, k-DOPs or oriented boxes alone, while one model turns",
+          {"snug-experiments volumes --placements 500"},
+          std::move(list),
+          [options] { return volumes_table(*options); }};
 }
 
 }  // namespace snug::command

@@ -46,7 +46,7 @@ TEST(printed_hierarchy, tells_surfaces_that_are_apart_from_those_that_cross) {
   const LimitSurface a = testing::surface_of(oracle::meshes::icosahedron()),
                      b = testing::surface_of(oracle::meshes::octahedron());
   const PrintedHierarchy tree_a(a, {0.05, BoundMethod::table}), tree_b(b, {0.05, BoundMethod::table});
-  EXPECT_EQ(tree_a.leaf_count(), leaves(a, {0.05, BoundMethod::table}).size());
+  EXPECT_EQ(tree_a.leaves().size(), leaves(a, {0.05, BoundMethod::table}).size());
   const auto says = [&](double x, double epsilon) {
     const Motion moved = Motion::translation({x, 0, 0});
     return PrintedHierarchy::says_separated(tree_a, {}, tree_b, moved, epsilon);

@@ -45,6 +45,8 @@ TEST(program, refuses_what_it_has_no_use_for) {
                                              {"pair-test", "--nets", "4"},
                                              {"table-5-1", star, "--placements", "4"},
                                              {"table-5-3", star},
+                                             {"volumes", star},
+                                             {"volumes", "--placements", "0"},
                                              {"table-5-1", star, "--scheme", "catmark"},
                                              {"table-5-3", "--placements", "0"},
                                              {"bounds", star, "--degree", "2"},
@@ -170,6 +172,27 @@ TEST(program, tightness_has_quantiles_of_ratios) {
     EXPECT_GE(row["most"], row["high"]);
     EXPECT_GT(row["over_rows"], 0);
   }
+}
+
+TEST(program, volumes_say_the_same_and_need_less_where_they_are_tighter) {
+  const json document = answer({"volumes", model("star.obj"), model("pawn.obj"), "--placements", "200"});
+  expect_head(document, "volumes");
+  EXPECT_EQ(document["placements"], 200);
+  ASSERT_EQ(document["rows"].size(), 2u * 9);
+  for (std::size_t i = 0; i < 18; ++i) {
+    const json& row = document["rows"][i];
+    const json& first = document["rows"][i - i % 9];  // boxes along axes
+    EXPECT_EQ(row["pair"], json::array({"star", "pawn"}));
+    EXPECT_EQ(row["room"], i < 9 ? 6 : 3);
+    EXPECT_EQ(row["verdicts"], first["verdicts"]);
+    EXPECT_EQ(row["possible"], first["possible"]);
+    EXPECT_LE(row["volume_tests"], first["volume_tests"]);
+    EXPECT_LE(row["triangle_tests"], first["triangle_tests"]);
+    EXPECT_GE(row["bytes"], first["bytes"]);
+    EXPECT_GT(row["query_us"], 0);
+    EXPECT_EQ(row["turning"], i % 9 == 8 ? "turned" : i % 2 == (i < 9 ? 0 : 1) ? "bounded" : "refitted");
+  }
+  EXPECT_GT(document["rows"][9]["possible"], 0);
 }
 
 // A column of the peers: null in all rows or in none.
