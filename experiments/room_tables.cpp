@@ -186,8 +186,10 @@ std::vector<VolumeRow> measure_volumes(const LimitSurface& a, const LimitSurface
   for (const Volume volume : all_volumes) {
     for (const Turning turning : {Turning::bounded, Turning::refitted}) {
       if (volume == Volume::obb && turning == Turning::refitted) continue;
-      subjects.push_back(
-          {{volume, turning}, VolumeTree(hierarchy_a, volume), VolumeTree(hierarchy_b, volume), {}});
+      subjects.push_back({{.volume = volume, .turning = turning},
+                          VolumeTree(hierarchy_a, volume),
+                          VolumeTree(hierarchy_b, volume),
+                          {}});
     }
   }
   const double count = static_cast<double>(placements.size());
@@ -195,13 +197,15 @@ std::vector<VolumeRow> measure_volumes(const LimitSurface& a, const LimitSurface
     for (std::size_t s = 0; s < subjects.size(); ++s) {
       monitor.report(static_cast<double>(round * subjects.size() + s) /
                      static_cast<double>(rounds * subjects.size()));
-      auto& [row, tree_a, tree_b, times] = subjects[s];
+      Subject& subject = subjects[s];
+      VolumeRow& row = subject.row;
       std::uint64_t volume_tests = 0, triangle_tests = 0;
       row.possible = 0;
       row.verdicts_sum = fnv_offset;
-      times.push_back(seconds_of([&] {
+      subject.times.push_back(seconds_of([&] {
         for (const PosePair& at : placements) {
-          const VolumeTree::Answer answer = VolumeTree::compare(tree_a, at.a, tree_b, at.b, row.turning);
+          const VolumeTree::Answer answer =
+              VolumeTree::compare(subject.a, at.a, subject.b, at.b, row.turning);
           volume_tests += answer.volume_tests;
           triangle_tests += answer.triangle_tests;
           row.possible += !answer.separated;
