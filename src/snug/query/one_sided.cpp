@@ -113,9 +113,10 @@ class Chunk {
     // Is there nothing to be had from smaller parts?
     const bool errors_rule = now_.errors > options_.precision / 4;
     const bool small = gain(part) <= options_.precision * (errors_rule ? 0.25 : 0x1p-4);
-    limited_ = small && errors_rule && !last_;
-    if (limited_) return false;
     const bool on_side = !side_test || part.side == Side::asked;
+    // Other errors than its own keep the lower end down where a small part is above the goal.
+    limited_ = small && (errors_rule || on_side) && !last_;
+    if (limited_) return false;
     if (part.depth < max_depth && !(small && on_side)) return false;
     found_.upper = std::max(found_.upper, part.upper);
     return true;
