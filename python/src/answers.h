@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstring>
 #include <optional>
 #include <span>
@@ -16,8 +17,8 @@
 namespace snug::python {
 
 /// The answer to one question or to many, as the library gave it. Python sees it as one class: numbers and small arrays
-/// of one answer, arrays with one row an answer of many. Arrays are made when they are looked at, without a copy where
-/// the answers hold the numbers, and keep the answers alive.
+/// of one answer, arrays with one row an answer of many. All arrays are read-only. Where the answers hold the numbers an
+/// array is a view that keeps them alive; the others are made when they are first looked at, and kept.
 template <class T>
 class Answers {
  public:
@@ -31,8 +32,20 @@ class Answers {
   }
   [[nodiscard]] const T& one() const { return std::get<T>(held_); }
 
+  /// The array of this number, which make() makes the first time. It must not hold the answers: the two would never end.
+  template <class Make>
+  [[nodiscard]] py::object kept(std::size_t number, const Make& make) const {
+    if (number >= made_.size() || !made_[number]) {
+      py::object array = make();  // which may run other code of Python, and that come here
+      if (number >= made_.size()) made_.resize(number + 1);
+      if (!made_[number]) made_[number] = std::move(array);
+    }
+    return made_[number];
+  }
+
  private:
   std::variant<T, std::vector<T>> held_;
+  mutable std::vector<py::object> made_;
 };
 
 /// Adds properties to the class of Answers<T>.
@@ -94,19 +107,9 @@ class AnswerClass {
   AnswerClass& array(const char* name, std::vector<py::ssize_t> shape, const Fill& fill, const char* doc) {
     class_.def_property_readonly(
         name,
-        [shape, fill](const Self& self) -> py::object {
-          std::vector<py::ssize_t> whole = shape;
-          std::size_t step = 1;
-          for (const py::ssize_t extent : shape) step *= static_cast<std::size_t>(extent);
-          if (!self.single()) whole.insert(whole.begin(), static_cast<py::ssize_t>(self.all().size()));
-          py::array_t<Number> result(whole);
-          Number* out = result.mutable_data();
-          for (const T& each : self.all()) {
-            fill(each, out);
-            out += step;
-          }
-          if (shape.empty() && self.single()) return py::cast(*result.data());
-          return result;
+        [shape, fill, number = arrays_++](const Self& self) -> py::object {
+          if (shape.empty() && self.single()) return py::cast(*filled<Number>(self, shape, fill).data());
+          return self.kept(number, [&] { return read_only(filled<Number>(self, shape, fill)); });
         },
         doc);
     return *this;
@@ -170,8 +173,23 @@ class AnswerClass {
         }));
   }
 
+  template <class Number, class Fill>
+  static py::array_t<Number> filled(const Self& self, std::vector<py::ssize_t> shape, const Fill& fill) {
+    std::size_t step = 1;
+    for (const py::ssize_t extent : shape) step *= static_cast<std::size_t>(extent);
+    if (!self.single()) shape.insert(shape.begin(), static_cast<py::ssize_t>(self.all().size()));
+    py::array_t<Number> result(shape);
+    Number* out = result.mutable_data();
+    for (const T& each : self.all()) {
+      fill(each, out);
+      out += step;
+    }
+    return result;
+  }
+
   py::class_<Self> class_;
   const char* name_;
+  std::size_t arrays_ = 0;
 };
 
 /// x in as few digits as tell it, at most `digits`.

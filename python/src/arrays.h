@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -66,6 +67,15 @@ struct Layout<V> {
     strides.push_back(sizeof(double));
   }
 };
+template <>
+struct Layout<Interval> {
+  using Number = double;
+  static void add(std::vector<py::ssize_t>& shape, std::vector<py::ssize_t>& strides) {
+    static_assert(sizeof(Interval) == 2 * sizeof(double) && offsetof(Interval, upper) == sizeof(double));
+    shape.push_back(2);
+    strides.push_back(sizeof(double));
+  }
+};
 template <class V, std::size_t N>
 struct Layout<std::array<V, N>> {
   using Number = typename Layout<V>::Number;
@@ -76,13 +86,16 @@ struct Layout<std::array<V, N>> {
   }
 };
 
+/// The same array, which nobody writes to from now on.
+inline py::array read_only(py::array array) {
+  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
+  return array;
+}
 /// A read-only array over memory that `owner` keeps.
 template <class Number>
 py::array read_only(std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides, const Number* data,
                     py::handle owner) {
-  py::array array(py::dtype::of<Number>(), std::move(shape), std::move(strides), data, owner);
-  py::detail::array_proxy(array.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
-  return array;
+  return read_only(py::array(py::dtype::of<Number>(), std::move(shape), std::move(strides), data, owner));
 }
 
 /// One number for each row: a member of `rows`, seen without a copy.

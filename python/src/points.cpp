@@ -181,12 +181,13 @@ void add_containment(py::module_& module) {
 struct Hits {
   bool single = false;
   std::vector<RayHit> hits;
+  std::vector<Vector3> normals;  // NaN where there is none
   std::vector<std::int64_t> ray;
   std::vector<std::uint8_t> complete, certain_hit, certain_miss;
 };
 
 auto members_of(Either<Hits> auto& t) {
-  return std::tie(t.single, t.hits, t.ray, t.complete, t.certain_hit, t.certain_miss);
+  return std::tie(t.single, t.hits, t.normals, t.ray, t.complete, t.certain_hit, t.certain_miss);
 }
 
 struct RayInput {
@@ -231,6 +232,7 @@ Hits traced(const PySurface& self, const RayInput& input, const RayOptions& opti
       result.certain_miss.push_back(all[i].certain_miss());
       for (const RayHit& hit : all[i].hits) {
         result.hits.push_back(hit);
+        result.normals.push_back(hit.normal.value_or(Vector3{nan, nan, nan}));
         result.ray.push_back(static_cast<std::int64_t>(i));
       }
     }
@@ -331,17 +333,7 @@ void add_rays(py::module_& module) {
       "u", [](const RayHit& t) -> const double& { return t.at.u; }, "First parameter, (m,).");
   hit_view(
       "v", [](const RayHit& t) -> const double& { return t.at.v; }, "Second parameter, (m,).");
-  cls.def_property_readonly(
-      "normal",
-      [](const Hits& self) {
-        py::array_t<double> result({static_cast<py::ssize_t>(self.hits.size()), py::ssize_t{3}});
-        double* out = result.mutable_data();
-        for (const RayHit& hit : self.hits) {
-          for (std::size_t k = 0; k < 3; ++k) *out++ = hit.normal ? (*hit.normal)[k] : nan;
-        }
-        return result;
-      },
-      "Unit normals there, (m, 3); NaN where there is none.");
+  number_view("normal", &Hits::normals, "Unit normals there, (m, 3); NaN where there is none.");
   number_view("ray", &Hits::ray, "The ray of each hit, (m,) int64.");
   mask("complete", &Hits::complete,
        "Of each ray: are all hits that the query is about among them? (n,) bool.");
@@ -443,8 +435,9 @@ void add_evaluated(py::module_& module) {
           },
           "Unit normal, (n, 3); NaN where there is none.")
       .array<double>(
-          "normal_error", {}, [](const SurfacePoint& t, double* out) { *out = t.normal_error.value_or(nan); },
-          "Upper bound of |normal - exact normal|, (n,); NaN where none is proved.")
+          "normal_error", {},
+          [](const SurfacePoint& t, double* out) { *out = t.normal_error.value_or(HUGE_VAL); },
+          "Upper bound of |normal - exact normal|, (n,); infinite where none is proved.")
       .repr([](const SurfacePoint& t) {
         return text_of(t.position.x) + " " + text_of(t.position.y) + " " + text_of(t.position.z);
       });

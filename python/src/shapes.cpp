@@ -347,15 +347,9 @@ Measures measured(const PySurface& self, const py::object& relative, const py::o
 }
 
 template <std::size_t N>
-py::object intervals(const std::optional<std::array<Interval, N>>& given) {
+py::object intervals(const std::optional<std::array<Interval, N>>& given, const py::object& owner) {
   if (!given) return py::none();
-  py::array_t<double> result({static_cast<py::ssize_t>(N), py::ssize_t{2}});
-  double* out = result.mutable_data();
-  for (const Interval& each : *given) {
-    *out++ = each.lower;
-    *out++ = each.upper;
-  }
-  return result;
+  return value_view(*given, owner);
 }
 
 void add_measures(py::module_& module) {
@@ -372,10 +366,12 @@ void add_measures(py::module_& module) {
           },
           "Volume: (lower, upper); None unless the surface is closed.")
       .def_property_readonly(
-          "centroid", [](const Measures& self) { return intervals(self.centroid); },
+          "centroid",
+          [](const py::object& self) { return intervals(self.cast<const Measures&>().centroid, self); },
           "x, y, z, (3, 2); None where the volume may be 0.")
       .def_property_readonly(
-          "inertia", [](const Measures& self) { return intervals(self.inertia); },
+          "inertia",
+          [](const py::object& self) { return intervals(self.cast<const Measures&>().inertia, self); },
           "xx, yy, zz, xy, yz, zx of the tensor about the centroid with density 1, (6, 2); None likewise.")
       .def_property_readonly(
           "reached", [](const Measures& self) { return self.reached; }, "Are all as narrow as requested?")

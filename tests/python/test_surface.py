@@ -3,6 +3,7 @@
 import copy
 import gc
 import pickle
+import sys
 import types
 import warnings
 
@@ -149,7 +150,8 @@ def properties(answer):
     }
 
 
-def test_every_answer_is_pickled_and_copied(cube):
+def every_answer(cube):
+    """One of each class, of one question and of many, and some that have nothing to say."""
     one, many = [0.25, 0.5, 3.0], [[0.25, 0.5, 3.0], [0, 0, 0.1]]
     hulls = cube.hull("5%")
     answers = [
@@ -160,7 +162,55 @@ def test_every_answer_is_pickled_and_copied(cube):
     for points in (one, many, np.empty((0, 3))):
         answers += [cube.closest_point(points), cube.signed_distance(points), cube.contains(points)]
         answers += [cube.cast_rays(points, [0, 0, -1], query="all"), cube.cast_rays(points, [0, 0, -1], certified=False)]
+    return answers
+
+
+# Where there may be none of what an array has in each row.
+MAY_BE_MISSING = {"points", "parameters", "normal"}
+
+
+def test_arrays_are_read_only_and_made_once(cube):
+    cone = snug.Surface([[0, 0, 1], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]], [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1]], scheme="flat")
+    answers = every_answer(cube) + [cube, cone, cube.subdivided(1), cone.evaluate(0, 0, 0), cone.cast_rays([0.1, 0.1, 9], [0, 0, -1])]
+    for how in ({"pose_b": moved(9)}, {"pose_b": [moved(9), moved(0.5)]}, {"pose_b": np.empty((0, 4, 4))}):
+        answers += [snug.collide(cube, cube, witness=witness, **how) for witness in ("none", "exact")]
+        answers += [snug.distance(cube, cube, **how), snug.penetration(cube, cube, **how), snug.collide(cube, cube, solid=True, **how)]
+    seen = set()
     for answer in answers:
+        for name, array in properties(answer).items():
+            where = f"{type(answer).__name__}.{name}"
+            if isinstance(array, float):
+                assert not np.isnan(array), where
+            if not isinstance(array, np.ndarray):
+                continue
+            seen.add(where)
+            assert not array.flags.writeable, where
+            again = getattr(answer, name)
+            assert again is array or array.size == 0 or (np.shares_memory(again, array) and again.strides == array.strides), where
+            if array.dtype.kind == "f" and name not in MAY_BE_MISSING:
+                assert not np.isnan(array).any(), where
+    assert len(seen) > 60
+    hits = snug.collide(cube, cube, pose_b=[moved(9)] * 3)
+    kept = hits.points
+    assert hits.points is kept and hits[1].points is not kept
+    del hits, answer, answers
+    gc.collect()
+    assert kept.shape == (3, 2, 3)
+
+
+def test_arrays_do_not_keep_answers(cube):
+    """A cycle of an answer and its arrays would last as long as the process."""
+    answer = snug.collide(cube, cube, pose_b=[moved(9)] * 1000)
+    lower, points = answer.lower, answer.points
+    holders = sys.getrefcount(answer)
+    del lower
+    assert sys.getrefcount(answer) == holders - 1
+    del points
+    assert sys.getrefcount(answer) == holders - 1
+
+
+def test_every_answer_is_pickled_and_copied(cube):
+    for answer in every_answer(cube):
         for again in (pickle.loads(pickle.dumps(answer)), pickle.loads(pickle.dumps(answer, protocol=5)), copy.copy(answer), copy.deepcopy(answer)):
             assert type(again) is type(answer) and repr(again) == repr(answer)
             for (name, x), (_, y) in zip(properties(answer).items(), properties(again).items()):
