@@ -1,6 +1,7 @@
 #include "common.h"
 
-#include <cstdlib>
+#include <mutex>
+#include <unordered_set>
 
 #include <fmt/core.h>
 #include <snug/base/error.h>
@@ -51,8 +52,8 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 void add_common_options(OptionList& list, CommonOptions& options) {
   Option& scheme =
       add_scheme_option(list, "--scheme", options.scheme,
-                        "Subdivision scheme; auto: curve if there are polylines only, that of the file "
-                        "if it names one, loop if all faces are triangles, else catmark");
+                        "Subdivision scheme; auto: curve if there are polylines only, flat for STL and glTF, "
+                        "that of the file if it names one, loop if all faces are triangles, else catmark");
   scheme.choices.emplace_back("curve");
   list.add(Group::mesh, "--boundary RULE", &options.boundary,
            "Boundary rule; default: the file's tag, else edge-and-corner")
@@ -112,7 +113,13 @@ SchemeOptions choose_rules(const CommonOptions& options, const std::string& sche
 
 Notes notes_for(const CommonOptions& options) {
   if (options.quiet) return {};
-  return [](const std::string& line) { tell("note: " + line); };
+  return [](const std::string& line) {
+    // A file that is read twice has the same notes twice.
+    static std::mutex mutex;
+    static std::unordered_set<std::string> told;
+    const std::lock_guard lock(mutex);
+    if (told.insert(line).second) tell("note: " + line);
+  };
 }
 
 namespace {
@@ -160,7 +167,7 @@ LimitSurface make_surface(ControlMesh mesh, const std::string& path, const Commo
     ProgressBar bar("preparing " + path, options.quiet);
     surface.emplace(std::move(mesh), rules, library, bar.monitor());
   });
-  note_distance_to_faces(*surface, path, options);
+  note_smoothing(*surface, path, options, scheme);
   return std::move(*surface);
 }
 
@@ -232,15 +239,6 @@ ExitStatus Report::finish(bool reached, const std::vector<AtomicFile*>& others) 
   for (AtomicFile* file : files) file->complete();
   for (AtomicFile* file : files) file->commit();
   return reached ? ExitStatus::answered : ExitStatus::not_reached;
-}
-
-std::string text_at_most(double x, bool at_least) {
-  for (int digits = 6; digits < 17; ++digits) {
-    const std::string text = fmt::format("{:.{}g}", x, digits);
-    const double read = std::strtod(text.c_str(), nullptr);
-    if (at_least ? read >= x : read <= x) return text;
-  }
-  return fmt::format("{}", x);
 }
 
 }  // namespace snug::command

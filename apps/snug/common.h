@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <snug/io/mesh_file.h>
+#include <snug/io/number.h>
 #include <snug/mesh.h>
 #include <snug/query/bound.h>
 #include <snug/surface/limit_surface.h>
@@ -57,7 +58,7 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 [[nodiscard]] SchemeOptions choose_rules(const CommonOptions& options, const std::string& scheme,
                                          const ControlMesh& mesh);
 
-/// Where notes of readers and writers go: standard error, unless quiet.
+/// Where notes of readers and writers go: standard error, unless quiet, each line once.
 [[nodiscard]] Notes notes_for(const CommonOptions& options);
 
 /// Reads a control mesh, welds and sharpens it as the options say.
@@ -118,10 +119,6 @@ class Report {
   std::unique_ptr<Target> target_, text_;  // the document, and lines for people
   std::unique_ptr<JsonWriter> writer_;
 };
-
-/// About six digits of a proved bound, rounded to the safe side: down for lower bounds, up with `at_least`
-/// for upper ones.
-[[nodiscard]] std::string text_at_most(double x, bool at_least = false);
 
 [[nodiscard]] Command info_command();
 [[nodiscard]] Command bound_command();

@@ -48,7 +48,7 @@ Surface read_surface(const std::string& path, const Options& options, const std:
                                                     .threads = options.threads,
                                                     .monitor = bar.monitor()});
   });
-  note_distance_to_faces(limit_of(*surface), path, options);
+  note_smoothing(limit_of(*surface), path, options, scheme);
   return *surface;
 }
 

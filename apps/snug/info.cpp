@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 #include <snug/base/names.h>
+#include <snug/front/smoothing_note.h>
 #include <snug/mesh/validate.h>
 #include <snug/query/bound.h>
 #include <snug/scheme/rules.h>
@@ -38,6 +39,22 @@ std::size_t extraordinary(const ControlMesh& mesh, const MeshCounts& counts, con
   return found;
 }
 
+// What the mesh is taken to be, because of what, and how far that is from its faces.
+std::string taken_as(const ControlMesh& mesh, const SchemeRules& scheme, const Options& options,
+                     const std::optional<double>& apart, double size) {
+  const char* const because = options.scheme != "auto" ? "--scheme"
+                              : !options.sharp.empty() ? "--sharp"
+                              : mesh.tags.scheme       ? "the file"
+                                                       : "its faces";
+  const char* const what =
+      scheme.scheme == Scheme::flat ? "triangles" : "the control mesh of a limit surface";
+  std::string text = fmt::format("taken as {}, scheme {} (chosen by {})", what, scheme.name, because);
+  if (apart && scheme.scheme != Scheme::flat) {
+    text += ", within " + text_of_length(*apart, size) + " of its faces";
+  }
+  return text;
+}
+
 ExitStatus run(const Options& options) {
   const ControlMesh mesh = load_mesh(options.mesh, options);
   refuse_curves(mesh, options.scheme, options.mesh);
@@ -55,7 +72,7 @@ ExitStatus run(const Options& options) {
     apart = limit_to_faces(surface, options.threads);
     size = surface.size();
     kinds = surface.kind_count();
-    note_distance_to_faces(surface, options.mesh, options, apart);
+    note_smoothing(surface, options.mesh, options, options.scheme, apart);
   } catch (const InputError& error) {
     refusal = error.what();
   }
@@ -85,22 +102,16 @@ ExitStatus run(const Options& options) {
     }
     json.end_array();
   }
-  report.text(fmt::format("{}: {} vertices, {} edges, {} faces, {}, {} component{}", options.mesh,
-                          mesh.vertex_count(), counts.edges, mesh.face_count(),
-                          counts.closed ? "closed" : "open", counts.components,
-                          counts.components == 1 ? "" : "s"));
+  report.text(options.mesh + ": " + taken_as(mesh, scheme, options, apart, size));
+  if (!kinds) report.text("refused: " + refusal);
+  report.text(fmt::format("{} vertices, {} edges, {} faces, {}, {} component{}", mesh.vertex_count(),
+                          counts.edges, mesh.face_count(), counts.closed ? "closed" : "open",
+                          counts.components, counts.components == 1 ? "" : "s"));
   report.text(fmt::format("valence {} to {}, {} extraordinary {}, {} boundary edges, {} creases",
                           counts.min_valence, counts.max_valence, odd_ones,
                           scheme.primal ? "vertices" : "faces", counts.boundary_edges,
                           mesh.tags.creases.size()));
-  if (kinds) {
-    report.text(fmt::format("scheme {}, patch topologies: {}", scheme.name, *kinds));
-    if (apart) {
-      report.text("the limit surface is within " + text_of_length(*apart, size) + " of the faces");
-    }
-  } else {
-    report.text(fmt::format("scheme {}: refused: {}", scheme.name, refusal));
-  }
+  if (kinds) report.text(fmt::format("patch topologies: {}", *kinds));
   for (std::size_t i = 0; i < found.size() && i < 10; ++i) {
     report.text(fmt::format("{}: {}", scheme.answers(found[i].kind) ? "note" : "defect", found[i].text));
   }

@@ -1,11 +1,9 @@
 #include "mesh_reading.h"
 
-#include <algorithm>
 #include <charconv>
-#include <filesystem>
 
 #include <fmt/core.h>
-#include <snug/geometry/rounding.h>
+#include <snug/front/smoothing_note.h>
 #include <snug/mesh.h>
 #include <snug/query/bound.h>
 
@@ -79,51 +77,21 @@ void sharpen_mesh(ControlMesh& mesh, const std::string& path, double angle, cons
   note(text);
 }
 
-std::string text_of_length(double length, double size) {
-  if (!(size > 0)) return text_at_most(length, true);
-  const double percent = length > 0 ? enlarged(length / size * 100) : 0;
-  return fmt::format("{} ({} % of the size)", text_at_most(length, true), text_at_most(percent, true));
-}
-
-namespace {
-
-bool holds_facets(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return ending == ".stl" || ending == ".glb";
-}
-
-std::string how_far(std::optional<double> apart, const LimitSurface& surface) {
-  return apart ? "at most " + text_of_length(*apart, surface.size()) : "this scheme shrinks it";
-}
-
-}  // namespace
-
-void note_smooth_facets(const std::string& path, const CommonOptions& options, const std::string& far) {
+void note_smoothing(const LimitSurface& surface, const std::string& path, const CommonOptions& options,
+                    const std::string& scheme, std::optional<double> apart) {
   const Notes note = notes_for(options);
-  const SchemeRules* const rules = scheme_named(options.scheme);
-  if (!note || !options.sharp.empty() || !holds_facets(path) || (rules && rules->local)) return;
-  note(path +
-       ": the facets are used as a control mesh, whose smooth limit surface differs from them: " + far +
-       "; --sharp auto keeps sharp edges and flat faces, --scheme flat takes the triangles as they are");
-}
-
-void note_distance_to_faces(const LimitSurface& surface, const std::string& path,
-                            const CommonOptions& options, std::optional<double> known) {
-  const Notes note = notes_for(options);
-  const bool sharp = !options.sharp.empty();
-  if (!note || surface.rules().local || (!sharp && !holds_facets(path))) return;
-  constexpr std::size_t most_faces = 200'000;  // half a second
-  if (!known && surface.face_count() > most_faces) {
-    note_smooth_facets(path, options, ask_info);
+  if (!note || surface.rules().local) return;
+  if (options.sharp.empty()) {
+    if (scheme != "auto") return;
+    const std::string line = smoothing_note(surface, "--scheme", apart, options.threads);
+    if (!line.empty()) note(path + ": " + line);
     return;
   }
-  const std::optional<double> apart = known ? known : limit_to_faces(surface, options.threads);
-  if (!sharp) {
-    note_smooth_facets(path, options, how_far(apart, surface));
-  } else if (apart && *apart > 0) {
-    note(path + ": where it is smooth the limit surface differs from the faces: " + how_far(apart, surface));
+  if (!apart && surface.face_count() > most_measured_faces) return;
+  if (!apart) apart = limit_to_faces(surface, options.threads);
+  if (apart && *apart > 0) {
+    note(path + ": where it is smooth the limit surface differs from the faces: at most " +
+         text_of_length(*apart, surface.size()));
   }
 }
 

@@ -24,17 +24,10 @@ void note_coincidences(const ControlMesh& mesh, const std::string& path, const C
 /// Errors:    UsageError for curves.
 void sharpen_mesh(ControlMesh& mesh, const std::string& path, double angle, const CommonOptions& options);
 
-/// Without --sharp, a note that the limit surface of an STL file is not its facets; `far` says how far it is.
-void note_smooth_facets(const std::string& path, const CommonOptions& options, const std::string& far);
-/// For note_smooth_facets() where the distance was not computed.
-inline constexpr const char* ask_info = "'snug info' says how far";
-
-/// The same with how far the surface may be from its faces, which is measured unless it is known or the mesh is very large; with
-/// --sharp a note of that alone.
-void note_distance_to_faces(const LimitSurface& surface, const std::string& path,
-                            const CommonOptions& options, std::optional<double> known = {});
-
-/// "0.031 (0.25 %)": at least that length, and in percent of the size.
-[[nodiscard]] std::string text_of_length(double length, double size);
+/// Without --sharp, a note where `scheme`, what --scheme names for this surface, is auto and smooths triangles that no tag
+/// says are a control mesh; with it, a note how far curved regions are from their faces. `apart` is limit_to_faces() if it
+/// is known.
+void note_smoothing(const LimitSurface& surface, const std::string& path, const CommonOptions& options,
+                    const std::string& scheme, std::optional<double> apart = {});
 
 }  // namespace snug::command

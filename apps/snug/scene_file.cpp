@@ -355,7 +355,7 @@ Surface surface_of(std::string_view bytes, const SceneMesh& mesh, const WorkMoni
                                                        .monitor = monitor});
     static_cast<void>(surface->data()->bvh());  // with the file's name where that fails
   });
-  note_distance_to_faces(surface->data()->limit(), mesh.file, mesh.options);
+  note_smoothing(surface->data()->limit(), mesh.file, mesh.options, mesh.options.scheme);
   return *surface;
 }
 

@@ -54,7 +54,6 @@ ExitStatus run(const Options& options) {
     scheme = rules.scheme;
     result = subdivide(std::move(mesh), rules, options.level, options.limit, bar.monitor());
   });
-  if (!curves) note_smooth_facets(options.mesh, options, ask_info);
   if (!curves && names_scheme(options.output)) result.tags.scheme = scheme;
   AtomicFile file(options.output);
   write_mesh(result, file, options.output, notes_for(options), stopped_by_interrupts());

@@ -236,7 +236,8 @@ Command view_command() {
       .excludes("--scene");
   add_nearest_rigid_option(list, options->nearest_rigid);
   add_scheme_option(list, "--scheme", options->scheme,
-                    "Subdivision scheme; auto: loop if all faces are triangles, else catmark");
+                    "Subdivision scheme; auto: flat for STL and glTF, that of the file if it names one, "
+                    "loop if all faces are triangles, else catmark");
   list.add(Group::mesh, "--sharp ANGLE", &options->sharp,
            "Edges whose face normals differ by more than ANGLE degrees stay sharp; auto: 30");
   add_output_options(list, *options);

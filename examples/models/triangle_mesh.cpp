@@ -201,7 +201,9 @@ void finish(TriangleMesh& mesh, const std::string& name) {
 }
 
 std::string obj_text(const TriangleMesh& mesh, const std::string& title) {
-  std::string text = "# " + title + "\n# Control mesh for Loop subdivision, written by generate_models.\n";
+  std::string text =
+      "# " + title +
+      "\n# Control mesh for Loop subdivision, written by generate_models.\nt scheme 0/0/1 loop\n";
   for (const Vec3& p : mesh.points)
     text += "v " + decimal(p.x) + " " + decimal(p.y) + " " + decimal(p.z) + "\n";
   for (const Triangle& f : mesh.faces) {

@@ -78,7 +78,8 @@ struct MeshTags {
   std::optional<BoundaryRule> boundary;
   CreaseMethod crease_method = CreaseMethod::uniform;
   SmoothTriangles smooth_triangles = SmoothTriangles::catmark;
-  std::optional<Scheme> scheme;  ///< none: that of the faces, see SurfaceOptions
+  /// None: that of the faces, see SurfaceOptions. Flat for what is read from STL and glTF files.
+  std::optional<Scheme> scheme;
 };
 
 /// A polygonal control mesh: positions, faces as counter-clockwise vertex cycles, tags, and polylines.
@@ -140,7 +141,8 @@ struct ReadOptions {
 /// (binary, little endian), .stl (binary), .glb or .usda; "-" is OBJ on standard output.
 ///
 /// Notes:     one line for tags and one for polylines that the format cannot hold, and those of the format's
-///            writer.
+///            writer. STL and glTF mean their triangles as they are, OFF and PLY do not: for these there is a
+///            line if the mesh is tagged flat.
 /// Errors:    InputError: (unreadable) for another extension, or if the file cannot be written; (refused) if
 ///            the format cannot hold the faces, such as STL those that are not triangles. Interrupted.
 SNUG_API void write_mesh(const ControlMesh& mesh, const std::string& path, const Notes& notes = {},
@@ -218,6 +220,8 @@ struct Sharpened {
 ///            resulting tags does not. Existing tags are kept, and new ones, which take precedence, are
 ///            appended. Positions do not change. Faces keep their numbers.
 ///            Dual schemes ignore the tags.
+/// Scheme:    who sharpens takes the mesh as a control mesh: the scheme of a mesh without one, or tagged flat,
+///            is Loop from now on if all faces are triangles, else that of the faces.
 /// Errors:    InputError (value) unless 0 <= angle < 180.
 /// Cost:      linear, times the logarithm of the largest valence; splitting is quadratic in the corners of a
 ///            face. A mesh with faces of fewer than three vertices, references to missing vertices or

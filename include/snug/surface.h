@@ -25,7 +25,8 @@ enum class BoundMethod : std::uint8_t {
 };
 
 struct SurfaceOptions {
-  /// Default: the mesh's tag, else Loop if all faces are triangles, else Catmull-Clark.
+  /// Default: the mesh's tag, which readers set where a format means its triangles as they are (STL, glTF) or
+  /// names a scheme; else Loop if all faces are triangles, else Catmull-Clark.
   std::optional<Scheme> scheme{};
   std::optional<BoundaryRule> boundary{};  ///< default: the mesh's tag, else edge_and_corner
   BoundMethod bounds = BoundMethod::rows;  ///< how pieces are bounded
@@ -33,6 +34,10 @@ struct SurfaceOptions {
   /// for surfaces that are queried thousands of times. Otherwise the BVH is built only from control points.
   bool tight = false;
   int threads = 0;  ///< for preparation; 0: all cores
+  /// Receives one line where triangles are smoothed though nobody said so: no `scheme`, and no tag of the
+  /// mesh. It says how far the surface may be from them, see limit_to_faces(), which costs a microsecond a
+  /// face and is left out above 200,000 faces.
+  Notes notes{};
   WorkMonitor monitor{};
 };
 
@@ -74,7 +79,8 @@ class SNUG_API Surface {
 };
 
 /// The limit surface of a mesh file, with the file's rules and tags unless `options` overrides them. Notes of
-/// the reader, such as about tags that snug does not know, are discarded; read_mesh() passes them on.
+/// the reader, such as about tags that snug does not know, and that of Surface go to `options.notes`, with the
+/// name of the file.
 /// Errors:    those of read_mesh() and Surface, with the name of the file.
 [[nodiscard]] SNUG_API Surface load(const std::string& path, const SurfaceOptions& options = {});
 

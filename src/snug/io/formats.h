@@ -85,7 +85,8 @@ namespace snug {
 ///            joined. Normals, attributes, and names are ignored.
 /// Guarantee: coordinates are exactly the floats of a binary file and the doubles nearest to the decimals of
 ///            an ascii one. Corners become one vertex where they are equal, 0 and -0 being equal. Vertices
-///            are numbered in the order of their first corners. Facets keep their order.
+///            are numbered in the order of their first corners. Facets keep their order. The tag of the
+///            scheme is flat: the facets are meant.
 /// Errors:    also facets that are no triangles, a size that does not agree with the number of facets, a file
 ///            that is neither.
 [[nodiscard]] ControlMesh parse_stl(std::string_view bytes, const std::string& name);
@@ -144,7 +145,7 @@ namespace snug {
 ///            file splits vertices by normals and the like: within a node, corners become one vertex where
 ///            they are equal. Triangles with two corners in one place are left out, the others keep their
 ///            order; mirroring nodes reverse them. Instances and shared accessors make at most 100 times the
-///            file.
+///            file. The tag of the scheme is flat: the triangles are meant.
 /// Notes:     one line each for moved points, primitives without triangles, triangles that are left out, and
 ///            skins or morph targets, which are not applied.
 /// Errors:    also buffers outside of the file, extensions that are needed and may concern the geometry, such

@@ -33,11 +33,21 @@ std::string format_to_write(const std::string& path) {
                       "written to .obj, .off, .ply, .stl, .glb and .usda");
 }
 
-bool changes_surface(const ControlMesh& mesh) {
-  const MeshTags& tags = mesh.tags;
-  return natural_scheme(mesh) != scheme_of_faces(mesh) || !tags.creases.empty() || !tags.corners.empty() ||
-         !tags.holes.empty() || tags.boundary || tags.crease_method != CreaseMethod::uniform ||
-         tags.smooth_triangles != SmoothTriangles::catmark;
+bool holds_tags(const std::string& ending) { return ending == ".obj" || ending == ".usda"; }
+
+/// Notes tags that a format without them drops although they change the surface.
+void note_dropped_tags(const ControlMesh& mesh, const std::string& path, bool facets, const Notes& notes) {
+  const std::optional<Scheme> scheme = mesh.tags.scheme;
+  const Scheme read_back = facets ? Scheme::flat : scheme_of_faces(mesh);
+  if (has_rules(mesh.tags) || (scheme && *scheme != read_back && *scheme != Scheme::flat)) {
+    notes(path + ": this format has no tags: creases and rules are dropped");
+  }
+  if (scheme == Scheme::flat && read_back != Scheme::flat) {
+    notes(path +
+          ": this format does not say that its triangles are meant as they are, and who reads it may smooth "
+          "them; "
+          "OBJ, STL, glTF and USD say so");
+  }
 }
 
 /// The format of a file whose name does not tell.
@@ -148,10 +158,8 @@ void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& pa
   const auto note_if = [&](bool dropped, const char* what) {
     if (dropped && notes) notes(path + what);
   };
-  const bool is_obj = ending == ".obj";
-  note_if(!is_obj && ending != ".usda" && changes_surface(mesh),
-          ": this format has no tags: creases and rules are dropped");
-  note_if(!is_obj && mesh.polyline_count() > 0, ": this format has no polylines: they are dropped");
+  if (notes && !holds_tags(ending)) note_dropped_tags(mesh, path, !writes_polygons(path), notes);
+  note_if(ending != ".obj" && mesh.polyline_count() > 0, ": this format has no polylines: they are dropped");
   monitor.checkpoint();
   const std::string bytes = formatted(mesh, ending, path, notes, normals);
   constexpr std::size_t part = std::size_t{1} << 20;

@@ -95,6 +95,21 @@ void append_real(std::string& text, double value) {
   text.append(digits.data(), result.ptr);
 }
 
+std::string text_at_most(double x, bool at_least) {
+  std::array<char, 32> text{};  // "-1.2345678901234567e-308"
+  const auto written = [&](int digits) {
+    return std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::general, digits).ptr;
+  };
+  const char* end = nullptr;
+  for (int digits = 6; digits <= 17; ++digits) {  // 17 tell any two doubles apart
+    end = written(digits);
+    double read = x;
+    std::from_chars(text.data(), end, read);
+    if (at_least ? read >= x : read <= x) break;
+  }
+  return {text.data(), static_cast<std::size_t>(end - text.data())};
+}
+
 void append_point(std::string& text, const Point3& point) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (axis > 0) text += ' ';

@@ -41,6 +41,10 @@ void append_real(std::string& text, double value);
 /// Appends "x y z", likewise.
 void append_point(std::string& text, const Point3& point);
 
+/// About six digits of a proved bound, rounded to the safe side: down for lower bounds, up with `at_least`
+/// for upper ones.
+[[nodiscard]] std::string text_at_most(double x, bool at_least = false);
+
 /// Appends a decimal integer.
 void append_integer(std::string& text, std::uint64_t value);
 

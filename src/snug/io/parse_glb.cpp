@@ -93,6 +93,7 @@ class GlbReader {
     visit_nodes();
     tell();
     if (mesh_.face_count() == 0) fail("the file has no triangles in its scene");
+    mesh_.tags.scheme = Scheme::flat;
     return std::move(mesh_);
   }
 

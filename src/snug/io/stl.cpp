@@ -150,7 +150,9 @@ Vector3 unit_normal(const Point3& a, const Point3& b, const Point3& c) {
 }  // namespace
 
 ControlMesh parse_stl(std::string_view bytes, const std::string& name) {
-  return mesh_of_triangles(read_corners(bytes, name));
+  ControlMesh mesh = mesh_of_triangles(read_corners(bytes, name));
+  mesh.tags.scheme = Scheme::flat;
+  return mesh;
 }
 
 std::string format_stl(const ControlMesh& mesh, const std::string& name, const Notes& notes) {

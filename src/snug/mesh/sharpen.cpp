@@ -368,6 +368,11 @@ Sharpened sharpen(ControlMesh& mesh, double angle) {
   split_faces(mesh, *sharp, result);
   if (result.split_faces > 0) sharp.emplace(mesh, angle);
   sharp->tag(mesh.tags, result);
+  std::optional<Scheme>& scheme = mesh.tags.scheme;
+  if (!scheme || scheme == Scheme::flat) {
+    const bool triangles = mesh.face_count() > 0 && mesh.face_vertices.size() == 3 * mesh.face_count();
+    scheme = triangles ? std::optional(Scheme::loop) : std::nullopt;
+  }
   return result;
 }
 

@@ -104,6 +104,15 @@ Scheme scheme_of_faces(const ControlMesh& mesh) {
   return Scheme::loop;
 }
 
+bool has_rules(const MeshTags& tags) {
+  return !tags.creases.empty() || !tags.corners.empty() || !tags.holes.empty() || tags.boundary ||
+         tags.crease_method != CreaseMethod::uniform || tags.smooth_triangles != SmoothTriangles::catmark;
+}
+
+bool smooths_untagged(const ControlMesh& mesh) {
+  return !mesh.tags.scheme && !has_rules(mesh.tags) && scheme_of_faces(mesh) == Scheme::loop;
+}
+
 SchemeOptions with_tags(SchemeOptions options, const MeshTags& tags) {
   options.creases = tags.crease_method;
   options.triangles = tags.smooth_triangles;

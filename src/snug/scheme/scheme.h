@@ -27,6 +27,10 @@ inline constexpr std::size_t max_face_size = 1000;
 [[nodiscard]] Scheme natural_scheme(const ControlMesh& mesh);
 /// Loop for triangles alone, else Catmull-Clark, whatever the tag.
 [[nodiscard]] Scheme scheme_of_faces(const ControlMesh& mesh);
+/// Do tags other than that of the scheme change the surface?
+[[nodiscard]] bool has_rules(const MeshTags& tags);
+/// Does natural_scheme() smooth triangles although no tag says that they are a control mesh?
+[[nodiscard]] bool smooths_untagged(const ControlMesh& mesh);
 
 /// The topology of the mesh. Throws InputError (refused), naming elements and the next step, unless the limit
 /// surface under these rules is one that snug answers questions about: no refusing defect (mesh/validate.h),

@@ -1,0 +1,43 @@
+#include <snug/front/smoothing_note.h>
+
+#include <cmath>
+
+#include <snug/base/error.h>
+#include <snug/geometry/rounding.h>
+#include <snug/io/number.h>
+#include <snug/query/bound.h>
+#include <snug/scheme/scheme.h>
+
+namespace snug {
+namespace {
+
+// Infinite where no double holds it.
+double away_from_faces(const LimitSurface& surface, int threads) {
+  try {
+    return limit_to_faces(surface, threads).value_or(INFINITY);
+  } catch (const InputError&) {
+    return INFINITY;
+  }
+}
+
+}  // namespace
+
+std::string text_of_length(double length, double size) {
+  if (!(size > 0)) return text_at_most(length, true);
+  const double percent = length > 0 ? enlarged(length / size * 100) : 0;
+  return text_at_most(length, true) + " (" + text_at_most(percent, true) + " % of the size)";
+}
+
+std::string smoothing_note(const LimitSurface& surface, std::string_view option, std::optional<double> apart,
+                           int threads) {
+  if (!smooths_untagged(surface.mesh())) return {};
+  if (!apart && surface.face_count() <= most_measured_faces) apart = away_from_faces(surface, threads);
+  if (apart == 0) return {};
+  const std::string far = apart ? ", up to " + text_of_length(*apart, surface.size()) + " away from them"
+                                : " (how far from them is not measured above 200,000 faces)";
+  const std::string given(option);
+  return "triangles taken as the control mesh of a Loop surface" + far + "; " + given +
+         " flat takes the facets, " + given + " loop says that this is meant";
+}
+
+}  // namespace snug

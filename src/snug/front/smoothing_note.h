@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <snug/surface/limit_surface.h>
+
+namespace snug {
+
+/// "0.031 (0.25 % of the size)": at least that length.
+[[nodiscard]] std::string text_of_length(double length, double size);
+
+/// Most faces whose distance from the limit surface a note measures, 0.2 seconds.
+inline constexpr std::size_t most_measured_faces = 200'000;
+
+/// "triangles taken as the control mesh of a Loop surface, up to 0.031 (...) away from them; scheme flat takes
+/// ..." for a surface of natural_scheme(); empty unless smooths_untagged() its mesh and moves it. `option` is
+/// how the caller gives a scheme, `apart` the distance from the faces if it is known.
+/// Cost:      that of limit_to_faces() up to most_measured_faces; above, the note is without the distance.
+[[nodiscard]] std::string smoothing_note(const LimitSurface& surface, std::string_view option,
+                                         std::optional<double> apart = {}, int threads = 0);
+
+}  // namespace snug
