@@ -139,5 +139,22 @@ TEST(number, integers_are_whole_words_and_saturate) {
   }
 }
 
+TEST(text_at_most, rounds_to_the_side_asked_for_in_six_digits_or_few_more) {
+  EXPECT_EQ(text_at_most(0.25), "0.25");
+  EXPECT_EQ(text_at_most(0.25, true), "0.25");
+  EXPECT_EQ(text_at_most(INFINITY, true), "inf");
+  std::mt19937_64 random(17);
+  for (int i = 0; i < 100'000; ++i) {
+    const double x = std::bit_cast<double>(random());
+    if (!std::isfinite(x)) continue;
+    for (const bool at_least : {false, true}) {
+      const std::string text = text_at_most(x, at_least);
+      const double read = parse_real(text).value;
+      EXPECT_TRUE(at_least ? read >= x : read <= x) << text;
+      EXPECT_LE(std::abs(read / 4 - x / 4), 5e-6 * (std::abs(x) / 4)) << text;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace snug

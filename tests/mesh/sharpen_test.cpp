@@ -1,6 +1,7 @@
 #include <snug/mesh.h>
 
 #include <algorithm>
+#include <optional>
 #include <random>
 #include <set>
 #include <utility>
@@ -233,6 +234,22 @@ TEST(sharpen, does_not_depend_on_the_size_of_coordinates) {
       p = {std::ldexp(p.x, exponent), std::ldexp(p.y, exponent), std::ldexp(p.z, exponent)};
     EXPECT_EQ(sharpen(mesh).flat_regions, 8u) << exponent;
     EXPECT_EQ(creases(mesh).size(), edge_count(mesh)) << exponent;
+  }
+}
+
+TEST(sharpen, takes_facets_as_a_control_mesh) {
+  const auto scheme_after = [](bool triangles, std::optional<Scheme> before, double angle) {
+    ControlMesh mesh = testing::box({0, 0, 0}, {40, 20, 10}, triangles);
+    mesh.tags.scheme = before;
+    sharpen(mesh, angle);
+    return mesh.tags.scheme;
+  };
+  for (const double angle : {30.0, 179.0}) {  // at 179 degrees nothing is sharp
+    EXPECT_EQ(scheme_after(true, Scheme::flat, angle), Scheme::loop);
+    EXPECT_EQ(scheme_after(true, {}, angle), Scheme::loop);
+    EXPECT_EQ(scheme_after(true, Scheme::catmark, angle), Scheme::catmark);
+    EXPECT_EQ(scheme_after(false, Scheme::flat, angle), std::nullopt);
+    EXPECT_EQ(scheme_after(false, {}, angle), std::nullopt);
   }
 }
 
