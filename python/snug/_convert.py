@@ -52,8 +52,8 @@ def _indices(numbers: Any, what: str) -> Indices:
     return np.ascontiguousarray(array, dtype=np.uint32).reshape(array.shape)
 
 
-def mesh(vertices: Any, faces: Any) -> Tuple[Doubles, Indices, Indices]:
-    """Points (n, 3), offsets of the faces, and their vertices."""
+def mesh(vertices: Any, faces: Any) -> Tuple[Doubles, Indices, Indices, bool]:
+    """Points (n, 3), offsets of the faces, their vertices, and whether all faces are triangles."""
     if faces is None:
         vertices, faces = _parts(vertices)
     points = doubles(vertices, "vertices")
@@ -64,7 +64,7 @@ def mesh(vertices: Any, faces: Any) -> Tuple[Doubles, Indices, Indices]:
     if len(points) > _MOST:
         raise ValueError(f"vertices: at most {_MOST} are taken")
     offsets, corners = _faces(faces)
-    return points, offsets, corners
+    return points, offsets, corners, bool((np.diff(offsets.astype(np.int64)) == 3).all())
 
 
 def _faces(faces: Any) -> Tuple[Indices, Indices]:
@@ -150,8 +150,8 @@ def triangles(candidate: Any) -> Doubles:
         if corners.ndim != 3 or corners.shape[1:] != (3, 3):
             raise ValueError(f"candidate has the shape {corners.shape}; give corners (n, 3, 3), a mesh, or a Surface")
         return corners
-    points, offsets, flat = mesh(candidate, None)
-    if (np.diff(offsets.astype(np.int64)) != 3).any():
+    points, _, flat, triangular = mesh(candidate, None)
+    if not triangular:
         raise ValueError("candidate has faces that are not triangles; split them first")
     if flat.size and flat.max() >= len(points):
         raise ValueError(f"candidate uses vertex {flat.max()} of {len(points)}")

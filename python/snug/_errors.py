@@ -78,7 +78,7 @@ class UndecidedError(ArithmeticError):
 
 
 class MeshWarning(UserWarning):
-    """A reader or writer dropped something, although it changes the surface."""
+    """A reader or writer dropped something, although it changes the surface; or triangles are smoothed though nobody said so."""
 
 
 for _class in (MeshError, FileError, PoseError, UndecidedError, MeshWarning):

@@ -1,7 +1,7 @@
 """Which of many placed surfaces touch, by the names and argument orders of trimesh.collision.CollisionManager.
 
-A script that uses trimesh's manager uses this one by changing its import. The answers are about limit surfaces and
-are proved:
+A script that uses trimesh's manager uses this one by changing its import. A mesh of another library whose faces are all
+triangles is what these triangles are, as in trimesh; scheme= and sharp= make a smooth surface of it. The answers are proved:
 
 - two objects collide if their verdict is 'within' or 'intersecting': at most `tolerance` apart, 0.1 % of the larger
   one's size by default. With solid=True one inside the other collides, too. Where nothing could be shown,
@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from ._errors import UndecidedError
 from ._snug import Collision, Distance, Surface, _pose, collide, distance, penetration
-from .proximity import as_surface
+from .proximity import Sharp, as_surface
 
 Floats = npt.NDArray[np.float64]
 
@@ -167,6 +167,7 @@ class CollisionManager:
 
     tolerance, solid: as in snug.collide(). relative: as in snug.distance(). rigid="nearest": transforms that are not rigid
     within 1e-9, such as those of single precision, are replaced by the nearest ones; without it they raise PoseError.
+    scheme, sharp: as in snug.Surface(), for meshes that are not surfaces yet.
     """
 
     def __init__(
@@ -175,16 +176,20 @@ class CollisionManager:
         solid: bool = False,
         relative: float = 1e-4,
         rigid: Optional[str] = None,
+        scheme: Optional[str] = "auto",
+        sharp: Sharp = None,
     ) -> None:
         self._tolerance = tolerance
         self._solid = solid
         self._relative = relative
         self._rigid = rigid
+        self._scheme = scheme
+        self._sharp = sharp
         self._objects: Dict[str, _Placed] = {}
 
     def add_object(self, name: str, mesh: Any, transform: Optional[npt.ArrayLike] = None) -> Surface:
         """Adds a surface, or a mesh that snug.Surface() takes, in place of an object of that name. Returns the surface."""
-        surface = as_surface(mesh)
+        surface = self._surface(mesh)
         self._objects[name] = self._place(name, surface, transform)
         return surface
 
@@ -209,7 +214,7 @@ class CollisionManager:
         Returns bool; with return_names also the set of names of those that it touches, with return_data also a list of
         ContactData.
         """
-        other = self._place(_EXTERNAL, as_surface(mesh), transform)
+        other = self._place(_EXTERNAL, self._surface(mesh), transform)
         found = list(self._contacts(_between(self._all(), [other]), return_names or return_data))
         return self._answer(found, {a.name for a, _, _ in found}, return_names, return_data)
 
@@ -231,7 +236,7 @@ class CollisionManager:
     ) -> Any:
         """How far a surface is from the objects, at least; with return_name also the nearest one's name, with
         return_data also DistanceData."""
-        other = self._place(_EXTERNAL, as_surface(mesh), transform)
+        other = self._place(_EXTERNAL, self._surface(mesh), transform)
         return self._nearest(_between(self._all(), [other]), return_name, return_data, lambda a, b: a)
 
     def min_distance_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
@@ -247,6 +252,9 @@ class CollisionManager:
         return self._nearest(
             _between(self._all(), other_manager._all()), return_names, return_data, lambda a, b: (a, b)
         )
+
+    def _surface(self, mesh: Any) -> Surface:
+        return as_surface(mesh, self._scheme, self._sharp)
 
     def _place(self, name: str, surface: Surface, transform: Optional[npt.ArrayLike]) -> _Placed:
         return _placed(name, surface, transform, self._rigid)
@@ -325,14 +333,19 @@ class CollisionManager:
         return result[0] if len(result) == 1 else tuple(result)
 
 
-def scene_to_collision(scene: Any) -> Tuple[CollisionManager, Dict[str, Surface]]:
-    """A manager with the objects of a trimesh.Scene, and their surfaces, by the names of its nodes."""
-    manager = CollisionManager()
+def scene_to_collision(
+    scene: Any, *, scheme: Optional[str] = "auto", sharp: Sharp = None
+) -> Tuple[CollisionManager, Dict[str, Surface]]:
+    """A manager with the objects of a trimesh.Scene, and their surfaces, by the names of its nodes.
+
+    scheme, sharp: those of the manager.
+    """
+    manager = CollisionManager(scheme=scheme, sharp=sharp)
     surfaces: Dict[str, Surface] = {}
     made: Dict[Any, Surface] = {}
     for node in scene.graph.nodes_geometry:
         transform, geometry = scene.graph[node]
         if geometry not in made:
-            made[geometry] = as_surface(scene.geometry[geometry])
+            made[geometry] = manager._surface(scene.geometry[geometry])
         surfaces[node] = manager.add_object(node, made[geometry], transform)
     return manager, surfaces

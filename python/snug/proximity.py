@@ -1,7 +1,8 @@
 """Points near a limit surface, by the names and argument orders of trimesh.proximity.
 
 A script that asks trimesh.proximity asks this module instead by changing its import. `mesh` is a snug.Surface, or
-anything that snug.Surface() takes; the answers are about its limit surface, not about its facets:
+anything that snug.Surface() takes. A mesh of another library whose faces are all triangles is what these triangles are,
+as in trimesh; scheme= and sharp=, those of snug.Surface(), make a smooth surface of it. What is a Surface already stays so.
 
 - closest points lie on the limit surface, and `triangle_id` is the face of the control mesh they belong to;
 - distances are upper ends of proved intervals, at most 0.01 % of the mesh's size above the exact distance;
@@ -11,7 +12,7 @@ anything that snug.Surface() takes; the answers are about its limit surface, not
 
 from __future__ import annotations
 
-from typing import Any, List, Optional, Tuple
+from typing import Any, List, Optional, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -34,9 +35,12 @@ __all__ = [
 ]
 
 
-def as_surface(mesh: Any) -> Surface:
+Sharp = Union[float, str, None]
+
+
+def as_surface(mesh: Any, scheme: Optional[str] = "auto", sharp: Sharp = None) -> Surface:
     """A Surface as it is, anything else that Surface() takes made into one."""
-    return mesh if isinstance(mesh, Surface) else Surface(mesh)
+    return mesh if isinstance(mesh, Surface) else Surface(mesh, scheme=scheme, sharp=sharp)
 
 
 def _rows(given: Any, name: str) -> Floats:
@@ -46,24 +50,30 @@ def _rows(given: Any, name: str) -> Floats:
     return array
 
 
-def closest_point(mesh: Any, points: npt.ArrayLike) -> Tuple[Floats, Floats, Integers]:
+def closest_point(
+    mesh: Any, points: npt.ArrayLike, *, scheme: Optional[str] = "auto", sharp: Sharp = None
+) -> Tuple[Floats, Floats, Integers]:
     """The limit point closest to each of `points`, (m, 3).
 
     Returns closest (m, 3), distance (m,) in mesh units, and triangle_id (m,), faces of the control mesh.
     """
-    found = as_surface(mesh).closest_point(_rows(points, "points"))
+    found = as_surface(mesh, scheme, sharp).closest_point(_rows(points, "points"))
     return np.array(found.point), np.array(found.upper), np.array(found.face)
 
 
-def closest_point_naive(mesh: Any, points: npt.ArrayLike) -> Tuple[Floats, Floats, Integers]:
+def closest_point_naive(
+    mesh: Any, points: npt.ArrayLike, *, scheme: Optional[str] = "auto", sharp: Sharp = None
+) -> Tuple[Floats, Floats, Integers]:
     """closest_point(): nothing here is quicker and less exact."""
-    return closest_point(mesh, points)
+    return closest_point(mesh, points, scheme=scheme, sharp=sharp)
 
 
-def nearby_faces(mesh: Any, points: npt.ArrayLike) -> List[List[int]]:
+def nearby_faces(
+    mesh: Any, points: npt.ArrayLike, *, scheme: Optional[str] = "auto", sharp: Sharp = None
+) -> List[List[int]]:
     """For each of `points`, (n, 3), the faces that its closest limit point may lie on, and perhaps some more: a list of
     lists. In a dual scheme they are vertices."""
-    surface = as_surface(mesh)
+    surface = as_surface(mesh, scheme, sharp)
     at = _rows(points, "points")
     reach = np.array(surface.closest_point(at).upper) * (1 + 1e-12)
     boxes = surface.boxes()
@@ -74,25 +84,29 @@ def nearby_faces(mesh: Any, points: npt.ArrayLike) -> List[List[int]]:
     return found
 
 
-def signed_distance(mesh: Any, points: npt.ArrayLike) -> Floats:
+def signed_distance(
+    mesh: Any, points: npt.ArrayLike, *, scheme: Optional[str] = "auto", sharp: Sharp = None
+) -> Floats:
     """Distance of each of `points`, (m, 3), from the surface of a solid: positive inside, negative outside, (m,).
 
     The number is the end of the proved interval that is nearer to 0; where the interval contains 0 it is 0.
     """
-    found = as_surface(mesh).signed_distance(_rows(points, "points"))
+    found = as_surface(mesh, scheme, sharp).signed_distance(_rows(points, "points"))
     lower, upper = np.array(found.lower), np.array(found.upper)
     inside, outside = upper < 0, lower > 0
     return np.where(inside, -upper, np.where(outside, -lower, 0.0))
 
 
-def longest_ray(mesh: Any, points: npt.ArrayLike, directions: npt.ArrayLike) -> Floats:
+def longest_ray(
+    mesh: Any, points: npt.ArrayLike, directions: npt.ArrayLike, *, scheme: Optional[str] = "auto", sharp: Sharp = None
+) -> Floats:
     """How far one comes from each of `points`, (n, 3), along `directions`, (n, 3), before meeting the surface, (n,).
 
     Lengths in mesh units, infinite where nothing is met. Hits within 1e-8 of the size are the point's own and do not
     count. A length is the lower end of the interval of
     the first hit, or of what may be one.
     """
-    surface = as_surface(mesh)
+    surface = as_surface(mesh, scheme, sharp)
     origins, towards = _rows(points, "points"), _rows(directions, "directions")
     if len(origins) != len(towards):
         raise ValueError(f"there are {len(origins)} points and {len(towards)} directions; give as many")
@@ -114,6 +128,9 @@ def max_tangent_sphere(
     normals: Optional[npt.ArrayLike] = None,
     threshold: float = 1e-6,
     max_iter: int = 100,
+    *,
+    scheme: Optional[str] = "auto",
+    sharp: Sharp = None,
 ) -> Tuple[Floats, Floats]:
     """The largest sphere that touches the surface at each of `points`, (n, 3), and does not cross it.
 
@@ -121,7 +138,7 @@ def max_tangent_sphere(
     radius changes by at most this, mesh units. Returns centers (n, 3), NaN where the radius is infinite, and radii
     (n,). Found by shrinking spheres to their closest limit points; no bound is proved.
     """
-    surface = as_surface(mesh)
+    surface = as_surface(mesh, scheme, sharp)
     at = _rows(points, "points")
     outward = _normals_at(surface, at) if normals is None else _rows(normals, "normals")
     if len(outward) != len(at):
@@ -157,13 +174,16 @@ def thickness(
     exterior: bool = False,
     normals: Optional[npt.ArrayLike] = None,
     method: str = "max_sphere",
+    *,
+    scheme: Optional[str] = "auto",
+    sharp: Sharp = None,
 ) -> Floats:
     """How thick the solid is at each of `points`, (n, 3), of its surface, (n,), mesh units.
 
     method: 'max_sphere', the diameter of max_tangent_sphere(), or 'ray', the length of longest_ray() along the normal.
     exterior: of the space outside instead, as reach() has it.
     """
-    surface = as_surface(mesh)
+    surface = as_surface(mesh, scheme, sharp)
     at = _rows(points, "points")
     if method == "max_sphere":
         return 2 * max_tangent_sphere(surface, at, inwards=not exterior, normals=normals)[1]
@@ -173,9 +193,16 @@ def thickness(
     raise ValueError(f"method is {method!r}; give 'max_sphere' or 'ray'")
 
 
-def reach(mesh: Any, points: npt.ArrayLike, method: str = "max_sphere") -> Floats:
+def reach(
+    mesh: Any,
+    points: npt.ArrayLike,
+    method: str = "max_sphere",
+    *,
+    scheme: Optional[str] = "auto",
+    sharp: Sharp = None,
+) -> Floats:
     """How far the space outside reaches at each of `points`, (n, 3): thickness() of the exterior."""
-    return thickness(mesh, points, exterior=True, method=method)
+    return thickness(mesh, points, exterior=True, method=method, scheme=scheme, sharp=sharp)
 
 
 def _normals_at(surface: Surface, points: Floats) -> Floats:
@@ -189,8 +216,8 @@ def _normals_at(surface: Surface, points: Floats) -> Floats:
 class ProximityQuery:
     """Queries about one mesh, which is made into a surface once. A later change of `mesh` is not seen."""
 
-    def __init__(self, mesh: Any) -> None:
-        self._surface = as_surface(mesh)
+    def __init__(self, mesh: Any, *, scheme: Optional[str] = "auto", sharp: Sharp = None) -> None:
+        self._surface = as_surface(mesh, scheme, sharp)
 
     def on_surface(self, points: npt.ArrayLike) -> Tuple[Floats, Floats, Integers]:
         """closest_point()."""

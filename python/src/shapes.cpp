@@ -467,7 +467,10 @@ PyMesh refined(const PySurface& self, const py::object& level, bool limit, const
   const std::uint64_t steps = std::min<std::uint64_t>(count_of(level, 0, "level"), 64);
   Call call(progress);
   return call.run([&](const WorkMonitor& monitor) {
-    return PyMesh{subdivided(surface, static_cast<unsigned>(steps), limit, monitor)};
+    PyMesh result{subdivided(surface, static_cast<unsigned>(steps), limit, monitor)};
+    // At limit positions it is a control mesh no longer.
+    result.mesh.tags.scheme = limit ? std::nullopt : std::optional(surface.scheme());
+    return result;
   });
 }
 

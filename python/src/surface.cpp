@@ -13,6 +13,7 @@ namespace snug::python {
 
 PySurface::PySurface(ControlMesh mesh, const SurfaceOptions& options)
     : surface_(std::move(mesh), options), options_(options) {
+  options_.notes = {};
   options_.monitor = {};
 }
 
@@ -182,25 +183,54 @@ ControlMesh mesh_of(const Points& points, std::vector<std::uint32_t> offsets,
   return mesh;
 }
 
-// From Python's vertices and faces, or from one object that has both.
-ControlMesh mesh_of(const py::object& vertices, const py::object& faces) {
+// The mesh of a surface, with the scheme that it was made with.
+ControlMesh tagged_mesh(const Surface& surface) {
+  ControlMesh mesh = surface.mesh();
+  mesh.tags.scheme = surface.scheme();
+  return mesh;
+}
+
+// From Python's vertices and faces, or from one object that has both. `as_facets`: a mesh of another library whose faces
+// are all triangles means these.
+ControlMesh mesh_of(const py::object& vertices, const py::object& faces, bool as_facets) {
   if (faces.is_none() && py::isinstance<PySurface>(vertices))
-    return vertices.cast<const PySurface&>().surface().mesh();
+    return tagged_mesh(vertices.cast<const PySurface&>().surface());
   if (faces.is_none() && py::isinstance<PyMesh>(vertices)) return vertices.cast<const PyMesh&>().whole();
   const py::tuple arrays = convert("mesh")(vertices, faces);
   const Points points(arrays[0], "vertices");
-  return mesh_of(points, indices_of(arrays[1]), indices_of(arrays[2]));
+  ControlMesh mesh = mesh_of(points, indices_of(arrays[1]), indices_of(arrays[2]));
+  if (as_facets && faces.is_none() && arrays[3].cast<bool>()) mesh.tags.scheme = Scheme::flat;
+  return mesh;
 }
 
+// What the library says about options, in Python's words.
+std::string in_words_of_python(std::string line) {
+  for (const Scheme scheme : {Scheme::flat, Scheme::loop}) {
+    const std::string words = std::string("scheme ") + name_of(scheme);
+    const std::size_t at = line.find(words + ' ');
+    if (at != std::string::npos)
+      line.replace(at, words.size(), std::string("scheme=\"") + name_of(scheme) + '"');
+  }
+  return line;
+}
+
+// `name`: of the file, if there is one.
 std::unique_ptr<PySurface> made(ControlMesh mesh, SurfaceOptions options, std::optional<double> distance,
-                                std::optional<double> angle, const py::object& progress) {
+                                std::optional<double> angle, const py::object& progress,
+                                std::vector<std::string>& notes, const std::string& name = {}) {
   if (options.boundary) mesh.tags.boundary = options.boundary;  // so that write() keeps it
+  const std::size_t before = notes.size();
   Call call(progress);
   return call.run([&](const WorkMonitor& monitor) {
+    notes.resize(before);
+    options.notes = [&](const std::string& line) {
+      notes.push_back((name.empty() ? "" : name + ": ") + in_words_of_python(line));
+    };
     options.monitor = monitor;
     ControlMesh taken = mesh;  // kept for the case that work begins again
     if (distance) static_cast<void>(weld(taken, *distance));
     if (angle) static_cast<void>(sharpen(taken, *angle));
+    if (options.scheme) taken.tags.scheme = options.scheme;
     return std::make_unique<PySurface>(std::move(taken), options);
   });
 }
@@ -213,9 +243,16 @@ std::unique_ptr<PySurface> surface_of(const py::object& vertices, const py::obje
                                       const py::object& weld, const py::object& bounds, bool tight,
                                       const py::object& threads, const py::object& progress) {
   const SurfaceOptions options = options_of(scheme, boundary, bounds, tight, threads);
-  ControlMesh mesh = mesh_of(vertices, faces);
+  // Who gives rules of subdivision means a control mesh.
+  const bool has_rules = !creases.is_none() || !corners.is_none() || !holes.is_none() ||
+                         !boundary.is_none() || !crease_method.is_none() || !smooth_triangles.is_none();
+  ControlMesh mesh = mesh_of(vertices, faces, !has_rules);
   add_tags(mesh.tags, creases, corners, holes, crease_method, smooth_triangles);
-  return made(std::move(mesh), options, weld_distance(weld), sharp_angle(sharp, options), progress);
+  std::vector<std::string> notes;
+  auto surface =
+      made(std::move(mesh), options, weld_distance(weld), sharp_angle(sharp, options), progress, notes);
+  warn(notes);
+  return surface;
 }
 
 // A name in the file system's bytes. "-" is a file of that name here, not standard input.
@@ -260,7 +297,7 @@ std::unique_ptr<PySurface> read(const py::object& file, const py::object& scheme
       if (distance) how.weld = [d = *distance](double) { return d; };
       return read_mesh(path, how);
     });
-    return made(std::move(mesh), options, {}, angle, py::none());
+    return made(std::move(mesh), options, {}, angle, py::none(), notes, path);
   });
   warn(notes);
   return surface;
@@ -355,11 +392,12 @@ py::tuple state_of(const ControlMesh& mesh) {
           reinterpret_cast<const std::uint32_t*>(mesh.face_vertices.data())),  // NOLINT
       creases_of(mesh.tags), corners_of(mesh.tags), holes_of(mesh.tags),
       mesh.tags.boundary ? py::object(py::str(name_of_value(*mesh.tags.boundary))) : py::object(py::none()),
-      name_of_value(mesh.tags.crease_method), name_of_value(mesh.tags.smooth_triangles));
+      name_of_value(mesh.tags.crease_method), name_of_value(mesh.tags.smooth_triangles),
+      mesh.tags.scheme ? py::object(py::str(name_of(*mesh.tags.scheme))) : py::object(py::none()));
 }
 
 ControlMesh mesh_of_state(const py::tuple& state) {
-  if (state.size() != 9) throw py::value_error("not a pickled mesh of snug");
+  if (state.size() != 10) throw py::value_error("not a pickled mesh of snug");
   const Points points(state[0], "vertices");
   const std::vector<std::uint32_t> offsets = indices_of(state[1]), corners = indices_of(state[2]);
   if (offsets.empty() || offsets.front() != 0 || offsets.back() != corners.size() ||
@@ -369,6 +407,7 @@ ControlMesh mesh_of_state(const py::tuple& state) {
   ControlMesh mesh = mesh_of(points, offsets, corners);
   add_tags(mesh.tags, state[3], state[4], state[5], state[7], state[8]);
   if (!state[6].is_none()) mesh.tags.boundary = named(state[6], boundaries, "boundary");
+  if (!state[9].is_none()) mesh.tags.scheme = named(state[9], schemes, "scheme");
   return mesh;
 }
 
@@ -440,11 +479,13 @@ void add_surface(py::module_& module) {
       "counter-clockwise.\n"
       "Or one object that has them: .vertices with .faces or .triangles (trimesh, Open3D, "
       "snug.Tessellation),\n"
-      ".points with .cells (meshio), another Surface or a snug.Mesh, whose tags are taken.\n\n"
-      "scheme: 'auto' (loop if all faces are triangles, else catmark), 'loop', 'catmark', 'doo-sabin', "
-      "'midedge',\n"
-      "'bilinear', 'flat'. creases: (vertex, vertex, sharpness) each. corners: (vertex, sharpness). holes: "
-      "faces.\n"
+      ".points with .cells (meshio), another Surface or a snug.Mesh, whose scheme and tags are taken.\n\n"
+      "scheme: 'loop', 'catmark', 'doo-sabin', 'midedge', 'bilinear', 'flat' or 'auto': that of the surface "
+      "or mesh; flat for\n"
+      "a mesh of another library whose faces are all triangles, unless creases, sharp and the like say "
+      "otherwise; for arrays\n"
+      "loop if all faces are triangles, with a MeshWarning, else catmark.\n"
+      "creases: (vertex, vertex, sharpness) each. corners: (vertex, sharpness). holes: faces.\n"
       "boundary: 'none', 'edge-only', 'edge-and-corner'. crease_method: 'uniform', 'chaikin'. "
       "smooth_triangles:\n"
       "'catmark', 'smooth'. sharp: degrees, or 'auto' for 30: edges of greater angles become creases.\n"
@@ -508,7 +549,9 @@ void add_surface(py::module_& module) {
              arg("threads") = 0, arg("progress") = none,
              "The limit surface of a mesh file: OBJ, OFF, PLY, STL, USD (.usda) or glTF (.glb). Keywords are "
              "those of Surface\n"
-             "and come before the file's own rules. Notes of the reader become MeshWarnings.\n\n"
+             "and come before the file's own rules. STL and glTF are flat unless scheme or sharp is given. "
+             "Notes of the reader, and\n"
+             "that triangles of another file are smoothed, become MeshWarnings.\n\n"
              "Raises FileError (.filename, .line), MeshError, ValueError.");
   add_point_queries(surface, module);
   add_shapes(surface, module);

@@ -64,11 +64,11 @@ def test_objects_with_meshes(cube):
         points=CUBE, cells=[types.SimpleNamespace(type="vertex", data=[[0]]), types.SimpleNamespace(type="quad", data=CUBE_FACES)]
     )
     assert snug.Surface(trimesh).scheme == "catmark"
-    assert snug.Surface(open3d).scheme == "loop"
+    assert snug.Surface(open3d).scheme == "flat"
     np.testing.assert_array_equal(snug.Surface(meshio).faces, CUBE_FACES)
     tagged = snug.Surface(CUBE, CUBE_FACES, creases=[(0, 1, 2.5)], scheme="bilinear")
-    assert snug.Surface(tagged).creases == [(0, 1, 2.5)] and snug.Surface(tagged).scheme == "catmark"
-    assert snug.Surface(cube.tessellate("5%")).scheme == "loop"
+    assert snug.Surface(tagged).creases == [(0, 1, 2.5)] and snug.Surface(tagged).scheme == "bilinear"
+    assert snug.Surface(cube.tessellate("5%")).scheme == "flat"
     assert snug.Surface(cube.subdivided(1)).is_closed
     with pytest.raises(TypeError, match="neither"):
         snug.Surface(object())
