@@ -105,6 +105,15 @@ to_chars_result to_chars(char* first, char* last, double value) {
   return {first + length, {}};
 }
 
+to_chars_result to_chars(char* first, char* last, double value, chars_format, int precision) {
+  std::array<char, 64> text;
+  const int length = std::snprintf(text.data(), text.size(), "%.*g", precision, value);
+  if (length < 0 || length >= static_cast<int>(text.size()) || length > last - first)
+    return {last, errc::value_too_large};
+  std::memcpy(first, text.data(), static_cast<std::size_t>(length));
+  return {first + length, {}};
+}
+
 _LIBCPP_END_NAMESPACE_STD
 
 #endif

@@ -25,6 +25,8 @@ template <class To, class From>
 /// Guarantee: the nearest double, ties to even; the same text as libstdc++'s.
 from_chars_result from_chars(const char* first, const char* last, double& value);
 to_chars_result to_chars(char* first, char* last, double value);
+/// For chars_format::general alone, which is that of printf's %g.
+to_chars_result to_chars(char* first, char* last, double value, chars_format format, int precision);
 
 /// A page has one thread.
 template <class T>
