@@ -158,6 +158,7 @@ class Part {
       throw InputError(InputProblem::value, std::string("sharp: ") + name_of(*how.scheme) +
                                                 " has no creases; choose loop or catmark");
     }
+    how.notes = [&](const std::string& line) { notes_.push_back(name + ": " + line); };
     ControlMesh mesh = parse_mesh(bytes, name, [this](const std::string& line) { notes_.push_back(line); });
     try {
       if (const auto distance = option<double>(options, "weld")) weld(mesh, *distance);

@@ -13,7 +13,10 @@ export class SnugError extends Error {
 }
 
 export interface ReadOptions {
-  /** Default: loop if all faces are triangles, else catmark. */
+  /**
+   * Default, auto: flat for STL and glTF unless `sharp` is given; else that of the file if it names one; else loop if all
+   * faces are triangles, with a note, or catmark.
+   */
   scheme?: Scheme | "auto";
   /** Default: the file's tag, else edge-and-corner. */
   boundary?: Boundary;
@@ -175,7 +178,7 @@ export interface Surface {
   readonly size: number;
   readonly scheme: Scheme;
   readonly boundary: Boundary;
-  /** What the reader dropped although it changes the surface. */
+  /** What the reader dropped although it changes the surface, and that triangles are smoothed though nobody said so. */
   readonly notes: string[];
   cage(): Cage;
   samples(level?: number): Samples;

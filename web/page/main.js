@@ -166,7 +166,10 @@ function show(answer) {
 
 // The same questions to the command.
 
-const quoted = (word) => (/^[\w.+:%/-]+$/.test(word) ? word : `"${word.replace(/(["\\$`])/g, "\\$1")}"`);
+// For interactive shells, too, which expand `!` within double quotes.
+const quoted = (word) => (/^[\w.+:%/-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
+// A file whose name begins with `-` is neither an option nor standard input.
+const fileWord = (part) => (part.path ?? part.name).replace(/^-/, "./-");
 
 function commands({ question, percent }) {
   const [a, b] = state.pair.map((p) => state.parts[p]);
@@ -184,7 +187,7 @@ function commands({ question, percent }) {
   }
   if ($("sharp").checked) options.push("--sharp", String(angle()));
   if (question.solid) options.push("--solid");
-  const line = (command, how) => ["snug", command, a.path ?? a.name, b.path ?? b.name, ...options, how, `${percent}%`].map(quoted).join(" ");
+  const line = (command, how) => ["snug", command, fileWord(a), fileWord(b), ...options, how, `${percent}%`].map(quoted).join(" ");
   return [line("collide", "--tolerance"), line("distance", "--precision")];
 }
 
@@ -515,11 +518,13 @@ function partCard(side) {
   const title = document.createElement("strong");
   title.textContent = `${"AB"[side]}: ${part?.name.split("/").pop() ?? ""}`;
   title.title = part?.name ?? "";
-  const facts = document.createElement("p");
-  facts.className = "fine";
-  if (part) {
-    facts.textContent = [`${part.info.vertices} vertices, ${part.info.faces} faces, ${part.info.scheme}`, ...part.info.notes].join(". ");
-  }
+  const lines = part ? [`${part.info.vertices} vertices, ${part.info.faces} faces, ${part.info.scheme}`, ...part.info.notes] : [];
+  const facts = lines.map((line) => {
+    const fact = document.createElement("p");
+    fact.className = "fine";
+    fact.textContent = line;
+    return fact;
+  });
   const row = document.createElement("p");
   row.className = "row";
   const label = document.createElement("label");
@@ -540,7 +545,7 @@ function partCard(side) {
   input.onchange = () => input.files[0] && openFile(input.files[0], side);
   file.append(input);
   row.append(label, file);
-  card.replaceChildren(title, facts, row);
+  card.replaceChildren(title, ...facts, row);
 }
 
 function cards() {

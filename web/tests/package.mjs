@@ -198,6 +198,31 @@ test("draws, bounds and measures", () => {
   assert.ok(inside.depth[0] <= inside.depth[1]);
 });
 
+test("says what triangles are taken to be", () => {
+  const points = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => [4 * (k & 1), k & 2, (k & 4) / 4].join(" "));
+  const faces = ["0 2 3", "0 3 1", "4 5 7", "4 7 6", "0 1 5", "0 5 4", "2 6 7", "2 7 3", "0 4 6", "0 6 2", "1 3 7", "1 7 5"];
+  const off = ["OFF", "8 12 0", ...points, ...faces.map((face) => `3 ${face}`)].join("\n");
+  const facet = (face) => `facet normal 0 0 0 outer loop ${face.split(" ").map((v) => `vertex ${points[v]}`).join(" ")} endloop endfacet`;
+  const stl = ["solid box", ...faces.map(facet), "endsolid box"].join("\n");
+  const read = (name, text, options) => {
+    const surface = snug.read(name, text, options);
+    const { scheme, notes } = surface;
+    const [lower, upper] = surface.measure().volume;
+    surface.delete();
+    return { scheme, notes, holds: lower <= 8 && 8 <= upper };
+  };
+  assert.deepEqual(read("box.stl", stl), { scheme: "flat", notes: [], holds: true });
+  assert.deepEqual(read("box.stl", stl, { scheme: "auto" }), { scheme: "flat", notes: [], holds: true });
+  assert.deepEqual(read("box.stl", stl, { sharp: 30 }), { scheme: "loop", notes: [], holds: true });
+  assert.deepEqual(read("box.stl", stl, { scheme: "loop" }), { scheme: "loop", notes: [], holds: false });
+  assert.deepEqual(read("box.off", off, { scheme: "flat" }), { scheme: "flat", notes: [], holds: true });
+  assert.deepEqual(read("box.off", off, { scheme: "loop" }), { scheme: "loop", notes: [], holds: false });
+  const { scheme, notes } = read("box.off", off);
+  assert.equal(scheme, "loop");
+  assert.equal(notes.length, 1);
+  assert.match(notes[0], /^box\.off: triangles taken as the control mesh of a Loop surface, up to [\d.]+ \(.*\) away from them; scheme flat takes the facets, scheme loop says that this is meant$/);
+});
+
 test("tells mistakes of its callers", () => {
   const star = model("star.obj");
   const { deepEqual, throws } = assert;

@@ -3,7 +3,7 @@
 
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, dirname, join, resolve } from "node:path";
 import { after, before, test } from "node:test";
@@ -58,13 +58,14 @@ const idle = async (page) => {
 const verdict = (page) => page.textContent("#verdict");
 
 // What the page shows is what the command answers that it names, double by double and digit by digit.
-async function holdAgainstCommand(page) {
+// `folder`: of the files, beside the models.
+async function holdAgainstCommand(page, folder = models) {
   await idle(page);
   const { answer } = await page.evaluate(() => window.snugPage.state());
   const lines = await page.evaluate(() => window.snugPage.commands());
   const [collide, distance] = lines.map((line) => {
     assert.match(line, /^snug (collide|distance) /);
-    const run = spawnSync("bash", ["-c", `"$SNUG" ${line.slice(5)} --json --quiet`], { cwd: models, encoding: "utf8", env: { ...process.env, SNUG: command } });
+    const run = spawnSync("bash", ["-c", `"$SNUG" ${line.slice(5)} --json --quiet`], { cwd: folder, encoding: "utf8", env: { ...process.env, SNUG: command } });
     assert.ok([0, 5].includes(run.status), run.stderr);
     return JSON.parse(run.stdout);
   });
@@ -81,7 +82,7 @@ async function holdAgainstCommand(page) {
   const contact = collide.verdict === "intersecting" || upper === 0;
   assert.equal(await page.textContent("#exact"), contact ? "contact is proved" : `exactly ${lower} to ${upper}`);
   if (!contact) {
-    const said = execFileSync("bash", ["-c", `"$SNUG" ${lines[1].slice(5)} --quiet`], { cwd: models, encoding: "utf8", env: { ...process.env, SNUG: command } });
+    const said = execFileSync("bash", ["-c", `"$SNUG" ${lines[1].slice(5)} --quiet`], { cwd: folder, encoding: "utf8", env: { ...process.env, SNUG: command } });
     const [, at_least, at_most] = said.match(/at least (\S+) and at most (\S+) apart/);
     assert.equal(await page.textContent("#interval"), `${at_least} to ${at_most}`);
   }
@@ -212,6 +213,67 @@ test("bad files are refused in the command's words, and what was there stays", {
   assert.deepEqual(await page.evaluate(() => window.snugPage.state().names), ["bracket.obj", "pawn.obj"]);
   assert.equal(await page.isVisible("#fault"), false);
   await holdAgainstCommand(page);
+  await close();
+});
+
+// A box of twelve triangles as an ASCII STL, an OFF or an OBJ.
+function boxOfTriangles(format) {
+  const points = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => [4 * (k & 1), k & 2, (k & 4) / 4]);
+  const faces = [[0, 2, 3], [0, 3, 1], [4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4], [2, 6, 7], [2, 7, 3], [0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5]];
+  const row = (numbers) => numbers.join(" ");
+  if (format === "off") return ["OFF", "8 12 0", ...points.map(row), ...faces.map((face) => `3 ${row(face)}`), ""].join("\n");
+  if (format === "obj") return [...points.map((p) => `v ${row(p)}`), ...faces.map((face) => `f ${row(face.map((v) => v + 1))}`), ""].join("\n");
+  const facet = (face) => ["facet normal 0 0 0", "outer loop", ...face.map((v) => `vertex ${row(points[v])}`), "endloop", "endfacet"];
+  return ["solid box", ...faces.flatMap(facet), "endsolid box", ""].join("\n");
+}
+
+test("triangles mean triangles, and a line says where they are smoothed", { skip }, async () => {
+  const { page, picture, close } = await open();
+  const lines = () => page.locator("#part-a p.fine").allTextContents();
+  copyFileSync(join(models, "pin.obj"), join(scratch, "pin.obj"));
+  for (const [format, smoothed] of [["stl", false], ["off", true], ["obj", true]]) {
+    const file = join(scratch, `box.${format}`);
+    writeFileSync(file, boxOfTriangles(format));
+    await drop(page, file, "#part-a");
+    const [facts, ...notes] = await lines();
+    assert.equal(facts, `8 vertices, 12 faces, ${smoothed ? "loop" : "flat"}`);
+    assert.equal(notes.length, smoothed ? 1 : 0);
+    if (smoothed) {
+      assert.match(notes[0], /^box\.\w+: triangles taken as the control mesh of a Loop surface, up to [\d.]+ \(.* % of the size\) away from them; scheme flat takes the facets, scheme loop says that this is meant$/);
+      if (format === "off") await picture("smoothed");
+      for (const scheme of ["flat", "loop"]) {
+        await page.selectOption("#scheme-a", scheme);
+        await idle(page);
+        assert.deepEqual(await lines(), [`8 vertices, 12 faces, ${scheme}`]);
+      }
+    } else {
+      await page.check("#sharp");
+      await idle(page);
+      assert.deepEqual(await lines(), ["8 vertices, 12 faces, loop"]);
+      await holdAgainstCommand(page, scratch);
+      await page.uncheck("#sharp");
+      await idle(page);
+    }
+    await holdAgainstCommand(page, scratch);
+  }
+  await close();
+});
+
+test("the commands are quoted for any name", { skip }, async () => {
+  const { page, close } = await open();
+  copyFileSync(join(models, "pin.obj"), join(scratch, "pin.obj"));
+  for (const name of ["-box.obj", "--help.obj", "a !b!!.obj", "it's $HOME `x` \"y\" \\.obj", "~ #;&|*?[x](y)<z>.obj"]) {
+    writeFileSync(join(scratch, name), boxOfTriangles("obj"));
+    await drop(page, join(scratch, name), "#part-a");
+    assert.equal((await page.evaluate(() => window.snugPage.state().names))[0], name);
+    await holdAgainstCommand(page, scratch);
+    // As it is typed, where `!` expands.
+    const [line] = await page.evaluate(() => window.snugPage.commands());
+    const typed = spawnSync("bash", ["--norc", "--noprofile", "-i"], {
+      input: `set -o history -H; PS1=\necho before\n${line.replace(/^snug/, "printf '%s\\n'")}\n`, encoding: "utf8", cwd: scratch, env: { ...process.env, HISTFILE: "/dev/null" },
+    });
+    assert.equal(typed.stdout.split("\n")[2], name.replace(/^-/, "./-"), typed.stderr);
+  }
   await close();
 });
 
