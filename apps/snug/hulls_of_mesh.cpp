@@ -17,8 +17,8 @@ constexpr std::size_t most_printed = 10;
 const char* explained(HullFault fault) {
   switch (fault) {
     case HullFault::no_position:
-      return "no position near enough is in front of all faces around: a spike or a fold, or too few "
-             "triangles; try a larger --tolerance or --budget";
+      return "no position near enough is in front of all faces around: a spike or a fold; try a larger "
+             "--tolerance";
     case HullFault::meets_surface:
       return "the hull could not be kept off the surface: sheets are too near to each other, or touch; try a "
              "smaller --tolerance";
@@ -28,6 +28,8 @@ const char* explained(HullFault fault) {
              "--tolerance";
     case HullFault::meets_other:
       return "the hulls could not be kept off each other; try a smaller --tolerance";
+    case HullFault::too_few_triangles:
+      return "the budget does not allow triangles enough; give a larger --budget or --tolerance";
     case HullFault::not_around:
       break;
   }

@@ -90,7 +90,7 @@ void write_summary(Report& report, const Options& options, const Tessellation& r
                           options.output, result.positions.size(), result.triangles.size(),
                           text_at_most(result.error_bound, true)));
   if (result.reached) return;
-  report.text(options.max_triangles
+  report.text(options.max_triangles && *options.max_triangles <= options.most
                   ? "the tolerance was not reached: give more --max-triangles, or a larger --tolerance"
                   : "not all that was asked for was reached: give a larger --budget or --tolerance");
 }

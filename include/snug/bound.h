@@ -16,9 +16,10 @@ struct BoundOptions {
   std::optional<double> tolerance{};
   /// Without a tolerance: split every patch this many times. The first split of a face into quads counts.
   unsigned level = 0;
-  std::uint64_t budget = 1'000'000;  ///< most splits in total, spent patch by patch
-  int threads = 0;                   ///< 0: all cores
-  bool normals = false;              ///< fill PatchEnclosure::normals
+  /// Most splits in total, spent patch by patch. Memory: 2 kB each in the patches that are in work.
+  std::uint64_t budget = 1'000'000;
+  int threads = 0;       ///< 0: all cores
+  bool normals = false;  ///< fill PatchEnclosure::normals
 };
 
 /// A patch of a surface; every patch is a triangle. Triangle schemes have one patch for each face, part 0. The
@@ -67,7 +68,7 @@ struct BoundSummary {
 /// Errors:    InputError: (value) for a tolerance that is not finite and positive or a level above 60,
 ///            (unrepresentable) if a result does not fit a double; whatever `sink` throws. Interrupted.
 /// Cost:      3 to 5 microseconds per piece of a regular patch, twice that with normals; a tenth to half a
-///            millisecond more beside extraordinary vertices. Memory does not grow with the output.
+///            millisecond more beside extraordinary vertices. Memory does not grow with the number of patches.
 SNUG_API BoundSummary bound(const Surface& surface, const BoundOptions& options,
                             const std::function<void(const PatchEnclosure&)>& sink,
                             const WorkMonitor& monitor = {});

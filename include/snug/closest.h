@@ -13,7 +13,7 @@ namespace snug {
 struct ClosestOptions {
   std::optional<double> absolute{};  ///< >= 0, mesh units
   std::optional<double> relative{};  ///< >= 0
-  std::uint64_t budget = 1'000'000;  ///< most splits for each point
+  std::uint64_t budget = 1'000'000;  ///< most splits for each point; memory: 200 bytes each
 };
 
 /// A limit point close to the closest one, in mesh units.

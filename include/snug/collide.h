@@ -30,7 +30,7 @@ struct CollideOptions {
   /// surface's size.
   std::optional<double> tolerance{};
   double margin = 0;                         ///< >= 0, mesh units
-  std::uint64_t budget = 1'000'000;          ///< most splits
+  std::uint64_t budget = 1'000'000;          ///< most splits; memory: 200 bytes each
   WitnessKind witness = WitnessKind::exact;  ///< no verdict depends on it
   bool prove_contact = true;                 ///< before returning `within`, try to prove `intersecting`
   bool solid = false;  ///< compare the solids that closed surfaces bound: one inside the other intersects it
@@ -93,7 +93,8 @@ struct Collision {
 struct PenetrationOptions {
   /// >= 0; the search ends once the width of `depth` is at most this fraction of its upper end.
   double relative = 0.05;
-  std::uint64_t budget = 20'000;  ///< most splits for each collision query of the search
+  std::uint64_t budget =
+      20'000;  ///< most splits for each collision query of the search; memory: 200 bytes each
 };
 
 /// How deeply two solids penetrate: the least length of a translation of B that separates them.

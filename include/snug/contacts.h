@@ -16,8 +16,8 @@ struct ContactsOptions {
   /// > 0, mesh units: largest distance between a curve and the line between two of its points, and the size down
   /// to which boxes are split where no curve is proved. Default: 0.1 % of the larger surface's size.
   std::optional<double> precision{};
-  std::uint64_t budget =
-      200'000;         ///< most pairs of pieces compared for regions, and the same number again for curves
+  /// Most pairs of pieces compared for regions, and the same number again for curves. Memory: 300 bytes each.
+  std::uint64_t budget = 200'000;
   bool curves = true;  ///< compute intersection curves
   int threads = 0;     ///< for curves; 0: all cores
 };

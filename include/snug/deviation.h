@@ -15,8 +15,9 @@ struct DeviationOptions {
   std::optional<double> tolerance{};
   /// The surface is closed: also how far the candidate lies inside and outside of its solid.
   bool solid = false;
-  std::uint64_t budget = 50'000'000;  ///< most parts that are compared in each direction
-  int threads = 0;                    ///< 0: all cores
+  /// Most parts that are compared in each direction. Memory: 100 bytes each at most, and 100 MB; see Cost.
+  std::uint64_t budget = 50'000'000;
+  int threads = 0;  ///< 0: all cores
 };
 
 /// The greatest distance of a point of one set from the other set, in mesh units: a one-sided Hausdorff

@@ -9,7 +9,7 @@ namespace snug {
 struct DistanceOptions {
   std::optional<double> absolute{};  ///< >= 0, mesh units
   std::optional<double> relative{};  ///< >= 0
-  std::uint64_t budget = 1'000'000;  ///< most splits
+  std::uint64_t budget = 1'000'000;  ///< most splits; memory: 200 bytes each
   bool solid = false;  ///< compare the solids that closed surfaces bound: 0 apart where they meet
 };
 

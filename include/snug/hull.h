@@ -11,10 +11,11 @@ namespace snug {
 
 struct HullOptions {
   double tolerance = 0;  ///< > 0, mesh units: no hull is farther than this from the surface, nor it from them
-  bool inner = true, outer = true;    ///< which ones are wanted
-  std::uint64_t budget = 10'000'000;  ///< most triangles of a hull
-  int threads = 0;                    ///< 0: all cores
-  bool single_precision = false;      ///< coordinates are floats, for formats that hold no others
+  bool inner = true, outer = true;  ///< which ones are wanted
+  /// Most triangles of a hull. Memory: 2 to 3 kB each, and up to 10 kB each and 100 MB where hulls fail.
+  std::uint64_t budget = 1'000'000;
+  int threads = 0;                ///< 0: all cores
+  bool single_precision = false;  ///< coordinates are floats, for formats that hold no others
 };
 
 /// Triangles on one side of a limit surface, oriented as its faces; of a closed one outward.
@@ -29,11 +30,12 @@ struct Hull {
 
 /// What keeps a hull from being proved, or from being at all.
 enum class HullFault : std::uint8_t {
-  no_position,    ///< the facets around a vertex face all ways: no point is beyond all of them
-  meets_surface,  ///< a facet could not be kept off the surface
-  meets_itself,   ///< two facets could not be kept off each other
-  meets_other,    ///< nor the two hulls
-  not_around,     ///< the hull does not enclose the surface, or is not enclosed by it
+  no_position,        ///< the facets around a vertex face all ways: no point is beyond all of them
+  meets_surface,      ///< a facet could not be kept off the surface
+  meets_itself,       ///< two facets could not be kept off each other
+  meets_other,        ///< nor the two hulls
+  not_around,         ///< the hull does not enclose the surface, or is not enclosed by it
+  too_few_triangles,  ///< the budget allows no more, and these are not near enough to the surface
 };
 [[nodiscard]] SNUG_API const char* name_of(HullFault fault);
 

@@ -11,7 +11,7 @@ namespace snug {
 struct MeasureOptions {
   /// >= 0: how narrow intervals must become, see Measures::reached. Default: 0.0001.
   std::optional<double> relative{};
-  std::uint64_t budget = 10'000'000;  ///< most splits; each patch has an equal share of them
+  std::uint64_t budget = 10'000'000;  ///< most splits; each patch has an equal share of them; no memory
   int threads = 0;                    ///< 0: all cores
 };
 

@@ -30,7 +30,7 @@ struct RayOptions {
   RayQuery query = RayQuery::nearest;
   /// Intended length of the interval of a hit, in mesh units; default: 1e-6 of the surface's size.
   std::optional<double> precision{};
-  std::uint64_t budget = 20'000;  ///< most splits for each ray
+  std::uint64_t budget = 20'000;  ///< most splits for each ray; memory: 200 bytes each
 };
 
 /// A place where a ray meets a limit surface, or may do so.

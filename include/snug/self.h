@@ -25,7 +25,7 @@ struct SelfContactOptions {
   /// do. At least twice the tolerance; if it is below pi/2 times the tolerance, a sphere whose diameter is the
   /// tolerance is near itself. Default: 4 times the tolerance.
   std::optional<double> radius{};
-  std::uint64_t budget = 1'000'000;  ///< most stars and pairs of pieces tested, approximately
+  std::uint64_t budget = 1'000'000;  ///< most stars and pairs of pieces tested, about; memory: 100 bytes each
   unsigned levels = 10;              ///< most levels below the coarsest one at which stars are tested
   int threads = 0;                   ///< 0: all cores
 };

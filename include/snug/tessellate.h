@@ -33,8 +33,9 @@ struct TessellateOptions {
   bool single_precision = false;  ///< coordinates are floats, for formats that hold no others
   bool normals = true;            ///< fill Tessellation::normals
   bool corners = false;           ///< fill Tessellation::corners
-  /// Most triangles before refinement gives up; see Tessellation::reached.
-  std::uint64_t budget = 50'000'000;
+  /// Most triangles before refinement gives up, however many max_triangles allows; see Tessellation::reached.
+  /// Memory: 300 bytes each.
+  std::uint64_t budget = 5'000'000;
   int threads = 0;  ///< 0: all cores
 };
 
@@ -69,7 +70,7 @@ struct Tessellation {
 /// coincide, leaving them out would open the surface.
 /// Errors:    InputError: (value) for options that are not finite and positive, without any, for a tolerance too
 ///            small for the arithmetic (it names the smallest that is taken) and for fewer max_triangles than the
-///            patches need (it names these); (unrepresentable) if a coordinate does not fit. Interrupted.
+///            patches need (it names the number, if the budget allows it); (unrepresentable) if a coordinate does not fit. Interrupted.
 /// Cost:      0.5 to 2 microseconds a triangle on one core, most where patches are irregular; with max_triangles
 ///            some ten times that. 300 bytes a triangle.
 /// Source:    derivations/tessellation.md.

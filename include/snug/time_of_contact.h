@@ -79,7 +79,7 @@ struct TimeOfContactOptions {
   std::optional<double> tolerance{};
   bool solid = false;  ///< compare the solids that closed surfaces bound: one inside the other is in contact
   bool prove_contact = true;       ///< before returning `within`, try to prove `intersecting`
-  std::uint64_t budget = 100'000;  ///< most splits for each time evaluated
+  std::uint64_t budget = 100'000;  ///< most splits for each time evaluated; memory: 200 bytes each
   int max_looks = 1000;            ///< most times evaluated in each unit of time
 };
 

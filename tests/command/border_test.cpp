@@ -16,13 +16,6 @@
 
 #include "run_snug.h"
 
-#ifdef SNUG_SANITIZED
-// Sanitizers take terabytes of addresses, and their own place before the C library.
-#define SNUG_SKIP_UNDER_SANITIZERS() GTEST_SKIP() << "not under a sanitizer"
-#else
-#define SNUG_SKIP_UNDER_SANITIZERS() static_cast<void>(0)
-#endif
-
 namespace snug::testing {
 namespace {
 

@@ -5,6 +5,13 @@
 #include <string>
 #include <vector>
 
+#ifdef SNUG_SANITIZED
+// Sanitizers take terabytes of addresses, and their own place before the C library.
+#define SNUG_SKIP_UNDER_SANITIZERS() GTEST_SKIP() << "not under a sanitizer"
+#else
+#define SNUG_SKIP_UNDER_SANITIZERS() static_cast<void>(0)
+#endif
+
 namespace snug::testing {
 
 struct Outcome {

@@ -28,17 +28,22 @@ constexpr double least_precision = 0x1p-37;
 // Errors of quadratics: at first a share of the size, then smaller by a factor where that is not enough, at
 // last a share of the precision.
 constexpr double first_share = 0x1p-12, next_share = 0x1p-3, last_share = 0x1p-3;
+// Most quadratics of a set that is refined: of the budget one for so many parts, and beside them a few.
+constexpr std::uint64_t parts_a_piece = 8, pieces_beside = 1u << 17;
 
 // A set as quadratic triangles, in units in which the largest coordinate of both sets is in [1, 2).
 class ComparedSet {
  public:
   virtual ~ComparedSet() = default;
-  // Splits what `which` names until errors are at most `error`; tells of which piece each one is a part.
+  // Splits what `which` names until errors are at most `error`; tells of which piece each one is a part. None,
+  // and all as it was, where there would be too many.
   virtual std::vector<std::uint32_t> refine(std::span<const std::uint8_t> which, double error) = 0;
   [[nodiscard]] virtual BoundedPoint point(std::uint32_t piece, TriangleParameter at) const = 0;
   [[nodiscard]] virtual std::optional<SurfaceParameter> place(std::uint32_t piece,
                                                               TriangleParameter at) const = 0;
 
+  // Was there one that would have been too many?
+  [[nodiscard]] bool is_full() const { return full_; }
   [[nodiscard]] std::span<const QuadraticTriangle> quadratics() const { return quadratics_; }
   [[nodiscard]] const QuadraticBvh& tree(int threads) {
     if (!tree_) tree_ = std::make_unique<QuadraticBvh>(quadratics_, threads);
@@ -48,6 +53,7 @@ class ComparedSet {
  protected:
   std::vector<QuadraticTriangle> quadratics_;
   std::unique_ptr<QuadraticBvh> tree_;
+  bool full_ = false;
 };
 
 class TriangleSet final : public ComparedSet {
@@ -69,17 +75,21 @@ class TriangleSet final : public ComparedSet {
 
 class SurfaceSet final : public ComparedSet {
  public:
-  SurfaceSet(const LimitSurface& surface, PowerOfTwo scale, double error, int threads,
+  SurfaceSet(const LimitSurface& surface, PowerOfTwo scale, double error, const DeviationOptions& options,
              const WorkMonitor& monitor)
       : surface_(surface),
         to_common_(scale * surface.scale().inverse()),
-        threads_(threads),
+        threads_(options.threads),
+        most_(pieces_beside + options.budget / parts_a_piece),
         monitor_{.on_progress = {}, .stop = monitor.stop},
-        pieces_(quadratic_pieces(surface, own(error), threads, monitor_)) {
+        pieces_(quadratic_pieces(surface, own(error), threads_, monitor_)) {
     take();
   }
   std::vector<std::uint32_t> refine(std::span<const std::uint8_t> which, double error) override {
-    RefinedPieces parts = refined(surface_, pieces_, which, own(error), threads_, monitor_);
+    RefinedPieces parts = refined(surface_, pieces_, which, own(error), threads_, monitor_,
+                                  std::max<std::uint64_t>(most_, pieces_.size()));
+    full_ = parts.pieces.empty();
+    if (full_) return {};
     pieces_ = std::move(parts.pieces);
     take();
     return std::move(parts.origins);
@@ -118,6 +128,7 @@ class SurfaceSet final : public ComparedSet {
   const LimitSurface& surface_;
   PowerOfTwo to_common_;
   int threads_;
+  std::uint64_t most_;
   WorkMonitor monitor_;
   std::vector<QuadraticPiece> pieces_;
 };
@@ -301,7 +312,7 @@ Deviation compare(const SurfaceBvh& model, ComparedSet& surface, ComparedSet& ca
     return std::all_of(questions.begin(), questions.end(), [](const Question& q) { return q.settled(); });
   };
   for (;;) {
-    const bool last = error <= asked.last_error();
+    const bool last = error <= asked.last_error() || surface.is_full() || candidate.is_full();
     for (Question& question : questions) {
       if (!question.open()) continue;
       question.settle(last, stop_only);
@@ -371,7 +382,7 @@ Deviation deviation(const SurfaceBvh& model, std::span<const Triangle> candidate
   const PowerOfTwo own = largest > 0 ? PowerOfTwo::normalising(largest) : surface.scale();
   const Asked asked(options, surface, own);
   require_closed_if_solid(model, options);
-  SurfaceSet first(surface, asked.scale, asked.first_error(), options.threads, monitor);
+  SurfaceSet first(surface, asked.scale, asked.first_error(), options, monitor);
   TriangleSet second(candidate, asked.scale);
   return compare(model, first, second, asked, options, monitor);
 }
@@ -380,8 +391,8 @@ Deviation deviation(const SurfaceBvh& model, const SurfaceBvh& candidate, const 
                     const WorkMonitor& monitor) {
   const Asked asked(options, model.surface(), candidate.surface().scale());
   require_closed_if_solid(model, options);
-  SurfaceSet first(model.surface(), asked.scale, asked.first_error(), options.threads, monitor);
-  SurfaceSet second(candidate.surface(), asked.scale, asked.first_error(), options.threads, monitor);
+  SurfaceSet first(model.surface(), asked.scale, asked.first_error(), options, monitor);
+  SurfaceSet second(candidate.surface(), asked.scale, asked.first_error(), options, monitor);
   return compare(model, first, second, asked, options, monitor);
 }
 

@@ -38,6 +38,7 @@ constexpr auto fault_names = std::to_array<Named<HullFault>>({
     {"meets-itself", HullFault::meets_itself},
     {"meets-other", HullFault::meets_other},
     {"not-around", HullFault::not_around},
+    {"too-few-triangles", HullFault::too_few_triangles},
 });
 
 // Of the tolerance: that of the triangles which are moved, at first; below which it is no longer made smaller,
@@ -50,6 +51,8 @@ constexpr double clearance = 0.1, quadratic_share = 0x1p-6;
 constexpr double flat_share = 0x1p-5;
 constexpr std::size_t most_problems = 100, most_contacts = 10'000;
 constexpr int most_rounds = 24;
+// Most quadratics that facets are kept off: of the budget, and beside a few of them.
+constexpr std::uint64_t pieces_a_triangle = 16, pieces_beside = 1u << 17;
 
 // What triangles do along their edges.
 struct Sides {
@@ -106,11 +109,17 @@ void keep_some(std::vector<HullProblem>& problems) {
   if (problems.size() > most_problems) problems.resize(most_problems);
 }
 
+std::uint64_t most_pieces(const LimitSurface& surface, const HullOptions& options) {
+  const std::uint64_t triangles = std::max<std::uint64_t>(options.budget, surface.patch_count());
+  return pieces_beside + pieces_a_triangle * std::min(triangles, std::uint64_t{1} << 40);
+}
+
 // A hull on one side, by triangles whose tolerances are made smaller where it fails.
 class OneHull {
  public:
+  // `pieces`: for both sides, once one of them has triangles enough to be kept off them.
   OneHull(const LimitSurface& surface, const HullOptions& options, bool inner,
-          std::vector<QuadraticPiece> pieces, const WorkMonitor& monitor)
+          std::vector<QuadraticPiece>& pieces, const WorkMonitor& monitor)
       : surface_(surface),
         options_(options),
         inner_(inner),
@@ -118,9 +127,7 @@ class OneHull {
         scale_(surface.scale()),
         float_loss_(options.single_precision ? largest_float_loss() : 0),
         tolerances_(surface.owner_count(), first_share * options.tolerance),
-        pieces_(std::move(pieces)) {
-    make_tree();
-  }
+        first_pieces_(pieces) {}
 
   // Moves triangles until nothing is wrong, or nothing can be done about it. Returns the problems left.
   std::vector<HullProblem> run() {
@@ -131,9 +138,10 @@ class OneHull {
         inward_ = !border_ && is_inward(mesh_, scale_);
       }
       problems_.clear();
-      piece_marks_.assign(pieces_.size(), 0);
       wrong_.assign(surface_.owner_count(), 0);
       move_vertices();
+      if (!mesh_.reached && !problems_.empty()) break;
+      if (!tree_ && !make_pieces()) break;
       keep_off();
       if (problems_.empty()) break;
       if (round + 1 == most_rounds || !mesh_.reached || !refine()) break;
@@ -166,6 +174,22 @@ class OneHull {
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       for (const std::uint32_t v : mesh_.triangles[t]) around_[next[v]++] = static_cast<std::uint32_t>(t);
     }
+  }
+  // False, with a problem, if there would be too many.
+  bool make_pieces() {
+    if (first_pieces_.empty()) {
+      const double error = quadratic_share * first_share * scale_.apply(options_.tolerance);
+      first_pieces_ =
+          quadratic_pieces(surface_, error, options_.threads, monitor_, most_pieces(surface_, options_));
+    }
+    if (first_pieces_.empty()) return blame_budget();
+    pieces_ = first_pieces_;
+    make_tree();
+    return true;
+  }
+  bool blame_budget() {
+    blame(HullFault::too_few_triangles, 0, mesh_.positions[mesh_.triangles[0][0]]);
+    return false;
   }
   void make_tree() {
     quadratics_.clear();
@@ -256,13 +280,15 @@ class OneHull {
       const std::size_t k = static_cast<std::size_t>(
           std::max_element(names.begin(), names.end(), [&](auto a, auto b) { return moved[a] < moved[b]; }) -
           names.begin());
-      blame(HullFault::no_position, t, mesh_.positions[names[k]]);
+      blame(mesh_.reached ? HullFault::no_position : HullFault::too_few_triangles, t,
+            mesh_.positions[names[k]]);
     }
   }
 
   // Facets that may meet the surface, or each other.
   void keep_off() {
     const std::size_t count = mesh_.triangles.size();
+    piece_marks_.assign(pieces_.size(), 0);
     std::vector<std::uint8_t> meets(count);
     parallel_for(count, options_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
@@ -305,8 +331,9 @@ class OneHull {
     }
     if (any && std::any_of(piece_marks_.begin(), piece_marks_.end(), [](auto m) { return m != 0; })) {
       pieces_ = refined(surface_, pieces_, piece_marks_, quadratic_share * scale_.apply(error),
-                        options_.threads, monitor_)
+                        options_.threads, monitor_, most_pieces(surface_, options_))
                     .pieces;
+      if (pieces_.empty()) return blame_budget();
       make_tree();
     }
     return any;
@@ -322,6 +349,7 @@ class OneHull {
   Tessellation mesh_;
   std::vector<double> errors_;
   std::vector<std::uint32_t> begins_, around_;  // triangles around each vertex
+  std::vector<QuadraticPiece>& first_pieces_;
   std::vector<QuadraticPiece> pieces_;
   std::vector<QuadraticTriangle> quadratics_;
   std::unique_ptr<QuadraticBvh> tree_;
@@ -502,9 +530,7 @@ Hulls hulls(const SurfaceBvh& model, const HullOptions& options, const WorkMonit
                          shortest(surface.size() / 2));
   }
   require_value(options.inner || options.outer, "hull: ask for the inner hull, the outer one, or both");
-  const double error = quadratic_share * first_share * surface.scale().apply(options.tolerance);
-  const std::vector<QuadraticPiece> pieces =
-      quadratic_pieces(surface, error, options.threads, {.on_progress = {}, .stop = monitor.stop});
+  std::vector<QuadraticPiece> pieces;
   Hulls result;
   for (const bool inner : {true, false}) {
     if (!(inner ? options.inner : options.outer)) continue;

@@ -30,6 +30,8 @@ constexpr double least_tolerance = 0x1p-41, least_single_tolerance = 0x1p-21;
 constexpr double quadratic_share = 0.25;
 constexpr unsigned deepest_level = 40;
 constexpr double shortest_side = 0x1p-46;  // in parameters
+// Whatever the budget is: edges, also those that were split, have 31 bits.
+constexpr std::uint64_t most_triangles = std::uint64_t{1} << 29;
 
 constexpr std::array<std::uint8_t, 8> number_of_bits{0, 1, 1, 2, 1, 2, 2, 3};
 
@@ -520,7 +522,7 @@ bool Refinement::run(std::uint64_t most) {
     mark_rest_of_coarse();
     const std::uint64_t next = count_after();
     if (next == triangle_count()) return true;
-    if (next > most) return false;
+    if (next > std::min(most, most_triangles)) return false;
     done = std::max(done, 1 - static_cast<double>(active.size()) / static_cast<double>(next));
     monitor_.report(done);
     split(active);
@@ -658,19 +660,22 @@ class Search {
  public:
   Search(const LimitSurface& surface, const TessellateOptions& options, const Limits& limits,
          const WorkMonitor& monitor)
-      : surface_(surface), options_(options), limits_(limits), monitor_(monitor) {}
+      : surface_(surface),
+        options_(options),
+        limits_(limits),
+        monitor_(monitor),
+        most_(std::min(*options.max_triangles, options.budget)) {}
 
   Tessellation run() {
-    const std::uint64_t most = *options_.max_triangles;
     const double wanted = limits_.tolerance;
     if (std::isfinite(wanted) && attempt(wanted)) return finished(true);
-    if (!attempt(INFINITY)) refuse_number(most);
+    if (!attempt(INFINITY)) refuse_number();
     // So many triangles are too many at `low`; at `high` they are enough.
     double low = std::isfinite(wanted) ? wanted : 0, high = error_;
     constexpr int most_attempts = 16;
     for (int i = 0; i < most_attempts && high > least() && high > 1.02 * low; ++i) {
       monitor_.report(i / static_cast<double>(most_attempts));
-      const double guess = high * static_cast<double>(count_) / static_cast<double>(most);
+      const double guess = high * static_cast<double>(count_) / static_cast<double>(most_);
       double next = low > 0 ? std::sqrt(low * high) : guess / (i == 0 ? 1.0 : 2.0);
       next = std::max({next, least(), 1.01 * low});
       if (attempt(next)) {
@@ -679,7 +684,8 @@ class Search {
         low = next;
       }
     }
-    return finished(!std::isfinite(wanted));
+    const bool spent = options_.budget < *options_.max_triangles && high > least();
+    return finished(!std::isfinite(wanted) && !spent);
   }
 
  private:
@@ -691,9 +697,7 @@ class Search {
     limits_.tolerance = tolerance;
     const WorkMonitor quiet{{}, monitor_.stop};
     Refinement refinement(surface_, options_, limits_, quiet);
-    if (!refinement.run(*options_.max_triangles) || refinement.triangle_count() > *options_.max_triangles) {
-      return false;
-    }
+    if (!refinement.run(most_) || refinement.triangle_count() > most_) return false;
     const double error = surface_.scale().apply(refinement.error_bound());
     if (!best_ || error < error_) {
       best_ = refinement.result();
@@ -706,19 +710,32 @@ class Search {
     best_->reached = reached;
     return std::move(*best_);
   }
-  [[noreturn]] void refuse_number(std::uint64_t most) {
+  // Names the number that is enough, if the budget allows to find it.
+  [[noreturn]] void refuse_number() {
     limits_.tolerance = INFINITY;
     Refinement refinement(surface_, options_, limits_, monitor_);
-    refinement.run(options_.budget);
-    refuse_value(("tessellate: " + std::to_string(most) + " triangles are too few for this mesh; take " +
-                  std::to_string(refinement.triangle_count()) + " or more")
-                     .c_str());
+    const bool known = refinement.run(options_.budget);
+    const std::uint64_t needed = refinement.triangle_count();
+    std::string text = "tessellate: ";
+    text += known && needed <= *options_.max_triangles
+                ? "a budget of " + std::to_string(options_.budget) + " triangles is too small"
+                : std::to_string(*options_.max_triangles) + " triangles are too few";
+    text += " for this mesh and what else is asked for; ";
+    if (known) {
+      text += "take " + std::to_string(needed) + " or more";
+      if (options_.budget < needed && needed > *options_.max_triangles) text += ", with a budget as large";
+    } else {
+      text += "so is the budget of " + std::to_string(options_.budget) +
+              "; give more of both, or longer edges, larger angles and thicknesses";
+    }
+    refuse_value(text.c_str());
   }
 
   const LimitSurface& surface_;
   const TessellateOptions& options_;
   Limits limits_;
   const WorkMonitor& monitor_;
+  std::uint64_t most_;  // triangles of an attempt
   std::optional<Tessellation> best_;
   double error_ = INFINITY;  // of the best, in scaled units
   std::size_t count_ = 0;
