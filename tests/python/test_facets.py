@@ -15,7 +15,7 @@ import exact_triangles as exact
 import snug
 from snug import proximity
 
-POSES = max(100, int(os.environ.get("SNUG_FUZZ", "0")))
+POSES = max(20, int(os.environ.get("SNUG_FUZZ", "100")))
 TRIANGLES = np.array([t for a, b, c, d in CUBE_FACES for t in ((a, b, c), (a, c, d))])
 
 
