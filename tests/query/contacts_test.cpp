@@ -217,6 +217,17 @@ TEST(contacts, of_mirrored_surfaces_are_one_closed_curve_with_tiny_gaps) {
   for (const Point3& p : found.curves[0].points) EXPECT_NEAR(p.x, 0.25, 1e-9);
 }
 
+// Two sheets of the same squares, upright to each other: edges meet edges in single points of a line.
+TEST(contacts, have_specks_as_small_as_derived_where_edges_meet_edges) {
+  const Surface a = plane(2.5);
+  ControlMesh upright = a.mesh();
+  for (Point3& p : upright.points) p = {p.x, 0, p.y};
+  const Contacts found = contacts(a, Surface(std::move(upright)), {.precision = 1e-3});
+  EXPECT_TRUE(found.complete && found.reached);
+  EXPECT_GT(found.open.size(), 10u);
+  for (const OpenBox& open : found.open) EXPECT_LT(longest_side(open.box), 1e-10);
+}
+
 // A flat sheet whose lower border, between corners of patches at (1, 0.25) and (2, 0.25), lies above the line between
 // them: a plane through both meets the patch there at these corners alone.
 TEST(contacts, do_not_run_where_a_border_is_hollow) {
