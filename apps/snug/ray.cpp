@@ -1,5 +1,6 @@
 #include <snug/query/ray.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -53,7 +54,8 @@ void write_hit(JsonWriter& json, const LimitSurface& surface, const RayHit& hit)
       .value(hit.t.lower)
       .value(hit.t.upper)
       .end_array()
-      .field("certified", hit.certified);
+      .field("certified", hit.certified)
+      .field("reached", hit.reached);
   json.key("side");
   hit.side == 0 ? json.null() : json.value(hit.side);
   json.field("position", hit.point).field("error", hit.point_error);
@@ -68,7 +70,15 @@ std::string line_of(std::size_t ray, const LimitSurface& surface, const RayHit& 
                      hit.at.owner, hit.at.u, hit.at.v, corner);
 }
 
-void write_answer(Report& report, const LimitSurface& surface, std::size_t ray, const RayHits& answer) {
+// Does each hit that is proved reach the precision? Whether a ray is blocked needs none.
+bool reached(const RayHits& answer, RayQuery query) {
+  return query == RayQuery::any || std::all_of(answer.hits.begin(), answer.hits.end(), [](const RayHit& hit) {
+           return hit.reached || !hit.certified;
+         });
+}
+
+void write_answer(Report& report, const LimitSurface& surface, std::size_t ray, const RayHits& answer,
+                  bool narrow_enough) {
   if (report.json()) {
     JsonWriter& json = report.write();
     json.begin_object().field("complete", answer.complete).key("hits").begin_array();
@@ -78,6 +88,9 @@ void write_answer(Report& report, const LimitSurface& surface, std::size_t ray, 
   }
   for (const RayHit& hit : answer.hits) report.text(line_of(ray, surface, hit));
   if (answer.certain_miss()) report.text(fmt::format("{}  no hit", ray));
+  if (!narrow_enough) {
+    report.text(fmt::format("{}  not within --precision: rounding or a glancing ray leaves more", ray));
+  }
   if (!answer.complete) {
     report.text(fmt::format("{}  the budget ended: there may be more; give a larger --budget", ray));
   }
@@ -118,8 +131,9 @@ ExitStatus run(const Options& options) {
                           surface.rules().triangular() ? "" : " corner"));
   bool all_decided = true;
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    write_answer(report, surface, i, answers[i]);
-    all_decided = all_decided && decided(answers[i]);
+    const bool narrow_enough = reached(answers[i], wanted.query);
+    write_answer(report, surface, i, answers[i], narrow_enough);
+    all_decided = all_decided && narrow_enough && decided(answers[i]);
   }
   if (report.json()) report.write().end_array();
   return report.finish(all_decided);

@@ -11,7 +11,7 @@
 
 namespace snug {
 
-/// The points origin + t direction with from <= t <= to: a ray, or a segment.
+/// The points origin + t direction with from <= t <= to: a ray, or a segment. `from` may be negative.
 struct Ray {
   Point3 origin;
   Vector3 direction;  ///< of any length but 0; t is in units of its length
@@ -28,7 +28,8 @@ enum class RayQuery : std::uint8_t {
 
 struct RayOptions {
   RayQuery query = RayQuery::nearest;
-  /// Intended length of the interval of a hit, in mesh units; default: 1e-6 of the surface's size.
+  /// Intended length of the interval of a hit, in mesh units; default: 1e-6 of the surface's size. With `any` the
+  /// first hit that is proved is the answer, however wide.
   std::optional<double> precision{};
   std::uint64_t budget = 20'000;  ///< most splits for each ray; memory: 200 bytes each
 };
@@ -40,6 +41,9 @@ struct RayHit {
   /// tangent, passes through the border of an open surface, or begins or ends there, or is too close to one of
   /// these cases to tell.
   bool certified = false;
+  /// Is `t`, as a length in mesh units, at most the precision? False where rounding, a glancing ray, or hits that
+  /// cannot be told apart leave it wider, where the budget ran out, and where `any` asks for no more.
+  bool reached = false;
   /// +1 where the ray leaves the surface on the side of its normal, -1 on the other side; 0 where that is not known,
   /// and where hits of both directions cannot be told apart.
   int side = 0;
@@ -49,7 +53,8 @@ struct RayHit {
   std::optional<Vector3> normal;  ///< of the surface at `at`, of length 1; empty where there is none
 };
 
-/// The hits of one ray, sorted by t.
+/// The hits of one ray, sorted by the lower ends of t. Intervals that are not certified may begin before `from` and
+/// end behind `to`.
 struct RayHits {
   /// With RayQuery::nearest the last one is certified, if any is; those before it may be hits. With `any`: one
   /// certified hit, or else all hits that are not certified.

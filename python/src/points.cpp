@@ -315,6 +315,9 @@ void add_rays(py::module_& module) {
       "certified", [](const RayHit& t) -> const bool& { return t.certified; },
       "Is a hit in the interval proved? (m,) bool.");
   hit_view(
+      "reached", [](const RayHit& t) -> const bool& { return t.reached; },
+      "Is the interval at most the precision long? (m,) bool.");
+  hit_view(
       "side", [](const RayHit& t) -> const int& { return t.side; },
       "+1 where the ray passes along the normal, -1 against it, 0 where that is not known, (m,).");
   hit_view(

@@ -66,6 +66,28 @@ TEST_F(ray_command, ends_with_5_where_something_is_left_open) {
   EXPECT_EQ(touching[0]["hits"][0]["certified"], false);
 }
 
+TEST_F(ray_command, reaches_the_precision_or_ends_with_5) {
+  const std::string saddle = write("saddle.obj", "v 0 0 0\nv 1 0 0\nv 1 1 1\nv 0 1 0\nf 1 2 3 4\n");
+  const auto ask = [&](const char* precision, const char* query) {
+    return run_snug({"ray", saddle, "--scheme", "bilinear", "--rays", write("down.txt", "0.5 0.5 3 0 0 -1\n"),
+                     "--json", "--precision", precision, query});
+  };
+  const Outcome fine = ask("1e-6", "--all");
+  EXPECT_EQ(fine.status, 0) << fine.err;
+  const json hit = json::parse(fine.out, nullptr, false)["results"][0]["hits"][0];
+  EXPECT_EQ(hit["reached"], true);
+  EXPECT_LE(hit["t"][0], 2.75);
+  EXPECT_GE(hit["t"][1], 2.75);
+  EXPECT_LE(hit["t"][1].get<double>() - hit["t"][0].get<double>(), 1.0000001e-6);
+  // Below rounding: certain, but not reached.
+  const Outcome finer = ask("1e-18", "--all");
+  EXPECT_EQ(finer.status, 5) << finer.err;
+  const json wide = json::parse(finer.out, nullptr, false)["results"][0]["hits"][0];
+  EXPECT_EQ(wide["certified"], true);
+  EXPECT_EQ(wide["reached"], false);
+  EXPECT_EQ(ask("1e-18", "--any").status, 0);
+}
+
 TEST_F(ray_command, refuses_what_is_no_ray) {
   const std::string mesh = write("box.obj", box);
   for (const char* line : {"1 1 9 0 0", "1 1 9 0 0 0", "1 1 9 0 0 nan", "1 1 9 0 0 1 2", "1 1 9 0 0 1 3 2",

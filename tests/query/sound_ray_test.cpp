@@ -47,6 +47,11 @@ std::string text_of(const Ray& ray, RayQuery query) {
   return text.str();
 }
 
+bool is_sorted(const RayHits& answer) {
+  return std::is_sorted(answer.hits.begin(), answer.hits.end(),
+                        [](const RayHit& x, const RayHit& y) { return x.t.lower < y.t.lower; });
+}
+
 std::string text_of(const RayHits& answer) {
   std::ostringstream text;
   text.precision(17);
@@ -272,6 +277,7 @@ void check_flat(SurfaceWorkspace& workspace, const FlatFaces& twin, const Ray& r
     return std::any_of(answer.hits.begin(), answer.hits.end(),
                        [&](const RayHit& h) { return Hits::holds(h, hit.t); });
   };
+  EXPECT_TRUE(is_sorted(answer)) << where() << text_of(answer);
   int sum = 0;
   bool all_certified = true;
   for (const RayHit& hit : answer.hits) {
@@ -699,6 +705,7 @@ class CurvedTrials {
     ++counts_.rays;
     counts_.hits += answer.hits.size();
     counts_.incomplete += !answer.complete;
+    EXPECT_TRUE(is_sorted(answer)) << where() << text_of(answer);
     bool all_certified = answer.complete;
     int sum = 0;
     std::size_t certified = 0;

@@ -70,6 +70,7 @@ class RayQuestion {
     hit.t = {require_representable(lowered(lengths.to_parameter(found.along.lower))),
              require_representable(raised(lengths.to_parameter(found.along.upper)))};
     hit.certified = found.certified;
+    hit.reached = found.reached;
     hit.side = found.side;
     const double half = (found.along.upper - found.along.lower) / 2, middle = found.along.lower + half;
     const double rounding = 16 * unit_roundoff * (max_abs(ray.origin - Point3{}) + std::fabs(middle) + half);

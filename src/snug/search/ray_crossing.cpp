@@ -91,7 +91,7 @@ SeenPiece::SeenPiece(const RayFrame& ray, const PieceRecord& record, const Point
   if (!(error_ < INFINITY)) error_ = INFINITY;
 }
 
-Crossing SeenPiece::crossing(const Offset2& place, double reach) const {
+Crossing SeenPiece::crossing(const Offset2& place, double reach, double enough) const {
   Crossing result;
   const double off = (error_ + reach) * safely;
   if (!(off < INFINITY)) {
@@ -129,9 +129,10 @@ Crossing SeenPiece::crossing(const Offset2& place, double reach) const {
       return result;
     }
     const double middle = value.z - newton.x * du.z - newton.y * dv.z;
-    const double spread = safely * ((std::fabs(du.z) + std::fabs(dv.z)) * radius +
-                                    (std::fabs(uu_.z) + std::fabs(uv_.z) + std::fabs(vv_.z)) * far * far +
-                                    error_ + 16 * unit_roundoff * (std::fabs(value.z) + std::fabs(middle)));
+    const double bend_along = (std::fabs(uu_.z) + std::fabs(uv_.z) + std::fabs(vv_.z)) * far * far;
+    const double rest_along = (std::fabs(du.z) + std::fabs(dv.z)) * radius + error_ +
+                              16 * unit_roundoff * (std::fabs(value.z) + std::fabs(middle));
+    const double spread = safely * (bend_along + rest_along);
     const Extent along{middle - spread, middle + spread};
     if (step == 0) {
       result.along = along;
@@ -148,8 +149,12 @@ Crossing SeenPiece::crossing(const Offset2& place, double reach) const {
     } else if (result.state != Crossing::State::one) {
       result.state = Crossing::State::unsure;
     }
-    // Nothing is left to be gained where errors are most of the radius.
-    if (radius < 2 * blur) return result;
+    // Nothing is left to be gained where errors are most of the radius, and of the extent.
+    if (radius < 2 * blur &&
+        (bend_along <= rest_along || result.along.upper - result.along.lower <= enough)) {
+      result.settled = true;
+      return result;
+    }
     at = result.at;
     farthest = std::min(1.0, safely * (std::max(std::fabs(next_u - at.u), std::fabs(next_v - at.v)) + above));
   }

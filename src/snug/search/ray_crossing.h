@@ -31,6 +31,8 @@ struct Crossing {
     bent,    ///< the piece bends too much as seen along the line, or lies along it
   };
   State state = State::bent;
+  /// All that is left open is due to errors and the reach; else to the piece's bending, which splits reduce.
+  bool settled = false;
   int side = 0;          ///< of `one`: +1 where the line leaves to the side of the normal, else -1
   TriangleParameter at;  ///< close to the place, on the triangle; but for `none`
   Extent along;          ///< holds all of the piece that the line meets, as distances from the ray's origin
@@ -46,8 +48,9 @@ class SeenPiece {
   SeenPiece(const RayFrame& ray, const PieceRecord& record, const Point3& origin);
 
   /// How the line through `place`, parallel to the ray, and all lines within `reach` of it meet the piece: with a
-  /// reach of zero that line alone, else `none` and `along` are about all of these lines.
-  [[nodiscard]] Crossing crossing(const Offset2& place, double reach) const;
+  /// reach of zero that line alone, else `none` and `along` are about all of these lines. An extent of `enough`
+  /// is not narrowed further where errors leave the place itself no narrower.
+  [[nodiscard]] Crossing crossing(const Offset2& place, double reach, double enough = 0) const;
   /// Upper bound of how far the limit surface is from the quadratic, a length, rounding included.
   [[nodiscard]] double error() const { return error_; }
   /// Does the line through `place` pass the side from corner k to the next one with more than `reach`?

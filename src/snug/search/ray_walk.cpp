@@ -18,8 +18,8 @@ using State = Crossing::State;
 
 // Splits after which a ray that meets no border should have been decided.
 constexpr std::uint64_t quick_splits = 256;
-// Share of a tube's radius that pieces in it may be off by. Tubes that are tried later are narrower, and their
-// pieces smaller even for that: around a vertex of many needles there is little room between their edges.
+// Share of a tube's radius that pieces in it may be off by. Tubes that are tried later are narrower, or their
+// pieces smaller even for them: around a vertex of many needles there is little room between their edges.
 constexpr double first_share = 0x1p-5, smaller_share = 0x1p-4;
 constexpr double narrowing = 0x1p-10;
 constexpr unsigned tubes = 3;
@@ -69,11 +69,22 @@ class RayWalk {
     const double least = 0x1p-40 * (1 + far_);
     reach = std::max(reach, least);
     double share = first_share;
-    for (unsigned i = 0; i < tubes; ++i, reach *= narrowing, share *= smaller_share) {
-      if (reach < least) break;
-      const bool settled = search_tube(reach, std::max(share * reach, 0x1p-4 * least));
-      if (i == 0 || found_.complete) best = std::move(found_);
-      if (settled || !best.complete) break;
+    bool settled = false;
+    for (unsigned i = 0; i < tubes + (settled ? 2 : 0); ++i) {
+      const bool certain = search_tube(reach, std::max(share * reach, 0x1p-4 * least));
+      const double widest = widest_hit();
+      const bool located = certain && !(widest > task_.precision);
+      const bool ended = !found_.complete;
+      if (i == 0 || (!ended && (certain || !settled))) best = std::move(found_);
+      settled = settled || certain;
+      if (located || ended || (settled && task_.query == RayQuery::any)) break;
+      if (certain) {  // but too wide: as much narrower as that
+        if (!(reach > least)) break;
+        reach = std::max(std::clamp(0.25 * task_.precision / widest, narrowing, 0.25) * reach, least);
+      } else {  // around needles there is room between smaller pieces, even where rounding leaves no narrower tube
+        share *= smaller_share;
+        if (!settled && narrowing * reach > 16 * least) reach *= narrowing;
+      }
     }
     return best;
   }
@@ -104,8 +115,9 @@ class RayWalk {
     found_ = {};
   }
 
-  // Adds what a node opens to, unless it is farther than `reach` from the line or behind `end`.
-  void open(const Node& node, double reach, double end) {
+  // Adds what a node, none of which comes before `least`, opens to, unless it is farther than `reach` from the
+  // line or behind `end`.
+  void open(const Node& node, float least, double reach, double end) {
     const SurfaceWorkspace::Opened opened = workspace_.open(node);
     WideNode::Distances gaps, ahead;
     opened.boxes->distances(segment_, rounding_, 0, gaps);
@@ -116,7 +128,8 @@ class RayWalk {
       const double begin = from - static_cast<double>(ahead[i]) - reach - rounding_;
       if (begin > end) continue;
       // Rounded down, whatever its sign.
-      open_.add({opened.child(i), static_cast<float>(begin - 0x1p-22 * std::fabs(begin))});
+      const auto lower = static_cast<float>(begin - 0x1p-22 * std::fabs(begin));
+      open_.add({opened.child(i), std::max(least, lower)});
     }
   }
 
@@ -137,9 +150,18 @@ class RayWalk {
     return {task_.ray, SurfaceWorkspace::record(node), node.boxes->origin()};
   }
 
+  [[nodiscard]] bool is_located(const Extent& along) const {
+    return along.upper - along.lower <= task_.precision;
+  }
+  [[nodiscard]] double widest_hit() const {
+    double widest = 0;
+    for (const FoundHit& hit : found_.hits) widest = std::max(widest, hit.along.upper - hit.along.lower);
+    return widest;
+  }
+
   void add_hit(const Node& node, const Extent& along, bool certified, int side, TriangleParameter at) {
-    found_.hits.push_back(
-        {along, certified, side, workspace_.root_of(node), workspace_.patch(node).path, at});
+    found_.hits.push_back({along, certified, is_located(along), side, workspace_.root_of(node),
+                           workspace_.patch(node).path, at});
   }
 
   // Hits that pieces prove each by itself. False where that is not enough.
@@ -152,11 +174,11 @@ class RayWalk {
       if (node.bounded()) {
         monitor_.checkpoint();
         const SeenPiece piece = seen(node);
-        const Crossing crossing = piece.crossing({}, 0);
+        const Crossing crossing = piece.crossing({}, 0, task_.precision);
         if (crossing.state == State::none || outside(crossing.along, end)) continue;
         const bool hit = crossing.state == State::one && within(crossing.along);
         if (hit) {
-          const bool narrow = crossing.along.upper - crossing.along.lower <= task_.precision;
+          const bool narrow = is_located(crossing.along);
           if (narrow || task_.query == RayQuery::any) {
             add_hit(node, crossing.along, true, crossing.side, crossing.at);
           }
@@ -164,12 +186,12 @@ class RayWalk {
           if (task_.query == RayQuery::nearest) end = std::min(end, crossing.along.upper);
           if (narrow) continue;
         }
-        const double off = crossing.state == State::bent ? piece.width() : piece.error();
+        const double off = crossing.settled ? piece.error() : piece.width();
         const bool small = !hit && off <= first_share / 8 * task_.precision;
         if (small || !can_open(node) || splits_ >= std::min(quick_splits, task_.budget)) return false;
         ++splits_;
       }
-      open(node, 0, end);
+      open(node, begin, 0, end);
     }
     if (task_.query == RayQuery::nearest) keep_nearest(end);
     sort_hits();
@@ -189,6 +211,7 @@ class RayWalk {
     });
     FoundHit nearest = *first;
     nearest.along.lower = begin;
+    nearest.reached = is_located(nearest.along);
     for (const FoundHit& hit : hits) {
       if (hit.along.lower <= end && hit.side != nearest.side) nearest.side = 0;
     }
@@ -219,10 +242,12 @@ class RayWalk {
       if (node.bounded()) {
         monitor_.checkpoint();
         const SeenPiece piece = seen(node);
-        const Crossing near = piece.crossing({}, reach);
-        if (near.state == State::none || outside(near.along, upper_ + reach)) continue;
-        const bool bent = near.state == State::bent;
-        const double off = bent ? piece.width() + 2 * piece.error() : piece.error();
+        Crossing near = piece.crossing({}, reach);
+        if (near.state == State::none) continue;
+        // As far as its boxes tell: so groups follow one another.
+        near.along.lower = std::max(near.along.lower, static_cast<double>(begin));
+        if (near.along.upper < near.along.lower || outside(near.along, upper_ + reach)) continue;
+        const double off = near.settled ? piece.error() : piece.width() + 2 * piece.error();
         const bool out_of_budget = splits_ >= task_.budget || workspace_.full();
         if (out_of_budget) found_.complete = false;
         if (out_of_budget || off <= fine || !can_open(node)) {
@@ -233,11 +258,11 @@ class RayWalk {
         }
         ++splits_;
       }
-      open(node, reach, upper_ + reach);
+      open(node, begin, reach, upper_ + reach);
     }
     if (!done_) settle_leaves(reach);
     if (task_.query == RayQuery::any) keep_certified();
-    if (task_.query == RayQuery::all) sort_hits();
+    sort_hits();
     return settled_;
   }
 

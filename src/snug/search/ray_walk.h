@@ -22,7 +22,7 @@ struct RayTask {
 /// RayHit in scaled units, at a parameter of a piece.
 struct FoundHit {
   Extent along;
-  bool certified = false;
+  bool certified = false, reached = false;
   int side = 0;
   PatchId root;
   PiecePath path;
