@@ -104,6 +104,19 @@ class GraphTrials {
     return result;
   }
 
+  // Of the inverse of the map, whose determinant is 1.
+  [[nodiscard]] double inverse_norm() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t a = (i + 1) % 3, b = (i + 2) % 3, c = (k + 1) % 3, d = (k + 2) % 3;
+        const double minor = map_[a][c] * map_[b][d] - map_[a][d] * map_[b][c];
+        sum += minor * minor;
+      }
+    }
+    return std::sqrt(sum);
+  }
+
   // A place in the grid: a corner, on an edge or a diagonal, dyadic or anywhere.
   [[nodiscard]] double coordinate() {
     const double x = between(random_, -1, 1) * inner_;
@@ -166,7 +179,8 @@ class GraphTrials {
     slope = std::sqrt(std::max(0.0, discriminant));  // |F'| at the roots
     const double steepest = 1 + (2 * std::abs(q_[0]) + std::abs(q_[1])) * inner_ + std::abs(q_[3]) +
                             (2 * std::abs(q_[2]) + std::abs(q_[1])) * inner_ + std::abs(q_[4]);
-    const bool well = count == 0 || slope > 0x1p-4 * steepest * length(d);
+    // A lower bound of the sine of the angle: the normal is steepest times as long, and mapped by the inverse.
+    const bool well = count == 0 || slope > 0x1p-6 * steepest * inverse_norm() * length(mapped(d));
     // Near its ends a segment's hits are not told.
     const bool ends = std::min(std::fabs(f(from).get_d()), std::fabs(f(to).get_d())) < 0.05;
     // Misses of which the surface stays clear.
