@@ -163,7 +163,7 @@ def test_points_are_not_copied(cube):
 def test_rays(cube):
     down = cube.cast_rays([0, 0, 9], [0, 0, -1], query="all")
     assert down.certain_hit and down.complete and len(down) == 2 and list(down.side) == [-1, 1]
-    assert (down.lower <= down.upper).all() and down.certified.all()
+    assert (down.lower <= down.upper).all() and down.certified.all() and down.reached.all()
     grid = np.array([[x, y, 9.0] for x in np.linspace(-2, 2, 9) for y in np.linspace(-2, 2, 9)])
     hits = cube.cast_rays(grid, [0, 0, -1])
     quick = cube.cast_rays(grid, np.tile([0.0, 0, -1], (81, 1)), certified=False)
