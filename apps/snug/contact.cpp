@@ -136,7 +136,7 @@ std::vector<Point3> deformed(const std::string& path, const std::string& from, c
   return std::move(end.points);
 }
 
-std::string sentence(const TimeOfContact& answer, double tolerance) {
+std::string sentence(const TimeOfContact& answer, double tolerance, bool solid) {
   const std::string lower = text_at_most(answer.time.lower), upper = text_at_most(answer.time.upper, true);
   switch (answer.verdict) {
     case Verdict::separated:
@@ -151,9 +151,15 @@ std::string sentence(const TimeOfContact& answer, double tolerance) {
     case Verdict::undecided:
       break;
   }
+  if (answer.budget_ended) {
+    return fmt::format(
+        "undecided: no contact before time {}, what comes later is open; give a larger --budget", lower);
+  }
+  if (solid && answer.time.lower == 0) {
+    return "undecided: no proof at time 0 whether one solid is inside the other; move one of them a little";
+  }
   return fmt::format(
-      "undecided: no contact before time {}, what comes later is open; give a larger --tolerance "
-      "or --budget",
+      "undecided: no contact before time {}, then too close to be told apart; give a larger --tolerance",
       lower);
 }
 
@@ -236,7 +242,7 @@ ExitStatus run(const Options& options) {
     write_poses(report.write(), at);
     write_answer(report.write(), sides, answer);
   }
-  report.text(sentence(answer, *wanted.tolerance));
+  report.text(sentence(answer, *wanted.tolerance, options.solid));
   if (answer.witness) {
     for (const std::string& line : witness_lines(sides, *answer.witness, answer.at)) report.text(line);
   }

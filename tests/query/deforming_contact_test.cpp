@@ -31,7 +31,7 @@ using testing::unit;
 using testing::way_count;
 
 TEST(deforming_contact, is_not_later_than_points_that_meet) {
-  Tally tally = testing::points_that_meet(21, testing::trials(36), 1'000);
+  Tally tally = testing::points_that_meet(21, testing::trials(36), 100'000);
   tally.print();
   EXPECT_GT(tally.sharp, static_cast<int>(tally.looks.size() / 2));
   EXPECT_LE(tally.median(), 20);
@@ -80,9 +80,8 @@ TEST(deforming_contact, with_a_wall_is_that_of_the_first_point) {
     const SurfaceBvh model(surface), wall_model(wall);
     SurfaceWorkspace scratch(model), wall_scratch(wall_model);
     const double tolerance = trial % 2 ? 1e-3 : 1e-5;
-    const TimeOfContact found =
-        time_of_contact({wall_model, wall_scratch, Motion(), wall_end}, {model, scratch, Motion(), end},
-                        {.tolerance = tolerance, .max_looks = 500});
+    const TimeOfContact found = time_of_contact({wall_model, wall_scratch, Motion(), wall_end},
+                                                {model, scratch, Motion(), end}, {.tolerance = tolerance});
     const std::string what = "trial " + std::to_string(trial) + (flat ? "" : ": " + shape.name);
     tally.add(found);
     if (!(exact <= 1)) {
@@ -130,7 +129,8 @@ TEST(deforming_contact, that_is_a_translation_is_that_of_the_translation) {
     const TimeOfContact found = time_of_contact({model_a, scratch_a, stays}, {model_b, scratch_b, pose, end});
     EXPECT_EQ(found.verdict, rigid.verdict);
     EXPECT_LE(found.time.lower, rigid.time.upper + 1e-12);
-    EXPECT_LE(rigid.time.lower, found.time.upper + 1e-12);
+    // Within the tolerance they may be before they meet: pairs that are followed through time pass by that.
+    if (found.verdict == Verdict::intersecting) EXPECT_LE(rigid.time.lower, found.time.upper + 1e-12);
   }
 }
 
@@ -183,7 +183,7 @@ TEST(deforming_contact, has_an_upper_end_where_surfaces_come_to_lie_in_each_othe
   };
   const Surface a(round(1), {.scheme = Scheme::catmark}), b(round(0.1), {.scheme = Scheme::catmark});
   const std::vector<Point3> end = round(3).points;
-  for (const std::uint64_t budget : {1'000u, 10'000u}) {
+  for (const std::uint64_t budget : {60'000u, 400'000u}) {
     const TimeOfContact found =
         time_of_contact({a}, {.surface = b, .end = end}, {.tolerance = 2e-3, .budget = budget});
     EXPECT_LE(found.time.lower, 0.9 / 2.9);
@@ -235,7 +235,7 @@ TEST(deforming_contact, that_touches_at_the_end_alone_or_passes_closely_is_told_
   EXPECT_EQ(to(1.5 + 1e-9).ask({.tolerance = 1e-10}).verdict, Verdict::separated);
   // Past a face at a small distance.
   const Boxes past{cube(1), cube(1), cube(0.5, {-3, 0, 1.5 + 1e-4}), cube(0.5, {3, 0, 1.5 + 1e-4})};
-  const TimeOfContact found = past.ask({.tolerance = 1e-6, .max_looks = 2000});
+  const TimeOfContact found = past.ask({.tolerance = 1e-6});
   EXPECT_NE(found.verdict, Verdict::intersecting);
   std::cout << "  past: " << found.looks << " looks, " << static_cast<int>(found.verdict) << '\n';
 }

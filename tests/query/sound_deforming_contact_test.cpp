@@ -22,7 +22,7 @@ using testing::random_placement;
 using testing::random_vector;
 
 TEST(sound_deforming_contact, is_not_later_than_points_that_meet_of_every_scheme_and_deformation) {
-  testing::Tally tally = testing::points_that_meet(41, testing::trials(600), 20'000);
+  testing::Tally tally = testing::points_that_meet(41, testing::trials(600), 400'000);
   tally.print();
   EXPECT_GT(tally.sharp, static_cast<int>(tally.looks.size() / 2));
   EXPECT_LE(tally.median(), 20);
@@ -64,9 +64,8 @@ TEST(sound_deforming_contact, no_points_of_loop_surfaces_meet_before) {
     const double size = std::max(a.size(), b.size()),
                  tolerance = random() % 4 == 0 ? 1e-5 * size : 1e-3 * size;
     const Trajectory of_a(pose[0]), of_b(pose[1]);
-    const TimeOfContact found =
-        time_of_contact({model_a, scratch_a, of_a, end[0]}, {model_b, scratch_b, of_b, end[1]},
-                        {.tolerance = tolerance, .max_looks = 400});
+    const TimeOfContact found = time_of_contact({model_a, scratch_a, of_a, end[0]},
+                                                {model_b, scratch_b, of_b, end[1]}, {.tolerance = tolerance});
     tally.add(found);
     const std::string what = "trial " + std::to_string(trial);
     const auto bounds_at = [&](double s) {

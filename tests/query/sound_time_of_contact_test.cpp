@@ -72,8 +72,8 @@ TEST(sound_time_of_contact, no_points_of_loop_surfaces_meet_before) {
                                 : Trajectory(random_placement(random, random_vector(random, 0.3)));
     const double size = std::max(a.surface.size(), b.surface.size());
     const double tolerance = random() % 4 == 0 ? 1e-6 * size : 1e-3 * size;
-    const TimeOfContact found = time_of_contact({a.model, a.scratch, of_a}, {b.model, b.scratch, of_b},
-                                                {.tolerance = tolerance, .max_looks = 400});
+    const TimeOfContact found =
+        time_of_contact({a.model, a.scratch, of_a}, {b.model, b.scratch, of_b}, {.tolerance = tolerance});
     ++verdicts[static_cast<std::size_t>(found.verdict)];
     wide += !found.reached;
     looks.push_back(found.looks);

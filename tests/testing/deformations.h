@@ -255,10 +255,9 @@ inline Tally points_that_meet(std::uint64_t seed, std::size_t count, std::uint64
     const Trajectory motion_b = shifted(any_b, pose_a.apply(a.at(i, s)) - pose_b.apply(still.at(j, s)));
     const double tolerance = std::array{1e-3, 1e-5, 1e-2, 0.0}[trial % 4];
     SurfaceWorkspace scratch_a(a.model), scratch_b(still.model);
-    const TimeOfContact found =
-        time_of_contact({a.model, scratch_a, motion_a, way_a == 0 ? std::span<const Point3>{} : a.end},
-                        {still.model, scratch_b, motion_b, still.end},
-                        {.tolerance = tolerance, .budget = budget, .max_looks = 200});
+    const TimeOfContact found = time_of_contact(
+        {a.model, scratch_a, motion_a, way_a == 0 ? std::span<const Point3>{} : a.end},
+        {still.model, scratch_b, motion_b, still.end}, {.tolerance = tolerance, .budget = budget});
     const std::string what = "trial " + std::to_string(trial) + ": " + a.name + " by way " +
                              std::to_string(way_a) + ", " + still.name + " by way " + std::to_string(way_b) +
                              ", placed by " + std::to_string(placing_a) + " and " + std::to_string(placing_b);

@@ -81,6 +81,15 @@ WideNode::WideNode(std::span<const Obb> boxes) {
   }
 }
 
+Obb WideNode::box(std::size_t place) const {
+  const auto number = [&](std::size_t row) { return static_cast<double>(rows_[width * row + place]); };
+  Obb box;
+  box.centre = origin_ + Vector3{number(0), number(1), number(2)};
+  box.half = {number(3), number(4), number(5)};
+  for (std::size_t k = 0; k < 3; ++k) box.axes[k] = {number(6 + 3 * k), number(7 + 3 * k), number(8 + 3 * k)};
+  return box;
+}
+
 WideNode::Near WideNode::distances(const WideNode& other, std::size_t place, const View& view,
                                    float prune_distance, Gaps sort, Distances& out) const {
   const Vector3 offset = view.frame.apply(other.origin_) - origin_;

@@ -47,6 +47,9 @@ class alignas(32) WideNode {
   [[nodiscard]] const Point3& origin() const { return origin_; }
   /// Upper bound of the distance of two points of a box, for choosing which one to open.
   [[nodiscard]] float size_of(std::size_t place) const { return sizes_[place]; }
+  /// A box as it is kept, read in double: what it bounds is among all centre + sum of s_k half_k axis_k with |s_k| <= 1,
+  /// up to one rounding of the origin. Its axes are orthonormal up to a few roundings of single precision.
+  [[nodiscard]] Obb box(std::size_t place) const;
 
   /// Lower bounds of the distances from the boxes to one of another node, which is seen through `view`, in
   /// units of the target; zero or negative where no gap shows, the more negative the deeper they overlap.

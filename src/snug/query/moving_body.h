@@ -53,6 +53,7 @@ class MovingBody {
   explicit MovingBody(const MovingBvh& moving);
 
   [[nodiscard]] const SurfaceBvh& model() const { return moving_.model; }
+  [[nodiscard]] SurfaceWorkspace& scratch() const { return moving_.scratch; }
   [[nodiscard]] bool deforms() const { return deformation_ != nullptr; }
   [[nodiscard]] double duration() const {
     return deforms() ? std::max(1.0, moving_.motion.duration()) : moving_.motion.duration();

@@ -8,6 +8,7 @@
 #include <snug/query/containment.h>
 #include <snug/query/moving_body.h>
 #include <snug/query/pairs.h>
+#include <snug/query/swept_pairs.h>
 #include <snug/search/pair_frames.h>
 #include <snug/search/precision.h>
 #include <snug/search/solid.h>
@@ -28,6 +29,15 @@ constexpr double reach_share = 0.8;
 constexpr int max_probes = 7;
 // Times in a row that tell nothing.
 constexpr int max_blocked = 8;
+// What a look costs of the budget, besides splits: some hundred microseconds of work. None may take more than a part of
+// the whole budget.
+constexpr std::uint64_t cost_of_look = 1000, looks_of_budget = 16;
+// Pairs of nodes are followed through time after so many looks in a piece, where so many more are to be expected. None
+// before where that has brought all of a piece before. At first so many pairs and splits are spent on it.
+constexpr int first_patience = 8, looks_too_many = 12;
+constexpr std::uint64_t first_allowance = 1000;
+// Part of the goal that surfaces move by in the shortest step of theirs.
+constexpr double share_of_step = 0.125;
 
 // What is known at one time, of the exact motion.
 struct Look {
@@ -67,7 +77,10 @@ class Query {
   void enter_piece(std::size_t piece) {
     place_in_piece(piece);
     find_speed();
-    looks_before_ = looks_;
+    spent_ = 0;
+    looks_in_piece_ = 0;
+    looks_before_ = 0;
+    began_.reset();
     ahead_.clear();
     last_.reset();
     closing_ = 1;
@@ -134,7 +147,16 @@ class Query {
     stats_.triangle_tests += stats.triangle_tests;
     stats_.evaluations += stats.evaluations;
     stats_.splits += stats.splits;
+    spent_ += stats.splits;
   }
+  void count_look() {
+    ++looks_;
+    ++looks_in_piece_;
+    spent_ += cost_of_look;
+  }
+  // Of the budget.
+  [[nodiscard]] std::uint64_t left() const { return spent_ < options_.budget ? options_.budget - spent_ : 0; }
+  [[nodiscard]] std::uint64_t for_look() const { return std::min(left(), options_.budget / looks_of_budget); }
 
   // Is the surfaces' distance at that time enough for all that is left of the piece?
   [[nodiscard]] bool far_enough(const Places& at, double time, double end, Look& look) const {
@@ -146,11 +168,11 @@ class Query {
 
   Look look_at(double time, double end) {
     monitor_.report(time / std::max(duration_, 1.0));
-    ++looks_;
+    count_look();
     const Places at = places_at(time);
     Look look{.time = time};
     if (far_enough(at, time, end, look)) return look;
-    const DistanceOptions wanted{.absolute = resolution_, .relative = relative, .budget = options_.budget};
+    const DistanceOptions wanted{.absolute = resolution_, .relative = relative, .budget = for_look()};
     const Distance found = distance(at.a, at.b, wanted, monitor_);
     count(found.stats);
     look.crossing = found.distance.upper == 0;
@@ -163,10 +185,10 @@ class Query {
   // was not inside at the beginning.
   bool probe(double time) {
     monitor_.checkpoint();
-    ++looks_;
+    count_look();
     const Places at = places_at(time);
     const CollideOptions wanted{
-        .tolerance = 0, .budget = options_.budget, .witness = WitnessKind::none, .measure = false};
+        .tolerance = 0, .budget = for_look(), .witness = WitnessKind::none, .measure = false};
     const Collision found = collide(at.a, at.b, wanted, monitor_);
     count(found.stats);
     if (found.verdict == Verdict::intersecting) return true;
@@ -264,6 +286,7 @@ class Query {
         closing_ = std::clamp(share, 0.0, 1.0);
       }
       last_ = next;
+      if (!began_) began_ = next;
       ahead_.pop_back();
     }
   }
@@ -295,7 +318,8 @@ class Query {
         if (!probed_ && options_.prove_contact && find_crossing(std::min(end, crossing_))) continue;
         if (crossing_ > end || blocks_ >= max_blocked) return false;
       }
-      if (looks_ - looks_before_ >= options_.max_looks) return false;
+      if (left() == 0) return false;
+      if (slow(std::min(end, crossing_)) && follow(std::min(end, crossing_))) continue;
       const double before = lower_;
       const Look look = look_at(next_time(end), end);
       take(look, end);
@@ -305,6 +329,43 @@ class Query {
     }
     if (end == duration_) over_ = true;
     return true;
+  }
+
+  // Will looks take many more, if time goes on and the distance shrinks as since the first of these?
+  [[nodiscard]] bool slow(double end) const {
+    if (body_[0].deforms() || body_[1].deforms() || looks_in_piece_ < patience_ || !began_) return false;
+    if (patience_ <= 1) return true;
+    const double looks = looks_in_piece_ - looks_before_, near = last_->likely();
+    const double shrunk = std::log(began_->likely() / near),
+                 to_shrink = std::log(std::max(near / goal(), 1.0));
+    return looks * (end - lower_) > looks_too_many * (lower_ - began_->time) &&
+           looks * to_shrink > looks_too_many * shrunk;
+  }
+
+  // Follows pairs of nodes through time, while that gets on faster than looks did. True if that has raised lower_.
+  bool follow(double end) {
+    const double before = lower_, looked = began_ ? before - began_->time : 0,
+                 least = share_of_step * goal() / speed_;
+    SweptPairs pairs({body_[0].model(), body_[0].scratch(), body_[0].piece()},
+                     {body_[1].model(), body_[1].scratch(), body_[1].piece()}, stats_);
+    bool faster = true;
+    for (; faster && lower_ < end && left() > 0; allowance_ *= 2) {
+      const double from = lower_, until = pairs.clear(from - first_, end - first_, least,
+                                                      std::min(allowance_, left()), monitor_);
+      spent_ += pairs.spent();
+      lower_ = until == end - first_ ? end : std::max(from, rounded_down(first_ + until));
+      faster = lower_ - from > looked && pairs.spent() >= allowance_;
+    }
+    if (blocked_ < lower_) {
+      blocked_ = INFINITY;
+      blocked_to_ = 0;
+      blocks_ = 0;
+    }
+    connect(end);
+    began_.reset();
+    looks_before_ = looks_in_piece_;
+    patience_ = lower_ >= end ? 1 : std::max(2 * looks_in_piece_, first_patience);
+    return lower_ > before;
   }
 
   // A little after the surfaces have come near each other.
@@ -352,6 +413,7 @@ class Query {
       answer.verdict = over_ ? Verdict::separated : Verdict::undecided;
       answer.time = {over_ ? duration_ : lower_, INFINITY};
       answer.reached = over_;
+      answer.budget_ended = !over_ && left() == 0;
     }
     if (answer.time.upper < INFINITY) {
       answer.reached = short_enough(answer.time.lower, answer.time.upper);
@@ -372,8 +434,10 @@ class Query {
       answer.inner = inside_.inner;
       return;
     }
-    const Distance found = distance(
-        at.a, at.b, {.absolute = resolution_, .relative = relative, .budget = options_.budget}, monitor_);
+    const Distance found =
+        distance(at.a, at.b,
+                 {.absolute = resolution_, .relative = relative, .budget = options_.budget / looks_of_budget},
+                 monitor_);
     count(found.stats);
     answer.witness = found.witness;
     answer.witness_error = enlarged(found.witness_error + at.doubt());
@@ -394,11 +458,16 @@ class Query {
   double lower_ = 0;
   // The first times known with contact at or before, within the tolerance, and of which nothing can be told.
   double crossing_ = INFINITY, within_ = INFINITY, blocked_ = INFINITY;
-  double blocked_to_ = 0;                          // the last of these
-  std::vector<Look> ahead_;                        // times without contact beyond lower_, the first one last
-  std::optional<Look> last_;                       // the last one that raised it
-  double closing_ = 1;                             // share of speed_ at which the distance shrank
-  int looks_ = 0, looks_before_ = 0, blocks_ = 0;  // before: until the piece began
+  double blocked_to_ = 0;     // the last of these
+  std::vector<Look> ahead_;   // times without contact beyond lower_, the first one last
+  std::optional<Look> last_;  // the last one that raised it
+  double closing_ = 1;        // share of speed_ at which the distance shrank
+  int looks_ = 0, looks_in_piece_ = 0, blocks_ = 0;
+  int patience_ = first_patience;              // looks in a piece before follow()
+  std::uint64_t spent_ = 0;                    // of the budget, in this piece
+  std::uint64_t allowance_ = first_allowance;  // of it, for follow()
+  std::optional<Look> began_;  // the first one that raised lower_, in this piece or since follow(),
+  int looks_before_ = 0;       // and looks in the piece before
   bool probed_ = false, over_ = false;
   bool apart_ = false;           // at first, as surfaces
   std::optional<bool> outside_;  // of outside(), once known

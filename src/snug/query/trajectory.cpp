@@ -263,18 +263,16 @@ double PieceMotion::lever(const SurfaceBvh& model) const {
   return std::min(by_ball, std::isfinite(by_box) ? by_box : INFINITY);
 }
 
-// Upper bound of what the matrix of to - S(1) makes of a vector of length 1.
 double PieceMotion::closing_growth() const {
   double matrix = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) matrix += largest(closing_[4 * i + j]);
   }
-  return matrix;
+  return enlarged(matrix);
 }
 
 double PieceMotion::growth() const { return enlarged(1 + 2 * piece_.from.defect() + closing_growth()); }
 
-// Of s (to - S(1)).
 double PieceMotion::closing_speed(const SurfaceBvh& model) const {
   if (!piece_.ends) return 0;
   const Ball& ball = model.ball();

@@ -45,12 +45,17 @@ class PieceMotion {
   [[nodiscard]] static double relative_speed(const PieceMotion& a, const SurfaceBvh& model_a,
                                              const PieceMotion& b, const SurfaceBvh& model_b);
 
+  [[nodiscard]] const Trajectory::Piece& piece() const { return piece_; }
+  /// The unit vector of the axis, up to a few roundings.
+  [[nodiscard]] Vector3 axis() const { return {middle(axis_[0]), middle(axis_[1]), middle(axis_[2])}; }
+  /// Upper bounds of what `to - S(1)` makes of a vector of length 1, and of how far it takes a point of a surface.
+  [[nodiscard]] double closing_growth() const;
+  [[nodiscard]] double closing_speed(const SurfaceBvh& model) const;
+
  private:
   using Intervals = std::array<Interval, 12>;
   using IntervalVector = std::array<Interval, 3>;
   [[nodiscard]] Intervals screwed(double s) const;
-  [[nodiscard]] double closing_growth() const;
-  [[nodiscard]] double closing_speed(const SurfaceBvh& model) const;
   [[nodiscard]] double lever(const SurfaceBvh& model) const;
   [[nodiscard]] IntervalVector lever_at(const IntervalVector& point) const;
 

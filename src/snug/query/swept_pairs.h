@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include <snug/monitor.h>
+#include <snug/query/swept_motion.h>
+#include <snug/search/pair_walk.h>
+
+namespace snug {
+
+/// One of two surfaces during one piece of its motion.
+struct SweptBody {
+  const SurfaceBvh& model;
+  SurfaceWorkspace& scratch;
+  const PieceMotion& motion;
+};
+
+/// Proves that two rigid surfaces do not meet for a while. A pair of nodes is dropped where one direction, which
+/// stays or turns with one of the surfaces, keeps them apart over an interval of time: at its ends and in its
+/// middle by more than heights along it can bend between. Else a node is opened, if it is large for how far the
+/// nodes move meanwhile, or the time is halved; the earlier half comes first.
+/// Source:    derivations/time_of_contact.md, "Over an interval of time".
+class SweptPairs {
+ public:
+  /// Requires:  the bodies outlive it.
+  SweptPairs(const SweptBody& a, const SweptBody& b, SearchStats& stats);
+
+  /// The time up to which, itself included, there is no common point: `to`, or `from` where nothing is shown,
+  /// or before an interval as short as `least`, or where the budget of splits and of pairs compared ends.
+  /// Requires:  0 <= from < to <= 1, times of the piece.
+  [[nodiscard]] double clear(double from, double to, double least, std::uint64_t budget,
+                             const WorkMonitor& monitor);
+  /// What clear() has spent.
+  [[nodiscard]] std::uint64_t spent() const { return steps_ + (stats_.splits - splits_before_); }
+
+ private:
+  using Nodes = std::array<Node, 2>;
+  // Both surfaces at one time.
+  struct Sample {
+    double time = 0;
+    std::array<PlacedFrame, 2> frames;
+    // Upper bounds: of what places may lack to those of the exact motions, and of the error of heights along a
+    // direction that stays, or turns with a surface.
+    double place_doubt = 0;
+    std::array<double, 2> turn_doubt{};  // of such directions
+    std::array<double, 3> height_doubt{};
+  };
+  struct Step;  // from one time to another
+  struct Pair;  // what is known of two nodes in a step
+
+  [[nodiscard]] Sample sample(double time) const;
+  bool clear(const Sample& first, const Sample& last, std::vector<Nodes> open_pairs);
+  [[nodiscard]] Pair pair_of(const Nodes& nodes, const Step& step);
+  [[nodiscard]] double height(const Sample& at, const Pair& pair, std::size_t side, const Vector3& w) const;
+  [[nodiscard]] double gap(const Sample& at, const Pair& pair, const Vector3& w) const;
+  // By a direction that has this value in the middle, and turns with a side or stays.
+  [[nodiscard]] bool kept_apart(const Step& step, const Pair& pair, const Vector3& w,
+                                std::size_t turns) const;
+  // Of the side on which it was found, or of neither: then all are tried.
+  [[nodiscard]] bool apart_along(const Step& step, Pair& pair, const Vector3& direction,
+                                 std::size_t of) const;
+  [[nodiscard]] bool apart(const Step& step, Pair& pair);
+  [[nodiscard]] bool apart_by_triangles(const Step& step, Pair& pair);
+  [[nodiscard]] bool apart_in_double(const Step& step, Pair& pair);
+  [[nodiscard]] OffsetTriangle in_double(std::size_t side, const Node& node);
+  [[nodiscard]] std::size_t side_to_open(const Step& step, const Pair& pair) const;
+  void open(const Nodes& nodes, std::size_t side, std::vector<Nodes>& out);
+
+  std::array<SweptBody, 2> bodies_;
+  SearchStats& stats_;
+  PowerOfTwo world_;
+  std::array<double, 2> scales_{};
+  std::array<SweptMotion, 2> motions_;
+  std::array<std::unordered_map<std::uint32_t, OffsetTriangle>, 2> in_double_;  // of whole patches
+  double closing_ = 0;
+  bool possible_ = false;
+  double least_ = 0, until_ = 0;
+  std::uint64_t budget_ = 0, steps_ = 0, splits_before_ = 0;
+  const WorkMonitor* monitor_ = nullptr;
+};
+
+}  // namespace snug
