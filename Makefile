@@ -151,7 +151,7 @@ docs: install-packages  ## plots and tables of docs/convergence.md, pictures of 
 	@scripts/check_docs.py
 
 install-packages:  ## what building, testing and checking need, where it is missing (scripts/packages.txt has it in sections)
-	@scripts/install_packages build test python bench gates deb docs fuzz
+	@scripts/install_packages build test mpi python bench gates deb docs fuzz
 
 clean:  ## remove build/
 	@rm -rf build

@@ -1,5 +1,7 @@
 #include "placed_pair.h"
 
+#include <fmt/core.h>
+
 #include "length.h"
 
 namespace snug::command {
@@ -24,6 +26,10 @@ void add_pair_options(OptionList& list, PairOptions& options, bool many) {
     list.add(Group::own, "--resume JOURNAL", &options.journal,
              "Keep finished answers of a scene in this file, and go on from those that it holds")
         .needs("--scene");
+    list.add(Group::own, "--rank-timeout SECONDS", &options.rank_timeout,
+             "Under mpirun, give up once a rank has been silent for this long; 0 waits for ever")
+        .needs("--scene")
+        .between(0, 1e6);
   }
   add_pose_options(list, "-a", "A", options.pose_a);
   add_pose_options(list, "-b", "B", options.pose_b);
@@ -64,9 +70,17 @@ PairArguments::PairArguments(const PairOptions& options)
   pose_a_ = pose_of(options.pose_a, "-a", mending);
   pose_b_ = pose_of(options.pose_b, "-b", mending);
   const auto library = std::make_shared<BoundsCache>();
-  const auto scheme = [&](const std::string& own) { return own.empty() ? options.scheme : own; };
-  surface_a_.emplace(load_surface(options.mesh_a, options, scheme(options.scheme_a), library));
-  surface_b_.emplace(load_surface(options.mesh_b, options, scheme(options.scheme_b), library));
+  const auto load = [&](const std::string& mesh, const std::string& own, const char* option) {
+    try {
+      return load_surface(mesh, options, own.empty() ? options.scheme : own, library);
+    } catch (const InputError& error) {
+      if (error.problem() != InputProblem::refused || options.scheme == "auto" || !own.empty()) throw;
+      throw InputError(error.problem(),
+                       fmt::format("{}; {} names the scheme of this mesh alone", error.what(), option));
+    }
+  };
+  surface_a_.emplace(load(options.mesh_a, options.scheme_a, "--scheme-a"));
+  surface_b_.emplace(load(options.mesh_b, options.scheme_b, "--scheme-b"));
 }
 
 void PairArguments::prepare(const WorkMonitor& monitor) {

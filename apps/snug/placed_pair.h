@@ -19,10 +19,11 @@ struct PairOptions : CommonOptions {
   std::string scheme_a, scheme_b;
   PoseOptions pose_a, pose_b;
   bool nearest_rigid = false;
-  std::string poses;    ///< a file of poses; empty for none
-  bool moves = false;   ///< other options have poses, too
-  std::string scene;    ///< a file of many parts, in place of both meshes; empty for none
-  std::string journal;  ///< --resume; empty for none
+  std::string poses;         ///< a file of poses; empty for none
+  bool moves = false;        ///< other options have poses, too
+  std::string scene;         ///< a file of many parts, in place of both meshes; empty for none
+  std::string journal;       ///< --resume; empty for none
+  double rank_timeout = 60;  ///< seconds
 };
 /// Those of two meshes and their poses; of commands that answer many, --poses and --scene too.
 void add_pair_options(OptionList& list, PairOptions& options, bool many = true);

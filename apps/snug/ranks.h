@@ -10,11 +10,14 @@
 namespace snug::command {
 
 /// The processes that mpirun started together. For the thread that made it.
+///
+/// Errors:    of all its functions: InputError (unreadable) that names a rank which has been silent for too long.
 class Ranks {
  public:
-  /// Joins them; null for a process that mpirun did not start, or alone.
+  /// Joins them; null for a process that mpirun did not start, or alone. `patience`: seconds of silence after which
+  /// a rank counts as lost; 0 for no limit.
   /// Errors:    InputError (unreadable) if the library for MPI is not there, or cannot join.
-  [[nodiscard]] static std::unique_ptr<Ranks> join();
+  [[nodiscard]] static std::unique_ptr<Ranks> join(double patience);
 
   [[nodiscard]] int rank() const { return rank_; }
   [[nodiscard]] int size() const { return size_; }
@@ -31,11 +34,14 @@ class Ranks {
   /// The next message that is there; nothing if none is, unless it is to wait.
   [[nodiscard]] std::optional<Message> receive(bool wait) const;
   /// Waits until all have called it. Where one ends without it mpirun ends all.
-  void leave() const { functions_->leave(); }
+  void leave() const;
 
  private:
-  explicit Ranks(const SnugRanks* functions) : functions_(functions) {}
+  Ranks(const SnugRanks* functions, double patience) : functions_(functions), patience_(patience) {}
+  void require(bool done) const;
+
   const SnugRanks* functions_;
+  double patience_;
   int rank_ = 0, size_ = 1, size_of_node_ = 1;
 };
 

@@ -31,14 +31,15 @@ using Json = nlohmann::json;
 // Deeper than any scene: parts, a part, a placement, its numbers.
 constexpr int most_levels = 8;
 
-// Fit for a message of one line, as meshes' words are.
+// Fit for a message of one line, as meshes' words are: control characters by their codes.
 std::string printable(std::string_view text) {
   std::string result;
   for (const char c : text) {
-    if (c >= ' ' && c <= '~') {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= ' ' && byte != 0x7f) {
       result += c;
     } else {
-      result += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+      result += fmt::format("\\x{:02x}", byte);
     }
   }
   return result;
@@ -47,7 +48,10 @@ std::string printable(std::string_view text) {
 [[noreturn]] void fail(const std::string& message) { throw InputError(InputProblem::unreadable, message); }
 
 std::string shortened(const std::string& text) {
-  return text.size() <= 40 ? text : text.substr(0, 40) + "...";
+  std::size_t size = 40;
+  if (text.size() <= size) return text;
+  while ((static_cast<unsigned char>(text[size]) & 0xc0) == 0x80) --size;  // not inside a character of UTF-8
+  return text.substr(0, size) + "...";
 }
 // What stands there, for messages.
 std::string quoted(const Json& value) {

@@ -347,7 +347,7 @@ PairOptions for_rank(PairOptions options, const Ranks* ranks) {
 }  // namespace
 
 SceneRun::SceneRun(const PairOptions& options, const WorkMonitor& monitor)
-    : monitor_(monitor), ranks_(Ranks::join()) {
+    : monitor_(monitor), ranks_(Ranks::join(options.rank_timeout)) {
   options_ = for_rank(options, ranks_.get());
   if (ranks_ && ranks_->rank() > 0) leave_interruption_to_others();
   const ReadBytes read = [&](const std::string& path) {

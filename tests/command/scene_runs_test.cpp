@@ -165,6 +165,24 @@ TEST_F(ranks, go_on_after_one_of_them_was_interrupted) {
   }
 }
 
+// A stopped process neither answers nor ends: the others say so, and what was finished is kept.
+TEST_F(ranks, end_with_a_word_if_one_of_them_is_stopped) {
+  const Json expected = comparable(run_snug({"collide", "--scene", file_, "--json"}).out);
+  for (const int rank : {0, 1}) {
+    const std::string journal = folder_.file("journal" + std::to_string(rank)),
+                      words = "collide --scene " + file_ + " --json --threads 1 --resume " + journal;
+    const Outcome outcome = shell(
+        "timeout -s KILL 100 " +
+        with_rank(rank, send_when(journal, 30, "STOP") + " true", words + " --rank-timeout 1") + " 2>&1");
+    EXPECT_EQ(outcome.status, 3) << outcome.out;
+    EXPECT_NE(outcome.out.find("snug: rank " + std::to_string(rank) + " has been silent for 1 s"),
+              std::string::npos)
+        << outcome.out;
+    EXPECT_GE(lines_of(journal), 30u);
+    EXPECT_EQ(comparable(shell(mpirun(2, words)).out), expected);
+  }
+}
+
 TEST_F(ranks, go_on_after_a_full_disk) {
   const Json expected = comparable(run_snug({"collide", "--scene", file_, "--json"}).out);
   const std::string journal = folder_.file("journal"),

@@ -215,6 +215,10 @@ TEST_F(scenes, that_are_wrong_are_refused_in_one_line) {
   expect_refusal(two(R"(, "pairs": [[0, 99999999999999999999999]])"), "pairs[0][1]");
   expect_refusal(two(R"(, "pairs": [[0, 1.5]])"), "pairs[0][1] is a number");
   expect_refusal(two(R"(, "pairs": [["0", "y"]])"), "no part is called \"y\"");
+  expect_refusal(two(R"(, "pairs": [["0", "Käfig 螺丝"]])"), "no part is called \"Käfig 螺丝\"");
+  std::string screws;  // shortened, but not inside a character
+  for (int i = 0; i < 30; ++i) screws += "螺";
+  expect_refusal(two(R"(, "pairs": [["0", ")" + screws + "\"]]"), "螺螺...");
   expect_refusal(two(R"(, "pairs": [[1, "x"]])"), "\"x\" with itself");
   expect_refusal(two(R"(, "margins": [[0, 1, 1], ["x", 0, 2]])"),
                  "margins[1]: these two have a margin before");
