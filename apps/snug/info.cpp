@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 #include <snug/base/names.h>
 #include <snug/front/smoothing_note.h>
+#include <snug/mesh/loose_creases.h>
 #include <snug/mesh/validate.h>
 #include <snug/query/bound.h>
 #include <snug/scheme/rules.h>
@@ -77,6 +78,7 @@ ExitStatus run(const Options& options) {
     refusal = error.what();
   }
 
+  const std::size_t creases = mesh.tags.creases.size() - loose_creases(mesh).size();
   Report report("info", options);
   report.heads({options.mesh}, {scheme.name});
   if (report.json()) {
@@ -87,7 +89,7 @@ ExitStatus run(const Options& options) {
     json.field("closed", counts.closed).field("components", counts.components);
     json.key("valence").begin_array().value(counts.min_valence).value(counts.max_valence).end_array();
     json.field("extraordinary", odd_ones).field("boundary_edges", counts.boundary_edges);
-    json.field("creases", mesh.tags.creases.size()).field("corners", mesh.tags.corners.size());
+    json.field("creases", creases).field("corners", mesh.tags.corners.size());
     json.field("holes", mesh.tags.holes.size());
     json.key("kinds");
     kinds ? json.value(*kinds) : json.null();
@@ -109,8 +111,7 @@ ExitStatus run(const Options& options) {
                           counts.components, counts.components == 1 ? "" : "s"));
   report.text(fmt::format("valence {} to {}, {} extraordinary {}, {} boundary edges, {} creases",
                           counts.min_valence, counts.max_valence, odd_ones,
-                          scheme.primal ? "vertices" : "faces", counts.boundary_edges,
-                          mesh.tags.creases.size()));
+                          scheme.primal ? "vertices" : "faces", counts.boundary_edges, creases));
   if (kinds) report.text(fmt::format("patch topologies: {}", *kinds));
   for (std::size_t i = 0; i < found.size() && i < 10; ++i) {
     report.text(fmt::format("{}: {}", scheme.answers(found[i].kind) ? "note" : "defect", found[i].text));

@@ -132,7 +132,7 @@ struct ReadOptions {
 /// it is text), in upper or lower case. Standard input ("-") and files without an extension are recognised as
 /// PLY, OFF, USD or glTF by their first bytes; otherwise they are read as OBJ.
 ///
-/// Notes:     those of the parser, and one line about what was welded.
+/// Notes:     those of the parser, one line about what was welded, and one if creases name no edge of a face.
 /// Errors:    InputError: (unreadable) for a file that cannot be read or parsed, naming the line; those of
 ///            weld(). Interrupted.
 [[nodiscard]] SNUG_API ControlMesh read_mesh(const std::string& path, const ReadOptions& options = {});

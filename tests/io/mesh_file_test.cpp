@@ -196,5 +196,20 @@ TEST(mesh_file, a_million_triangles_round_trip) {
   }
 }
 
+// Vertices 0 1 2 3 are a quad; (0, 2) is its diagonal, and vertex 4 is used by no face.
+TEST(read_mesh, notes_creases_that_name_no_edge) {
+  const auto notes_of = [](const std::string& tags) {
+    std::vector<std::string> lines;
+    static_cast<void>(read_mesh("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\nf 1 2 3 4\n" + tags, "a.obj",
+                                {.notes = [&](const std::string& line) { lines.push_back(line); }}));
+    return lines;
+  };
+  EXPECT_EQ(notes_of("t crease 2/1/0 1 0 2\nt crease 2/1/0 3 0 2\n"), std::vector<std::string>{});
+  EXPECT_EQ(notes_of("t crease 2/1/0 2 0 2\n"),
+            std::vector<std::string>{"a.obj: 1 crease names no edge of a face: (2, 0)"});
+  EXPECT_EQ(notes_of("t crease 2/1/0 0 1 2\nt crease 2/1/0 1 3 2\nt crease 2/1/0 4 0 2\n"),
+            std::vector<std::string>{"a.obj: 2 creases name no edge of a face: the first is (1, 3)"});
+}
+
 }  // namespace
 }  // namespace snug

@@ -9,6 +9,7 @@
 #include <snug/io/formats.h>
 #include <snug/io/number.h>
 #include <snug/io/read_file.h>
+#include <snug/mesh/loose_creases.h>
 #include <snug/mesh/weld.h>
 #include <snug/scheme/scheme.h>
 
@@ -110,6 +111,15 @@ std::string told(const Welded& welded) {
   return text;
 }
 
+void note_loose_creases(const ControlMesh& mesh, const std::string& name, const Notes& notes) {
+  const std::vector<std::size_t> loose = loose_creases(mesh);
+  if (loose.empty()) return;
+  const CreaseTag& first = mesh.tags.creases[loose.front()];
+  notes(name + ": " + counted(loose.size(), "crease names", "creases name") +
+        " no edge of a face: " + (loose.size() > 1 ? "the first is " : "") + "(" +
+        std::to_string(first.a.value()) + ", " + std::to_string(first.b.value()) + ")");
+}
+
 }  // namespace
 
 ControlMesh parse_mesh(std::string_view bytes, const std::string& name, const Notes& notes) {
@@ -124,13 +134,15 @@ ControlMesh read_mesh(const std::string& path, const ReadOptions& options) {
 ControlMesh read_mesh(std::string_view bytes, const std::string& path, const ReadOptions& options) {
   const std::string name = input_name(path);
   ControlMesh mesh = parsed(bytes, format_to_read(path), name, options.notes);
-  if (!options.weld) return mesh;
-  try {
-    const Welded welded = weld(mesh, options.weld(size_of(mesh)));
-    if (options.notes) options.notes(name + ": " + told(welded));
-  } catch (const InputError& error) {
-    throw InputError(error.problem(), name + ": " + error.what());
+  if (options.weld) {
+    try {
+      const Welded welded = weld(mesh, options.weld(size_of(mesh)));
+      if (options.notes) options.notes(name + ": " + told(welded));
+    } catch (const InputError& error) {
+      throw InputError(error.problem(), name + ": " + error.what());
+    }
   }
+  if (options.notes) note_loose_creases(mesh, name, options.notes);
   return mesh;
 }
 
