@@ -45,8 +45,16 @@ void write_answer(JsonWriter& json, const Sides& sides, const Collision& answer)
   write_stats(json, answer.stats);
 }
 
+// What decides more: rounding is in the way where the budget was not spent.
+const char* advice(const Collision& answer, const CollideOptions& asked) {
+  if (answer.stats.splits >= asked.budget) return "give a larger --budget";
+  return *asked.tolerance > 0 ? "rounding is in the way: give a larger --tolerance"
+                              : "surfaces that touch cannot be told from surfaces one rounding apart: give a "
+                                "--tolerance above 0";
+}
+
 // The verdict as a sentence for people.
-std::string sentence(const Collision& answer, double tolerance, double margin) {
+std::string sentence(const Collision& answer, const CollideOptions& asked) {
   const bool measured = answer.distance.upper < INFINITY;
   const std::string upper = measured ? text_at_most(answer.distance.upper, true) : "";
   switch (answer.verdict) {
@@ -55,15 +63,15 @@ std::string sentence(const Collision& answer, double tolerance, double margin) {
                          text_at_most(answer.distance.lower), measured ? ", at most " + upper : "");
     case Verdict::within:
       return fmt::format("within: two points of the limit surfaces are at most {} apart (asked: {:.6g})",
-                         upper, margin + tolerance);
+                         upper, asked.margin + *asked.tolerance);
     case Verdict::intersecting:
       return answer.inner ? "intersecting: proved, " + inner_sentence(*answer.inner)
                           : "intersecting: proved, the limit surfaces have a point in common";
     case Verdict::undecided:
       break;
   }
-  return fmt::format("undecided: the distance lies in [{}, {}]; give a larger --tolerance or --budget",
-                     text_at_most(answer.distance.lower), measured ? upper : "?");
+  return fmt::format("undecided: the distance lies in [{}, {}]; {}", text_at_most(answer.distance.lower),
+                     measured ? upper : "?", advice(answer, asked));
 }
 
 // With --exit-code.
@@ -205,7 +213,7 @@ ExitStatus run(const Options& options) {
     if (depth) write_penetration(report.write(), *depth);
     if (all) write_contacts(report.write(), sides_of(pair.a(), pair.b()), *all);
   }
-  report.text(sentence(answer, *wanted.tolerance, wanted.margin));
+  report.text(sentence(answer, wanted));
   if (answer.witness) {
     for (const std::string& line : witness_lines(sides_of(pair.a(), pair.b()), *answer.witness, answer.at)) {
       report.text(line);

@@ -17,8 +17,8 @@ constexpr std::size_t most_printed = 10;
 const char* explained(HullFault fault) {
   switch (fault) {
     case HullFault::no_position:
-      return "no position near enough is in front of all faces around: a spike or a fold; try a larger "
-             "--tolerance";
+      return "no position near enough is in front of all faces around: a larger --tolerance helps at tight "
+             "curves, and not at a spike, a fold or a saddle-shaped corner";
     case HullFault::meets_surface:
       return "the hull could not be kept off the surface: sheets are too near to each other, or touch; try a "
              "smaller --tolerance";

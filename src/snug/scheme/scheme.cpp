@@ -25,7 +25,10 @@ bool has_topology(const ControlMesh& mesh) {
                      [&](VertexId v) { return v.index() < mesh.vertex_count(); });
 }
 
-void require_sound(std::vector<Defect> refusing, const SchemeRules& rules, Purpose purpose) {
+bool all_triangles(const ControlMesh& mesh) { return scheme_of_faces(mesh) == Scheme::loop; }
+
+void require_sound(std::vector<Defect> refusing, const ControlMesh& mesh, const SchemeRules& rules,
+                   Purpose purpose) {
   std::erase_if(refusing, [&](const Defect& defect) {
     return rules.answers(defect.kind) ||
            (purpose == Purpose::refinement && rules.primal && defect.kind == DefectKind::repeated_vertex);
@@ -33,9 +36,14 @@ void require_sound(std::vector<Defect> refusing, const SchemeRules& rules, Purpo
   if (refusing.empty()) return;
   const bool sound = std::all_of(refusing.begin(), refusing.end(),
                                  [](const Defect& defect) { return is_non_manifold(defect.kind); });
-  refuse(summary(refusing) + (sound && !rules.primal
-                                  ? "; an oriented manifold mesh is needed: mend these elements"
-                                  : "; mend these elements"));
+  const SchemeRules& flat = rules_of(Scheme::flat);
+  const bool facets = purpose == Purpose::surface && all_triangles(mesh) &&
+                      std::all_of(refusing.begin(), refusing.end(),
+                                  [&](const Defect& defect) { return flat.answers(defect.kind); });
+  refuse(summary(refusing) +
+         (sound && !rules.primal ? "; an oriented manifold mesh is needed: mend these elements"
+                                 : "; mend these elements") +
+         (facets ? ", or use the scheme flat, which takes the triangles as they are" : ""));
 }
 
 void require_fitting_faces(const ControlMesh& mesh, const SchemeRules& rules) {
@@ -83,7 +91,7 @@ Topology require_fit_for(Purpose purpose, const ControlMesh& mesh, const SchemeO
   Topology topology;
   if (has_topology(mesh)) topology = Topology(mesh);
   const bool manifold = topology.face_count() > 0 && topology.is_manifold();
-  require_sound(manifold ? defects_of_elements(mesh) : defects(mesh), rules, purpose);
+  require_sound(manifold ? defects_of_elements(mesh) : defects(mesh), mesh, rules, purpose);
   require_fitting_faces(mesh, rules);
   require_valences(topology, rules);
   return topology;
