@@ -1,4 +1,5 @@
 #include <fmt/core.h>
+#include <snug/base/error.h>
 #include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
 #include <snug/query/closest.h>
@@ -118,6 +119,11 @@ ExitStatus run(const Options& options) {
     how.tolerance = parse_length(options.tolerance, "--tolerance").in_mesh_units(surface.size());
     const SurfaceBvh model(surface, {.threads = options.threads}, monitor);
     static_cast<void>(model.solid());  // refuses what is open
+    for (std::size_t e = 0; e < surface.topology().edge_count(); ++e) {
+      if (!surface.topology().ends_fans(EdgeId(e))) continue;
+      throw InputError(InputProblem::refused,
+                       "envelope: edges of more than two faces have no envelope; 'snug info' names them");
+    }
     found = hulls(model, how, monitor);
   });
   std::optional<Fit> fit;

@@ -21,8 +21,8 @@ struct MeasureOptions {
 /// faces look clockwise from outside.
 struct Measures {
   Interval area;
-  /// Empty unless the surface is closed: every edge of the mesh has two faces that run along it in opposite
-  /// directions, and all have a limit surface.
+  /// Empty unless the surface is closed: along every edge of the mesh as many faces run one way as the
+  /// other, and all have a limit surface.
   std::optional<Interval> volume;
   /// The next two are also empty where the volume may be 0.
   std::optional<std::array<Interval, 3>> centroid;

@@ -362,7 +362,7 @@ py::list holes_of(const MeshTags& tags) {
   return list;
 }
 
-// Does every edge have two faces that run along it in opposite directions, and every face a surface?
+// Do along every edge as many faces run one way as the other, and has every face a surface?
 bool is_closed(const ControlMesh& mesh) {
   if (!mesh.tags.holes.empty() || mesh.face_count() == 0) return false;
   std::vector<std::uint64_t> edges, reversed;
@@ -376,7 +376,7 @@ bool is_closed(const ControlMesh& mesh) {
   }
   std::sort(edges.begin(), edges.end());
   std::sort(reversed.begin(), reversed.end());
-  return edges == reversed && std::adjacent_find(edges.begin(), edges.end()) == edges.end();
+  return edges == reversed;
 }
 
 // A mesh and the options of its surface as plain Python values, and back.
@@ -507,8 +507,7 @@ void add_surface(py::module_& module) {
           "Longest side of the bounding box of the vertices that faces use.")
       .def_property_readonly(
           "is_closed", [](const PySurface& self) { return is_closed(self.surface().mesh()); },
-          "Does every edge have two faces that run along it in opposite directions, and every face a "
-          "surface?")
+          "Do along every edge as many faces run one way as the other, and has every face a surface?")
       .def_property_readonly(
           "nbytes", [](const PySurface& self) { return self.surface().bytes(); },
           "Memory of the surface and its BVH, without the mesh.")

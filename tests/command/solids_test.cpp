@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "run_snug.h"
 
@@ -97,6 +99,71 @@ TEST_F(solids, open_surfaces_are_refused_wherever_they_are) {
   }
   EXPECT_EQ(run_snug({"closest", open, "--points", points, "--signed"}).status, 4);
   EXPECT_EQ(run_snug({"collide", closed, closed, "--penetration"}).status, 2);
+}
+
+// Boxes [x, x + 1] x [y, y + 1] x [0, 1] of triangles.
+std::string box_of_triangles(double x, double y, int first) {
+  std::string obj;
+  for (int i = 0; i < 8; ++i) {
+    obj += "v " + std::to_string(x + (i & 1)) + " " + std::to_string(y + (i >> 1 & 1)) + " " +
+           std::to_string(i >> 2) + "\n";
+  }
+  for (const auto& f : std::vector<std::array<int, 3>>{{1, 3, 4},
+                                                       {1, 4, 2},
+                                                       {5, 6, 8},
+                                                       {5, 8, 7},
+                                                       {1, 2, 6},
+                                                       {1, 6, 5},
+                                                       {3, 7, 8},
+                                                       {3, 8, 4},
+                                                       {1, 5, 7},
+                                                       {1, 7, 3},
+                                                       {2, 4, 8},
+                                                       {2, 8, 6}}) {
+    obj += "f " + std::to_string(first + f[0]) + " " + std::to_string(first + f[1]) + " " +
+           std::to_string(first + f[2]) + "\n";
+  }
+  return obj;
+}
+
+TEST_F(solids, need_not_be_manifold_where_edges_cancel) {
+  // Two boxes that share the edge x = y = 1 once welded; and one with a membrane z = 0, its bottom, turned both ways.
+  const std::string two = write("two.obj", box_of_triangles(0, 0, 0) + box_of_triangles(1, 1, 8)),
+                    one = write("one.obj", box_of_triangles(0, 0, 0) + "f 1 4 6\nf 6 4 1\n"),
+                    points = write("points.txt", "0.5 0.5 0.5\n1.5 1.5 0.5\n1.5 0.5 0.5\n");
+  const json measured = answer({"measure", two, "--scheme", "flat", "--weld", "0"});
+  ASSERT_EQ(measured["closed"], true);
+  EXPECT_LE(measured["volume"][0], 2);
+  EXPECT_GE(measured["volume"][1], 2);
+  const json found =
+      answer({"closest", two, "--scheme", "flat", "--weld", "0", "--signed", "--points", points});
+  EXPECT_EQ(found["results"][0]["inside"], true);
+  EXPECT_EQ(found["results"][1]["inside"], true);
+  EXPECT_EQ(found["results"][2]["inside"], false);
+  for (const char* scheme : {"flat", "bilinear"}) {
+    const json membrane = answer({"measure", one, "--scheme", scheme});
+    ASSERT_EQ(membrane["closed"], true) << scheme;
+    EXPECT_LE(membrane["volume"][0], 1);
+    EXPECT_GE(membrane["volume"][1], 1);
+  }
+}
+
+TEST_F(solids, what_does_not_cancel_is_named_with_a_vertex_on_it) {
+  // The top edge y = 0 is split in one of its two faces alone; or a face of a box is there twice.
+  std::string split = box_of_triangles(0, 0, 0);
+  split.replace(split.find("f 1 6 5"), 7, "v 0.5 0 1\nf 1 6 9\nf 1 9 5");
+  const Outcome junction = run_snug({"measure", write("split.obj", split), "--scheme", "flat"});
+  EXPECT_NE(junction.out.find(
+                "volume    none: edge (4, 5) of face 2 does not cancel: 1 face runs from 4 to 5 and 0 "
+                "back; vertex 8 lies on it"),
+            std::string::npos)
+      << junction.out;
+  const std::string twice = write("twice.obj", box_of_triangles(0, 0, 0) + "f 1 3 4\n"),
+                    turned = write("turned.obj", box_of_triangles(0, 0, 0) + "f 4 3 1\n");
+  for (const std::string& mesh : {twice, turned}) {
+    EXPECT_NE(run_snug({"measure", mesh, "--scheme", "flat"}).out.find("volume    none: edge (0, 2)"),
+              std::string::npos);
+  }
 }
 
 TEST_F(solids, signed_distances_have_a_proved_sign) {

@@ -367,7 +367,7 @@ class SurfaceMeasurer {
     }
     size_ = longest_side(box);
     origin_ = box.lower + 0.5 * (box.upper - box.lower);
-    closed_ = !open_reason(surface);
+    closed_ = is_closed(surface);
     most_splits_ = std::min<std::uint64_t>(options.budget / patches_.size(), max_splits);
     find_shares();
   }

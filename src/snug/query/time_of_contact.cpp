@@ -201,7 +201,7 @@ class Query {
   // other one later has met it. Asked only where no crossing is found.
   bool outside() {
     if (!outside_) {
-      const auto closed = [](const MovingBody& body) { return !open_reason(body.model().surface()); };
+      const auto closed = [](const MovingBody& body) { return is_closed(body.model().surface()); };
       outside_ = apart_ && closed(body_[0]) && closed(body_[1]);
       if (*outside_) {
         const Nesting found = nesting_at_start();

@@ -10,8 +10,13 @@
 
 namespace snug {
 
-/// Why a surface bounds no solid, naming an edge or a face; nothing if it does: every edge of
-/// its mesh has two faces that run along it in opposite directions, and all have a limit surface.
+/// Does a surface bound a solid? So it does if along every edge of its mesh as many faces run one way as the
+/// other, and all faces have a limit surface. The mesh need not be manifold.
+/// Source:    derivations/contact.md, "Inside or outside of a closed surface".
+[[nodiscard]] bool is_closed(const LimitSurface& surface);
+
+/// Why it does not: names the first edge that does not cancel, and a vertex that lies on it, or a hole. Nothing
+/// if it is closed.
 [[nodiscard]] std::optional<std::string> open_reason(const LimitSurface& surface);
 
 /// What a closed limit surface needs to be asked about inside and outside: the solid that it bounds is the
