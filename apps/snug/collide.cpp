@@ -65,8 +65,9 @@ std::string sentence(const Collision& answer, const CollideOptions& asked) {
       return fmt::format("within: two points of the limit surfaces are at most {} apart (asked: {:.6g})",
                          upper, asked.margin + *asked.tolerance);
     case Verdict::intersecting:
-      return answer.inner ? "intersecting: proved, " + inner_sentence(*answer.inner)
-                          : "intersecting: proved, the limit surfaces have a point in common";
+      return answer.inner  ? "intersecting: proved, " + inner_sentence(*answer.inner)
+             : asked.solid ? "intersecting: proved, the solids have a point in common"
+                           : "intersecting: proved, the limit surfaces have a point in common";
     case Verdict::undecided:
       break;
   }
@@ -200,9 +201,13 @@ ExitStatus run(const Options& options) {
   pair.write_heads(report);
   if (report.json()) report.write().field("tolerance", *wanted.tolerance).field("margin", wanted.margin);
   if (!options.poses.empty()) return run_poses(pair, report, wanted, monitor);
-  const Collision answer = collide(pair.a(), pair.b(), wanted, monitor);
+  Collision answer = collide(pair.a(), pair.b(), wanted, monitor);
   std::optional<Penetration> depth;
   if (options.penetration) depth = penetration(pair.a(), pair.b(), {}, monitor);
+  if (depth && depth->depth.lower > 0) {
+    answer.verdict = Verdict::intersecting;
+    answer.distance = {0, 0};
+  }
   const std::optional<Contacts> all =
       all_contacts(options, *wanted.tolerance, precision.in_mesh_units(pair.size()), pair, monitor);
   std::optional<AtomicFile> curves;
@@ -219,7 +224,10 @@ ExitStatus run(const Options& options) {
       report.text(line);
     }
   }
-  if (depth) report.text(penetration_sentence(*depth));
+  if (depth) {
+    report.text(penetration_sentence(*depth));
+    if (!depth->reached) report.text("the bounds of the depth are farther apart than 5 %");
+  }
   if (all) {
     for (const std::string& line : contact_lines(sides_of(pair.a(), pair.b()), *all)) report.text(line);
   }
@@ -228,7 +236,9 @@ ExitStatus run(const Options& options) {
   std::vector<AtomicFile*> files;
   if (curves) files.push_back(&*curves);
   const ExitStatus status =
-      report.finish(answer.verdict != Verdict::undecided && (!all || (all->complete && all->reached)), files);
+      report.finish(answer.verdict != Verdict::undecided && (!depth || depth->reached) &&
+                        (!all || (all->complete && all->reached)),
+                    files);
   return options.exit_code ? status_of(answer.verdict) : status;
 }
 

@@ -107,7 +107,10 @@ ExitStatus run(const Options& options) {
   report.text(options.mesh + ": " + taken_as(mesh, scheme, options, apart, size));
   if (!kinds) report.text("refused: " + refusal);
   report.text(fmt::format("{} vertices, {} edges, {} faces, {}, {} component{}", mesh.vertex_count(),
-                          counts.edges, mesh.face_count(), counts.closed ? "closed" : "open",
+                          counts.edges, mesh.face_count(),
+                          counts.closed               ? "closed"
+                          : counts.boundary_edges > 0 ? "open"
+                                                      : "neither closed nor bounded",
                           counts.components, counts.components == 1 ? "" : "s"));
   report.text(fmt::format("valence {} to {}, {} extraordinary {}, {} boundary edges, {} creases",
                           counts.min_valence, counts.max_valence, odd_ones,

@@ -141,11 +141,14 @@ MeshCounts count_elements(const ControlMesh& mesh, std::size_t regular_valence) 
   std::vector<bool> boundary(mesh.vertex_count(), false);
   result.closed = groups.edge_count() > 0;
   for (std::size_t e = 0; e < groups.edge_count(); ++e) {
-    const std::size_t members = groups.of_edge(EdgeId(e)).size();
+    const auto sides = groups.of_edge(EdgeId(e));
+    const std::size_t members = sides.size();
     const auto [a, b] = ends_of(faces, groups, EdgeId(e));
+    const auto forth = std::count_if(sides.begin(), sides.end(),
+                                     [&, start = a](HalfEdge h) { return faces.face_vertices[h] == start; });
     ++valence[a.index()];
     ++valence[b.index()];
-    result.closed = result.closed && members == 2;
+    result.closed = result.closed && (a == b || 2 * static_cast<std::size_t>(forth) == members);
     if (members == 1) {
       ++result.boundary_edges;
       boundary[a.index()] = boundary[b.index()] = true;

@@ -15,7 +15,7 @@ struct MeshCounts {
   std::size_t min_valence = 0;     ///< least number of edges at a used vertex
   std::size_t max_valence = 0;
   std::size_t extraordinary = 0;  ///< used vertices unlike those of a regular lattice, by valence
-  bool closed = false;            ///< it has faces, and every edge has two
+  bool closed = false;            ///< it has faces, and along every edge as many run one way as the other
 };
 
 /// `regular_valence`: edges at an interior vertex of the scheme's regular lattice, 6 for Loop and 4 for

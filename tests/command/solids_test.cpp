@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -179,6 +180,33 @@ TEST_F(solids, signed_distances_have_a_proved_sign) {
               inside ? json(-result["distance"][1].get<double>()) : result["distance"][0]);
     EXPECT_EQ(result["signed_distance"][1],
               inside ? json(-result["distance"][0].get<double>()) : result["distance"][1]);
+  }
+}
+
+TEST_F(solids, penetration_says_where_its_precision_was_missed_and_proves_contact) {
+  const std::string box = write("box.obj", box_of_triangles(0, 0, 0));
+  // The same solid twice: its surfaces are as near as can be, and its depth shows that it meets itself.
+  const json same = answer({"collide", box, box, "--scheme", "flat", "--solid", "--penetration"});
+  EXPECT_EQ(same["verdict"], "intersecting");
+  EXPECT_EQ(same["distance"], json({0, 0}));
+  EXPECT_GT(same["penetration"]["depth"][0], 0.9);
+  // Tetrahedra that cross edge over edge: with or without the precision, words and status agree.
+  const std::string tetra =
+      write("tetra.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  for (const char* move : {"0.1 0.2 0.3", "0.3 0.3 -0.2", "-0.4 0.2 0.1", "0.2 -0.3 0.35"}) {
+    std::vector<std::string> asked{"collide", tetra,           tetra,      "--scheme", "flat",
+                                   "--solid", "--penetration", "--move-b", move};
+    const Outcome text = run_snug(asked);
+    asked.emplace_back("--json");
+    const Outcome outcome = run_snug(asked);
+    const json found = json::parse(outcome.out);
+    const bool reached = found["penetration"]["reached"];
+    EXPECT_EQ(outcome.status, reached ? 0 : 5) << move;
+    EXPECT_EQ(text.status, outcome.status) << move;
+    EXPECT_EQ(text.out.find("farther apart than 5 %") == std::string::npos, reached) << text.out;
+    double square = 0;
+    for (const double x : found["penetration"]["translation"]) square += x * x;
+    EXPECT_LE(std::sqrt(square), found["penetration"]["depth"][1]) << move;
   }
 }
 

@@ -57,7 +57,7 @@ class Search {
       if (const std::optional<double> t = shortest_along(w, 2 * best_.length)) descend({*t * w, *t});
     }
     answer.translation = best_.translation;
-    const double above = length_up(best_.translation);
+    const double above = std::max(length_up(best_.translation), enlarged(length(best_.translation)));
     answer.depth = {std::min(below, above), above};
     answer.reached = above - answer.depth.lower <= options_.relative * above;
     return answer;
