@@ -61,8 +61,8 @@ struct Collision {
   /// Upper bound, per coordinate, of the distance between a witness and the limit point it stands for.
   double witness_error = 0;
   WitnessPlaces at;  ///< where the witnesses lie, up to a few roundings; see normal_at()
-  /// Set with `solid` if no crossing was proved: 0 if a point of A's surface lies inside the solid B, 1 the
-  /// other way round. Both witnesses are then that point.
+  /// Set with `solid` if no crossing was proved but a point of a surface inside the other solid: 0 if it is a
+  /// point of A's surface, 1 if of B's. Both witnesses are then that point.
   std::optional<std::size_t> inner;
   SearchStats stats;
 };

@@ -369,7 +369,60 @@ TEST(collide, solids_that_share_planes_intersect) {
     }
     EXPECT_TRUE(ask({0.875, 0, 0}).inner);
     EXPECT_EQ(ask({1.25, 0, 0}).verdict, Verdict::separated);
-    EXPECT_EQ(ask({1, 0, 0}).verdict, Verdict::within);  // side by side
+    EXPECT_EQ(ask({1, 0, 0}).verdict, Verdict::within);        // side by side
+    EXPECT_EQ(ask({0, 0, 0}).verdict, Verdict::intersecting);  // the same
+    EXPECT_FALSE(ask({0, 0, 0}).inner);
+  }
+}
+
+// No crossing, and no surface point that is certainly inside; turned about axes of symmetry, and inside out.
+TEST(collide, equal_solids_in_one_place_intersect_and_only_touching_ones_never_do) {
+  CollideOptions options = testing::verdict_only();
+  options.tolerance = 1e-3;
+  options.prove_contact = true;
+  options.solid = true;
+  oracle::TwinMesh body = oracle::meshes::octahedron(), out = body;
+  for (auto& face : out.triangles) std::swap(face[1], face[2]);
+  std::mt19937_64 random(41);
+  for (const oracle::TwinMesh* second : {&body, &out}) {
+    Pair pair(body, *second);
+    for (int trial = 0; trial < 20; ++trial) {
+      const Motion place = trial == 0 ? Motion() : testing::random_placement(random, {});
+      for (const double turn : {0.0, 90.0, 180.0}) {
+        const Motion turned = place * Motion::rotation_degrees({0, 0, 1}, turn);
+        EXPECT_EQ(
+            collide({pair.model_a, pair.scratch_a, place}, {pair.model_b, pair.scratch_b, turned}, options)
+                .verdict,
+            Verdict::intersecting)
+            << trial << ' ' << turn;
+      }
+    }
+  }
+  // A box and its mirror image in one of its sides, and slid along it.
+  ControlMesh box = testing::control_mesh(oracle::meshes::triangulated(oracle::meshes::cube()));
+  box.tags.scheme = Scheme::flat;
+  const LimitSurface surface(box, {Scheme::flat}, std::make_shared<BoundsCache>());
+  const SurfaceBvh model_a(surface), model_b(surface);
+  SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+  const double side = surface.size();
+  for (int trial = 0; trial < 200; ++trial) {
+    std::array<double, 3> shift{};
+    for (double& x : shift) x = side * static_cast<double>(static_cast<int>(random() % 9) - 4) / 4;
+    const std::size_t axis = random() % 3;
+    shift[axis] = random() % 2 == 0 ? side : -side;
+    const Collision touching =
+        collide({model_a, scratch_a, {}},
+                {model_b, scratch_b, Motion::translation({shift[0], shift[1], shift[2]})}, options);
+    EXPECT_NE(touching.verdict, Verdict::intersecting) << trial;
+    shift[axis] *= 0.75;
+    const bool apart =
+        std::fabs(shift[0]) >= side || std::fabs(shift[1]) >= side || std::fabs(shift[2]) >= side;
+    const Collision deep =
+        collide({model_a, scratch_a, {}},
+                {model_b, scratch_b, Motion::translation({shift[0], shift[1], shift[2]})}, options);
+    if (!apart) {
+      EXPECT_EQ(deep.verdict, Verdict::intersecting) << trial;
+    }
   }
 }
 

@@ -117,12 +117,12 @@ const words = {
   undecided: "Undecided",
 };
 
-function sentence({ collision, texts }) {
+function sentence({ collision, question, texts }) {
   const [lower, upper] = texts.collision;
   if (collision.verdict === "separated") return "Proved: the limit surfaces do not touch.";
   if (collision.verdict === "within") return `Proved: two points, one on each surface, are at most ${upper} apart.`;
   if (collision.verdict === "intersecting") {
-    return collision.inner === null ? "Proved: the limit surfaces have a point in common."
+    return collision.inner === null ? `Proved: the ${question.solid ? "solids" : "limit surfaces"} have a point in common.`
       : `Proved: a point of ${"AB"[collision.inner]} lies inside the solid ${"BA"[collision.inner]}.`;
   }
   return `The distance lies in [${lower}, ${upper ?? "?"}]; try a larger tolerance.`;

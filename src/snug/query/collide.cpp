@@ -219,6 +219,9 @@ void make_solid(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monit
   if (found.inner) {
     found.tell(answer);
     answer.verdict = Verdict::intersecting;
+  } else if (!separated && have_inner_point_in_common(a, b, monitor)) {
+    answer.verdict = Verdict::intersecting;
+    answer.distance = 0;
   } else if (separated && !found.certain) {
     answer.verdict = Verdict::undecided;
     answer.distance.lower = 0;

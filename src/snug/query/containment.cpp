@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/search/pair_frames.h>
@@ -17,6 +18,10 @@ namespace {
 
 // Of each surface, patches that are asked where the surfaces may meet.
 constexpr std::size_t max_patches = 32;
+
+// Of each surface, patches beside which points are asked, and how far inward, in radii of the surface.
+constexpr std::size_t max_inward = 8;
+constexpr double inward = 0x1p-7;
 
 // Is a placed point certainly outside of the ball around a placed model?
 bool beyond(const PlacedFrame& frame, const Ball& ball, const BoundedPoint& placed) {
@@ -33,6 +38,19 @@ class Asking {
 
   Nesting components() {
     return first_inside([&](std::size_t side) { return side_[side]->model.solid().components(); }, {0, 0});
+  }
+  bool inner_points() {
+    for (std::size_t side = 0; side < 2; ++side) {
+      const LimitSurface& surface = side_[side]->model.surface();
+      const std::size_t count = std::min(max_inward, surface.patch_count());
+      for (std::size_t i = 0; i < count; ++i) {
+        const PatchId p(i * surface.patch_count() / count);
+        for (const double way : {-inward, inward}) {
+          if (is_inside_both(side, beside(side, p, way))) return true;
+        }
+      }
+    }
+    return false;
   }
   // Middles of patches that are deepest in the box of the other one.
   Nesting deep_patches() {
@@ -72,18 +90,43 @@ class Asking {
     found_.at = place_of(surface, p, at);
   }
 
+  // The middle of a patch, moved across it; in the frame of its surface.
+  [[nodiscard]] Point3 beside(std::size_t side, PatchId p, double way) const {
+    const SurfaceBvh& model = side_[side]->model;
+    const Patch patch = model.surface().patch(p);
+    std::array<Point3, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = corner_point(patch, k).from(patch.origin).position;
+    const Vector3 across = normalized(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    return limit_point(patch, {1.0 / 3, 1.0 / 3}).from(patch.origin).position +
+           way * model.tree().ball().radius * across;
+  }
+
+  // Of a point in the frame of `side`, taken as it is.
+  [[nodiscard]] bool is_inside_both(std::size_t side, const Point3& point) {
+    const RelativeFrame& seen = frames_.view(1 - side).frame;
+    const Point3 other = seen.apply(point);
+    if (!seen.comparable || !(depth_in_box(1 - side, other) > 0)) return false;
+    return winding_number(side_[side]->scratch, point, 0, monitor_).value_or(0) != 0 &&
+           winding_number(side_[1 - side]->scratch, other, seen.slack, monitor_).value_or(0) != 0;
+  }
+
+  // Of a point in the frame of `side`; negative outside.
+  [[nodiscard]] double depth_in_box(std::size_t side, const Point3& point) const {
+    const Obb& box = side_[side]->model.tree().box();
+    double depth = INFINITY;
+    for (std::size_t k = 0; k < 3; ++k) {
+      depth = std::min(depth, box.half[k] - std::fabs(dot(box.axes[k], point - box.centre)));
+    }
+    return depth;
+  }
+
   [[nodiscard]] std::vector<PatchId> deepest(std::size_t side) {
     const RelativeFrame& seen = frames_.view(1 - side).frame;
     if (!seen.comparable) return {};
     const LimitSurface& surface = side_[side]->model.surface();
-    const Obb& box = side_[1 - side]->model.tree().box();
     std::vector<std::pair<double, PatchId>> inside;
     for (std::size_t p = 0; p < surface.patch_count(); ++p) {
-      const Vector3 from = seen.apply(surface.middle(PatchId(p))) - box.centre;
-      double depth = INFINITY;
-      for (std::size_t k = 0; k < 3; ++k) {
-        depth = std::min(depth, box.half[k] - std::fabs(dot(box.axes[k], from)));
-      }
+      const double depth = depth_in_box(1 - side, seen.apply(surface.middle(PatchId(p))));
       if (depth > 0) inside.emplace_back(depth, PatchId(p));
     }
     const std::size_t count = std::min(max_patches, inside.size());
@@ -117,6 +160,11 @@ Nesting nesting(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monit
 Nesting common_point(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor) {
   const Nesting found = nesting(a, b, monitor);
   return found.inner ? found : Asking(a, b, monitor).deep_patches();
+}
+
+bool have_inner_point_in_common(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor) {
+  require_solids(a, b);
+  return Asking(a, b, monitor).inner_points();
 }
 
 }  // namespace snug

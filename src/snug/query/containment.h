@@ -47,4 +47,12 @@ struct Nesting {
 /// Guarantee: as nesting(); nothing follows where none is found.
 [[nodiscard]] Nesting common_point(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor = {});
 
+/// Is there a point inside of both solids? Points a little inward of some patches of each are asked: they prove
+/// that equal solids in one place meet, no point of whose surfaces is inside of the other one.
+///
+/// Guarantee: true is proved; nothing follows from false.
+/// Source:    derivations/contact.md, "Two solids".
+[[nodiscard]] bool have_inner_point_in_common(const PlacedBvh& a, const PlacedBvh& b,
+                                              const WorkMonitor& monitor = {});
+
 }  // namespace snug
