@@ -103,13 +103,14 @@ struct Penetration {
   /// double precision, does, and is at most as long as the upper end.
   Interval depth;
   Vector3 translation;   ///< to be added to B's pose; zero if the solids are separated as they are
-  bool reached = false;  ///< is `depth` as narrow as requested?
+  bool reached = false;  ///< is `depth` as narrow as requested, or 2^-28 of the larger size?
 };
 
 /// Bounds of the penetration depth of two closed, placed surfaces.
 ///
 /// Upper end: translations are tried in many directions and shortened along the normals of the remaining
-/// contact; collide() proves each. Lower end: two balls around one point, each inside one solid, still meet
+/// contact; collide() proves each. Where that misses the precision, ways into holes and between parts are tried,
+/// too: up to 4,000 translations, or as many as one budget of splits allows. Lower end: two balls around one point, each inside one solid, still meet
 /// after every translation shorter than the sum of their radii.
 ///
 /// Guarantee: `depth` contains the depth, and with `translation` added to B's pose the solids are separated.
@@ -118,7 +119,7 @@ struct Penetration {
 /// Errors:    InputError: (refused) for a surface that is not closed, (value) for a precision that is
 ///            negative or not finite, (unrepresentable) if no separating translation fits a double.
 ///            Interrupted.
-/// Cost:      about a hundred collision and closest-point queries.
+/// Cost:      about a hundred collision and closest-point queries, some thousands where the precision is missed.
 /// Source:    derivations/contact.md, "How deep".
 [[nodiscard]] SNUG_API Penetration penetration(const PlacedSurface& a, const PlacedSurface& b,
                                                const PenetrationOptions& options = {},

@@ -130,7 +130,9 @@ TEST(deforming_contact, that_is_a_translation_is_that_of_the_translation) {
     EXPECT_EQ(found.verdict, rigid.verdict);
     EXPECT_LE(found.time.lower, rigid.time.upper + 1e-12);
     // Within the tolerance they may be before they meet: pairs that are followed through time pass by that.
-    if (found.verdict == Verdict::intersecting) EXPECT_LE(rigid.time.lower, found.time.upper + 1e-12);
+    if (found.verdict == Verdict::intersecting) {
+      EXPECT_LE(rigid.time.lower, found.time.upper + 1e-12);
+    }
   }
 }
 

@@ -11,6 +11,7 @@
 #include <snug/surface/evaluate.h>
 #include <testing/patches.h>
 #include <testing/placements.h>
+#include <testing/tagged.h>
 
 #include <cmath>
 #include <iostream>
@@ -137,6 +138,61 @@ TEST(penetration, bounds_hold_for_solids_with_dents) {
     }
   }
   EXPECT_GE(deep, 5);
+}
+
+// A square frame, 4 wide and 1 high, around a hole that is 2 wide.
+ControlMesh frame() {
+  constexpr std::array<double, 4> line{0, 1, 3, 4};
+  ControlMesh mesh;
+  for (const double z : {0.0, 1.0}) {
+    for (const double y : line) {
+      for (const double x : line) mesh.points.push_back({x, y, z});
+    }
+  }
+  const auto quad = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t d) {
+    mesh.add_face(std::array{VertexId(a), VertexId(b), VertexId(c)});
+    mesh.add_face(std::array{VertexId(a), VertexId(c), VertexId(d)});
+  };
+  const auto at = [](std::size_t i, std::size_t k) { return i + 4 * k; };
+  // Upright, seen from the right of the way from the first to the second.
+  const auto wall = [&](std::size_t a, std::size_t b) { quad(a, b, 16 + b, 16 + a); };
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (i == 1 && k == 1) continue;
+      const std::size_t a = at(i, k), b = at(i + 1, k), c = at(i + 1, k + 1), d = at(i, k + 1);
+      quad(16 + a, 16 + b, 16 + c, 16 + d);
+      quad(d, c, b, a);
+    }
+    wall(at(i, 0), at(i + 1, 0)), wall(at(i + 1, 3), at(i, 3));
+    wall(at(0, i + 1), at(0, i)), wall(at(3, i), at(3, i + 1));
+  }
+  wall(at(2, 1), at(1, 1)), wall(at(1, 2), at(2, 2)), wall(at(1, 1), at(1, 2)), wall(at(2, 2), at(2, 1));
+  mesh.tags.scheme = Scheme::flat;
+  return mesh;
+}
+
+// A cube over a corner of the hole leaves through the top, or slants into the hole.
+TEST(penetration, finds_ways_into_holes) {
+  std::mt19937_64 random(94);
+  ControlMesh cube = testing::control_mesh(oracle::meshes::triangulated(oracle::meshes::cube()));
+  const auto library = std::make_shared<BoundsCache>();
+  const LimitSurface ring(frame(), {Scheme::flat}, library), box(cube, {Scheme::flat}, library);
+  const SurfaceBvh model_a(ring), model_b(box);
+  SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+  int slanted = 0, reached = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const double x = 0.05 + 0.9 * unit(random), y = 0.05 + 0.9 * unit(random);
+    const double into_hole = std::hypot(1 - x, 1 - y), depth = std::min(1.0, into_hole);
+    const Penetration found =
+        penetration({model_a, scratch_a, {}}, {model_b, scratch_b, Motion::translation({x, y, 0})}, {});
+    ASSERT_LE(found.depth.lower, depth) << trial;
+    ASSERT_GE(found.depth.upper, depth * (1 - 1e-12)) << trial;
+    EXPECT_LE(found.depth.upper, 1.02 * depth) << trial << ' ' << x << ' ' << y;
+    slanted += into_hole < 1 ? 1 : 0;
+    reached += found.reached ? 1 : 0;
+  }
+  std::cout << slanted << " into the hole, " << reached << " reached\n";
+  EXPECT_GT(slanted, 10);
 }
 
 TEST(penetration, of_separated_solids_is_zero_and_open_surfaces_are_refused) {

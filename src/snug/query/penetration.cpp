@@ -10,6 +10,7 @@
 #include <snug/geometry/rounding.h>
 #include <snug/query/closest.h>
 #include <snug/query/pairs.h>
+#include <snug/search/precision.h>
 
 namespace snug {
 namespace {
@@ -21,6 +22,10 @@ constexpr int max_descents = 24;
 // Steps of the search for a point deep in both solids, each of six neighbours, and how it shrinks.
 constexpr int max_steps = 40;
 constexpr double smallest_step = 1e-3;
+// Where the precision is missed: lengths along each direction, up to twice the best one, at which ways through gaps
+// and into holes may begin; and the most translations that are tried then.
+constexpr double touching_share = 0x1p-28;
+constexpr int lengths_tried = 16, max_tried = 4000;
 
 struct Candidate {
   Vector3 translation;
@@ -56,10 +61,11 @@ class Search {
     for (const Vector3& w : outward_) {
       if (const std::optional<double> t = shortest_along(w, 2 * best_.length)) descend({*t * w, *t});
     }
+    if (best_.length - below > std::max(options_.relative * best_.length, least_width())) search_further();
     answer.translation = best_.translation;
     const double above = std::max(length_up(best_.translation), enlarged(length(best_.translation)));
     answer.depth = {std::min(below, above), above};
-    answer.reached = above - answer.depth.lower <= options_.relative * above;
+    answer.reached = above - answer.depth.lower <= std::max(options_.relative * above, least_width());
     return answer;
   }
 
@@ -67,6 +73,11 @@ class Search {
   // Of the exact difference of the poses' translations: its coordinates are each within a rounding of these.
   [[nodiscard]] double length_up(const Vector3& d) const {
     return enlarged(length((b_.pose.offset() + d) - b_.pose.offset()));
+  }
+
+  // Solids that touch have no relative precision.
+  [[nodiscard]] double least_width() const {
+    return share_of_size(touching_share, a_.model.surface().size(), b_.model.surface().size());
   }
 
   [[nodiscard]] PlacedBvh moved(const Vector3& d) const {
@@ -77,7 +88,10 @@ class Search {
     if (!is_finite(b_.pose.offset() + d)) return false;
     const CollideOptions options{
         .tolerance = 0, .budget = options_.budget, .prove_contact = false, .solid = true, .measure = false};
-    return collide(a_, moved(d), options, monitor_).verdict == Verdict::separated;
+    const Collision answer = collide(a_, moved(d), options, monitor_);
+    splits_ += answer.stats.splits;
+    ++tried_;
+    return answer.verdict == Verdict::separated;
   }
   // How far apart the surfaces are after a translation, to shares of its length and of the distance.
   [[nodiscard]] Distance gap_after(const Candidate& at, double share, double relative) {
@@ -153,6 +167,41 @@ class Search {
     }
   }
 
+  // From places between others, such as holes: translations that separate although shorter ones along them may not.
+  void search_further() {
+    splits_ = 0;
+    tried_ = 0;
+    const std::vector<Vector3> directions = some_directions();
+    std::vector<Candidate> starts;
+    for (const Vector3& w : directions) {
+      bool before = false;
+      for (int k = 1; k < lengths_tried && may_go_on(); ++k) {
+        const double length = 2 * best_.length * k / lengths_tried;
+        const bool now = separated(length * w);
+        if (now && !before) starts.push_back({length * w, length});
+        before = now;
+      }
+    }
+    ordering::sort(starts.data(), starts.size(),
+                   [](const Candidate& x, const Candidate& y) { return x.length < y.length; });
+    for (const Candidate& start : starts) shorten_by_steps(start, directions);
+  }
+  [[nodiscard]] bool may_go_on() const { return tried_ < max_tried && splits_ < options_.budget; }
+
+  // To a translation that no step in any of the directions makes shorter.
+  void shorten_by_steps(Candidate at, const std::vector<Vector3>& directions) {
+    for (double step = at.length / 2; step > smallest_step * best_.length && may_go_on();) {
+      const double before = at.length;
+      for (const Vector3& w : directions) {
+        const Vector3 next = at.translation + step * w;
+        if (length(next) < at.length && separated(next)) at = {next, length(next)};
+      }
+      if (at.length == before) step /= 2;
+    }
+    if (at.length < best_.length) best_ = at;
+    descend(at);
+  }
+
   // The sum of the radii of two balls around one point, each in one of the solids.
   double depth_at(const Point3& local) {
     const ClosestOptions precision{.absolute = {}, .relative = 0.02, .budget = options_.budget};
@@ -224,6 +273,8 @@ class Search {
   const PenetrationOptions& options_;
   const WorkMonitor& monitor_;
   Candidate best_{{}, INFINITY};
+  std::uint64_t splits_ = 0;  // of translations tried
+  int tried_ = 0;
   // Of the last point that depth_at() looked at: how deep it is in the shallower solid, negative outside;
   // from it to the surface of A, and to it from that of B.
   double guide_ = 0;
