@@ -77,11 +77,12 @@ struct Reached {
 
 double width(const Interval& d) { return d.upper - d.lower; }
 
-// More effort changes a result that the budget has ended.
+// More effort changes a result that the budget has ended. Much more: an eighth of the budget, and 2^17, is what
+// pieces of surfaces are held to.
 template <class Candidate>
 bool is_spent(const Surface& surface, const Candidate& candidate, DeviationOptions options,
               const Deviation& found) {
-  options.budget *= 2;
+  options.budget *= 100;
   const Deviation more = deviation(surface, candidate, options);
   return more.from_surface.distance != found.from_surface.distance ||
          more.from_candidate.distance != found.from_candidate.distance;
