@@ -398,6 +398,20 @@ TEST(collide, equal_solids_in_one_place_intersect_and_only_touching_ones_never_d
       }
     }
   }
+  // Octahedra with faces in one plane: points inside of each lie in the box around the other one.
+  ControlMesh facets = testing::control_mesh(body);
+  facets.tags.scheme = Scheme::flat;
+  const LimitSurface eight(facets, {Scheme::flat}, std::make_shared<BoundsCache>());
+  const SurfaceBvh left(eight), right(eight);
+  SurfaceWorkspace scratch_left(left), scratch_right(right);
+  for (int trial = 0; trial < 50; ++trial) {
+    const double x = static_cast<double>(random() % 9) / 8,
+                 y = (1 - x) + x * static_cast<double>(random() % 9) / 8;
+    const Motion beside = Motion::translation({x, y, 2 - x - y});
+    EXPECT_NE(collide({left, scratch_left, {}}, {right, scratch_right, beside}, options).verdict,
+              Verdict::intersecting)
+        << trial;
+  }
   // A box and its mirror image in one of its sides, and slid along it.
   ControlMesh box = testing::control_mesh(oracle::meshes::triangulated(oracle::meshes::cube()));
   box.tags.scheme = Scheme::flat;

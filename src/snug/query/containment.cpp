@@ -39,6 +39,7 @@ class Asking {
   Nesting components() {
     return first_inside([&](std::size_t side) { return side_[side]->model.solid().components(); }, {0, 0});
   }
+  // Is a point a little inward of one of some patches in both solids?
   bool inner_points() {
     for (std::size_t side = 0; side < 2; ++side) {
       const LimitSurface& surface = side_[side]->model.surface();
