@@ -108,17 +108,15 @@ struct Penetration {
 
 /// Bounds of the penetration depth of two closed, placed surfaces.
 ///
-/// Upper end: translations are tried in many directions and shortened along the normals of the remaining
-/// contact; collide() proves each. Where that misses the precision, ways into holes and between parts are tried,
-/// too: up to 4,000 translations, or as many as one budget of splits allows. Lower end: two balls around one point, each inside one solid, still meet
-/// after every translation shorter than the sum of their radii.
+/// Upper end: translations in many directions, shortened along the normals of the remaining contact, each proved by
+/// collide(). Where that misses the precision, up to 4,000 translations into holes and between parts, as far as one
+/// budget of splits lasts. Lower end: two balls around one point, each inside one solid, still meet after every
+/// translation shorter than the sum of their radii.
 ///
-/// Guarantee: `depth` contains the depth, and with `translation` added to B's pose the solids are separated.
-///            The upper end belongs to the best translation found, a local minimum; where parts interlock it
-///            may be far from the depth.
-/// Errors:    InputError: (refused) for a surface that is not closed, (value) for a precision that is
-///            negative or not finite, (unrepresentable) if no separating translation fits a double.
-///            Interrupted.
+/// Guarantee: `depth` contains the depth, and with `translation` added to B's pose the solids are separated. The
+///            upper end is that of a local minimum, which may be far from the depth where parts interlock.
+/// Errors:    InputError: (refused) for a surface that is not closed, (value) for a precision that is negative or
+///            not finite, (unrepresentable) if no separating translation fits a double. Interrupted.
 /// Cost:      about a hundred collision and closest-point queries, some thousands where the precision is missed.
 /// Source:    derivations/contact.md, "How deep".
 [[nodiscard]] SNUG_API Penetration penetration(const PlacedSurface& a, const PlacedSurface& b,

@@ -41,8 +41,8 @@ struct RayHit {
   /// tangent, passes through the border of an open surface, or begins or ends there, or is too close to one of
   /// these cases to tell.
   bool certified = false;
-  /// Is `t`, as a length in mesh units, at most the precision? False where rounding, a glancing ray, or hits that
-  /// cannot be told apart leave it wider, where the budget ran out, and where `any` asks for no more.
+  /// Is `t`, as a length, at most the precision? False where rounding, a glancing ray, hits that cannot be told
+  /// apart or the budget leave it wider, and where `any` asks for no more.
   bool reached = false;
   /// +1 where the ray leaves the surface on the side of its normal, -1 on the other side; 0 where that is not known,
   /// and where hits of both directions cannot be told apart.

@@ -79,9 +79,8 @@ struct TimeOfContactOptions {
   std::optional<double> tolerance{};
   bool solid = false;  ///< compare the solids that closed surfaces bound: one inside the other is in contact
   bool prove_contact = true;  ///< before returning `within`, try to prove `intersecting`
-  /// Most work in each unit of time. A split of a patch counts 1, so does a pair of nodes that is followed through an
-  /// interval of time; a time evaluated counts 1000. No single time takes more than a sixteenth. Memory: 200 bytes a
-  /// split, at most 256 a pair followed.
+  /// Most work in each unit of time: a split of a patch and a pair of nodes followed through an interval count 1, a
+  /// time evaluated 1000; no single time takes more than a sixteenth. Memory: 256 bytes each.
   std::uint64_t budget = 1'000'000;
 };
 
@@ -93,8 +92,8 @@ struct TimeOfContact {
   /// The surfaces have no common point at any time before the lower end. The upper end is infinite if they were
   /// not found to come near each other, as for `separated`, whose lower end is the end of the motion.
   Interval time{0, std::numeric_limits<double>::infinity()};
-  /// True if `time` is so short that no point of one surface moves by more than the tolerance, or 1e-10 of the
-  /// size, relative to the other one; where control points move, no point that could meet a point of the other.
+  /// True if in `time` no point of one surface moves by more than the tolerance, or 1e-10 of the size, relative to
+  /// the other one; where control points move, no point that could meet a point of the other.
   bool reached = false;
   std::optional<std::array<Point3, 2>> witness;  ///< the closest points found at time.upper, on A and on B
   double witness_error = 0;                      ///< as in Collision

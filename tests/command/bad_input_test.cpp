@@ -81,21 +81,6 @@ TEST(bad_input, missing_files_and_folders_are_named) {
   EXPECT_EQ(run_snug({"subdivide", model("star.obj"), "-o", "out.xyz"}).status, 3);
 }
 
-TEST(bad_input, refuses_a_pole_beyond_the_largest_valence_and_takes_the_largest) {
-  for (const int valence : {1000, 1001}) {
-    std::string pole = "v 0 0 0.3\n";
-    for (int i = 0; i < valence; ++i) {
-      const double t = 6.283185307179586 * i / valence;
-      pole += "v " + std::to_string(std::cos(t)) + " " + std::to_string(std::sin(t)) + " 0\n";
-    }
-    for (int i = 0; i < valence; ++i) {
-      pole += "f 1 " + std::to_string(i + 2) + " " + std::to_string((i + 1) % valence + 2) + "\n";
-    }
-    const Outcome outcome = run_snug({"bound", "-", "--json"}, pole);
-    EXPECT_EQ(outcome.status, valence == 1000 ? 0 : 4) << outcome.err;
-  }
-}
-
 TEST(bad_input, a_lone_triangle_works) {
   const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   for (const char* rule : {"edge-and-corner", "edge-only"}) {

@@ -144,13 +144,14 @@ struct Valence {
 Valence valence_of(const Choices& choices, Dice& dice) {
   const bool plain = choice<Tags>(choices, Factor::tags) == Tags::none,
              rows = choice<BoundMethod>(choices, Factor::sets) == BoundMethod::rows;
-  return {choice<std::uint8_t>(choices, Factor::valence) == 1, !rows             ? 200U
-                                                               : !plain          ? 230U
-                                                               : dice.one_in(30) ? 1000U
-                                                                                 : 400U};
+  const bool primal = snug::rules_of(scheme_of(choices)).primal;
+  return {choice<std::uint8_t>(choices, Factor::valence) == 1, !rows                       ? 200U
+                                                               : !plain                    ? 230U
+                                                               : dice.one_in(30) && primal ? 512U
+                                                                                           : 360U};
 }
 Id high_valence(const Valence& valence, Dice& dice) {
-  return valence.most == 1000 ? 1000 : 200 + dice.below(valence.most - 199);
+  return valence.most == 512 ? 512 : 200 + dice.below(valence.most - 199);
 }
 
 /// Some faces cut into triangles, so that triangles, quads and others meet.

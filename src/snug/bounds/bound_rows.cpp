@@ -78,9 +78,9 @@ bool on_covered_edge(std::size_t degree, std::size_t i, std::size_t j, const Cov
   return (covered[0] && i + j == degree) || (covered[1] && i == 0) || (covered[2] && j == 0);
 }
 
-// Levels of the rows of passing and crowded kinds, which tables alone are made of: patches are split instead
-// (bounds/hull_points.h).
-constexpr unsigned levels_of_unshared_rows = 3;
+// Kinds that few patches share have rows of few levels, for tables alone.
+constexpr unsigned few_levels = 3;
+bool has_few_levels(const Kind& kind) { return kind.passing() || kind.crowded_beside_creases(); }
 
 class Collector {
  public:
@@ -91,7 +91,7 @@ class Collector {
     for (std::size_t i = 0; i < 3; ++i) {
       if (!kind.regular_corner(i)) most += 70 * std::size_t{levels(kind, i)} + kind.corner(i).faces() + 20;
     }
-    if (kind.shared()) rows_.entries.reserve(most * rows_.width);
+    if (!has_few_levels(kind)) rows_.entries.reserve(most * rows_.width);
   }
 
   // Rows of one piece; `covered` counts corners as the kind does.
@@ -156,7 +156,7 @@ class Collector {
     return std::min(most_levels_, tip_depth(kind.corner(corner), kind.scheme()));
   }
   [[nodiscard]] unsigned depth_limit(const Kind& kind, unsigned depth) const {
-    if (!kind.shared()) return std::min(most_levels_, levels_of_unshared_rows);
+    if (has_few_levels(kind)) return std::min(most_levels_, few_levels);
     unsigned limit = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       if (!kind.regular_corner(i)) limit = std::max(limit, levels(kind, i));
@@ -200,7 +200,7 @@ double BoundRows::result_error(double largest, double error) const {
 }
 
 bool has_lasting_tips(const Kind& kind) {
-  if (!kind.shared()) return false;
+  if (has_few_levels(kind)) return false;
   for (std::size_t corner = 0; corner < 3; ++corner) {
     const KindChild& child = kind.children()[corner];
     if (!child.kind->polynomial() && !lasts(child, corner)) return false;

@@ -155,7 +155,7 @@ void add_parts(BoundsCache& library, const Patch& patch, unsigned level, std::sp
     return out.add(part);
   }
   // A split brings Bezier points nearer.
-  const Stencils* const creased = level > 0 ? library.crease_rows(kind) : nullptr;
+  const Stencils* const creased = level > 0 && kind.passing() ? library.crease_rows(kind) : nullptr;
   if (creased) return out.add(*creased, patch);
   if (level >= (kind.passing() ? passing_levels : crowded_levels)) {
     return out.add(patch.points, patch.error, patch.largest);

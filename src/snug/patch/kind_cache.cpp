@@ -27,8 +27,10 @@ std::optional<BezierRows> polynomial_form(const KindKey& key) {
 
 std::vector<KindChild> make_children(KindCache& library, const KindKey& key) {
   const Neighbourhood around = neighbourhood(key);
-  const RefinedTopology refined = refine(around.topology, around.options, around.sharpness);
+  RefinedTopology refined = refine(around.topology, around.options, around.sharpness);
   const SchemeRules& rules = rules_of(key.scheme);
+  std::shared_ptr<const Stencils> polygon_step;
+  if (key.polygon) polygon_step = std::make_shared<const Stencils>(std::move(refined.stencils));
   const std::vector<HalfEdge> starts = rules.child_starts(around.topology, refined.topology);
   std::vector<KindChild> children(starts.size());
   std::vector<VertexId> control;
@@ -40,6 +42,11 @@ std::vector<KindChild> make_children(KindCache& library, const KindKey& key) {
     children[k].kind = &library.find(child.key);
     children[k].kind->control_vertices(refined.topology, starts[k] + child.first, control);
     children[k].first = child.first;
+    if (key.polygon) {
+      children[k].polygon_step = polygon_step;
+      for (const VertexId v : control) children[k].control.push_back(static_cast<std::uint32_t>(v.index()));
+      continue;
+    }
     std::size_t entries = 0;
     for (const VertexId v : control) entries += refined.stencils.row(v.index()).sources.size();
     children[k].stencils.reserve(control.size(), entries);
@@ -215,10 +222,20 @@ const Stencils& Kind::corner_limits() const {
   });
 }
 
+namespace {
+constexpr std::size_t many_faces = 16;
+}
+
 bool Kind::crowded() const {
-  constexpr std::size_t many = 16;
+  if (rules_.full_step) return crowded_beside_creases();
   return std::any_of(key_.corners.begin(), key_.corners.end(),
-                     [](const CornerFan& fan) { return fan.faces() > many && (!fan.closed || fan.odd); });
+                     [](const CornerFan& fan) { return fan.faces() > many_faces; });
+}
+
+bool Kind::crowded_beside_creases() const {
+  return std::any_of(key_.corners.begin(), key_.corners.end(), [](const CornerFan& fan) {
+    return fan.faces() > many_faces && (!fan.closed || fan.odd);
+  });
 }
 
 const Stencils& Kind::corner_tangents() const {

@@ -23,7 +23,10 @@ struct KindChild {
   const Kind* kind;
   std::uint8_t
       first;          ///< corner of the child, in the parent's order (scheme/refine.h), that its kind calls 0
-  Stencils stencils;  ///< its control points from the parent's
+  Stencils stencils;  ///< its control points from the parent's; none of a polygon's
+  /// Of a polygon's, whose edge points each have all corners as sources: its control points among the new ones.
+  std::shared_ptr<const Stencils> polygon_step{};
+  std::vector<std::uint32_t> control{};
 };
 
 /// One step of subdivision of a whole patch, or of the whole quad that it is half of: each new point once.
@@ -68,9 +71,12 @@ class Kind {
   [[nodiscard]] bool regular_corner(std::size_t i) const { return rules_.regular(key_.corners[i]); }
   /// Not for ever: sharpness decays, or polygons that are no quads lie around it.
   [[nodiscard]] bool passing() const { return passing_; }
-  /// Is a corner one of very many faces between creases or boundaries? All its patches are of kinds of their
-  /// own, and the matrix of points that bound one would be as large as the fan for each of many levels.
+  /// Is a corner one of more faces than 16? The matrix of points that bound one of its patches would have as many
+  /// rows, and more, as the patch has control points: to split the patch takes fewer operations, but for Doo-Sabin,
+  /// whose step is such a matrix itself.
   [[nodiscard]] bool crowded() const;
+  /// Is one of them between creases or boundaries, so that each patch at it is of a kind of its own?
+  [[nodiscard]] bool crowded_beside_creases() const;
   /// Do many patches share such kinds, so that rows are kept for them? Others are split first.
   [[nodiscard]] bool shared() const { return !passing() && !crowded(); }
 

@@ -65,14 +65,15 @@ void split(const Patch& patch, unsigned child, Patch& piece) {
   piece.first = static_cast<std::uint8_t>((step.first + patch.first) % 3);
   piece.path = polygon ? patch.path : patch.path.child(child);
   piece.origin = patch.origin;
-  piece.points.resize(step.stencils.row_count());
+  const Stencils& stencils = polygon ? *step.polygon_step : step.stencils;
+  piece.points.resize(step.kind->control_count());
   Largest largest;
-  for (std::size_t r = 0; r < piece.points.size(); ++r) {
-    piece.points[r] = step.stencils.apply<Vector3>(r, patch.points);
-    largest.add(piece.points[r]);
+  for (std::size_t i = 0; i < piece.points.size(); ++i) {
+    piece.points[i] = stencils.apply<Vector3>(polygon ? step.control[i] : i, patch.points);
+    largest.add(piece.points[i]);
   }
   piece.largest = largest.get();
-  piece.error = step.stencils.result_error(patch.largest, patch.error);
+  piece.error = stencils.result_error(patch.largest, patch.error);
 }
 
 }  // namespace snug

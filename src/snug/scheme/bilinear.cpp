@@ -74,6 +74,7 @@ class BilinearRules : public LocalRules {
                     .other_names = bilinear_names,
                     .min_valence = 1,
                     .max_valence = SIZE_MAX,
+                    .max_face_size = 1000,
                     .creases = false,
                     .local = true,
                     .basis = RegularBasis::bilinear}) {}

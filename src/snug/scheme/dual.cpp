@@ -156,12 +156,18 @@ class DualRules : public SchemeRules {
   Mask mask_;
 };
 
+// A step multiplies the corners of a polygon by a full matrix.
+constexpr std::size_t max_size = 360;
+
 class DooSabinRules : public DualRules {
  public:
   DooSabinRules()
       : DualRules({.scheme = Scheme::doo_sabin,
                    .name = "doo-sabin",
                    .primal = false,
+                   .max_valence = max_size,
+                   .max_face_size = max_size,
+                   .full_step = true,
                    .creases = false,
                    .basis = RegularBasis::biquadratic},
                   doo_sabin_mask) {}
@@ -188,6 +194,8 @@ class MidedgeRules : public DualRules {
                    .name = "midedge",
                    .other_names = midedge_names,
                    .primal = false,
+                   .max_valence = max_size,
+                   .max_face_size = max_size,
                    .creases = false,
                    .basis = RegularBasis::zwart_powell},
                   midedge_mask) {}

@@ -25,8 +25,12 @@ struct SchemeFacts {
   /// Corners of an owner that is no polygon: 3, it is one patch; 4, two halves of a quad.
   std::size_t corners = 4;
   std::size_t regular_valence = 4;  ///< of vertices, of a dual scheme the size of faces
-  /// Least and largest valence of an interior vertex, and most faces around any other one.
-  std::size_t min_valence = 3, max_valence = 1000;
+  /// Least and largest valence of an interior vertex, and most faces around any other one. The work at a vertex
+  /// grows with the square of its valence: beyond the largest, queries would take longer than a few seconds.
+  std::size_t min_valence = 3, max_valence = 512;
+  std::size_t max_face_size = 512;
+  /// Does a step weight all corners of a polygon for each new one?
+  bool full_step = false;
   const char* wants_triangles = nullptr;  ///< What to tell who gives other faces; none: it takes them.
   bool creases = true;                    ///< Does sharpness change the surface?
   /// Does the surface of a face depend on that face alone?

@@ -51,7 +51,7 @@ void require_fitting_faces(const ControlMesh& mesh, const SchemeRules& rules) {
   for (std::size_t f = mesh.face_count(); f-- > 0;) {
     const std::size_t size = mesh.face(FaceId(f)).size();
     if (size != 3) ++others, first = f;
-    if (size > max_face_size) large = f;
+    if (size > rules.max_face_size) large = f;
   }
   const auto text = [&](std::size_t f) {
     return "face " + number(f) + " has " + number(mesh.face(FaceId(f)).size()) + " vertices";
@@ -60,7 +60,7 @@ void require_fitting_faces(const ControlMesh& mesh, const SchemeRules& rules) {
     refuse(text(first) + " (" + number(others) + " faces are not triangles); " + rules.wants_triangles);
   }
   if (large < mesh.face_count()) {
-    refuse(text(large) + "; at most " + number(max_face_size) + " are taken: split it");
+    refuse(text(large) + "; at most " + number(rules.max_face_size) + " are taken: split it");
   }
 }
 
@@ -81,8 +81,8 @@ void require_valences(const Topology& topology, const SchemeRules& rules) {
   }
   if (bad == 0) return;
   if (bad > 10) text += "; and " + number(bad - 10) + " more";
-  refuse(text + "; interior vertices need " + number(least) +
-         " to 1000 faces, boundary ones at most 1000: split faces there");
+  refuse(text + "; interior vertices need " + number(least) + " to " + number(most) +
+         " faces, boundary ones at most " + number(most) + ": split faces there");
 }
 
 Topology require_fit_for(Purpose purpose, const ControlMesh& mesh, const SchemeOptions& options) {
