@@ -4,12 +4,15 @@
 #include <snug/mesh/loose_creases.h>
 #include <snug/mesh/validate.h>
 #include <snug/query/bound.h>
+#include <snug/query/containment.h>
 #include <snug/scheme/rules.h>
+#include <snug/search/solid.h>
 
 #include "common.h"
 #include "curve.h"
 #include "mesh_counts.h"
 #include "mesh_reading.h"
+#include "progress_bar.h"
 
 namespace snug::command {
 namespace {
@@ -56,6 +59,14 @@ std::string taken_as(const ControlMesh& mesh, const SchemeRules& scheme, const O
   return text;
 }
 
+// An owner of a shell that lies within another one, or overlaps it, turned the same way.
+std::optional<std::uint32_t> owner_wound_twice(const LimitSurface& surface, int threads) {
+  if (!is_closed(surface)) return {};
+  const SurfaceBvh bvh(surface, {.threads = threads}, stopped_by_interrupts());
+  const std::optional<PatchId> patch = wound_twice(bvh, stopped_by_interrupts());
+  return patch ? std::optional(surface.place(*patch).owner) : std::nullopt;
+}
+
 ExitStatus run(const Options& options) {
   const ControlMesh mesh = load_mesh(options.mesh, options);
   refuse_curves(mesh, options.scheme, options.mesh);
@@ -66,6 +77,8 @@ ExitStatus run(const Options& options) {
   const std::vector<Defect> found = defects(mesh);
   std::optional<std::size_t> kinds;
   std::optional<double> apart;
+  std::optional<std::uint32_t> twice;
+  std::string open;
   double size = 0;
   std::string refusal;
   try {
@@ -73,6 +86,8 @@ ExitStatus run(const Options& options) {
     apart = limit_to_faces(surface, options.threads);
     size = surface.size();
     kinds = surface.kind_count();
+    if (counts.closed && counts.components > 1) twice = owner_wound_twice(surface, options.threads);
+    if (!counts.closed && counts.boundary_edges == 0) open = ": " + open_reason(surface).value_or("");
     note_smoothing(surface, options.mesh, options, options.scheme, apart);
   } catch (const InputError& error) {
     refusal = error.what();
@@ -95,6 +110,8 @@ ExitStatus run(const Options& options) {
     kinds ? json.value(*kinds) : json.null();
     json.key("limit_to_faces");
     apart ? json.value(*apart) : json.null();
+    json.key("overlapping_shell");
+    twice ? json.value(*twice) : json.null();
     json.key("refusal");
     kinds ? json.null() : json.value(refusal);
     json.key("defects").begin_array();
@@ -108,14 +125,21 @@ ExitStatus run(const Options& options) {
   if (!kinds) report.text("refused: " + refusal);
   report.text(fmt::format("{} vertices, {} edges, {} faces, {}, {} component{}", mesh.vertex_count(),
                           counts.edges, mesh.face_count(),
-                          counts.closed               ? "closed"
+                          counts.closed               ? std::string("closed")
                           : counts.boundary_edges > 0 ? "open"
-                                                      : "neither closed nor bounded",
+                                                      : "not closed" + open,
                           counts.components, counts.components == 1 ? "" : "s"));
   report.text(fmt::format("valence {} to {}, {} extraordinary {}, {} boundary edges, {} creases",
                           counts.min_valence, counts.max_valence, odd_ones,
                           scheme.primal ? "vertices" : "faces", counts.boundary_edges, creases));
   if (kinds) report.text(fmt::format("patch topologies: {}", *kinds));
+  if (twice) {
+    report.text(fmt::format(
+        "note: the shell of {} {} lies within another one, or overlaps it, and is turned the same way: "
+        "solids take in "
+        "the space of both, and volumes count what is common twice; turn its faces if it is to be a cavity",
+        scheme.owner(), *twice));
+  }
   for (std::size_t i = 0; i < found.size() && i < 10; ++i) {
     report.text(fmt::format("{}: {}", scheme.answers(found[i].kind) ? "note" : "defect", found[i].text));
   }

@@ -47,6 +47,53 @@ class solids : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+// Two cubes in one file; the second one turned inside out on request.
+std::string two_cubes(double x, double half, bool turned) {
+  std::string obj = cube(0, 0, 0, 1);
+  const std::string second = cube(x, 0, 0, half);
+  obj += second.substr(0, second.find("f "));
+  const std::array<std::array<int, 4>, 6> faces{
+      {{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5}, {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}}};
+  for (const auto& face : faces) {
+    obj += "f";
+    for (std::size_t k = 0; k < 4; ++k) obj += " " + std::to_string(8 + face[turned ? 3 - k : k]);
+    obj += "\n";
+  }
+  return obj;
+}
+
+TEST_F(solids, info_names_a_shell_within_another_one_that_is_turned_the_same_way) {
+  struct Case {
+    const char* name;
+    std::string obj;
+    bool twice;
+  };
+  for (const auto& [name, obj, twice] : {Case{"shell", two_cubes(0, 0.5, false), true},
+                                         {"cavity", two_cubes(0, 0.5, true), false},
+                                         {"overlapping", two_cubes(0.5, 0.8, false), true},
+                                         {"the same", two_cubes(0, 1, false), true},
+                                         {"apart", two_cubes(3, 1, false), false},
+                                         {"apart and turned", two_cubes(3, 1, true), false}}) {
+    const std::string mesh = write("two.obj", obj);
+    for (const char* scheme : {"bilinear", "catmark", "doo-sabin"}) {
+      const json found = answer({"info", mesh, "--scheme", scheme});
+      EXPECT_EQ(found["overlapping_shell"].is_number(), twice) << name << ", " << scheme;
+      const bool said =
+          run_snug({"info", mesh, "--scheme", scheme}).out.find("turned the same way") != std::string::npos;
+      EXPECT_EQ(said, twice) << name << ", " << scheme;
+    }
+  }
+}
+
+TEST_F(solids, info_says_which_edge_keeps_a_surface_from_being_closed) {
+  std::string turned = cube(0, 0, 0, 1);
+  turned.replace(turned.find("f 1 3 4 2"), 9, "f 2 4 3 1");
+  const Outcome outcome = run_snug({"info", write("turned.obj", turned), "--scheme", "bilinear"});
+  EXPECT_NE(outcome.out.find("not closed: edge (1, 3) of face 0 does not cancel: 2 faces run from 1 to 3"),
+            std::string::npos)
+      << outcome.out;
+}
+
 TEST_F(solids, polygons_beside_quads_are_told_from_inside_and_outside) {
   const std::string part = write("prism.obj", prism);
   // Beside the edges along which the triangles' first splits meet quads, and in the middle.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -20,7 +21,7 @@ namespace {
 constexpr std::size_t max_patches = 32;
 
 // Of each surface, patches beside which points are asked, and how far inward, in radii of the surface.
-constexpr std::size_t max_inward = 8;
+constexpr std::size_t max_inward = 8, max_components = 100;
 constexpr double inward = 0x1p-7;
 
 // Is a placed point certainly outside of the ball around a placed model?
@@ -29,6 +30,16 @@ bool beyond(const PlacedFrame& frame, const Ball& ball, const BoundedPoint& plac
   const double between = distance(placed.position, centre) * (1 - 8 * unit_roundoff);
   return between > enlarged(frame.growth() * ball.radius +
                             spatial_error(placed.error + frame.apply_error(ball.centre)));
+}
+
+// The middle of a patch, moved across it by a share of the surface's radius.
+Point3 beside(const SurfaceBvh& model, PatchId p, double way) {
+  const Patch patch = model.surface().patch(p);
+  std::array<Point3, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k) corners[k] = corner_point(patch, k).from(patch.origin).position;
+  const Vector3 across = normalized(cross(corners[1] - corners[0], corners[2] - corners[0]));
+  return limit_point(patch, {1.0 / 3, 1.0 / 3}).from(patch.origin).position +
+         way * model.tree().ball().radius * across;
 }
 
 class Asking {
@@ -47,7 +58,7 @@ class Asking {
       for (std::size_t i = 0; i < count; ++i) {
         const PatchId p(i * surface.patch_count() / count);
         for (const double way : {-inward, inward}) {
-          if (is_inside_both(side, beside(side, p, way))) return true;
+          if (is_inside_both(side, beside(side_[side]->model, p, way))) return true;
         }
       }
     }
@@ -89,17 +100,6 @@ class Asking {
     found_.inner = side;
     found_.point = unscaled(placed, frames_.to_mesh_units());
     found_.at = place_of(surface, p, at);
-  }
-
-  // The middle of a patch, moved across it; in the frame of its surface.
-  [[nodiscard]] Point3 beside(std::size_t side, PatchId p, double way) const {
-    const SurfaceBvh& model = side_[side]->model;
-    const Patch patch = model.surface().patch(p);
-    std::array<Point3, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = corner_point(patch, k).from(patch.origin).position;
-    const Vector3 across = normalized(cross(corners[1] - corners[0], corners[2] - corners[0]));
-    return limit_point(patch, {1.0 / 3, 1.0 / 3}).from(patch.origin).position +
-           way * model.tree().ball().radius * across;
   }
 
   // Of a point in the frame of `side`, taken as it is.
@@ -166,6 +166,18 @@ Nesting common_point(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& 
 bool have_inner_point_in_common(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor) {
   require_solids(a, b);
   return Asking(a, b, monitor).inner_points();
+}
+
+std::optional<PatchId> wound_twice(const SurfaceBvh& model, const WorkMonitor& monitor) {
+  SurfaceWorkspace workspace(model);
+  const std::vector<PatchId>& components = model.solid().components();
+  for (std::size_t i = 0; i < std::min(components.size(), max_components); ++i) {
+    for (const double way : {-inward, inward}) {
+      const int number = winding_number(workspace, beside(model, components[i], way), 0, monitor).value_or(0);
+      if (std::abs(number) > 1) return components[i];
+    }
+  }
+  return {};
 }
 
 }  // namespace snug

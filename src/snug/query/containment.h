@@ -55,4 +55,12 @@ struct Nesting {
 [[nodiscard]] bool have_inner_point_in_common(const PlacedBvh& a, const PlacedBvh& b,
                                               const WorkMonitor& monitor = {});
 
+/// A patch of a closed surface beside which the surface winds around a point more than once, either way: then a shell
+/// lies within another one that is turned the same way, or shells overlap. Points beside one patch of each component
+/// are asked, of at most 100.
+///
+/// Guarantee: a patch that is named is beside such a point; nothing follows where none is.
+/// Errors:    InputError (refused) unless the surface is closed.
+[[nodiscard]] std::optional<PatchId> wound_twice(const SurfaceBvh& model, const WorkMonitor& monitor = {});
+
 }  // namespace snug
