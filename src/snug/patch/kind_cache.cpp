@@ -223,18 +223,18 @@ const Stencils& Kind::corner_limits() const {
 }
 
 namespace {
-constexpr std::size_t many_faces = 16;
+constexpr std::size_t many_faces = 64, many_beside_creases = 16;
 }
 
 bool Kind::crowded() const {
-  if (rules_.full_step) return crowded_beside_creases();
-  return std::any_of(key_.corners.begin(), key_.corners.end(),
-                     [](const CornerFan& fan) { return fan.faces() > many_faces; });
+  if (crowded_beside_creases()) return true;
+  return !rules_.full_step && std::any_of(key_.corners.begin(), key_.corners.end(),
+                                          [](const CornerFan& fan) { return fan.faces() > many_faces; });
 }
 
 bool Kind::crowded_beside_creases() const {
   return std::any_of(key_.corners.begin(), key_.corners.end(), [](const CornerFan& fan) {
-    return fan.faces() > many_faces && (!fan.closed || fan.odd);
+    return fan.faces() > many_beside_creases && (!fan.closed || fan.odd);
   });
 }
 
