@@ -71,9 +71,9 @@ class Kind {
   [[nodiscard]] bool regular_corner(std::size_t i) const { return rules_.regular(key_.corners[i]); }
   /// Not for ever: sharpness decays, or polygons that are no quads lie around it.
   [[nodiscard]] bool passing() const { return passing_; }
-  /// Is a corner one of more faces than 64, or than 16 between creases or boundaries? The matrix of points that bound one of its patches would have as many
-  /// rows, and more, as the patch has control points: to split the patch takes fewer operations, but for Doo-Sabin,
-  /// whose step is such a matrix itself.
+  /// Is a corner one of more faces than 64, or than 16 between creases or boundaries? The matrix of points that bound
+  /// one of its patches would have as many rows, and more, as the patch has control points: to split the patch takes
+  /// fewer operations, but for Doo-Sabin, whose step is such a matrix itself.
   [[nodiscard]] bool crowded() const;
   /// Is one of them between creases or boundaries, so that each patch at it is of a kind of its own?
   [[nodiscard]] bool crowded_beside_creases() const;
