@@ -86,7 +86,7 @@ ExitStatus run(const Options& options) {
     apart = limit_to_faces(surface, options.threads);
     size = surface.size();
     kinds = surface.kind_count();
-    if (counts.closed && counts.components > 1) twice = owner_wound_twice(surface, options.threads);
+    if (counts.closed && counts.boxes_meet) twice = owner_wound_twice(surface, options.threads);
     if (!counts.closed && counts.boundary_edges == 0) open = ": " + open_reason(surface).value_or("");
     note_smoothing(surface, options.mesh, options, options.scheme, apart);
   } catch (const InputError& error) {
@@ -134,11 +134,12 @@ ExitStatus run(const Options& options) {
                           scheme.primal ? "vertices" : "faces", counts.boundary_edges, creases));
   if (kinds) report.text(fmt::format("patch topologies: {}", *kinds));
   if (twice) {
-    report.text(fmt::format(
-        "note: the shell of {} {} lies within another one, or overlaps it, and is turned the same way: "
-        "solids take in "
-        "the space of both, and volumes count what is common twice; turn its faces if it is to be a cavity",
-        scheme.owner(), *twice));
+    report.text(
+        fmt::format("note: the shell of {} {} lies within another one, or overlaps it, and is turned the "
+                    "same way: the solid "
+                    "includes both, and its volume counts their common part twice; if the shell bounds a "
+                    "cavity, turn its faces",
+                    scheme.owner(), *twice));
   }
   for (std::size_t i = 0; i < found.size() && i < 10; ++i) {
     report.text(fmt::format("{}: {}", scheme.answers(found[i].kind) ? "note" : "defect", found[i].text));

@@ -1,6 +1,7 @@
 #include "mesh_counts.h"
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <cmath>
 #include <utility>
@@ -30,19 +31,46 @@ ControlMesh sound_faces(const ControlMesh& mesh) {
   return sound;
 }
 
-std::size_t count_components(const ControlMesh& mesh, std::size_t vertex_count) {
-  DisjointSets joined(vertex_count);
-  std::vector<bool> used(vertex_count, false);
-  for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-    const auto face = mesh.face(FaceId(f));
-    for (const VertexId v : face) {
-      used[v.index()] = true;
-      joined.join(v.value(), face[0].value());
+using Box = std::array<Point3, 2>;
+
+/// The boxes around the components: of the vertices of faces that are joined.
+std::vector<Box> component_boxes(const ControlMesh& faces, const std::vector<Point3>& points) {
+  DisjointSets joined(points.size());
+  for (std::size_t f = 0; f < faces.face_count(); ++f) {
+    const auto face = faces.face(FaceId(f));
+    for (const VertexId v : face) joined.join(v.value(), face[0].value());
+  }
+  constexpr std::uint32_t none = UINT32_MAX;
+  std::vector<std::uint32_t> place(points.size(), none);
+  std::vector<Box> boxes;
+  for (const VertexId v : faces.face_vertices) {
+    const Point3& p = points[v.index()];
+    std::uint32_t& own = place[joined.least(v.value())];
+    if (own == none) {
+      own = static_cast<std::uint32_t>(boxes.size());
+      boxes.push_back({p, p});
+    }
+    auto& [lower, upper] = boxes[own];
+    for (std::size_t a = 0; a < 3; ++a) {
+      lower[a] = std::min(lower[a], p[a]);
+      upper[a] = std::max(upper[a], p[a]);
     }
   }
-  std::size_t components = 0;
-  for (std::uint32_t v = 0; v < vertex_count; ++v) components += used[v] && joined.least(v) == v;
-  return components;
+  return boxes;
+}
+
+/// Each with those that begin, along x, before it ends.
+bool any_meet(std::vector<Box> boxes) {
+  std::sort(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a[0].x < b[0].x; });
+  const auto meet = [](const Box& a, const Box& b) {
+    return a[0].y <= b[1].y && b[0].y <= a[1].y && a[0].z <= b[1].z && b[0].z <= a[1].z;
+  };
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (std::size_t j = i + 1; j < boxes.size() && boxes[j][0].x <= boxes[i][1].x; ++j) {
+      if (meet(boxes[i], boxes[j])) return true;
+    }
+  }
+  return false;
 }
 
 /// Ends of an edge.
@@ -136,7 +164,9 @@ MeshCounts count_elements(const ControlMesh& mesh, std::size_t regular_valence) 
   const HalfEdgeGroups groups(faces.face_offsets, faces.face_vertices, mesh.vertex_count());
   MeshCounts result;
   result.edges = groups.edge_count();
-  result.components = count_components(faces, mesh.vertex_count());
+  const std::vector<Box> boxes = component_boxes(faces, mesh.points);
+  result.components = boxes.size();
+  result.boxes_meet = any_meet(boxes);
   std::vector<std::uint32_t> valence(mesh.vertex_count(), 0);
   std::vector<bool> boundary(mesh.vertex_count(), false);
   result.closed = groups.edge_count() > 0;

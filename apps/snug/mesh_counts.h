@@ -12,6 +12,7 @@ struct MeshCounts {
   std::size_t edges = 0;
   std::size_t boundary_edges = 0;  ///< edges with one face
   std::size_t components = 0;      ///< sets of faces joined by vertices
+  bool boxes_meet = false;         ///< do the boxes around two components have a point in common?
   std::size_t min_valence = 0;     ///< least number of edges at a used vertex
   std::size_t max_valence = 0;
   std::size_t extraordinary = 0;  ///< used vertices unlike those of a regular lattice, by valence

@@ -28,6 +28,24 @@ TEST(mesh_counts, of_a_grid_count_its_boundary) {
   EXPECT_EQ(s.extraordinary, 4u);  // the corners: two have 2 edges, two have 3
 }
 
+TEST(mesh_counts, know_whether_the_boxes_of_components_meet) {
+  for (const double x : {0.5, 1.0, 1.25}) {
+    for (const double y : {0.0, 1.25}) {
+      ControlMesh mesh;
+      for (const Vector3& at : {Vector3{0, 0, 0}, Vector3{x, y, 0}, Vector3{-9, 0, 0}}) {
+        const std::size_t first = mesh.points.size();
+        for (const Point3& p : {Point3{0, 0, 0}, Point3{1, 0, 0}, Point3{0, 1, 1}})
+          mesh.points.push_back(p + at);
+        mesh.add_face(std::array{VertexId(first), VertexId(first + 1), VertexId(first + 2)});
+      }
+      mesh.points.push_back({x, y, 0});  // of no face
+      const MeshCounts s = count_elements(mesh, 6);
+      EXPECT_EQ(s.components, 3u);
+      EXPECT_EQ(s.boxes_meet, x <= 1 && y <= 1) << x << ' ' << y;
+    }
+  }
+}
+
 TEST(mesh_counts, of_nothing_are_zero) {
   const MeshCounts s = count_elements(ControlMesh{}, 6);
   EXPECT_EQ(s.edges, 0u);

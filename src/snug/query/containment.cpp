@@ -21,8 +21,11 @@ namespace {
 constexpr std::size_t max_patches = 32;
 
 // Of each surface, patches beside which points are asked, and how far inward, in radii of the surface.
-constexpr std::size_t max_inward = 8, max_components = 100;
+constexpr std::size_t max_inward = 8;
 constexpr double inward = 0x1p-7;
+// Of one surface that may wind twice: components, patches of all of it, and a share of that way for small shells.
+constexpr std::size_t max_components = 100, max_spread = 200;
+constexpr double near_by = 0x1p-6;
 
 // Is a placed point certainly outside of the ball around a placed model?
 bool beyond(const PlacedFrame& frame, const Ball& ball, const BoundedPoint& placed) {
@@ -169,12 +172,18 @@ bool have_inner_point_in_common(const PlacedBvh& a, const PlacedBvh& b, const Wo
 }
 
 std::optional<PatchId> wound_twice(const SurfaceBvh& model, const WorkMonitor& monitor) {
+  const LimitSurface& surface = model.surface();
+  std::vector<PatchId> patches = model.solid().components();
+  patches.resize(std::min(patches.size(), max_components));
+  const std::size_t spread = std::min(max_spread, surface.patch_count());
+  for (std::size_t i = 0; i < spread; ++i) patches.emplace_back(i * surface.patch_count() / spread);
   SurfaceWorkspace workspace(model);
-  const std::vector<PatchId>& components = model.solid().components();
-  for (std::size_t i = 0; i < std::min(components.size(), max_components); ++i) {
+  for (const PatchId p : patches) {
     for (const double way : {-inward, inward}) {
-      const int number = winding_number(workspace, beside(model, components[i], way), 0, monitor).value_or(0);
-      if (std::abs(number) > 1) return components[i];
+      for (const double share : {1.0, near_by}) {
+        const Point3 point = beside(model, p, share * way);
+        if (std::abs(winding_number(workspace, point, 0, monitor).value_or(0)) > 1) return p;
+      }
     }
   }
   return {};

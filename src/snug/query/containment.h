@@ -56,8 +56,8 @@ struct Nesting {
                                               const WorkMonitor& monitor = {});
 
 /// A patch of a closed surface beside which the surface winds around a point more than once, either way: then a shell
-/// lies within another one that is turned the same way, or shells overlap. Points beside one patch of each component
-/// are asked, of at most 100.
+/// lies within another one that is turned the same way, or shells overlap. Points beside one patch of each of at most
+/// 100 components are asked, and beside 200 patches of all of the surface.
 ///
 /// Guarantee: a patch that is named is beside such a point; nothing follows where none is.
 /// Errors:    InputError (refused) unless the surface is closed.
