@@ -192,6 +192,7 @@ TEST(crowded_corners, limit_points_lie_inside_their_enclosures) {
     oracle::TaggedMesh mesh = oracle::meshes::pole(18, false);
     mesh.creases = {{0, 1, 10}};
     check("dart", mesh);
+    check("smooth, of very many", oracle::meshes::pole(70, false));
     mesh = oracle::meshes::pole(36, false);
     check("smooth", mesh);
     mesh.creases = {{0, 1, 10}, {0, 37, 10}};

@@ -28,7 +28,7 @@ struct SchemeFacts {
   /// Least and largest valence of an interior vertex, and most faces around any other one. The work at a vertex
   /// grows with the square of its valence: beyond the largest, queries would take longer than a few seconds.
   std::size_t min_valence = 3, max_valence = 512;
-  std::size_t max_face_size = 512;
+  std::size_t max_face_size = 512;  ///< most vertices of a face
   /// Does a step weight all corners of a polygon for each new one?
   bool full_step = false;
   const char* wants_triangles = nullptr;  ///< What to tell who gives other faces; none: it takes them.
