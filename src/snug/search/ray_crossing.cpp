@@ -28,6 +28,15 @@ struct Matrix2 {
   }
 };
 
+// What bounds a value from the matrix and the images of the second differences: of u, of v, of the rest 1 - u - v.
+struct Gains {
+  double of_off;  // of an error across the ray
+  double bent;    // times the square of a step
+};
+Gains gains(double x, double y, double uu, double uv, double vv) {
+  return {std::fabs(x) + std::fabs(y), std::fabs(uu) + std::fabs(uv) + std::fabs(vv)};
+}
+
 double max_abs2(const Vector3& v) { return std::max(std::fabs(v.x), std::fabs(v.y)); }
 double max_abs(const Offset2& v) { return std::max(std::fabs(v.x), std::fabs(v.y)); }
 
@@ -123,8 +132,18 @@ Crossing SeenPiece::crossing(const Offset2& place, double reach, double enough) 
     const double far = std::min(farthest, safely * (max_abs(newton) + blur) / (1 - share));
     const double radius = safely * (blur + (doubt + bent * far) * far);
     const double next_u = u - newton.x, next_v = v - newton.y, rest = 1 - next_u - next_v;
-    const double above = radius + 0x1p-50 * (1 + max_abs(newton));
-    if (next_u < -above || next_v < -above || rest < -2 * above) {
+    // Each barycentric coordinate by itself: those across a needle are far better known than those along it.
+    const double rounding = 0x1p-50 * (1 + max_abs(newton));
+    const auto off_by = [&](const Gains& of, double times) {
+      const double roundings = times * (32 * unit_roundoff * max_abs(newton) + doubt * far + rounding);
+      return safely * (of.of_off * off + roundings + safely * (of.bent + times * doubt) * far * far);
+    };
+    const double off_u = off_by(gains(inverse.a, inverse.b, b_uu.x, b_uv.x, b_vv.x), 1),
+                 off_v = off_by(gains(inverse.c, inverse.d, b_uu.y, b_uv.y, b_vv.y), 1),
+                 off_rest = off_by(gains(inverse.a + inverse.c, inverse.b + inverse.d, b_uu.x + b_uu.y,
+                                         b_uv.x + b_uv.y, b_vv.x + b_vv.y),
+                                   2);
+    if (next_u < -off_u || next_v < -off_v || rest < -off_rest) {
       result.state = Crossing::State::none;
       return result;
     }
@@ -141,7 +160,7 @@ Crossing SeenPiece::crossing(const Offset2& place, double reach, double enough) 
       result.along.upper = std::min(result.along.upper, along.upper);
     }
     const bool inside =
-        next_u > above && next_v > above && rest > 2 * above && safely * (max_abs(newton) + radius) <= far;
+        next_u > off_u && next_v > off_v && rest > off_rest && safely * (max_abs(newton) + radius) <= far;
     result.at = clamped(next_u, next_v);
     if (inside) {
       result.state = Crossing::State::one;
@@ -156,7 +175,8 @@ Crossing SeenPiece::crossing(const Offset2& place, double reach, double enough) 
       return result;
     }
     at = result.at;
-    farthest = std::min(1.0, safely * (std::max(std::fabs(next_u - at.u), std::fabs(next_v - at.v)) + above));
+    farthest = std::min(
+        1.0, safely * (std::max(std::fabs(next_u - at.u), std::fabs(next_v - at.v)) + radius + rounding));
   }
   if (result.state != Crossing::State::bent) return result;
   // By lines between the piece and the ray: across its edges, and from its corners.

@@ -83,7 +83,11 @@ class RayWalk {
         reach = std::max(std::clamp(0.25 * task_.precision / widest, narrowing, 0.25) * reach, least);
       } else {  // around needles there is room between smaller pieces, even where rounding leaves no narrower tube
         share *= smaller_share;
-        if (!settled && narrowing * reach > 16 * least) reach *= narrowing;
+        if (settled) {  // no narrower than is needed
+          reach *= std::clamp(0.9 * task_.precision / widest, 1.0, 8.0);
+        } else if (narrowing * reach > 16 * least) {
+          reach *= narrowing;
+        }
       }
     }
     return best;
