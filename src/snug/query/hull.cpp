@@ -44,15 +44,21 @@ constexpr auto fault_names = std::to_array<Named<HullFault>>({
 // Of the tolerance: that of the triangles which are moved, at first; below which it is no longer made smaller,
 // where a vertex has no position, and where facets meet something.
 constexpr double first_share = 0.4, least_share = 0x1p-6, least_share_apart = 0x1p-8;
+// And down to which it is made smaller at once where facets turn over.
+constexpr double turned_share = 0x1p-3;
 // Of the tolerance of a triangle: how much farther off its plane than its error its facet is kept, and the error
 // of the quadratics that it is to be kept off.
 constexpr double clearance = 0.1, quadratic_share = 0x1p-6;
 // And how far Bezier points of its parts may stick out of them.
 constexpr double flat_share = 0x1p-5;
-constexpr std::size_t most_problems = 100, most_contacts = 10'000;
+constexpr std::size_t most_problems = 100, most_contacts = 1'000'000;
 constexpr int most_rounds = 24;
 // Most quadratics that facets are kept off: of the budget, and beside a few of them.
 constexpr std::uint64_t pieces_a_triangle = 16, pieces_beside = 1u << 17;
+// To show that a hull is off the surface: splits, and different pieces split of each, for each of its triangles and
+// beside those.
+constexpr std::uint64_t splits_a_triangle = 16, splits_beside = 1'000'000;
+constexpr std::uint64_t splits_kept_a_triangle = 2, splits_kept_beside = 50'000;
 
 // What triangles do along their edges.
 struct Sides {
@@ -142,7 +148,8 @@ class OneHull {
       move_vertices();
       if (!mesh_.reached && !problems_.empty()) break;
       if (!tree_ && !make_pieces()) break;
-      keep_off();
+      piece_marks_.assign(pieces_.size(), 0);
+      if (!any_turned_) keep_off();
       if (problems_.empty()) break;
       if (round + 1 == most_rounds || !mesh_.reached || !refine()) break;
     }
@@ -269,6 +276,7 @@ class OneHull {
       }
     });
     gap_ = 0;
+    any_turned_ = false;
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       const Names& names = mesh_.triangles[t];
       const double most = std::max({moved[names[0]], moved[names[1]], moved[names[2]]});
@@ -276,7 +284,15 @@ class OneHull {
       const double gap =
           most == INFINITY ? INFINITY : rounded_up(unscaled_up(most, scale_.inverse()) + errors_[t]);
       gap_ = std::max(gap_, gap);
-      if (gap <= options_.tolerance) continue;
+      if (gap <= options_.tolerance) {
+        // Corners that moved sideways past each other: most of these facets meet others, and finding them is cheap.
+        if (tolerances_[mesh_.owners[t]] > turned_share * options_.tolerance &&
+            sign * dot(unit_normal(scaled(hull_, names)), normals[t]) < 0) {
+          blame(HullFault::meets_itself, t, mesh_.positions[names[0]]);
+          any_turned_ = true;
+        }
+        continue;
+      }
       const std::size_t k = static_cast<std::size_t>(
           std::max_element(names.begin(), names.end(), [&](auto a, auto b) { return moved[a] < moved[b]; }) -
           names.begin());
@@ -288,7 +304,6 @@ class OneHull {
   // Facets that may meet the surface, or each other.
   void keep_off() {
     const std::size_t count = mesh_.triangles.size();
-    piece_marks_.assign(pieces_.size(), 0);
     std::vector<std::uint8_t> meets(count);
     parallel_for(count, options_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
@@ -359,15 +374,17 @@ class OneHull {
   std::vector<std::uint8_t> piece_marks_;  // pieces that facets come near
   std::vector<Point3> hull_;
   double gap_ = 0;
+  bool any_turned_ = false;  // facets that lie the other way round than their triangles
 };
 
 // A hull as a surface of its own.
 class FacetSurface {
  public:
-  FacetSurface(const Hull& hull, const std::shared_ptr<BoundsCache>& library, const WorkMonitor& monitor)
+  FacetSurface(const Hull& hull, std::uint64_t most_kept, const std::shared_ptr<BoundsCache>& library,
+               const WorkMonitor& monitor)
       : limit_(mesh_of(hull), SchemeOptions{Scheme::flat}, library, monitor),
         bvh_(limit_, {}, monitor),
-        workspace_(bvh_) {}
+        workspace_(bvh_, most_kept) {}
 
   [[nodiscard]] PlacedBvh placed() { return {bvh_, workspace_, {}}; }
   [[nodiscard]] const SurfaceBvh& model() const { return bvh_; }
@@ -396,7 +413,8 @@ class Verification {
         options_(options),
         hulls_(hulls),
         monitor_{.on_progress = {}, .stop = monitor.stop},
-        own_(model) {}
+        largest_count_(largest_count(hulls)),
+        own_(model, most_kept()) {}
 
   std::vector<HullProblem> run() {
     std::array<std::unique_ptr<FacetSurface>, 2> sides;
@@ -404,7 +422,8 @@ class Verification {
     for (const bool inner : {true, false}) {
       const std::optional<Hull>& hull = inner ? hulls_.inner : hulls_.outer;
       if (!hull || !is_whole(*hull, inner)) continue;
-      sides[inner] = std::make_unique<FacetSurface>(*hull, model_.surface().shared_library(), monitor_);
+      sides[inner] =
+          std::make_unique<FacetSurface>(*hull, most_kept(), model_.surface().shared_library(), monitor_);
       if (hulls_.closed) hull_points_ = points_of(sides[inner]->model());
       apart({model_, own_, {}}, sides[inner]->placed(), HullFault::meets_surface, inner);
       near(*hull, inner);
@@ -415,6 +434,16 @@ class Verification {
   }
 
  private:
+  static std::uint64_t largest_count(const Hulls& hulls) {
+    std::uint64_t largest = 0;
+    for (const auto* hull : {&hulls.inner, &hulls.outer}) {
+      if (*hull) largest = std::max<std::uint64_t>(largest, (*hull)->triangles.size());
+    }
+    return largest;
+  }
+  [[nodiscard]] std::uint64_t most_kept() const {
+    return splits_kept_beside + splits_kept_a_triangle * largest_count_;
+  }
   // A limit point of each component.
   struct Member {
     Point3 position;
@@ -453,9 +482,13 @@ class Verification {
     return problems_.size() == before;
   }
   void apart(const PlacedBvh& a, const PlacedBvh& b, HullFault fault, bool inner) {
-    const Collision found = collide(
-        a, b, {.tolerance = 0, .margin = certain_gap_, .witness = WitnessKind::approximate, .measure = false},
-        monitor_);
+    const Collision found = collide(a, b,
+                                    {.tolerance = 0,
+                                     .margin = certain_gap_,
+                                     .budget = splits_beside + splits_a_triangle * largest_count_,
+                                     .witness = WitnessKind::approximate,
+                                     .measure = false},
+                                    monitor_);
     if (found.verdict == Verdict::separated) return;
     std::optional<std::uint32_t> owner;
     if (found.at[0])
@@ -496,6 +529,7 @@ class Verification {
   const HullOptions& options_;
   const Hulls& hulls_;
   WorkMonitor monitor_;
+  std::uint64_t largest_count_;  // of triangles of a hull
   SurfaceWorkspace own_;
   std::vector<Member> own_points_, hull_points_;
   double certain_gap_ = 0;  // mesh units

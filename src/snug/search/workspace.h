@@ -28,7 +28,9 @@ struct Node {
 /// Guarantee: a node opens to the same boxes whatever came before: no answer depends on earlier queries.
 class SurfaceWorkspace {
  public:
-  explicit SurfaceWorkspace(const SurfaceBvh& model) : model_(&model) {}
+  /// A query splits at most this many different pieces, which bounds its memory.
+  explicit SurfaceWorkspace(const SurfaceBvh& model, std::size_t most_pieces = 50'000)
+      : model_(&model), most_pieces_(most_pieces) {}
 
   [[nodiscard]] const SurfaceBvh& model() const { return *model_; }
   [[nodiscard]] std::size_t bytes() const;
@@ -74,8 +76,8 @@ class SurfaceWorkspace {
   /// Requires:  can_open(node), or a piece above the last level.
   [[nodiscard]] Opened open(const Node& node);
 
-  /// Has the query split as many different pieces as one may? Bounds its memory.
-  [[nodiscard]] bool full() const { return touched_ >= 50'000; }
+  /// Has the query split as many different pieces as one may?
+  [[nodiscard]] bool full() const { return touched_ >= most_pieces_; }
 
  private:
   static constexpr std::uint32_t none = UINT32_MAX;
@@ -116,6 +118,7 @@ class SurfaceWorkspace {
   [[nodiscard]] Patch& next_patch();
 
   const SurfaceBvh* model_;
+  std::size_t most_pieces_;
   Roots roots_;
   // What is behind the counts is memory for more.
   std::deque<Split> splits_;
