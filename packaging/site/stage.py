@@ -73,8 +73,8 @@ class Site:
                 self.pages[path] = path.relative_to("docs")
             elif path.parts[0] in ("include", "adapters") and path.suffix == ".h" and path.name != "snug.h":
                 self.pages[path] = pathlib.Path("reference", path.stem + ".md")
-        self.decisions = [path for path in self.files if path.parent == pathlib.Path("docs/decisions")]
-        self.pages[pathlib.Path("docs/decisions")] = pathlib.Path("decisions", "index.md")
+        for folder in ("decisions", "derivations"):
+            self.pages[pathlib.Path("docs", folder)] = pathlib.Path(folder, "README.md")
 
     def write(self, page, text):
         """A page for MkDocs, and what it is made of for check.py."""
@@ -142,8 +142,6 @@ class Site:
             elif path.parts[0] == "docs" and path.is_file():
                 (self.output / page).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(ROOT / path, self.output / page)
-        titles = [(path.name, (ROOT / path).read_text(encoding="utf-8").splitlines()[0].lstrip("# ")) for path in self.decisions]
-        self.write(pathlib.Path("decisions", "index.md"), "# Decisions\n\n" + "".join(f"- [{title}]({name})\n" for name, title in titles))
         shutil.copytree(ROOT / "packaging/site/assets", self.output / "assets", dirs_exist_ok=True)
 
 
