@@ -1,6 +1,6 @@
 """Lays out what MkDocs reads: stage.py OUTPUT SOURCES DOXYGEN-XML.
 
-README.md and CHANGELOG.md become pages beside those of docs/; files of the repository that pages link to become pages of their
+README.md, CONTRIBUTING.md and CHANGELOG.md become pages beside those of docs/; files of the repository that pages link to become pages of their
 text, below files/, and folders lists of these. Links are changed accordingly; those that lead nowhere are left for check.py to find.
 """
 
@@ -67,6 +67,7 @@ class Site:
                                capture_output=True, text=True).stdout.split("\0")
         self.files = sorted(pathlib.Path(name) for name in names if name and (ROOT / name).is_file())
         self.pages = {pathlib.Path("README.md"): pathlib.Path("index.md"), pathlib.Path("CHANGELOG.md"): pathlib.Path("changelog.md"),
+                      pathlib.Path("CONTRIBUTING.md"): pathlib.Path("contributing.md"),
                       pathlib.Path("include/snug"): pathlib.Path("reference/index.md")}
         for path in self.files:
             if path.parts[0] == "docs":
