@@ -9,44 +9,44 @@
 namespace snug {
 
 struct DeviationOptions {
-  /// > 0, mesh units: how narrow the intervals become. Default: 0.01 % of the surface's size.
+  /// > 0, mesh units: largest width of the intervals. Default: 0.01 % of the surface's size.
   std::optional<double> absolute{};
-  /// >= 0, mesh units: only which distances are greater is asked. The search ends once each is told.
+  /// >= 0, mesh units: only decide which distances exceed this; stop as soon as all are decided.
   std::optional<double> tolerance{};
-  /// The surface is closed: also how far the candidate lies inside and outside of its solid.
+  /// For a closed surface: also bound how far the candidate lies inside and outside its solid.
   bool solid = false;
-  /// Most parts that are compared in each direction. Memory: 100 bytes each at most, and 100 MB; see Cost.
+  /// Most parts compared in each direction. Memory: 100 bytes each at most, and 100 MB; see Cost.
   std::uint64_t budget = 50'000'000;
   int threads = 0;  ///< 0: all cores
 };
 
-/// The greatest distance of a point of one set from the other set, in mesh units: a one-sided Hausdorff
+/// The greatest distance from a point of one set to the other set, in mesh units: a one-sided Hausdorff
 /// distance.
 struct OneSidedDistance {
-  Interval distance;  ///< contains it
-  Point3 from;        ///< the farthest point found, as far away as the lower end tells
+  Interval distance;  ///< contains the exact distance
+  Point3 from;        ///< the farthest point found, at least the lower end away
   Point3 to;          ///< a point of the other set near it
-  double error = 0;   ///< upper bound, per coordinate, of the distance of `from` from a point of its set
-  std::optional<SurfaceParameter> at{};  ///< of `from` if its set is a surface
+  double error = 0;   ///< upper bound, per coordinate, of the distance from `from` to a point of its set
+  std::optional<SurfaceParameter> at{};  ///< parameters of `from` if its set is a surface
 };
 
-/// How far a limit surface and a candidate that is to stand for it deviate from each other.
+/// How far a limit surface and a candidate meant to replace it deviate from each other.
 struct Deviation {
-  OneSidedDistance from_surface;    ///< of points of the surface from the candidate
-  OneSidedDistance from_candidate;  ///< of points of the candidate from the surface
-  /// With `solid`: of the points of the candidate that lie inside, that lie outside; 0 if there are none.
+  OneSidedDistance from_surface;    ///< from points of the surface to the candidate
+  OneSidedDistance from_candidate;  ///< from points of the candidate to the surface
+  /// With `solid`: from the candidate's points inside, and from those outside; 0 if there are none.
   std::optional<OneSidedDistance> inside{}, outside{};
-  /// Is each interval as narrow as requested or, with a tolerance, each question answered?
+  /// Is each interval as narrow as requested or, with a tolerance, is each comparison decided?
   bool reached = false;
 };
 
-/// The two one-sided Hausdorff distances between a limit surface and triangles: any, in any order and
+/// The two one-sided Hausdorff distances between a limit surface and any triangles: in any order and
 /// orientation, open, crossing each other, degenerate.
 ///
 /// Guarantee: each interval contains the exact distance for the given doubles, whether the precision is
 ///            reached or not. The result depends on the input alone, not on threads.
-/// Errors:    InputError: (value) without triangles, for a corner that is not finite, a tolerance that is
-///            negative, a precision that is not positive, or less than 2^-38 of the largest coordinate;
+/// Errors:    InputError: (value) without triangles, for a corner that is not finite, a negative
+///            tolerance, or a precision that is not positive or below 2^-38 of the largest coordinate;
 ///            (refused) if no face of the mesh has a limit surface, and with `solid` if it is not closed;
 ///            (unrepresentable) if a result does not fit a double. Interrupted.
 /// Cost:      grows with triangles and patches, and with the square root of size over precision: see

@@ -10,67 +10,67 @@
 namespace snug {
 
 struct HullOptions {
-  double tolerance = 0;  ///< > 0, mesh units: no hull is farther than this from the surface, nor it from them
-  bool inner = true, outer = true;  ///< which ones are wanted
-  /// Most triangles of a hull. Memory: 2 to 3 kB each, and up to 10 kB each and 100 MB where hulls fail.
+  double tolerance = 0;  ///< > 0, mesh units: largest distance between surface and hull, either way
+  bool inner = true, outer = true;  ///< which hulls to make
+  /// Most triangles of a hull. Memory: 2 to 3 kB each; if hulls fail, up to 10 kB each and 100 MB more.
   std::uint64_t budget = 1'000'000;
   int threads = 0;                ///< 0: all cores
-  bool single_precision = false;  ///< coordinates are floats, for formats that hold no others
+  bool single_precision = false;  ///< round coordinates to floats, for formats that store floats
 };
 
-/// Triangles on one side of a limit surface, oriented as its faces; of a closed one outward.
+/// Triangles on one side of a limit surface, oriented as its faces; for a closed surface, outward.
 struct Hull {
   std::vector<Point3> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   std::vector<std::uint32_t>
-      owners;  ///< of each triangle the face that it is over; in a dual scheme, the vertex
-  /// Proved: no point of it is farther from the surface, no point of the surface is farther from it.
+      owners;  ///< for each triangle, the face it lies over; in a dual scheme, the vertex
+  /// Proved: hull and surface are nowhere farther than this from each other.
   double gap = 0;
 };
 
-/// What keeps a hull from being proved, or from being at all.
+/// Why a hull could not be verified, or could not be built.
 enum class HullFault : std::uint8_t {
-  no_position,        ///< the facets around a vertex face all ways: no point is beyond all of them
-  meets_surface,      ///< a facet could not be kept off the surface
-  meets_itself,       ///< two facets could not be kept off each other
-  meets_other,        ///< nor the two hulls
-  not_around,         ///< the hull does not enclose the surface, or is not enclosed by it
-  too_few_triangles,  ///< the budget allows no more, and these are not near enough to the surface
+  no_position,        ///< no point lies beyond all facets around a vertex, which face all ways
+  meets_surface,      ///< a facet could not be separated from the surface
+  meets_itself,       ///< two facets could not be separated from each other
+  meets_other,        ///< the two hulls could not be separated
+  not_around,         ///< the outer hull does not enclose the surface, or the surface the inner one
+  too_few_triangles,  ///< the budget is spent, and the hull is not within the tolerance
 };
 [[nodiscard]] SNUG_API const char* name_of(HullFault fault);
 
-/// Where.
+/// Where a hull failed, and why.
 struct HullProblem {
   HullFault fault;
-  bool inner;                            ///< of the inner hull
-  Point3 place;                          ///< a point of the surface or of the hull there, mesh units
-  std::optional<std::uint32_t> owner{};  ///< face there; in a dual scheme, vertex
+  bool inner;                            ///< true: the inner hull failed
+  Point3 place;                          ///< a point there, of the surface or the hull, mesh units
+  std::optional<std::uint32_t> owner{};  ///< the face there; in a dual scheme, the vertex
 };
 
 struct Hulls {
   std::optional<Hull> inner, outer;
   bool verified = false;              ///< do all guarantees of hulls() hold?
-  std::vector<HullProblem> problems;  ///< if not, some of the places
+  std::vector<HullProblem> problems;  ///< if not, some of the failures
   bool closed = false;                ///< does the surface bound a solid?
 };
 
-/// Two meshes that sandwich a limit surface: the inner hull lies inside of the solid that a closed surface
-/// bounds, whichever way its faces are oriented, the outer one around it. Of an open surface they are a sheet
-/// behind and one in front of it, with the same border as the surface's, moved: a strip as wide as the gap
-/// along it is not covered.
+/// Two meshes that sandwich a limit surface. For a closed surface, the inner hull lies inside the solid that it
+/// bounds and the outer one around it, whichever way the faces are oriented. For an open surface: one sheet
+/// behind it and one in front, with its border offset; a strip along the border as wide as the gap stays
+/// uncovered.
 ///
-/// Guarantee: if `verified`, no triangle of a hull has a point in common with the limit surface, nor with the
-///            other hull, nor with its own triangles but for vertices and edges that both name; each point of a
-///            hull is within Hull::gap <= tolerance of the surface, and of the surface likewise; the solid of a
-///            closed surface lies inside of the outer hull's and around the inner one's. Everything holds for
-///            the doubles given and, but for a gap below the tolerance, was proved from them, not by how they
-///            were found. Does not depend on threads. Surfaces that touch themselves, or have sheets nearer to
-///            each other than hulls fit between, are not `verified`, as a rule.
-/// Errors:    InputError: (value) for a tolerance that is not finite and positive, above half of the size, or
-///            too small for doubles or floats; (refused), naming two faces, where these run along an edge the
-///            same way, as on a Moebius strip or where three meet; (unrepresentable). Interrupted.
-/// Cost:      50 to 100 microseconds a triangle in one thread; where hulls fail, many times that.
-/// Source:    [Wu05, sec. 5.2]; differs: planes of whole facets, verified; derivations/hulls.md.
+/// Guarantee: if `verified`, no triangle of a hull meets the limit surface, the other hull, or another triangle
+///            of its own hull except in shared vertices and edges; hull and surface are nowhere farther than
+///            Hull::gap <= tolerance from each other; the solid of a closed surface lies inside the outer hull
+///            and contains the inner one. Everything holds for the returned doubles and, except for a gap below
+///            the tolerance, was proved from them, not from how they were found. Does not depend on threads. A
+///            surface that touches itself, or whose sheets leave no room for hulls between them, is usually not
+///            `verified`.
+/// Errors:    InputError: (value) for a tolerance that is not finite and positive, above half the size, or
+///            too small for doubles or floats; (refused), naming two faces, if these run along an edge in the
+///            same direction, as on a Moebius strip or where three meet; (unrepresentable). Interrupted.
+/// Cost:      50 to 100 microseconds a triangle on one thread; many times that if hulls fail.
+/// Source:    [Wu05, sec. 5.2]; differs: planes of whole facets, verified, derivations/hulls.md.
 [[nodiscard]] SNUG_API Hulls hulls(const Surface& surface, const HullOptions& options,
                                    const WorkMonitor& monitor = {});
 

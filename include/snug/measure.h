@@ -9,9 +9,9 @@
 namespace snug {
 
 struct MeasureOptions {
-  /// >= 0: how narrow intervals must become, see Measures::reached. Default: 0.0001.
+  /// >= 0: relative width of the intervals, see Measures::reached. Default: 0.0001.
   std::optional<double> relative{};
-  std::uint64_t budget = 10'000'000;  ///< most splits; each patch has an equal share of them; no memory
+  std::uint64_t budget = 10'000'000;  ///< most splits, an equal share for each patch; takes no memory
   int threads = 0;                    ///< 0: all cores
 };
 
@@ -21,17 +21,17 @@ struct MeasureOptions {
 /// faces look clockwise from outside.
 struct Measures {
   Interval area;
-  /// Empty unless the surface is closed: along every edge of the mesh as many faces run one way as the
-  /// other, and all have a limit surface.
+  /// Empty unless the surface is closed: along every edge of the mesh as many faces run in one direction as
+  /// in the other, and all faces have a limit surface.
   std::optional<Interval> volume;
   /// The next two are also empty where the volume may be 0.
   std::optional<std::array<Interval, 3>> centroid;
-  /// About the centroid, with density 1 and axes along the coordinates': moments about x, y, z, then the
-  /// products of the inertia tensor xy, yz, zx, which are minus the integrals of xy, yz, zx.
+  /// About the centroid, with density 1 and the coordinate axes: the moments about x, y, z, then the products
+  /// xy, yz, zx of the inertia tensor, which are minus the integrals of xy, yz, zx.
   std::optional<std::array<Interval, 6>> inertia;
-  /// Is every interval that is there at most `relative` times as wide as the area; as |volume|; as the size,
-  /// for the centroid; as the largest entry, for inertia? Areas, volumes and entries below relative times
-  /// size^2, size^3 and size^5 count as these.
+  /// True if each interval's width is at most `relative` times: the area; |volume|; for the centroid, the size;
+  /// for the inertia, the largest entry. Areas, volumes and entries below `relative` times size^2, size^3 and
+  /// size^5 count as these.
   bool reached = false;
   std::uint64_t splits = 0;
 };
@@ -44,7 +44,7 @@ struct Measures {
 ///            the mesh has a limit surface, or with Midedge beside a face of several hundred corners;
 ///            (unrepresentable) if a result does not fit a double. Interrupted.
 /// Cost:      at the default precision 10 microseconds a regular patch, and 0.1 ms for each extraordinary corner
-///            of a patch. More digits cost some 0.03 ms a corner each.
+///            of a patch. Each further digit costs about 0.03 ms a corner.
 /// Source:    derivations/measures.md.
 [[nodiscard]] SNUG_API Measures measure(const Surface& surface, const MeasureOptions& options = {},
                                         const WorkMonitor& monitor = {});
