@@ -51,11 +51,11 @@ page-test: page  ## the package against the command, bit by bit, and the page in
 	@$(call build,$(demo_preset),snug_command)
 	@SNUG=build/$(demo_preset)/bin/snug web/test build/web
 
-test-long: install-packages build  ## the random tests with many more cases (docs/derivations/README.md), then every test with address sanitizer
+test-long: install-packages build  ## the random tests with many more cases (docs/debugging.md), then every test with address sanitizer
 	@SNUG_PLACEMENTS=20000 $(ctest) --preset release
-	@SNUG_PARTS=1000 build/release/bin/tests/sharp_parts_test
-	@SNUG_PLACEMENTS=150000 build/release/bin/tests/sound_solids_test --gtest_filter='solids.*'
-	@SNUG_PLACEMENTS=1000000 build/release/bin/tests/sound_solids_test --gtest_filter='signed_distance.*'
+	@SNUG_PARTS=1000 build/release/bin/tests/query_test --gtest_filter='sharp_parts.*'
+	@SNUG_PLACEMENTS=150000 build/release/bin/tests/sound_test --gtest_filter='solids.*'
+	@SNUG_PLACEMENTS=1000000 build/release/bin/tests/sound_test --gtest_filter='signed_distance.*'
 	@$(call build,asan)
 	@$(ctest) --test-dir build/asan --output-on-failure
 

@@ -16,8 +16,9 @@
 #include <snug/io/formats.h>
 #include <snug/io/mesh_file.h>
 #include <snug/search/surface_data.h>
+#include <testing/places.h>
 
-namespace snug {
+namespace snug::opensubdiv_test {
 namespace {
 
 namespace Far = OpenSubdiv::Far;
@@ -426,7 +427,7 @@ TEST(opensubdiv_adapter, keeps_corners_on_the_edge_of_a_wall_inside) {
 }
 
 TEST(opensubdiv_adapter, hands_loop_meshes_to_surface) {
-  const ControlMesh bust = read_mesh(std::string(SNUG_MODELS_DIR) + "/bust.obj");
+  const ControlMesh bust = read_mesh(testing::models_dir() + "/bust.obj");
   for (const ControlMesh& mesh : {icosahedron(), bust}) {
     expect_round_trip(mesh, Scheme::loop);
     MeshAndOptions answer = from_refiner(*refiner_of(mesh, Sdc::SCHEME_LOOP), mesh.points);
@@ -525,4 +526,4 @@ TEST(opensubdiv_adapter, hands_over_bilinear_surfaces) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::opensubdiv_test

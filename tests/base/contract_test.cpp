@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-namespace snug {
+namespace snug::contract_test {
 namespace {
 
 TEST(contract, calls_the_handler_with_the_condition_as_written) {
@@ -32,4 +32,4 @@ TEST(ids, of_different_sorts_do_not_compare) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::contract_test

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <thread>
 
-namespace snug {
+namespace snug::in_order_test {
 namespace {
 
 TEST(in_order, hands_on_each_result_once_all_before_it_are_there) {
@@ -55,4 +55,4 @@ TEST(in_order, hands_nothing_on_after_a_failure) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::in_order_test

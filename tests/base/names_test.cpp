@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace snug {
+namespace snug::names_test {
 namespace {
 
 enum class Colour { red, green, grey };
@@ -33,4 +33,4 @@ TEST(names, are_listed_as_a_sentence_has_them) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::names_test

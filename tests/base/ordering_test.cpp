@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace snug {
+namespace snug::ordering_test {
 namespace {
 
 // By `key` alone, so that many are equal; `name` tells them apart.
@@ -143,4 +143,4 @@ TEST(ordering, equal_elements_come_in_the_order_of_libstdcxx) {
 #endif
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::ordering_test

@@ -7,10 +7,10 @@
 #include <stdexcept>
 #include <vector>
 
-namespace snug {
+namespace snug::parallel_test {
 namespace {
 
-TEST(parallel_for, covers_every_index_once) {
+TEST(parallel_for, threads_cover_every_index_once) {
   for (const int threads : {0, 1, 2, 4}) {
     std::vector<std::atomic<int>> seen(1000);
     parallel_for(seen.size(), threads, [&](std::size_t begin, std::size_t end) {
@@ -37,7 +37,7 @@ TEST(parallel_for, makes_one_state_a_thread) {
       0, 4, [] { return ADD_FAILURE(), 0; }, [](int, std::size_t, std::size_t) { FAIL(); });
 }
 
-TEST(parallel_for, works_inside_of_itself) {
+TEST(parallel_for, works_inside_of_threads_of_its_own) {
   std::atomic<std::size_t> sum{0};
   parallel_for(8, 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -61,10 +61,10 @@ TEST(parallel_for, hands_on_an_exception_of_any_thread) {
       std::runtime_error);
 }
 
-TEST(parallel_for, hands_on_exceptions) {
+TEST(parallel_for, hands_on_exceptions_of_threads) {
   EXPECT_THROW(parallel_for(100, 2, [](std::size_t, std::size_t) { throw std::runtime_error("one"); }),
                std::runtime_error);
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::parallel_test

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace snug {
+namespace snug::recent_values_test {
 namespace {
 
 struct RecentSquares : ::testing::Test {
@@ -49,4 +49,4 @@ TEST_F(RecentSquares, are_as_they_were_where_one_cannot_be_made) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::recent_values_test

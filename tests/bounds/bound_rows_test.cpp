@@ -10,7 +10,7 @@
 #include <cmath>
 #include <random>
 
-namespace snug {
+namespace snug::bound_rows_test {
 namespace {
 
 using testing::assorted_kinds;
@@ -146,4 +146,4 @@ TEST(tip_depth, grows_with_the_valence_and_stays_bounded) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::bound_rows_test

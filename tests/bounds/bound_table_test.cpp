@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace snug {
+namespace snug::bound_table_test {
 namespace {
 
 using testing::inside;
@@ -231,4 +231,4 @@ TEST(layout, of_other_kinds_has_its_limit_corners_at_the_corners) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::bound_table_test

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace snug {
+namespace snug::bounds_cache_test {
 namespace {
 
 TEST(bound_library, hands_every_thread_the_same_rows_and_tables) {
@@ -83,4 +83,4 @@ TEST(bound_library, beyond_its_limit_serves_all_threads) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::bounds_cache_test

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace snug {
+namespace snug::crease_rows_test {
 namespace {
 
 // A grid of 5 x 5 quads with a crease along one of the four lines of the middle one, face 12.
@@ -188,4 +188,4 @@ TEST(crease_rows, are_none_where_anything_else_is_about) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::crease_rows_test

@@ -11,7 +11,7 @@
 #include <random>
 #include <string>
 
-namespace snug {
+namespace snug::fit_kernels_test {
 namespace {
 
 using testing::Quad;
@@ -633,4 +633,4 @@ TEST(fit_kernels, say_the_same_on_every_instruction_set) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::fit_kernels_test

@@ -4,7 +4,7 @@
 #include <testing/patches.h>
 #include <testing/tagged.h>
 
-namespace snug {
+namespace snug::hull_points_test {
 namespace {
 
 // The box around the points, relative to their origin.
@@ -126,4 +126,4 @@ TEST(hull_points, of_crowded_patches_hold_their_corners) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::hull_points_test

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace snug {
+namespace snug::linear_programme_test {
 namespace {
 
 struct Points {
@@ -111,4 +111,4 @@ TEST(lowest_plane_above, is_the_same_each_time) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::linear_programme_test

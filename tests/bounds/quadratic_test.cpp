@@ -16,7 +16,7 @@
 #include <algorithm>
 #include <map>
 
-namespace snug {
+namespace snug::quadratic_test {
 namespace {
 
 using testing::Extended;
@@ -286,4 +286,4 @@ TEST(quadratic_triangle, of_points_that_are_not_finite_has_an_infinite_error) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::quadratic_test

@@ -13,7 +13,7 @@
 #include <random>
 #include <set>
 
-namespace snug {
+namespace snug::rows_kernel_test {
 namespace {
 
 // Patches of one kind with control points of their own, around the places where a layout has them: bent,
@@ -179,4 +179,4 @@ TEST(fit_rows, has_the_same_bits_on_every_instruction_set) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::rows_kernel_test

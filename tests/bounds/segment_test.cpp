@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace snug {
+namespace snug::segment_test {
 namespace {
 
 HullPoints points_of(const std::vector<Vector3>& list) {
@@ -50,4 +50,4 @@ TEST(segment, of_what_is_not_finite_has_an_infinite_radius) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::segment_test

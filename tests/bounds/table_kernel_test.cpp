@@ -15,7 +15,7 @@
 #include <set>
 #include <string>
 
-namespace snug {
+namespace snug::table_kernel_test {
 namespace {
 
 class Random {
@@ -151,4 +151,4 @@ TEST(fit_table, has_the_same_bits_on_every_instruction_set) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::table_kernel_test

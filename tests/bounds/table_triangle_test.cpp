@@ -10,7 +10,7 @@
 #include <cmath>
 #include <random>
 
-namespace snug {
+namespace snug::table_triangle_test {
 namespace {
 
 using testing::Quad;
@@ -129,4 +129,4 @@ TEST(offset_of_a_table_triangle, contains_the_boxes_and_is_no_larger) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::table_triangle_test

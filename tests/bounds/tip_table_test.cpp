@@ -5,7 +5,7 @@
 #include <snug/patch/evaluate.h>
 #include <testing/scheme_surfaces.h>
 
-namespace snug {
+namespace snug::tip_table_test {
 namespace {
 
 // The same boxes by middle and half width, at the origin of the patch.
@@ -57,4 +57,4 @@ TEST(tip_table, holds_limit_corners_of_points_far_from_the_origin) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::tip_table_test

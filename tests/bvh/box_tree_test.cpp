@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace snug {
+namespace snug::box_tree_test {
 namespace {
 
 constexpr double inf = INFINITY;
@@ -113,4 +113,4 @@ TEST(box_gaps, are_finite_wherever_boxes_are) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::box_tree_test

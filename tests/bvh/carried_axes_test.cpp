@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace snug {
+namespace snug::carried_axes_test {
 namespace {
 
 double off_orthonormal(const Axes& axes) {
@@ -85,4 +85,4 @@ TEST_F(CarriedAxesTest, spread_points_are_far_from_each_other) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::carried_axes_test

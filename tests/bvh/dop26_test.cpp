@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-namespace snug {
+namespace snug::dop26_test {
 namespace {
 
 // A box around points along the coordinate axes, or along the principal ones.
@@ -142,4 +142,4 @@ TEST(dop26, what_is_not_finite_reaches_no_number) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::dop26_test

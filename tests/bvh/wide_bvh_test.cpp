@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace snug {
+namespace snug::wide_bvh_test {
 namespace {
 
 std::vector<Point3> scattered(std::size_t count) {
@@ -245,4 +245,4 @@ TEST(bounding_tree, makes_a_part_again_that_failed) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::wide_bvh_test

@@ -13,7 +13,7 @@
 #include <tuple>
 #include <vector>
 
-namespace snug {
+namespace snug::wide_node_test {
 namespace {
 
 using testing::any_frame;
@@ -433,4 +433,4 @@ TEST(wide_node, merging_keeps_the_contents) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::wide_node_test

@@ -15,7 +15,7 @@
 #include <random>
 #include <span>
 
-namespace checker {
+namespace checker::checker_test {
 namespace {
 
 const std::vector<std::byte>& common_bytes() {
@@ -463,4 +463,4 @@ TEST(checker, reads_or_rejects_any_bytes) {
 }
 
 }  // namespace
-}  // namespace checker
+}  // namespace checker::checker_test

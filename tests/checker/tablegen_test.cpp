@@ -10,7 +10,7 @@
 #include <span>
 #include <unordered_set>
 
-namespace tablegen {
+namespace tablegen::tablegen_test {
 namespace {
 
 using snug::KindKey;
@@ -128,4 +128,4 @@ TEST(tablegen, knows_keys_that_meshes_give_and_each_once) {
 }
 
 }  // namespace
-}  // namespace tablegen
+}  // namespace tablegen::tablegen_test

@@ -7,7 +7,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::advice_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -180,4 +180,4 @@ TEST_F(advice, of_an_envelope_says_that_a_saddle_corner_has_none) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::advice_test

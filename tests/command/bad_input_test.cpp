@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <testing/places.h>
 
 #include <algorithm>
 #include <fstream>
@@ -8,13 +9,13 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::bad_input_test {
 namespace {
 
 // Rows "| file | status | what |" of the corpus' index.
 std::map<std::string, int> corpus() {
   std::map<std::string, int> files;
-  std::ifstream index(std::string(SNUG_CORPUS_DIR) + "/INDEX.md");
+  std::ifstream index(testing::corpus_dir() + "/INDEX.md");
   for (std::string line; std::getline(index, line);) {
     if (!line.starts_with("| ")) continue;
     const auto bar = line.find(" | ", 2);
@@ -40,7 +41,7 @@ TEST(bad_input, ends_with_the_status_of_the_index_for_every_command) {
   // Faces that name a vertex twice: refinement needs no patches.
   const std::set<std::string> refined{"repeated_index.obj", "repeated_index.off", "repeated_index.ply"};
   for (const auto& [name, listed] : files) {
-    const std::string path = std::string(SNUG_CORPUS_DIR) + "/" + name;
+    const std::string path = testing::corpus_dir() + "/" + name;
     const Outcome info = run_snug({"info", path, "--json", "--quiet"});
     EXPECT_EQ(info.status, listed == 3 ? 3 : 0) << name << info.err;
     int expected = listed;
@@ -76,7 +77,7 @@ TEST(bad_input, ends_with_the_status_of_the_index_for_every_command) {
 TEST(bad_input, missing_files_and_folders_are_named) {
   expect_one_line_error(run_snug({"bound", "nowhere.obj"}), "nowhere.obj");
   EXPECT_EQ(run_snug({"bound", "nowhere.obj"}).status, 3);
-  EXPECT_EQ(run_snug({"bound", SNUG_CORPUS_DIR}).status, 3);
+  EXPECT_EQ(run_snug({"bound", testing::corpus_dir()}).status, 3);
   EXPECT_EQ(run_snug({"subdivide", model("star.obj"), "-o", "/nowhere/at/all.obj"}).status, 3);
   EXPECT_EQ(run_snug({"subdivide", model("star.obj"), "-o", "out.xyz"}).status, 3);
 }
@@ -92,4 +93,4 @@ TEST(bad_input, a_lone_triangle_works) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::bad_input_test

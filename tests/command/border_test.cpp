@@ -16,7 +16,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::border_test {
 namespace {
 
 using Seconds = std::chrono::duration<double>;
@@ -370,4 +370,4 @@ TEST(border, a_signal_while_the_file_is_written_leaves_nothing) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::border_test

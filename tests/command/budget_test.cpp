@@ -8,7 +8,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::budget_test {
 namespace {
 
 using nlohmann::json;
@@ -111,4 +111,4 @@ TEST(budget, numbers_of_triangles_that_are_named_are_enough) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::budget_test

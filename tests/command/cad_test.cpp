@@ -10,7 +10,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::cad_test {
 namespace {
 
 // A cube of six open sheets, each with vertices of its own, which are `gap` outside of where they meet.
@@ -192,4 +192,4 @@ TEST(sharp, gives_known_parts_their_known_clearance) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::cad_test

@@ -7,7 +7,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::contact_test {
 namespace {
 
 using nlohmann::json;
@@ -143,4 +143,4 @@ TEST_F(contact, refusals_name_the_option_and_the_next_step) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::contact_test

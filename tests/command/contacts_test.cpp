@@ -9,7 +9,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::contacts_test {
 namespace {
 
 using nlohmann::json;
@@ -67,4 +67,4 @@ TEST(contacts_command, refuses_what_does_not_go_together) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::contacts_test

@@ -9,7 +9,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::curve_test {
 namespace {
 
 using nlohmann::json;
@@ -298,4 +298,4 @@ TEST(curve, broken_polylines_are_named) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::curve_test

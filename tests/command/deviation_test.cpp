@@ -12,7 +12,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::deviation_test {
 namespace {
 
 using nlohmann::json;
@@ -213,4 +213,4 @@ TEST_F(deviation, that_was_not_reached_is_status_5) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::deviation_test

@@ -11,7 +11,7 @@
 #include "run_snug.h"
 
 /// Triangles in files that mean them, in files that do not say, and in files that mean a control mesh.
-namespace snug::testing {
+namespace snug::testing::facets_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -242,4 +242,4 @@ TEST_F(Facets, that_are_subdivided_stay_facets_in_formats_that_say_so) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::facets_test

@@ -16,7 +16,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::fit_test {
 namespace {
 
 using nlohmann::json;
@@ -310,4 +310,4 @@ TEST_F(fit_command, refuses_words_and_files_that_do_not_fit) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::fit_test

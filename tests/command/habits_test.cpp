@@ -11,7 +11,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::habits_test {
 namespace {
 
 const std::string beside = "1 0 0 9 0 1 0 0 0 0 1 0";
@@ -220,4 +220,4 @@ TEST(completion, is_for_bash) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::habits_test

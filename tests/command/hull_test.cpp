@@ -12,7 +12,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::hull_test {
 namespace {
 
 using nlohmann::json;
@@ -227,4 +227,4 @@ TEST(envelope, says_what_is_wrong) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::hull_test

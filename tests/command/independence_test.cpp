@@ -9,7 +9,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::independence_test {
 namespace {
 
 using nlohmann::json;
@@ -263,4 +263,4 @@ TEST_F(independence_command, refuses_what_is_no_question) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::independence_test

@@ -5,7 +5,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::json_test {
 namespace {
 
 using nlohmann::json;
@@ -129,4 +129,4 @@ TEST(subdivide_and_render, say_what_they_made) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::json_test

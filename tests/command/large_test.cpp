@@ -4,7 +4,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::large_test {
 namespace {
 
 TEST(large, a_million_triangles_are_bounded) {
@@ -30,4 +30,4 @@ TEST(polyhedra, beyond_four_million_facets_are_refused_and_leave_no_file) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::large_test

@@ -9,7 +9,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::measure_test {
 namespace {
 
 using nlohmann::json;
@@ -114,4 +114,4 @@ TEST_F(measure_command, refuses_what_is_no_surface) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::measure_test

@@ -6,7 +6,7 @@
 #include <testing/six_sheets.h>
 #include <testing/twins.h>
 
-namespace snug::command {
+namespace snug::command::mesh_counts_test {
 namespace {
 
 using testing::six_sheets;
@@ -90,4 +90,4 @@ TEST(coincidences, a_closed_mesh_with_distinct_vertices_and_one_that_is_broken_h
 }
 
 }  // namespace
-}  // namespace snug::command
+}  // namespace snug::command::mesh_counts_test

@@ -6,7 +6,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::options_test {
 namespace {
 
 // The document without what may differ between runs.
@@ -184,4 +184,4 @@ TEST(interruption, ends_with_130_and_leaves_nothing) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::options_test

@@ -8,7 +8,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::points_test {
 namespace {
 
 using nlohmann::json;
@@ -150,4 +150,4 @@ TEST(points, other_endings_and_weights_are_usage_errors) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::points_test

@@ -10,7 +10,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::polyhedra_test {
 namespace {
 
 // A side that is no double any more: the bounds are, the hull and the longest side are not.
@@ -165,4 +165,4 @@ TEST(mesh_formats, are_read_and_written_by_subdivide) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::polyhedra_test

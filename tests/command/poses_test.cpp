@@ -14,7 +14,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::poses_test {
 namespace {
 
 using nlohmann::json;
@@ -334,4 +334,4 @@ TEST_F(pose_files, that_do_not_come_can_be_interrupted) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::poses_test

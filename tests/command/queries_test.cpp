@@ -11,7 +11,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::queries_test {
 namespace {
 
 using nlohmann::json;
@@ -279,4 +279,4 @@ TEST_F(queries, interruption_leaves_no_file) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::queries_test

@@ -10,7 +10,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::ray_test {
 namespace {
 
 using nlohmann::json;
@@ -148,4 +148,4 @@ TEST_F(ray_command, pictures_refuse_what_cannot_be_drawn) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::ray_test

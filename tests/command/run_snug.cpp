@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/wait.h>
+#include <testing/places.h>
 #include <unistd.h>
 #include <csignal>
 #include <cstdlib>
@@ -79,6 +80,6 @@ TemporaryFolder::~TemporaryFolder() {
   std::filesystem::remove_all(path_, ignored);
 }
 
-std::string model(const std::string& name) { return std::string(SNUG_MODELS_DIR) + "/" + name; }
+std::string model(const std::string& name) { return testing::models_dir() + "/" + name; }
 
 }  // namespace snug::testing

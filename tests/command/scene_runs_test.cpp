@@ -13,7 +13,7 @@
 
 #include "scene_testing.h"
 
-namespace snug::testing {
+namespace snug::testing::scene_runs_test {
 namespace {
 
 class scene_runs : public ::testing::Test {
@@ -215,4 +215,4 @@ TEST_F(ranks, end_with_one_word_for_all_of_them) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::scene_runs_test

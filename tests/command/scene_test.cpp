@@ -13,7 +13,7 @@
 
 #include "scene_testing.h"
 
-namespace snug::testing {
+namespace snug::testing::scene_test {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -454,4 +454,4 @@ TEST_F(journals, keep_what_was_finished_on_a_full_disk) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::scene_test

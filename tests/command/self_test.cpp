@@ -8,7 +8,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::self_test {
 namespace {
 
 using nlohmann::json;
@@ -94,4 +94,4 @@ TEST_F(self_command, ends_with_five_where_nothing_is_decided) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::self_test

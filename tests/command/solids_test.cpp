@@ -10,7 +10,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::solids_test {
 namespace {
 
 using nlohmann::json;
@@ -278,4 +278,4 @@ TEST_F(solids, penetration_is_bounded_by_a_translation_that_separates) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::solids_test

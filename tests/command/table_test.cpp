@@ -16,7 +16,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::table_test {
 namespace {
 
 using nlohmann::json;
@@ -30,7 +30,7 @@ json table_of(const std::string& scheme, std::size_t valence) {
   return json::parse(outcome.out, nullptr, false);
 }
 
-// Two rings around a vertex or a face, numbered as docs/command.md has it: written down again, from the page.
+// Two rings around a vertex or a face, numbered as docs/command/table.md has it: written down again, from the page.
 class Rings {
  public:
   Rings(const std::string& scheme, int n)
@@ -418,4 +418,4 @@ TEST(table_text, has_a_line_a_control_point) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::table_test

@@ -11,7 +11,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::tessellate_test {
 namespace {
 
 nlohmann::json answer(std::vector<std::string> arguments, int status = 0) {
@@ -146,4 +146,4 @@ TEST(tessellate, leaves_nothing_after_a_signal) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::tessellate_test

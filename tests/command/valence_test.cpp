@@ -10,7 +10,7 @@
 
 // The largest valences and faces that are taken, and the next ones.
 
-namespace snug::testing {
+namespace snug::testing::valence_test {
 namespace {
 
 std::string point_at(double turns, double radius, double height) {
@@ -106,4 +106,4 @@ INSTANTIATE_TEST_SUITE_P(schemes, largest_valence,
                          });
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::valence_test

@@ -6,7 +6,7 @@
 
 #include "run_snug.h"
 
-namespace snug::testing {
+namespace snug::testing::view_test {
 namespace {
 
 constexpr const char* head = "<html><script type=\"application/json\" id=\"snug-data\">";
@@ -165,4 +165,4 @@ TEST_F(View, refuses_what_it_cannot_show_and_writes_nothing) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::view_test

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <vector>
 
-namespace snug {
+namespace snug::bound_counts_test {
 namespace {
 
 LimitSurface ball() { return testing::surface_of(oracle::meshes::quartered(oracle::meshes::icosahedron())); }
@@ -123,4 +123,4 @@ TEST(control_boxes, contain_limit_points_of_curves) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::bound_counts_test

@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace snug {
+namespace snug::bound_source_test {
 namespace {
 
 using testing::inside;
@@ -88,4 +88,4 @@ TEST(layout_tables, contain_limit_points_near_every_corner) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::bound_source_test

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace snug {
+namespace snug::convergence_test {
 namespace {
 
 // What all claims about measured factors look at: few nets, all levels.
@@ -311,4 +311,4 @@ TEST(convergence, every_dart_has_a_normal) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::convergence_test

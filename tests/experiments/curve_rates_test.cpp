@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace snug {
+namespace snug::curve_rates_test {
 namespace {
 
 TEST(curve_rates, are_those_of_theory) {
@@ -24,4 +24,4 @@ TEST(curve_rates, are_those_of_theory) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::curve_rates_test

@@ -7,7 +7,7 @@
 #include <snug/base/error.h>
 #include <testing/tagged.h>
 
-namespace snug {
+namespace snug::older_catmark_test {
 namespace {
 
 TEST(older_catmark_rule, is_that_of_the_twin) {
@@ -38,4 +38,4 @@ TEST(older_catmark_rule, knows_no_creases) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::older_catmark_test

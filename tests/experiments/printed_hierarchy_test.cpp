@@ -4,7 +4,7 @@
 #include <snug/query/bound.h>
 #include <testing/patches.h>
 
-namespace snug {
+namespace snug::printed_hierarchy_test {
 namespace {
 
 std::uint64_t bound_count(const LimitSurface& surface, BoundMethod method, double tolerance) {
@@ -57,4 +57,4 @@ TEST(printed_hierarchy, tells_surfaces_that_are_apart_from_those_that_cross) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::printed_hierarchy_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace snug {
+namespace snug::printed_pair_test_test {
 namespace {
 
 using testing::Extended;
@@ -203,4 +203,4 @@ TEST(printed_pair_test, is_right_about_the_side_of_a_plane) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::printed_pair_test_test

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace snug::testing {
+namespace snug::testing::printed_tables_test {
 namespace {
 
 using nlohmann::json;
@@ -97,4 +97,4 @@ TEST(tables_page, prints_the_triangles_that_the_program_counts) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::printed_tables_test

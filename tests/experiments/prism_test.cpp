@@ -5,7 +5,7 @@
 #include <testing/containment.h>
 #include <testing/patches.h>
 
-namespace snug {
+namespace snug::prism_test {
 namespace {
 
 // The counter-example to [Kobbelt98] of the dissertation's figure 1-4: where a patch is strongly curved it
@@ -49,4 +49,4 @@ TEST(kobbelt_prism, contains_a_flat_patch) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::prism_test

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-namespace snug::testing {
+namespace snug::testing::program_test {
 namespace {
 
 using nlohmann::json;
@@ -279,4 +279,4 @@ TEST(program, rates_of_curves_are_measured) {
 }
 
 }  // namespace
-}  // namespace snug::testing
+}  // namespace snug::testing::program_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace snug {
+namespace snug::quantile_test {
 namespace {
 
 TEST(quantile, is_one_of_the_values_in_their_order) {
@@ -14,4 +14,4 @@ TEST(quantile, is_one_of_the_values_in_their_order) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::quantile_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-namespace snug {
+namespace snug::rooms_test {
 namespace {
 
 TEST(rooms, a_unit_model_fills_a_box_of_size_one_around_the_origin) {
@@ -51,4 +51,4 @@ TEST(rooms, rotations_are_uniform) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::rooms_test

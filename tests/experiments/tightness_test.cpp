@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-namespace snug {
+namespace snug::tightness_test {
 namespace {
 
 LimitSurface surface_of_net(ControlMesh mesh) {
@@ -148,4 +148,4 @@ TEST(tightness, does_not_depend_on_threads) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::tightness_test

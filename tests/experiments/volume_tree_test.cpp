@@ -8,7 +8,7 @@
 #include <testing/placed_points.h>
 #include <testing/placements.h>
 
-namespace snug {
+namespace snug::volume_tree_test {
 namespace {
 
 using testing::Extended;
@@ -211,4 +211,4 @@ TEST(volume_tree, tighter_volumes_need_fewer_tests) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::volume_tree_test

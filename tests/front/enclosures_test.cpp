@@ -7,11 +7,12 @@
 #include <gtest/gtest.h>
 #include <snug/evaluate.h>
 #include <testing/journeys.h>
+#include <testing/places.h>
 
-namespace snug {
+namespace snug::enclosures_test {
 namespace {
 
-Surface model(const char* name) { return load(std::string(SNUG_MODELS_DIR) + "/" + name); }
+Surface model(const char* name) { return load(testing::models_dir() + "/" + name); }
 
 TEST(enclosures, name_their_patches_and_hold_their_corners) {
   for (const char* name : {"star.obj", "bracket.obj"}) {
@@ -142,4 +143,4 @@ TEST(enclosures, boxes_in_motion_hold_every_time_in_between) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::enclosures_test

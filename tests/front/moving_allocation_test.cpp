@@ -2,6 +2,7 @@
 // their own.
 #include <gtest/gtest.h>
 #include <snug/snug.h>
+#include <testing/places.h>
 
 #include <atomic>
 #include <cmath>
@@ -41,7 +42,7 @@ void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::fre
 void operator delete[](void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
 #endif
 
-namespace snug {
+namespace snug::moving_allocation_test {
 namespace {
 
 class MovingAllocation : public ::testing::Test {
@@ -62,7 +63,7 @@ class MovingAllocation : public ::testing::Test {
 TEST_F(MovingAllocation, a_warm_frame_takes_no_memory) {
   if (!counting) GTEST_SKIP() << "a sanitizer has the allocator";
   for (const char* const name : {"star.obj", "bust.obj", "pawn.obj"}) {
-    const ControlMesh mesh = read_mesh(std::string(SNUG_MODELS_DIR) + "/" + name);
+    const ControlMesh mesh = read_mesh(testing::models_dir() + "/" + name);
     const Surface first(mesh);
     MovingSurface a(first), b(first);
     const Motion apart = Motion::translation({1.3 * first.size(), 0, 0}),
@@ -87,4 +88,4 @@ TEST_F(MovingAllocation, a_warm_frame_takes_no_memory) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::moving_allocation_test

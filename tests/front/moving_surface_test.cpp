@@ -4,6 +4,7 @@
 #include <snug/front/workspace.h>
 #include <snug/search/surface_data.h>
 #include <testing/journeys.h>
+#include <testing/places.h>
 
 #include <atomic>
 #include <optional>
@@ -11,12 +12,12 @@
 #include <thread>
 #include <vector>
 
-namespace snug {
+namespace snug::moving_surface_test {
 namespace {
 
 using testing::Journey;
 
-ControlMesh model(const char* name) { return read_mesh(std::string(SNUG_MODELS_DIR) + "/" + name); }
+ControlMesh model(const char* name) { return read_mesh(testing::models_dir() + "/" + name); }
 
 // A wave along x, another one each time.
 std::vector<Point3> wave(const std::vector<Point3>& rest, double time) {
@@ -229,4 +230,4 @@ TEST(moving_surface, threads_ask_old_frames_while_it_moves) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::moving_surface_test

@@ -10,13 +10,14 @@
 #include <snug/query/pairs.h>
 #include <snug/search/surface_data.h>
 #include <snug/search/workspace.h>
+#include <testing/places.h>
 
 #include "../io/io_testing.h"
 
-namespace snug {
+namespace snug::queries_test {
 namespace {
 
-std::string model(const char* name) { return std::string(SNUG_MODELS_DIR) + "/" + name; }
+std::string model(const char* name) { return testing::models_dir() + "/" + name; }
 
 // The same question to the rooms inside, with workspaces of their own.
 struct Inside {
@@ -157,4 +158,4 @@ TEST(handles, evaluate_refine_and_measure) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::queries_test

@@ -15,7 +15,7 @@
 #include <testing/placements.h>
 #include <testing/scheme_surfaces.h>
 
-namespace snug {
+namespace snug::scene_test {
 namespace {
 
 Surface surface_of(const oracle::TwinMesh& twin, double size = 1) {
@@ -474,4 +474,4 @@ TEST(scene, ends_where_the_sink_throws_or_a_stop_is_requested) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::scene_test

@@ -10,7 +10,7 @@
 
 #include "../io/io_testing.h"
 
-namespace snug {
+namespace snug::smoothing_note_test {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -207,4 +207,4 @@ TEST(writing, says_that_a_format_loses_facets_only_where_it_does) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::smoothing_note_test

@@ -6,11 +6,12 @@
 #include <snug/front/workspace.h>
 #include <snug/search/surface_data.h>
 #include <snug/snug.h>
+#include <testing/places.h>
 
-namespace snug {
+namespace snug::workspace_test {
 namespace {
 
-Surface star() { return load(std::string(SNUG_MODELS_DIR) + "/star.obj"); }
+Surface star() { return load(testing::models_dir() + "/star.obj"); }
 
 TEST(workspace, holds_nothing_of_surfaces_that_are_gone) {
   Workspace workspace;
@@ -83,4 +84,4 @@ TEST(workspace, of_each_thread_gives_the_same_answers) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::workspace_test

@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-namespace snug {
+namespace snug::direction_test {
 namespace {
 
 TEST(direction, has_length_one_for_vectors_of_every_length) {
@@ -38,4 +38,4 @@ TEST(direction, of_a_vector_that_has_none_is_zero) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::direction_test

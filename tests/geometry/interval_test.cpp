@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace snug {
+namespace snug::interval_test {
 namespace {
 
 // Ends on purpose: zeros, ones, neighbours of powers of two, tiny and huge.
@@ -151,4 +151,4 @@ TEST(interval, sines_of_degrees_contain_the_exact_ones) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::interval_test

@@ -10,7 +10,7 @@
 #include <random>
 #include <string>
 
-namespace snug {
+namespace snug::motion_test {
 namespace {
 
 using Numbers = std::array<double, 12>;
@@ -314,4 +314,4 @@ TEST(nearest_rigid, refuses_singular_and_mirrored_matrices) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::motion_test

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace snug {
+namespace snug::nearest_to_origin_test {
 namespace {
 
 Vector3 on_sphere(std::mt19937_64& random) {
@@ -69,4 +69,4 @@ TEST(nearest_to_origin, of_special_sets) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::nearest_to_origin_test

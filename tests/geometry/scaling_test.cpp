@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace snug {
+namespace snug::scaling_test {
 namespace {
 
 TEST(power_of_two, brings_the_largest_into_one_to_two) {
@@ -29,4 +29,4 @@ TEST(require_representable, refuses_what_overflowed) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::scaling_test

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace snug {
+namespace snug::triangle_distance_test {
 namespace {
 
 using testing::Extended;
@@ -294,4 +294,4 @@ TEST(nearest_triangles, say_the_same_on_every_instruction_set) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::triangle_distance_test

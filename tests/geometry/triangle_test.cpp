@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace snug {
+namespace snug::triangle_test {
 namespace {
 
 Vector3 any_point(std::mt19937_64& random, double size) {
@@ -34,4 +34,4 @@ TEST(triangle_foot, is_feasible_and_nearest) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::triangle_test

@@ -12,7 +12,7 @@
 #include <snug/query/subdivide.h>
 
 // Faces at a boundary vertex.
-namespace snug {
+namespace snug::boundary_test {
 namespace {
 
 using Kind = IndependenceDomain::Kind;
@@ -271,4 +271,4 @@ TEST(independence_at_boundaries, kernels_vanish_on_the_domain_and_leave_nothing_
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::boundary_test

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <set>
 
-namespace snug {
+namespace snug::cases_test {
 namespace {
 
 using Kind = IndependenceDomain::Kind;
@@ -200,4 +200,4 @@ TEST(domains, are_read_as_they_are_written) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::cases_test

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace snug {
+namespace snug::eigenvalues_test {
 namespace {
 
 constexpr ExactScheme loop{Scheme::loop}, catmark{Scheme::catmark};
@@ -200,4 +200,4 @@ TEST(eigenvalues, of_loop_that_are_the_corners_own_are_others_at_valences_3_and_
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::eigenvalues_test

@@ -16,7 +16,7 @@
 #include <snug/surface/limit_surface.h>
 
 // Kernels of meshes against eliminations of limits in exact arithmetic. SNUG_KERNELS: how many random meshes.
-namespace snug {
+namespace snug::mesh_kernel_test {
 namespace {
 
 using oracle::KernelMesh;
@@ -480,4 +480,4 @@ TEST(mesh_kernel, of_a_million_vertices_takes_seconds) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::mesh_kernel_test

@@ -26,7 +26,7 @@
 
 // Ranks by elimination against the theorem where it holds, and against ranks of sampled limits, which share nothing with the
 // library but the masks' definitions.
-namespace snug {
+namespace snug::mesh_rank_test {
 namespace {
 
 using testing::ClosedMesh;
@@ -707,4 +707,4 @@ TEST(mesh_rank, of_the_largest_mesh_takes_seconds) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::mesh_rank_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace snug {
+namespace snug::modular_test {
 namespace {
 
 TEST(modular_field, has_a_root_of_exactly_its_order) {
@@ -19,4 +19,4 @@ TEST(modular_field, has_a_root_of_exactly_its_order) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::modular_test

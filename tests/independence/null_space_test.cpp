@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace snug {
+namespace snug::null_space_test {
 namespace {
 
 TEST(null_space, is_a_basis_of_what_is_orthogonal) {
@@ -22,4 +22,4 @@ TEST(null_space, is_a_basis_of_what_is_orthogonal) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::null_space_test

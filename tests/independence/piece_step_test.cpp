@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-namespace snug {
+namespace snug::piece_step_test {
 namespace {
 
 constexpr ExactScheme loop{Scheme::loop}, catmark{Scheme::catmark}, older{Scheme::catmark, true},
@@ -109,4 +109,4 @@ TEST(piece_step, of_a_regular_corner_has_the_eigenvalues_of_a_spline) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::piece_step_test

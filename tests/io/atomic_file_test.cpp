@@ -13,7 +13,7 @@
 
 #include "io_testing.h"
 
-namespace snug {
+namespace snug::atomic_file_test {
 namespace {
 
 using testing::put;
@@ -198,4 +198,4 @@ TEST(atomic_file, a_write_protected_file_is_not_replaced) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::atomic_file_test

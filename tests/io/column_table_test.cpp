@@ -7,7 +7,7 @@
 
 #include "io_testing.h"
 
-namespace snug {
+namespace snug::column_table_test {
 namespace {
 
 using Type = ColumnTable::Type;
@@ -70,4 +70,4 @@ TEST(column_table, knows_its_endings) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::column_table_test

@@ -7,10 +7,11 @@
 
 #include <snug/io/formats.h>
 #include <snug/io/mesh_file.h>
+#include <testing/places.h>
 
 #include "io_testing.h"
 
-namespace snug {
+namespace snug::corpus_test {
 namespace {
 
 using testing::expect_same_arrays;
@@ -23,7 +24,7 @@ struct Row {
 
 /// The table of INDEX.md: `| file | status | what |`.
 std::vector<Row> index_rows() {
-  std::ifstream index(std::string(SNUG_CORPUS_DIR) + "/INDEX.md");
+  std::ifstream index(testing::corpus_dir() + "/INDEX.md");
   std::vector<Row> rows;
   for (std::string line; std::getline(index, line);) {
     std::istringstream words(line);
@@ -34,12 +35,12 @@ std::vector<Row> index_rows() {
   return rows;
 }
 
-std::string path_of(const Row& row) { return std::string(SNUG_CORPUS_DIR) + '/' + row.file; }
+std::string path_of(const Row& row) { return testing::corpus_dir() + '/' + row.file; }
 
 TEST(corpus, every_file_has_one_row) {
   std::multiset<std::string> listed, present;
   for (const Row& row : index_rows()) listed.insert(row.file);
-  for (const auto& entry : std::filesystem::directory_iterator(SNUG_CORPUS_DIR)) {
+  for (const auto& entry : std::filesystem::directory_iterator(testing::corpus_dir())) {
     const std::string ending = entry.path().extension();
     if (ending == ".obj" || ending == ".off" || ending == ".ply" || ending == ".stl" || ending == ".usda" ||
         ending == ".glb") {
@@ -75,9 +76,7 @@ TEST(corpus, other_files_are_read_and_survive_a_round_trip) {
 }
 
 TEST(corpus, variants_of_a_file_hold_the_same_mesh) {
-  const auto read = [](const std::string& file) {
-    return read_mesh(std::string(SNUG_CORPUS_DIR) + '/' + file);
-  };
+  const auto read = [](const std::string& file) { return read_mesh(testing::corpus_dir() + '/' + file); };
   const ControlMesh tetrahedron = read("tetrahedron.obj");
   for (const char* file :
        {"corner_forms", "faces_first", "tags_first", "continued_lines", "comment_backslash", "windows_lines",
@@ -121,4 +120,4 @@ TEST(corpus, variants_of_a_file_hold_the_same_mesh) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::corpus_test

@@ -10,7 +10,7 @@
 
 #include "io_testing.h"
 
-namespace snug {
+namespace snug::glb_test {
 namespace {
 
 using Ids = std::vector<std::uint32_t>;
@@ -173,4 +173,4 @@ TEST(glb, refuses_what_it_cannot_hold) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::glb_test

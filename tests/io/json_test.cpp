@@ -7,7 +7,7 @@
 
 #include "io_testing.h"
 
-namespace snug {
+namespace snug::json_test {
 namespace {
 
 using testing::unreadable;
@@ -75,4 +75,4 @@ TEST(json, nesting_is_bounded) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::json_test

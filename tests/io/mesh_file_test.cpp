@@ -11,7 +11,7 @@
 
 #include "io_testing.h"
 
-namespace snug {
+namespace snug::mesh_file_test {
 namespace {
 
 using testing::expect_same_arrays;
@@ -212,4 +212,4 @@ TEST(read_mesh, notes_creases_that_name_no_edge) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::mesh_file_test

@@ -9,7 +9,7 @@
 
 #include "io_testing.h"
 
-namespace snug {
+namespace snug::number_rows_test {
 namespace {
 
 using testing::unreadable;
@@ -113,4 +113,4 @@ TEST(number_rows, other_arrays_are_refused) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::number_rows_test

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-namespace snug {
+namespace snug::number_test {
 namespace {
 
 constexpr std::string_view none,
@@ -157,4 +157,4 @@ TEST(text_at_most, rounds_to_the_side_asked_for_in_six_digits_or_few_more) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::number_test

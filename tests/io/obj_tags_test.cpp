@@ -7,7 +7,7 @@
 
 #include "io_testing.h"
 
-namespace snug {
+namespace snug::obj_tags_test {
 namespace {
 
 using testing::unreadable;
@@ -131,4 +131,4 @@ TEST(obj_tags, wrong_numbers_of_values_are_refused) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::obj_tags_test

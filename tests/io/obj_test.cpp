@@ -9,7 +9,7 @@
 
 #include "io_testing.h"
 
-namespace snug {
+namespace snug::obj_test {
 namespace {
 
 using testing::corners;
@@ -187,4 +187,4 @@ TEST(obj, flipped_bytes_are_read_or_refused) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::obj_test

@@ -7,7 +7,7 @@
 
 #include "io_testing.h"
 
-namespace snug {
+namespace snug::off_test {
 namespace {
 
 using testing::corners;
@@ -140,4 +140,4 @@ TEST(off, flipped_bytes_are_read_or_refused) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::off_test

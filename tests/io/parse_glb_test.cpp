@@ -10,7 +10,7 @@
 
 #include "io_testing.h"
 
-namespace snug {
+namespace snug::parse_glb_test {
 namespace {
 
 using nlohmann::json;
@@ -331,4 +331,4 @@ TEST(parse_glb, containers_must_be_whole) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::parse_glb_test

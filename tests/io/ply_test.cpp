@@ -10,7 +10,7 @@
 
 #include "io_testing.h"
 
-namespace snug {
+namespace snug::ply_test {
 namespace {
 
 using testing::corners;
@@ -248,4 +248,4 @@ TEST(ply, flipped_bytes_are_read_or_refused) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::ply_test

@@ -11,7 +11,7 @@
 
 #include "io_testing.h"
 
-namespace snug {
+namespace snug::stl_test {
 namespace {
 
 using testing::corners;
@@ -185,4 +185,4 @@ TEST(stl, flipped_bytes_are_read_or_refused) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::stl_test

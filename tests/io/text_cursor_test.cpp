@@ -5,7 +5,7 @@
 
 #include "io_testing.h"
 
-namespace snug {
+namespace snug::text_cursor_test {
 namespace {
 
 using testing::unreadable;
@@ -70,4 +70,4 @@ TEST(text_cursor, quoted_words_are_short_and_printable) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::text_cursor_test

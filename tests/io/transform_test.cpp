@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace snug {
+namespace snug::transform_test {
 namespace {
 
 /// As USD's documentation has it: matrices of row vectors, by rows, in long double.
@@ -214,4 +214,4 @@ TEST(transform, says_what_is_wrong) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::transform_test

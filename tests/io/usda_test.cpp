@@ -8,7 +8,7 @@
 
 #include "io_testing.h"
 
-namespace snug {
+namespace snug::usda_test {
 namespace {
 
 using testing::corners;
@@ -487,4 +487,4 @@ TEST(usda, a_mesh_without_a_scheme_is_written_with_that_of_its_faces) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::usda_test

@@ -5,7 +5,7 @@
 #include <array>
 #include <random>
 
-namespace snug {
+namespace snug::loose_creases_test {
 namespace {
 
 using Places = std::vector<std::size_t>;
@@ -40,4 +40,4 @@ TEST(loose_creases, are_those_that_no_face_has_as_an_edge) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::loose_creases_test

@@ -12,7 +12,7 @@
 #include <snug/mesh/validate.h>
 #include <testing/cad_parts.h>
 
-namespace snug {
+namespace snug::sharpen_test {
 namespace {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
@@ -261,4 +261,4 @@ TEST(sharpen, refuses_angles_that_are_none) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::sharpen_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace snug {
+namespace snug::split_polygon_test {
 namespace {
 
 __extension__ using Wide = __int128;
@@ -130,4 +130,4 @@ TEST(split_polygon, dropping_a_coordinate_keeps_the_turn) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::split_polygon_test

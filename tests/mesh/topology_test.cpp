@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <testing/twins.h>
 
-namespace snug {
+namespace snug::topology_test {
 namespace {
 
 TEST(topology, half_edges_agree_with_each_other) {
@@ -64,4 +64,4 @@ TEST(topology, edges_that_a_face_makes_twice_are_apart) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::topology_test

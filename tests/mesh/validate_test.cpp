@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-namespace snug {
+namespace snug::validate_test {
 namespace {
 
 ControlMesh mesh_of(std::size_t points, std::initializer_list<std::initializer_list<std::size_t>> faces) {
@@ -115,4 +115,4 @@ TEST(summary, lists_ten_and_counts_the_rest) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::validate_test

@@ -11,7 +11,7 @@
 #include <snug/mesh/validate.h>
 #include <testing/six_sheets.h>
 
-namespace snug {
+namespace snug::weld_test {
 namespace {
 
 using testing::six_sheets;
@@ -212,4 +212,4 @@ TEST(welded_mesh, a_bad_distance_is_an_error_and_changes_nothing) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::weld_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace oracle {
+namespace oracle::contact_twin_test {
 namespace {
 
 using namespace meshes;
@@ -176,4 +176,4 @@ TEST(contact_twin, refuses_what_has_no_surface) {
 }
 
 }  // namespace
-}  // namespace oracle
+}  // namespace oracle::contact_twin_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace oracle {
+namespace oracle::curve_twin_test {
 namespace {
 
 TEST(curve_twin, polynomials_and_plain_subdivision_agree) {
@@ -43,4 +43,4 @@ TEST(curve_twin, of_degree_2_is_straight_before_the_middle_of_an_open_end) {
 }
 
 }  // namespace
-}  // namespace oracle
+}  // namespace oracle::curve_twin_test

@@ -9,7 +9,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace oracle {
+namespace oracle::hausdorff_twin_test {
 namespace {
 
 using Set = std::vector<Corners>;
@@ -219,4 +219,4 @@ TEST(hausdorff_twin, needs_triangles) {
 }
 
 }  // namespace
-}  // namespace oracle
+}  // namespace oracle::hausdorff_twin_test

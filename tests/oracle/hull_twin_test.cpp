@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace oracle {
+namespace oracle::hull_twin_test {
 namespace {
 
 const std::vector<Triangle> tetrahedron{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
@@ -58,4 +58,4 @@ TEST(hull_twin, counts_open_edges) {
 }
 
 }  // namespace
-}  // namespace oracle
+}  // namespace oracle::hull_twin_test

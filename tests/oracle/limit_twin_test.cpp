@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace oracle {
+namespace oracle::limit_twin_test {
 namespace {
 
 using namespace meshes;
@@ -191,4 +191,4 @@ TEST(limit_twin, high_valences_are_answered) {
 }
 
 }  // namespace
-}  // namespace oracle
+}  // namespace oracle::limit_twin_test

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace oracle {
+namespace oracle::oracle_dual_test {
 namespace {
 
 using namespace meshes;
@@ -118,4 +118,4 @@ TEST(dual_twin, commutes_with_affine_maps) {
 }
 
 }  // namespace
-}  // namespace oracle
+}  // namespace oracle::oracle_dual_test

@@ -13,7 +13,7 @@
 #include <tuple>
 #include <vector>
 
-namespace oracle {
+namespace oracle::oracle_polygon_test {
 namespace {
 
 using namespace meshes;
@@ -151,4 +151,4 @@ TEST(polygon_twin, refuses_what_it_cannot_read) {
 }
 
 }  // namespace
-}  // namespace oracle
+}  // namespace oracle::oracle_polygon_test

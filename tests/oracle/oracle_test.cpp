@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace oracle {
+namespace oracle::oracle_test {
 namespace {
 
 using meshes::bipyramid;
@@ -411,4 +411,4 @@ TEST(surface_twin, refuses_what_has_no_surface) {
 }
 
 }  // namespace
-}  // namespace oracle
+}  // namespace oracle::oracle_test

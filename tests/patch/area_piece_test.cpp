@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace snug {
+namespace snug::area_piece_test {
 namespace {
 
 using Coefficients = AreaPiece::Coefficients;
@@ -190,4 +190,4 @@ TEST(area_piece, tightens_quickly) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::area_piece_test

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-namespace snug {
+namespace snug::evaluate_test {
 namespace {
 
 class Patches {
@@ -199,4 +199,4 @@ TEST(limit_frame, has_no_normal_where_everything_is_flat_to_a_line) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::evaluate_test

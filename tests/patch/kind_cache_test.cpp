@@ -5,7 +5,7 @@
 
 #include <set>
 
-namespace snug {
+namespace snug::kind_cache_test {
 namespace {
 
 std::set<KindId> kinds_of(KindCache& library, const oracle::TwinMesh& twin) {
@@ -84,4 +84,4 @@ TEST(kind_library, key_and_control_points_turn_together) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::kind_cache_test

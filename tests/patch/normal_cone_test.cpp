@@ -11,7 +11,7 @@
 #include <numbers>
 #include <random>
 
-namespace snug {
+namespace snug::normal_cone_test {
 namespace {
 
 LimitSurface surface_of(const oracle::TaggedMesh& mesh, Scheme scheme) {
@@ -118,4 +118,4 @@ TEST(normal_cone, is_none_where_the_surface_may_have_no_normal) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::normal_cone_test

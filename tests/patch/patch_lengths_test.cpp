@@ -15,7 +15,7 @@
 #include <numbers>
 #include <random>
 
-namespace snug {
+namespace snug::patch_lengths_test {
 namespace {
 
 namespace meshes = oracle::meshes;
@@ -221,4 +221,4 @@ TEST(star_stretch, of_what_turns_over_is_infinite) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::patch_lengths_test

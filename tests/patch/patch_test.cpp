@@ -4,7 +4,7 @@
 #include <snug/patch/evaluate.h>
 #include <testing/twins.h>
 
-namespace snug {
+namespace snug::patch_test {
 namespace {
 
 TEST(piece_path, remembers_its_digits_and_maps_parameters) {
@@ -88,4 +88,4 @@ TEST(patch_error, covers_points_that_are_off_through_splits_and_evaluation) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::patch_test

@@ -16,7 +16,7 @@
 #include <numbers>
 #include <random>
 
-namespace snug {
+namespace snug::star_test {
 namespace {
 
 // A disc of triangles around vertex 0, two rings of them, lifted by `height(x, y)`; the inner ring's angles
@@ -506,4 +506,4 @@ TEST(star, that_is_a_point_or_a_line_is_never_injective) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::star_test

@@ -11,7 +11,7 @@
 #include <random>
 #include <set>
 
-namespace snug {
+namespace snug::tip_area_test {
 namespace {
 
 // Area of triangles between limit points of a patch, or of a quad that it is half of: near the true one.
@@ -71,4 +71,4 @@ TEST(tip_areas, bound_the_areas_of_patches) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::tip_area_test

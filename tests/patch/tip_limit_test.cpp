@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace snug {
+namespace snug::tip_limit_test {
 namespace {
 
 double unit(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; }
@@ -204,4 +204,4 @@ TEST(tip_limit, holds_all_levels_at_boundaries) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::tip_limit_test

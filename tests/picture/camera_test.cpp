@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace snug {
+namespace snug::camera_test {
 namespace {
 
 struct Extent {
@@ -81,4 +81,4 @@ TEST(camera, frame_refuses_what_it_cannot_show) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::camera_test

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace snug {
+namespace snug::extremes_test {
 namespace {
 
 constexpr Colour white = Colour::hex(0xffffff), red = Colour::hex(0xff0000), blue = Colour::hex(0x0000ff);
@@ -295,4 +295,4 @@ TEST(polyhedron, may_be_tiny_in_a_plane_far_from_the_origin) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::extremes_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <random>
 
-namespace snug {
+namespace snug::hierarchy_test {
 namespace {
 
 std::vector<std::uint32_t> found(const BeamHierarchy& hierarchy, const Beam& beam, double limit) {
@@ -72,4 +72,4 @@ TEST(hierarchy, of_nothing_finds_nothing) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::hierarchy_test

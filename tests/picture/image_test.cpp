@@ -8,7 +8,7 @@
 
 #include <snug/base/error.h>
 
-namespace snug {
+namespace snug::image_test {
 namespace {
 
 Image decode(const std::vector<std::uint8_t>& bytes) {
@@ -70,4 +70,4 @@ TEST(image, png_expects_a_pixel_for_each_place) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::image_test

@@ -9,7 +9,7 @@
 
 #include <picture/render.h>
 
-namespace snug {
+namespace snug::lettering_test {
 namespace {
 
 using Places = std::vector<std::array<double, 4>>;
@@ -62,4 +62,4 @@ TEST(lettering, is_in_front_of_everything) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::lettering_test

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-namespace snug {
+namespace snug::polyhedron_test {
 namespace {
 
 Box3 box(Point3 lower, Vector3 sides) { return {lower, lower + sides}; }
@@ -176,4 +176,4 @@ TEST(polyhedron, far_from_the_origin_and_of_any_size_is_the_same) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::polyhedron_test

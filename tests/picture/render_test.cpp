@@ -9,7 +9,7 @@
 
 #include <snug/base/error.h>
 
-namespace snug {
+namespace snug::render_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -403,4 +403,4 @@ TEST(render, refuses_numbers_it_cannot_draw) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::render_test

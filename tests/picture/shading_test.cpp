@@ -6,7 +6,7 @@
 
 #include <picture/palette.h>
 
-namespace snug {
+namespace snug::shading_test {
 namespace {
 
 Vector3 random_unit(std::mt19937& random) {
@@ -64,4 +64,4 @@ TEST(shading, srgb_curve_and_its_inverse_agree) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::shading_test

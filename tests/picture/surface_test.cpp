@@ -13,7 +13,7 @@
 #include <snug/base/error.h>
 #include <snug/mesh.h>
 
-namespace snug {
+namespace snug::surface_test {
 namespace {
 
 using Quad = std::array<std::uint32_t, 4>;
@@ -183,4 +183,4 @@ TEST(surfaces_in_pictures, cast_shadows) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::surface_test

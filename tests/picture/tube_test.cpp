@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace snug {
+namespace snug::tube_test {
 namespace {
 
 using Chain = std::vector<Point3>;
@@ -169,4 +169,4 @@ TEST(tube, lies_in_its_outline) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::tube_test

@@ -14,7 +14,7 @@
 #include <limits>
 #include <string>
 
-namespace snug {
+namespace snug::bound_curve_test {
 namespace {
 
 using oracle::TwinPolyline;
@@ -266,4 +266,4 @@ TEST(subdivide_curve, counts_as_it_says) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::bound_curve_test

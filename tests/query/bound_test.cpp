@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace snug {
+namespace snug::bound_test {
 namespace {
 
 struct Collected {
@@ -101,4 +101,4 @@ TEST(bound, stops_when_asked) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::bound_test

@@ -18,7 +18,7 @@
 #include <snug/surface/batch_bounds.h>
 #include <snug/surface/evaluate.h>
 
-namespace snug {
+namespace snug::callers_mistakes_test {
 namespace {
 
 template <class Call>
@@ -180,4 +180,4 @@ TEST(callers_mistakes, messages_tell_small_numbers_from_zero) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::callers_mistakes_test

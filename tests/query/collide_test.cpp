@@ -17,7 +17,7 @@
 
 #include "testing/verdict_only.h"
 
-namespace snug {
+namespace snug::collide_test {
 namespace {
 
 struct Pair {
@@ -495,4 +495,4 @@ TEST(collide, refuses_a_model_without_surface) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::collide_test

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-namespace snug {
+namespace snug::contacts_test {
 namespace {
 
 namespace meshes = oracle::meshes;
@@ -329,4 +329,4 @@ TEST(contacts, can_do_without_curves) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::contacts_test

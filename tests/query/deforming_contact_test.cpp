@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace snug {
+namespace snug::deforming_contact_test {
 namespace {
 
 using testing::Body;
@@ -396,4 +396,4 @@ TEST(deforming_contact, says_what_it_cannot_do) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::deforming_contact_test

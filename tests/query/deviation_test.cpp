@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace snug {
+namespace snug::deviation_test {
 namespace {
 
 using testing::TriangleSet;
@@ -371,4 +371,4 @@ TEST(deviation, can_be_watched_and_stopped) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::deviation_test

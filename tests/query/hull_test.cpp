@@ -12,7 +12,7 @@
 #include <numbers>
 #include <set>
 
-namespace snug {
+namespace snug::hull_test {
 namespace {
 
 namespace meshes = oracle::meshes;
@@ -471,4 +471,4 @@ TEST(hulls, with_a_component_on_the_wrong_side_are_found_out) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::hull_test

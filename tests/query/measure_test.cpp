@@ -15,7 +15,7 @@
 #include <random>
 #include <string>
 
-namespace snug {
+namespace snug::measure_test {
 namespace {
 
 namespace meshes = oracle::meshes;
@@ -391,4 +391,4 @@ TEST(measure, holds_for_disguises) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::measure_test

@@ -8,7 +8,7 @@
 #include <iostream>
 #include <random>
 
-namespace snug {
+namespace snug::piece_quadratic_test {
 namespace {
 
 using Extended = std::array<long double, 3>;
@@ -151,4 +151,4 @@ TEST(piece_quadratic, places_are_those_of_paths) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::piece_quadratic_test

@@ -20,7 +20,7 @@
 
 #include "testing/verdict_only.h"
 
-namespace snug {
+namespace snug::plain_meshes_test {
 namespace {
 
 using testing::ExactPoint;
@@ -479,4 +479,4 @@ TEST(plain_meshes, of_both_schemes_are_as_far_apart_as_their_sharp_twins) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::plain_meshes_test

@@ -13,7 +13,7 @@
 #include <testing/patches.h>
 #include <testing/placements.h>
 
-namespace snug {
+namespace snug::poses_test {
 namespace {
 
 class poses : public ::testing::Test {
@@ -66,7 +66,7 @@ TEST_F(poses, none_have_no_answers) {
   EXPECT_TRUE(scratches.answers(collide, {}, CollideOptions{}).empty());
 }
 
-TEST_F(poses, are_asked_once_each_and_never_two_at_once_in_one_scratch) {
+TEST_F(poses, are_asked_once_each_and_never_by_two_threads_in_one_scratch) {
   PairWorkspaces scratches(a, b, 4);
   std::vector<std::atomic<int>> asked(1000);
   std::mutex guard;
@@ -107,4 +107,4 @@ TEST_F(poses, stop_when_asked) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::poses_test

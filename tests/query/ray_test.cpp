@@ -12,13 +12,14 @@
 
 #include <gtest/gtest.h>
 #include <snug/base/error.h>
+#include <testing/places.h>
 
-namespace snug {
+namespace snug::ray_test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-std::string model(const char* name) { return std::string(SNUG_MODELS_DIR) + "/" + name; }
+std::string model(const char* name) { return testing::models_dir() + "/" + name; }
 
 // The unit cube with sharp edges: its limit surface is itself.
 ControlMesh cube() {
@@ -269,4 +270,4 @@ TEST(ray_caster, withstands_every_size) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::ray_test

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <string>
 
-namespace snug {
+namespace snug::self_test {
 namespace {
 
 namespace meshes = oracle::meshes;
@@ -234,4 +234,4 @@ TEST(self_contact, refuses_what_it_cannot_do) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::self_test

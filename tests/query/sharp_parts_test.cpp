@@ -22,7 +22,7 @@
 
 #include "testing/verdict_only.h"
 
-namespace snug {
+namespace snug::sharp_parts_test {
 namespace {
 
 using Real = long double;
@@ -385,4 +385,4 @@ TEST(limit_to_faces, does_not_depend_on_the_size_of_coordinates_and_knows_no_dua
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::sharp_parts_test

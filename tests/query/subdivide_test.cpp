@@ -5,7 +5,7 @@
 #include <snug/mesh/validate.h>
 #include <testing/patches.h>
 
-namespace snug {
+namespace snug::subdivide_test {
 namespace {
 
 TEST(subdivide, quadruples_faces_and_stays_sound) {
@@ -40,4 +40,4 @@ TEST(subdivide, refuses_levels_that_need_more_faces_than_fit) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::subdivide_test

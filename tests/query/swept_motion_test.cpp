@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace snug {
+namespace snug::swept_motion_test {
 namespace {
 
 using testing::random_placement;
@@ -146,4 +146,4 @@ TEST(swept_heights, bend_no_more_than_their_bound_for_each_pair_of_motions_and_s
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::swept_motion_test

@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace snug {
+namespace snug::swept_pairs_test {
 namespace {
 
 using testing::random_placement;
@@ -275,4 +275,4 @@ void check_many(std::size_t trials, int samples, std::uint64_t seed) {
 TEST(swept_pairs, is_decided_and_never_late) { check_many(240, 500, 5); }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::swept_pairs_test

@@ -9,6 +9,7 @@
 #include <snug/patch/evaluate.h>
 #include <snug/query/deviation.h>
 #include <snug/surface/evaluate.h>
+#include <testing/places.h>
 #include <testing/scheme_surfaces.h>
 #include <testing/tessellations.h>
 
@@ -18,11 +19,11 @@
 #include <random>
 #include <utility>
 
-namespace snug {
+namespace snug::tessellate_test {
 namespace {
 
 LimitSurface model(const char* file) {
-  ControlMesh mesh = read_mesh(std::string(SNUG_MODELS_DIR) + "/" + file);
+  ControlMesh mesh = read_mesh(testing::models_dir() + "/" + file);
   bool triangles = true;
   for (std::size_t f = 0; f < mesh.face_count(); ++f)
     triangles = triangles && mesh.face(FaceId(f)).size() == 3;
@@ -228,7 +229,7 @@ TEST(tessellate, refuses_what_it_cannot_hold) {
 }
 
 TEST(tessellate, is_the_same_of_a_handle) {
-  const std::string file = std::string(SNUG_MODELS_DIR) + "/pawn.obj";
+  const std::string file = testing::models_dir() + "/pawn.obj";
   const Surface handle = load(file);
   TessellateOptions options = to_tolerance(1e-2 * handle.size());
   EXPECT_TRUE(same(tessellate(handle, options), tessellate(model("pawn.obj"), options)));
@@ -350,4 +351,4 @@ TEST(tessellate, refuses_eyes_and_thicknesses_that_are_none) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::tessellate_test

@@ -2,13 +2,14 @@
 
 #include <gtest/gtest.h>
 #include <snug/io/mesh_file.h>
+#include <testing/places.h>
 
-namespace snug {
+namespace snug::tessellate_threads_test {
 namespace {
 
 TEST(tessellate, does_not_depend_on_threads) {
   for (const char* const file : {"pawn.obj", "ring.obj", "bracket.obj"}) {
-    const LimitSurface surface(read_mesh(std::string(SNUG_MODELS_DIR) + "/" + file), {Scheme::catmark},
+    const LimitSurface surface(read_mesh(testing::models_dir() + "/" + file), {Scheme::catmark},
                                std::make_shared<BoundsCache>());
     TessellateOptions options;
     options.tolerance = 1e-3 * surface.size();
@@ -26,4 +27,4 @@ TEST(tessellate, does_not_depend_on_threads) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::tessellate_threads_test

@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace snug {
+namespace snug::time_of_contact_test {
 namespace {
 
 using testing::random_placement;
@@ -578,4 +578,4 @@ TEST(time_of_contact, of_every_scheme_is_not_later_than_collisions_at_samples) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::time_of_contact_test

@@ -13,7 +13,7 @@
 #include <numbers>
 #include <vector>
 
-namespace snug {
+namespace snug::trajectory_test {
 namespace {
 
 using testing::random_placement;
@@ -155,4 +155,4 @@ TEST(trajectory, no_point_is_faster_than_the_bound_and_some_are_nearly_as_fast) 
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::trajectory_test

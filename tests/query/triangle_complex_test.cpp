@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-namespace snug {
+namespace snug::triangle_complex_test {
 namespace {
 
 using Index = TriangleComplex::Index;
@@ -111,4 +111,4 @@ TEST(triangle_complex, stays_conforming_and_simple) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::triangle_complex_test

@@ -12,7 +12,7 @@
 #include <cstdio>
 #include <map>
 
-namespace snug {
+namespace snug::witness_kinds_test {
 namespace {
 
 using testing::NamedSurface;
@@ -159,4 +159,4 @@ TEST(witness_kinds, leave_the_verdict_about_solids_as_it_is) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::witness_kinds_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace snug {
+namespace snug::basis_test {
 namespace {
 
 // The functions of a regular patch by its Bezier rows, in 64 bits.
@@ -175,4 +175,4 @@ TEST(basis, functions_are_those_of_the_bezier_rows_within_the_stated_roundings) 
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::basis_test

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-namespace snug {
+namespace snug::curve_masks_test {
 namespace {
 
 constexpr std::array windows{CurveWindow::cubic_edge, CurveWindow::quadratic_edge,
@@ -77,4 +77,4 @@ TEST(curve_masks, ends_of_open_polylines_stay) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::curve_masks_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace snug {
+namespace snug::limits_test {
 namespace {
 
 std::vector<double> dense(const Stencils::Row& row, std::size_t count) {
@@ -78,4 +78,4 @@ TEST(limit_stencils, of_darts_are_the_same_however_many_came_between) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::limits_test

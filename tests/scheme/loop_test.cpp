@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace snug {
+namespace snug::loop_test {
 namespace {
 
 // n triangles around vertex 0.
@@ -87,4 +87,4 @@ TEST(loop_masks, are_exact_where_they_are_dyadic) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::loop_test

@@ -7,7 +7,7 @@
 
 #include <map>
 
-namespace snug {
+namespace snug::refine_test {
 namespace {
 
 TEST(refine, stencil_rows_sum_to_one) {
@@ -105,4 +105,4 @@ TEST(corner_tangents, keep_their_direction_under_refinement) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::refine_test

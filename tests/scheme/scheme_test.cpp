@@ -4,7 +4,7 @@
 #include <snug/base/error.h>
 #include <testing/twins.h>
 
-namespace snug {
+namespace snug::scheme_test {
 namespace {
 
 std::string refusal(const ControlMesh& mesh, const SchemeOptions& options = {}) {
@@ -101,4 +101,4 @@ TEST(require_subdividable, refuses_faces_that_are_too_large) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::scheme_test

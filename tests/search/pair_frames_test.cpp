@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <testing/placed_points.h>
 
-namespace snug {
+namespace snug::pair_frames_test {
 namespace {
 
 using Placed = std::array<long double, 3>;
@@ -254,4 +254,4 @@ TEST(root_gap, of_points_is_at_most_their_distance) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::pair_frames_test

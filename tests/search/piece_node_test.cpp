@@ -12,7 +12,7 @@
 
 #include <cstdio>
 
-namespace snug {
+namespace snug::piece_node_test {
 namespace {
 
 using testing::Extended;
@@ -260,4 +260,4 @@ TEST(piece_record, is_infinite_where_a_number_is_not_finite) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::piece_node_test

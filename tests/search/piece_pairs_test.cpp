@@ -8,7 +8,7 @@
 
 #include <set>
 
-namespace snug {
+namespace snug::piece_pairs_test {
 namespace {
 
 // A surface in a pose, beside itself.
@@ -172,4 +172,4 @@ TEST(piece_pairs, gaps_are_at_most_those_of_limit_points) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::piece_pairs_test

@@ -8,7 +8,7 @@
 #include <testing/pieces.h>
 #include <testing/scheme_surfaces.h>
 
-namespace snug {
+namespace snug::piece_test {
 namespace {
 
 TEST(piece, by_tables_has_the_offset_triangles_of_the_tables) {
@@ -155,4 +155,4 @@ TEST(piece, heights_hold_those_of_needles) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::piece_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace snug {
+namespace snug::placed_box_test {
 namespace {
 
 // The image of a point, in 113 bits.
@@ -147,4 +147,4 @@ TEST(placed_box, of_a_thin_wavy_plate_is_no_thicker_than_its_control_points) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::placed_box_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace snug {
+namespace snug::quadratic_bvh_test {
 namespace {
 
 class Draw {
@@ -163,4 +163,4 @@ TEST(quadratic_bvh, marks_all_that_is_near_and_denies_no_contact) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::quadratic_bvh_test

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <iostream>
 
-namespace snug {
+namespace snug::ray_crossing_test {
 namespace {
 
 using State = Crossing::State;
@@ -194,4 +194,4 @@ TEST(ray_crossing, holds_for_pieces_of_every_sort) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::ray_crossing_test

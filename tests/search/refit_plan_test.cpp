@@ -10,7 +10,7 @@
 #include <map>
 #include <set>
 
-namespace snug {
+namespace snug::refit_plan_test {
 namespace {
 
 using testing::Journey;
@@ -190,4 +190,4 @@ TEST(refit_plan, boxes_depend_on_the_points_and_the_plan_alone) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::refit_plan_test

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace snug {
+namespace snug::self_contact_test {
 namespace {
 
 using Names = std::array<std::uint32_t, 3>;
@@ -103,4 +103,4 @@ TEST(self_contact, denies_none) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::self_contact_test

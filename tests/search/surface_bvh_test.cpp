@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-namespace snug {
+namespace snug::surface_bvh_test {
 namespace {
 
 LimitSurface some_surface() {
@@ -91,4 +91,4 @@ TEST(surface_bvh, has_every_patch_in_one_leaf) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::surface_bvh_test

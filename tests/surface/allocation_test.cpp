@@ -30,7 +30,7 @@ void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
 #endif
 
-namespace snug {
+namespace snug::allocation_test {
 namespace {
 
 // Triangles of many valences under Loop; polygons and creases under Catmull-Clark.
@@ -69,4 +69,4 @@ TEST(allocation, patch_bounds_take_none_after_their_first_update) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::allocation_test

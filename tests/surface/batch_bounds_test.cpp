@@ -15,7 +15,7 @@
 #include <limits>
 #include <random>
 
-namespace snug {
+namespace snug::batch_bounds_test {
 namespace {
 
 // Closed and open meshes with regular patches, extraordinary corners and boundaries; some patches flat.
@@ -203,4 +203,4 @@ TEST(batch_bounds, of_quads_contain_the_limit_and_are_a_little_wider_than_of_sin
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::batch_bounds_test

@@ -4,7 +4,7 @@
 #include <testing/pieces.h>
 #include <testing/scheme_surfaces.h>
 
-namespace snug {
+namespace snug::control_hull_test {
 namespace {
 
 using testing::NamedSurface;
@@ -134,4 +134,4 @@ TEST(piece, heights_hold_the_piece) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::control_hull_test

@@ -6,7 +6,7 @@
 
 #include <cstring>
 
-namespace snug {
+namespace snug::control_nets_test {
 namespace {
 
 using testing::NamedSurface;
@@ -87,4 +87,4 @@ TEST(control_nets, boxes_are_the_same_on_every_instruction_set) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::control_nets_test

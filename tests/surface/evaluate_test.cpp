@@ -13,7 +13,7 @@
 #include <tuple>
 #include <vector>
 
-namespace snug {
+namespace snug::evaluate_test {
 namespace {
 
 TEST(evaluate, holds_its_error_at_every_scale) {
@@ -190,4 +190,4 @@ TEST(evaluate, of_flat_and_bilinear_faces_is_linear_between_their_corners) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::evaluate_test

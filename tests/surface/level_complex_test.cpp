@@ -12,7 +12,7 @@
 #include <random>
 #include <set>
 
-namespace snug {
+namespace snug::level_complex_test {
 namespace {
 
 namespace meshes = oracle::meshes;
@@ -124,4 +124,4 @@ TEST(level_complex, a_vertex_of_two_fans_has_no_star) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::level_complex_test

@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-namespace snug {
+namespace snug::limit_surface_test {
 namespace {
 
 TEST(surface, scales_its_largest_coordinate_to_about_one) {
@@ -82,4 +82,4 @@ TEST(surface, kinds_found_by_threads_at_once_are_those_of_one) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::limit_surface_test

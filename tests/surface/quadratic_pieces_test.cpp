@@ -11,7 +11,7 @@
 #include <random>
 #include <string>
 
-namespace snug {
+namespace snug::quadratic_pieces_test {
 namespace {
 
 // Each patch is all there, once: parts of level l count 4^-l.
@@ -67,4 +67,4 @@ TEST(quadratic_pieces, are_the_surface_up_to_their_errors) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::quadratic_pieces_test

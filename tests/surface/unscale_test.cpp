@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <snug/base/error.h>
 
-namespace snug {
+namespace snug::unscale_test {
 namespace {
 
 TEST(unscaled, is_exact_in_the_normal_range) {
@@ -29,4 +29,4 @@ TEST(unscaled, refuses_what_overflows) {
 }
 
 }  // namespace
-}  // namespace snug
+}  // namespace snug::unscale_test

@@ -138,7 +138,7 @@ inline void tag(oracle::TaggedMesh& mesh, std::mt19937_64& random, bool holes) {
   };
   for (const auto& [name, plain] : plain_shapes()) {
     if (scheme == oracle::PrimalScheme::loop && (name == "valence two" || name == "same ways"))
-      continue;  // see sound_schemes_test.cpp
+      continue;  // see sound/schemes_test.cpp
     const oracle::TaggedMesh mesh = shape(plain);
     for (const Boundary boundary : {Boundary::edge_and_corner, Boundary::edge_only, Boundary::none}) {
       oracle::Rules rules;

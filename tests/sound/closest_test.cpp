@@ -1,0 +1,173 @@
+// The promises of closest_point, against a twin that refines by itself: points near, on and far from
+// surfaces, at centres of curvature and at control points.
+//
+//   SNUG_PLACEMENTS=100000 build/release/bin/tests/sound_test --gtest_filter=closest.points_are_the_nearest
+
+#include <snug/query/closest.h>
+
+#include <gtest/gtest.h>
+#include <testing/contact_trials.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+namespace snug::closest_test {
+namespace {
+
+using oracle::ContactBounds;
+using oracle::ContactGoal;
+using oracle::Point;
+using testing::Contestants;
+using testing::Trial;
+
+double between(const Point& p, const Point& q) { return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]); }
+
+Point random_point(Trial& trial, Contestants& pair) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const oracle::TwinMesh& mesh = pair.mesh(0);
+  const auto on_surface = [&] {
+    for (;;) {
+      const auto face = static_cast<std::uint32_t>(trial.random() % mesh.triangles.size());
+      const double u = std::abs(unit(trial.random)), v = (1 - u) * std::abs(unit(trial.random));
+      try {
+        return pair.twin(0).limit_point(face, trial.random() % 4 == 0 ? 0 : u, v);
+      } catch (const std::invalid_argument&) {  // a face without a surface
+      }
+    }
+  };
+  switch (trial.random() % 6) {
+    case 0:  // on the surface, up to roundings
+      return on_surface();
+    case 1: {  // a hair off
+      Point p = on_surface();
+      p[trial.random() % 3] += std::ldexp(unit(trial.random), -static_cast<int>(trial.random() % 45));
+      return p;
+    }
+    case 2:
+      return {1e6 * unit(trial.random), 1e6 * unit(trial.random), 1e6 * unit(trial.random)};
+    case 3:
+      return mesh.points[trial.random() % mesh.points.size()];
+    case 4:
+      return {0, 0, 0};
+    default:
+      return {2 * unit(trial.random), 2 * unit(trial.random), 2 * unit(trial.random)};
+  }
+}
+
+TEST(closest, points_are_the_nearest) {
+  const std::uint64_t first = testing::first_trial(), count = testing::trial_count(800);
+  constexpr int most_failures = 20;
+  int failures = 0;
+  std::size_t reached = 0, asked = 0, open = 0;
+  double seconds = 0, slowest = 0;
+  std::uint64_t slowest_trial = 0;
+  testing::Trials trials;
+  const auto start = std::chrono::steady_clock::now();
+  for (std::uint64_t i = 0; i < count && failures < most_failures; ++i) {
+    Trial trial = trials.make(first + i);
+    Contestants& pair = *trial.pair;
+    const double size = pair.size();
+    const Point to = random_point(trial, pair);
+    const Point3 scaled{pair.scaled(to[0]), pair.scaled(to[1]), pair.scaled(to[2])};
+    ClosestOptions options{.absolute = 0, .relative = 0};
+    const std::uint64_t choice = trial.random() % 6;
+    if (choice < 3) options.relative = choice == 0 ? 1e-9 : choice == 1 ? 1e-6 : 1e-2;
+    if (choice >= 2 && choice < 5)
+      options.absolute = pair.scaled(size * (choice == 2 ? 1e-3 : choice == 3 ? 1e-6 : 1e-9));
+    options.budget = choice == 5 ? 500 : 3000;
+    const auto before = std::chrono::steady_clock::now();
+    const ClosestPoint answer = closest_point(pair.scratch(0), scaled, options);
+    const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+    seconds += took;
+    if (took > slowest) slowest = took, slowest_trial = trial.number;
+    ++asked;
+    reached += answer.reached;
+
+    const double lower = pair.back(answer.distance.lower), upper = pair.back(answer.distance.upper),
+                 error = pair.back(answer.point_error);
+    const Point point = pair.back(answer.point);
+    const auto expect = [&](bool holds, const char* claim, double found, double bound) {
+      if (holds) return;
+      ++failures;
+      char numbers[300];
+      std::snprintf(numbers, sizeof numbers,
+                    " (%.17g, %.17g): [%.17g, %.17g] to (%.17g %.17g %.17g) face %u u %.17g v %.17g; ", found,
+                    bound, lower, upper, to[0], to[1], to[2], answer.at.owner, answer.at.u, answer.at.v);
+      ADD_FAILURE() << claim << numbers << testing::describe(trial);
+    };
+    const double coordinates = std::max({size, std::abs(to[0]), std::abs(to[1]), std::abs(to[2])});
+    const double rounding = 0x1p-50 * coordinates;
+    expect(lower >= 0 && lower <= upper && std::isfinite(upper), "an interval", lower, upper);
+    if (answer.reached) {
+      const double width =
+          std::max(pair.back(options.absolute.value_or(0)), options.relative.value_or(0) * upper);
+      expect(upper - lower <= width * (1 + 1e-12) + 1e-300, "reached is reached", upper - lower, width);
+    }
+    expect(between(point, to) <= upper * (1 + 1e-12) + rounding, "the point is at most upper away",
+           between(point, to), upper);
+    // The same place by the twin: the face, the parameter and the point belong together.
+    expect(answer.at.u >= 0 && answer.at.v >= 0 && answer.at.u + answer.at.v <= 1, "a parameter", answer.at.u,
+           answer.at.v);
+    const Point same = pair.twin(0).limit_point(answer.at.owner, answer.at.u, answer.at.v);
+    expect(between(same, point) <= 2 * error + 1e-12 * size, "face, u and v are those of the point",
+           between(same, point), error);
+    expect(between(same, point) <= 1e-9 * size, "the point is on the surface", between(same, point), size);
+    ContactGoal goal;
+    goal.effort = 3000;
+    goal.precision = {1e-14 * size, trial.number % 10 == 3 ? 1e-9 : 1e-3};
+    if (lower > 0) {
+      goal.threshold = lower;
+      const ContactBounds found = pair.twin(0).distance_to(oracle::kUnmoved, to, goal);
+      expect(found.upper >= lower - 2 * rounding, "the twin finds a nearer point", found.upper, lower);
+      open += found.spent;
+    }
+    if ((i + 1) % 20'000 == 0)
+      std::fprintf(stderr, "%llu points, %.0f s\n", static_cast<unsigned long long>(i + 1),
+                   std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  std::printf(
+      "  %zu points, %zu reached, %.3f ms each, slowest %.0f ms (trial %llu); the twin left %zu open\n",
+      asked, reached, 1e3 * seconds / static_cast<double>(asked), 1e3 * slowest,
+      static_cast<unsigned long long>(slowest_trial), open);
+  EXPECT_GE(reached * 10, asked * 6);
+}
+
+// Many points at once, in any number of threads: bit for bit what each gives alone.
+TEST(closest, many_in_threads_are_the_same_as_one_by_one) {
+  testing::Trials trials;
+  std::uint64_t number = 0;
+  for (int surface = 0; surface < 12; ++surface) {
+    Trial trial = trials.make(number);
+    while (trial.family != "random" && trial.family != "shells") trial = trials.make(++number);
+    ++number;
+    Contestants& pair = *trial.pair;
+    std::vector<Point3> to;
+    for (int k = 0; k < 60; ++k) {
+      const Point p = random_point(trial, pair);
+      to.push_back({pair.scaled(p[0]), pair.scaled(p[1]), pair.scaled(p[2])});
+    }
+    ClosestOptions options{.absolute = 0, .relative = 0};
+    options.relative = 1e-6;
+    options.absolute = pair.scaled(1e-9 * pair.size());
+    for (const int threads : {1, 3}) {
+      const std::vector<ClosestPoint> all = closest_points(pair.model(0), to, options, threads);
+      ASSERT_EQ(all.size(), to.size());
+      for (std::size_t k = 0; k < to.size(); ++k) {
+        SurfaceWorkspace scratch(pair.model(0));
+        const ClosestPoint one = closest_point(scratch, to[k], options);
+        EXPECT_EQ(all[k].distance.lower, one.distance.lower);
+        EXPECT_EQ(all[k].distance.upper, one.distance.upper);
+        EXPECT_EQ(all[k].point, one.point);
+        EXPECT_EQ(all[k].at.owner, one.at.owner);
+        EXPECT_EQ(all[k].at.u, one.at.u);
+        EXPECT_EQ(all[k].at.v, one.at.v);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace snug::closest_test

@@ -1,0 +1,126 @@
+// More meshes, for those who have them: SNUG_EXTRA_MODELS names a folder. Every OBJ and OFF file in it that
+// is accepted is bounded and compared with the twin.
+
+#include <snug/query/bound.h>
+#include <snug/query/pairs.h>
+
+#include <gtest/gtest.h>
+#include <oracle/loop_twin.h>
+#include <snug/base/error.h>
+#include <snug/io/mesh_file.h>
+#include <testing/containment.h>
+#include <testing/twins.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+
+#include <testing/places.h>
+#include "testing/verdict_only.h"
+
+namespace snug::extra_models_test {
+namespace {
+
+constexpr std::size_t most_faces = 8000;  // what the twin samples in a few seconds
+
+// Checks samples of every face against the union of its pieces; returns how many there were.
+std::size_t check(const LimitSurface& surface, const BoundOptions& options,
+                  const std::vector<oracle::LimitSample>& samples, const std::string& name,
+                  BoundMethod method = BoundMethod::rows) {
+  std::vector<std::vector<PieceEnclosure>> pieces(surface.face_count());
+  bound(
+      surface, options, [&](const PieceEnclosure& piece) { pieces[piece.patch.index()].push_back(piece); },
+      {}, method);
+  for (const oracle::LimitSample& s : samples) {
+    const testing::Extended p{s.position[0], s.position[1], s.position[2]};
+    const long double slack = 2.0L * s.error;
+    bool in_offset = false, in_interval = false;
+    for (const PieceEnclosure& piece : pieces[s.face]) {
+      in_offset = in_offset || testing::within_radius(p, piece.offset.base, piece.offset.radius + slack);
+      in_interval = in_interval || testing::in_interval_triangle(p, piece.interval, slack);
+      if (in_offset && in_interval) break;
+    }
+    EXPECT_TRUE(in_offset && in_interval) << name << ", face " << s.face << " at " << s.u << ", " << s.v;
+    if (::testing::Test::HasFailure()) return 0;
+  }
+  return samples.size();
+}
+
+TEST(extra_models, limit_points_lie_inside_their_enclosures) {
+  const char* folder = std::getenv("SNUG_EXTRA_MODELS");
+  if (!folder) GTEST_SKIP() << "SNUG_EXTRA_MODELS names no folder";
+  std::size_t accepted = 0, refused = 0, points = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string path = entry.path().string();
+    if (!path.ends_with(".obj") && !path.ends_with(".off")) continue;
+    try {
+      const ControlMesh mesh = read_mesh(path);
+      if (mesh.face_count() > most_faces) continue;
+      SchemeOptions rules{natural_scheme(mesh), mesh.tags.boundary.value_or(BoundaryRule::edge_and_corner)};
+      const LimitSurface surface(mesh, rules, std::make_shared<BoundsCache>());
+      // The twin knows plain Loop surfaces.
+      const bool tagged =
+          !mesh.tags.creases.empty() || !mesh.tags.corners.empty() || !mesh.tags.holes.empty();
+      if (rules.scheme != Scheme::loop || tagged || !surface.topology().is_manifold()) continue;
+      const auto samples =
+          oracle::sample_uniform(testing::twin_mesh(mesh, rules.boundary), mesh.face_count() > 1500 ? 1 : 3);
+      BoundOptions options;
+      points += check(surface, options, samples, path);
+      options.tolerance = 0.01 * surface.size();
+      points += check(surface, options, samples, path);
+      points += check(surface, options, samples, path, BoundMethod::table);
+      ++accepted;
+    } catch (const InputError&) {
+      ++refused;
+    }
+    if (HasFailure()) return;
+  }
+  std::cout << accepted << " meshes accepted, " << refused << " refused, " << points << " checks\n";
+  EXPECT_GT(accepted, 0u);
+}
+
+// Leaves that a well-known mesh of 1418 triangles needs, where it is there: tightness must not get lost.
+TEST(extra_models, venus_needs_few_leaves) {
+  const char* folder = std::getenv("SNUG_EXTRA_MODELS");
+  const std::string path = std::string(folder ? folder : "") + "/venus.off";
+  if (!folder || !std::filesystem::exists(path)) GTEST_SKIP() << "no venus.off in SNUG_EXTRA_MODELS";
+  const LimitSurface surface(read_mesh(path), {}, std::make_shared<BoundsCache>());
+  for (const auto& [tolerance, most] : {std::pair{0.02, 1450u}, {0.01, 1700u}, {0.005, 3100u}}) {
+    BoundOptions options;
+    options.tolerance = tolerance * surface.size();
+    EXPECT_LE(bound(surface, options, [](const PieceEnclosure&) {}).count, most) << tolerance;
+  }
+}
+
+// Counter-examples to proofs that were wrong once, with what is true of them.
+TEST(extra_models, counter_examples_are_answered_right) {
+  const char* folder = std::getenv("SNUG_EXTRA_MODELS");
+  const std::string path = std::string(folder ? folder : "") + "/solid/";
+  if (!folder || !std::filesystem::exists(path)) GTEST_SKIP() << "no folder solid in SNUG_EXTRA_MODELS";
+  const auto ask = [&](const std::string& a, const std::string& b, Scheme scheme, BoundMethod method) {
+    const LimitSurface surface_a(read_mesh(a), {scheme}, std::make_shared<BoundsCache>()),
+        surface_b(read_mesh(b), {scheme}, std::make_shared<BoundsCache>());
+    SurfaceBvhOptions how;
+    how.method = method;
+    const SurfaceBvh model_a(surface_a, how), model_b(surface_b, how);
+    SurfaceWorkspace scratch_a(model_a), scratch_b(model_b);
+    CollideOptions options = testing::verdict_only();
+    options.solid = method == BoundMethod::rows;
+    const Collision found = collide({model_a, scratch_a, {}}, {model_b, scratch_b, {}}, options);
+    const Distance gap = distance({model_a, scratch_a, {}}, {model_b, scratch_b, {}}, {});
+    EXPECT_TRUE(method == BoundMethod::rows || gap.distance.upper > 0);
+    return found.verdict;
+  };
+  EXPECT_EQ(ask(path + "prism.obj", path + "inside.obj", Scheme::catmark, BoundMethod::rows),
+            Verdict::intersecting);
+  EXPECT_EQ(ask(path + "prism.obj", path + "outside.obj", Scheme::catmark, BoundMethod::rows),
+            Verdict::separated);
+  EXPECT_EQ(ask(testing::models_dir() + "/bracket.obj", path + "inside_bracket.obj", Scheme::midedge,
+                BoundMethod::rows),
+            Verdict::intersecting);
+  EXPECT_NE(ask(path + "needle_a.obj", path + "needle_b.obj", Scheme::loop, BoundMethod::table),
+            Verdict::intersecting);
+}
+
+}  // namespace
+}  // namespace snug::extra_models_test

@@ -1,0 +1,179 @@
+// The promise of hulls against the twins: whatever is verified sandwiches the surface.
+//
+//   SNUG_PLACEMENTS=2000 build/release/bin/tests/sound_test --gtest_filter='hulls.*'
+
+#include <snug/query/hull.h>
+
+#include <gtest/gtest.h>
+#include <testing/hulls.h>
+#include <testing/scheme_surfaces.h>
+#include <testing/solid_cases.h>
+
+#include <iostream>
+#include <map>
+
+namespace snug::hull_test {
+namespace {
+
+using oracle::TaggedMesh;
+using testing::HullCounts;
+
+// What became of the surfaces that were asked about.
+struct Outcomes {
+  HullCounts counts;
+  std::size_t verified = 0;
+  std::map<std::string, std::size_t> others;
+
+  void print(const char* name) const {
+    std::cout << name << ": " << verified << " verified, " << counts.hulls << " hulls, " << counts.triangles
+              << " triangles, " << counts.points << " points, " << counts.chords << " chords, "
+              << counts.sides << " sides";
+    for (const auto& [why, count] : others) std::cout << "; " << why << ' ' << count;
+    std::cout << '\n';
+  }
+};
+
+void check(const TaggedMesh& mesh, const oracle::WindingScheme& scheme, const SchemeOptions& options,
+           HullOptions how, const std::shared_ptr<BoundsCache>& library, const std::string& name,
+           Outcomes& outcomes) {
+  const auto* const rules = std::get_if<oracle::Rules>(&scheme);
+  std::optional<LimitSurface> surface;
+  Hulls found;
+  try {
+    surface.emplace(testing::control_mesh(mesh, rules ? *rules : oracle::Rules{}), options, library);
+    how.tolerance *= surface->size();
+    how.budget = 15'000;
+    found = hulls(SurfaceBvh(*surface), how);
+  } catch (const InputError& error) {
+    EXPECT_TRUE(error.problem() == InputProblem::refused || error.problem() == InputProblem::value)
+        << name << ": " << error.what();
+    ++outcomes.others["refused"];
+    return;
+  }
+  EXPECT_EQ(found.verified, found.problems.empty()) << name;
+  if (!found.verified) {
+    ++outcomes.others[name_of(found.problems[0].fault)];
+    return;
+  }
+  ++outcomes.verified;
+  testing::expect_sandwich(mesh, scheme, found, how.tolerance, 3, name, outcomes.counts);
+}
+
+// Of every scheme, smooth, creased and with corners; one or several components, some inside out.
+TEST(hulls, of_random_solids_sandwich_them) {
+  Outcomes outcomes;
+  const auto library = std::make_shared<BoundsCache>();
+  const std::uint64_t solids = testing::number_of("SNUG_PLACEMENTS", 60);
+  for (std::uint64_t number = 0; number < solids && !HasFailure(); ++number) {
+    testing::SolidCase c = testing::solid_case(number);
+    std::mt19937_64 random(number);
+    if (random() % 4 == 0) {
+      for (auto& polygon : c.mesh.polygons) std::reverse(polygon.begin(), polygon.end());
+    }
+    HullOptions how{.tolerance = std::array{0.08, 0.03, 0.01}[random() % 3]};
+    how.single_precision = random() % 4 == 0;
+    check(c.mesh, c.scheme, c.options, how, library, c.name, outcomes);
+  }
+  outcomes.print("solids");
+  EXPECT_GT(outcomes.verified, solids / 3);
+}
+
+// Every tag, boundary rule and sort of non-manifold place, mostly open.
+TEST(hulls, of_surfaces_with_every_tag_sandwich_them) {
+  for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
+    Outcomes outcomes;
+    const auto library = std::make_shared<BoundsCache>();
+    std::size_t number = 0;
+    for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 77)) {
+      if (HasFailure()) return;
+      if (number++ % 2 != 0) continue;
+      check(c.mesh, c.rules, testing::options_of(c.rules), {.tolerance = number % 4 == 1 ? 0.04 : 0.015},
+            library, c.name + ", " + testing::text_of(c.rules), outcomes);
+    }
+    outcomes.print(scheme == oracle::PrimalScheme::loop ? "loop" : "catmark");
+    EXPECT_GT(outcomes.verified, 30u);
+  }
+}
+
+TaggedMesh moved(TaggedMesh mesh, const oracle::Point& by) {
+  for (oracle::Point& p : mesh.points) {
+    for (std::size_t a = 0; a < 3; ++a) p[a] += by[a];
+  }
+  return mesh;
+}
+
+TaggedMesh both(TaggedMesh mesh, const TaggedMesh& other) {
+  const auto first = static_cast<std::uint32_t>(mesh.points.size());
+  mesh.points.insert(mesh.points.end(), other.points.begin(), other.points.end());
+  for (auto polygon : other.polygons) {
+    for (std::uint32_t& v : polygon) v += first;
+    mesh.polygons.push_back(polygon);
+  }
+  for (auto crease : other.creases) {
+    crease.a += first;
+    crease.b += first;
+    mesh.creases.push_back(crease);
+  }
+  for (auto corner : other.corners) {
+    corner.vertex += first;
+    mesh.corners.push_back(corner);
+  }
+  return mesh;
+}
+
+// Two parts of each pair of kinds, from far apart to through each other.
+TEST(hulls, of_parts_beside_each_other_sandwich_them) {
+  namespace meshes = oracle::meshes;
+  TaggedMesh sharp = meshes::cube(), semi = meshes::prism(5), plate = meshes::cube(),
+             bumpy = meshes::quad_grid(3, 3), needle = meshes::pyramid(5), hollow = meshes::cube();
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (const auto& polygon : sharp.polygons)
+      sharp.creases.push_back({polygon[k], polygon[(k + 1) % 4], 10});
+  }
+  for (std::size_t k = 0; k < 5; ++k) {
+    const auto& polygon = semi.polygons[0];
+    semi.creases.push_back({polygon[k], polygon[(k + 1) % 5], 1.7});
+  }
+  semi.corners.push_back({0, 10});
+  for (oracle::Point& p : plate.points) p[2] *= 0.03;
+  bumpy.points[5][2] = 1;
+  needle.points[0][2] += 4;
+  hollow = both(hollow, hollow);
+  for (std::size_t v = 8; v < 16; ++v) {
+    for (double& x : hollow.points[v]) x = 0.5 + 0.5 * (x - 0.5);
+  }
+  for (std::size_t f = 6; f < 12; ++f) std::reverse(hollow.polygons[f].begin(), hollow.polygons[f].end());
+  const std::vector<std::pair<std::string, TaggedMesh>> kinds{{"smooth", meshes::cube()},
+                                                              {"sharp", sharp},
+                                                              {"semi-sharp", semi},
+                                                              {"plate", plate},
+                                                              {"open", bumpy},
+                                                              {"needle", needle},
+                                                              {"hollow", hollow},
+                                                              {"flat", meshes::quad_grid(2, 2)}};
+  Outcomes outcomes;
+  const auto library = std::make_shared<BoundsCache>();
+  std::mt19937_64 random(5);
+  for (const auto& [name_a, a] : kinds) {
+    for (const auto& [name_b, b] : kinds) {
+      for (const double apart : {1.0, 0.03, 0.002, 0.0, -0.2}) {
+        double high = -INFINITY, low = INFINITY;
+        const std::size_t axis = random() % 3;
+        for (const oracle::Point& p : a.points) high = std::max(high, p[axis]);
+        for (const oracle::Point& p : b.points) low = std::min(low, p[axis]);
+        oracle::Point by{0.1 * testing::unit(random), 0.1 * testing::unit(random),
+                         0.1 * testing::unit(random)};
+        by[axis] = high - low + apart;
+        check(both(a, moved(b, by)), oracle::Rules{}, testing::options_of(oracle::Rules{}),
+              {.tolerance = 0.02}, library, name_a + " beside " + name_b + " at " + std::to_string(apart),
+              outcomes);
+        if (HasFailure()) return;
+      }
+    }
+  }
+  outcomes.print("pairs");
+  EXPECT_GT(outcomes.verified, 100u);
+}
+
+}  // namespace
+}  // namespace snug::hull_test

@@ -1,0 +1,304 @@
+// Random closed meshes of every scheme, from smooth to crumpled: none is clear whose refined mesh crosses
+// itself; nearly all that do not are not said to.
+
+#include <snug/self.h>
+
+#include <gtest/gtest.h>
+#include <oracle/dual_twin.h>
+#include <oracle/polygon_twin.h>
+#include <oracle/self_twin.h>
+#include <testing/closed_meshes.h>
+#include <testing/tagged.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <numbers>
+#include <random>
+
+namespace snug::self_test {
+namespace {
+
+double unit(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
+
+// A mesh with a place for each vertex, and the same shaken.
+struct Shape {
+  testing::ClosedMesh mesh;
+  std::vector<std::array<double, 3>> points;
+};
+
+oracle::TaggedMesh shaken(const Shape& shape, double amount, std::mt19937_64& random) {
+  oracle::TaggedMesh mesh;
+  mesh.polygons = shape.mesh.faces;
+  for (const auto& p : shape.points) {
+    oracle::Point moved{};
+    for (std::size_t k = 0; k < 3; ++k) moved[k] = p[k] + amount * (unit(random) - 0.5);
+    mesh.points.push_back(moved);
+  }
+  return mesh;
+}
+
+// Drums of every valence.
+std::vector<Shape> shapes() {
+  std::vector<Shape> all;
+  const auto add_drum = [&](const testing::ClosedMesh& mesh, std::uint32_t n, double twist) {
+    Shape shape{mesh, {}};
+    for (std::uint32_t v = 0; v < 2 * n; ++v) {
+      const double t = 2 * std::numbers::pi * (v % n + (v < n ? 0 : twist)) / n;
+      shape.points.push_back({std::cos(t), std::sin(t), v < n ? -0.7 : 0.7});
+    }
+    shape.points.resize(mesh.vertices);
+    all.push_back(shape);
+  };
+  for (std::uint32_t n = 3; n <= 12; n += 3) {
+    add_drum(testing::prism(n), n, 0);
+    add_drum(testing::antiprism(n), n, 0.5);
+    // Both with fans of triangles for their two n-gons: valences up to n.
+    for (const bool anti : {false, true}) {
+      testing::ClosedMesh mesh = anti ? testing::antiprism(n) : testing::prism(n);
+      mesh.name += " with apexes";
+      testing::ClosedMesh fans{mesh.name, 2 * n + 2, {}};
+      for (const auto& face : mesh.faces) {
+        if (face.size() != n || (n == 3 && &face > &mesh.faces[1])) {
+          for (std::size_t k = 2; k < face.size(); ++k) fans.faces.push_back({face[0], face[k - 1], face[k]});
+          continue;
+        }
+        const std::uint32_t apex = face[0] < n ? 2 * n : 2 * n + 1;
+        for (std::size_t k = 0; k < n; ++k) fans.faces.push_back({face[k], face[(k + 1) % n], apex});
+      }
+      if (!testing::is_closed_manifold(fans)) continue;
+      add_drum(fans, n, anti ? 0.5 : 0);
+      all.back().points[2 * n] = {0, 0, -1.2};
+      all.back().points[2 * n + 1] = {0, 0, 1.2};
+    }
+  }
+  return all;
+}
+
+// Sharp edges and corners at random.
+void add_tags(oracle::TaggedMesh& mesh, std::mt19937_64& random) {
+  for (const auto& face : mesh.polygons) {
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const double sharpness = random() % 2 == 0 ? 10 : 2.5;
+      if (random() % 12 == 0) mesh.creases.push_back({face[k], face[(k + 1) % face.size()], sharpness});
+    }
+  }
+}
+
+bool crosses(const oracle::TaggedMesh& fine, double margin) {
+  std::vector<std::array<double, 3>> points;
+  for (const auto& p : fine.points) points.push_back({p[0], p[1], p[2]});
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  for (const auto& face : fine.polygons) {
+    for (std::size_t k = 2; k < face.size(); ++k) triangles.push_back({face[0], face[k - 1], face[k]});
+  }
+  return oracle::crossing_triangles(points, triangles, margin).has_value();
+}
+
+oracle::TaggedMesh refined(const oracle::TaggedMesh& mesh, Scheme scheme) {
+  if (scheme == Scheme::doo_sabin) return oracle::refine_dual(mesh, oracle::DualScheme::doo_sabin, 3);
+  if (scheme == Scheme::midedge) return oracle::refine_dual(mesh, oracle::DualScheme::midedge, 4);
+  oracle::Rules rules;
+  rules.scheme = scheme == Scheme::loop ? oracle::PrimalScheme::loop : oracle::PrimalScheme::catmull_clark;
+  return oracle::refine(mesh, rules, 3);
+}
+
+// SNUG_SELF_TRIALS: meshes a family, scheme and amount.
+TEST(sound_self, verdicts_are_those_of_refined_meshes) {
+  const char* const wanted = std::getenv("SNUG_SELF_TRIALS");
+  const int trials = wanted != nullptr ? std::atoi(wanted) : 1;
+  std::mt19937_64 random(1);
+  std::map<std::string, int> counts;
+  for (const Shape& shape : shapes()) {
+    const testing::ClosedMesh& closed = shape.mesh;
+    const bool triangles = std::all_of(closed.faces.begin(), closed.faces.end(),
+                                       [](const auto& face) { return face.size() == 3; });
+    for (const Scheme scheme : {Scheme::loop, Scheme::catmark, Scheme::doo_sabin, Scheme::midedge}) {
+      if (scheme == Scheme::loop && !triangles) continue;
+      for (const double amount : {0.0, 0.3, 0.8, 1.5, 3.0}) {
+        for (int trial = 0; trial < 2 * trials; ++trial) {
+          oracle::TaggedMesh mesh = shaken(shape, amount, random);
+          const bool tagged = trial % 2 == 1 && (scheme == Scheme::loop || scheme == Scheme::catmark);
+          if (tagged) add_tags(mesh, random);
+          const SelfContact found =
+              self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}), {.budget = 20'000});
+          const std::string name = closed.name + " " + name_of(scheme) + " " + std::to_string(amount);
+          const bool crossing = crosses(refined(mesh, scheme), 0.005);
+          ++counts[std::string(name_of(found.verdict)) + (crossing ? ", twin crosses" : ", twin does not")];
+          if (crossing) {
+            EXPECT_NE(found.verdict, SelfVerdict::clear) << name << " trial " << trial;
+          }
+        }
+      }
+    }
+  }
+  for (const auto& [what, count] : counts) RecordProperty(what, count);
+  for (const auto& [what, count] : counts) std::printf("%s: %d\n", what.c_str(), count);
+  EXPECT_GT(counts["clear, twin does not"], 30 * trials);
+  EXPECT_GT(counts["intersecting, twin crosses"], 30 * trials);
+}
+
+// A flat fan around vertex 0, inside or on the border, three rings more around it, and which edges of it run along
+// the x-axis, where there are some: through the vertex, or from the border inwards.
+struct Fan {
+  oracle::TaggedMesh mesh;
+  std::vector<std::array<std::uint32_t, 2>> axis;
+};
+Fan fan_of(std::uint32_t n, bool triangles, bool boundary) {
+  Fan fan;
+  fan.mesh.points.push_back({0, 0, 0});
+  const std::uint32_t steps = triangles ? n : 2 * n, around = boundary ? steps + 1 : steps;
+  const auto next = [&](std::uint32_t i) { return boundary ? i + 1 : (i + 1) % steps; };
+  constexpr std::uint32_t rings = 4;
+  for (std::uint32_t ring = 0; ring < rings; ++ring) {
+    for (std::uint32_t i = 0; i < around; ++i) {
+      const double part = static_cast<double>(i) / steps;
+      const double angle = std::numbers::pi * (boundary ? part - 0.5 : 2 * part);
+      const double size = ring + (triangles || i % 2 == 0 ? 1 : 1.2);
+      // Exactly on the axis, where it is there.
+      const bool on_axis = boundary ? 2 * i == steps : i == 0 || 2 * i == steps;
+      fan.mesh.points.push_back({size * std::cos(angle), on_axis ? 0 : size * std::sin(angle), 0});
+      const std::uint32_t here = 1 + ring * around + i;
+      if (on_axis && (triangles || i % 2 == 0)) fan.axis.push_back({ring == 0 ? 0 : here - around, here});
+    }
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (triangles) {
+      fan.mesh.polygons.push_back({0, 1 + i, 1 + next(i)});
+    } else {
+      fan.mesh.polygons.push_back({0, 1 + 2 * i, 2 + 2 * i, 1 + next(2 * i + 1)});
+    }
+  }
+  for (std::uint32_t ring = 0; ring + 1 < rings; ++ring) {
+    for (std::uint32_t i = 0; i < steps; ++i) {
+      const std::uint32_t a = 1 + ring * around + i, b = 1 + ring * around + next(i);
+      const std::uint32_t c = a + around, d = b + around;
+      if (triangles) {
+        fan.mesh.polygons.push_back({a, c, d});
+        fan.mesh.polygons.push_back({a, d, b});
+      } else {
+        fan.mesh.polygons.push_back({a, c, d, b});
+      }
+    }
+  }
+  return fan;
+}
+
+// Bends the plane along the x-axis by one angle, and half a turn's part further on by another.
+void fold(oracle::TaggedMesh& mesh, double first, double second) {
+  constexpr double radians = std::numbers::pi / 180, length = 1.2;
+  for (auto& p : mesh.points) {
+    if (!(p[1] > 0)) continue;
+    const double near = std::min(p[1], length), far = p[1] - near;
+    const double a = radians * first, b = radians * (first + second);
+    // Half a turn is exact.
+    const double sine = first == 180 ? 0 : std::sin(a);
+    p = {p[0], near * std::cos(a) + far * std::cos(b),
+         near * sine + (second == 0 ? far * sine : far * std::sin(b))};
+  }
+}
+
+// All of: scheme, faces around a vertex, inside and on the border, sort of crease along the fold, angle.
+TEST(sound_self, folds_are_what_they_are_made_to_be) {
+  struct Bend {
+    const char* name;
+    double first, second;
+    enum : std::uint8_t { clear, touching, crossing } what;
+  };
+  const std::vector<Bend> bends{
+      {"flat", 0, 0, Bend::clear},        {"by 60", 60, 0, Bend::clear},
+      {"by 120", 120, 0, Bend::clear},    {"by 165", 165, 0, Bend::clear},
+      {"by 180", 180, 0, Bend::touching}, {"through itself", 100, 135, Bend::crossing}};
+  std::map<std::string, int> counts;
+  for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
+    const bool triangles = scheme == Scheme::loop;
+    for (const bool boundary : {false, true}) {
+      for (std::uint32_t n = boundary ? 2 : 3; n <= (boundary ? 7U : 12U); ++n) {
+        for (const double sharpness : {0.0, 1.5, 10.0}) {
+          for (const Bend& bend : bends) {
+            Fan fan = fan_of(n, triangles, boundary);
+            if (sharpness > 0 && fan.axis.empty()) continue;
+            for (const auto& [a, b] : fan.axis) {
+              if (sharpness > 0) fan.mesh.creases.push_back({a, b, sharpness});
+            }
+            fold(fan.mesh, bend.first, bend.second);
+            const std::string name = std::string(name_of(scheme)) +
+                                     (boundary ? ", on the border, " : ", inside, ") + std::to_string(n) +
+                                     " faces, sharpness " + std::to_string(sharpness) + ", " + bend.name;
+            const SelfContact found = self_contact(
+                Surface(testing::control_mesh(fan.mesh), {.scheme = scheme}), {.budget = 10'000});
+            ++counts[std::string(bend.name) + ": " + name_of(found.verdict)];
+            // A crease inwards makes a corner of a vertex on the border, and one that ends inside a dart; the tangents
+            // across both sides of a crease may not both shrink less than that along it. Three triangles are all too
+            // flat here.
+            const std::uint32_t side = boundary || sharpness == 0 ? n : n / 2;
+            const bool through = fan.axis.size() > 4;
+            const bool known = boundary         ? sharpness == 0 && n <= (triangles ? 5 : 3)
+                               : sharpness < 10 ? n >= 4 && n <= 9
+                                                : through && side >= 2 && side <= (triangles ? 3 : 2);
+            switch (bend.what) {
+              case Bend::clear:
+                EXPECT_NE(found.verdict, SelfVerdict::intersecting) << name;
+                if (known && bend.first <= 60) {
+                  EXPECT_EQ(found.verdict, SelfVerdict::clear) << name;
+                }
+                break;
+              case Bend::touching:
+                EXPECT_NE(found.verdict, SelfVerdict::clear) << name;
+                break;
+              case Bend::crossing:
+                EXPECT_TRUE(crosses(refined(fan.mesh, scheme), 0.005)) << name;
+                EXPECT_NE(found.verdict, SelfVerdict::clear) << name;
+                if (n > 3) {
+                  EXPECT_EQ(found.verdict, SelfVerdict::intersecting) << name;
+                }
+                break;
+            }
+          }
+        }
+      }
+    }
+  }
+  for (const auto& [what, count] : counts) std::printf("%s: %d\n", what.c_str(), count);
+  for (const auto& [what, count] : counts) RecordProperty(what, count);
+}
+
+// Fans on the border, from smooth to crumpled, some with a crease inwards.
+TEST(sound_self, verdicts_on_borders_are_those_of_refined_meshes) {
+  const char* const wanted = std::getenv("SNUG_SELF_TRIALS");
+  const int trials = 6 * (wanted != nullptr ? std::atoi(wanted) : 1);
+  std::mt19937_64 random(2);
+  std::map<std::string, int> counts;
+  for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
+    for (std::uint32_t n = 1; n <= 7; ++n) {
+      for (const double amount : {0.3, 0.8, 1.5, 2.5}) {
+        for (int trial = 0; trial < trials; ++trial) {
+          oracle::TaggedMesh mesh = fan_of(n, scheme == Scheme::loop, true).mesh;
+          // All of it, or the border's vertex and what is next to it.
+          const std::size_t moved = trial % 2 == 0 ? mesh.points.size() : n + 2;
+          for (std::size_t v = 0; v < moved; ++v) {
+            for (double& x : mesh.points[v]) x += amount * (unit(random) - 0.5);
+          }
+          if (trial % 3 == 2) add_tags(mesh, random);
+          const SelfContact found =
+              self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}), {.budget = 10'000});
+          const bool crossing = crosses(refined(mesh, scheme), 0.005);
+          ++counts[std::string(name_of(found.verdict)) + (crossing ? ", twin crosses" : ", twin does not")];
+          if (crossing) {
+            EXPECT_NE(found.verdict, SelfVerdict::clear)
+                << name_of(scheme) << " " << n << " faces, shaken by " << amount << ", trial " << trial;
+          }
+        }
+      }
+    }
+  }
+  for (const auto& [what, count] : counts) std::printf("%s: %d\n", what.c_str(), count);
+  for (const auto& [what, count] : counts) RecordProperty(what, count);
+  EXPECT_GT(counts["clear, twin does not"], 10 * trials);
+  EXPECT_GT(counts["intersecting, twin crosses"], 2 * trials);
+}
+
+}  // namespace
+}  // namespace snug::self_test
