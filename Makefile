@@ -133,20 +133,20 @@ tidy: build  ## clang-tidy over the library
 	@run-clang-tidy -quiet -j $(JOBS) -p build/release 'src/snug/.*\.cpp$$'
 
 docs: install-packages  ## plots and tables of docs/convergence.md, pictures of README.md, docs/schemes.md, docs/meshes.md, docs/rays.md, docs/nodal_functions.md and docs/independence.md; links and citations
-	@$(call build,release,snug_command snug_experiments_program)
+	@$(call build,release,snug_command snug_research)
 	@mkdir -p build/docs
-	@for name in rates tightness; do build/release/bin/snug-experiments $$name -o build/docs/$$name.json > /dev/null; done
+	@for name in rates tightness; do build/release/bin/snug-research $$name -o build/docs/$$name.json > /dev/null; done
 	@for scheme in catmark doo-sabin midedge; do \
-	  build/release/bin/snug-experiments rates --scheme $$scheme -o build/docs/$$scheme.json > /dev/null; done
+	  build/release/bin/snug-research rates --scheme $$scheme -o build/docs/$$scheme.json > /dev/null; done
 	@for scheme in loop catmark; do for place in boundary corner crease dart; do \
-	  build/release/bin/snug-experiments rates --scheme $$scheme --at $$place --levels 36 -o build/docs/$$scheme-$$place.json > /dev/null; done; \
-	  build/release/bin/snug-experiments rates --scheme $$scheme --at semi-sharp -o build/docs/$$scheme-semi-sharp.json > /dev/null; done
+	  build/release/bin/snug-research rates --scheme $$scheme --at $$place --levels 36 -o build/docs/$$scheme-$$place.json > /dev/null; done; \
+	  build/release/bin/snug-research rates --scheme $$scheme --at semi-sharp -o build/docs/$$scheme-semi-sharp.json > /dev/null; done
 	@scripts/plot_experiments.py build/docs docs/convergence.md docs/pictures
 	@scripts/draw_schemes build/release/bin/snug docs/pictures
 	@scripts/draw_meshes build/release/bin/snug docs/pictures
 	@scripts/draw_nodal build/release/bin/snug docs/pictures
 	@scripts/draw_rays build/release/bin/snug docs/pictures
-	@scripts/draw_independence build/release/bin/snug docs/pictures
+	@scripts/draw_independence build/release/bin/snug-research docs/pictures
 	@scripts/demo build/release/bin/snug docs/pictures/demo.png > /dev/null
 	@scripts/check_docs.py
 

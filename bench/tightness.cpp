@@ -1,6 +1,6 @@
 // bench_tightness MODEL...: radius of the offset triangles over the least possible for the same base
 // triangles (experiments/tightness.h), on real meshes and on patches with several extraordinary corners. The
-// ratios are upper bounds. `snug-experiments tightness` has patches with one extraordinary corner, and
+// ratios are upper bounds. `snug-research tightness` has patches with one extraordinary corner, and
 // tables.
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-# CPack: the packages snug, libsnug-dev and, where the module is built, python3-snug. `make deb` sets the flags and the date.
+# CPack: the packages snug, snug-research, libsnug-dev and, where the module is built, python3-snug. `make deb` sets the flags and the date.
 
 set(SNUG_PACKAGER "snug developers <snug@packages.invalid>" CACHE STRING "Maintainer of the packages: Name <address>")
 set(SNUG_PACKAGE_REVISION 1 CACHE STRING "Debian revision")
@@ -14,7 +14,7 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXE
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # which CPack would put before every description
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
-set(CPACK_COMPONENTS_ALL command development)
+set(CPACK_COMPONENTS_ALL command research development)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE ${SNUG_PACKAGE_REVISION})
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${SNUG_PACKAGER}")
@@ -28,12 +28,23 @@ touch, how far apart they are, what encloses them, where rays hit them.")
 set(CPACK_DEBIAN_COMMAND_PACKAGE_NAME snug)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SECTION math)
 set(CPACK_DEBIAN_COMMAND_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "bash-completion")
+set(CPACK_DEBIAN_COMMAND_PACKAGE_SUGGESTS "bash-completion, snug-research")
 set(CPACK_DEBIAN_COMMAND_DESCRIPTION "proved answers about subdivision surfaces - command
 ${about}
 .
 This package has the command snug, its manual pages, its completion in bash,
 and the page for browsers that snug view fills.")
+
+set(CPACK_DEBIAN_RESEARCH_PACKAGE_NAME snug-research)
+set(CPACK_DEBIAN_RESEARCH_PACKAGE_SECTION math)
+set(CPACK_DEBIAN_RESEARCH_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_RESEARCH_PACKAGE_SUGGESTS "snug, bash-completion")
+set(CPACK_DEBIAN_RESEARCH_DESCRIPTION "proved answers about subdivision surfaces - nodal functions
+${about}
+.
+This package has the command snug-research: which nodal functions are linearly
+independent, their tables and weights, fits to points, and the measurements of
+the dissertation repeated; with manual pages and completion in bash.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libsnug-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)

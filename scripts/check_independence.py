@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Verifies certificates about the linear independence of nodal functions of subdivision surfaces.
 
-Files are as `snug independence --json` prints them. Each case says: the nodal functions of a scheme, restricted to a domain at
+Files are as `snug-research independence --json` prints them. Each case says: the nodal functions of a scheme, restricted to a domain at
 a corner of some valence, span a space of dimension `rank`. Shown here without a line of snug, in integers alone:
   - rank >= r: the matrix of the domain has rank r modulo a prime, with 2 cos(2 pi / n) sent to root + 1 / root;
   - rank <= r: there are only r functions, or r rows, or enough independent vectors whose functions are exactly 0.
@@ -2202,7 +2202,7 @@ def check_files(names):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("files", nargs="*", metavar="FILE.json", help="of `snug independence --json`; - for standard input")
+    parser.add_argument("files", nargs="*", metavar="FILE.json", help="of `snug-research independence --json`; - for standard input")
     parser.add_argument("--self-test", action="store_true", help="check that this check can fail")
     arguments = parser.parse_args()
     if arguments.self_test:

@@ -20,9 +20,9 @@ EXCEPTIONS = {
     "bvh": {"base", "geometry"},  # knows sets and ids, no surfaces
     "io": {"base", "geometry", "mesh", "scheme"},  # files name schemes; knows no surfaces
 }
-# Rooms with a library of their own, which is not installed: of the other folders only these include them, and their own
+# Rooms with a library of their own, which is not installed: outside src only files below these folders include them, and their own
 # CMakeLists.txt lists their sources.
-SEPARATE = {"independence": ("apps", "tests")}
+SEPARATE = {"independence": ("apps/research/", "tests/")}
 # What a layer may include besides the C++ standard library and snug; all others: nothing.
 LIBRARIES = {
     "geometry": ("hwy/",),
@@ -128,8 +128,8 @@ def check_tree(root):
                           include.removeprefix("snug/") if layer_of(include) == ADAPTERS else f"src/{include}")
                 if include.startswith("snug/") and not (root / source).exists():
                     faults.append(f"{where}:{line}: <{include}> does not exist")
-                if name != "src" and name not in SEPARATE.get(layer_of(include), FOLDERS):
-                    faults.append(f"{where}:{line}: {name} may not include {layer_of(include)}")
+                if name != "src" and not str(where).startswith(SEPARATE.get(layer_of(include), "")):
+                    faults.append(f"{where}:{line}: {where.parent} may not include {layer_of(include)}")
     for name, layers in INDEPENDENT.items():
         for path in cpp_files(root / name):
             if not path.stem.endswith("_test"):
@@ -152,7 +152,7 @@ GOOD_TREE = {
     "src/snug/independence/CMakeLists.txt": "add_library(snug_independence STATIC k.cpp)",
     "src/snug/independence/k.h": "#pragma once\n",
     "src/snug/independence/k.cpp": "#include <snug/independence/k.h>\n#include <snug/mesh/m.h>\n",
-    "apps/a.cpp": "#include <snug/independence/k.h>\n",
+    "apps/research/a.cpp": "#include <snug/independence/k.h>\n",
     "tests/independence/k_test.cpp": "#include <snug/independence/k.h>\n",
     "src/snug/io/r.h": "#pragma once\n",
     "src/snug/io/r.cpp": "#include <snug/base/a.h>\n#include <unistd.h>\n",
@@ -179,6 +179,7 @@ BAD_FILES = [
     ("src/snug/independence/l.cpp", "\n", "src/snug/independence/CMakeLists.txt: lacks l.cpp"),
     ("src/snug/front/f.cpp", "#include <snug/independence/k.h>\n", "front may not include independence"),
     ("examples/e.cpp", "#include <snug/independence/k.h>\n", "e.cpp:1: examples may not include independence"),
+    ("apps/snug/a.cpp", "#include <snug/independence/k.h>\n", "a.cpp:1: apps/snug may not include independence"),
     ("adapters/d.h", "#pragma once\n#include <snug/independence/k.h>\n", "adapters may not include independence"),
     ("src/snug/extra/e.cpp", "\n", "src/snug/extra: not a room"),
     ("include/snug/p.h", "#pragma once\n#include <snug/base/a.h>\n", "p.h:2: public headers may not include"),

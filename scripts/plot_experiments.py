@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plots and tables of docs/convergence.md from the documents of `snug-experiments rates` and `snug-experiments tightness`.
+"""Plots and tables of docs/convergence.md from the documents of `snug-research rates` and `snug-research tightness`.
 
 usage: plot_experiments.py DOCUMENTS PAGE.md PICTURES
 DOCUMENTS: a folder with rates.json, tightness.json, SCHEME.json of rates of schemes other than Loop, and SCHEME-PLACE.json of `rates --at PLACE`.

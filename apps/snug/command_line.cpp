@@ -43,6 +43,17 @@ std::string see_help(const Program& program, const Command& command) {
   throw UsageError("unknown option '" + name + "'" + did_you_mean(name, names));
 }
 
+// Of a command line that another program answers.
+void refuse_elsewhere(const Program& program, const std::vector<std::string>& words) {
+  for (const auto& [command, option, there] : program.elsewhere) {
+    if (words.front() != command) continue;
+    if (*option == '\0') throw UsageError(fmt::format("{} is {}", command, there));
+    if (std::find(words.begin(), words.end(), option) != words.end()) {
+      throw UsageError(fmt::format("{} {} is {}", command, option, there));
+    }
+  }
+}
+
 // Takes the option that words[i] names, and its value, from there: --name value, --name=value, -n value or -nvalue.
 // Returns the place of the last word taken.
 std::size_t take_option(const Command& command, const std::vector<std::string>& words, std::size_t i,
@@ -116,6 +127,7 @@ Invocation read_command_line(const Program& program, const std::vector<std::stri
       throw UsageError("--completion needs the name of a shell: bash");
     return {nullptr, bash_completion(program)};
   }
+  refuse_elsewhere(program, words);
   const auto command = std::find_if(commands.begin(), commands.end(),
                                     [&](const Command& candidate) { return first == candidate.name; });
   const bool known = command != commands.end();

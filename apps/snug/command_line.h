@@ -10,7 +10,7 @@
 namespace snug::command {
 
 /// What commands are about; --help of the program lists them by it, in this order.
-enum class Topic { two_surfaces, one_surface, files, tables, comparisons };
+enum class Topic { two_surfaces, one_surface, files, functions, tables, comparisons };
 
 /// A command: what --help says of it, its options, and what runs when it is chosen.
 struct Command {
@@ -22,6 +22,13 @@ struct Command {
   std::function<ExitStatus()> run;
 };
 
+/// A command of another program, or an option that is one.
+struct Elsewhere {
+  const char* command;
+  const char* option;  ///< empty, or the option of `command`
+  const char* there;   ///< "a command of PROGRAM (package PACKAGE)" and the like
+};
+
 /// A program of commands, and what its --help says.
 struct Program {
   const char* name;
@@ -29,6 +36,8 @@ struct Program {
   const char* question;  ///< that the example answers
   const char* example;
   std::vector<Command> commands;
+  const char* see_also = nullptr;  ///< a sentence about other programs
+  std::vector<Elsewhere> elsewhere = {};
 };
 
 /// What a command line asks for.

@@ -123,8 +123,6 @@ class Report {
 [[nodiscard]] Command info_command();
 [[nodiscard]] Command bound_command();
 [[nodiscard]] Command eval_command();
-[[nodiscard]] Command fit_command();
-[[nodiscard]] Command independence_command();
 [[nodiscard]] Command subdivide_command();
 [[nodiscard]] Command tessellate_command();
 [[nodiscard]] Command hull_command();
@@ -138,7 +136,6 @@ class Report {
 [[nodiscard]] Command ray_command();
 [[nodiscard]] Command deviation_command();
 [[nodiscard]] Command render_command();
-[[nodiscard]] Command table_command();
 [[nodiscard]] Command view_command();
 
 }  // namespace snug::command

@@ -1,6 +1,5 @@
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 
 #include <fmt/core.h>
@@ -11,7 +10,6 @@
 
 #include "common.h"
 #include "curve.h"
-#include "limit_weights.h"
 #include "places.h"
 #include "progress_bar.h"
 #include "words.h"
@@ -24,30 +22,7 @@ struct Options : CommonOptions {
   Degree degree;
   unsigned samples = 4;
   std::string at;
-  bool weights = false;
 };
-
-// Lines "face u v"; blank lines and those that begin with # are skipped.
-std::vector<SurfaceParameter> read_requests(const std::string& path, const LimitSurface& surface) {
-  const std::string text = read_file(path, stopped_by_interrupts());
-  const std::string expected = place_words(surface.rules());
-  std::vector<SurfaceParameter> requests;
-  for_each_line(text, [&](std::string_view line, std::size_t number) {
-    requests.push_back(read_place(line, surface, path + ":" + std::to_string(number) + ": ", expected));
-  });
-  return requests;
-}
-
-// Of control points, by vertex: the values of their nodal functions there.
-void write_weights(JsonWriter& json, const LimitSurface& surface, const SurfaceParameter& at) {
-  const Stencils rows = limit_weights(surface, {&at, 1});
-  const Stencils::Row row = rows.row(0);
-  std::map<std::uint32_t, double> sums;  // a vertex may come twice
-  for (std::size_t i = 0; i < row.sources.size(); ++i) sums[row.sources[i]] += row.weights[i];
-  json.key("weights").begin_object();
-  for (const auto& [vertex, weight] : sums) json.field(std::to_string(vertex), weight);
-  json.end_object();
-}
 
 using Columns = std::vector<ColumnTable::Column>;
 
@@ -83,8 +58,8 @@ struct Output {
   ColumnTable* table;
 };
 
-void write_point(const Output& output, const Options& options, const LimitSurface& surface,
-                 const SurfaceParameter& at, const SurfacePoint& point) {
+void write_point(const Output& output, const LimitSurface& surface, const SurfaceParameter& at,
+                 const SurfacePoint& point) {
   if (output.table) return add_row(*output.table, surface, at, point);
   Report& report = output.report;
   const SchemeRules& rules = surface.rules();
@@ -95,38 +70,9 @@ void write_point(const Output& output, const Options& options, const LimitSurfac
     return;
   }
   JsonWriter& json = report.write();
-  json.begin_object().field(rules.owner(), at.owner).field("u", at.u).field("v", at.v);
-  if (!rules.triangular()) json.field("corner", at.corner);
-  json.field("position", point.position).field("error", point.error).key("normal");
-  point.normal ? json.value(*point.normal) : json.null();
-  json.key("tangents").begin_array().value(point.tangents[0]).value(point.tangents[1]).end_array();
-  json.field("differentiable", point.differentiable);
-  if (options.weights) write_weights(json, surface, at);
+  json.begin_object();
+  write_place(json, surface, at, point);
   json.end_object();
-}
-
-// Calls visit(place) for a lattice of `steps` on a face, or on each quad of its first split.
-template <class Visit>
-void for_each_place(const LimitSurface& surface, std::uint32_t owner, unsigned steps, Visit&& visit) {
-  if (surface.rules().triangular()) {
-    for (unsigned j = 0; j <= steps; ++j) {
-      for (unsigned i = 0; i + j <= steps; ++i) {
-        // The far edge is met exactly: u + v rounds to at most 1.
-        const double v = static_cast<double>(j) / steps, u = std::fmin(static_cast<double>(i) / steps, 1 - v);
-        visit(SurfaceParameter{owner, 0, u, v});
-      }
-    }
-    return;
-  }
-  const LimitSurface::PatchRange range = surface.patches_of(owner);
-  for (std::uint32_t corner = 0; corner < (range.end - range.begin) / 2; ++corner) {
-    for (unsigned j = 0; j <= steps; ++j) {
-      for (unsigned i = 0; i <= steps; ++i) {
-        visit(
-            SurfaceParameter{owner, corner, static_cast<double>(i) / steps, static_cast<double>(j) / steps});
-      }
-    }
-  }
 }
 
 // Writes the points of a lattice on an owner; returns how many.
@@ -135,8 +81,7 @@ std::size_t write_lattice(const Output& output, const Options& options, const Li
   SurfaceEvaluator evaluator(surface);
   std::size_t count = 0;
   for_each_place(surface, owner, options.samples, [&](const SurfaceParameter& at) {
-    if (!patch_at(surface, at)) return;
-    write_point(output, options, surface, at, evaluator(at));
+    write_point(output, surface, at, evaluator(at));
     ++count;
   });
   return count;
@@ -152,8 +97,10 @@ CurveSetPoint evaluate(const CurveSet& curves, const CurveParameter& at) {
   return evaluate(curves, EdgeId(at.edge), at.t);
 }
 
+using command::read_places;  // of surfaces
+
 // Lines "edge t".
-std::vector<CurveParameter> read_requests(const std::string& path, const CurveSet& curves) {
+std::vector<CurveParameter> read_places(const std::string& path, const CurveSet& curves) {
   const std::string text = read_file(path, stopped_by_interrupts());
   std::vector<CurveParameter> requests;
   for_each_line(text, [&](std::string_view line, std::size_t line_number) {
@@ -183,7 +130,7 @@ Columns columns_of(const CurveSet&) {
   return columns;
 }
 
-void write_point(const Output& output, const Options&, const CurveSet&, const CurveParameter& at,
+void write_point(const Output& output, const CurveSet&, const CurveParameter& at,
                  const CurveSetPoint& point) {
   const auto& [x, y, z] = point.position;
   if (output.table) {
@@ -206,7 +153,7 @@ std::size_t write_lattice(const Output& output, const Options& options, const Cu
   const unsigned steps = options.samples;
   for (unsigned i = 0; i <= steps; ++i) {
     const CurveParameter at{edge, i / static_cast<double>(steps)};
-    write_point(output, options, curves, at, evaluate(curves, at));
+    write_point(output, curves, at, evaluate(curves, at));
   }
   return steps + 1;
 }
@@ -216,11 +163,10 @@ template <class Source>
 ExitStatus answer(const Options& options, const Source& source, std::size_t owners,
                   const std::function<void(Report&, bool lines)>& heads) {
   const auto requests =
-      options.at.empty() ? decltype(read_requests("", source)){} : read_requests(options.at, source);
+      options.at.empty() ? decltype(read_places("", source)){} : read_places(options.at, source);
   std::optional<ColumnTable> table;
   CommonOptions shown = options;
   if (ColumnTable::is_table(options.output)) {
-    if (options.weights) throw UsageError("eval: --weights are written to .json only");
     table.emplace(columns_of(source), options.output);
     shown.output.clear();
   }
@@ -230,7 +176,7 @@ ExitStatus answer(const Options& options, const Source& source, std::size_t owne
   if (report.json() && !table) report.write().key("points").begin_array();
   std::size_t count = requests.size();
   naming(options.mesh, [&] {
-    for (const auto& at : requests) write_point(output, options, source, at, evaluate(source, at));
+    for (const auto& at : requests) write_point(output, source, at, evaluate(source, at));
     if (!options.at.empty()) return;
     ProgressBar bar("evaluating " + options.mesh, options.quiet);
     const WorkMonitor monitor = bar.monitor();
@@ -251,7 +197,6 @@ ExitStatus answer(const Options& options, const Source& source, std::size_t owne
 ExitStatus run(const Options& options) {
   ControlMesh mesh = load_mesh(options.mesh, options);
   if (asks_for_curves("eval", mesh, options.mesh, options, options.degree)) {
-    if (options.weights) throw UsageError("eval: --weights are those of surfaces");
     const CurveSet curves = make_curves(std::move(mesh), options.mesh, curve_degree(options.degree));
     return answer(options, curves, curves.edge_count(), [&](Report& report, bool lines) {
       curve_heads(report, options.mesh, curves.degree());
@@ -276,16 +221,7 @@ Command eval_command() {
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh,
            "Control mesh (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
-  list.add(Group::own, "--samples N", &options->samples,
-           "Evaluate a grid with N steps, 1 to 1000, along each edge of every face or polyline")
-      .between(1, 1000);
-  list.add(Group::own, "--at FILE", &options->at,
-           "File with lines 'face u v' (triangles: (1-u-v) c0 + u c1 + v c2; quads: u from c0 towards c1), "
-           "'face u v corner' for faces that are not quads, or 'edge t' for curves")
-      .excludes("--samples");
-  list.add(Group::own, "--weights", &options->weights,
-           "With the weights of control points, which are the values of their nodal functions; surfaces only")
-      .needs("--json");
+  add_place_options(list, options->samples, options->at).help += ", 'edge t' for curves";
   add_degree_option(list, options->degree);
   add_common_options(list, *options);
   return {"eval",

@@ -57,6 +57,7 @@ constexpr std::array topics{
     std::pair{Topic::two_surfaces, "Two surfaces"},
     std::pair{Topic::one_surface, "One surface, or curves"},
     std::pair{Topic::files, "Meshes and pictures"},
+    std::pair{Topic::functions, "Nodal functions"},
     std::pair{Topic::tables, "Tables and figures of the dissertation"},
     std::pair{Topic::comparisons, "Alternatives that were not adopted"},
 };
@@ -86,6 +87,7 @@ std::string help_of(const Program& program) {
     }
     if (!list.empty()) text += fmt::format("\n{}:\n{}", heading, list);
   }
+  if (program.see_also) text += "\nResearch:\n  " + wrapped(program.see_also, 2);
   text += "\nExit status:\n  " + wrapped(statuses, 2);
   return text + fmt::format("\nExamples:\n  {}\n  {}\n", program.question, program.example);
 }

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 
-#include <snug/surface/evaluate.h>
+#include <snug/io/read_file.h>
 
+#include "progress_bar.h"
 #include "words.h"
 
 namespace snug::command {
@@ -47,6 +48,38 @@ SurfaceParameter read_place(std::string_view line, const LimitSurface& surface, 
                          " has no limit surface: it lies at the boundary, or is a hole");
   }
   return at;
+}
+
+std::vector<SurfaceParameter> read_places(const std::string& path, const LimitSurface& surface) {
+  const std::string text = read_file(path, stopped_by_interrupts());
+  const std::string expected = place_words(surface.rules());
+  std::vector<SurfaceParameter> places;
+  for_each_line(text, [&](std::string_view line, std::size_t number) {
+    places.push_back(read_place(line, surface, path + ":" + std::to_string(number) + ": ", expected));
+  });
+  return places;
+}
+
+void write_place(JsonWriter& json, const LimitSurface& surface, const SurfaceParameter& at,
+                 const SurfacePoint& point) {
+  const SchemeRules& rules = surface.rules();
+  json.field(rules.owner(), at.owner).field("u", at.u).field("v", at.v);
+  if (!rules.triangular()) json.field("corner", at.corner);
+  json.field("position", point.position).field("error", point.error).key("normal");
+  point.normal ? json.value(*point.normal) : json.null();
+  json.key("tangents").begin_array().value(point.tangents[0]).value(point.tangents[1]).end_array();
+  json.field("differentiable", point.differentiable);
+}
+
+Option& add_place_options(OptionList& list, unsigned& samples, std::string& at) {
+  list.add(Group::own, "--samples N", &samples,
+           "Evaluate a grid with N steps, 1 to 1000, along each edge of every face or polyline")
+      .between(1, 1000);
+  return list
+      .add(Group::own, "--at FILE", &at,
+           "File with lines 'face u v' (triangles: (1-u-v) c0 + u c1 + v c2; quads: u from c0 towards c1), "
+           "'face u v corner' for faces that are not quads")
+      .excludes("--samples");
 }
 
 }  // namespace snug::command

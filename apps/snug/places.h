@@ -1,9 +1,16 @@
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include <snug/surface/evaluate.h>
 #include <snug/surface/limit_surface.h>
+
+#include "json_writer.h"
+#include "options.h"
 
 namespace snug::command {
 
@@ -15,5 +22,42 @@ namespace snug::command {
 ///            surface.
 [[nodiscard]] SurfaceParameter read_place(std::string_view line, const LimitSurface& surface,
                                           const std::string& where, const std::string& expected);
+/// The places of all lines of a file; blank lines and those that begin with # are skipped. Errors as above.
+[[nodiscard]] std::vector<SurfaceParameter> read_places(const std::string& path, const LimitSurface& surface);
+
+/// Calls visit(place) for those places of a lattice of `steps` on a face, or on each quad of its first split, where
+/// there is a surface.
+template <class Visit>
+void for_each_place(const LimitSurface& surface, std::uint32_t owner, unsigned steps, Visit&& visit) {
+  const auto visit_surface = [&](const SurfaceParameter& at) {
+    if (patch_at(surface, at)) visit(at);
+  };
+  if (surface.rules().triangular()) {
+    for (unsigned j = 0; j <= steps; ++j) {
+      for (unsigned i = 0; i + j <= steps; ++i) {
+        // The far edge is met exactly: u + v rounds to at most 1.
+        const double v = static_cast<double>(j) / steps, u = std::fmin(static_cast<double>(i) / steps, 1 - v);
+        visit_surface(SurfaceParameter{owner, 0, u, v});
+      }
+    }
+    return;
+  }
+  const LimitSurface::PatchRange range = surface.patches_of(owner);
+  for (std::uint32_t corner = 0; corner < (range.end - range.begin) / 2; ++corner) {
+    for (unsigned j = 0; j <= steps; ++j) {
+      for (unsigned i = 0; i <= steps; ++i) {
+        visit_surface(
+            SurfaceParameter{owner, corner, static_cast<double>(i) / steps, static_cast<double>(j) / steps});
+      }
+    }
+  }
+}
+
+/// The options --samples and --at of commands that answer for places: a lattice, or a file. Returns the last.
+Option& add_place_options(OptionList& list, unsigned& samples, std::string& at);
+
+/// The fields of a place and of the limit point there, in an object that has begun.
+void write_place(JsonWriter& json, const LimitSurface& surface, const SurfaceParameter& at,
+                 const SurfacePoint& point);
 
 }  // namespace snug::command

@@ -37,7 +37,6 @@ std::vector<Question> questions(const TemporaryFolder& folder, const std::string
       {{"collide", pawn, pawn, "--move-b", "0.1 0.3 0", "--solid", "--penetration"}, "1000", "", false},
       {{"distance", pawn, pin, "--move-b", "0 0 9", "--precision", "1e-14"}, "1000", "/stats/splits"},
       {{"closest", pawn, "--points", points, "--precision", "1e-14"}, "1000", ""},
-      {{"fit", pawn, "--points", points, "--least-change", "-o", folder.file("fit.obj")}, "1", ""},
       {{"ray", pawn, "--rays", rays, "--precision", "1e-14"}, "10", ""},
       {{"self", pawn, "--tolerance", "1e-7"}, "1000", ""},
       {{"measure", pawn, "--precision", "1e-12"}, "1000", "/stats/splits"},
@@ -75,7 +74,7 @@ TEST(budget, bounds_the_work_and_the_memory_of_every_command) {
   for (const auto& [arguments, budget, count, spent] : questions(folder, facets, points, rays)) {
     std::vector<std::string> command = arguments;
     for (const char* const more : {"--budget", budget.c_str(), "--quiet"}) command.emplace_back(more);
-    if (command[0] != "render" && command[0] != "fit") command.emplace_back("--json");
+    if (command[0] != "render") command.emplace_back("--json");
     const Outcome outcome = run_snug_in(small, command);
     std::string line;
     for (const std::string& word : command) line += word + " ";

@@ -134,14 +134,13 @@ TEST(points, tables_have_the_columns_of_what_was_asked) {
   EXPECT_EQ(head({"eval", folder.file("l.obj")}), "edge,t,x,y,z,error,tangent_x,tangent_y,tangent_z");
 }
 
-TEST(points, other_endings_and_weights_are_usage_errors) {
+TEST(points, other_endings_are_usage_errors) {
   const TemporaryFolder folder;
   put(folder.file("p.txt"), three);
   const std::string star = model("star.obj");
   EXPECT_EQ(run_snug({"closest", star, "--points", folder.file("p.txt"), "-o", folder.file("a.npz")}).status,
             2);
   EXPECT_EQ(run_snug({"ray", star, "--rays", folder.file("p.txt"), "-o", folder.file("a.npy")}).status, 2);
-  EXPECT_EQ(run_snug({"eval", star, "--weights", "--json", "-o", folder.file("a.npy")}).status, 2);
   // A table that is not whole is not there.
   put(folder.file("bad.txt"), "0 0 1\n0 0 x\n");
   EXPECT_EQ(

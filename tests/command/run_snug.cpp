@@ -26,12 +26,12 @@ void redirect(const std::string& path, int flags, int to) {
   close(file);
 }
 
-Outcome run(const std::vector<std::string>& arguments, const std::string& input,
+Outcome run(const char* program, const std::vector<std::string>& arguments, const std::string& input,
             const Surroundings& surroundings) {
   const TemporaryFolder folder;
   const std::string in = folder.file("in"), out = folder.file("out"), err = folder.file("err");
   std::ofstream(in, std::ios::binary) << input;
-  std::vector<char*> argv{const_cast<char*>(SNUG_COMMAND)};
+  std::vector<char*> argv{const_cast<char*>(program)};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   const pid_t child = fork();
@@ -41,7 +41,7 @@ Outcome run(const std::vector<std::string>& arguments, const std::string& input,
     redirect(out, O_WRONLY | O_CREAT | O_TRUNC, STDOUT_FILENO);
     redirect(err, O_WRONLY | O_CREAT | O_TRUNC, STDERR_FILENO);
     if (surroundings.before) surroundings.before();
-    execv(SNUG_COMMAND, argv.data());
+    execv(program, argv.data());
     _exit(127);
   }
   if (surroundings.meanwhile) surroundings.meanwhile(child);
@@ -55,18 +55,24 @@ Outcome run(const std::vector<std::string>& arguments, const std::string& input,
 }  // namespace
 
 Outcome run_snug(const std::vector<std::string>& arguments, const std::string& input) {
-  return run(arguments, input, {});
+  return run(SNUG_COMMAND, arguments, input, {});
 }
 
+#ifdef SNUG_RESEARCH
+Outcome run_research(const std::vector<std::string>& arguments, const std::string& input) {
+  return run(SNUG_RESEARCH, arguments, input, {});
+}
+#endif
+
 Outcome run_snug_in(const Surroundings& surroundings, const std::vector<std::string>& arguments) {
-  return run(arguments, "", surroundings);
+  return run(SNUG_COMMAND, arguments, "", surroundings);
 }
 
 Outcome interrupt_snug(const std::vector<std::string>& arguments, int milliseconds) {
-  return run(arguments, "", {{}, [milliseconds](int child) {
-                               usleep(static_cast<useconds_t>(milliseconds) * 1000);
-                               kill(child, SIGINT);
-                             }});
+  return run(SNUG_COMMAND, arguments, "", {{}, [milliseconds](int child) {
+                                             usleep(static_cast<useconds_t>(milliseconds) * 1000);
+                                             kill(child, SIGINT);
+                                           }});
 }
 
 TemporaryFolder::TemporaryFolder() {

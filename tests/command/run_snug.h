@@ -22,6 +22,9 @@ struct Outcome {
 /// Runs the command with these arguments, standard input empty or `input`, and waits for it.
 [[nodiscard]] Outcome run_snug(const std::vector<std::string>& arguments, const std::string& input = "");
 
+/// The same of snug-research.
+[[nodiscard]] Outcome run_research(const std::vector<std::string>& arguments, const std::string& input = "");
+
 /// What is different from a usual start of the command.
 struct Surroundings {
   /// Called in the new process once its standard files are in place, before the command begins.

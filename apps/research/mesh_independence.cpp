@@ -4,14 +4,14 @@
 #include <cstdlib>
 #include <optional>
 
+#include <apps/snug/curve.h>
+#include <apps/snug/progress_bar.h>
 #include <fmt/core.h>
 #include <snug/error.h>
 #include <snug/independence/mesh_kernel.h>
 #include <snug/independence/mesh_rank.h>
 
-#include "curve.h"
 #include "kernel_json.h"
-#include "progress_bar.h"
 
 namespace snug::command {
 namespace {

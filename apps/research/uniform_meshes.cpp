@@ -1,4 +1,4 @@
-#include <experiments/program/uniform_meshes.h>
+#include "uniform_meshes.h"
 
 #ifdef SNUG_BENCH_FCL
 #include <ctime>

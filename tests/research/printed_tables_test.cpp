@@ -61,7 +61,7 @@ Range printed_range(const std::string& text, const std::string& words) {
 }
 
 TEST(tables_page, prints_the_triangles_that_the_program_counts) {
-  const Outcome outcome = run_snug({"table-5-1", "--json"});
+  const Outcome outcome = run_research({"table-5-1", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const json rows = json::parse(outcome.out)["rows"];
   const std::string text = page();

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "common.h"
+#include <apps/snug/common.h>
 
 namespace snug::command {
 

@@ -1,15 +1,15 @@
-#include <experiments/bound_counts.h>
-#include <experiments/older_catmark.h>
-#include <experiments/program/experiments.h>
-
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include <apps/snug/curve.h>
 #include <apps/snug/progress_bar.h>
+#include <experiments/bound_counts.h>
+#include <experiments/older_catmark.h>
 #include <fmt/core.h>
 #include <snug/io/atomic_file.h>
+
+#include "commands.h"
 
 namespace snug::command {
 namespace {
@@ -131,7 +131,7 @@ Command bounds_command() {
   return {"bounds",
           Topic::comparisons,
           "Number of pieces by bounding rows, tables of two layouts, boxes, and after splitting at creases",
-          {"snug-experiments bounds bracket.obj --tolerance 2%"},
+          {"snug-research bounds bracket.obj --tolerance 2%"},
           std::move(list),
           [options] { return counts(*options); }};
 }
@@ -145,7 +145,7 @@ Command older_rule_command() {
   return {"subdivide",
           Topic::comparisons,
           "Catmull-Clark by the older vertex rule, (Q + 2R + S)/4 at every valence",
-          {"snug-experiments subdivide bracket.obj --level 3 -o older.obj"},
+          {"snug-research subdivide bracket.obj --level 3 -o older.obj"},
           std::move(list),
           [options] { return subdivide_older(*options); }};
 }

@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <command/run_snug.h>
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
+
+#include <command/run_snug.h>
 
 namespace snug::testing::program_test {
 namespace {
@@ -12,7 +15,7 @@ using nlohmann::json;
 
 json answer(std::vector<std::string> arguments) {
   arguments.emplace_back("--json");
-  const Outcome outcome = run_snug(arguments);
+  const Outcome outcome = run_research(arguments);
   EXPECT_EQ(outcome.status, 0) << arguments[0] << ": " << outcome.err;
   EXPECT_EQ(outcome.err, "");
   return json::parse(outcome.out);
@@ -51,7 +54,7 @@ TEST(program, refuses_what_it_has_no_use_for) {
                                              {"table-5-3", "--placements", "0"},
                                              {"bounds", star, "--degree", "2"},
                                              {"subdivide", star}}) {
-    const Outcome outcome = run_snug(arguments);
+    const Outcome outcome = run_research(arguments);
     EXPECT_EQ(outcome.status, 2) << arguments[0] << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
     EXPECT_EQ(outcome.out, "");
@@ -59,13 +62,49 @@ TEST(program, refuses_what_it_has_no_use_for) {
 }
 
 TEST(program, has_a_help_that_names_it) {
-  const Outcome help = run_snug({"--help"});
+  const Outcome help = run_research({"--help"});
   EXPECT_EQ(help.status, 0);
-  for (const char* text : {"Usage: snug-experiments COMMAND", "table-5-1", "prism", "snug-experiments rates"})
+  for (const char* text : {"Usage: snug-research COMMAND", "table-5-1", "prism",
+                           "Nodal functions:", "snug-research independence"})
     EXPECT_NE(help.out.find(text), std::string::npos) << text;
-  EXPECT_NE(run_snug({"nothing"}).err.find("see snug-experiments --help"), std::string::npos);
-  EXPECT_NE(run_snug({"rates", "--help"}).out.find("Usage: snug-experiments rates"), std::string::npos);
-  EXPECT_TRUE(run_snug({"--version"}).out.starts_with("snug-experiments 0.1.0 ("));
+  EXPECT_NE(run_research({"nothing"}).err.find("see snug-research --help"), std::string::npos);
+  EXPECT_NE(run_research({"rates", "--help"}).out.find("Usage: snug-research rates"), std::string::npos);
+  EXPECT_TRUE(run_research({"--version"}).out.starts_with("snug-research 0.1.0 ("));
+}
+
+// The names of the libraries that a program loads are in its file.
+bool loads_flint(const char* program) {
+  std::ifstream file(program, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_NE(bytes.find("libstdc++"), std::string::npos) << program;
+  return bytes.find("libflint") != std::string::npos;
+}
+
+TEST(program, is_alone_in_loading_flint) {
+  EXPECT_FALSE(loads_flint(SNUG_COMMAND));
+  EXPECT_TRUE(loads_flint(SNUG_RESEARCH));
+}
+
+// One line, which names the program and its package, whatever else the line has.
+TEST(program, is_named_where_a_command_was) {
+  const std::string star = model("star.obj");
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"independence"},
+                                             {"independence", "--help"},
+                                             {"table", "--scheme", "loop", "--valence", "7"},
+                                             {"fit", star, "--points", "-", "-o", "out.obj"}}) {
+    const Outcome outcome = run_snug(arguments);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.err,
+              "snug: " + arguments[0] + " is a command of snug-research (package snug-research)\n");
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(run_research({arguments[0], "--help"}).status, 0);
+  }
+  const Outcome weights = run_snug({"eval", star, "--weights", "--json"});
+  EXPECT_EQ(weights.status, 2);
+  EXPECT_EQ(weights.err,
+            "snug: eval --weights is the command weights of snug-research (package snug-research)\n");
+  EXPECT_NE(run_snug({"--help"}).out.find("snug-research (package snug-research) has"), std::string::npos);
 }
 
 TEST(program, prisms_are_left_where_nets_are_bent) {
@@ -93,7 +132,7 @@ TEST(program, counts_pieces_by_what_lost) {
   EXPECT_GT(rows[3]["count"], 20 * rows[0]["count"].get<int>());
   EXPECT_EQ(rows[4]["count"], rows[0]["count"]);  // no creases
   for (const json& row : rows) EXPECT_TRUE(row["reached"]);
-  const Outcome curves = run_snug({"bounds", "-"}, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1\nl 1 2 3 4\n");
+  const Outcome curves = run_research({"bounds", "-"}, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 1\nl 1 2 3 4\n");
   EXPECT_EQ(curves.status, 0) << curves.err;
   EXPECT_NE(curves.out.find("control-box"), std::string::npos);
 }
@@ -262,10 +301,10 @@ TEST(program, table_5_3_counts_the_same_whatever_the_threads) {
 }
 
 TEST(program, prints_a_table_for_people) {
-  const Outcome rates = run_snug({"rates", "--nets", "1", "--levels", "4"});
+  const Outcome rates = run_research({"rates", "--nets", "1", "--levels", "4"});
   EXPECT_EQ(rates.status, 0) << rates.err;
   EXPECT_EQ(std::count(rates.out.begin(), rates.out.end(), '\n'), 2 + 12 * 3);
-  const Outcome tightness = run_snug({"tightness", "--nets", "1", "--samples", "2"});
+  const Outcome tightness = run_research({"tightness", "--nets", "1", "--samples", "2"});
   EXPECT_EQ(tightness.status, 0) << tightness.err;
   EXPECT_EQ(std::count(tightness.out.begin(), tightness.out.end(), '\n'), 2 + 3 * 12 * 3);
 }

@@ -1,8 +1,7 @@
 #pragma once
 
+#include <apps/snug/json_writer.h>
 #include <snug/independence/mesh_kernel.h>
-
-#include "json_writer.h"
 
 namespace snug::command {
 

@@ -1,14 +1,14 @@
-#include <experiments/program/experiments.h>
-
 #include <filesystem>
 #include <memory>
 #include <optional>
 
 #include <apps/snug/progress_bar.h>
-#include <experiments/program/uniform_meshes.h>
 #include <experiments/room_tables.h>
 #include <experiments/rooms.h>
 #include <fmt/core.h>
+
+#include "commands.h"
+#include "uniform_meshes.h"
 
 namespace snug::command {
 namespace {
@@ -341,7 +341,7 @@ Command leaves_command() {
   return {"table-5-1",
           Topic::tables,
           "Number of triangles for tolerances of 2, 1 and 0.5 %, by bounding method",
-          {"snug-experiments table-5-1 star.obj"},
+          {"snug-research table-5-1 star.obj"},
           table_options(*options),
           [options] { return leaves_table(*options); }};
 }
@@ -351,7 +351,7 @@ Command creation_command() {
   return {"table-5-2",
           Topic::tables,
           "Time to build a hierarchy",
-          {"snug-experiments table-5-2 star.obj"},
+          {"snug-research table-5-2 star.obj"},
           table_options(*options),
           [options] { return creation_table(*options); }};
 }
@@ -362,7 +362,7 @@ Command rooms_command() {
   return {"table-5-3",
           Topic::tables,
           "Query times for two models at random poses in a room",
-          {"snug-experiments table-5-3 --placements 2000"},
+          {"snug-research table-5-3 --placements 2000"},
           std::move(list),
           [options] { return room_table(*options); }};
 }
@@ -374,7 +374,7 @@ Command volumes_command() {
   return {"volumes",
           Topic::tables,
           "Trees of boxes, k-DOPs or oriented boxes alone, while one model turns",
-          {"snug-experiments volumes --placements 500"},
+          {"snug-research volumes --placements 500"},
           std::move(list),
           [options] { return volumes_table(*options); }};
 }

@@ -2,8 +2,13 @@
 
 #include <apps/snug/common.h>
 
-/// The commands of snug-experiments.
+/// The commands of snug-research.
 namespace snug::command {
+
+[[nodiscard]] Command independence_command();
+[[nodiscard]] Command table_command();
+[[nodiscard]] Command weights_command();
+[[nodiscard]] Command fit_command();
 
 [[nodiscard]] Command leaves_command();      ///< table-5-1
 [[nodiscard]] Command creation_command();    ///< table-5-2

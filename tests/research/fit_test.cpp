@@ -11,10 +11,9 @@
 #include <string>
 #include <vector>
 
+#include <command/run_snug.h>
 #include <snug/geometry/point.h>
 #include <snug/mesh.h>
-
-#include "run_snug.h"
 
 namespace snug::testing::fit_test {
 namespace {
@@ -64,14 +63,14 @@ class fit_command : public ::testing::Test {
   json answer(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "fit");
     arguments.insert(arguments.end(), {"-o", output(), "--json"});
-    const Outcome outcome = run_snug(arguments);
+    const Outcome outcome = run_research(arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return json::parse(outcome.out, nullptr, false);
   }
   void expect_refused(std::vector<std::string> arguments, int status, const std::vector<std::string>& parts) {
     arguments.insert(arguments.begin(), "fit");
     arguments.insert(arguments.end(), {"-o", output()});
-    const Outcome outcome = run_snug(arguments);
+    const Outcome outcome = run_research(arguments);
     EXPECT_EQ(outcome.status, status) << outcome.err;
     for (const std::string& part : parts) EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
     EXPECT_FALSE(std::ifstream(output()).good());
@@ -122,34 +121,6 @@ TEST_F(fit_command, finds_the_control_points_of_given_places) {
   }
 }
 
-// The weights of eval: positions are sums by them, and they add up to 1.
-TEST_F(fit_command, evaluates_nodal_functions) {
-  for (const auto& [mesh, scheme] : {std::pair{model("pawn.obj"), "loop"},
-                                     {write("cube.obj", cube), "catmark"},
-                                     {write("box.obj", cube), "midedge"}}) {
-    const Outcome outcome =
-        run_snug({"eval", mesh, "--scheme", scheme, "--samples", "2", "--weights", "--json"});
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
-    const ControlMesh control = read_mesh(mesh);
-    const json found = json::parse(outcome.out);
-    for (const json& point : found["points"]) {
-      Vector3 sum{};
-      double one = 0;
-      for (const auto& [vertex, weight] : point["weights"].items()) {
-        sum = sum + weight.get<double>() * (control.points[std::stoul(vertex)] - Point3{});
-        one += weight.get<double>();
-      }
-      ASSERT_NEAR(one, 1, 1e-14);
-      for (std::size_t a = 0; a < 3; ++a) ASSERT_NEAR(sum[a], point["position"][a].get<double>(), 1e-13);
-    }
-  }
-  EXPECT_EQ(run_snug({"eval", model("pawn.obj"), "--weights"}).status, 2);
-  EXPECT_EQ(
-      run_snug({"eval", write("curve.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\n"), "--weights", "--json"})
-          .status,
-      2);
-}
-
 TEST_F(fit_command, does_not_mind_the_size) {
   for (const double scale : {1e-200, 1e-5, 1e200}) {
     ControlMesh mesh = read_mesh(model("bracket.obj"));
@@ -180,8 +151,8 @@ TEST_F(fit_command, comes_nearer_from_round_to_round) {
 
 TEST_F(fit_command, says_where_a_budget_ended_closest_points) {
   const std::string pawn = model("pawn.obj"), points = points_of(pawn, "loop", 3, false);
-  const Outcome outcome =
-      run_snug({"fit", moved(pawn, 0.003), "--points", points, "--budget", "1", "-o", output(), "--json"});
+  const Outcome outcome = run_research(
+      {"fit", moved(pawn, 0.003), "--points", points, "--budget", "1", "-o", output(), "--json"});
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   EXPECT_EQ(json::parse(outcome.out)["reached"], false);
   EXPECT_EQ(answer({moved(pawn, 0.003), "--points", points})["reached"], true);
@@ -295,18 +266,18 @@ TEST_F(fit_command, names_the_line_that_is_no_sample) {
 
 TEST_F(fit_command, refuses_words_and_files_that_do_not_fit) {
   const std::string points = write("points.txt", "0 0 0\n"), pawn = model("pawn.obj");
-  EXPECT_EQ(run_snug({"fit", pawn, "--points", points}).status, 2);
-  EXPECT_EQ(run_snug({"fit", pawn, "-o", output()}).status, 2);
-  EXPECT_EQ(run_snug({"fit", pawn, "--points", points, "-o", "-", "--json"}).status, 2);
-  EXPECT_EQ(run_snug({"fit", pawn, "--points", points, "-o", output(), "--smooth", "-1"}).status, 2);
-  EXPECT_EQ(run_snug({"fit", pawn, "--points", points, "-o", output(), "--rounds", "0"}).status, 2);
-  EXPECT_EQ(run_snug({"fit", pawn, "--points", points, "-o", folder_.file("out.json")}).status, 3);
-  EXPECT_EQ(run_snug({"fit", pawn, "--points", "nowhere.txt", "-o", output()}).status, 3);
-  EXPECT_EQ(run_snug({"fit", pawn, "--points", points, "-o", output(), "--budget", "0"}).status, 2);
-  EXPECT_NE(run_snug({"fit", "-", "--points", "-", "-o", output()}).err.find("one standard input"),
+  EXPECT_EQ(run_research({"fit", pawn, "--points", points}).status, 2);
+  EXPECT_EQ(run_research({"fit", pawn, "-o", output()}).status, 2);
+  EXPECT_EQ(run_research({"fit", pawn, "--points", points, "-o", "-", "--json"}).status, 2);
+  EXPECT_EQ(run_research({"fit", pawn, "--points", points, "-o", output(), "--smooth", "-1"}).status, 2);
+  EXPECT_EQ(run_research({"fit", pawn, "--points", points, "-o", output(), "--rounds", "0"}).status, 2);
+  EXPECT_EQ(run_research({"fit", pawn, "--points", points, "-o", folder_.file("out.json")}).status, 3);
+  EXPECT_EQ(run_research({"fit", pawn, "--points", "nowhere.txt", "-o", output()}).status, 3);
+  EXPECT_EQ(run_research({"fit", pawn, "--points", points, "-o", output(), "--budget", "0"}).status, 2);
+  EXPECT_NE(run_research({"fit", "-", "--points", "-", "-o", output()}).err.find("one standard input"),
             std::string::npos);
   const std::string curve = write("curve.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\n");
-  EXPECT_EQ(run_snug({"fit", curve, "--points", points, "-o", output()}).status, 4);
+  EXPECT_EQ(run_research({"fit", curve, "--points", points, "-o", output()}).status, 4);
 }
 
 }  // namespace

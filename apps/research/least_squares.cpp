@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
+#include <snug/base/error.h>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
-
-#include <snug/base/error.h>
 
 namespace snug::command {
 namespace {

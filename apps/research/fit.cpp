@@ -3,6 +3,10 @@
 #include <optional>
 #include <utility>
 
+#include <apps/snug/common.h>
+#include <apps/snug/places.h>
+#include <apps/snug/progress_bar.h>
+#include <apps/snug/words.h>
 #include <fmt/core.h>
 #include <snug/independence/mesh_kernel.h>
 #include <snug/io/atomic_file.h>
@@ -12,13 +16,10 @@
 #include <snug/surface/evaluate.h>
 #include <snug/surface/unscale.h>
 
-#include "common.h"
+#include "commands.h"
 #include "kernel_json.h"
 #include "least_squares.h"
 #include "limit_weights.h"
-#include "places.h"
-#include "progress_bar.h"
-#include "words.h"
 
 namespace snug::command {
 namespace {
@@ -298,10 +299,10 @@ Command fit_command() {
       .between(1, std::uint64_t{1} << 40);
   add_common_options(list, *options);
   return {"fit",
-          Topic::files,
+          Topic::functions,
           "Move control points so that the limit surface comes near given points, by least squares",
-          {"snug fit pawn.obj --points scan.txt -o fitted.obj",
-           "snug fit cube.obj --points scan.txt --smooth 0.01 -o fitted.obj --json"},
+          {"snug-research fit pawn.obj --points scan.txt -o fitted.obj",
+           "snug-research fit cube.obj --points scan.txt --smooth 0.01 -o fitted.obj --json"},
           std::move(list),
           [options] { return run(*options); }};
 }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "run_snug.h"
+#include <command/run_snug.h>
 
 namespace snug::testing::independence_test {
 namespace {
@@ -19,13 +19,13 @@ class independence_command : public ::testing::Test {
   static json answer(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "independence");
     arguments.emplace_back("--json");
-    const Outcome outcome = run_snug(arguments);
+    const Outcome outcome = run_research(arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return json::parse(outcome.out, nullptr, false);
   }
   static void expect_refused(std::vector<std::string> arguments, const std::string& why) {
     arguments.insert(arguments.begin(), "independence");
-    const Outcome outcome = run_snug(arguments);
+    const Outcome outcome = run_research(arguments);
     EXPECT_EQ(outcome.status, 2) << outcome.err;
     EXPECT_NE(outcome.err.find(why), std::string::npos) << outcome.err;
   }
@@ -104,7 +104,7 @@ TEST_F(independence_command, names_the_kernel_of_a_mesh) {
   ASSERT_EQ(found["kernel"].size(), 1);
   EXPECT_EQ(found["kernel"][0]["signs"], json::parse("[1, -1, -1, 1, -1, 1, 1, -1]"));
   EXPECT_EQ(answer({"--mesh", cube, "--scheme", "doo-sabin"})["independent"], true);
-  const Outcome text = run_snug({"independence", "--mesh", cube});
+  const Outcome text = run_research({"independence", "--mesh", cube});
   EXPECT_NE(text.out.find("8 vertices with signs in turn: +0 -1 -2 +3"), std::string::npos) << text.out;
 }
 
@@ -123,7 +123,7 @@ TEST_F(independence_command, ranks_what_the_theorem_leaves_out) {
   ASSERT_EQ(found["kernel"].size(), 1);
   EXPECT_EQ(found["kernel"][0], json::parse(R"({"vertices": [2, 3, 4, 5], "order": 7,
                                                 "weights": ["-1", ["1", "1"], ["-1", "-1"], "1"]})"));
-  const Outcome text = run_snug({"independence", "--mesh", file, "--scheme", "doo-sabin"});
+  const Outcome text = run_research({"independence", "--mesh", file, "--scheme", "doo-sabin"});
   EXPECT_NE(text.out.find("2: -1, 3: 1 + t, 4: -1 - t, 5: 1; t = 2cos(2 pi/7)"), std::string::npos)
       << text.out;
   // A cube with a hole keeps its kernel: the hole's corners support other faces.
@@ -146,7 +146,7 @@ TEST_F(independence_command, says_where_a_rank_is_undecided) {
   const auto at = [](int v) { return " " + std::to_string(v); };
   fan += "\nf 1" + at(n) + at(n + 1) + at(n + 2) + "\nf 1" + at(n + 2) + at(n + 3) + " 2\n";
   const Outcome outcome =
-      run_snug({"independence", "--mesh", write("large.obj", fan), "--scheme", "doo-sabin", "--json"});
+      run_research({"independence", "--mesh", write("large.obj", fan), "--scheme", "doo-sabin", "--json"});
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   const json found = json::parse(outcome.out);
   EXPECT_TRUE(found["rank"].is_null());
@@ -198,7 +198,7 @@ TEST_F(independence_command, of_faces_at_a_boundary) {
   EXPECT_EQ(corner["matrices"][0]["matrix"][0], json::parse(R"({"1": "1"})"));
   EXPECT_EQ(corner["matrices"][0]["matrix"][1], json::parse(R"({"1": "1/2", "2": "1/2"})"));
   const Outcome text =
-      run_snug({"independence", "--border", "smooth", "--valence", "6", "--domain", "rings:1"});
+      run_research({"independence", "--border", "smooth", "--valence", "6", "--domain", "rings:1"});
   EXPECT_NE(text.out.find("   6    2  rings:1       12 of 13   dependent"), std::string::npos) << text.out;
 }
 
@@ -257,7 +257,7 @@ TEST_F(independence_command, refuses_what_is_no_question) {
   expect_refused({"--valence", "7", "--older-rule"}, "needs --scheme catmark");
   expect_refused({"--valence", "7", "--matrices"}, "needs --json");
   const std::string points = write("points.obj", "v 0 0 0\nv 1 0 0\n");
-  const Outcome empty = run_snug({"independence", "--mesh", points});
+  const Outcome empty = run_research({"independence", "--mesh", points});
   EXPECT_NE(empty.status, 0);
   EXPECT_FALSE(empty.err.empty());
 }

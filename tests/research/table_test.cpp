@@ -11,10 +11,9 @@
 #include <string>
 #include <vector>
 
+#include <command/run_snug.h>
 #include <oracle/dual_twin.h>
 #include <oracle/polygon_twin.h>
-
-#include "run_snug.h"
 
 namespace snug::testing::table_test {
 namespace {
@@ -25,7 +24,7 @@ using oracle::TaggedMesh;
 
 json table_of(const std::string& scheme, std::size_t valence) {
   const Outcome outcome =
-      run_snug({"table", "--scheme", scheme, "--valence", std::to_string(valence), "--json"});
+      run_research({"table", "--scheme", scheme, "--valence", std::to_string(valence), "--json"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   return json::parse(outcome.out, nullptr, false);
 }
@@ -393,26 +392,26 @@ TEST(table_of_loop, is_laid_out_as_in_the_dissertation) {
 
 TEST(table_usage, is_refused_in_one_line) {
   for (const char* bad : {"2", "201", "0", "-3", "3.5", "x", ""}) {
-    const Outcome outcome = run_snug({"table", "--scheme", "loop", "--valence", bad});
+    const Outcome outcome = run_research({"table", "--scheme", "loop", "--valence", bad});
     EXPECT_EQ(outcome.status, 2) << bad;
     EXPECT_NE(outcome.err.find("3 to 200"), std::string::npos) << outcome.err;
     EXPECT_EQ(outcome.out, "");
   }
   for (const char* bad : {"bilinear", "flat", "auto", "curve"}) {
-    const Outcome outcome = run_snug({"table", "--scheme", bad, "--valence", "5"});
+    const Outcome outcome = run_research({"table", "--scheme", bad, "--valence", "5"});
     EXPECT_EQ(outcome.status, 2) << bad;
     EXPECT_NE(outcome.err.find("midedge"), std::string::npos) << outcome.err;
   }
-  const Outcome wide = run_snug({"table", "--scheme", "midedge", "--valence", "21"});
+  const Outcome wide = run_research({"table", "--scheme", "midedge", "--valence", "21"});
   EXPECT_EQ(wide.status, 2);
   EXPECT_NE(wide.err.find("beyond 20 corners"), std::string::npos) << wide.err;
-  EXPECT_EQ(run_snug({"table", "--scheme", "loop"}).status, 2);
-  EXPECT_EQ(run_snug({"table", "--valence", "5"}).status, 2);
-  EXPECT_EQ(run_snug({"table", "--scheme", "loop", "--valence", "5", "mesh.obj"}).status, 2);
+  EXPECT_EQ(run_research({"table", "--scheme", "loop"}).status, 2);
+  EXPECT_EQ(run_research({"table", "--valence", "5"}).status, 2);
+  EXPECT_EQ(run_research({"table", "--scheme", "loop", "--valence", "5", "mesh.obj"}).status, 2);
 }
 
 TEST(table_text, has_a_line_a_control_point) {
-  const Outcome outcome = run_snug({"table", "--scheme", "loop", "--valence", "5"});
+  const Outcome outcome = run_research({"table", "--scheme", "loop", "--valence", "5"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 2 + 11);
 }

@@ -1,10 +1,3 @@
-#include <experiments/convergence.h>
-#include <experiments/curve_rates.h>
-#include <experiments/enclosure_thickness.h>
-#include <experiments/printed_pair_test.h>
-#include <experiments/program/experiments.h>
-#include <experiments/tightness.h>
-
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -12,7 +5,14 @@
 #include <vector>
 
 #include <apps/snug/progress_bar.h>
+#include <experiments/convergence.h>
+#include <experiments/curve_rates.h>
+#include <experiments/enclosure_thickness.h>
+#include <experiments/printed_pair_test.h>
+#include <experiments/tightness.h>
 #include <fmt/core.h>
+
+#include "commands.h"
 
 namespace snug::command {
 namespace {
@@ -323,7 +323,7 @@ Command prism_command() {
   return {"prism",
           Topic::comparisons,
           "Kobbelt's bounding prism, which does not contain all patches, beside sets that do",
-          {"snug-experiments prism --nets 10"},
+          {"snug-research prism --nets 10"},
           radii_options(*options),
           [options] { return prism(*options); }};
 }
@@ -338,7 +338,7 @@ Command pair_test_command() {
   return {"pair-test",
           Topic::tables,
           "How often the dissertation's pair test, as printed, misses a close pair",
-          {"snug-experiments pair-test --pairs 200000"},
+          {"snug-research pair-test --pairs 200000"},
           std::move(list),
           [options] { return pair_test(*options); }};
 }
@@ -358,7 +358,7 @@ Command rates_command() {
   return {"rates",
           Topic::tables,
           "How fast enclosures shrink at extraordinary vertices, or on curves",
-          {"snug-experiments rates --scheme catmark"},
+          {"snug-research rates --scheme catmark"},
           std::move(list),
           [options] { return options->of == "curve" ? curve_rates(*options) : rates(*options); }};
 }
@@ -368,7 +368,7 @@ Command tightness_command() {
   return {"tightness",
           Topic::tables,
           "Radii divided by the least possible for the same base triangle",
-          {"snug-experiments tightness --json"},
+          {"snug-research tightness --json"},
           radii_options(*options),
           [options] { return tightness(*options); }};
 }

@@ -1,17 +1,17 @@
-#include <snug/independence/cases.h>
-
 #include <algorithm>
 #include <charconv>
 
+#include <apps/snug/common.h>
+#include <apps/snug/progress_bar.h>
 #include <fmt/core.h>
 #include <snug/base/names.h>
 #include <snug/base/parallel.h>
+#include <snug/independence/cases.h>
 #include <snug/independence/eigenvalues.h>
 #include <snug/independence/piece_step.h>
 
-#include "common.h"
+#include "commands.h"
 #include "mesh_independence.h"
-#include "progress_bar.h"
 
 namespace snug::command {
 namespace {
@@ -435,11 +435,11 @@ Command independence_command() {
       .excludes("--valence");
   add_common_options(list, *options);
   return {"independence",
-          Topic::one_surface,
+          Topic::functions,
           "Which nodal functions are linearly independent, and where, by exact arithmetic",
-          {"snug independence --scheme loop --valence 3..30 --json -o loop.json",
-           "snug independence --scheme catmark --valence 100 --domain conjecture",
-           "snug independence --mesh cube.obj"},
+          {"snug-research independence --scheme loop --valence 3..30 --json -o loop.json",
+           "snug-research independence --scheme catmark --valence 100 --domain conjecture",
+           "snug-research independence --mesh cube.obj"},
           std::move(list),
           [options] { return run(*options); }};
 }

@@ -4,12 +4,13 @@
 #include <string>
 #include <vector>
 
+#include <apps/snug/common.h>
 #include <fmt/core.h>
 #include <snug/bounds/bounds_cache.h>
 #include <snug/mesh/topology.h>
 #include <snug/scheme/rules.h>
 
-#include "common.h"
+#include "commands.h"
 
 namespace snug::command {
 namespace {
@@ -214,10 +215,11 @@ Command table_command() {
   add_output_options(list, *options);
   return {
       "table",
-      Topic::tables,
+      Topic::functions,
       "Print the table of a patch beside one extraordinary vertex: its layout, and planes below and above "
       "its basis functions",
-      {"snug table --scheme loop --valence 7", "snug table --scheme catmark --valence 5 --json"},
+      {"snug-research table --scheme loop --valence 7",
+       "snug-research table --scheme catmark --valence 5 --json"},
       std::move(list),
       [options] { return run(*options); }};
 }
