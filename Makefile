@@ -17,7 +17,7 @@ ctest = ctest --parallel $(JOBS) --no-tests=error
 # Thread sanitizer wants an address space that is not shuffled too far; not every container may ask for that.
 unshuffled = $$(setarch -R true 2> /dev/null && echo setarch -R || true)
 
-.PHONY: deb site page page-test python python-asan wheel notebooks help demo test test-long build bench format tidy docs check asan tsan fuzz install-packages clean
+.PHONY: check-all deb site page page-test python python-asan wheel notebooks help demo test test-long build bench format tidy docs check asan tsan fuzz install-packages clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-17s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -37,10 +37,9 @@ build/demo.html:
 	@$(MAKE) page > build/page.log 2>&1 || { tail -20 build/page.log >&2; exit 1; }
 	@scripts/demo_page build/$(demo_preset)/bin/snug build/web/snug.html $@
 
-# Where Emscripten is installed the page is tested too; PAGE=no leaves it out.
 test: install-packages build  ## every test, on the release build
 	@$(ctest) --preset release
-	@$(if $(filter no,$(PAGE)),true,$(if $(shell command -v em++),$(MAKE) page-test,echo "The page was not tested: there is no Emscripten; make page-test installs it"))
+	@echo "Not among them: comparisons with other programs, packages, the page in a browser; make check-all runs these, too"
 
 page:  ## snug in a browser: build/web/snug.html, and the package for JavaScript, build/web/package
 	@scripts/install_packages build page
@@ -87,44 +86,31 @@ python-asan: install-packages  ## the tests of the Python module under address a
 build:  ## the library, the command, the tests: build/release
 	@$(call build,release)
 
-bench: build  ## the measurements of bench/
+bench: peers  ## the measurements of bench/
 	@bench/run
+
+.PHONY: peers
+peers:  ## builds the measurements and the comparisons with other programs, in build/release
+	@scripts/install_packages build test bench python
+	@$(call build,bench)
 
 asan: install-packages  ## the fast tests under address and undefined-behaviour sanitizer
 	@$(call build,asan,tests_fast)
 	@$(ctest) --preset asan -L fast
 
-tsan: install-packages  ## the tests labelled threads under thread sanitizer
-	@$(call build,tsan,tests_threads)
+tsan: install-packages  ## the tests of threads under thread sanitizer
+	@$(call build,tsan,threads_test)
 	@$(unshuffled) $(ctest) --preset tsan -L threads --repeat until-fail:$(or $(TSAN_REPEAT),3)
 
 fuzz: install-packages  ## the readers on made-up files, FUZZ_SECONDS (600) each
 	@$(call build,fuzz)
 	@JOBS=$(JOBS) scripts/fuzz
 
-check: test  ## every gate that a commit must pass
-	@scripts/demo --self-test
-	@scripts/check_format
-	@scripts/check_layers.py --self-test
-	@scripts/check_layers.py
-	@scripts/check_tests.py --self-test
-	@scripts/check_tests.py
-	@scripts/check_words --self-test
-	@scripts/check_words
-	@scripts/check_docs.py
-	@scripts/check_package
-	@scripts/check_tables
-	@scripts/check_certificates
-	@scripts/check_deb --self-test
-	@scripts/check_deb
-	@packaging/site/check.py --self-test
-	@$(MAKE) site
-	@$(MAKE) asan
-	@scripts/check_wheel
-	@$(MAKE) python-asan
-	@$(MAKE) notebooks
-	@$(MAKE) tsan
-	@FUZZ_SECONDS=5 $(MAKE) fuzz
+check:  ## every gate that a commit must pass
+	@bash .ci/run
+
+check-all:  ## these, and what changes rarely: other programs, packages, the page in Chromium, notebooks, the site, more random cases
+	@bash .ci/run all
 
 format:  ## rewrite C++ files in the project's format
 	@scripts/check_format --fix
@@ -151,7 +137,7 @@ docs: install-packages  ## plots and tables of docs/convergence.md, pictures of 
 	@scripts/check_docs.py
 
 install-packages:  ## what building, testing and checking need, where it is missing (scripts/packages.txt has it in sections)
-	@scripts/install_packages build test mpi python bench gates deb docs fuzz
+	@scripts/install_packages build test mpi python gates fuzz
 
 clean:  ## remove build/
 	@rm -rf build

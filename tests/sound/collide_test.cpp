@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <oracle/distance_twin.h>
+#include <testing/counts.h>
 #include <testing/patches.h>
 #include <testing/placements.h>
 
@@ -39,10 +40,7 @@ struct Contestants {
         surface_b(twin_b) {}
 };
 
-int placements() {
-  const char* text = std::getenv("SNUG_PLACEMENTS");
-  return text ? std::atoi(text) : 1500;
-}
+int placements() { return static_cast<int>(testing::number_of("SNUG_PLACEMENTS", 400)); }
 
 TEST(collide, agrees_with_brute_force) {
   std::mt19937_64 random(29);

@@ -14,6 +14,7 @@
 #include <oracle/limit_twin.h>
 #include <snug/geometry/point.h>
 #include <snug/surface/evaluate.h>
+#include <testing/counts.h>
 #include <testing/ground_trials.h>
 #include <testing/scheme_surfaces.h>
 
@@ -29,11 +30,6 @@ namespace {
 
 using testing::GroundTrial;
 using testing::unit;
-
-std::uint64_t from_environment(const char* name, std::uint64_t usual) {
-  const char* text = std::getenv(name);
-  return text == nullptr ? usual : std::strtoull(text, nullptr, 10);
-}
 
 oracle::Point point_of(const Point3& p) { return {p.x, p.y, p.z}; }
 
@@ -218,8 +214,8 @@ class Checks {
 
 TEST(sound_contacts, hold_for_every_scheme_tag_and_rule_with_each_other) {
   constexpr std::uint64_t of_each_row = 2;
-  const std::uint64_t count = from_environment("SNUG_PLACEMENTS", testing::row_count() * of_each_row),
-                      first = from_environment("SNUG_FIRST", 0);
+  const std::uint64_t count = testing::number_of("SNUG_PLACEMENTS", testing::row_count() * of_each_row),
+                      first = testing::number_of("SNUG_FIRST", 0);
   testing::GroundTrials trials(of_each_row);
   std::map<std::string, std::size_t> counts;
   for (std::uint64_t i = first; i < first + count; ++i) {

@@ -15,6 +15,7 @@
 #include <oracle/polygon_twin.h>
 #include <oracle/tagged_shapes.h>
 #include <snug/surface/evaluate.h>
+#include <testing/counts.h>
 #include <testing/ground_trials.h>
 #include <testing/tagged.h>
 
@@ -39,12 +40,7 @@ using testing::GroundSide;
 using testing::GroundTrial;
 
 constexpr int most_failures = 20;
-constexpr std::uint64_t of_each_row = 2;
-
-std::uint64_t from_environment(const char* name, std::uint64_t usual) {
-  const char* text = std::getenv(name);
-  return text == nullptr ? usual : std::strtoull(text, nullptr, 10);
-}
+constexpr std::uint64_t of_each_row = 1;
 
 double between(const Point& p, const Point& q) { return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]); }
 Point point_of(const Point3& p) { return {p.x, p.y, p.z}; }
@@ -449,8 +445,8 @@ TEST(ground, meshes_have_what_was_chosen) {
 
 TEST(ground, answers_are_true) {
   const std::uint64_t usual = testing::row_count() * of_each_row;
-  const std::uint64_t first = from_environment("SNUG_FIRST", 0);
-  const std::uint64_t count = from_environment("SNUG_PLACEMENTS", usual);
+  const std::uint64_t first = testing::number_of("SNUG_FIRST", 0);
+  const std::uint64_t count = testing::number_of("SNUG_PLACEMENTS", usual);
   testing::GroundTrials trials(of_each_row);
   Checks checks;
   std::map<testing::ValuePair, std::size_t> covered;
@@ -491,8 +487,8 @@ TEST(ground, answers_are_true) {
 // scheme, tag and rule, nine pairs of ten at least. SNUG_MOVED=N: so many placements.
 TEST(ground, answers_about_moved_surfaces_are_true) {
   const std::uint64_t usual = 3 * testing::covering_rows().size();
-  const std::uint64_t first = from_environment("SNUG_FIRST", 0);
-  const std::uint64_t count = from_environment("SNUG_MOVED", usual);
+  const std::uint64_t first = testing::number_of("SNUG_FIRST", 0);
+  const std::uint64_t count = testing::number_of("SNUG_MOVED", usual);
   testing::GroundTrials trials(1, true);
   Checks checks;
   std::set<std::array<std::size_t, 3>> covered, possible;  // journey, factor, value

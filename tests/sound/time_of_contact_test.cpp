@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 #include <oracle/contact_twin.h>
+#include <testing/counts.h>
 #include <testing/patches.h>
 #include <testing/placements.h>
 #include <testing/twins.h>
@@ -24,10 +25,7 @@ namespace {
 using testing::random_placement;
 using testing::random_vector;
 
-std::size_t trials(std::size_t usual) {
-  const char* text = std::getenv("SNUG_MOTIONS");
-  return text ? std::strtoull(text, nullptr, 10) : usual;
-}
+std::size_t trials(std::size_t usual) { return testing::number_of("SNUG_MOTIONS", usual); }
 
 double unit(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 

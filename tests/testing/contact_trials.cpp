@@ -8,6 +8,7 @@
 
 #include <oracle/test_meshes.h>
 #include <testing/contact_trials.h>
+#include <testing/counts.h>
 #include <testing/exact_triangles.h>
 #include <testing/twins.h>
 
@@ -765,10 +766,7 @@ Trial Trials::make(std::uint64_t number) {
   return trial;
 }
 
-std::uint64_t trial_count(std::uint64_t usual) {
-  const char* text = std::getenv("SNUG_PLACEMENTS");
-  return text ? std::strtoull(text, nullptr, 10) : usual;
-}
+std::uint64_t trial_count(std::uint64_t usual) { return number_of("SNUG_PLACEMENTS", usual); }
 
 std::uint64_t first_trial() {
   const char* text = std::getenv("SNUG_FIRST");

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <oracle/dual_twin.h>
 #include <oracle/polygon_twin.h>
+#include <testing/counts.h>
 #include <testing/placements.h>
 #include <testing/scheme_surfaces.h>
 
@@ -21,11 +22,7 @@
 /// Surfaces that deform, of every scheme and tag, with limit points of the twins, which go along lines too.
 namespace snug::testing {
 
-/// SNUG_DEFORMATIONS in the environment, or what is usual.
-[[nodiscard]] inline std::size_t trials(std::size_t usual) {
-  const char* text = std::getenv("SNUG_DEFORMATIONS");
-  return text ? std::strtoull(text, nullptr, 10) : usual;
-}
+[[nodiscard]] inline std::size_t trials(std::size_t usual) { return number_of("SNUG_DEFORMATIONS", usual); }
 
 /// A shape that the twins can sample: its limit points are linear in its control points.
 struct Shape {

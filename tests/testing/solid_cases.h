@@ -3,6 +3,7 @@
 #include <oracle/winding_twin.h>
 #include <snug/mesh/control_mesh.h>
 #include <snug/scheme/scheme.h>
+#include <testing/counts.h>
 #include <testing/solids.h>
 #include <testing/tagged.h>
 
@@ -59,12 +60,6 @@ struct SolidCase {
 
 [[nodiscard]] inline double between(std::mt19937_64& random, double low, double high) {
   return low + (high - low) * (static_cast<double>(random() >> 11) * 0x1p-53);
-}
-
-/// A count that the environment may change.
-[[nodiscard]] inline std::uint64_t number_of(const char* variable, std::uint64_t usual) {
-  const char* const text = std::getenv(variable);
-  return text ? std::strtoull(text, nullptr, 10) : usual;
 }
 
 }  // namespace snug::testing
