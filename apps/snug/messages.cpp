@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +15,8 @@
 
 namespace snug::command {
 namespace {
+
+std::atomic<const char*> name_of_program = "snug";  // read by handlers of signals
 
 struct Character {
   std::size_t bytes = 1;  // how many it has in the text
@@ -104,11 +107,16 @@ void to_standard_error(std::string_view text) noexcept {
 
 void tell(std::string_view text) noexcept {
   try {
-    to_standard_error("snug: " + one_line(text) + "\n");  // at once, so that lines of others stay whole
+    // At once, so that lines of others stay whole.
+    to_standard_error(std::string(program_name()) + ": " + one_line(text) + "\n");
   } catch (const std::bad_alloc&) {
-    to_standard_error("snug: out of memory\n");
+    to_standard_error(program_name());
+    to_standard_error(": out of memory\n");
   }
 }
+
+void set_program_name(const char* name) noexcept { name_of_program = name; }
+const char* program_name() noexcept { return name_of_program; }
 
 void write_output(std::string_view text) {
   AtomicFile output("-");

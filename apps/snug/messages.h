@@ -17,8 +17,13 @@ namespace snug::command {
 /// Guarantee: async-signal-safe.
 void to_standard_error(std::string_view text) noexcept;
 
-/// "snug: " and the text, on one line of standard error.
+/// The name of the program, a colon and the text, on one line of standard error.
 void tell(std::string_view text) noexcept;
+
+/// The name that messages begin with, `snug` until it is set.
+/// Requires:  a string that stays where it is.
+void set_program_name(const char* name) noexcept;
+[[nodiscard]] const char* program_name() noexcept;
 
 /// Writes text to standard output.
 /// Errors:    InputError (unreadable) where it is closed or full.

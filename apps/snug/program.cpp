@@ -54,6 +54,7 @@ int fail(ExitStatus status, std::string_view message) {
 }
 
 int answer(const Program& program, const std::vector<std::string>& words) {
+  set_program_name(program.name);
   const std::string version =
       std::string(program.name) + version_head + std::string(kernels::instruction_set()) + ")";
   const Invocation wanted = read_command_line(program, words, version);

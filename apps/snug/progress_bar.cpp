@@ -59,7 +59,9 @@ void note_interrupt(int signal) {
 }  // namespace
 
 void tell_interrupted() noexcept {
-  if (!told.exchange(true)) to_standard_error("snug: interrupted\n");
+  if (told.exchange(true)) return;
+  to_standard_error(program_name());
+  to_standard_error(": interrupted\n");
 }
 
 void leave_interruption_to_others() noexcept { told = true; }

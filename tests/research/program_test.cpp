@@ -85,6 +85,12 @@ TEST(program, is_alone_in_loading_flint) {
   EXPECT_TRUE(loads_flint(SNUG_RESEARCH));
 }
 
+TEST(program, names_itself_in_messages) {
+  const Outcome outcome = run_research({"independence"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.err.rfind("snug-research: independence: give --valence", 0), 0u) << outcome.err;
+}
+
 // One line, which names the program and its package, whatever else the line has.
 TEST(program, is_named_where_a_command_was) {
   const std::string star = model("star.obj");
