@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <oracle/kernel_twin.h>
 #include <testing/closed_meshes.h>
+#include <testing/counts.h>
 
 #include <chrono>
 #include <cmath>
@@ -163,8 +164,7 @@ TEST(mesh_kernel, of_sums_and_pairs) {
 }
 
 TEST(mesh_kernel, of_random_closed_meshes) {
-  const char* const wanted = std::getenv("SNUG_KERNELS");
-  const std::size_t trials = wanted ? std::strtoull(wanted, nullptr, 10) : 60;
+  const std::size_t trials = testing::number_of("SNUG_KERNELS", 60);
   std::mt19937_64 random(20240601);
   const std::vector<ClosedMesh> all = families();
   Dimensions sum{};
@@ -177,15 +177,14 @@ TEST(mesh_kernel, of_random_closed_meshes) {
     const Dimensions found = expect_exact(mesh);
     for (std::size_t s = 0; s < 4; ++s) sum[s] += found[s];
   }
-  if (wanted) return;
+  if (trials < 60) return;
   EXPECT_GT(sum[1], 0);
   EXPECT_GT(sum[3], sum[1]);
 }
 
 // Faces taken away where the rest stays manifold; creases and corners of each sort.
 TEST(mesh_kernel, of_random_open_and_creased_meshes) {
-  const char* const wanted = std::getenv("SNUG_KERNELS");
-  const std::size_t trials = wanted ? std::strtoull(wanted, nullptr, 10) : 80;
+  const std::size_t trials = testing::number_of("SNUG_KERNELS", 80);
   std::mt19937_64 random(20240602);
   const std::vector<ClosedMesh> all = families();
   std::size_t kernels = 0, open = 0, refused = 0;
@@ -225,15 +224,14 @@ TEST(mesh_kernel, of_random_open_and_creased_meshes) {
     }
   }
   EXPECT_EQ(refused, 0);
-  if (wanted) return;
+  if (trials < 80) return;
   EXPECT_GT(kernels, 0);
   EXPECT_GT(open, trials / 2);
 }
 
 // Dual schemes on what is left of a mesh when faces are taken away.
 TEST(mesh_kernel, of_random_open_meshes_of_dual_schemes) {
-  const char* const wanted = std::getenv("SNUG_KERNELS");
-  const std::size_t trials = wanted ? std::strtoull(wanted, nullptr, 10) : 120;
+  const std::size_t trials = testing::number_of("SNUG_KERNELS", 120);
   std::mt19937_64 random(20240603);
   const std::vector<ClosedMesh> all = families();
   std::array<std::size_t, 4> sum{}, refused{};
@@ -257,7 +255,7 @@ TEST(mesh_kernel, of_random_open_meshes_of_dual_schemes) {
     }
   }
   EXPECT_EQ(refused[3], 0);
-  if (wanted) return;
+  if (trials < 120) return;
   EXPECT_LT(refused[2], trials / 10);
   EXPECT_GT(sum[2], 0);
   EXPECT_GT(sum[3], sum[2]);

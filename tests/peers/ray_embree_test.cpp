@@ -7,6 +7,7 @@
 #include <embree3/rtcore.h>
 #include <gtest/gtest.h>
 #include <snug/geometry/point.h>
+#include <testing/counts.h>
 #include <testing/places.h>
 
 #include <algorithm>
@@ -71,8 +72,7 @@ class EmbreeTriangles {
 };
 
 TEST(rays, first_meet_models_where_embree_does) {
-  const char* const text = std::getenv("SNUG_PLACEMENTS");
-  const std::size_t rays = (text != nullptr ? std::strtoull(text, nullptr, 10) : 27'000) / 9;
+  const std::size_t rays = testing::number_of("SNUG_PLACEMENTS", 27'000) / 9;
   std::size_t compared = 0, missed = 0, near_silhouettes = 0, untold = 0;
   double largest = 0;
   for (const char* const name :

@@ -356,26 +356,6 @@ TEST(hulls, are_not_verified_where_vertices_coincide) {
   EXPECT_THROW(static_cast<void>(Model(mesh).hulls(0.02)), InputError);
 }
 
-// Patches much narrower than the tolerance: facets that are moved as far turn over, and what shows that they are off
-// the surface splits more pieces than a query usually may.
-TEST(hulls, of_a_pole_of_many_narrow_faces_are_proved) {
-  constexpr std::uint32_t n = 256;
-  TaggedMesh mesh;
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const double a = 2 * std::numbers::pi * i / n;
-    mesh.points.push_back({std::cos(a), std::sin(a), 0});
-    const std::uint32_t j = (i + 1) % n;
-    mesh.polygons.push_back({i, j, n});
-    mesh.polygons.push_back({j, i, n + 1});
-  }
-  mesh.points.push_back({0, 0, 1});
-  mesh.points.push_back({0, 0, -1});
-  const Model model(mesh, loop);
-  const Hulls found = model.hulls(HullOptions{.tolerance = 0.02, .inner = false});
-  EXPECT_TRUE(found.verified);
-  EXPECT_LE(found.outer->triangles.size(), 200'000u);
-}
-
 TEST(hulls, end_with_their_budget) {
   const Model model(star(), loop);
   const Hulls found = model.hulls(HullOptions{.tolerance = 1e-4, .budget = 200});

@@ -12,6 +12,7 @@
 #include <snug/search/workspace.h>
 #include <snug/surface/evaluate.h>
 #include <testing/cad_parts.h>
+#include <testing/counts.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,10 +29,7 @@ namespace {
 using Real = long double;
 using Place = std::array<Real, 3>;
 
-std::size_t trials(std::size_t usual) {
-  const char* text = std::getenv("SNUG_PARTS");
-  return text ? std::strtoull(text, nullptr, 10) : usual;
-}
+std::size_t trials(std::size_t usual) { return testing::number_of("SNUG_PARTS", usual); }
 
 LimitSurface surface_of(ControlMesh mesh) {
   const Scheme scheme = natural_scheme(mesh);

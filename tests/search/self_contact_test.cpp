@@ -4,6 +4,7 @@
 #include <oracle/test_meshes.h>
 #include <testing/patches.h>
 
+#include <algorithm>
 #include <random>
 #include <vector>
 
@@ -36,6 +37,21 @@ TEST(self_contact, of_a_sphere_there_is_none) {
   EXPECT_EQ(mesh.contacts(), 0u);
   EXPECT_EQ(self_contacts(mesh.points, mesh.triangles, 100, 3),
             self_contacts(mesh.points, mesh.triangles, 100, 1));
+}
+
+// Where everything meets everything each is told of, but not with each other one.
+TEST(self_contact, of_triangles_on_each_other_takes_little_memory) {
+  Mesh mesh;
+  constexpr std::uint32_t count = 300;
+  for (std::uint32_t t = 0; t < count; ++t) {
+    for (const Point3& p : {Point3{0, 0, 0}, Point3{1, 0, 0}, Point3{0, 1, 0}}) mesh.points.push_back(p);
+    mesh.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  const auto found = self_contacts(mesh.points, mesh.triangles, 1'000'000, 2);
+  EXPECT_LE(found.size(), 16u * count);
+  std::vector<bool> told(count);
+  for (const auto& [a, b] : found) told[a] = told[b] = true;
+  EXPECT_EQ(std::count(told.begin(), told.end(), true), count);
 }
 
 // A vertex pushed through the other side, a little or a lot; onto a triangle; onto another vertex.

@@ -2,7 +2,7 @@
 // each other are on a pair that is listed, points that both have in common are in a box, and curves are where they
 // say, by a twin that refines by itself.
 //
-//   SNUG_PLACEMENTS=20000 build/release/bin/tests/sound_test --gtest_filter='sound_contacts.*'
+//   SNUG_PLACEMENTS=20000 build/release/bin/tests/sound_test --gtest_filter='contacts.*'
 //
 // runs so many placements; SNUG_FIRST=N begins with placement N, with SNUG_PLACEMENTS=1 one that failed alone, and
 // SNUG_DUMP=FOLDER writes its meshes there.
@@ -212,7 +212,7 @@ class Checks {
   std::array<std::unique_ptr<SurfaceWorkspace>, 2> own_;
 };
 
-TEST(sound_contacts, hold_for_every_scheme_tag_and_rule_with_each_other) {
+TEST(contacts, hold_for_every_scheme_tag_and_rule_with_each_other) {
   constexpr std::uint64_t of_each_row = 2;
   const std::uint64_t count = testing::number_of("SNUG_PLACEMENTS", testing::row_count() * of_each_row),
                       first = testing::number_of("SNUG_FIRST", 0);

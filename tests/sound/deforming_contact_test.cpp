@@ -1,7 +1,7 @@
 // First times of contact where control points move: never later than limit points of the twins that meet, of every
 // scheme, tag and way to deform; nor than the distances of Loop surfaces that their twin finds at many times.
 //
-//   SNUG_DEFORMATIONS=2000 build/release/bin/tests/sound_test --gtest_filter='sound_deforming_contact.*'
+//   SNUG_DEFORMATIONS=2000 build/release/bin/tests/sound_test --gtest_filter='deforming_contact.*'
 
 #include <snug/query/pairs.h>
 
@@ -21,14 +21,14 @@ namespace {
 using testing::random_placement;
 using testing::random_vector;
 
-TEST(sound_deforming_contact, is_not_later_than_points_that_meet_of_every_scheme_and_deformation) {
+TEST(deforming_contact, is_not_later_than_points_that_meet_of_every_scheme_and_deformation) {
   testing::Tally tally = testing::points_that_meet(41, testing::trials(600), 400'000);
   tally.print();
   EXPECT_GT(tally.sharp, static_cast<int>(tally.looks.size() / 2));
   EXPECT_LE(tally.median(), 20);
 }
 
-TEST(sound_deforming_contact, no_points_of_loop_surfaces_meet_before) {
+TEST(deforming_contact, no_points_of_loop_surfaces_meet_before) {
   std::mt19937_64 random(12);
   std::vector<oracle::TwinMesh> meshes = testing::assorted_meshes(6);
   std::erase_if(meshes, [](const oracle::TwinMesh& mesh) {

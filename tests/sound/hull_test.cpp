@@ -9,8 +9,10 @@
 #include <testing/scheme_surfaces.h>
 #include <testing/solid_cases.h>
 
+#include <cmath>
 #include <iostream>
 #include <map>
+#include <numbers>
 
 namespace snug::hull_test {
 namespace {
@@ -93,6 +95,35 @@ TEST(hulls, of_surfaces_with_every_tag_sandwich_them) {
     outcomes.print(scheme == oracle::PrimalScheme::loop ? "loop" : "catmark");
     EXPECT_GT(outcomes.verified, 30u);
   }
+}
+
+// Two poles of many faces, a wavy rim between them.
+TaggedMesh bipyramid(std::uint32_t n) {
+  TaggedMesh mesh;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const double a = 2 * std::numbers::pi * i / n;
+    mesh.points.push_back({std::cos(a), std::sin(a), 0});
+    const std::uint32_t j = (i + 1) % n;
+    mesh.polygons.push_back({i, j, n});
+    mesh.polygons.push_back({j, i, n + 1});
+  }
+  mesh.points.push_back({0, 0, 1});
+  mesh.points.push_back({0, 0, -1});
+  return mesh;
+}
+
+// Faces much narrower than the tolerance: facets that are moved as far turn over, and the proof that they are off the
+// surface splits more pieces than a query usually may.
+TEST(hulls, of_poles_of_many_narrow_faces_sandwich_them) {
+  const TaggedMesh mesh = bipyramid(256);
+  const oracle::Rules rules{.scheme = oracle::PrimalScheme::loop};
+  const LimitSurface surface(testing::control_mesh(mesh, rules), testing::options_of(rules),
+                             std::make_shared<BoundsCache>());
+  const Hulls found = hulls(SurfaceBvh(surface), {.tolerance = 0.02, .inner = false});
+  ASSERT_TRUE(found.verified);
+  EXPECT_LE(found.outer->triangles.size(), 200'000u);
+  HullCounts counts;
+  testing::expect_sandwich(mesh, rules, found, 0.02, 3, "poles", counts);
 }
 
 TaggedMesh moved(TaggedMesh mesh, const oracle::Point& by) {

@@ -8,6 +8,7 @@
 #include <oracle/near_twin.h>
 #include <oracle/polygon_twin.h>
 #include <oracle/tagged_shapes.h>
+#include <testing/counts.h>
 #include <testing/tagged.h>
 
 #include <cmath>
@@ -71,9 +72,8 @@ oracle::TaggedMesh refined(const oracle::TaggedMesh& mesh, Scheme scheme) {
 }
 
 // SNUG_NEAR_TRIALS: rounds.
-TEST(sound_near, verdicts_are_those_of_refined_meshes) {
-  const char* const wanted = std::getenv("SNUG_NEAR_TRIALS");
-  const int trials = wanted != nullptr ? std::atoi(wanted) : 1;
+TEST(near, verdicts_are_those_of_refined_meshes) {
+  const int trials = static_cast<int>(testing::number_of("SNUG_NEAR_TRIALS", 1));
   std::mt19937_64 random(7);
   std::map<std::string, int> counts;
   for (int trial = 0; trial < trials; ++trial) {

@@ -9,6 +9,7 @@
 #include <snug/query/pairs.h>
 
 #include <gtest/gtest.h>
+#include <testing/counts.h>
 #include <testing/tagged.h>
 
 #include <array>
@@ -27,10 +28,7 @@ namespace {
 
 using Whole = std::array<std::int64_t, 3>;
 
-std::size_t trial_count(std::size_t usual) {
-  const char* const text = std::getenv("SNUG_PLACEMENTS");
-  return text != nullptr ? static_cast<std::size_t>(std::strtoull(text, nullptr, 10) / 10) : usual;
-}
+std::size_t trial_count(std::size_t usual) { return testing::number_of("SNUG_PLACEMENTS", 10 * usual) / 10; }
 
 // Columns of a whole-numbered matrix of determinant 1, by random steps; the longer they are, the thinner the
 // needles. The first row of the inverse is a plane that columns 1 and 2 lie in and column 0 is one step away

@@ -7,6 +7,7 @@
 #include <oracle/normal_twin.h>
 #include <snug/patch/evaluate.h>
 #include <snug/patch/normal_cone.h>
+#include <testing/counts.h>
 #include <testing/scheme_surfaces.h>
 
 #include <algorithm>
@@ -159,9 +160,8 @@ double median(std::vector<double> values) {
 }
 
 // SNUG_NORMAL_TRIALS: how often each pair of cases is drawn.
-TEST(sound_normals, cones_contain_normals_of_refined_meshes_and_rings) {
-  const char* const wanted = std::getenv("SNUG_NORMAL_TRIALS");
-  const int trials = wanted != nullptr ? std::atoi(wanted) : 1;
+TEST(normals, cones_contain_normals_of_refined_meshes_and_rings) {
+  const int trials = static_cast<int>(testing::number_of("SNUG_NORMAL_TRIALS", 1));
   std::mt19937_64 random(1);
   for (const Centre centre : centres) {
     Counts counts;
@@ -197,7 +197,7 @@ TEST(sound_normals, cones_contain_normals_of_refined_meshes_and_rings) {
   }
 }
 
-TEST(sound_normals, cones_contain_normals_of_refined_dual_meshes) {
+TEST(normals, cones_contain_normals_of_refined_dual_meshes) {
   namespace meshes = oracle::meshes;
   std::mt19937_64 random(2);
   std::size_t samples = 0, cones = 0;
@@ -236,7 +236,7 @@ TEST(sound_normals, cones_contain_normals_of_refined_dual_meshes) {
 }
 
 // Every scheme with every tag and boundary rule, by evaluation, towards corners of pieces, too.
-TEST(sound_normals, cones_contain_what_evaluation_gives) {
+TEST(normals, cones_contain_what_evaluation_gives) {
   std::mt19937_64 random(3);
   std::size_t samples = 0, cones = 0;
   testing::for_each_surface(4, [&](const testing::NamedSurface& named) {

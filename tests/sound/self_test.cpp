@@ -8,6 +8,7 @@
 #include <oracle/polygon_twin.h>
 #include <oracle/self_twin.h>
 #include <testing/closed_meshes.h>
+#include <testing/counts.h>
 #include <testing/tagged.h>
 
 #include <algorithm>
@@ -106,9 +107,8 @@ oracle::TaggedMesh refined(const oracle::TaggedMesh& mesh, Scheme scheme) {
 }
 
 // SNUG_SELF_TRIALS: meshes a family, scheme and amount.
-TEST(sound_self, verdicts_are_those_of_refined_meshes) {
-  const char* const wanted = std::getenv("SNUG_SELF_TRIALS");
-  const int trials = wanted != nullptr ? std::atoi(wanted) : 1;
+TEST(self, verdicts_are_those_of_refined_meshes) {
+  const int trials = static_cast<int>(testing::number_of("SNUG_SELF_TRIALS", 1));
   std::mt19937_64 random(1);
   std::map<std::string, int> counts;
   for (const Shape& shape : shapes()) {
@@ -201,7 +201,7 @@ void fold(oracle::TaggedMesh& mesh, double first, double second) {
 }
 
 // All of: scheme, faces around a vertex, inside and on the border, sort of crease along the fold, angle.
-TEST(sound_self, folds_are_what_they_are_made_to_be) {
+TEST(self, folds_are_what_they_are_made_to_be) {
   struct Bend {
     const char* name;
     double first, second;
@@ -266,9 +266,8 @@ TEST(sound_self, folds_are_what_they_are_made_to_be) {
 }
 
 // Fans on the border, from smooth to crumpled, some with a crease inwards.
-TEST(sound_self, verdicts_on_borders_are_those_of_refined_meshes) {
-  const char* const wanted = std::getenv("SNUG_SELF_TRIALS");
-  const int trials = 6 * (wanted != nullptr ? std::atoi(wanted) : 1);
+TEST(self, verdicts_on_borders_are_those_of_refined_meshes) {
+  const int trials = 6 * static_cast<int>(testing::number_of("SNUG_SELF_TRIALS", 1));
   std::mt19937_64 random(2);
   std::map<std::string, int> counts;
   for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {

@@ -1,7 +1,7 @@
 // First times of contact of Loop surfaces along every kind of motion, against distances that the twin finds at many
 // times: no two points meet before the time that is told.
 //
-//   SNUG_MOTIONS=2000 build/release/bin/tests/sound_test --gtest_filter='sound_time_of_contact.*'
+//   SNUG_MOTIONS=2000 build/release/bin/tests/sound_test --gtest_filter='time_of_contact.*'
 
 #include <snug/query/pairs.h>
 
@@ -55,7 +55,7 @@ Trajectory any_motion(std::mt19937_64& random) {
   }
 }
 
-TEST(sound_time_of_contact, no_points_of_loop_surfaces_meet_before) {
+TEST(time_of_contact, no_points_of_loop_surfaces_meet_before) {
   std::mt19937_64 random(11);
   const std::vector<oracle::TwinMesh> meshes = testing::assorted_meshes(5);
   std::array<int, 4> verdicts{};

@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include <gtest/gtest.h>
+#include <testing/counts.h>
 #include <testing/disguises.h>
 #include <testing/scheme_surfaces.h>
 
@@ -13,8 +14,7 @@ namespace snug::testing {
 /// for.
 template <class Visit>
 void for_each_disguised_surface(std::uint64_t seed, const Visit& visit) {
-  const char* const text = std::getenv("SNUG_PLACEMENTS");
-  const std::uint64_t rounds = text != nullptr ? 1 + std::strtoull(text, nullptr, 10) / 5000 : 1;
+  const std::uint64_t rounds = 1 + number_of("SNUG_PLACEMENTS", 0) / 5000;
   for (std::uint64_t round = 0; round < rounds; ++round) {
     std::mt19937_64 random(seed + round);
     for_each_surface(seed + round, [&](const NamedSurface& named) {

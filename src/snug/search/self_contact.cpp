@@ -17,6 +17,8 @@ using Names = std::array<std::uint32_t, 3>;
 
 // Directions from a common vertex are compared with a plane through it; products of unit vectors err by less.
 constexpr double least_height = 0x1p-40;
+// Of a triangle with later ones: bounds the memory where everything meets everything.
+constexpr int most_of_one = 16;
 
 // Is there a plane through a vertex with two triangles on different sides of it?
 bool parted_at(const Point3& vertex, const std::array<Point3, 2>& a, const std::array<Point3, 2>& b) {
@@ -88,10 +90,12 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_contacts(std::span<con
     for (std::size_t b = begin; b < end; ++b) {
       monitor.checkpoint();
       for (std::size_t i = b * block; i < std::min(triangles.size(), (b + 1) * block); ++i) {
+        int of_this = 0;
         tree.for_each_near(flat[i], [&](std::uint32_t other) {
-          if (other <= i || found[b].size() >= most) return;
+          if (other <= i || of_this == most_of_one) return;
           if (may_touch(points, triangles[i], triangles[other])) {
             found[b].emplace_back(static_cast<std::uint32_t>(i), other);
+            ++of_this;
           }
         });
       }

@@ -13,7 +13,7 @@
 namespace snug {
 
 /// Pairs of triangles of a mesh that are not proved to have no more in common than the vertices that both
-/// name, the edge between two of these included; at most `most` of them.
+/// name, the edge between two of these included; at most `most` of them, and 16 of a triangle with later ones.
 ///
 /// Guarantee: without a pair the mesh does not touch itself, in exact arithmetic. Pairs are in the order of
 ///            triangles, the same for any number of threads.
