@@ -12,10 +12,10 @@
 #include <numbers>
 #include <random>
 
-#include <snug/geometry/direction.h>
-#include <snug/io/number.h>
 #include <snug/scene.h>
 #include <snug/tessellate.h>
+#include <support/direction.h>
+#include <support/number.h>
 
 #ifdef SNUG_BENCH_FCL
 #include "peer_fcl_scene.h"

@@ -14,11 +14,11 @@
 #include <experiments/convergence.h>
 #include <experiments/quantile.h>
 #include <experiments/tightness.h>
-#include <snug/base/parallel.h>
 #include <snug/query/bound.h>
 #include <snug/query/closest.h>
 #include <snug/search/surface_bvh.h>
 #include <snug/surface/batch_bounds.h>
+#include <support/parallel.h>
 #ifdef SNUG_BENCH_PICTURE
 #include <picture/render.h>
 #endif

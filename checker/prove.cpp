@@ -1,6 +1,6 @@
 #include "prove.h"
 
-#include <snug/base/parallel.h>
+#include <support/parallel.h>
 
 #include <algorithm>
 #include <array>

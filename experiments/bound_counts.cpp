@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include <experiments/control_box.h>
-#include <snug/base/error.h>
 #include <snug/bounds/enclosure.h>
 #include <snug/geometry/rounding.h>
 #include <snug/surface/unscale.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

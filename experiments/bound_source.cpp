@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <optional>
 
-#include <snug/base/contract.h>
 #include <snug/bounds/table_triangle.h>
 #include <snug/patch/evaluate.h>
 #include <snug/scheme/refine.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

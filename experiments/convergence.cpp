@@ -7,12 +7,12 @@
 
 #include <experiments/eigenvalues.h>
 #include <experiments/quantile.h>
-#include <snug/base/error.h>
-#include <snug/base/names.h>
-#include <snug/base/parallel.h>
 #include <snug/bounds/enclosure.h>
 #include <snug/bounds/table_triangle.h>
 #include <snug/patch/evaluate.h>
+#include <support/error.h>
+#include <support/names.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/error.h>
-#include <snug/base/names.h>
 #include <snug/scheme/rules.h>
+#include <support/error.h>
+#include <support/names.h>
 
 namespace snug {
 namespace {

@@ -5,10 +5,10 @@
 #include <random>
 
 #include <experiments/quantile.h>
-#include <snug/base/error.h>
-#include <snug/base/names.h>
 #include <snug/bounds/enclosure.h>
 #include <snug/surface/curve_set.h>
+#include <support/error.h>
+#include <support/names.h>
 
 namespace snug {
 namespace {

@@ -5,7 +5,7 @@
 #include <complex>
 #include <functional>
 
-#include <snug/base/contract.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

@@ -8,11 +8,11 @@
 #include <experiments/control_box.h>
 #include <experiments/prism.h>
 #include <experiments/quantile.h>
-#include <snug/base/error.h>
-#include <snug/base/parallel.h>
 #include <snug/bounds/enclosure.h>
 #include <snug/patch/evaluate.h>
 #include <snug/surface/limit_surface.h>
+#include <support/error.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

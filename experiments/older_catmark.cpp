@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include <snug/base/error.h>
 #include <snug/scheme/creases.h>
 #include <snug/scheme/refine.h>
+#include <support/error.h>
 
 namespace snug {
 

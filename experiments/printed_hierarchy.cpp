@@ -7,10 +7,10 @@
 #include <utility>
 
 #include <experiments/printed_pair_test.h>
-#include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
 #include <snug/search/piece.h>
 #include <snug/surface/unscale.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <snug/base/names.h>
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
+#include <support/names.h>
 
 namespace snug {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <snug/base/contract.h>
+#include <support/contract.h>
 
 namespace snug {
 

@@ -12,10 +12,10 @@
 #include <experiments/printed_hierarchy.h>
 #include <experiments/quantile.h>
 #include <experiments/rooms.h>
-#include <snug/base/contract.h>
-#include <snug/base/error.h>
 #include <snug/query/pairs.h>
 #include <snug/search/workspace.h>
+#include <support/contract.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include <snug/base/error.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

@@ -5,10 +5,10 @@
 #include <memory>
 
 #include <experiments/quantile.h>
-#include <snug/base/error.h>
-#include <snug/base/parallel.h>
 #include <snug/patch/evaluate.h>
 #include <snug/surface/limit_surface.h>
+#include <support/error.h>
+#include <support/parallel.h>
 
 namespace snug {
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds the rooms of src/snug to their one-way order, and says where they break it.
+"""Holds the rooms of src/snug, and src/support before them, to their one-way order, and says where they break it.
 
 Checked: each #include <snug/...> against the order below, that it exists, that snug's headers are included in that form
 only, #pragma once, that public headers include public ones and the C++ standard library alone, that src/snug/CMakeLists.txt
@@ -13,12 +13,14 @@ import re
 import sys
 import tempfile
 
-# A folder includes itself and folders before it, but for the exceptions.
-ORDER = ["base", "geometry", "mesh", "scheme", "patch", "bounds", "bvh", "surface", "search", "query", "independence", "io",
+# A folder includes itself and folders before it, but for the exceptions. `support` is src/support, included as <support/...>:
+# what the library and its programs share.
+ORDER = ["support", "geometry", "mesh", "scheme", "patch", "bounds", "bvh", "surface", "search", "query", "independence", "io",
          "front"]
+SHARED = ORDER[0]
 EXCEPTIONS = {
-    "bvh": {"base", "geometry"},  # knows sets and ids, no surfaces
-    "io": {"base", "geometry", "mesh", "scheme"},  # files name schemes; knows no surfaces
+    "bvh": {"support", "geometry"},  # knows sets and ids, no surfaces
+    "io": {"support", "geometry", "mesh", "scheme"},  # files name schemes; knows no surfaces
 }
 # Rooms with a library of their own, which is not installed: outside src only files below these folders include them, and their own
 # CMakeLists.txt lists their sources.
@@ -34,7 +36,7 @@ LIBRARIES = {
 POSIX = ("fcntl.h", "unistd.h", "sys/")
 # Folders outside src/snug, and the layers they may include: those that must not lean on what they are there to check, and
 # adapters, which is installed and so includes what is installed.
-INDEPENDENT = {"tests/oracle": set(), "checker": {"base", "geometry"}, "adapters": set(ORDER) - set(SEPARATE)}
+INDEPENDENT = {"tests/oracle": set(), "checker": {"support", "geometry"}, "adapters": set(ORDER) - set(SEPARATE)}
 # Headers of this folder are included as <snug/adapters/...>; nothing of src/snug includes them.
 ADAPTERS = "adapters"
 # Folders whose headers are checked for #pragma once and whose includes of snug must exist.
@@ -58,9 +60,9 @@ def includes(path):
 
 
 def layer_of(name):
-    """The layer of an include <snug/layer/...>; None for other includes."""
+    """The layer of an include <snug/layer/...> or <support/...>; None for other includes."""
     parts = name.split("/")
-    return parts[1] if parts[0] == "snug" and len(parts) > 2 else None
+    return SHARED if parts[0] == SHARED else parts[1] if parts[0] == "snug" and len(parts) > 2 else None
 
 
 def public(name):
@@ -77,7 +79,7 @@ def listed(cmake, function):
 
 def check_layer(root, layer):
     """Faults of src/snug/<layer>."""
-    folder, faults = root / "src/snug" / layer, []
+    folder, faults = root / "src" / (SHARED if layer == SHARED else f"snug/{layer}"), []
     for path in cpp_files(folder):
         where = path.relative_to(root)
         for line, quoted, name in includes(path):
@@ -94,7 +96,7 @@ def check_layer(root, layer):
     if layer in SEPARATE:
         cmake, names = folder / "CMakeLists.txt", listed(folder / "CMakeLists.txt", "add_library")
     else:
-        cmake, present = root / "src/snug/CMakeLists.txt", {f"{layer}/{name}" for name in present}
+        cmake, present = root / "src/snug/CMakeLists.txt", {f"../{layer}/{name}" if layer == SHARED else f"{layer}/{name}" for name in present}
         names = listed(cmake, "snug_library")
     return faults + [f"{cmake.relative_to(root)}: lacks {name}" for name in sorted(present - names)]
 
@@ -110,7 +112,7 @@ def check_public(root):
 def check_tree(root):
     """Faults of a whole checkout, as lines "file:line: what"."""
     faults = check_public(root)
-    for folder in sorted((root / "src/snug").iterdir()):
+    for folder in [root / "src" / SHARED, *sorted((root / "src/snug").iterdir())]:
         if folder.is_dir() and cpp_files(folder):
             if folder.name in ORDER:
                 faults += check_layer(root, folder.name)
@@ -126,7 +128,7 @@ def check_tree(root):
             for line, _, include in includes(path):
                 source = (f"include/{include}" if public(include) else
                           include.removeprefix("snug/") if layer_of(include) == ADAPTERS else f"src/{include}")
-                if include.startswith("snug/") and not (root / source).exists():
+                if include.startswith(("snug/", f"{SHARED}/")) and not (root / source).exists():
                     faults.append(f"{where}:{line}: <{include}> does not exist")
                 if name != "src" and not str(where).startswith(SEPARATE.get(layer_of(include), "")):
                     faults.append(f"{where}:{line}: {where.parent} may not include {layer_of(include)}")
@@ -143,10 +145,10 @@ def check_tree(root):
 GOOD_TREE = {
     "include/snug/p.h": "#pragma once\n#include <vector>\n",
     "include/snug/snug.h": "#pragma once\n#include <snug/p.h>\n",
-    "src/snug/CMakeLists.txt": "snug_library(base/a.cpp mesh/m.cpp  # and so on\n  query/q.cpp io/r.cpp)",
-    "src/snug/base/a.h": "#pragma once\n#include <vector>\n#include <snug/p.h>\n",
-    "src/snug/base/a.cpp": "#include <snug/base/a.h>\n#include <thread>\n",
-    "src/snug/mesh/m.h": "#pragma once\n#include <snug/base/a.h>\n",
+    "src/snug/CMakeLists.txt": "snug_library(../support/a.cpp mesh/m.cpp  # and so on\n  query/q.cpp io/r.cpp)",
+    "src/support/a.h": "#pragma once\n#include <vector>\n#include <snug/p.h>\n",
+    "src/support/a.cpp": "#include <support/a.h>\n#include <thread>\n",
+    "src/snug/mesh/m.h": "#pragma once\n#include <support/a.h>\n",
     "src/snug/mesh/m.cpp": "#include <snug/mesh/m.h>\n",
     "src/snug/query/q.cpp": "#include <snug/mesh/m.h>\n",
     "src/snug/independence/CMakeLists.txt": "add_library(snug_independence STATIC k.cpp)",
@@ -155,19 +157,19 @@ GOOD_TREE = {
     "apps/research/a.cpp": "#include <snug/independence/k.h>\n",
     "tests/independence/k_test.cpp": "#include <snug/independence/k.h>\n",
     "src/snug/io/r.h": "#pragma once\n",
-    "src/snug/io/r.cpp": "#include <snug/base/a.h>\n#include <unistd.h>\n",
+    "src/snug/io/r.cpp": "#include <support/a.h>\n#include <unistd.h>\n",
     "tests/oracle/o.h": "#pragma once\n#include <gmp.h>\n",
     "adapters/d.h": "#pragma once\n#include <dear.h>\n#include <snug/p.h>\n",
     "examples/e.cpp": "#include <snug/adapters/d.h>\n",
-    "tests/oracle/o_test.cpp": "#include <snug/base/a.h>\n",
+    "tests/oracle/o_test.cpp": "#include <support/a.h>\n",
 }
 # Each: a file put in the place of one above, and a part of the fault that must be reported.
 BAD_FILES = [
-    ("src/snug/base/a.h", "#pragma once\n#include <snug/mesh/m.h>\n", "a.h:2: base may not include mesh"),
+    ("src/support/a.h", "#pragma once\n#include <snug/mesh/m.h>\n", "a.h:2: support may not include mesh"),
     ("src/snug/query/q.cpp", "#include <snug/mesh/m.h>\n#include <snug/io/r.h>\n", "query may not include io"),
-    ("src/snug/io/r.cpp", "#include <snug/base/a.h>\n#include <snug/query/q.h>\n", "io may not include query"),
+    ("src/snug/io/r.cpp", "#include <support/a.h>\n#include <snug/query/q.h>\n", "io may not include query"),
     ("src/snug/bvh/t.cpp", "#include <snug/mesh/m.h>\n", "bvh may not include mesh"),
-    ("src/snug/mesh/m.h", "#include <snug/base/a.h>\n", "m.h:1: no #pragma once"),
+    ("src/snug/mesh/m.h", "#include <support/a.h>\n", "m.h:1: no #pragma once"),
     ("src/snug/mesh/m.cpp", '#include "m.h"\n', "included as <snug/...>"),
     ("src/snug/mesh/m.cpp", "#  include <CLI/CLI.hpp>\n", "mesh may not include <CLI/CLI.hpp>"),
     ("src/snug/mesh/m.cpp", "#include <gmp.h>\n", "mesh may not include <gmp.h>"),
@@ -182,11 +184,11 @@ BAD_FILES = [
     ("apps/snug/a.cpp", "#include <snug/independence/k.h>\n", "a.cpp:1: apps/snug may not include independence"),
     ("adapters/d.h", "#pragma once\n#include <snug/independence/k.h>\n", "adapters may not include independence"),
     ("src/snug/extra/e.cpp", "\n", "src/snug/extra: not a room"),
-    ("include/snug/p.h", "#pragma once\n#include <snug/base/a.h>\n", "p.h:2: public headers may not include"),
+    ("include/snug/p.h", "#pragma once\n#include <support/a.h>\n", "p.h:2: public headers may not include"),
     ("include/snug/p.h", "#pragma once\n#include <hwy/highway.h>\n", "p.h:2: public headers may not include"),
     ("include/snug/p.h", '#pragma once\n#include "snug/snug.h"\n', "p.h:2: public headers may not include"),
     ("include/snug/p.h", "#include <vector>\n", "p.h:1: no #pragma once"),
-    ("tests/oracle/o.h", "#pragma once\n#include <snug/base/a.h>\n", "tests/oracle may not include"),
+    ("tests/oracle/o.h", "#pragma once\n#include <support/a.h>\n", "tests/oracle may not include"),
     ("tests/oracle/o.h", "#pragma once\n#include <snug/p.h>\n", "tests/oracle may not include"),
     ("adapters/d.h", "#include <snug/p.h>\n", "d.h:1: no #pragma once"),
     ("adapters/d.h", "#pragma once\n#include <snug/picture/p.h>\n", "adapters may not include <snug/picture/p.h>"),

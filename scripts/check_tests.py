@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Holds tests to the sources that they prove.
 
-A source src/snug/ROOM/NAME.h or .cpp is proved by tests/ROOM/NAME_test.cpp, or by the tests that its row of the table in
+A source src/snug/ROOM/NAME.h or .cpp, or src/support/NAME, is proved by tests/ROOM/NAME_test.cpp, or by the tests that its row of the table in
 tests/README.md names. Checked: each source has one or the other and not both; rows name sources and tests that are there; each
 test of a room has the name of a source or stands in that file; each test is listed in the CMakeLists.txt of its folder.
 `--self-test` plants each fault and expects it found.
@@ -19,22 +19,24 @@ TEST = re.compile(r"`([a-z0-9_/-]+_test\.cpp)`")
 
 
 def check(root):
-    source, tests = root / "src/snug", root / "tests"
+    tests = root / "tests"
     text = (root / TABLE).read_text(encoding="utf-8") if (root / TABLE).exists() else ""
     rows = {m[1]: TEST.findall(m[2]) for m in ROW.finditer(text)}
-    stems = {str(p.relative_to(source).with_suffix("")) for p in source.rglob("*") if p.suffix in (".h", ".cpp")}
+    stems = {str(p.relative_to(root / source).with_suffix("")): f"{source}/"
+             for source in ("src/snug", "src") for p in (root / source).rglob("*")
+             if p.suffix in (".h", ".cpp") and (source == "src/snug" or "snug" not in p.relative_to(root).parts)}
     names = {str(p.relative_to(tests)) for p in tests.rglob("*_test.cpp")}
     rooms = {stem.split("/")[0] for stem in stems}
     faults = []
     for stem in sorted(stems):
         own = stem + "_test.cpp"
         if own not in names and stem not in rows:
-            faults.append(f"src/snug/{stem}: no tests/{own}, and no row in {TABLE} that says which test proves it")
+            faults.append(f"{stems[stem]}{stem}: no tests/{own}, and no row in {TABLE} that says which test proves it")
         if own in names and stem in rows:
             faults.append(f"{TABLE}: {stem} has tests/{own}; take its row out")
     for stem, proofs in rows.items():
         if stem not in stems:
-            faults.append(f"{TABLE}: there is no src/snug/{stem}")
+            faults.append(f"{TABLE}: there is no source {stem}")
         if not proofs:
             faults.append(f"{TABLE}: the row of {stem} names no test")
     for name in sorted(set(TEST.findall(text)) - names):
@@ -51,24 +53,24 @@ def check(root):
 
 def self_test():
     good = {
-        "src/snug/base/a.h": "",
-        "src/snug/base/b.h": "",
-        "src/snug/base/b.cpp": "",
-        "tests/base/a_test.cpp": "",
-        "tests/base/all_test.cpp": "",
-        "tests/base/CMakeLists.txt": "snug_test(base_test SOURCES a_test.cpp all_test.cpp)",
-        TABLE: "| `base/b` | `base/all_test.cpp` |\n",
+        "src/snug/mesh/a.h": "",
+        "src/snug/mesh/b.h": "",
+        "src/snug/mesh/b.cpp": "",
+        "tests/mesh/a_test.cpp": "",
+        "tests/mesh/all_test.cpp": "",
+        "tests/mesh/CMakeLists.txt": "snug_test(mesh_test SOURCES a_test.cpp all_test.cpp)",
+        TABLE: "| `mesh/b` | `mesh/all_test.cpp` |\n",
     }
     table = good[TABLE]
     planted = [
-        ({"src/snug/base/c.cpp": ""}, "src/snug/base/c: no tests/base/c_test.cpp"),
-        ({TABLE: table + "| `base/a` | `base/all_test.cpp` |\n"}, "take its row out"),
-        ({TABLE: table + "| `base/gone` | `base/all_test.cpp` |\n"}, "there is no src/snug/base/gone"),
-        ({TABLE: "| `base/b` | by hand |\n`base/all_test.cpp`"}, "the row of base/b names no test"),
-        ({TABLE: table + "`base/gone_test.cpp`"}, "there is no tests/base/gone_test.cpp"),
-        ({"tests/base/more_test.cpp": "", "tests/base/CMakeLists.txt": "a_test.cpp all_test.cpp more_test.cpp"},
-         "tests/base/more_test.cpp: no source of its name"),
-        ({"tests/base/CMakeLists.txt": "a_test.cpp small_test.cpp"}, "does not list it"),
+        ({"src/snug/mesh/c.cpp": ""}, "src/snug/mesh/c: no tests/mesh/c_test.cpp"),
+        ({TABLE: table + "| `mesh/a` | `mesh/all_test.cpp` |\n"}, "take its row out"),
+        ({TABLE: table + "| `mesh/gone` | `mesh/all_test.cpp` |\n"}, "there is no source mesh/gone"),
+        ({TABLE: "| `mesh/b` | by hand |\n`mesh/all_test.cpp`"}, "the row of mesh/b names no test"),
+        ({TABLE: table + "`mesh/gone_test.cpp`"}, "there is no tests/mesh/gone_test.cpp"),
+        ({"tests/mesh/more_test.cpp": "", "tests/mesh/CMakeLists.txt": "a_test.cpp all_test.cpp more_test.cpp"},
+         "tests/mesh/more_test.cpp: no source of its name"),
+        ({"tests/mesh/CMakeLists.txt": "a_test.cpp small_test.cpp"}, "does not list it"),
     ]
     failed = 0
     for files, expected in [({}, None)] + planted:

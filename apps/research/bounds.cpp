@@ -7,7 +7,7 @@
 #include <experiments/bound_counts.h>
 #include <experiments/older_catmark.h>
 #include <fmt/core.h>
-#include <snug/io/atomic_file.h>
+#include <support/atomic_file.h>
 
 #include "commands.h"
 

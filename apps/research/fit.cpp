@@ -9,12 +9,12 @@
 #include <apps/snug/words.h>
 #include <fmt/core.h>
 #include <snug/independence/mesh_kernel.h>
-#include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
-#include <snug/io/read_file.h>
 #include <snug/query/closest.h>
 #include <snug/surface/evaluate.h>
 #include <snug/surface/unscale.h>
+#include <support/atomic_file.h>
+#include <support/read_file.h>
 
 #include "commands.h"
 #include "kernel_json.h"

@@ -4,11 +4,11 @@
 #include <apps/snug/common.h>
 #include <apps/snug/progress_bar.h>
 #include <fmt/core.h>
-#include <snug/base/names.h>
-#include <snug/base/parallel.h>
 #include <snug/independence/cases.h>
 #include <snug/independence/eigenvalues.h>
 #include <snug/independence/piece_step.h>
+#include <support/names.h>
+#include <support/parallel.h>
 
 #include "commands.h"
 #include "mesh_independence.h"

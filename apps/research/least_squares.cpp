@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <snug/base/error.h>
+#include <support/error.h>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include <snug/geometry/point.h>
 #include <snug/scheme/stencils.h>
+#include <support/point.h>
 
 namespace snug::command {
 

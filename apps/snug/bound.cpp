@@ -2,8 +2,8 @@
 
 #include <fmt/core.h>
 #include <picture/polyhedron.h>
-#include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
+#include <support/atomic_file.h>
 
 #include <algorithm>
 #include <numbers>

@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include <fmt/core.h>
-#include <snug/io/atomic_file.h>
-#include <snug/io/column_table.h>
-#include <snug/io/number_rows.h>
-#include <snug/io/read_file.h>
+#include <support/atomic_file.h>
+#include <support/read_file.h>
+#include "column_table.h"
+#include "number_rows.h"
 
 #include "length.h"
 #include "placed_pair.h"

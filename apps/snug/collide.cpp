@@ -4,8 +4,8 @@
 #include <optional>
 
 #include <fmt/core.h>
-#include <snug/io/atomic_file.h>
 #include <snug/query/contacts.h>
+#include <support/atomic_file.h>
 
 #include "contact_report.h"
 #include "length.h"

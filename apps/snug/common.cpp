@@ -4,13 +4,13 @@
 #include <unordered_set>
 
 #include <fmt/core.h>
-#include <snug/base/error.h>
-#include <snug/base/parallel.h>
-#include <snug/io/atomic_file.h>
-#include <snug/io/column_table.h>
 #include <snug/io/mesh_file.h>
 #include <snug/mesh/tag_names.h>
 #include <snug/scheme/rules.h>
+#include <support/atomic_file.h>
+#include <support/error.h>
+#include <support/parallel.h>
+#include "column_table.h"
 
 #include "curve.h"
 #include "mesh_reading.h"

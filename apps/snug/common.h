@@ -10,10 +10,10 @@
 #include <vector>
 
 #include <snug/io/mesh_file.h>
-#include <snug/io/number.h>
 #include <snug/mesh.h>
 #include <snug/query/bound.h>
 #include <snug/surface/limit_surface.h>
+#include <support/number.h>
 
 #include "command_line.h"
 #include "exit_status.h"

@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include <snug/base/error.h>
 #include <snug/query/moving_body.h>
 #include <snug/query/pairs.h>
+#include <support/error.h>
 
 #include <fmt/core.h>
 

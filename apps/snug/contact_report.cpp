@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include <fmt/core.h>
-#include <snug/io/atomic_file.h>
+#include <support/atomic_file.h>
 
 namespace snug::command {
 namespace {

@@ -5,8 +5,8 @@
 #include <variant>
 
 #include <fmt/core.h>
-#include <snug/base/error.h>
 #include <snug/search/surface_data.h>
+#include <support/error.h>
 
 #include "curve.h"
 #include "length.h"

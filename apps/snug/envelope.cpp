@@ -1,11 +1,11 @@
 #include <fmt/core.h>
-#include <snug/base/error.h>
-#include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
 #include <snug/query/closest.h>
 #include <snug/query/hull.h>
 #include <snug/query/pairs.h>
 #include <snug/surface/evaluate.h>
+#include <support/atomic_file.h>
+#include <support/error.h>
 
 #include "hulls_of_mesh.h"
 #include "length.h"

@@ -3,10 +3,10 @@
 #include <optional>
 
 #include <fmt/core.h>
-#include <snug/io/atomic_file.h>
-#include <snug/io/column_table.h>
-#include <snug/io/read_file.h>
 #include <snug/surface/evaluate.h>
+#include <support/atomic_file.h>
+#include <support/read_file.h>
+#include "column_table.h"
 
 #include "common.h"
 #include "curve.h"

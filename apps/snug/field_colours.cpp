@@ -6,11 +6,11 @@
 #include <memory>
 #include <vector>
 
-#include <snug/base/parallel.h>
 #include <snug/bounds/enclosure.h>
 #include <snug/patch/evaluate.h>
 #include <snug/query/closest.h>
 #include <snug/surface/evaluate.h>
+#include <support/parallel.h>
 
 namespace snug::command {
 namespace {

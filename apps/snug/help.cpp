@@ -3,7 +3,7 @@
 #include <utility>
 
 #include <fmt/core.h>
-#include <snug/base/names.h>
+#include <support/names.h>
 
 #include "command_line.h"
 

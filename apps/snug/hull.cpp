@@ -3,8 +3,8 @@
 #include <deque>
 
 #include <fmt/core.h>
-#include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
+#include <support/atomic_file.h>
 
 #include "hulls_of_mesh.h"
 #include "length.h"

@@ -1,5 +1,4 @@
 #include <fmt/core.h>
-#include <snug/base/names.h>
 #include <snug/front/smoothing_note.h>
 #include <snug/mesh/loose_creases.h>
 #include <snug/mesh/validate.h>
@@ -7,6 +6,7 @@
 #include <snug/query/containment.h>
 #include <snug/scheme/rules.h>
 #include <snug/search/solid.h>
+#include <support/names.h>
 
 #include "common.h"
 #include "curve.h"

@@ -4,8 +4,8 @@
 #include <charconv>
 #include <cmath>
 
-#include <snug/base/contract.h>
-#include <snug/base/error.h>
+#include <support/contract.h>
+#include <support/error.h>
 
 #include "messages.h"
 

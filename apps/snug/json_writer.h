@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include <snug/geometry/point.h>
+#include <support/point.h>
 
 namespace snug::command {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string_view>
 
-#include <snug/base/error.h>
+#include <support/error.h>
 
 namespace snug::command {
 namespace {

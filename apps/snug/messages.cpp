@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <new>
 
-#include <snug/io/atomic_file.h>
+#include <support/atomic_file.h>
 
 namespace snug::command {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <snug/io/number.h>
+#include <support/number.h>
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include <fmt/core.h>
-#include <snug/base/names.h>
+#include <support/names.h>
 
 #include "length.h"
 #include "nearest.h"

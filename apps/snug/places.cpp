@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <snug/io/read_file.h>
+#include <support/read_file.h>
 
 #include "progress_bar.h"
 #include "words.h"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <snug/base/error.h>
-#include <snug/io/number.h>
+#include <support/error.h>
+#include <support/number.h>
 
 #include "length.h"
 

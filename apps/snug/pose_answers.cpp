@@ -5,8 +5,8 @@
 #include <optional>
 
 #include <fmt/core.h>
-#include <snug/base/error.h>
 #include <snug/query/pairs.h>
+#include <support/error.h>
 
 #include "pose_file.h"
 

@@ -11,9 +11,9 @@
 #include <system_error>
 
 #include <fmt/core.h>
-#include <snug/base/error.h>
-#include <snug/io/number.h>
-#include <snug/io/read_file.h>
+#include <support/error.h>
+#include <support/number.h>
+#include <support/read_file.h>
 
 #include "pose.h"
 #include "words.h"

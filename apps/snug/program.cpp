@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include <snug/base/error.h>
 #include <snug/bounds/fit_kernels.h>
+#include <support/error.h>
 
 #include "common.h"
 #include "length.h"

@@ -6,7 +6,7 @@
 #include <csignal>
 
 #include <fmt/core.h>
-#include <snug/io/atomic_file.h>
+#include <support/atomic_file.h>
 
 #include "exit_status.h"
 #include "messages.h"

@@ -5,8 +5,8 @@
 #include <span>
 
 #include <fmt/core.h>
-#include <snug/io/number_rows.h>
-#include <snug/io/read_file.h>
+#include <support/read_file.h>
+#include "number_rows.h"
 
 #include "common.h"
 #include "length.h"

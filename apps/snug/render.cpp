@@ -12,10 +12,10 @@
 #include <variant>
 
 #include <fmt/core.h>
-#include <snug/base/parallel.h>
-#include <snug/geometry/direction.h>
-#include <snug/io/atomic_file.h>
-#include <snug/io/number.h>
+#include <support/atomic_file.h>
+#include <support/direction.h>
+#include <support/number.h>
+#include <support/parallel.h>
 
 #include "common.h"
 #include "curve.h"

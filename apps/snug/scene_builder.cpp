@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include <picture/palette.h>
-#include <snug/base/parallel.h>
-#include <snug/geometry/direction.h>
 #include <snug/surface/evaluate.h>
+#include <support/direction.h>
+#include <support/parallel.h>
 
 namespace snug::command {
 PictureUnits::PictureUnits(std::span<const PlacedMesh> parts) {

@@ -10,12 +10,12 @@
 #include <unordered_map>
 
 #include <fmt/core.h>
-#include <snug/base/error.h>
-#include <snug/base/parallel.h>
-#include <snug/io/number.h>
-#include <snug/io/read_file.h>
 #include <snug/scheme/rules.h>
 #include <snug/search/surface_data.h>
+#include <support/error.h>
+#include <support/number.h>
+#include <support/parallel.h>
+#include <support/read_file.h>
 #include <nlohmann/json.hpp>
 
 #include "curve.h"

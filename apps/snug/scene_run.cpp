@@ -12,11 +12,11 @@
 #include <utility>
 
 #include <fmt/core.h>
-#include <snug/base/in_order.h>
-#include <snug/base/parallel.h>
 #include <snug/front/scene_workers.h>
-#include <snug/io/read_file.h>
 #include <snug/search/surface_data.h>
+#include <support/in_order.h>
+#include <support/parallel.h>
+#include <support/read_file.h>
 
 #include "journal.h"
 #include "progress_bar.h"

@@ -1,9 +1,9 @@
 #include "solids.h"
 
 #include <fmt/core.h>
-#include <snug/base/error.h>
 #include <snug/query/containment.h>
 #include <snug/search/solid.h>
+#include <support/error.h>
 
 namespace snug::command {
 namespace {

@@ -1,9 +1,9 @@
 #include <algorithm>
 
 #include <fmt/core.h>
-#include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
 #include <snug/query/subdivide.h>
+#include <support/atomic_file.h>
 
 #include "common.h"
 #include "curve.h"

@@ -1,8 +1,8 @@
 #include <snug/query/tessellate.h>
 
 #include <fmt/core.h>
-#include <snug/io/atomic_file.h>
 #include <snug/io/mesh_file.h>
+#include <support/atomic_file.h>
 
 #include "coarsen.h"
 #include "common.h"

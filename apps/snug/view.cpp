@@ -5,10 +5,10 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <snug/base/error.h>
-#include <snug/io/atomic_file.h>
 #include <snug/io/formats.h>
-#include <snug/io/read_file.h>
+#include <support/atomic_file.h>
+#include <support/error.h>
+#include <support/read_file.h>
 
 #include "common.h"
 #include "mesh_reading.h"

@@ -4,8 +4,8 @@
 #include <memory>
 #include <random>
 
-#include <snug/base/error.h>
 #include <snug/surface/evaluate.h>
+#include <support/error.h>
 
 #include "bars.h"
 #include "peers.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <snug/geometry/point.h>
+#include <support/point.h>
 
 namespace snug::bench {
 

@@ -1,8 +1,8 @@
 #include <snug/bounds/bounds_cache.h>
 
 #include <gtest/gtest.h>
-#include <snug/base/parallel.h>
 #include <snug/bounds/hull_points.h>
+#include <support/parallel.h>
 #include <testing/patches.h>
 
 #include <string>

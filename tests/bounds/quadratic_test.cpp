@@ -6,8 +6,8 @@
 #include <oracle/loop_twin.h>
 #include <oracle/polygon_twin.h>
 #include <snug/bounds/hull_points.h>
-#include <snug/geometry/scaling.h>
 #include <snug/patch/evaluate.h>
+#include <support/scaling.h>
 #include <testing/containment.h>
 #include <testing/disguises.h>
 #include <testing/patches.h>

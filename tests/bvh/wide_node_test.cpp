@@ -1,8 +1,8 @@
 #include <snug/bvh/wide_node.h>
 
 #include <gtest/gtest.h>
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
+#include <support/direction.h>
 #include <testing/instruction_sets.h>
 #include <testing/placed_points.h>
 

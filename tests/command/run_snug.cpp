@@ -75,17 +75,6 @@ Outcome interrupt_snug(const std::vector<std::string>& arguments, int millisecon
                                            }});
 }
 
-TemporaryFolder::TemporaryFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "snug-test-XXXXXX").string();
-  if (!mkdtemp(pattern.data())) throw std::runtime_error("mkdtemp");
-  path_ = pattern;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
 std::string model(const std::string& name) { return testing::models_dir() + "/" + name; }
 
 }  // namespace snug::testing

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include <testing/files.h>
 
 #ifdef SNUG_SANITIZED
 // Sanitizers take terabytes of addresses, and their own place before the C library.
@@ -37,20 +38,6 @@ struct Surroundings {
 
 /// Starts the command, sends it SIGINT after `milliseconds`, and waits.
 [[nodiscard]] Outcome interrupt_snug(const std::vector<std::string>& arguments, int milliseconds);
-
-/// A new empty folder, removed with all that is in it when the object goes.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] std::string file(const std::string& name) const { return (path_ / name).string(); }
-  [[nodiscard]] bool empty() const { return std::filesystem::is_empty(path_); }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// Path of an example model.
 [[nodiscard]] std::string model(const std::string& name);

@@ -1,6 +1,6 @@
 #include <snug/io/mesh_file.h>
-#include <snug/io/read_file.h>
 #include <snug/mesh/topology.h>
+#include <support/read_file.h>
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,9 @@
 #include <experiments/corner_nets.h>
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
-#include <snug/base/error.h>
 #include <snug/query/bound.h>
 #include <snug/surface/unscale.h>
+#include <support/error.h>
 #include <testing/curves.h>
 #include <testing/patches.h>
 

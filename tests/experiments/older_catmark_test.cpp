@@ -4,7 +4,7 @@
 #include <oracle/polygon_net.h>
 #include <oracle/polygon_twin.h>
 #include <oracle/tagged_shapes.h>
-#include <snug/base/error.h>
+#include <support/error.h>
 #include <testing/tagged.h>
 
 namespace snug::older_catmark_test {

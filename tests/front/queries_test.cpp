@@ -12,7 +12,7 @@
 #include <snug/search/workspace.h>
 #include <testing/places.h>
 
-#include "../io/io_testing.h"
+#include <testing/files.h>
 
 namespace snug::queries_test {
 namespace {
@@ -84,7 +84,7 @@ TEST(handles, take_scheme_and_boundary_from_the_file_unless_told) {
   EXPECT_EQ(load(model("bracket.obj")).scheme(), Scheme::catmark);
   EXPECT_EQ(load(model("star.obj"), {.scheme = Scheme::flat}).scheme(), Scheme::flat);
   const testing::TemporaryFolder folder;
-  const std::string path = folder / "edge_only.obj";
+  const std::string path = folder.file("edge_only.obj");
   std::ofstream(path) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nt interpolateboundary 1/0/0 1\n";
   EXPECT_EQ(load(path).boundary(), read_mesh(path).tags.boundary.value_or(BoundaryRule::edge_and_corner));
   EXPECT_EQ(load(path, {.scheme = {}, .boundary = BoundaryRule::edge_and_corner}).boundary(),
@@ -93,7 +93,7 @@ TEST(handles, take_scheme_and_boundary_from_the_file_unless_told) {
 
 TEST(handles, refuse_in_a_line_that_names_the_file) {
   const testing::TemporaryFolder folder;
-  const std::string path = folder / "empty.obj";
+  const std::string path = folder.file("empty.obj");
   std::ofstream(path) << "v 0 0 0\n";
   try {
     static_cast<void>(load(path));

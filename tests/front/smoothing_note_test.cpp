@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "../io/io_testing.h"
+#include <testing/files.h>
 
 namespace snug::smoothing_note_test {
 namespace {
@@ -137,7 +137,7 @@ TEST(triangles, have_a_note_without_a_distance_where_there_are_very_many_or_no_d
 TEST(files_of_facets, are_read_as_facets_without_a_note) {
   const testing::TemporaryFolder folder;
   for (const char* name : {"box.stl", "box.glb"}) {
-    const std::string path = folder / name;
+    const std::string path = folder.file(name);
     Lines dropped;
     ControlMesh mesh = box();
     write_mesh(mesh, path, [&](const std::string& line) { dropped.push_back(line); });
@@ -161,7 +161,7 @@ TEST(files_of_facets, are_read_as_facets_without_a_note) {
 TEST(files_without_tags, are_smoothed_with_a_note_that_names_them) {
   const testing::TemporaryFolder folder;
   for (const char* name : {"box.obj", "box.off", "box.ply"}) {
-    const std::string path = folder / name;
+    const std::string path = folder.file(name);
     write_mesh(box(), path);
     const Loaded found = loaded(path);
     EXPECT_EQ(found.scheme, Scheme::loop) << name;
@@ -173,7 +173,7 @@ TEST(files_without_tags, are_smoothed_with_a_note_that_names_them) {
 
 TEST(load, hands_on_the_notes_of_the_reader) {
   const testing::TemporaryFolder folder;
-  const std::string path = folder / "edited.obj";
+  const std::string path = folder.file("edited.obj");
   std::ofstream(path) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nt strange 0/0/0\n";
   const Lines lines = loaded(path).lines;
   ASSERT_EQ(lines.size(), 1u);
@@ -186,7 +186,7 @@ TEST(writing, says_that_a_format_loses_facets_only_where_it_does) {
     Lines found;
     ControlMesh mesh = box();
     mesh.tags.scheme = scheme;
-    write_mesh(mesh, folder / name, [&](const std::string& line) { found.push_back(line); });
+    write_mesh(mesh, folder.file(name), [&](const std::string& line) { found.push_back(line); });
     return found;
   };
   for (const char* name : {"a.off", "a.ply"}) {
@@ -202,7 +202,7 @@ TEST(writing, says_that_a_format_loses_facets_only_where_it_does) {
   }
   for (const char* name : {"a.obj", "a.usda"}) {
     EXPECT_EQ(lines(name, Scheme::flat), Lines{}) << name;
-    EXPECT_EQ(read_mesh(folder / name).tags.scheme, Scheme::flat) << name;
+    EXPECT_EQ(read_mesh(folder.file(name)).tags.scheme, Scheme::flat) << name;
   }
 }
 

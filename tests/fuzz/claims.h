@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include <snug/base/error.h>
 #include <snug/mesh/control_mesh.h>
+#include <support/error.h>
 
 namespace snug::fuzz {
 

@@ -1,4 +1,4 @@
-#include <snug/io/number.h>
+#include <support/number.h>
 
 #include <algorithm>
 #include <string>

@@ -1,4 +1,4 @@
-#include <snug/io/number_rows.h>
+#include <apps/snug/number_rows.h>
 
 #include "claims.h"
 

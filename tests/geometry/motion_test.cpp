@@ -1,7 +1,7 @@
 #include <snug/geometry/motion.h>
 
 #include <gtest/gtest.h>
-#include <snug/base/error.h>
+#include <support/error.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #include <snug/geometry/nearest_to_origin.h>
 
 #include <gtest/gtest.h>
-#include <snug/geometry/direction.h>
+#include <support/direction.h>
 
 #include <array>
 #include <random>

@@ -1,7 +1,7 @@
 #include <snug/geometry/triangle_distance.h>
 
 #include <gtest/gtest.h>
-#include <snug/geometry/direction.h>
+#include <support/direction.h>
 #include <testing/containment.h>
 #include <testing/instruction_sets.h>
 

@@ -9,7 +9,7 @@
 #include <snug/io/mesh_file.h>
 #include <testing/places.h>
 
-#include "io_testing.h"
+#include <testing/files.h>
 
 namespace snug::corpus_test {
 namespace {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <snug/io/binary.h>
+#include <support/binary.h>
 
-#include "io_testing.h"
+#include <testing/files.h>
 
 namespace snug::glb_test {
 namespace {

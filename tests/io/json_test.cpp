@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "io_testing.h"
+#include <testing/files.h>
 
 namespace snug::json_test {
 namespace {

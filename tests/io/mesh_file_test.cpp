@@ -9,7 +9,7 @@
 #include <snug/io/formats.h>
 #include <testing/written_forms.h>
 
-#include "io_testing.h"
+#include <testing/files.h>
 
 namespace snug::mesh_file_test {
 namespace {
@@ -51,11 +51,11 @@ TEST(mesh_file, round_trips_by_ending_in_any_case) {
   const ControlMesh mesh = creased_triangle();
   for (const char* name : {"a.obj", "a.OBJ", "a.off", "a.Off", "b.c.obj", "a.ply", "a.PLY", "a.stl", "a.Stl",
                            "a.glb", "a.usda", "a.USDA"}) {
-    write_mesh(mesh, folder / name);
-    expect_same_arrays(mesh, read_mesh(folder / name));
+    write_mesh(mesh, folder.file(name));
+    expect_same_arrays(mesh, read_mesh(folder.file(name)));
   }
-  EXPECT_EQ(read_mesh(folder / "a.obj").tags.creases.size(), 1u);
-  EXPECT_EQ(read_mesh(folder / "a.usda").tags.creases.size(), 1u);
+  EXPECT_EQ(read_mesh(folder.file("a.obj")).tags.creases.size(), 1u);
+  EXPECT_EQ(read_mesh(folder.file("a.usda")).tags.creases.size(), 1u);
 }
 
 TEST(mesh_file, says_that_only_obj_and_usd_have_tags) {
@@ -63,46 +63,46 @@ TEST(mesh_file, says_that_only_obj_and_usd_have_tags) {
   std::vector<std::string> lines;
   const Notes notes = [&](const std::string& line) { lines.push_back(line); };
   ControlMesh mesh = creased_triangle();
-  for (const char* name : {"a.off", "a.ply", "a.stl", "a.glb"}) write_mesh(mesh, folder / name, notes);
+  for (const char* name : {"a.off", "a.ply", "a.stl", "a.glb"}) write_mesh(mesh, folder.file(name), notes);
   EXPECT_EQ(lines.size(), 4u);
   mesh.tags = {};
-  for (const char* name : {"a.off", "a.ply", "a.stl", "a.glb"}) write_mesh(mesh, folder / name, notes);
-  write_mesh(creased_triangle(), folder / "a.obj", notes);
-  write_mesh(creased_triangle(), folder / "a.usda", notes);
+  for (const char* name : {"a.off", "a.ply", "a.stl", "a.glb"}) write_mesh(mesh, folder.file(name), notes);
+  write_mesh(creased_triangle(), folder.file("a.obj"), notes);
+  write_mesh(creased_triangle(), folder.file("a.usda"), notes);
   EXPECT_EQ(lines.size(), 4u);
   // A scheme is a tag, but for that which the faces name themselves.
   mesh.tags.scheme = Scheme::loop;
-  write_mesh(mesh, folder / "a.off", notes);
+  write_mesh(mesh, folder.file("a.off"), notes);
   EXPECT_EQ(lines.size(), 4u);
   mesh.tags.scheme = Scheme::flat;
-  write_mesh(mesh, folder / "a.off", notes);
+  write_mesh(mesh, folder.file("a.off"), notes);
   EXPECT_EQ(lines.size(), 5u);
-  write_mesh(mesh, folder / "a.obj", notes);
-  EXPECT_EQ(read_mesh(folder / "a.obj").tags.scheme, Scheme::flat);
+  write_mesh(mesh, folder.file("a.obj"), notes);
+  EXPECT_EQ(read_mesh(folder.file("a.obj")).tags.scheme, Scheme::flat);
 }
 
 TEST(mesh_file, tells_the_formats_of_standard_input_apart) {
   const TemporaryFolder folder;
-  put(folder / "obj", obj_text);
-  put(folder / "off", format_off(creased_triangle()));
-  put(folder / "ply", format_ply(creased_triangle()));
-  put(folder / "usda", format_usda(creased_triangle(), "usda"));
-  put(folder / "glb", format_glb(creased_triangle(), "glb"));
-  put(folder / "bad", "OFF\n3 1 0\n0 0 0\n");
+  put(folder.file("obj"), obj_text);
+  put(folder.file("off"), format_off(creased_triangle()));
+  put(folder.file("ply"), format_ply(creased_triangle()));
+  put(folder.file("usda"), format_usda(creased_triangle(), "usda"));
+  put(folder.file("glb"), format_glb(creased_triangle(), "glb"));
+  put(folder.file("bad"), "OFF\n3 1 0\n0 0 0\n");
   for (const char* name : {"obj", "off", "ply", "usda", "glb"}) {
-    const InputFrom input(folder / name);
+    const InputFrom input(folder.file(name));
     expect_same_arrays(creased_triangle(), read_mesh("-"));
   }
-  const InputFrom input(folder / "bad");
+  const InputFrom input(folder.file("bad"));
   EXPECT_EQ(message("-").substr(0, 16), "standard input:3");
 }
 
 TEST(mesh_file, tells_the_formats_of_files_without_ending_apart) {
   const TemporaryFolder folder;
-  put(folder / "plain", format_off(creased_triangle()));
-  expect_same_arrays(creased_triangle(), read_mesh(folder / "plain"));
-  put(folder / "binary", testing::big_endian_ply(creased_triangle()));
-  expect_same_arrays(creased_triangle(), read_mesh(folder / "binary"));
+  put(folder.file("plain"), format_off(creased_triangle()));
+  expect_same_arrays(creased_triangle(), read_mesh(folder.file("plain")));
+  put(folder.file("binary"), testing::big_endian_ply(creased_triangle()));
+  expect_same_arrays(creased_triangle(), read_mesh(folder.file("binary")));
 }
 
 TEST(mesh_file, welds_every_format_and_says_what) {
@@ -110,18 +110,18 @@ TEST(mesh_file, welds_every_format_and_says_what) {
   const ControlMesh mesh = parse_obj(
       "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 1 1e-7\nv 1 1e-7 0\nv 1 1 0\nf 1 2 3\nf 4 5 6\n", "split.obj", {});
   for (const char* name : {"a.obj", "a.off", "a.ply", "a.stl"}) {
-    write_mesh(mesh, folder / name);
-    EXPECT_EQ(read_mesh(folder / name).vertex_count(), 6u) << name;
+    write_mesh(mesh, folder.file(name));
+    EXPECT_EQ(read_mesh(folder.file(name)).vertex_count(), 6u) << name;
     double seen = 0;
     std::vector<std::string> notes;
     const ControlMesh welded =
-        read_mesh(folder / name, {.weld =
-                                      [&](double size) {
-                                        seen = size;
-                                        return 1e-6 * size;
-                                      },
-                                  .notes = [&](const std::string& line) { notes.push_back(line); },
-                                  .monitor = {}});
+        read_mesh(folder.file(name), {.weld =
+                                          [&](double size) {
+                                            seen = size;
+                                            return 1e-6 * size;
+                                          },
+                                      .notes = [&](const std::string& line) { notes.push_back(line); },
+                                      .monitor = {}});
     EXPECT_EQ(seen, 1) << name;
     EXPECT_EQ(welded.vertex_count(), 4u) << name;
     EXPECT_EQ(testing::corners(welded, 1), (std::vector<std::uint32_t>{2, 1, 3})) << name;
@@ -132,10 +132,10 @@ TEST(mesh_file, welds_every_format_and_says_what) {
 
 TEST(mesh_file, says_which_file_cannot_be_welded) {
   const TemporaryFolder folder;
-  write_mesh(creased_triangle(), folder / "a.obj");
+  write_mesh(creased_triangle(), folder.file("a.obj"));
   try {
     static_cast<void>(
-        read_mesh(folder / "a.obj", {.weld = [](double) { return 1e-300; }, .notes = {}, .monitor = {}}));
+        read_mesh(folder.file("a.obj"), {.weld = [](double) { return 1e-300; }, .notes = {}, .monitor = {}}));
     ADD_FAILURE();
   } catch (const InputError& error) {
     EXPECT_EQ(error.problem(), InputProblem::refused);
@@ -154,26 +154,27 @@ TEST(mesh_file, a_mesh_that_the_format_cannot_hold_leaves_no_file) {
   ControlMesh quad = creased_triangle();
   quad.points.push_back({1, 1, 0});
   quad.add_face(std::vector{VertexId(0), VertexId(1), VertexId(3), VertexId(2)});
-  EXPECT_THROW(write_mesh(quad, folder / "a.stl"), InputError);
+  EXPECT_THROW(write_mesh(quad, folder.file("a.stl")), InputError);
   EXPECT_EQ(folder.entries(), 0u);
 }
 
 TEST(mesh_file, bad_names_are_clear_errors) {
   const TemporaryFolder folder;
   EXPECT_EQ(message(""), "the name of the file to read is empty");
-  EXPECT_EQ(message(folder / "none.obj"),
-            folder / "none.obj" + ": cannot be read: No such file or directory");
+  EXPECT_EQ(message(folder.file("none.obj")),
+            folder.file("none.obj") + ": cannot be read: No such file or directory");
   for (const char* name : {"a.xyz", "a.gltf"}) {
-    EXPECT_EQ(message(folder / name),
-              folder / name + ": meshes are read from .obj, .off, .ply, .stl, .usda and .glb files only");
+    EXPECT_EQ(message(folder.file(name)),
+              folder.file(name) + ": meshes are read from .obj, .off, .ply, .stl, .usda and .glb files only");
   }
-  std::filesystem::create_directory(folder / "folder.obj");
-  EXPECT_EQ(message(folder / "folder.obj"), folder / "folder.obj" + ": is a directory: name a file in it");
+  std::filesystem::create_directory(folder.file("folder.obj"));
+  EXPECT_EQ(message(folder.file("folder.obj")),
+            folder.file("folder.obj") + ": is a directory: name a file in it");
   for (const char* name : {"a.xyz", "a"}) {
     const std::string expected =
-        folder / name + ": meshes are written to .obj, .off, .ply, .stl, .glb and .usda files only";
-    EXPECT_EQ(unreadable([&] { write_mesh(creased_triangle(), folder / name); }), expected);
-    EXPECT_EQ(unreadable([&] { require_writable_ending(folder / name); }), expected);
+        folder.file(name) + ": meshes are written to .obj, .off, .ply, .stl, .glb and .usda files only";
+    EXPECT_EQ(unreadable([&] { write_mesh(creased_triangle(), folder.file(name)); }), expected);
+    EXPECT_EQ(unreadable([&] { require_writable_ending(folder.file(name)); }), expected);
   }
   EXPECT_EQ(folder.entries(), 1u);
 }
@@ -191,8 +192,8 @@ TEST(mesh_file, a_million_triangles_round_trip) {
     mesh.add_face(std::vector{VertexId(i + 1), VertexId(i + side + 1), VertexId(i + side)});
   }
   for (const char* name : {"large.obj", "large.off", "large.ply"}) {
-    write_mesh(mesh, folder / name);
-    expect_same_arrays(mesh, read_mesh(folder / name));
+    write_mesh(mesh, folder.file(name));
+    expect_same_arrays(mesh, read_mesh(folder.file(name)));
   }
 }
 

@@ -5,7 +5,7 @@
 
 #include <snug/io/formats.h>
 
-#include "io_testing.h"
+#include <testing/files.h>
 
 namespace snug::obj_tags_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io_testing.h"
+#include <testing/files.h>
 
 namespace snug::obj_test {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include <snug/io/binary.h>
+#include <support/binary.h>
 #include <testing/written_forms.h>
 
-#include "io_testing.h"
+#include <testing/files.h>
 
 namespace snug::ply_test {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include <snug/io/binary.h>
+#include <support/binary.h>
 #include <testing/written_forms.h>
 
-#include "io_testing.h"
+#include <testing/files.h>
 
 namespace snug::stl_test {
 namespace {

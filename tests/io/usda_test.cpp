@@ -6,7 +6,7 @@
 
 #include <snug/surface.h>
 
-#include "io_testing.h"
+#include <testing/files.h>
 
 namespace snug::usda_test {
 namespace {

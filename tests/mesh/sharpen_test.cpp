@@ -7,9 +7,9 @@
 #include <utility>
 
 #include <gtest/gtest.h>
-#include <snug/base/error.h>
 #include <snug/mesh/topology.h>
 #include <snug/mesh/validate.h>
+#include <support/error.h>
 #include <testing/cad_parts.h>
 
 namespace snug::sharpen_test {

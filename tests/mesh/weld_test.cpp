@@ -6,9 +6,9 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <snug/base/error.h>
 #include <snug/mesh/topology.h>
 #include <snug/mesh/validate.h>
+#include <support/error.h>
 #include <testing/six_sheets.h>
 
 namespace snug::weld_test {

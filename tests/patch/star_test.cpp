@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 #include <oracle/tagged_shapes.h>
-#include <snug/geometry/direction.h>
 #include <snug/patch/evaluate.h>
 #include <snug/surface/level_complex.h>
+#include <support/direction.h>
 #include <testing/tagged.h>
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <oracle/hausdorff_twin.h>
 #include <peer_cgal.h>
-#include <snug/base/error.h>
+#include <support/error.h>
 #include <testing/candidates.h>
 #include <testing/solids.h>
 #include <testing/tagged.h>

@@ -6,7 +6,7 @@
 
 #include <embree3/rtcore.h>
 #include <gtest/gtest.h>
-#include <snug/geometry/point.h>
+#include <support/point.h>
 #include <testing/counts.h>
 #include <testing/places.h>
 

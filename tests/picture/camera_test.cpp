@@ -1,5 +1,5 @@
 #include <picture/camera.h>
-#include <snug/base/error.h>
+#include <support/error.h>
 
 #include <gtest/gtest.h>
 

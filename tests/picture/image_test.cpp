@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include <snug/base/error.h>
+#include <support/error.h>
 
 namespace snug::image_test {
 namespace {

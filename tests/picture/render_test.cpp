@@ -7,7 +7,7 @@
 #include <random>
 #include <thread>
 
-#include <snug/base/error.h>
+#include <support/error.h>
 
 namespace snug::render_test {
 namespace {

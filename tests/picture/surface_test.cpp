@@ -10,8 +10,8 @@
 #include <memory>
 #include <vector>
 
-#include <snug/base/error.h>
 #include <snug/mesh.h>
+#include <support/error.h>
 
 namespace snug::surface_test {
 namespace {

@@ -1,9 +1,9 @@
 #include <experiments/control_box.h>
 #include <experiments/quantile.h>
-#include <snug/base/error.h>
 #include <snug/query/bound.h>
 #include <snug/query/subdivide.h>
 #include <snug/surface/evaluate.h>
+#include <support/error.h>
 #include <testing/curves.h>
 
 #include <gtest/gtest.h>

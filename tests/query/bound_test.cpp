@@ -1,7 +1,7 @@
 #include <snug/query/bound.h>
 
 #include <gtest/gtest.h>
-#include <snug/base/error.h>
+#include <support/error.h>
 #include <testing/patches.h>
 
 #include <vector>

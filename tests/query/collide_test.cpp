@@ -1,12 +1,12 @@
 #include <snug/query/pairs.h>
 
 #include <gtest/gtest.h>
-#include <snug/base/error.h>
 #include <snug/patch/evaluate.h>
 #include <snug/query/closest.h>
 #include <snug/query/containment.h>
 #include <snug/search/piece_pairs.h>
 #include <snug/search/solid.h>
+#include <support/error.h>
 #include <testing/patches.h>
 #include <testing/placements.h>
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <oracle/tagged_shapes.h>
-#include <snug/geometry/point.h>
+#include <support/point.h>
 #include <testing/tagged.h>
 
 #include <algorithm>

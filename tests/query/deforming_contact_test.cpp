@@ -4,8 +4,8 @@
 #include <snug/query/pairs.h>
 
 #include <gtest/gtest.h>
-#include <snug/base/error.h>
 #include <snug/search/crossing.h>
+#include <support/error.h>
 #include <testing/cad_parts.h>
 #include <testing/deformations.h>
 

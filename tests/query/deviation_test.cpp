@@ -3,8 +3,8 @@
 #include <snug/deviation.h>
 
 #include <gtest/gtest.h>
-#include <snug/base/error.h>
 #include <snug/evaluate.h>
+#include <support/error.h>
 #include <testing/candidates.h>
 #include <testing/tagged.h>
 

@@ -6,11 +6,11 @@
 #include <oracle/polygon_twin.h>
 #include <oracle/polyhedron_twin.h>
 #include <oracle/tagged_shapes.h>
-#include <snug/base/error.h>
 #include <snug/query/bound.h>
 #include <snug/query/closest.h>
 #include <snug/query/pairs.h>
 #include <snug/surface/evaluate.h>
+#include <support/error.h>
 #include <testing/exact_triangles.h>
 #include <testing/pieces.h>
 #include <testing/tagged.h>

@@ -1,7 +1,7 @@
 #include <snug/query/pairs.h>
 
 #include <gtest/gtest.h>
-#include <snug/base/error.h>
+#include <support/error.h>
 
 #include <atomic>
 #include <chrono>

@@ -1,8 +1,8 @@
 #include <snug/query/subdivide.h>
 
 #include <gtest/gtest.h>
-#include <snug/base/error.h>
 #include <snug/mesh/validate.h>
+#include <support/error.h>
 #include <testing/patches.h>
 
 namespace snug::subdivide_test {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <oracle/contact_time_twin.h>
-#include <snug/base/error.h>
+#include <support/error.h>
 #include <testing/cad_parts.h>
 #include <testing/patches.h>
 #include <testing/placements.h>

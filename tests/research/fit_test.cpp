@@ -12,8 +12,8 @@
 #include <vector>
 
 #include <command/run_snug.h>
-#include <snug/geometry/point.h>
 #include <snug/mesh.h>
+#include <support/point.h>
 
 namespace snug::testing::fit_test {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include <command/run_snug.h>
-#include <snug/geometry/point.h>
 #include <snug/mesh.h>
+#include <support/point.h>
 
 namespace snug::testing::weights_test {
 namespace {

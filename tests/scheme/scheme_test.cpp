@@ -1,7 +1,7 @@
 #include <snug/scheme/scheme.h>
 
 #include <gtest/gtest.h>
-#include <snug/base/error.h>
+#include <support/error.h>
 #include <testing/twins.h>
 
 namespace snug::scheme_test {

@@ -1,8 +1,8 @@
 #include <snug/search/piece_pairs.h>
 
 #include <gtest/gtest.h>
-#include <snug/geometry/direction.h>
 #include <snug/patch/evaluate.h>
+#include <support/direction.h>
 #include <testing/disguised_surfaces.h>
 #include <testing/placements.h>
 

@@ -1,8 +1,8 @@
 #include <snug/search/quadratic_bvh.h>
 
 #include <gtest/gtest.h>
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
+#include <support/direction.h>
 
 #include <cmath>
 #include <random>

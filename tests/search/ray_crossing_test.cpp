@@ -3,8 +3,8 @@
 
 #include <snug/search/ray_crossing.h>
 
-#include <snug/geometry/direction.h>
 #include <snug/patch/evaluate.h>
+#include <support/direction.h>
 #include <testing/disguises.h>
 #include <testing/scheme_surfaces.h>
 

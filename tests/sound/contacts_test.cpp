@@ -12,8 +12,8 @@
 
 #include <gtest/gtest.h>
 #include <oracle/limit_twin.h>
-#include <snug/geometry/point.h>
 #include <snug/surface/evaluate.h>
+#include <support/point.h>
 #include <testing/counts.h>
 #include <testing/ground_trials.h>
 #include <testing/scheme_surfaces.h>

@@ -5,12 +5,12 @@
 
 #include <gtest/gtest.h>
 #include <oracle/polyhedron_twin.h>
-#include <snug/base/error.h>
 #include <snug/mesh/topology.h>
 #include <snug/query/closest.h>
 #include <snug/search/solid.h>
 #include <snug/search/winding.h>
 #include <snug/surface/evaluate.h>
+#include <support/error.h>
 #include <testing/solid_cases.h>
 
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include <snug/deviation.h>
 
 #include <gtest/gtest.h>
-#include <snug/base/error.h>
+#include <support/error.h>
 #include <testing/candidates.h>
 #include <testing/solid_cases.h>
 #include <testing/tagged.h>

@@ -12,8 +12,8 @@
 #include <oracle/limit_twin.h>
 #include <oracle/polygon_twin.h>
 #include <oracle/winding_twin.h>
-#include <snug/base/error.h>
 #include <snug/evaluate.h>
+#include <support/error.h>
 #include <testing/candidates.h>
 #include <testing/solid_cases.h>
 #include <testing/tagged.h>

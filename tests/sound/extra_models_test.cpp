@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
-#include <snug/base/error.h>
 #include <snug/io/mesh_file.h>
+#include <support/error.h>
 #include <testing/containment.h>
 #include <testing/twins.h>
 

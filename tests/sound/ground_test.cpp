@@ -7,9 +7,9 @@
 // runs so many placements; progress goes to standard error. SNUG_FIRST=N begins with placement N: with
 // SNUG_PLACEMENTS=1 one that failed alone, and SNUG_DUMP=FOLDER writes its meshes there.
 
-#include <snug/base/error.h>
 #include <snug/query/closest.h>
 #include <snug/query/pairs.h>
+#include <support/error.h>
 
 #include <gtest/gtest.h>
 #include <oracle/polygon_twin.h>

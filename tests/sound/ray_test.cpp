@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 #include <oracle/ray_twin.h>
 #include <oracle/tagged_shapes.h>
-#include <snug/base/error.h>
 #include <snug/surface/evaluate.h>
+#include <support/error.h>
 #include <testing/disguises.h>
 #include <testing/places.h>
 #include <testing/solid_cases.h>

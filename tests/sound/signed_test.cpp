@@ -9,8 +9,8 @@
 
 #include <gtest/gtest.h>
 #include <oracle/polyhedron_twin.h>
-#include <snug/base/error.h>
 #include <snug/search/solid.h>
+#include <support/error.h>
 #include <testing/solid_cases.h>
 
 #include <cmath>

@@ -12,7 +12,7 @@
 #include <snug/search/winding.h>
 
 #include <gtest/gtest.h>
-#include <snug/base/error.h>
+#include <support/error.h>
 #include <testing/solid_cases.h>
 
 #include <cmath>

@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
 #include <oracle/polygon_twin.h>
-#include <snug/base/error.h>
 #include <snug/bounds/table_triangle.h>
 #include <snug/search/piece.h>
 #include <snug/surface/unscale.h>
+#include <support/error.h>
 #include <testing/containment.h>
 #include <testing/patches.h>
 #include <testing/tagged.h>

@@ -1,7 +1,7 @@
 #include <snug/surface/limit_surface.h>
 
 #include <gtest/gtest.h>
-#include <snug/base/error.h>
+#include <support/error.h>
 #include <testing/patches.h>
 #include <testing/scheme_surfaces.h>
 

@@ -1,7 +1,7 @@
 #include <snug/surface/unscale.h>
 
 #include <gtest/gtest.h>
-#include <snug/base/error.h>
+#include <support/error.h>
 
 namespace snug::unscale_test {
 namespace {

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <string>
 
-#include <snug/io/binary.h>
 #include <snug/io/formats.h>
-#include <snug/io/number.h>
 #include <snug/mesh.h>
+#include <support/binary.h>
+#include <support/number.h>
 
 /// Files as other programs write them: the forms of PLY and STL that snug reads and does not write.
 namespace snug::testing {

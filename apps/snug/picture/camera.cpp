@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include <snug/base/error.h>
-#include <snug/geometry/direction.h>
+#include <support/direction.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

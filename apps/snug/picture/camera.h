@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include <snug/geometry/point.h>
+#include <support/point.h>
 
 namespace snug {
 

@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-#include <snug/base/error.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include <snug/base/error.h>
+#include <support/error.h>
 
 namespace snug {
 

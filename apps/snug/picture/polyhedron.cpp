@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include <snug/base/error.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

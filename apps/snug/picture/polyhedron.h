@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <snug/bounds/enclosure.h>
-#include <snug/geometry/point.h>
+#include <support/point.h>
 
 namespace snug {
 

@@ -11,8 +11,8 @@
 #include <picture/hierarchy.h>
 #include <picture/lettering.h>
 #include <picture/shading.h>
-#include <snug/base/error.h>
-#include <snug/geometry/direction.h>
+#include <support/direction.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <picture/colour.h>
-#include <snug/geometry/point.h>
 #include <snug/search/ray_caster.h>
+#include <support/point.h>
 
 namespace snug {
 

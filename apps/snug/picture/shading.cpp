@@ -1,6 +1,6 @@
 #include <picture/shading.h>
 
-#include <snug/geometry/direction.h>
+#include <support/direction.h>
 
 namespace snug {
 namespace {

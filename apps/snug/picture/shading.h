@@ -2,7 +2,7 @@
 
 #include <picture/colour.h>
 #include <picture/scene.h>
-#include <snug/geometry/point.h>
+#include <support/point.h>
 
 namespace snug {
 

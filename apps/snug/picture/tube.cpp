@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <snug/geometry/direction.h>
+#include <support/direction.h>
 
 namespace snug {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <snug/base/contract.h>
 #include <snug/geometry/rounding.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

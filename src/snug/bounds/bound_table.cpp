@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include <snug/base/contract.h>
 #include <snug/bounds/linear_programme.h>
 #include <snug/geometry/rounding.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
+#include <support/direction.h>
 
 namespace snug {
 namespace {

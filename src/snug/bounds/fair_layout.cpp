@@ -10,8 +10,8 @@
 #include <span>
 #include <utility>
 
-#include <snug/base/contract.h>
 #include <snug/patch/piece_path.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

@@ -57,7 +57,7 @@ struct Reach {
 /// Guarantee: largest distance <= distance, for the triangle of these very doubles; distance <= largest
 ///            distance + 3 rounding, times 1 + 2^-39 where its longest edge is below 1e-70;
 ///            rounding <= (16 + 112 / sine) u (distance + 2 longest edge).
-/// Requires:  points in scaled coordinates (geometry/scaling.h), or not finite; splits not decreasing, at
+/// Requires:  points in scaled coordinates (support/scaling.h), or not finite; splits not decreasing, at
 ///            most points.count.
 /// Source:    derivations/rounding.md, "Distance in the triangle's plane".
 [[nodiscard]] std::optional<std::array<Reach, 4>> farthest(const Coordinates& points,
@@ -93,7 +93,7 @@ void fit_bicubic(std::span<const Point3> points, std::span<const VertexId> contr
 /// Guarantee: as offset_triangle(table_triangle()); base in the kind's order of corners. Infinite radius
 ///            where a point is not finite.
 /// Requires:  the table of this kind; control: table.control_count() vertices of `points` a patch, in the
-///            kind's order; out.size() patches; coordinates of at most about 2 (geometry/scaling.h).
+///            kind's order; out.size() patches; coordinates of at most about 2 (support/scaling.h).
 /// Cost:      about 20 operations a control point and coordinate, four to eight patches at once.
 void fit_table(const BoundTable& table, const Kind& kind, std::span<const Point3> points,
                std::span<const VertexId> control, std::span<OffsetTriangle> out);

@@ -8,9 +8,9 @@
 #include <mutex>
 #include <utility>
 
-#include <snug/base/error.h>
-#include <snug/base/recent_values.h>
 #include <snug/mesh.h>
+#include <support/error.h>
+#include <support/recent_values.h>
 
 namespace snug {
 

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <optional>
 
-#include <snug/base/contract.h>
 #include <snug/geometry/interval.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

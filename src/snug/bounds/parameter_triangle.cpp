@@ -1,6 +1,6 @@
 #include <snug/bounds/parameter_triangle.h>
 
-#include <snug/base/contract.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

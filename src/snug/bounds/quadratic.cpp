@@ -4,12 +4,12 @@
 #include <cmath>
 #include <memory>
 
-#include <snug/base/contract.h>
 #include <snug/bounds/bounds_cache.h>
 #include <snug/bounds/hull_points.h>
 #include <snug/bounds/lasting_layout.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

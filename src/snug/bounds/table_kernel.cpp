@@ -10,11 +10,11 @@
 #include <cmath>
 #include <vector>
 
-#include <snug/base/contract.h>
 #include <snug/bounds/bound_table.h>
 #include <snug/bounds/fit_kernels.h>
 #include <snug/bounds/flat_table.h>
 #include <snug/geometry/rounding.h>
+#include <support/contract.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {

@@ -28,7 +28,7 @@ struct TableTriangle {
 /// the largest of their half diagonals as radius.
 ///
 /// Guarantee: contains the interval triangle, rounding included.
-/// Requires:  coordinates of at most about 4 (geometry/scaling.h).
+/// Requires:  coordinates of at most about 4 (support/scaling.h).
 /// Source:    [Wu05, eq. 5.1, 5.2].
 [[nodiscard]] OffsetTriangle offset_triangle(const TableTriangle& triangle);
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <snug/base/contract.h>
 #include <snug/geometry/rounding.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-#include <snug/geometry/point.h>
+#include <support/point.h>
 
 namespace snug {
 

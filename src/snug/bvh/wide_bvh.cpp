@@ -7,10 +7,10 @@
 #include <numeric>
 #include <utility>
 
-#include <snug/base/contract.h>
-#include <snug/base/ordering.h>
-#include <snug/base/parallel.h>
 #include <snug/geometry/rounding.h>
+#include <support/contract.h>
+#include <support/ordering.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <snug/base/contract.h>
 #include <snug/geometry/rounding.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <vector>
 
-#include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
-#include <snug/geometry/scaling.h>
 #include <snug/query/bound.h>
 #include <snug/search/surface_data.h>
 #include <snug/surface/batch_bounds.h>
+#include <support/error.h>
+#include <support/scaling.h>
 
 namespace snug {
 

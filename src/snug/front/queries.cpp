@@ -1,6 +1,5 @@
 #include <utility>
 
-#include <snug/base/error.h>
 #include <snug/evaluate.h>
 #include <snug/front/workspace.h>
 #include <snug/query/bound.h>
@@ -15,6 +14,7 @@
 #include <snug/query/subdivide.h>
 #include <snug/query/tessellate.h>
 #include <snug/surface/evaluate.h>
+#include <support/error.h>
 
 /// The public queries: from handles to trees and workspaces, and nothing else.
 namespace snug {

@@ -2,12 +2,12 @@
 #include <array>
 #include <cmath>
 
-#include <snug/base/error.h>
-#include <snug/base/parallel.h>
 #include <snug/query/ray.h>
 #include <snug/search/ray_caster.h>
 #include <snug/search/surface_data.h>
 #include <snug/surface/evaluate.h>
+#include <support/error.h>
+#include <support/parallel.h>
 
 namespace snug {
 

@@ -12,13 +12,13 @@
 #include <unordered_map>
 #include <utility>
 
-#include <snug/base/error.h>
-#include <snug/base/in_order.h>
-#include <snug/base/parallel.h>
 #include <snug/bvh/box_tree.h>
 #include <snug/front/scene_workers.h>
 #include <snug/search/placed_box.h>
 #include <snug/search/surface_data.h>
+#include <support/error.h>
+#include <support/in_order.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

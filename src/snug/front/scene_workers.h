@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include <snug/base/parallel.h>
 #include <snug/scene.h>
+#include <support/parallel.h>
 
 namespace snug {
 

@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
-#include <snug/io/number.h>
 #include <snug/query/bound.h>
 #include <snug/scheme/scheme.h>
+#include <support/error.h>
+#include <support/number.h>
 
 namespace snug {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include <snug/base/contract.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include <snug/base/error.h>
-#include <snug/geometry/direction.h>
+#include <support/direction.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

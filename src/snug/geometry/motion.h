@@ -1,8 +1,8 @@
 #pragma once
 
-#include <snug/geometry/point.h>
 #include <snug/geometry/rounding.h>
 #include <snug/motion.h>
+#include <support/point.h>
 
 namespace snug {
 

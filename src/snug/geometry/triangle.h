@@ -1,6 +1,6 @@
 #pragma once
 
-#include <snug/geometry/point.h>
+#include <support/point.h>
 
 namespace snug {
 

@@ -9,12 +9,12 @@
 #include <tuple>
 #include <utility>
 
-#include <snug/base/contract.h>
-#include <snug/base/error.h>
-#include <snug/base/names.h>
 #include <snug/independence/flint_memory.h>
 #include <snug/independence/null_space.h>
 #include <snug/independence/steps.h>
+#include <support/contract.h>
+#include <support/error.h>
+#include <support/names.h>
 
 namespace snug {
 namespace {

@@ -7,10 +7,10 @@
 
 #include <flint/fmpq_mat.h>
 #include <flint/fmpq_poly.h>
-#include <snug/base/contract.h>
 #include <snug/independence/flint_memory.h>
 #include <snug/independence/null_space.h>
 #include <snug/independence/piece_step.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

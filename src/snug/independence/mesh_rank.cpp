@@ -6,7 +6,6 @@
 #include <optional>
 #include <string>
 
-#include <snug/base/contract.h>
 #include <snug/error.h>
 #include <snug/independence/exact_step.h>
 #include <snug/independence/exact_surface.h>
@@ -14,6 +13,7 @@
 #include <snug/independence/surface_rank.h>
 #include <snug/independence/zero_proof.h>
 #include <snug/scheme/rules.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

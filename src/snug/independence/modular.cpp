@@ -1,6 +1,6 @@
 #include <snug/independence/modular.h>
 
-#include <snug/base/contract.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include <snug/base/contract.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <flint/fmpz_poly.h>
 
-#include <snug/base/contract.h>
+#include <support/contract.h>
 
 namespace snug {
 

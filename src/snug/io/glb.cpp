@@ -6,10 +6,10 @@
 #include <limits>
 #include <vector>
 
-#include <snug/base/contract.h>
-#include <snug/base/error.h>
-#include <snug/io/binary.h>
-#include <snug/io/number.h>
+#include <support/binary.h>
+#include <support/contract.h>
+#include <support/error.h>
+#include <support/number.h>
 
 namespace snug {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <snug/io/number.h>
-#include <snug/io/text_cursor.h>
+#include <support/number.h>
+#include <support/text_cursor.h>
 
 namespace snug {
 namespace {

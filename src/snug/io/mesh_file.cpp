@@ -4,14 +4,14 @@
 #include <filesystem>
 #include <string_view>
 
-#include <snug/base/error.h>
-#include <snug/io/atomic_file.h>
 #include <snug/io/formats.h>
-#include <snug/io/number.h>
-#include <snug/io/read_file.h>
 #include <snug/mesh/loose_creases.h>
 #include <snug/mesh/weld.h>
 #include <snug/scheme/scheme.h>
+#include <support/atomic_file.h>
+#include <support/error.h>
+#include <support/number.h>
+#include <support/read_file.h>
 
 namespace snug {
 namespace {

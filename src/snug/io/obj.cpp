@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/error.h>
-#include <snug/io/number.h>
 #include <snug/io/obj_tags.h>
-#include <snug/io/read_file.h>
-#include <snug/io/text_cursor.h>
+#include <support/error.h>
+#include <support/number.h>
+#include <support/read_file.h>
+#include <support/text_cursor.h>
 
 namespace snug {
 namespace {

@@ -5,9 +5,9 @@
 #include <optional>
 #include <utility>
 
-#include <snug/io/number.h>
 #include <snug/mesh/tag_names.h>
 #include <snug/scheme/rules.h>
+#include <support/number.h>
 
 namespace snug {
 namespace {

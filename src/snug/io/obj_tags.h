@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include <snug/io/text_cursor.h>
 #include <snug/mesh.h>
 #include <snug/mesh/control_mesh.h>
+#include <support/text_cursor.h>
 
 namespace snug {
 

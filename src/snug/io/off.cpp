@@ -5,10 +5,10 @@
 #include <optional>
 #include <utility>
 
-#include <snug/base/error.h>
-#include <snug/io/number.h>
-#include <snug/io/read_file.h>
-#include <snug/io/text_cursor.h>
+#include <support/error.h>
+#include <support/number.h>
+#include <support/read_file.h>
+#include <support/text_cursor.h>
 
 namespace snug {
 namespace {

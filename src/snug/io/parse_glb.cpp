@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include <snug/io/binary.h>
 #include <snug/io/json.h>
-#include <snug/io/number.h>
-#include <snug/io/read_file.h>
-#include <snug/io/text_cursor.h>
 #include <snug/io/transform.h>
 #include <snug/mesh/weld.h>
+#include <support/binary.h>
+#include <support/number.h>
+#include <support/read_file.h>
+#include <support/text_cursor.h>
 
 namespace snug {
 namespace {

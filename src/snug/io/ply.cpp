@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/error.h>
-#include <snug/base/names.h>
-#include <snug/io/binary.h>
-#include <snug/io/number.h>
-#include <snug/io/read_file.h>
-#include <snug/io/text_cursor.h>
+#include <support/binary.h>
+#include <support/error.h>
+#include <support/names.h>
+#include <support/number.h>
+#include <support/read_file.h>
+#include <support/text_cursor.h>
 
 namespace snug {
 namespace {

@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/error.h>
-#include <snug/geometry/scaling.h>
-#include <snug/io/binary.h>
-#include <snug/io/number.h>
-#include <snug/io/read_file.h>
-#include <snug/io/text_cursor.h>
 #include <snug/mesh/weld.h>
+#include <support/binary.h>
+#include <support/error.h>
+#include <support/number.h>
+#include <support/read_file.h>
+#include <support/scaling.h>
+#include <support/text_cursor.h>
 
 namespace snug {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include <snug/geometry/interval.h>
-#include <snug/geometry/point.h>
+#include <support/point.h>
 
 namespace snug {
 

@@ -10,14 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/error.h>
-#include <snug/base/names.h>
-#include <snug/io/number.h>
-#include <snug/io/read_file.h>
-#include <snug/io/text_cursor.h>
 #include <snug/io/transform.h>
 #include <snug/io/usda_prims.h>
 #include <snug/scheme/scheme.h>
+#include <support/error.h>
+#include <support/names.h>
+#include <support/number.h>
+#include <support/read_file.h>
+#include <support/text_cursor.h>
 
 namespace snug {
 namespace {

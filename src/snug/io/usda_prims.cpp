@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include <snug/io/number.h>
-#include <snug/io/text_cursor.h>
 #include <snug/io/usda_text.h>
 #include <snug/mesh.h>
+#include <support/number.h>
+#include <support/text_cursor.h>
 
 namespace snug {
 namespace {

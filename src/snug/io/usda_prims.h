@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include <snug/geometry/point.h>
+#include <support/point.h>
 
 namespace snug {
 

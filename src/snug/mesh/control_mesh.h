@@ -1,7 +1,7 @@
 #pragma once
 
-#include <snug/geometry/point.h>
 #include <snug/mesh.h>
+#include <support/point.h>
 
 namespace snug {
 

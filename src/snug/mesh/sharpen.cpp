@@ -7,11 +7,11 @@
 #include <optional>
 #include <utility>
 
-#include <snug/base/error.h>
-#include <snug/geometry/direction.h>
 #include <snug/mesh/disjoint_sets.h>
 #include <snug/mesh/split_polygon.h>
 #include <snug/mesh/topology.h>
+#include <support/direction.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <snug/base/names.h>
 #include <snug/mesh/control_mesh.h>
+#include <support/names.h>
 
 namespace snug {
 

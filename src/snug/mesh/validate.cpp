@@ -5,9 +5,9 @@
 #include <numeric>
 #include <utility>
 
-#include <snug/geometry/scaling.h>
 #include <snug/mesh/disjoint_sets.h>
 #include <snug/mesh/half_edges.h>
+#include <support/scaling.h>
 
 namespace snug {
 namespace {

@@ -8,8 +8,8 @@
 #include <tuple>
 #include <utility>
 
-#include <snug/base/error.h>
 #include <snug/mesh/disjoint_sets.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include <snug/geometry/point.h>
 #include <snug/geometry/rounding.h>
+#include <support/point.h>
 
 namespace snug {
 namespace {

@@ -26,7 +26,7 @@ struct CurvePiece {
 };
 
 /// The piece of the edge from b to c; `before` and `after` are absent at open ends.
-/// Requires:  finite points of at most about 2 (geometry/scaling.h).
+/// Requires:  finite points of at most about 2 (support/scaling.h).
 [[nodiscard]] CurvePiece make_curve_piece(CurveDegree degree, const std::optional<Point3>& before,
                                           const Point3& b, const Point3& c,
                                           const std::optional<Point3>& after);

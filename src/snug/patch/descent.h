@@ -1,8 +1,8 @@
 #pragma once
 
-#include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <support/error.h>
 
 /// How a parameter goes down to the pieces of a patch.
 namespace snug {

@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 
-#include <snug/base/contract.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/descent.h>
 #include <snug/patch/net_kernels.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

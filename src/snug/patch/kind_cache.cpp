@@ -4,8 +4,8 @@
 #include <map>
 #include <utility>
 
-#include <snug/base/contract.h>
 #include <snug/scheme/refine.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

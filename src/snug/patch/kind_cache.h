@@ -6,9 +6,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include <snug/base/lazy.h>
 #include <snug/patch/neighbourhood.h>
 #include <snug/scheme/rules.h>
+#include <support/lazy.h>
 
 namespace snug {
 

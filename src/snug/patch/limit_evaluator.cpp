@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <snug/base/contract.h>
-#include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/descent.h>
+#include <support/contract.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

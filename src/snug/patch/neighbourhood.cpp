@@ -4,10 +4,10 @@
 #include <bit>
 #include <utility>
 
-#include <snug/base/compact_numbering.h>
-#include <snug/base/contract.h>
 #include <snug/scheme/refine.h>
 #include <snug/scheme/rules.h>
+#include <support/compact_numbering.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include <snug/geometry/bernstein.h>
-#include <snug/geometry/direction.h>
 #include <snug/geometry/interval.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <support/direction.h>
 
 namespace snug {
 namespace {

@@ -26,7 +26,7 @@ struct Patch {
 };
 
 /// The patch of some points of a mesh, which are named in the kind's order (Kind::control_vertices).
-/// Requires:  finite points of at most about 2 (geometry/scaling.h).
+/// Requires:  finite points of at most about 2 (support/scaling.h).
 [[nodiscard]] Patch make_patch(const Kind& kind, std::uint8_t first, std::span<const Point3> all,
                                std::span<const VertexId> which);
 /// The same, written over `out`, which keeps its memory.

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include <snug/base/contract.h>
 #include <snug/geometry/triangle.h>
+#include <support/contract.h>
 
 namespace snug {
 

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <snug/base/contract.h>
 #include <snug/geometry/bernstein.h>
 #include <snug/geometry/rounding.h>
 #include <snug/scheme/bezier.h>
 #include <snug/scheme/rules.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include <snug/geometry/point.h>
 #include <snug/patch/area_piece.h>
 #include <snug/patch/net_kernels.h>
 #include <snug/scheme/basis.h>
+#include <support/point.h>
 
 namespace snug {
 

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <optional>
 
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/scheme/bezier.h>
+#include <support/direction.h>
 
 namespace snug {
 namespace {

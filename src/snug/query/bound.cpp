@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/parallel.h>
 #include <snug/bounds/table_triangle.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/patch/normal_cone.h>
 #include <snug/surface/unscale.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include <snug/base/error.h>
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
 #include <snug/patch/evaluate.h>
@@ -14,6 +12,8 @@
 #include <snug/search/winding.h>
 #include <snug/surface/evaluate.h>
 #include <snug/surface/unscale.h>
+#include <support/direction.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

@@ -3,8 +3,6 @@
 #include <optional>
 #include <vector>
 
-#include <snug/base/error.h>
-#include <snug/base/names.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/containment.h>
 #include <snug/query/pairs.h>
@@ -12,6 +10,8 @@
 #include <snug/search/pair_frames.h>
 #include <snug/search/precision.h>
 #include <snug/surface/unscale.h>
+#include <support/error.h>
+#include <support/names.h>
 
 namespace snug {
 namespace {

@@ -6,11 +6,11 @@
 #include <tuple>
 #include <utility>
 
-#include <snug/base/parallel.h>
 #include <snug/geometry/rounding.h>
 #include <snug/mesh/disjoint_sets.h>
 #include <snug/query/touching_boxes.h>
 #include <snug/surface/patch_sides.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

@@ -6,7 +6,6 @@
 #include <unordered_map>
 #include <utility>
 
-#include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
 #include <snug/mesh/disjoint_sets.h>
 #include <snug/query/contact_curves.h>
@@ -16,6 +15,7 @@
 #include <snug/search/pair_frames.h>
 #include <snug/search/precision.h>
 #include <snug/surface/unscale.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

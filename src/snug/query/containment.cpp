@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/search/pair_frames.h>
 #include <snug/search/solid.h>
 #include <snug/search/winding.h>
 #include <snug/surface/unscale.h>
+#include <support/direction.h>
 
 namespace snug {
 namespace {

@@ -9,9 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
-#include <snug/geometry/scaling.h>
 #include <snug/patch/evaluate.h>
 #include <snug/query/one_sided.h>
 #include <snug/search/winding.h>
@@ -19,6 +17,8 @@
 #include <snug/surface/evaluate.h>
 #include <snug/surface/quadratic_pieces.h>
 #include <snug/surface/unscale.h>
+#include <support/error.h>
+#include <support/scaling.h>
 
 namespace snug {
 namespace {

@@ -2,8 +2,6 @@
 #include <cmath>
 #include <vector>
 
-#include <snug/base/ordering.h>
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/containment.h>
 #include <snug/query/pairs.h>
@@ -11,6 +9,8 @@
 #include <snug/search/pair_frames.h>
 #include <snug/search/precision.h>
 #include <snug/surface/unscale.h>
+#include <support/direction.h>
+#include <support/ordering.h>
 
 namespace snug {
 namespace {

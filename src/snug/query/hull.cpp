@@ -10,10 +10,6 @@
 #include <unordered_map>
 #include <utility>
 
-#include <snug/base/error.h>
-#include <snug/base/names.h>
-#include <snug/base/parallel.h>
-#include <snug/geometry/direction.h>
 #include <snug/geometry/nearest_to_origin.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/closest.h>
@@ -26,6 +22,10 @@
 #include <snug/surface/evaluate.h>
 #include <snug/surface/quadratic_pieces.h>
 #include <snug/surface/unscale.h>
+#include <support/direction.h>
+#include <support/error.h>
+#include <support/names.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

@@ -7,15 +7,15 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/error.h>
-#include <snug/base/ordering.h>
-#include <snug/base/parallel.h>
 #include <snug/geometry/interval.h>
 #include <snug/patch/evaluate.h>
 #include <snug/patch/regular_integrals.h>
 #include <snug/patch/tip_area.h>
 #include <snug/search/solid.h>
 #include <snug/surface/unscale.h>
+#include <support/error.h>
+#include <support/ordering.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <utility>
 
-#include <snug/base/parallel.h>
 #include <snug/geometry/rounding.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

@@ -1,7 +1,7 @@
 #include <atomic>
 
-#include <snug/base/parallel.h>
 #include <snug/query/pairs.h>
+#include <support/parallel.h>
 
 namespace snug {
 

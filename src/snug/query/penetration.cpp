@@ -4,13 +4,13 @@
 #include <optional>
 #include <vector>
 
-#include <snug/base/error.h>
-#include <snug/base/ordering.h>
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/closest.h>
 #include <snug/query/pairs.h>
 #include <snug/search/precision.h>
+#include <support/direction.h>
+#include <support/error.h>
+#include <support/ordering.h>
 
 namespace snug {
 namespace {

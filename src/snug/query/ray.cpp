@@ -3,15 +3,15 @@
 #include <atomic>
 #include <cmath>
 
-#include <snug/base/error.h>
-#include <snug/base/parallel.h>
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/search/precision.h>
 #include <snug/search/ray_scale.h>
 #include <snug/search/ray_walk.h>
 #include <snug/surface/evaluate.h>
 #include <snug/surface/unscale.h>
+#include <support/direction.h>
+#include <support/error.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

@@ -7,9 +7,6 @@
 #include <unordered_set>
 #include <utility>
 
-#include <snug/base/error.h>
-#include <snug/base/names.h>
-#include <snug/base/parallel.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/patch/star.h>
@@ -20,6 +17,9 @@
 #include <snug/surface/evaluate.h>
 #include <snug/surface/level_complex.h>
 #include <snug/surface/unscale.h>
+#include <support/error.h>
+#include <support/names.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/parallel.h>
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
 #include <snug/patch/evaluate.h>
@@ -20,6 +19,7 @@
 #include <snug/patch/star_stretch.h>
 #include <snug/query/self_pieces.h>
 #include <snug/search/quadratic_bvh.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

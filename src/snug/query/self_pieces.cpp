@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <snug/base/error.h>
-#include <snug/base/parallel.h>
 #include <snug/geometry/rounding.h>
 #include <snug/search/quadratic_bvh.h>
+#include <support/error.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

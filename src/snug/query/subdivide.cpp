@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include <snug/geometry/scaling.h>
 #include <snug/scheme/refine.h>
 #include <snug/scheme/rules.h>
 #include <snug/surface/curve_set.h>
+#include <support/scaling.h>
 
 namespace snug {
 namespace {

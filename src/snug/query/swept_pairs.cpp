@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
+#include <support/direction.h>
 
 namespace snug {
 namespace {

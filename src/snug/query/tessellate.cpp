@@ -8,9 +8,6 @@
 #include <string>
 #include <utility>
 
-#include <snug/base/contract.h>
-#include <snug/base/error.h>
-#include <snug/base/parallel.h>
 #include <snug/bounds/enclosure.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/limit_evaluator.h>
@@ -18,6 +15,9 @@
 #include <snug/query/triangle_complex.h>
 #include <snug/surface/evaluate.h>
 #include <snug/surface/unscale.h>
+#include <support/contract.h>
+#include <support/error.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

@@ -3,7 +3,6 @@
 #include <optional>
 #include <vector>
 
-#include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
 #include <snug/query/containment.h>
 #include <snug/query/moving_body.h>
@@ -13,6 +12,7 @@
 #include <snug/search/precision.h>
 #include <snug/search/solid.h>
 #include <snug/surface/unscale.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

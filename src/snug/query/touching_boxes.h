@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include <snug/geometry/point.h>
+#include <support/point.h>
 
 namespace snug {
 

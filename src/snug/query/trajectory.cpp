@@ -4,9 +4,9 @@
 #include <cmath>
 #include <string>
 
-#include <snug/base/error.h>
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
+#include <support/direction.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

@@ -4,8 +4,8 @@
 #include <atomic>
 #include <tuple>
 
-#include <snug/base/contract.h>
 #include <snug/surface/patch_sides.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include <snug/base/contract.h>
-#include <snug/base/recent_values.h>
 #include <snug/geometry/rounding.h>
 #include <snug/scheme/creased.h>
+#include <support/contract.h>
+#include <support/recent_values.h>
 
 // Limits and tangents of schemes with creases.
 namespace snug {

@@ -5,10 +5,10 @@
 #include <string>
 #include <utility>
 
-#include <snug/base/contract.h>
-#include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
 #include <snug/mesh/validate.h>
+#include <support/contract.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

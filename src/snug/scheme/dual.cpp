@@ -2,8 +2,8 @@
 #include <array>
 #include <utility>
 
-#include <snug/base/contract.h>
 #include <snug/scheme/rules.h>
+#include <support/contract.h>
 
 // Doo-Sabin and Midedge: each corner of a face makes a vertex, quads are regular, a patch is a vertex's.
 namespace snug {

@@ -4,8 +4,8 @@
 #include <numbers>
 #include <numeric>
 
-#include <snug/base/contract.h>
 #include <snug/scheme/creased.h>
+#include <support/contract.h>
 
 // Loop's scheme: triangles, box splines of degree 4. [Loop87]
 namespace snug {

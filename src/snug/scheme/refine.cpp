@@ -3,8 +3,8 @@
 #include <array>
 #include <utility>
 
-#include <snug/base/compact_numbering.h>
 #include <snug/scheme/rules.h>
+#include <support/compact_numbering.h>
 
 namespace snug {
 namespace {

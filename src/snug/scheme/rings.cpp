@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <snug/base/contract.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

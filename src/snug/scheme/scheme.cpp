@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <string>
 
-#include <snug/base/error.h>
 #include <snug/mesh/topology.h>
 #include <snug/scheme/rules.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
+#include <support/error.h>
 
 namespace snug {
 

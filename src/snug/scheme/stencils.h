@@ -7,9 +7,9 @@
 #include <vector>
 
 #include <snug/geometry/interval.h>
-#include <snug/geometry/point.h>
 #include <snug/mesh/topology.h>
 #include <snug/monitor.h>
+#include <support/point.h>
 
 namespace snug {
 

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/descent.h>
 #include <snug/patch/evaluate.h>
+#include <support/direction.h>
 
 namespace snug {
 namespace {

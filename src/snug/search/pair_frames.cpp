@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
 #include <snug/surface/unscale.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

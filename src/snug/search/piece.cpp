@@ -5,9 +5,9 @@
 #include <utility>
 
 #include <snug/bounds/table_triangle.h>
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <support/direction.h>
 
 namespace snug {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <optional>
 
-#include <snug/base/contract.h>
 #include <snug/bounds/hull_points.h>
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
+#include <support/contract.h>
+#include <support/direction.h>
 
 namespace snug {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <support/direction.h>
 
 namespace snug {
 

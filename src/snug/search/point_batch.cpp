@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <snug/base/parallel.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

@@ -5,9 +5,9 @@
 #include <limits>
 #include <vector>
 
-#include <snug/base/error.h>
-#include <snug/base/ordering.h>
 #include <snug/search/workspace.h>
+#include <support/error.h>
+#include <support/ordering.h>
 
 namespace snug {
 

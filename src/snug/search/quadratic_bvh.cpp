@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include <snug/bvh/obb.h>
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
 #include <snug/search/piece.h>
+#include <support/direction.h>
 
 namespace snug {
 namespace {

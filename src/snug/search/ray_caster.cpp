@@ -5,10 +5,10 @@
 #include <bit>
 #include <cmath>
 
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/piece_path.h>
 #include <snug/search/ray_scale.h>
+#include <support/direction.h>
 
 namespace snug {
 namespace {

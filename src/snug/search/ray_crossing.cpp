@@ -4,8 +4,8 @@
 #include <cmath>
 #include <span>
 
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
+#include <support/direction.h>
 
 namespace snug {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <array>
 
-#include <snug/geometry/point.h>
 #include <snug/geometry/triangle.h>
 #include <snug/search/piece_node.h>
+#include <support/point.h>
 
 namespace snug {
 

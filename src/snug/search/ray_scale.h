@@ -1,8 +1,8 @@
 #pragma once
 
-#include <snug/geometry/direction.h>
-#include <snug/geometry/point.h>
-#include <snug/geometry/scaling.h>
+#include <support/direction.h>
+#include <support/point.h>
+#include <support/scaling.h>
 
 namespace snug {
 

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include <snug/base/parallel.h>
-#include <snug/geometry/direction.h>
 #include <snug/geometry/nearest_to_origin.h>
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
 #include <snug/search/quadratic_bvh.h>
+#include <support/direction.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include <snug/geometry/point.h>
 #include <snug/monitor.h>
+#include <support/point.h>
 
 namespace snug {
 

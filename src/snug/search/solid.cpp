@@ -5,10 +5,10 @@
 #include <string>
 #include <utility>
 
-#include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
 #include <snug/mesh/disjoint_sets.h>
 #include <snug/patch/evaluate.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include <snug/base/error.h>
 #include <snug/geometry/rounding.h>
 #include <snug/surface/control_hull.h>
+#include <support/error.h>
 
 namespace snug {
 namespace {

@@ -6,12 +6,12 @@
 #include <mutex>
 #include <vector>
 
-#include <snug/base/lazy.h>
 #include <snug/bvh/wide_bvh.h>
 #include <snug/monitor.h>
 #include <snug/search/piece_node.h>
 #include <snug/search/refit_plan.h>
 #include <snug/search/solid.h>
+#include <support/lazy.h>
 
 namespace snug {
 

@@ -5,9 +5,9 @@
 #include <memory>
 #include <span>
 
-#include <snug/base/lazy.h>
 #include <snug/search/surface_bvh.h>
 #include <snug/surface.h>
+#include <support/lazy.h>
 
 namespace snug {
 

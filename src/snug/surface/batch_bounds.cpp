@@ -5,13 +5,13 @@
 #include <map>
 #include <utility>
 
-#include <snug/base/error.h>
-#include <snug/base/parallel.h>
 #include <snug/bounds/fit_kernels.h>
 #include <snug/bounds/table_triangle.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/surface/unscale.h>
+#include <support/error.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

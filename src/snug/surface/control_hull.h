@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include <snug/base/compact_numbering.h>
 #include <snug/bvh/obb.h>
 #include <snug/surface/limit_surface.h>
+#include <support/compact_numbering.h>
 
 namespace snug {
 

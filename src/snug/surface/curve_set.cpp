@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <snug/base/error.h>
+#include <support/error.h>
 
 namespace snug {
 

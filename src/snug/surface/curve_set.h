@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include <snug/geometry/scaling.h>
 #include <snug/mesh/control_mesh.h>
 #include <snug/patch/curve_piece.h>
+#include <support/scaling.h>
 
 namespace snug {
 

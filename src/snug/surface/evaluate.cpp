@@ -4,12 +4,12 @@
 #include <atomic>
 #include <cmath>
 
-#include <snug/base/error.h>
-#include <snug/base/parallel.h>
-#include <snug/geometry/direction.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/surface/unscale.h>
+#include <support/direction.h>
+#include <support/error.h>
+#include <support/parallel.h>
 
 namespace snug {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <snug/base/contract.h>
+#include <support/contract.h>
 
 namespace snug {
 namespace {

@@ -5,8 +5,8 @@
 #include <unordered_set>
 #include <utility>
 
-#include <snug/base/error.h>
-#include <snug/base/parallel.h>
+#include <support/error.h>
+#include <support/parallel.h>
 
 namespace snug {
 

@@ -8,12 +8,12 @@
 
 #include <snug/bound.h>
 #include <snug/bounds/bounds_cache.h>
-#include <snug/geometry/scaling.h>
 #include <snug/mesh/topology.h>
 #include <snug/monitor.h>
 #include <snug/patch/patch.h>
 #include <snug/scheme/creases.h>
 #include <snug/scheme/rules.h>
+#include <support/scaling.h>
 
 namespace snug {
 

@@ -4,8 +4,8 @@
 #include <atomic>
 #include <cstddef>
 
-#include <snug/base/parallel.h>
 #include <snug/geometry/rounding.h>
+#include <support/parallel.h>
 
 namespace snug {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <snug/bounds/enclosure.h>
 #include <snug/geometry/rounding.h>
-#include <snug/geometry/scaling.h>
+#include <support/scaling.h>
 
 namespace snug {
 
