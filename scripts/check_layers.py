@@ -16,7 +16,7 @@ import tempfile
 # A folder includes itself and folders before it, but for the exceptions. `support` is src/support, included as <support/...>:
 # what the library and its programs share.
 ORDER = ["support", "geometry", "mesh", "scheme", "patch", "bounds", "bvh", "surface", "search", "query", "independence", "io",
-         "front"]
+         "front", "caster"]
 SHARED = ORDER[0]
 EXCEPTIONS = {
     "bvh": {"support", "geometry"},  # knows sets and ids, no surfaces

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <picture/colour.h>
-#include <snug/search/ray_caster.h>
+#include <snug/caster/caster_tree.h>
 #include <support/point.h>
 
 namespace snug {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include <snug/caster/caster_kernels.h>
 #include <snug/ray.h>
-#include <snug/search/caster_kernels.h>
 #include <snug/surface/limit_surface.h>
 #include <snug/surface/quadratic_pieces.h>
 

@@ -1,10 +1,10 @@
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "snug/search/caster_kernels.cpp"
+#define HWY_TARGET_INCLUDE "snug/caster/caster_kernels.cpp"
 #include <snug/geometry/vector_code-inl.h>
 
 #include <cmath>
 
-#include <snug/search/caster_kernels.h>
+#include <snug/caster/caster_kernels.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {

@@ -2,8 +2,8 @@
 #include <array>
 #include <cmath>
 
+#include <snug/caster/caster_tree.h>
 #include <snug/query/ray.h>
-#include <snug/search/ray_caster.h>
 #include <snug/search/surface_data.h>
 #include <snug/surface/evaluate.h>
 #include <support/error.h>

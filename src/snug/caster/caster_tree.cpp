@@ -1,4 +1,4 @@
-#include <snug/search/ray_caster.h>
+#include <snug/caster/caster_tree.h>
 
 #include <algorithm>
 #include <array>

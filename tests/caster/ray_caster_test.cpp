@@ -1,0 +1,160 @@
+// Unproved rays for pictures, beside trace() and the surface itself.
+
+#include <snug/snug.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <support/error.h>
+#include <testing/cad_parts.h>
+#include <testing/places.h>
+
+namespace snug::ray_caster_test {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+std::string model(const char* name) { return testing::models_dir() + "/" + name; }
+
+// The unit cube with sharp edges: its limit surface is itself.
+Surface sharp_cube() {
+  ControlMesh mesh = testing::box({0, 0, 0}, {1, 1, 1}, false);
+  static_cast<void>(sharpen(mesh, 30));
+  return Surface(std::move(mesh));
+}
+
+// Rays from all around towards places in and near the model's box.
+std::vector<Ray> rays_around(const Surface& surface, std::size_t count) {
+  Box3 box;
+  for (const Point3& p : surface.mesh().points) box.add(p);
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::vector<Ray> rays;
+  while (rays.size() < count) {
+    const double a = 2 * std::numbers::pi * share(random), z = 2 * share(random) - 1,
+                 r = std::sqrt(1 - z * z);
+    const Point3 from{3 * surface.size() * r * std::cos(a), 3 * surface.size() * r * std::sin(a),
+                      3 * surface.size() * z};
+    Point3 to;
+    for (std::size_t k = 0; k < 3; ++k) to[k] = box.lower[k] + share(random) * (box.upper[k] - box.lower[k]);
+    // Some alone, some with neighbours.
+    const std::size_t together = rays.size() % 3 == 0 ? 1 : 9;
+    for (std::size_t i = 0; i < together && rays.size() < count; ++i) {
+      const double by = 1e-3 * surface.size() * static_cast<double>(i);
+      rays.push_back({from, {to.x + by - from.x, to.y - from.y, to.z - by - from.z}});
+    }
+  }
+  return rays;
+}
+
+TEST(ray_caster, finds_what_is_proved_to_be_hit) {
+  for (const char* name : {"bust.obj", "pawn.obj", "bracket.obj", "ring.obj"}) {
+    const Surface surface = load(model(name));
+    const double tolerance = 1e-3 * surface.size();
+    const RayCaster caster(surface, tolerance);
+    const std::vector<Ray> rays = rays_around(surface, 4000);
+    std::vector<QuickHit> quick(rays.size());
+    caster.cast(rays, quick);
+    const std::vector<RayHits> proved =
+        trace(surface, rays, {.query = RayQuery::all, .precision = tolerance / 100});
+    std::size_t missed = 0, others = 0, hits = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const QuickHit alone = caster.cast(rays[i]);
+      EXPECT_EQ(std::isfinite(alone.t), std::isfinite(quick[i].t)) << name << " " << i;
+      hits += proved[i].certain_hit();
+      missed += proved[i].certain_hit() && !std::isfinite(quick[i].t);
+      if (!std::isfinite(quick[i].t)) continue;
+      // Its place on the surface is near its place on the ray.
+      const Ray& ray = rays[i];
+      const Point3 p = evaluate(surface, quick[i].at).position;
+      const Vector3 off{ray.origin.x + quick[i].t * ray.direction.x - p.x,
+                        ray.origin.y + quick[i].t * ray.direction.y - p.y,
+                        ray.origin.z + quick[i].t * ray.direction.z - p.z};
+      ASSERT_LE(std::hypot(off.x, off.y, off.z), tolerance) << name << " " << i;
+      others += !proved[i].certain_hit() || std::fabs(quick[i].t - proved[i].hits.front().t.lower) > 0.01;
+    }
+    EXPECT_GT(hits, 500u) << name;
+    // Where rays graze the surface the tolerance may hide or show it.
+    EXPECT_LE(missed, 2 + hits / 500) << name;
+    EXPECT_LE(others, 10 + hits / 50) << name;
+  }
+}
+
+// Many patches and small pieces, whose names take more bits.
+TEST(ray_caster, knows_where_small_pieces_lie) {
+  const Surface surface = load(model("bust.obj"));
+  const double tolerance = 1e-6 * surface.size();
+  const RayCaster caster(surface, tolerance);
+  std::size_t hits = 0;
+  for (const Ray& ray : rays_around(surface, 20000)) {
+    const QuickHit hit = caster.cast(ray);
+    if (!std::isfinite(hit.t)) continue;
+    const Point3 p = evaluate(surface, hit.at).position;
+    ASSERT_LE(
+        std::hypot(ray.origin.x + hit.t * ray.direction.x - p.x, ray.origin.y + hit.t * ray.direction.y - p.y,
+                   ray.origin.z + hit.t * ray.direction.z - p.z),
+        std::max(tolerance, 0x1p-14 * surface.size()));
+    ++hits;
+  }
+  EXPECT_GT(hits, 5000u);
+}
+
+// Few, large pieces: 16 bits a coordinate are all that is off.
+TEST(ray_caster, is_as_near_as_it_says_where_the_tolerance_is_small) {
+  const Surface surface = sharp_cube();
+  const RayCaster caster(surface, 1e-9);
+  double worst = 0;
+  for (const Ray& ray : rays_around(surface, 3000)) {
+    const QuickHit hit = caster.cast(ray);
+    if (!std::isfinite(hit.t)) continue;
+    // Outside of the cube or in it, from its nearest face.
+    double outside = 0, inside = infinity;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double x = ray.origin[k] + hit.t * ray.direction[k];
+      outside = std::max({outside, -x, x - 1});
+      inside = std::min({inside, x, 1 - x});
+    }
+    worst = std::max(worst, inside > 0 ? inside : 1.8 * outside);
+  }
+  EXPECT_LE(worst, 0x1p-14);
+  EXPECT_GT(worst, 0);
+}
+
+TEST(ray_caster, keeps_to_segments_and_refuses_what_is_none) {
+  const Surface surface = sharp_cube();
+  const RayCaster caster(surface, 1e-4);
+  EXPECT_NEAR(caster.cast({{0.3, 0.4, 5}, {0, 0, -2}}).t, 2, 1e-4);
+  EXPECT_NEAR(caster.cast({{0.3, 0.4, 5}, {0, 0, -2}, 2.1, 3}).t, 2.5, 1e-4);
+  EXPECT_EQ(caster.cast({{0.3, 0.4, 5}, {0, 0, -2}, 0, 1.9}).t, infinity);
+  EXPECT_EQ(caster.cast({{0.3, 0.4, 5}, {0, 0, 2}}).t, infinity);
+  EXPECT_NEAR(caster.cast({{0.3, 0.4, 5}, {0, 0, -2}}).normal.z, 1, 1e-6);
+  EXPECT_THROW(static_cast<void>(caster.cast({{0, 0, 0}, {0, 0, 0}})), InputError);
+  for (const double bad : {0.0, -1.0, infinity, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(RayCaster(surface, bad), InputError);
+  }
+}
+
+TEST(ray_caster, withstands_every_size) {
+  for (const double size : {1e-200, 1e-3, 1e9, 1e200}) {
+    ControlMesh mesh = testing::box({0, 0, 0}, {size, size, size}, false);
+    static_cast<void>(sharpen(mesh, 30));
+    const Surface surface(std::move(mesh));
+    const RayCaster caster(surface, 1e-3 * size);
+    for (const double speed : {1e-90, 1.0, 1e90}) {
+      const Ray ray{{0.3 * size, 0.4 * size, 5 * size}, {0, 0, -speed}};
+      EXPECT_NEAR(caster.cast(ray).t * speed / size, 4, 1e-3) << size << " " << speed;
+      const RayHits found = trace(surface, ray);
+      ASSERT_TRUE(found.certain_hit()) << size << " " << speed;
+      EXPECT_NEAR(found.hits[0].t.lower * speed / size, 4, 1e-5);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace snug::ray_caster_test
