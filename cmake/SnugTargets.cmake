@@ -30,11 +30,13 @@ endfunction()
 function(snug_library)
   find_package(hwy REQUIRED)
   find_package(Threads REQUIRED)
+  find_package(nlohmann_json REQUIRED)  # headers only: users of the library do not need it
   add_library(snug_objects OBJECT ${ARGN})
   set_target_properties(snug_objects PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
                                                 VISIBILITY_INLINES_HIDDEN ON)
   target_include_directories(snug_objects PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
-  target_link_libraries(snug_objects PRIVATE snug_flags snug_warnings hwy::hwy Threads::Threads)
+  target_link_libraries(snug_objects PRIVATE snug_flags snug_warnings hwy::hwy nlohmann_json::nlohmann_json
+                                             Threads::Threads)
   snug_precompile(snug_objects)
 
   add_library(snug $<TARGET_OBJECTS:snug_objects>)

@@ -32,6 +32,7 @@ LIBRARIES = {
     "bounds": ("hwy/",),
     "bvh": ("hwy/",),
     "independence": ("flint/", "gmpxx.h"),
+    "io": ("nlohmann/",),
 }
 POSIX = ("fcntl.h", "unistd.h", "sys/")
 # Folders outside src/snug, and the layers they may include: those that must not lean on what they are there to check, and
@@ -174,6 +175,7 @@ BAD_FILES = [
     ("src/snug/mesh/m.cpp", "#  include <CLI/CLI.hpp>\n", "mesh may not include <CLI/CLI.hpp>"),
     ("src/snug/mesh/m.cpp", "#include <gmp.h>\n", "mesh may not include <gmp.h>"),
     ("src/snug/mesh/m.cpp", "#include <hwy/highway.h>\n", "mesh may not include <hwy"),
+    ("src/snug/query/q.cpp", "#include <nlohmann/json.hpp>\n", "query may not include <nlohmann"),
     ("src/snug/mesh/m.cpp", "#include <snug/mesh/gone.h>\n", "does not exist"),
     ("src/snug/mesh/m.cpp", "#include <snug/gone.h>\n", "does not exist"),
     ("src/snug/mesh/n.cpp", "\n", "lacks mesh/n.cpp"),

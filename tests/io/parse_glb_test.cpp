@@ -1,12 +1,14 @@
 #include <snug/io/formats.h>
 
 #include <array>
+#include <clocale>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include <support/binary.h>
+#include <support/number.h>
 
 #include <testing/files.h>
 
@@ -85,6 +87,21 @@ class File {
     return lines;
   }
 };
+
+/// A triangle of a node whose text has these members, too.
+std::string bytes_with(const std::string& members) {
+  File file;
+  file.positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
+  file.text["buffers"] = {{{"byteLength", file.binary.size()}}};
+  std::string whole = file.text.dump();
+  const std::string plain = "\"mesh\":0";
+  whole.replace(whole.find(plain), plain.size(), plain + members);
+  return container(whole, file.binary);
+}
+ControlMesh read_with(const std::string& members) { return parse_glb(bytes_with(members), "in.glb"); }
+std::string refusal_with(const std::string& members) {
+  return unreadable([&] { static_cast<void>(read_with(members)); });
+}
 
 /// Five corners of a strip in the plane.
 File strip() {
@@ -297,6 +314,120 @@ TEST(parse_glb, faults_name_what_is_wrong) {
       }),
       "in.glb: glTF: 'rotation' of node 0 is a quaternion of another length than 1: write w, x, y, z of a "
       "rotation");
+}
+
+/// Decimals that are read wrong where they pass through a float, a long double or 17 digits.
+std::vector<std::string> hard_decimals() {
+  std::vector<std::string> words{"0",
+                                 "-0",
+                                 "0.1",
+                                 "-1.5e3",
+                                 "5e-324",
+                                 "2.4703282292062328e-324",
+                                 "2.4703282292062327e-324",
+                                 "2.2250738585072011e-308",
+                                 "1e-400",
+                                 "1e308",
+                                 "9007199254740993",
+                                 "-9007199254740993",
+                                 "9223372036854775809",
+                                 "18446744073709551615",
+                                 "18446744073709551617",
+                                 "100000000000000000000000000000000000001"};
+  // Half way between 1 and the double above it, and a hair over; likewise below the least subnormal.
+  const std::string half = "1.00000000000000011102230246251565404236316680908203125";
+  words.push_back(half);
+  words.push_back(half + std::string(400, '0') + '1');
+  words.push_back("0." + std::string(400, '0') + "123456789e100");
+  words.push_back("1" + std::string(400, '0') + "e-400");
+  return words;
+}
+
+void expect_nearest_doubles() {
+  for (const std::string& word : hard_decimals()) {
+    const ControlMesh mesh = read_with(",\"translation\":[" + word + ",0,0]");
+    EXPECT_EQ(mesh.points[0].x, parse_real(word).value) << word;
+  }
+}
+
+TEST(parse_glb, numbers_are_the_nearest_doubles) { expect_nearest_doubles(); }
+
+TEST(parse_glb, numbers_do_not_depend_on_the_locale) {
+  const std::string before = std::setlocale(LC_NUMERIC, nullptr);
+  const char* found = nullptr;
+  for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "ru_RU.UTF-8", "pl_PL.UTF-8"}) {
+    if (!found) found = std::setlocale(LC_NUMERIC, name);
+  }
+  if (!found) GTEST_SKIP() << "no locale with a decimal comma is installed";
+  EXPECT_STREQ(std::localeconv()->decimal_point, ",");
+  expect_nearest_doubles();
+  std::setlocale(LC_NUMERIC, before.c_str());
+}
+
+TEST(parse_glb, text_that_is_not_json_is_refused) {
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {",\"a\":[1,]", "unexpected ']'"},
+      {",\"a\" 1", "expected ':'"},
+      {",1:2", "expected string literal"},
+      {",\"a\":nul", "invalid literal"},
+      {",\"a\":01", "unexpected number literal"},
+      {",\"a\":1.", "expected digit after '.'"},
+      {",\"a\":+1", "invalid literal"},
+      {",\"a\":NaN", "invalid literal"},
+      {",\"a\":1e999", "number overflow"},
+      {",\"a\":-" + std::string(100'000, '9'), "number overflow"},
+      {",\"a\":\"\\q\"", "forbidden character after backslash"},
+      {",\"a\":\"\\ud800\"", "must be followed by U+DC00"},
+      {",\"a\":\"\xff\"", "ill-formed UTF-8"},
+      {",\"a\":\"\n\"", "control character"},
+      {"}]}1", "end of input"},
+      {std::string(",\"a\":\0 1", 8), "zero"}};
+  for (const auto& [members, part] : cases) {
+    const std::string message = refusal_with(members);
+    EXPECT_TRUE(message.starts_with("in.glb: glTF: ")) << members;
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+    EXPECT_LT(message.size(), 250u) << message;
+  }
+}
+
+TEST(parse_glb, zeros_do_not_end_the_text) {
+  const std::string text = R"({"asset": {"version": "2.0"}})";
+  for (const std::string& whole : {text + '\0', text + std::string("\0]", 2), '\0' + text}) {
+    const std::string message =
+        unreadable([&] { static_cast<void>(parse_glb(container(whole, ""), "in.glb")); });
+    EXPECT_EQ(message,
+              "in.glb: glTF: byte " + std::to_string(whole.find('\0')) + " of the JSON text is zero");
+  }
+}
+
+TEST(parse_glb, escapes_are_decoded_and_the_last_of_equal_names_counts) {
+  EXPECT_EQ(read_with(R"(,"translation":[1,0,0],"tr\u0061nslation":[2,0,0])").points[0].x, 2);
+  EXPECT_EQ(read_with(R"(,"translation":"none","translation":[3,0,0])").points[0].x, 3);
+}
+
+TEST(parse_glb, text_may_be_nested_deep_and_long) {
+  const std::size_t depth = 200'000;
+  EXPECT_EQ(read_with(",\"extras\":" + std::string(depth, '[') + std::string(depth, ']')).face_count(), 1u);
+  EXPECT_NE(refusal_with(",\"extras\":" + std::string(depth, '[')).find("unexpected"), std::string::npos);
+  std::string many = ",\"extras\":{";
+  for (std::size_t i = 0; i < depth; ++i) many += '"' + std::to_string(i) + "\":[{}],";
+  EXPECT_EQ(read_with(many + "\"\":0}").face_count(), 1u);
+}
+
+TEST(parse_glb, values_of_another_kind_are_refused) {
+  for (const char* value : {"1", "\"1\"", "null", "{\"a\":1}", "[1,2]", "[1,2,\"3\"]", "[1,2,null]"}) {
+    const std::string message = refusal_with(std::string(",\"scale\":") + value);
+    EXPECT_TRUE(message.starts_with("in.glb: glTF: 'scale' of node 0 ")) << value << ": " << message;
+  }
+  for (const char* value : {"-1", "1.5", "\"0\"", "1e300", "null", "[0]", "true"}) {
+    const std::string message = refusal_with(std::string(",\"mesh\":") + value);
+    EXPECT_EQ(message, "in.glb: glTF: 'mesh' is not a whole number that counts something") << value;
+  }
+  EXPECT_EQ(refusal_with(",\"children\":7"), "in.glb: glTF: 'children' is no list");
+  for (const char* whole : {"[]", "7", "null", "\"a\"", R"({"asset": 2})", R"({"asset": {"version": 2}})"}) {
+    EXPECT_EQ(unreadable([&] { static_cast<void>(parse_glb(container(whole, ""), "in.glb")); }),
+              "in.glb: glTF: only version 2.0 is read");
+  }
 }
 
 TEST(parse_glb, instances_are_bounded) {

@@ -9,24 +9,46 @@
 #include <utility>
 #include <vector>
 
-#include <snug/io/json.h>
 #include <snug/io/transform.h>
 #include <snug/mesh/weld.h>
 #include <support/binary.h>
 #include <support/number.h>
 #include <support/read_file.h>
 #include <support/text_cursor.h>
+#include <nlohmann/json.hpp>
 
 namespace snug {
 namespace {
 
+using Json = nlohmann::json;
+
 constexpr std::size_t header_size = 12, chunk_head_size = 8;
 
-/// What the numbers of an accessor are.
+/// The member of this name; nothing if there is none, or no object.
+const Json* find(const Json& of, std::string_view key) {
+  if (!of.is_object()) return nullptr;
+  const auto found = of.find(key);
+  return found != of.end() ? &*found : nullptr;
+}
+
+/// A whole number from 0 to 2^53; nothing else.
+std::optional<std::uint64_t> whole_number(const Json& value) {
+  if (!value.is_number()) return {};
+  const auto number = value.get<double>();
+  if (!(number >= 0 && number <= 0x1p53) || number != std::floor(number)) return {};
+  return static_cast<std::uint64_t>(number);
+}
+
+/// Empty for other values.
+std::string_view text(const Json& value) {
+  return value.is_string() ? std::string_view(value.get_ref<const std::string&>()) : std::string_view();
+}
+
+/// The representation of an accessor's numbers.
 struct Component {
   unsigned code;
   std::size_t size;
-  double most;  // of an integer: the largest, for normalized ones
+  double max;  // of an integer: the largest, for normalized ones
   bool is_signed;
 };
 constexpr std::array<Component, 6> components{{{5120, 1, 127, true},
@@ -70,7 +92,7 @@ struct Elements {
                                                      : nullptr;
     if (!base) return 0;
     const double value = number_at(base + k * component->size, *component);
-    return normalized ? std::fmax(value / component->most, -1) : value;
+    return normalized ? std::fmax(value / component->max, -1) : value;
   }
 };
 
@@ -86,12 +108,12 @@ class GlbReader {
  public:
   GlbReader(const Json& json, std::string_view binary, std::size_t file_size, const std::string& name,
             const Notes& notes)
-      : json_(json), binary_(binary), name_(name), notes_(notes), most_work_(100 * file_size) {}
+      : json_(json), binary_(binary), name_(name), notes_(notes), max_work_(100 * file_size) {}
 
   ControlMesh read() {
     refuse_other_versions();
     visit_nodes();
-    tell();
+    write_notes();
     if (mesh_.face_count() == 0) fail("the file has no triangles in its scene");
     mesh_.tags.scheme = Scheme::flat;
     return std::move(mesh_);
@@ -104,10 +126,10 @@ class GlbReader {
 
   [[nodiscard]] const std::vector<Json>& list(const Json& of, std::string_view key) const {
     static const std::vector<Json> none;
-    const Json* const found = of.find(key);
+    const Json* const found = find(of, key);
     if (!found) return none;
-    if (found->kind != Json::Kind::array) fail("glTF: " + in_quotes(key) + " is no list");
-    return found->items;
+    if (!found->is_array()) fail("glTF: " + in_quotes(key) + " is no list");
+    return found->get_ref<const std::vector<Json>&>();
   }
 
   const Json& item(std::string_view key, std::uint64_t index) const {
@@ -120,9 +142,9 @@ class GlbReader {
   }
 
   [[nodiscard]] std::optional<std::uint64_t> integer(const Json& of, std::string_view key) const {
-    const Json* const found = of.find(key);
+    const Json* const found = find(of, key);
     if (!found) return {};
-    const auto value = found->integer();
+    const auto value = whole_number(*found);
     if (!value) fail("glTF: " + in_quotes(key) + " is not a whole number that counts something");
     return value;
   }
@@ -134,21 +156,21 @@ class GlbReader {
   }
 
   void refuse_other_versions() const {
-    const Json* const asset = json_.find("asset");
-    const Json* const version = asset ? asset->find("version") : nullptr;
-    const Json* const least = asset ? asset->find("minVersion") : nullptr;
-    if (!version || !version->text.starts_with("2.") || (least && least->text != "2.0")) {
+    const Json* const asset = find(json_, "asset");
+    const Json* const version = asset ? find(*asset, "version") : nullptr;
+    const Json* const least = asset ? find(*asset, "minVersion") : nullptr;
+    if (!version || !text(*version).starts_with("2.") || (least && text(*least) != "2.0")) {
       fail("glTF: only version 2.0 is read");
     }
     for (const Json& extension : list(json_, "extensionsRequired")) {
-      if (has_no_geometry(extension.text)) continue;
-      fail("glTF: the extension " + in_quotes(extension.text) + " is needed: write the file without it");
+      if (has_no_geometry(text(extension))) continue;
+      fail("glTF: the extension " + in_quotes(text(extension)) + " is needed: write the file without it");
     }
   }
 
   /// Whatever instances and shared accessors promise, work is bounded by the size of the file.
   void spend(std::size_t work) {
-    if (work > most_work_ - spent_) {
+    if (work > max_work_ - spent_) {
       fail("glTF: instances or shared values make more than 100 times the file: write fewer of them");
     }
     spent_ += work;
@@ -164,7 +186,7 @@ class GlbReader {
                         size = required(view, "byteLength", "a buffer view"),
                         stride = integer(view, "byteStride").value_or(0);
     const Json& own = item("buffers", buffer);
-    if (buffer != 0 || own.find("uri")) {
+    if (buffer != 0 || find(own, "uri")) {
       fail("glTF: buffer " + std::to_string(buffer) +
            " is not in the file: write one .glb file with all in it");
     }
@@ -201,26 +223,26 @@ class GlbReader {
   Elements accessor(std::uint64_t number, const char* type, std::size_t width) {
     const Json& own = item("accessors", number);
     const std::string what = "glTF: accessor " + std::to_string(number);
-    const Json* const given = own.find("type");
-    if (!given || given->text != type) fail(what + " is not of the type " + type);
+    const Json* const given = find(own, "type");
+    if (!given || text(*given) != type) fail(what + " is not of the type " + type);
     Elements elements;
     elements.component = &component_of(own);
     elements.width = width;
-    const Json* const normalized = own.find("normalized");
-    elements.normalized = normalized && normalized->truth && elements.component->code != float_code;
+    const Json* const normalized = find(own, "normalized");
+    elements.normalized = normalized && *normalized == true && elements.component->code != float_code;
     const std::uint64_t count = required(own, "count", "an accessor");
-    if (count > most_work_) fail(what + " counts more than the file can hold");
+    if (count > max_work_) fail(what + " counts more than the file can hold");
     elements.count = count;
-    if (own.find("bufferView")) {
+    if (find(own, "bufferView")) {
       elements.begin = elements_in(own, count, width * elements.component->size, &elements.stride);
     }
-    if (const Json* const sparse = own.find("sparse")) replace(elements, *sparse, what);
+    if (const Json* const sparse = find(own, "sparse")) replace(elements, *sparse, what);
     return elements;
   }
 
   void replace(Elements& elements, const Json& sparse, const std::string& what) {
     const std::uint64_t count = required(sparse, "count", "a sparse accessor");
-    const Json *const indices = sparse.find("indices"), *const values = sparse.find("values");
+    const Json *const indices = find(sparse, "indices"), *const values = find(sparse, "values");
     if (!indices || !values) fail(what + ": sparse values need 'indices' and 'values'");
     if (count > elements.count) fail(what + ": more sparse values than elements");
     spend(count);
@@ -244,7 +266,7 @@ class GlbReader {
     std::vector<std::uint64_t> result;
     if (!scenes.empty()) {
       const Json& scene = item("scenes", integer(json_, "scene").value_or(0));
-      for (const Json& node : list(scene, "nodes")) result.push_back(node.integer().value_or(UINT64_MAX));
+      for (const Json& node : list(scene, "nodes")) result.push_back(whole_number(node).value_or(UINT64_MAX));
       return result;
     }
     // Without scenes: nodes that are nobody's children.
@@ -252,7 +274,7 @@ class GlbReader {
     std::vector<bool> is_child(nodes.size(), false);
     for (const Json& node : nodes) {
       for (const Json& child : list(node, "children")) {
-        const std::uint64_t index = child.integer().value_or(UINT64_MAX);
+        const std::uint64_t index = whole_number(child).value_or(UINT64_MAX);
         if (index < nodes.size()) is_child[index] = true;
       }
     }
@@ -285,19 +307,20 @@ class GlbReader {
       if (!map.is_finite())
         fail("glTF: node " + std::to_string(next.node) + " is beyond the range of doubles");
       if (const auto mesh = integer(node, "mesh")) add_mesh(item("meshes", *mesh), map, next.node);
-      deforms_ = deforms_ || node.find("skin") || node.find("weights");
+      deforms_ = deforms_ || find(node, "skin") || find(node, "weights");
       std::vector<std::uint64_t> children;
       for (const Json& child : list(node, "children"))
-        children.push_back(child.integer().value_or(UINT64_MAX));
+        children.push_back(whole_number(child).value_or(UINT64_MAX));
       push(children, map);
     }
   }
 
   [[nodiscard]] std::vector<double> numbers(const Json& list_of, const std::string& what) const {
+    if (!list_of.is_array()) fail(what + " is not a list");
     std::vector<double> result;
-    for (const Json& each : list_of.items) {
-      if (each.kind != Json::Kind::number) fail(what + " holds something that is no number");
-      result.push_back(each.number);
+    for (const Json& each : list_of) {
+      if (!each.is_number()) fail(what + " contains something that is not a number");
+      result.push_back(each.get<double>());
     }
     return result;
   }
@@ -312,7 +335,7 @@ class GlbReader {
                                     {"translation", "translate"},
                                     {"rotation", "orient"},
                                     {"scale", "scale"}}) {
-      const Json* const found = node.find(key);
+      const Json* const found = find(node, key);
       if (!found) continue;
       const std::string what = "glTF: " + in_quotes(key) + " of node " + std::to_string(number);
       std::vector<double> values = numbers(*found, what);
@@ -364,9 +387,9 @@ class GlbReader {
 
   void add_primitive(const Json& primitive, std::uint64_t node, std::vector<Point3>& corners) {
     const std::uint64_t mode = integer(primitive, "mode").value_or(4);
-    const Json* const attributes = primitive.find("attributes");
+    const Json* const attributes = find(primitive, "attributes");
     const auto positions = attributes ? integer(*attributes, "POSITION") : std::nullopt;
-    deforms_ = deforms_ || primitive.find("targets");
+    deforms_ = deforms_ || find(primitive, "targets");
     if (mode > 6) fail("glTF: " + std::to_string(mode) + " is not a mode of primitives");
     if (mode < 4 || !positions) {
       ++no_triangles_;
@@ -415,7 +438,7 @@ class GlbReader {
     }
   }
 
-  void tell() const {
+  void write_notes() const {
     if (!notes_) return;
     const auto note = [&](const std::string& text) { notes_(name_ + ": " + text); };
     if (moved_) {
@@ -440,7 +463,7 @@ class GlbReader {
   std::string_view binary_;
   const std::string& name_;
   const Notes& notes_;
-  std::size_t most_work_, spent_ = 0;
+  std::size_t max_work_, spent_ = 0;
   ControlMesh mesh_;
   std::size_t no_triangles_ = 0, degenerate_ = 0;
   bool moved_ = false, deforms_ = false;
@@ -464,6 +487,24 @@ std::string_view take_chunk(std::string_view bytes, std::size_t& at, std::string
   return chunk;
 }
 
+/// Numbers become the nearest doubles; of members of one name the last counts.
+Json parse_json(std::string_view text, const std::string& name) {
+  // The parser takes a zero for the end of the text.
+  if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
+    fail_in_file(name, "glTF: byte " + std::to_string(zero) + " of the JSON text is zero");
+  }
+  try {
+    return Json::parse(text);
+  } catch (const Json::exception& error) {
+    // "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error ...; last read: ..."
+    std::string_view what = error.what();
+    what.remove_prefix(std::min(what.find("] ") + 2, what.size()));
+    constexpr std::size_t longest = 160;
+    fail_in_file(name,
+                 "glTF: JSON: " + std::string(what.substr(0, std::min(what.find("; last read"), longest))));
+  }
+}
+
 }  // namespace
 
 bool begins_like_glb(std::string_view bytes) { return bytes.starts_with("glTF"); }
@@ -485,10 +526,9 @@ ControlMesh parse_glb(std::string_view bytes, const std::string& name, const Not
                            std::to_string(bytes.size()));
   }
   std::size_t at = header_size;
-  const std::string_view text = take_chunk(bytes, at, "JSON"sv, name);
+  const Json json = parse_json(take_chunk(bytes, at, "JSON"sv, name), name);
   const std::string_view binary =
       at < bytes.size() ? take_chunk(bytes, at, "BIN\0"sv, name) : std::string_view();
-  const Json json = parse_json(text, name);
   return GlbReader(json, binary, bytes.size(), name, notes).read();
 }
 

@@ -1,0 +1,11 @@
+# Headers alone, which Debian has for its own machines: linked by themselves, since beside them lie those of another C library.
+find_path(NLOHMANN_JSON_HEADERS nlohmann/json.hpp PATHS /usr/include /usr/local/include NO_CMAKE_FIND_ROOT_PATH)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(nlohmann_json REQUIRED_VARS NLOHMANN_JSON_HEADERS)
+if(nlohmann_json_FOUND AND NOT TARGET nlohmann_json::nlohmann_json)
+  set(json_alone ${CMAKE_BINARY_DIR}/nlohmann_json)
+  file(MAKE_DIRECTORY ${json_alone})
+  file(CREATE_LINK ${NLOHMANN_JSON_HEADERS}/nlohmann ${json_alone}/nlohmann SYMBOLIC)
+  add_library(nlohmann_json::nlohmann_json INTERFACE IMPORTED)
+  set_target_properties(nlohmann_json::nlohmann_json PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${json_alone})
+endif()
