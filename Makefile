@@ -120,6 +120,7 @@ tidy: build  ## clang-tidy over the library
 
 docs: install-packages  ## plots and tables of docs/convergence.md, pictures of README.md, docs/schemes.md, docs/meshes.md, docs/rays.md, docs/nodal_functions.md and docs/independence.md; links and citations
 	@$(call build,release,snug_command snug_research)
+	@scripts/install_packages docs
 	@mkdir -p build/docs
 	@for name in rates tightness; do build/release/bin/snug-research $$name -o build/docs/$$name.json > /dev/null; done
 	@for scheme in catmark doo-sabin midedge; do \

@@ -1,19 +1,17 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Plots the cost of scenes against their parts from the results of bench_scenes.
 
 usage: plot_scenes.py [RESULTS [PICTURE.svg]]; default: bench/results/scenes.txt and docs/pictures/scenes.svg.
 """
 
-import math
 import pathlib
 import re
 import sys
 
-from plot_experiments import Axes, legend, plain_entry, power
-from svg_picture import Picture
+from plotting import panels, save
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-CURVES = {"broad phase": ("#0072b2", None), "verdicts": ("#d55e00", "7 4")}
+CURVES = {"broad phase": ("#0072b2", "-"), "verdicts": ("#d55e00", "--")}
 
 
 def read(path):
@@ -34,24 +32,18 @@ def read(path):
 def main(results, path):
     costs, memory = read(results)
     counts = sorted(memory)
-    picture = Picture(640, 360, "Cost of a scene against its parts")
-    axes = Axes(picture, (75, 60, 520, 230), (math.log10(counts[0]) - 0.2, math.log10(counts[-1]) + 0.2), (0.5, 100), True)
-    axes.ticks_y([(y, f"{y:g}") for y in (1, 10, 100)])
-    axes.ticks_x([(math.log10(n), power(round(math.log10(n)))) for n in counts])
-    for name, (colour, dash) in CURVES.items():
-        points = [axes.at(math.log10(n), costs[name][n]) for n in counts]
-        picture.path(points, colour, dash=dash)
-        for n, (x, y) in zip(counts, points):
-            picture.mark("circle", x, y, colour)
-            picture.text(x, y - 9, f"{costs[name][n]:.1f}", "middle")
+    figure, (axis,) = panels(1, 1, (6.7, 3.8))
+    for (name, (colour, style)), words in zip(CURVES.items(), ("broad phase", "broad phase and verdicts")):
+        axis.loglog(counts, [costs[name][n] for n in counts], "o", color=colour, ls=style, label=words)
+        for n in counts:
+            axis.annotate(f"{costs[name][n]:.1f}", (n, costs[name][n]), (0, 6), textcoords="offset points", ha="center")
     for n in counts:
-        x, y = axes.at(math.log10(n), 0.62)
-        picture.text(x, y, f"{memory[n]:.0f} bytes", "middle")
-    axes.label_x("parts; below the curves, memory of the broad phase a part at its peak")
-    axes.label_y("microseconds a part")
-    legend(picture, 75, 30, [(plain_entry(picture, dash, colour), words) for (colour, dash), words in
-                             zip(CURVES.values(), ("broad phase", "broad phase and verdicts"))], 200)
-    picture.save(path)
+        axis.text(n, 0.62, f"{memory[n]:.0f} bytes", ha="center")
+    axis.set(xlim=(counts[0] / 1.6, counts[-1] * 1.6), ylim=(0.5, 100), ylabel="microseconds a part",
+             xlabel="parts; below the curves, memory of the broad phase a part at its peak")
+    axis.set_yticks((1, 10, 100), (1, 10, 100))
+    axis.minorticks_off()
+    save(figure, path, "Cost of a scene against its parts", 2)
 
 
 if __name__ == "__main__":

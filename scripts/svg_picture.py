@@ -1,4 +1,4 @@
-"""Plain SVG for the pictures of docs/."""
+"""Plain SVG for drawings of meshes in docs/; plots are matplotlib's (plotting.py)."""
 
 BLACK, GREY = "#222222", "#777777"
 
@@ -28,22 +28,14 @@ class Picture:
         self.parts.append(f'<polygon points="{where}" fill="{fill}" stroke="{stroke}" stroke-width="{width}" '
                           f'stroke-linejoin="round"{see_through}{dashed}/>')
 
-    def mark(self, shape, x, y, colour, size=3.2, hollow=False):
-        look = f'fill="{"#ffffff" if hollow else colour}" stroke="{colour}" stroke-width="1.2"'
-        if shape == "circle":
-            self.parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{size:.1f}" {look}/>')
-        elif shape == "square":
-            self.parts.append(f'<rect x="{x - size:.1f}" y="{y - size:.1f}" width="{2 * size:.1f}" '
-                              f'height="{2 * size:.1f}" {look}/>')
-        else:
-            self.parts.append(f'<path d="M{x:.1f} {y - 1.2 * size:.1f}l{1.15 * size:.1f} {2.1 * size:.1f}'
-                              f'h{-2.3 * size:.1f}z" {look}/>')
+    def mark(self, x, y, colour, size=3.2, hollow=False):
+        self.parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{size:.1f}" fill="{"#ffffff" if hollow else colour}" '
+                          f'stroke="{colour}" stroke-width="1.2"/>')
 
-    def text(self, x, y, words, anchor="start", colour=BLACK, size=12, turned=False, bold=False):
-        turn = f' transform="rotate(-90 {x:.1f} {y:.1f})"' if turned else ""
+    def text(self, x, y, words, anchor="start", colour=BLACK, size=12, bold=False):
         weight = ' font-weight="bold"' if bold else ""
         self.parts.append(f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="{anchor}" fill="{colour}" '
-                          f'font-size="{size}"{weight}{turn}>{words}</text>')
+                          f'font-size="{size}"{weight}>{words}</text>')
 
     def save(self, path):
         path.write_text("\n".join(self.parts + ["</svg>", ""]), encoding="utf-8")
