@@ -35,9 +35,10 @@ LIBRARIES = {
     "io": ("nlohmann/",),
 }
 POSIX = ("fcntl.h", "unistd.h", "sys/")
-# Folders outside src/snug, and the layers they may include: those that must not lean on what they are there to check, and
-# adapters, which is installed and so includes what is installed.
-INDEPENDENT = {"tests/oracle": set(), "checker": {"support", "geometry"}, "adapters": set(ORDER) - set(SEPARATE)}
+# Folders outside src/snug, and the layers they may include: those that must not lean on what they are there to check,
+# adapters, which is installed and so includes what is installed, and the renderer, a user like others.
+INDEPENDENT = {"tests/oracle": set(), "checker": {"support", "geometry"}, "adapters": set(ORDER) - set(SEPARATE),
+               "apps/snug/picture": {SHARED}}
 # Headers of this folder are included as <snug/adapters/...>; nothing of src/snug includes them.
 ADAPTERS = "adapters"
 # Folders whose headers are checked for #pragma once and whose includes of snug must exist.
@@ -194,6 +195,7 @@ BAD_FILES = [
     ("tests/oracle/o.h", "#pragma once\n#include <snug/p.h>\n", "tests/oracle may not include"),
     ("adapters/d.h", "#include <snug/p.h>\n", "d.h:1: no #pragma once"),
     ("adapters/d.h", "#pragma once\n#include <snug/picture/p.h>\n", "adapters may not include <snug/picture/p.h>"),
+    ("apps/snug/picture/p.h", "#pragma once\n#include <snug/mesh/m.h>\n", "apps/snug/picture may not include <snug/mesh/m.h>"),
     ("examples/e.cpp", "#include <snug/adapters/gone.h>\n", "<snug/adapters/gone.h> does not exist"),
     ("src/snug/mesh/m.cpp", "#include <snug/adapters/d.h>\n", "mesh may not include adapters"),
 ]

@@ -35,12 +35,23 @@ Colour colour_of_kind(const Kind& kind) {
   return Colour::hex(codes[kind.id().index() % codes.size()]);
 }
 
+PatchId patch_of(const LimitSurface& surface, const QuickHit& hit) {
+  return PatchId(surface.patches_of(hit.patch.owner).begin + hit.patch.part);
+}
+
+// The parameters of a hit on its patch; place_of() of a quad's halves, turned round.
+TriangleParameter on_patch(const LimitSurface& surface, const QuickHit& hit) {
+  const auto [owner, corner, u, v] = hit.at;
+  if (surface.rules().triangular()) return {u, v};
+  return hit.patch.part % 2 == 0 ? TriangleParameter{u - v, v} : TriangleParameter{v - u, 1 - v};
+}
+
 // A number at the places of a lattice on each patch, linear between them.
 class Field {
  public:
   Field(const LimitSurface& surface, std::uint32_t steps, int threads, const WorkMonitor& monitor,
         const std::function<double(PatchId, const PatchEvaluator&, TriangleParameter)>& value)
-      : steps_(steps), values_(surface.patch_count() * places()) {
+      : surface_(surface), steps_(steps), values_(surface.patch_count() * places()) {
     parallel_for(surface.patch_count(), threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t p = begin; p < end; ++p) {
         const PatchId patch(p);
@@ -58,9 +69,10 @@ class Field {
     });
   }
 
-  [[nodiscard]] double at(const PatchHit& hit) const {
-    const double* const values = values_.data() + hit.patch.index() * places();
-    const double x = hit.at.u * steps_, y = hit.at.v * steps_;
+  [[nodiscard]] double at(const QuickHit& hit) const {
+    const double* const values = values_.data() + patch_of(surface_, hit).index() * places();
+    const TriangleParameter at = on_patch(surface_, hit);
+    const double x = at.u * steps_, y = at.v * steps_;
     auto i = static_cast<std::uint32_t>(std::clamp(x, 0.0, steps_ - 1.0)),
          j = static_cast<std::uint32_t>(std::clamp(y, 0.0, steps_ - 1.0));
     while (i + j >= steps_) --(i > j ? i : j);
@@ -88,6 +100,7 @@ class Field {
     return std::size_t{j} * (steps_ + 1) - std::size_t{j} * (j - std::size_t{1}) / 2 + i;
   }
 
+  const LimitSurface& surface_;
   std::uint32_t steps_;
   std::vector<double> values_;
 };
@@ -110,7 +123,7 @@ double mean_curvature(const PatchEvaluator& evaluate_at, TriangleParameter at) {
 std::shared_ptr<Field> distances(const PlacedSurface& surface, const PlacedSurface& other, int threads,
                                  const WorkMonitor& monitor) {
   constexpr std::uint32_t steps = 8;
-  const SurfaceBvh model(*other.surface);
+  const SurfaceBvh model(limit_of(*other.surface));
   const Motion to_other = other.pose.inverse() * surface.pose;
   // All points first, so that they are asked for together.
   std::vector<Point3> points;
@@ -118,13 +131,13 @@ std::shared_ptr<Field> distances(const PlacedSurface& surface, const PlacedSurfa
     points.push_back(to_other.apply(evaluate_at(at).position));
     return 0.0;
   };
-  static_cast<void>(Field(*surface.surface, steps, 1, monitor, collect));
+  static_cast<void>(Field(limit_of(*surface.surface), steps, 1, monitor, collect));
   ClosestOptions how;
   how.absolute = 1e-3 * other.surface->size();
   const std::vector<ClosestPoint> found = closest_points(model, points, how, threads, monitor);
   std::size_t next = 0;
   return std::make_shared<Field>(
-      *surface.surface, steps, 1, monitor,
+      limit_of(*surface.surface), steps, 1, monitor,
       [&](PatchId, const PatchEvaluator&, TriangleParameter) { return found[next++].distance.upper; });
 }
 
@@ -152,19 +165,19 @@ std::vector<double> thicknesses(const LimitSurface& surface, int threads, const 
 
 }  // namespace
 
-std::function<Colour(const PatchHit&)> colours_by(std::string_view name, const PlacedSurface& surface,
+std::function<Colour(const QuickHit&)> colours_by(std::string_view name, const PlacedSurface& surface,
                                                   const PlacedSurface& other, int threads,
                                                   const WorkMonitor& monitor) {
-  const LimitSurface* const limit = surface.surface;
+  const LimitSurface* const limit = &limit_of(*surface.surface);
   if (name == "level") {
-    return [](const PatchHit& hit) { return ramp(hit.level / 6.0); };
+    return [](const QuickHit& hit) { return ramp(hit.level / 6.0); };
   }
   if (name == "thickness") {
     const auto shares = std::make_shared<std::vector<double>>(thicknesses(*limit, threads, monitor));
-    return [shares](const PatchHit& hit) { return ramp((*shares)[hit.patch.index()]); };
+    return [limit, shares](const QuickHit& hit) { return ramp((*shares)[patch_of(*limit, hit).index()]); };
   }
   if (name == "kind") {
-    return [limit](const PatchHit& hit) { return colour_of_kind(limit->kind(hit.patch)); };
+    return [limit](const QuickHit& hit) { return colour_of_kind(limit->kind(patch_of(*limit, hit))); };
   }
   if (name == "curvature") {
     const auto field = std::make_shared<Field>(
@@ -172,13 +185,13 @@ std::function<Colour(const PatchHit&)> colours_by(std::string_view name, const P
           return mean_curvature(evaluate_at, at);
         });
     const double most = field->quantile(0.95, true);
-    return [field, most](const PatchHit& hit) {
+    return [field, most](const QuickHit& hit) {
       return ramp(most > 0 ? 0.5 + field->at(hit) / (2 * most) : 0.5);
     };
   }
   const auto field = distances(surface, other, threads, monitor);
   const double least = field->quantile(0, false), most = field->quantile(1, false);
-  return [field, least, most](const PatchHit& hit) {
+  return [field, least, most](const QuickHit& hit) {
     return ramp(most > least ? (field->at(hit) - least) / (most - least) : 0);
   };
 }

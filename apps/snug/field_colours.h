@@ -21,7 +21,7 @@ namespace snug::command {
 ///
 /// Requires:  one of these names; the surfaces outlive the result.
 /// Cost:      curvature 15 evaluations a patch, distance 45 queries a patch; between these it is linear.
-[[nodiscard]] std::function<Colour(const PatchHit&)> colours_by(std::string_view name,
+[[nodiscard]] std::function<Colour(const QuickHit&)> colours_by(std::string_view name,
                                                                 const PlacedSurface& surface,
                                                                 const PlacedSurface& other, int threads,
                                                                 const WorkMonitor& monitor);

@@ -21,6 +21,7 @@
 #include "curve.h"
 #include "drawn_curves.h"
 #include "field_colours.h"
+#include "mesh_reading.h"
 #include "numbers.h"
 #include "pose.h"
 #include "progress_bar.h"
@@ -140,10 +141,10 @@ Colours colours_of_part(std::size_t part) {
 // What a file is answered as, and where it stands.
 struct Part {
   std::string path;
-  std::variant<LimitSurface, CurveSet> shape;
+  std::variant<Surface, CurveSet> shape;
   Motion pose;
 
-  [[nodiscard]] const LimitSurface* surface() const { return std::get_if<LimitSurface>(&shape); }
+  [[nodiscard]] const Surface* surface() const { return std::get_if<Surface>(&shape); }
   [[nodiscard]] const CurveSet* curves() const { return std::get_if<CurveSet>(&shape); }
 };
 
@@ -155,8 +156,23 @@ void require_drawable(const CurveSet& curves, const std::string& path) {
                                path, curves.edge_count(), most_curve_edges));
 }
 
+Surface surface_of(ControlMesh mesh, const std::string& path, const Options& options) {
+  refuse_curves(mesh, options.scheme, path);
+  std::optional<Surface> surface;
+  naming(path, [&] {
+    const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
+    ProgressBar bar("preparing " + path, options.quiet);
+    surface.emplace(std::move(mesh), SurfaceOptions{.scheme = rules.scheme,
+                                                    .boundary = rules.boundary,
+                                                    .bounds = bound_method(options),
+                                                    .threads = options.threads,
+                                                    .monitor = bar.monitor()});
+  });
+  note_smoothing(limit_of(*surface), path, options, options.scheme);
+  return *surface;
+}
+
 std::vector<Part> load_parts(const Options& options, const std::vector<Motion>& poses) {
-  const auto library = std::make_shared<BoundsCache>();
   std::vector<Part> parts;
   for (std::size_t part = 0; part < options.meshes.size(); ++part) {
     const std::string& path = options.meshes[part];
@@ -166,8 +182,7 @@ std::vector<Part> load_parts(const Options& options, const std::vector<Motion>& 
       require_drawable(curves, path);
       parts.push_back({path, std::move(curves), poses[part]});
     } else {
-      parts.push_back(
-          {path, make_surface(std::move(mesh), path, options, options.scheme, library), poses[part]});
+      parts.push_back({path, surface_of(std::move(mesh), path, options), poses[part]});
     }
   }
   return parts;
@@ -206,10 +221,7 @@ struct Pieces {
 
 Pieces pieces_of(const Part& part) {
   if (const CurveSet* curves = part.curves()) return {curves->edge_count(), 2};
-  const LimitSurface& surface = *part.surface();
-  std::uint64_t count = 0;
-  for (std::size_t p = 0; p < surface.patch_count(); ++p) count += surface.has_patch(PatchId(p)) ? 1 : 0;
-  return {count, 4};
+  return {patch_count(*part.surface()), 4};
 }
 
 // How many more enclosures than those without any split can be drawn. Refuses what is too much without a
@@ -242,20 +254,20 @@ Enclosures enclose(const Options& options, const std::optional<Length>& toleranc
   std::uint64_t room = room_for_splits(options, parts), budget = options.budget;
   for (const Part& part : parts) {
     std::vector<IntervalTriangle>& pieces = result.of_part.emplace_back();
-    const auto keep = [&](const PieceEnclosure& piece) { pieces.push_back(piece.interval); };
+    const auto keep = [&](const PatchEnclosure& piece) { pieces.push_back(piece.interval); };
     const auto keep_curve = [&](const CurveEnclosure& piece) {
       const auto& ends = piece.interval.corner;
       pieces.push_back({{ends[0], ends[1], ends[1]}});
     };
     naming(part.path, [&] {
-      const LimitSurface* surface = part.surface();
+      const Surface* surface = part.surface();
       const CurveSet* curves = part.curves();
       const std::uint64_t more_a_split = pieces_of(part).children - 1;
       if (tolerance) how.tolerance = tolerance->in_mesh_units(curves ? curves->size() : surface->size());
       how.budget = std::min(budget, room / more_a_split);
       ProgressBar bar("bounding " + part.path, options.quiet);
-      const BoundSummary summary = curves ? bound(*curves, how, keep_curve, bar.monitor())
-                                          : bound(*surface, how, keep, bar.monitor(), bound_method(options));
+      const BoundSummary summary =
+          curves ? bound(*curves, how, keep_curve, bar.monitor()) : bound(*surface, how, keep, bar.monitor());
       budget -= summary.splits;
       room -= summary.splits * more_a_split;
       result.count += pieces.size();
@@ -269,7 +281,7 @@ Enclosures enclose(const Options& options, const std::optional<Length>& toleranc
 std::vector<Point3> surface_points(const Options& options, std::span<const Part> parts,
                                    const PictureUnits& units, const WorkMonitor& monitor) {
   std::size_t patches = 0;
-  for (const Part& part : parts) patches += part.surface() ? part.surface()->patch_count() : 0;
+  for (const Part& part : parts) patches += part.surface() ? patch_count(*part.surface()) : 0;
   const std::uint32_t steps = patches > framing_points / 10 ? 1 : patches > framing_points / 150 ? 4 : 16;
   std::vector<Point3> points;
   for (const Part& part : parts) {
@@ -283,19 +295,18 @@ std::vector<Point3> surface_points(const Options& options, std::span<const Part>
   return points;
 }
 
-// The surfaces of the parts, made ready for rays.
-std::vector<std::unique_ptr<CasterTree>> caster_trees(const Options& options, std::span<const Part> parts,
-                                                      double tolerance, const WorkMonitor& monitor) {
-  std::vector<std::unique_ptr<CasterTree>> trees;
+// For the surfaces of the parts.
+std::vector<std::unique_ptr<RayCaster>> make_casters(const Options& options, std::span<const Part> parts,
+                                                     double tolerance, const WorkMonitor& monitor) {
+  std::vector<std::unique_ptr<RayCaster>> casters;
   for (const Part& part : parts) {
-    std::unique_ptr<CasterTree>& tree = trees.emplace_back();
+    std::unique_ptr<RayCaster>& caster = casters.emplace_back();
     if (!part.surface()) continue;
     naming(part.path, [&] {
-      tree = std::make_unique<CasterTree>(*part.surface(), part.surface()->scale().apply(tolerance),
-                                          options.threads, monitor);
+      caster = std::make_unique<RayCaster>(*part.surface(), tolerance, options.threads, monitor);
     });
   }
-  return trees;
+  return casters;
 }
 
 // The curves of a part, and which it is.
@@ -404,7 +415,7 @@ void require_sound(const Options& options) {
 }
 
 struct Shot {
-  std::vector<std::unique_ptr<CasterTree>> trees;  // of the surfaces in the scene
+  std::vector<std::unique_ptr<RayCaster>> casters;  // of the surfaces in the scene
   PictureScene scene;
   Camera camera;
   double tolerance = 0;  // of these, in units of the picture
@@ -414,11 +425,11 @@ struct Shot {
 void add_surfaces(Shot& shot, const Options& options, std::span<const Part> parts, const PictureUnits& units,
                   double pixels_a_unit, const WorkMonitor& monitor) {
   shot.tolerance = std::max(surface_pixels / pixels_a_unit, least_tolerance);
-  shot.trees = caster_trees(options, parts, units.to_mesh(shot.tolerance), monitor);
+  shot.casters = make_casters(options, parts, units.to_mesh(shot.tolerance), monitor);
   for (std::size_t part = 0; part < parts.size(); ++part) {
-    if (!shot.trees[part]) continue;
+    if (!shot.casters[part]) continue;
     shot.scene.surfaces.push_back(
-        scene_surface(*shot.trees[part], parts[part].pose, units, static_cast<std::uint32_t>(2 * part)));
+        scene_surface(*shot.casters[part], parts[part].pose, units, static_cast<std::uint32_t>(2 * part)));
     if (options.colour == "plain") continue;
     const Part& other = parts[part == 0 ? parts.size() - 1 : 0];
     naming(parts[part].path, [&] {
@@ -520,7 +531,7 @@ ExitStatus run(const Options& options) {
   std::vector<std::string> schemes;
   bool curves = false;
   for (const Part& part : parts) {
-    schemes.emplace_back(part.curves() ? "curve" : name_of(part.surface()->options().scheme));
+    schemes.emplace_back(part.curves() ? "curve" : name_of(part.surface()->scheme()));
     curves = curves || part.curves();
   }
   report.heads(options.meshes, schemes);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <picture/palette.h>
+#include <snug/search/surface_data.h>
 #include <snug/surface/evaluate.h>
 #include <support/direction.h>
 #include <support/parallel.h>
@@ -49,9 +50,18 @@ Point3 PictureUnits::origin_in_mesh(const Motion& pose) const {
   return Point3{} + scale_.inverse().apply(transposed_times(rows_of(pose), from));
 }
 
+const LimitSurface& limit_of(const Surface& surface) { return surface.data()->limit(); }
+
+std::size_t patch_count(const Surface& surface) {
+  const LimitSurface& limit = limit_of(surface);
+  std::size_t count = 0;
+  for (std::size_t p = 0; p < limit.patch_count(); ++p) count += limit.has_patch(PatchId(p)) ? 1 : 0;
+  return count;
+}
+
 std::vector<Point3> limit_points(const PlacedSurface& part, const PictureUnits& units, std::uint32_t steps,
                                  int threads, const WorkMonitor& monitor) {
-  const LimitSurface& surface = *part.surface;
+  const LimitSurface& surface = limit_of(*part.surface);
   std::vector<PatchId> patches;
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
     if (surface.has_patch(PatchId(p))) patches.emplace_back(p);
@@ -76,9 +86,9 @@ std::vector<Point3> limit_points(const PlacedSurface& part, const PictureUnits& 
   return points;
 }
 
-SceneSurface scene_surface(const CasterTree& tree, const Motion& pose, const PictureUnits& units,
+SceneSurface scene_surface(const RayCaster& caster, const Motion& pose, const PictureUnits& units,
                            std::uint32_t material) {
-  return {&tree, units.to_mesh(pose), units.origin_in_mesh(pose), rows_of(pose), material, {}};
+  return {&caster, units.to_mesh(pose), units.origin_in_mesh(pose), rows_of(pose), material, {}};
 }
 
 std::vector<Polyhedron> enclosure_hulls(std::span<const IntervalTriangle> enclosures, const Motion& pose,
@@ -151,7 +161,7 @@ CutPlane cut_plane(const std::array<Point3, 2>& points, const PictureUnits& unit
 
 void add_cage(PictureScene& scene, const PlacedSurface& part, const PictureUnits& units, double line_width,
               Colour line_colour) {
-  const Topology& topology = part.surface->topology();
+  const Topology& topology = limit_of(*part.surface).topology();
   const auto place = [&](VertexId v) { return units(part.pose, part.surface->mesh().points[v.index()]); };
   for (std::size_t e = 0; e < topology.edge_count(); ++e) {
     const HalfEdge h = topology.half_of(EdgeId(e));

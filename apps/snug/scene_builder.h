@@ -18,9 +18,13 @@ namespace snug::command {
 /// A surface where it stands in the picture.
 /// Requires:  the surface outlives it.
 struct PlacedSurface {
-  const LimitSurface* surface;
+  const Surface* surface;
   Motion pose;
 };
+
+[[nodiscard]] const LimitSurface& limit_of(const Surface& surface);
+/// How many of its patches have a limit surface.
+[[nodiscard]] std::size_t patch_count(const Surface& surface);
 
 /// A control mesh where it stands in the picture, and those of its vertices that count.
 /// Requires:  the mesh outlives it.
@@ -72,8 +76,8 @@ class PictureUnits {
                                                std::uint32_t steps, int threads, const WorkMonitor& monitor);
 
 /// A surface in a picture.
-/// Requires:  the tree outlives it.
-[[nodiscard]] SceneSurface scene_surface(const CasterTree& tree, const Motion& pose,
+/// Requires:  the caster outlives it.
+[[nodiscard]] SceneSurface scene_surface(const RayCaster& caster, const Motion& pose,
                                          const PictureUnits& units, std::uint32_t material);
 
 /// The hull of each enclosure, in picture units.

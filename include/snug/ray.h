@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include <snug/surface.h>
+#include <snug/bound.h>
 
 namespace snug {
 
@@ -93,7 +93,9 @@ struct RayHits {
 struct QuickHit {
   double t = std::numeric_limits<double>::infinity();  ///< infinite: nothing
   SurfaceParameter at;
-  Vector3 normal;  ///< approximate, of length 1 or 0
+  PatchPlace patch;    ///< that `at` lies on
+  unsigned level = 0;  ///< number of splits of the piece that was hit
+  Vector3 normal;      ///< approximate, of length 1 or 0
 };
 
 /// A surface prepared for many rays that need no proof, such as for pictures and picking.
@@ -109,11 +111,9 @@ class SNUG_API RayCaster {
   /// Cost:      a microsecond per patch, more if the tolerance is small; 100 bytes per piece.
   RayCaster(const Surface& surface, double tolerance, int threads = 0, const WorkMonitor& monitor = {});
 
-  /// The first hit.
-  /// Errors:    those of trace() on rays.
-  /// Cost:      half a microsecond.
+  /// The first hit, in half a microsecond. Errors: those of trace() on rays.
   [[nodiscard]] QuickHit cast(const Ray& ray) const;
-  /// The same for many rays, in the same order.
+  /// The same for many rays, in the same order; hits do not depend on threads.
   void cast(std::span<const Ray> rays, std::span<QuickHit> out, int threads = 0) const;
 
   [[nodiscard]] std::size_t bytes() const;

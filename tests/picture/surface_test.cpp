@@ -33,7 +33,7 @@ Shape box(Point3 low, Point3 high) {
 }
 
 // All edges sharp: the limit surface is the mesh.
-LimitSurface surface_of(const Shape& shape) {
+Surface surface_of(const Shape& shape) {
   ControlMesh mesh;
   mesh.points = shape.points;
   for (const Quad& face : shape.faces) {
@@ -42,12 +42,12 @@ LimitSurface surface_of(const Shape& shape) {
     mesh.add_face(corners);
   }
   static_cast<void>(sharpen(mesh, 10));
-  return {std::move(mesh), {Scheme::catmark}, std::make_shared<BoundsCache>()};
+  return Surface(std::move(mesh), {.scheme = Scheme::catmark});
 }
 
 constexpr Rows3 identity{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
 
-SceneSurface as_it_is(const CasterTree& tree) { return {&tree, identity, {}, identity, 0, {}}; }
+SceneSurface as_it_is(const RayCaster& caster) { return {&caster, identity, {}, identity, 0, {}}; }
 
 void add_triangles(PictureScene& scene, const Shape& shape) {
   for (const Quad& f : shape.faces) {
@@ -82,12 +82,12 @@ int brightness(const Image& image, int x, int y) {
 
 TEST(surfaces_in_pictures, look_like_their_triangles) {
   const Shape shape = box({-0.4, -0.3, -0.5}, {0.4, 0.3, 0.5});
-  const LimitSurface surface = surface_of(shape);
-  const CasterTree tree(surface, surface.scale().apply(1e-5), 1, {});
+  const Surface surface = surface_of(shape);
+  const RayCaster caster(surface, 1e-5, 1);
   for (const double opacity : {1.0, 0.4}) {
     PictureScene by_rays{{{.colour = {0.2, 0.5, 0.8}, .opacity = opacity, .gloss = 0.3}}, {}, {}},
         by_triangles = by_rays;
-    by_rays.surfaces.push_back(as_it_is(tree));
+    by_rays.surfaces.push_back(as_it_is(caster));
     add_triangles(by_triangles, shape);
     const Image a = render(by_rays, camera_on(shape), plain(200)),
                 b = render(by_triangles, camera_on(shape), plain(200));
@@ -103,10 +103,10 @@ TEST(surfaces_in_pictures, are_placed_by_their_similarity) {
   Shape given;
   given.faces = shape.faces;
   for (const Point3& p : shape.points) given.points.push_back({3 * p.y + 7, -3 * p.x + 1, 3 * p.z - 2});
-  const LimitSurface surface = surface_of(given);
-  const CasterTree tree(surface, surface.scale().apply(3e-5), 1, {});
+  const Surface surface = surface_of(given);
+  const RayCaster caster(surface, 3e-5, 1);
   PictureScene by_rays{{{.colour = {0.2, 0.5, 0.8}}}, {}, {}}, by_triangles = by_rays;
-  by_rays.surfaces.push_back({&tree,
+  by_rays.surfaces.push_back({&caster,
                               {Vector3{0, 3, 0}, Vector3{-3, 0, 0}, Vector3{0, 0, 3}},
                               {7, 1, -2},
                               {Vector3{0, -1, 0}, Vector3{1, 0, 0}, Vector3{0, 0, 1}},
@@ -122,10 +122,10 @@ TEST(surfaces_in_pictures, hide_and_are_hidden_by_triangles) {
   const Shape near = box({-0.2, -0.2, 0.2}, {0.2, 0.2, 0.4}), far = box({-0.4, -0.4, -0.4}, {0.4, 0.4, -0.2});
   const Camera camera = frame(far.points, {0, 0, -1}, {0, 1, 0}, 1);
   for (const bool near_by_rays : {true, false}) {
-    const LimitSurface surface = surface_of(near_by_rays ? near : far);
-    const CasterTree tree(surface, surface.scale().apply(1e-5), 1, {});
+    const Surface surface = surface_of(near_by_rays ? near : far);
+    const RayCaster caster(surface, 1e-5, 1);
     PictureScene scene{{{.colour = {1, 0, 0}, .lit = false}, {.colour = {0, 1, 0}, .lit = false}}, {}, {}};
-    scene.surfaces.push_back(as_it_is(tree));
+    scene.surfaces.push_back(as_it_is(caster));
     add_triangles(scene, near_by_rays ? far : near);
     for (ShadedTriangle& t : scene.triangles) t.material = 1;
     const Image image = render(scene, camera, plain(101));
@@ -137,12 +137,12 @@ TEST(surfaces_in_pictures, hide_and_are_hidden_by_triangles) {
 
 TEST(surfaces_in_pictures, are_cut_and_coloured) {
   const Shape shape = box({-0.4, -0.4, -0.4}, {0.4, 0.4, 0.4});
-  const LimitSurface surface = surface_of(shape);
-  const CasterTree tree(surface, surface.scale().apply(1e-5), 1, {});
+  const Surface surface = surface_of(shape);
+  const RayCaster caster(surface, 1e-5, 1);
   PictureScene scene{{{.colour = {0.2, 0.5, 0.8}, .lit = false}}, {}, {}};
-  scene.surfaces.push_back(as_it_is(tree));
+  scene.surfaces.push_back(as_it_is(caster));
   // Green where the surface looks at the camera's side, red inside of the far wall.
-  scene.surfaces[0].colour = [](const PatchHit& hit) {
+  scene.surfaces[0].colour = [](const QuickHit& hit) {
     return hit.normal.z > 0.5 ? Colour{0, 1, 0} : hit.normal.z < -0.5 ? Colour{1, 0, 0} : Colour{0, 0, 1};
   };
   const Camera camera = frame(shape.points, {0, 0, -1}, {0, 1, 0}, 1);
@@ -159,11 +159,10 @@ TEST(surfaces_in_pictures, are_cut_and_coloured) {
 TEST(surfaces_in_pictures, cast_shadows) {
   const Shape floor = box({-0.5, -0.1, -0.5}, {0.5, 0, 0.5}),
               lid = box({-0.15, 0.25, -0.15}, {0.15, 0.3, 0.15});
-  const LimitSurface floor_surface = surface_of(floor), lid_surface = surface_of(lid);
-  const CasterTree floor_tree(floor_surface, floor_surface.scale().apply(1e-5), 1, {}),
-      lid_tree(lid_surface, lid_surface.scale().apply(1e-5), 1, {});
+  const Surface floor_surface = surface_of(floor), lid_surface = surface_of(lid);
+  const RayCaster floor_caster(floor_surface, 1e-5, 1), lid_caster(lid_surface, 1e-5, 1);
   PictureScene scene{{{.colour = {0.8, 0.8, 0.8}}}, {}, {}};
-  scene.surfaces = {as_it_is(floor_tree), as_it_is(lid_tree)};
+  scene.surfaces = {as_it_is(floor_caster), as_it_is(lid_caster)};
   const Camera camera = frame(floor.points, {0, -1, -0.6}, {0, 1, 0}, 1);
   RenderOptions options = plain(120);
   const Image without = render(scene, camera, options);

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <snug/bounds/enclosure.h>
+#include <snug/geometry.h>
 #include <support/point.h>
 
 namespace snug {

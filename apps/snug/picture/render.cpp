@@ -61,7 +61,7 @@ struct Hit {
 
 struct SurfaceHit {
   std::uint32_t surface;
-  PatchHit hit;
+  QuickHit hit;
 };
 
 struct Layer {
@@ -152,7 +152,7 @@ class Renderer {
     std::vector<Hit> hits;
     std::vector<SurfaceHit> surface_hits;
     std::vector<snug::Ray> mesh_rays;
-    std::vector<PatchHit> quick_hits;
+    std::vector<QuickHit> quick_hits;
     std::array<double, 2> light_offset{};  // of this pixel
     unsigned light_rays = 0;               // sent so far in this pixel
     std::vector<Layer> layers;
@@ -392,10 +392,10 @@ void Renderer::hit_surface(std::uint32_t index, Scratch& scratch) const {
       asked.push_back(sample);
     }
     scratch.quick_hits.resize(scratch.mesh_rays.size());
-    surface.surface->cast(scratch.mesh_rays, scratch.quick_hits);
+    surface.surface->cast(scratch.mesh_rays, scratch.quick_hits, 1);
     samples.clear();
     for (std::size_t i = 0; i < asked.size(); ++i) {
-      const PatchHit& hit = scratch.quick_hits[i];
+      const QuickHit& hit = scratch.quick_hits[i];
       if (!std::isfinite(hit.t)) continue;
       const std::uint32_t sample = asked[i];
       scratch.hits.push_back(

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <picture/colour.h>
-#include <snug/caster/caster_tree.h>
+#include <snug/ray.h>
 #include <support/point.h>
 
 namespace snug {
@@ -37,12 +37,12 @@ struct Line {
 
 /// A limit surface that rays meet by itself, and its place in the picture: a similarity.
 struct SceneSurface {
-  const CasterTree* surface;  ///< outlives the scene
-  Rows3 to_mesh;              ///< of displacements, into mesh units
-  Point3 origin;              ///< the picture's, in mesh units
-  Rows3 turn;                 ///< of directions, into the picture
+  const RayCaster* surface;  ///< outlives the scene
+  Rows3 to_mesh;             ///< of displacements, into mesh units
+  Point3 origin;             ///< the picture's, in mesh units
+  Rows3 turn;                ///< of directions, into the picture
   std::uint32_t material = 0;
-  std::function<Colour(const PatchHit&)> colour{};  ///< in place of the material's, where given
+  std::function<Colour(const QuickHit&)> colour{};  ///< in place of the material's, where given
 };
 
 /// A line of text in front of everything, as lettering() draws it, from the lower left corner of the picture.

@@ -8,6 +8,7 @@
 #include <snug/geometry/rounding.h>
 #include <snug/patch/piece_path.h>
 #include <snug/search/ray_scale.h>
+#include <snug/surface/evaluate.h>
 #include <support/direction.h>
 
 namespace snug {
@@ -364,7 +365,7 @@ struct CasterTree::Beam {
   std::array<std::uint32_t, caster_width> blocks{};
 };
 
-PatchHit CasterTree::cast(const Ray& ray) const {
+QuickHit CasterTree::cast(const Ray& ray) const {
   const Approach approach(*this, ray);
   if (approach.passes) return {};
   const kernels::CasterRay one = seen(approach);
@@ -380,10 +381,10 @@ PatchHit CasterTree::cast(const Ray& ray) const {
     }
     return last;
   });
-  return best.place == caster_width ? PatchHit{} : finished(approach, best_block, best);
+  return best.place == caster_width ? QuickHit{} : finished(approach, best_block, best);
 }
 
-void CasterTree::cast(std::span<const Ray> rays, std::span<PatchHit> out) const {
+void CasterTree::cast(std::span<const Ray> rays, std::span<QuickHit> out) const {
   std::vector<Approach> group;
   std::array<std::size_t, caster_width> which{};
   for (std::size_t begin = 0; begin < rays.size(); begin += caster_width) {
@@ -417,14 +418,14 @@ void CasterTree::cast(std::span<const Ray> rays, std::span<PatchHit> out) const 
   }
 }
 
-PatchHit CasterTree::finished(const Approach& approach, std::uint32_t block,
+QuickHit CasterTree::finished(const Approach& approach, std::uint32_t block,
                               const kernels::CasterHit& hit) const {
   const Places::Place place = places_[block * caster_width + hit.place];
   const TriangleParameter at{static_cast<double>(hit.u), static_cast<double>(hit.v)};
-  PatchHit answer;
+  QuickHit answer;
   answer.t = approach.lengths.to_parameter(static_cast<double>(hit.t) + approach.skipped);
-  answer.patch = place.root;
-  answer.at = to_face(place.path, at);
+  answer.at = place_of(*surface_, place.root, to_face(place.path, at));
+  answer.patch = surface_->place(place.root);
   answer.level = place.path.level();
   // Of the quadratic.
   const auto& net = blocks_[block].net;

@@ -14,16 +14,7 @@
 
 namespace snug {
 
-/// What a ray hits: QuickHit of ray.h before it is handed out.
-struct PatchHit {
-  double t = INFINITY;
-  PatchId patch;
-  TriangleParameter at;
-  unsigned level = 0;  ///< how often the patch was split there
-  Vector3 normal;
-};
-
-/// What RayCaster of ray.h holds: quadratic triangles near all pieces of a surface, under boxes.
+/// Of a RayCaster: quadratic triangles near all pieces of a surface, under boxes.
 /// Immutable; may be read by many threads.
 /// Cost:      about 100 bytes a triangle.
 class CasterTree {
@@ -33,10 +24,9 @@ class CasterTree {
   CasterTree(const LimitSurface& surface, double tolerance, int threads, const WorkMonitor& monitor);
 
   /// Requires:  a ray that ray.h allows.
-  [[nodiscard]] PatchHit cast(const Ray& ray) const;
+  [[nodiscard]] QuickHit cast(const Ray& ray) const;
   /// The same for many; those that follow one another and lie close together are searched at once.
-  void cast(std::span<const Ray> rays, std::span<PatchHit> out) const;
-  [[nodiscard]] const LimitSurface& surface() const { return *surface_; }
+  void cast(std::span<const Ray> rays, std::span<QuickHit> out) const;
   /// How many quadratic triangles there are.
   [[nodiscard]] std::size_t piece_count() const { return piece_count_; }
   [[nodiscard]] std::size_t bytes() const;
@@ -73,7 +63,7 @@ class CasterTree {
   [[nodiscard]] kernels::CasterRay seen(const Approach& approach) const;
   template <class Visit>
   void walk(const kernels::CasterRay& ray, float grown, float first, float last, const Visit& visit) const;
-  [[nodiscard]] PatchHit finished(const Approach& approach, std::uint32_t block,
+  [[nodiscard]] QuickHit finished(const Approach& approach, std::uint32_t block,
                                   const kernels::CasterHit& hit) const;
 
   const LimitSurface* surface_;
