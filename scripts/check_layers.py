@@ -15,8 +15,8 @@ import tempfile
 
 # A folder includes itself and folders before it, but for the exceptions. `support` is src/support, included as <support/...>:
 # what the library and its programs share.
-ORDER = ["support", "geometry", "mesh", "scheme", "patch", "bounds", "bvh", "surface", "search", "query", "independence", "io",
-         "front", "caster"]
+ORDER = ["support", "geometry", "mesh", "scheme", "patch", "bounds", "shape", "bvh", "surface", "search", "query", "independence",
+         "io", "front", "caster"]
 SHARED = ORDER[0]
 EXCEPTIONS = {
     "bvh": {"support", "geometry"},  # knows sets and ids, no surfaces

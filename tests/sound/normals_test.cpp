@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <oracle/normal_twin.h>
 #include <snug/patch/evaluate.h>
-#include <snug/patch/normal_cone.h>
+#include <snug/shape/normal_cone.h>
 #include <testing/counts.h>
 #include <testing/scheme_surfaces.h>
 

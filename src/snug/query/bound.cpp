@@ -9,7 +9,7 @@
 #include <snug/bounds/table_triangle.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
-#include <snug/patch/normal_cone.h>
+#include <snug/shape/normal_cone.h>
 #include <snug/surface/unscale.h>
 #include <support/parallel.h>
 

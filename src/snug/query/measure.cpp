@@ -9,9 +9,9 @@
 
 #include <snug/geometry/interval.h>
 #include <snug/patch/evaluate.h>
-#include <snug/patch/regular_integrals.h>
-#include <snug/patch/tip_area.h>
 #include <snug/search/solid.h>
+#include <snug/shape/regular_integrals.h>
+#include <snug/shape/tip_area.h>
 #include <snug/surface/unscale.h>
 #include <support/error.h>
 #include <support/ordering.h>

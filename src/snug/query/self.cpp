@@ -9,11 +9,11 @@
 
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
-#include <snug/patch/star.h>
 #include <snug/query/self_near.h>
 #include <snug/query/self_pieces.h>
 #include <snug/search/crossing.h>
 #include <snug/search/quadratic_bvh.h>
+#include <snug/shape/star.h>
 #include <snug/surface/evaluate.h>
 #include <snug/surface/level_complex.h>
 #include <snug/surface/unscale.h>

@@ -15,10 +15,10 @@
 #include <snug/geometry/rounding.h>
 #include <snug/geometry/triangle_distance.h>
 #include <snug/patch/evaluate.h>
-#include <snug/patch/patch_lengths.h>
-#include <snug/patch/star_stretch.h>
 #include <snug/query/self_pieces.h>
 #include <snug/search/quadratic_bvh.h>
+#include <snug/shape/patch_lengths.h>
+#include <snug/shape/star_stretch.h>
 #include <support/parallel.h>
 
 namespace snug {

@@ -1,4 +1,4 @@
-#include <snug/patch/area_piece.h>
+#include <snug/shape/area_piece.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <snug/patch/regular_integrals.h>
+#include <snug/shape/regular_integrals.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <array>
 
 #include <snug/patch/patch.h>
-#include <snug/patch/tip_area.h>
+#include <snug/shape/tip_area.h>
 
 namespace snug {
 

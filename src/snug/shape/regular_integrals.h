@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include <snug/patch/area_piece.h>
 #include <snug/patch/net_kernels.h>
 #include <snug/scheme/basis.h>
+#include <snug/shape/area_piece.h>
 #include <support/point.h>
 
 namespace snug {

@@ -1,4 +1,4 @@
-#include <snug/patch/star_stretch.h>
+#include <snug/shape/star_stretch.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // Cones of normals of single patches: what has none, what rounding does, and the orientation.
 
-#include <snug/patch/normal_cone.h>
+#include <snug/shape/normal_cone.h>
 
 #include <gtest/gtest.h>
 #include <oracle/tagged_shapes.h>

@@ -1,6 +1,6 @@
 // Bounds of the area of a part hold, and their order is what it is meant to be.
 
-#include <snug/patch/area_piece.h>
+#include <snug/shape/area_piece.h>
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include <snug/patch/tip_limit.h>
+#include <snug/shape/tip_limit.h>
 
 namespace snug {
 

@@ -1,4 +1,4 @@
-#include <snug/patch/patch_lengths.h>
+#include <snug/shape/patch_lengths.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <snug/patch/star.h>
+#include <snug/shape/star.h>
 
 #include <algorithm>
 #include <array>

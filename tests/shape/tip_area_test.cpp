@@ -1,6 +1,6 @@
 // Upper bounds of the areas of patches hold for control points anywhere.
 
-#include <snug/patch/tip_area.h>
+#include <snug/shape/tip_area.h>
 
 #include <gtest/gtest.h>
 #include <snug/patch/limit_evaluator.h>

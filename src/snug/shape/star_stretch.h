@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include <snug/patch/star.h>
+#include <snug/shape/star.h>
 
 namespace snug {
 

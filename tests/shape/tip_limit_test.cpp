@@ -1,6 +1,6 @@
 // What the nets at extraordinary corners tend to, against some twenty levels of them.
 
-#include <snug/patch/tip_limit.h>
+#include <snug/shape/tip_limit.h>
 
 #include <gtest/gtest.h>
 

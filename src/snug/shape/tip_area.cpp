@@ -1,4 +1,4 @@
-#include <snug/patch/tip_area.h>
+#include <snug/shape/tip_area.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <snug/patch/tip_limit.h>
+#include <snug/shape/tip_limit.h>
 
 #include <algorithm>
 #include <cmath>

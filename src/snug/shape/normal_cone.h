@@ -3,7 +3,7 @@
 #include <optional>
 
 #include <snug/bound.h>
-#include <snug/patch/tip_limit.h>
+#include <snug/shape/tip_limit.h>
 
 namespace snug {
 

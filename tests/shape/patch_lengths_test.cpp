@@ -1,11 +1,11 @@
 // Lengths within patches: no sampled way, or distance, is longer than its bound; nor are bounds far from them.
 
-#include <snug/patch/patch_lengths.h>
+#include <snug/shape/patch_lengths.h>
 
 #include <gtest/gtest.h>
 #include <oracle/tagged_shapes.h>
 #include <snug/patch/evaluate.h>
-#include <snug/patch/star_stretch.h>
+#include <snug/shape/star_stretch.h>
 #include <snug/surface/level_complex.h>
 #include <testing/tagged.h>
 

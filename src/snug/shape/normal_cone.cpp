@@ -1,4 +1,4 @@
-#include <snug/patch/normal_cone.h>
+#include <snug/shape/normal_cone.h>
 
 #include <algorithm>
 #include <array>

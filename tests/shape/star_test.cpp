@@ -1,6 +1,6 @@
 // Stars of pieces: smooth ones are injective, folded and doubled ones are never said to be.
 
-#include <snug/patch/star.h>
+#include <snug/shape/star.h>
 
 #include <gtest/gtest.h>
 #include <oracle/tagged_shapes.h>
