@@ -167,9 +167,9 @@ Fan Piece::Ring::fan(bool is_sharp) const {
   Fan fan;
   fan.closed = closed;
   fan.sharp = is_sharp;
-  const std::size_t faces = closed ? vertices.size() : vertices.size() - 1;
+  const std::size_t count = closed ? vertices.size() : vertices.size() - 1;
   fan.before = static_cast<std::uint16_t>(own);
-  fan.after = static_cast<std::uint16_t>(faces - 1 - own);
+  fan.after = static_cast<std::uint16_t>(count - 1 - own);
   return fan;
 }
 

@@ -19,9 +19,7 @@ namespace {
 using detail::Kind;
 using detail::Net;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRoundoff = 0x1p-52;
-constexpr std::uint32_t kNone = UINT32_MAX;
 
 Point operator+(const Point& a, const Point& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 Point operator*(double s, const Point& a) { return {s * a[0], s * a[1], s * a[2]}; }
