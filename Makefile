@@ -25,11 +25,11 @@ help:  ## this list
 # A fresh clone builds the command alone, without the libraries of tests; where they are configured their objects serve.
 demo_preset = $(if $(wildcard build/release/CMakeCache.txt),release,demo)
 python_preset = $(if $(wildcard build/release/CMakeCache.txt),release,python)
-demo:  ## two surfaces: do they touch? and a picture of them, build/demo.png; where Emscripten is installed a page, build/demo.html
+demo:  ## two surfaces: do they touch? and a picture of them, build/demo.png; after make page a page of them, build/demo.html
 	@scripts/install_packages build
 	@$(call build,$(demo_preset),snug_command)
 	@scripts/demo build/$(demo_preset)/bin/snug build/demo.png
-	@$(if $(and $(shell command -v em++),$(shell command -v npm)),$(MAKE) build/demo.html,\
+	@$(if $(wildcard build/web/snug.html),$(MAKE) build/demo.html,\
 	  echo "A page to move the parts in: make page, then make demo again")
 
 .PHONY: build/demo.html
