@@ -28,10 +28,9 @@ oracle::TaggedMesh moved(oracle::TaggedMesh mesh, double scale, const oracle::Po
 TEST(normal_cone, of_a_plane_is_its_normal) {
   for (const Scheme scheme : {Scheme::catmark, Scheme::bilinear, Scheme::doo_sabin, Scheme::midedge}) {
     const LimitSurface surface = surface_of(oracle::meshes::quad_grid(5, 4), scheme);
-    TipLimits tips;
     std::size_t cones = 0;
     testing::for_each_patch(surface, [&](PatchId p) {
-      const auto cone = normal_cone(surface.patch(p), tips);
+      const auto cone = normal_cone(surface.patch(p));
       ASSERT_TRUE(cone);
       ++cones;
       EXPECT_LT(cone->angle, 1e-12);
@@ -47,10 +46,9 @@ TEST(normal_cone, points_outward_where_faces_do) {
                                         ? oracle::meshes::triangulated(oracle::meshes::cube())
                                         : oracle::meshes::cube();
     const LimitSurface surface = surface_of(moved(cube, 2, {-1, -1, -1}), scheme);
-    TipLimits tips;
     testing::for_each_patch(surface, [&](PatchId p) {
       const Patch patch = surface.patch(p);
-      const auto cone = normal_cone(patch, tips);
+      const auto cone = normal_cone(patch);
       ASSERT_TRUE(cone) << name_of(scheme) << " " << p.index();
       EXPECT_LT(cone->angle, std::numbers::pi / 2);
       EXPECT_GT(dot(cone->axis, patch.origin + limit_corners(patch)[0] - Point3{}), 0);
@@ -62,12 +60,10 @@ TEST(normal_cone, is_the_same_at_any_size_and_wider_far_away) {
   std::mt19937_64 random(1);
   const oracle::TaggedMesh mesh = oracle::meshes::shaken(oracle::meshes::prism(5), 0.1, random);
   const LimitSurface here = surface_of(mesh, Scheme::catmark);
-  TipLimits tips;
   for (const double scale : {0x1p-900, 0x1p-30, 0x1p900}) {
     const LimitSurface there = surface_of(moved(mesh, scale, {}), Scheme::catmark);
-    TipLimits tips_there;
     testing::for_each_patch(here, [&](PatchId p) {
-      const auto a = normal_cone(here.patch(p), tips), b = normal_cone(there.patch(p), tips_there);
+      const auto a = normal_cone(here.patch(p)), b = normal_cone(there.patch(p));
       ASSERT_EQ(a.has_value(), b.has_value());
       if (a) {
         EXPECT_EQ(a->angle, b->angle);
@@ -75,9 +71,8 @@ TEST(normal_cone, is_the_same_at_any_size_and_wider_far_away) {
     });
   }
   const LimitSurface far = surface_of(moved(mesh, 1, {0x1p40, 0, 0}), Scheme::catmark);
-  TipLimits tips_far;
   testing::for_each_patch(here, [&](PatchId p) {
-    const auto a = normal_cone(here.patch(p), tips), b = normal_cone(far.patch(p), tips_far);
+    const auto a = normal_cone(here.patch(p)), b = normal_cone(far.patch(p));
     if (a && b) {
       EXPECT_NEAR(a->angle, b->angle, 0.1);
     }
@@ -87,9 +82,8 @@ TEST(normal_cone, is_the_same_at_any_size_and_wider_far_away) {
 TEST(normal_cone, is_none_where_the_surface_may_have_no_normal) {
   const auto none = [&](const oracle::TaggedMesh& mesh, Scheme scheme) {
     const LimitSurface surface = surface_of(mesh, scheme);
-    TipLimits tips;
-    testing::for_each_patch(
-        surface, [&](PatchId p) { EXPECT_FALSE(normal_cone(surface.patch(p), tips)) << p.index(); });
+    testing::for_each_patch(surface,
+                            [&](PatchId p) { EXPECT_FALSE(normal_cone(surface.patch(p))) << p.index(); });
   };
   // A point, a line, a quad that is folded onto itself.
   oracle::TaggedMesh flat = oracle::meshes::quad_grid(1, 1);
@@ -107,11 +101,10 @@ TEST(normal_cone, is_none_where_the_surface_may_have_no_normal) {
       mesh.corners.push_back({0, 10});
     }
     const LimitSurface surface = surface_of(mesh, Scheme::catmark);
-    TipLimits tips;
     testing::for_each_patch(surface, [&](PatchId p) {
       const std::size_t part = surface.place(p).part;
       if (part == 0 && mesh.polygons[surface.place(p).owner][0] == 0) {
-        EXPECT_FALSE(normal_cone(surface.patch(p), tips)) << p.index();
+        EXPECT_FALSE(normal_cone(surface.patch(p))) << p.index();
       }
     });
   }

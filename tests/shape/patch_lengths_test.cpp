@@ -54,12 +54,11 @@ TEST(patch_lengths, bound_samples) {
         oracle::TaggedMesh mesh = meshes::shaken(meshes::prism(n), amount, random);
         if (scheme == Scheme::loop) mesh = meshes::triangulated(mesh);
         const LimitSurface surface = surface_of(mesh, scheme);
-        TipLengths tips;
         for (std::uint32_t p = 0; p < surface.patch_count(); p += 3) {
           if (!surface.has_patch(PatchId(p))) continue;
           Patch patch = surface.patch(PatchId(p));
           for (unsigned level = 0; level < 3; ++level) {
-            const PatchLengths lengths = patch_lengths(patch, tips);
+            const PatchLengths lengths = patch_lengths(patch);
             double largest = 0;
             const double slack = 1 + 1e-12;
             for (int i = 0; i < 20; ++i) {
@@ -114,8 +113,7 @@ double stretch_at(const LimitSurface& surface, const LevelVertex& vertex, unsign
   }
   std::vector<StarSector> sectors;
   for (std::size_t s = 0; s < patches.size(); ++s) sectors.push_back({&patches[s], star.sectors[s].centre});
-  TipLimits tips;
-  return star_stretch(sectors, star.closed, tips);
+  return star_stretch(sectors, star.closed);
 }
 
 TEST(star_stretch, of_smooth_vertices_is_small_and_of_folds_what_their_angle_says) {

@@ -1,5 +1,6 @@
 // Stars of pieces: smooth ones are injective, folded and doubled ones are never said to be.
 
+#include <snug/shape/corner_asymptotics.h>
 #include <snug/shape/star.h>
 
 #include <gtest/gtest.h>
@@ -78,8 +79,7 @@ LimitSurface surface_of(const oracle::TaggedMesh& mesh, Scheme scheme = Scheme::
 bool injective_at_centre(const oracle::TaggedMesh& mesh, unsigned level) {
   const LimitSurface surface = surface_of(mesh);
   const CentreStar star = star_at_centre(surface, level);
-  TipLimits tips;
-  return certainly_injective(star.sectors, star.closed, tips);
+  return certainly_injective(star.sectors, star.closed);
 }
 
 TEST(star, of_any_common_valence_is_injective_where_it_is_smooth) {
@@ -117,8 +117,7 @@ TEST(star, of_flat_quads_is_injective_unless_it_overlaps_itself) {
         const LimitSurface surface = surface_of(mesh, Scheme::bilinear);
         const CentreStar star = star_at_centre(surface, 0);
         ASSERT_EQ(star.closed, closed);
-        TipLimits tips;
-        const bool proved = certainly_injective(star.sectors, star.closed, tips);
+        const bool proved = certainly_injective(star.sectors, star.closed);
         if (turns > 1 || (turns == 1 && !closed)) {
           EXPECT_FALSE(proved) << n << " over " << turns;
         } else {
@@ -185,8 +184,7 @@ TEST(star, whose_quads_overlap_is_never_injective) {
     }
     const LimitSurface surface = surface_of(mesh, Scheme::bilinear);
     const CentreStar star = star_at_centre(surface, 0);
-    TipLimits tips;
-    const bool proved = certainly_injective(star.sectors, star.closed, tips);
+    const bool proved = certainly_injective(star.sectors, star.closed);
     EXPECT_FALSE(proved && over) << trial;
     injective += proved ? 1 : 0;
     overlapping += over ? 1 : 0;
@@ -222,8 +220,7 @@ TEST(star, that_turns_over_somewhere_in_a_plane_is_never_injective) {
       const LimitSurface surface = surface_of(mesh);
       for (unsigned level = 0; level <= 2; ++level) {
         const CentreStar star = star_at_centre(surface, level);
-        TipLimits tips;
-        const bool proved = certainly_injective(star.sectors, star.closed, tips);
+        const bool proved = certainly_injective(star.sectors, star.closed);
         bool up = false, down = false;
         for (const Patch& patch : star.patches) {
           for (int i = 0; i <= 12; ++i) {
@@ -290,8 +287,7 @@ TEST(star, at_a_boundary_of_few_faces_is_injective) {
       const LimitSurface surface = surface_of(bowl, triangles ? Scheme::loop : Scheme::catmark);
       for (unsigned level = 2; level <= 4; ++level) {
         const CentreStar star = star_at_centre(surface, level);
-        TipLimits tips;
-        EXPECT_EQ(certainly_injective(star.sectors, star.closed, tips), n <= most_faces(triangles))
+        EXPECT_EQ(certainly_injective(star.sectors, star.closed), n <= most_faces(triangles))
             << n << " level " << level;
       }
     }
@@ -369,12 +365,10 @@ TEST(star, whose_boundary_corner_is_met_after_splits_is_not_proved_before) {
           p = {std::cos(angle) * x - std::sin(angle) * y, std::sin(angle) * x + std::cos(angle) * y, 0};
         }
         const LimitSurface surface = surface_of(mesh);
-        TipLimits tips;
-        ASSERT_EQ(tips.find(*surface.patch(PatchId(0)).kind), nullptr);
+        ASSERT_EQ(asymptotics_of(*surface.patch(PatchId(0)).kind).characteristic_map(), nullptr);
         for (unsigned level = 0; level <= 1; ++level) {
           const CentreStar star = star_at_centre(surface, level);
-          EXPECT_EQ(certainly_injective(star.sectors, star.closed, tips), level == 1)
-              << n << " turn " << turn;
+          EXPECT_EQ(certainly_injective(star.sectors, star.closed), level == 1) << n << " turn " << turn;
         }
       }
     }
@@ -413,8 +407,7 @@ TEST(star, that_turns_over_at_a_boundary_in_a_plane_is_never_injective) {
     const auto tangents = border_tangents(mesh, options);
     for (unsigned level = 0; level <= 1; ++level) {
       const CentreStar star = star_at_centre(surface, level);
-      TipLimits tips;
-      const bool proved = certainly_injective(star.sectors, star.closed, tips);
+      const bool proved = certainly_injective(star.sectors, star.closed);
       const bool down = cross(tangents[0], tangents[1]).z < 0;
       // Farther off it is on the other side.
       bool both = false;
@@ -449,8 +442,7 @@ bool proved_of_bilinear_quads(const oracle::TaggedMesh& mesh) {
   for (const auto& sector : star.sectors) patches.push_back(surface.patch(PatchId(sector.piece.patch)));
   std::vector<StarSector> sectors;
   for (std::size_t s = 0; s < patches.size(); ++s) sectors.push_back({&patches[s], star.sectors[s].centre});
-  TipLimits tips;
-  return certainly_injective(sectors, star.closed, tips);
+  return certainly_injective(sectors, star.closed);
 }
 
 // Convex quads in the plane: condition 2 holds, and condition 3, too; but along lines of every layout that is tried

@@ -12,6 +12,7 @@
 
 namespace snug {
 
+class CornerAsymptotics;
 class Kind;
 class KindCache;
 
@@ -112,6 +113,7 @@ class Kind {
   [[nodiscard]] const std::vector<KindChild>& children() const;
 
  private:
+  friend const CornerAsymptotics& asymptotics_of(const Kind& kind);  // shape/corner_asymptotics.h
   Kind(KindCache& library, KindId id, const KindKey& key, const Neighbourhood& around);
 
   KindCache& library_;
@@ -128,6 +130,7 @@ class Kind {
   Lazy<KindStep> step_;
   Lazy<FarCorner> far_corner_;
   Lazy<std::vector<KindChild>> children_;
+  Lazy<std::shared_ptr<const CornerAsymptotics>> asymptotics_;
 };
 
 /// All kinds met so far. Grows, never forgets; kinds stay where they are as long as the library lives.

@@ -34,10 +34,7 @@ class SurfacePieces {
   static constexpr unsigned children = 4;
 
   SurfacePieces(const LimitSurface& surface, BoundMethod method)
-      : surface_(surface),
-        method_(method),
-        back_(surface.scale().inverse()),
-        tips_(std::make_shared<TipLimits>()) {}
+      : surface_(surface), method_(method), back_(surface.scale().inverse()) {}
 
   [[nodiscard]] std::optional<Patch> whole(std::size_t i) const {
     return surface_.has_patch(PatchId(i)) ? std::optional(surface_.patch(PatchId(i))) : std::nullopt;
@@ -56,13 +53,12 @@ class SurfacePieces {
     return snug::enclose(corners, patch.origin, offset, interval_simplex(points_, corners), back_, out);
   }
 
-  void add_normals(const Patch& patch, PieceEnclosure& out) { out.normals = normal_cone(patch, *tips_); }
+  void add_normals(const Patch& patch, PieceEnclosure& out) { out.normals = normal_cone(patch); }
 
  private:
   const LimitSurface& surface_;
   BoundMethod method_;
   PowerOfTwo back_;
-  std::shared_ptr<TipLimits> tips_;  // of all threads
   HullPoints points_;
 };
 

@@ -10,8 +10,8 @@
 #include <snug/geometry/interval.h>
 #include <snug/patch/evaluate.h>
 #include <snug/search/solid.h>
+#include <snug/shape/corner_asymptotics.h>
 #include <snug/shape/regular_integrals.h>
-#include <snug/shape/tip_area.h>
 #include <snug/surface/unscale.h>
 #include <support/error.h>
 #include <support/ordering.h>
@@ -151,7 +151,7 @@ class PatchMeasurer {
 
   // Upper bound of the area of a net's piece.
   double area_of(const Net& net) {
-    const double factor = tip_areas_.factor(*net.kind);
+    const double factor = asymptotics_of(*net.kind).area_factor();
     if (!(factor < INFINITY)) {
       throw InputError(
           InputProblem::refused,
@@ -257,7 +257,6 @@ class PatchMeasurer {
   Point3 origin_;
   std::uint64_t most_splits_;
   const WorkMonitor& monitor_;
-  TipAreas tip_areas_;
   PatchMeasures result_;
   Patch patch_;
   Vector3 middle_;

@@ -201,20 +201,13 @@ class SelfSearch {
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     if (vertices.size() > budget_) return;
     std::vector<std::uint8_t> proved(vertices.size(), 0);
-    struct State {
-      SelfPieces pieces;
-      TipLimits tips;
-    };
     parallel_for_with(
-        vertices.size(), options_.threads,
-        [&] {
-          return State{SelfPieces(surface_), {}};
-        },
-        [&](State& state, std::size_t begin, std::size_t end) {
+        vertices.size(), options_.threads, [&] { return SelfPieces(surface_); },
+        [&](SelfPieces& pieces, std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             monitor_.checkpoint();
-            state.pieces.drop_many();
-            proved[i] = star_holds(state.pieces, state.tips, vertices[i], level) ? 1 : 0;
+            pieces.drop_many();
+            proved[i] = star_holds(pieces, vertices[i], level) ? 1 : 0;
           }
         });
     spend(vertices.size());
@@ -228,14 +221,13 @@ class SelfSearch {
     });
   }
 
-  [[nodiscard]] bool star_holds(SelfPieces& pieces, TipLimits& tips, const LevelVertex& vertex,
-                                unsigned level) const {
+  [[nodiscard]] bool star_holds(SelfPieces& pieces, const LevelVertex& vertex, unsigned level) const {
     const LevelStar star = complex_.star(vertex, level);
     if (!star.fan) return false;
     for (const auto& sector : star.sectors) static_cast<void>(pieces.patch(sector.piece));
     std::vector<StarSector> sectors;
     for (const auto& sector : star.sectors) sectors.push_back({&pieces.patch(sector.piece), sector.centre});
-    return certainly_injective(sectors, star.closed, tips);
+    return certainly_injective(sectors, star.closed);
   }
 
   // The children's pairs: those with a common corner, and `far` the others.

@@ -104,7 +104,7 @@ class LevelPieces {
     return vertex.around;
   }
   [[nodiscard]] const PatchLengths& lengths(Node& node) {
-    if (!node.lengths) node.lengths = patch_lengths(pieces_.patch(node.name), tips_);
+    if (!node.lengths) node.lengths = patch_lengths(pieces_.patch(node.name));
     return *node.lengths;
   }
   // Where many have come together. What was returned is gone.
@@ -122,7 +122,6 @@ class LevelPieces {
   const LevelComplex* complex_;
   unsigned level_;
   SelfPieces pieces_;
-  TipLengths tips_;
   std::unordered_map<PieceName, Node, PieceNameHash> nodes_;
   std::unordered_map<LevelVertex, Vertex, LevelVertexHash> vertices_;
   std::uint64_t searches_ = 0;
@@ -351,20 +350,13 @@ class NearSearch {
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     if (vertices.size() > budget_) return;
     std::vector<std::uint8_t> short_ways(vertices.size(), 0);
-    struct State {
-      SelfPieces pieces;
-      TipLimits tips;
-    };
     parallel_for_with(
-        vertices.size(), options_.threads,
-        [&] {
-          return State{SelfPieces(surface_), {}};
-        },
-        [&](State& state, std::size_t begin, std::size_t end) {
+        vertices.size(), options_.threads, [&] { return SelfPieces(surface_); },
+        [&](SelfPieces& pieces, std::size_t begin, std::size_t end) {
           for (std::size_t i = begin; i < end; ++i) {
             monitor_.checkpoint();
-            state.pieces.drop_many();
-            const double stretch = stretch_of(state.pieces, state.tips, vertices[i], level);
+            pieces.drop_many();
+            const double stretch = stretch_of(pieces, vertices[i], level);
             short_ways[i] = enlarged(stretch * options_.tolerance) <= options_.radius ? 1 : 0;
           }
         });
@@ -380,13 +372,13 @@ class NearSearch {
     });
   }
 
-  double stretch_of(SelfPieces& pieces, TipLimits& tips, const LevelVertex& vertex, unsigned level) const {
+  double stretch_of(SelfPieces& pieces, const LevelVertex& vertex, unsigned level) const {
     const LevelStar star = complex_.star(vertex, level);
     if (!star.fan) return INFINITY;
     for (const auto& sector : star.sectors) static_cast<void>(pieces.patch(sector.piece));
     std::vector<StarSector> sectors;
     for (const auto& sector : star.sectors) sectors.push_back({&pieces.patch(sector.piece), sector.centre});
-    return star_stretch(sectors, star.closed, tips);
+    return star_stretch(sectors, star.closed);
   }
 
   // Those that short ways along the surface lead between; tells which others are far, and near each other.

@@ -10,6 +10,7 @@
 #include <snug/geometry/interval.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <snug/shape/corner_asymptotics.h>
 #include <support/direction.h>
 
 namespace snug {
@@ -54,8 +55,6 @@ void centre_at(std::size_t corner, Patch& patch) {
 // are not are split.
 class NormalBalls {
  public:
-  explicit NormalBalls(TipLimits& tips) : tips_(tips) {}
-
   // False where no set of vectors is found.
   [[nodiscard]] bool add(const Patch& patch) { return add(patch, passing_levels); }
   [[nodiscard]] bool add_near(Vector3 axis, const Patch& patch) {
@@ -72,7 +71,8 @@ class NormalBalls {
   bool add(const Patch& patch, unsigned levels) {
     if (patch.kind->polynomial()) return add_polynomial(patch, nullptr, most_splits);
     if (levels == 0) return false;
-    if (const TipLimit* tip = tips_.find(*patch.kind)) return add_tip(*tip, patch, levels - 1);
+    if (const auto* tip = asymptotics_of(*patch.kind).characteristic_map())
+      return add_tip(*tip, patch, levels - 1);
     for (unsigned child = 0; child < 4; ++child) {
       if (!add(split(patch, child), levels - 1)) return false;
     }
@@ -80,7 +80,7 @@ class NormalBalls {
   }
 
   // Ring after ring, until a net stands for all that are left.
-  bool add_tip(const TipLimit& tip, Patch patch, unsigned levels) {
+  bool add_tip(const CharacteristicMap& tip, Patch patch, unsigned levels) {
     patch.path = {};
     const auto corner = static_cast<unsigned>((tip.corner() + patch.first) % 3);
     if (!axis_) last_rings_.push_back(0);
@@ -88,7 +88,7 @@ class NormalBalls {
     for (unsigned ring = 0; ring < max_rings; ++ring) {
       centre_at(corner, patch);
       if (ring >= last_rings_[place]) {
-        const double far = add_lasting(tip, patch, corner);
+        const double far = add_limit(tip, patch, corner);
         if (far <= 1) return true;
         if (axis_) return false;
         // What is left out shrinks to a half a level, or to more.
@@ -104,9 +104,9 @@ class NormalBalls {
 
   // Adds the vectors of all rings from this patch on, if what is left out is small enough. Returns how many times
   // too large it is.
-  double add_lasting(const TipLimit& tip, const Patch& patch, unsigned corner) {
-    const TipLimit::Lasting lasting = tip.lasting(patch);
-    const double error = lasting.net.error / (most_error * lasting.net.largest);
+  double add_limit(const CharacteristicMap& tip, const Patch& patch, unsigned corner) {
+    const CharacteristicMap::LimitNets limit = tip.limit_nets(patch);
+    const double error = limit.net.error / (most_error * limit.net.largest);
     if (!(error <= 1)) return std::isfinite(error) ? error : 0x1p8;
     const std::size_t before = balls_.size();
     const bool was_complete = complete_;
@@ -114,7 +114,7 @@ class NormalBalls {
     complete_ = true;
     for (unsigned child = 0; added && child < 4; ++child) {
       if (child != corner)
-        added = add_nets(split(lasting.net, child), split(lasting.dominant, child), net_levels);
+        added = add_nets(split(limit.net, child), split(limit.dominant, child), net_levels);
     }
     const double wide = added && complete_ ? widening(before) / most_widening : 2;
     complete_ = was_complete;
@@ -126,7 +126,7 @@ class NormalBalls {
   // Halves of quads whose fourth corner is extraordinary are split before they are polynomial.
   bool add_nets(const Patch& net, const Patch& dominant, unsigned levels) {
     if (net.kind->polynomial()) return add_polynomial(net, &dominant, most_splits);
-    if (levels == 0 || tips_.find(*net.kind) != nullptr) return false;
+    if (levels == 0 || asymptotics_of(*net.kind).characteristic_map() != nullptr) return false;
     for (unsigned child = 0; child < 4; ++child) {
       if (!add_nets(split(net, child), split(dominant, child), levels - 1)) return false;
     }
@@ -253,7 +253,6 @@ class NormalBalls {
     return near;
   }
 
-  TipLimits& tips_;
   std::optional<Vector3> axis_;
   bool complete_ = true;
   std::vector<Ball> balls_;
@@ -330,10 +329,10 @@ std::optional<NormalCone> cone_around(Vector3 axis, std::span<const Ball> balls)
 
 }  // namespace
 
-std::optional<NormalCone> normal_cone(const Patch& piece, TipLimits& tips) {
+std::optional<NormalCone> normal_cone(const Patch& piece) {
   Patch patch = piece;
   patch.path = {};  // room for its pieces
-  NormalBalls normals(tips);
+  NormalBalls normals;
   if (!normals.add(patch) || normals.balls().empty()) return std::nullopt;
   const Vector3 axis = axis_of(normals.balls());
   if (normals.complete()) {

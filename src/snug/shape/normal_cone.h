@@ -3,7 +3,7 @@
 #include <optional>
 
 #include <snug/bound.h>
-#include <snug/shape/tip_limit.h>
+#include <snug/patch/patch.h>
 
 namespace snug {
 
@@ -15,6 +15,6 @@ namespace snug {
 /// Requires:  no polygon.
 /// Cost:      4 to 6 microseconds for a regular patch; with an extraordinary corner 0.1 to 0.6 milliseconds, by ring.
 /// Source:    derivations/normals.md.
-[[nodiscard]] std::optional<NormalCone> normal_cone(const Patch& piece, TipLimits& tips);
+[[nodiscard]] std::optional<NormalCone> normal_cone(const Patch& piece);
 
 }  // namespace snug

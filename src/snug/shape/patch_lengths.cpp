@@ -5,6 +5,7 @@
 
 #include <snug/geometry/rounding.h>
 #include <snug/scheme/bezier.h>
+#include <snug/shape/corner_asymptotics.h>
 
 namespace snug {
 namespace {
@@ -51,18 +52,18 @@ PatchLengths of_polynomial(const Patch& patch) {
   return result;
 }
 
-double diameter_of(const Patch& patch, TipLengths& tips, unsigned levels) {
+double diameter_of(const Patch& patch, unsigned levels) {
   if (patch.kind->polynomial()) return of_polynomial(patch).diameter;
   if (levels == 0) {
     Box3 box;
     for (const Vector3& p : patch.points) box.add(Point3{} + p);
     const double d = length(box.upper - box.lower) + spatial_error(2 * patch.error);
-    return enlarged(tips.factor(*patch.kind) * enlarged(d));
+    return enlarged(asymptotics_of(*patch.kind).length_factor() * enlarged(d));
   }
   // Any two children have a common corner.
   double largest = 0, second = 0;
   for (unsigned child = 0; child < 4; ++child) {
-    const double d = diameter_of(split(patch, child), tips, levels - 1);
+    const double d = diameter_of(split(patch, child), levels - 1);
     second = std::max(second, std::min(largest, d));
     largest = std::max(largest, d);
   }
@@ -83,9 +84,9 @@ bool is_tip(const Kind& kind) {
 
 }  // namespace
 
-PatchLengths patch_lengths(const Patch& patch, TipLengths& tips) {
+PatchLengths patch_lengths(const Patch& patch) {
   if (patch.kind->polynomial()) return of_polynomial(patch);
-  const double d = diameter_of(patch, tips, is_tip(*patch.kind) ? tip_levels : passing_levels);
+  const double d = diameter_of(patch, is_tip(*patch.kind) ? tip_levels : passing_levels);
   return {{d, d, d}, {d, d, d}, d};
 }
 

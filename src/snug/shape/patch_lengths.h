@@ -3,7 +3,6 @@
 #include <array>
 
 #include <snug/patch/patch.h>
-#include <snug/shape/tip_area.h>
 
 namespace snug {
 
@@ -23,6 +22,6 @@ struct PatchLengths {
 /// Requires:  no polygon.
 /// Cost:      a microsecond for a regular patch; some 25 splits at an extraordinary corner.
 /// Source:    derivations/self_contact.md, "Lengths".
-[[nodiscard]] PatchLengths patch_lengths(const Patch& patch, TipLengths& tips);
+[[nodiscard]] PatchLengths patch_lengths(const Patch& patch);
 
 }  // namespace snug

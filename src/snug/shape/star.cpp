@@ -10,6 +10,8 @@
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/scheme/bezier.h>
+#include <snug/shape/corner_asymptotics.h>
+#include <snug/shape/corner_rings.h>
 #include <support/direction.h>
 
 namespace snug {
@@ -119,14 +121,18 @@ struct Condition {
   const Turn* turn = nullptr;  // none: (ii)
 };
 
+const CharacteristicMap* map_of(const Kind& kind) {
+  return kind.polynomial() ? nullptr : asymptotics_of(kind).characteristic_map();
+}
+
 class SectorCheck {
  public:
-  SectorCheck(TipLimits& tips, const Condition& condition, const std::array<Point2, 3>& place)
-      : tips_(tips), condition_(condition), place_(place) {}
+  SectorCheck(const Condition& condition, const std::array<Point2, 3>& place)
+      : condition_(condition), place_(place) {}
 
   [[nodiscard]] bool holds(const Patch& patch, unsigned border) {
     // The star's axes suit corners of its own pieces alone.
-    const TipLimit* const tip = patch.kind->polynomial() ? nullptr : tips_.find(*patch.kind);
+    const CharacteristicMap* const tip = map_of(*patch.kind);
     if (tip != nullptr) return tip_holds(*tip, patch, border, 1, passing_levels);
     return holds(patch, border, 1, patch.kind->polynomial() ? 1 : passing_levels);
   }
@@ -136,7 +142,7 @@ class SectorCheck {
   bool holds(const Patch& patch, unsigned border, double side, unsigned levels) {
     if (patch.kind->polynomial()) return polynomial_holds(patch, border, side, levels);
     if (levels == 0) return false;
-    if (const TipLimit* tip = tips_.find(*patch.kind)) {
+    if (const CharacteristicMap* tip = map_of(*patch.kind)) {
       return tip->conformal() && tip_holds(*tip, patch, border, side, levels - 1);
     }
     for (unsigned child = 0; child < 4; ++child) {
@@ -153,7 +159,8 @@ class SectorCheck {
     return holds(piece, own, child == 3 ? -side : side, levels);
   }
 
-  bool tip_holds(const TipLimit& tip, const Patch& patch, unsigned border, double side, unsigned levels) {
+  bool tip_holds(const CharacteristicMap& tip, const Patch& patch, unsigned border, double side,
+                 unsigned levels) {
     const auto corner = static_cast<unsigned>((tip.corner() + patch.first) % 3);
     const auto ring_holds = [&](const Patch& net) {
       for (unsigned child = 0; child < 4; ++child) {
@@ -161,10 +168,10 @@ class SectorCheck {
       }
       return true;
     };
-    const TipRings rings(tip, patch);
+    const CornerRings rings(tip, patch);
     for (std::size_t ring = 0; ring < rings.count(); ++ring) {
-      const Patch lasting = rings.lasting(ring);
-      if (lasting.error < most_error * lasting.largest && ring_holds(lasting)) return true;
+      const Patch further = rings.all_further(ring);
+      if (further.error < most_error * further.largest && ring_holds(further)) return true;
       if (!ring_holds(rings.net(ring))) return false;
       border &= ~(1u << ((corner + 1) % 3));
     }
@@ -219,7 +226,6 @@ class SectorCheck {
     return part == 0 ? std::array{c[0], c[1], m} : std::array{m, c[1], c[2]};
   }
 
-  TipLimits& tips_;
   const Condition& condition_;
   const std::array<Point2, 3>& place_;
 };
@@ -260,8 +266,7 @@ std::array<Vector3, 2> spokes_of(const StarSector& sector) {
 
 class StarCheck {
  public:
-  StarCheck(std::span<const StarSector> sectors, bool closed, TipLimits& tips)
-      : sectors_(sectors), closed_(closed), tips_(tips) {}
+  StarCheck(std::span<const StarSector> sectors, bool closed) : sectors_(sectors), closed_(closed) {}
 
   [[nodiscard]] bool certainly_injective() {
     if (sectors_.empty() || (closed_ && sectors_.size() < 3)) return false;
@@ -269,7 +274,7 @@ class StarCheck {
     for (const StarSector& sector : sectors_) flat_.push_back({seen(*sector.patch, frame_), {}, 0});
     const Condition determinant;
     for (FlatSector& sector : flat_) {
-      if (!SectorCheck(tips_, determinant, sector.place).holds(sector.patch, 0)) return false;
+      if (!SectorCheck(determinant, sector.place).holds(sector.patch, 0)) return false;
     }
     return monotone();
   }
@@ -321,7 +326,7 @@ class StarCheck {
     std::optional<std::size_t> at;
     for (std::size_t s = 0; s < sectors_.size(); ++s) {
       const Patch& patch = *sectors_[s].patch;
-      const TipLimit* limit = tips_.find(*patch.kind);
+      const CharacteristicMap* limit = map_of(*patch.kind);
       if (limit == nullptr || limit->conformal()) continue;
       const std::size_t corner = (limit->corner() + patch.first) % 3;
       const std::size_t after = (corner + 3 - sectors_[s].centre) % 3;
@@ -332,7 +337,8 @@ class StarCheck {
       const Stencils& rows = patch.kind->corner_tangents();
       for (std::size_t t = 0; t < 2; ++t) {
         const Stencils::Row row = rows.row(2 * tip.corner + t);
-        const double row_error = TipLimit::row_error(row) + gamma_bound(row.sources.size() + 2) * row.abs_sum;
+        const double row_error =
+            CharacteristicMap::row_error(row) + gamma_bound(row.sources.size() + 2) * row.abs_sum;
         tip.tangents[t] = rows.apply<Vector3>(2 * tip.corner + t, patch.points);
         tip.errors[t] =
             spatial_error(enlarged(row_error * patch.largest + (row.abs_sum + row_error) * patch.error));
@@ -530,13 +536,12 @@ class StarCheck {
     }
     const Condition condition{&turn};
     return std::all_of(flat_.begin(), flat_.end(), [&](const FlatSector& sector) {
-      return SectorCheck(tips_, condition, sector.place).holds(sector.patch, sector.border);
+      return SectorCheck(condition, sector.place).holds(sector.patch, sector.border);
     });
   }
 
   std::span<const StarSector> sectors_;
   bool closed_, turned_ = true;
-  TipLimits& tips_;
   std::vector<Vector3> spokes_;  // closed: one a sector; open: one more
   Frame frame_;
   std::vector<FlatSector> flat_;
@@ -544,8 +549,8 @@ class StarCheck {
 
 }  // namespace
 
-bool certainly_injective(std::span<const StarSector> sectors, bool closed, TipLimits& tips) {
-  return StarCheck(sectors, closed, tips).certainly_injective();
+bool certainly_injective(std::span<const StarSector> sectors, bool closed) {
+  return StarCheck(sectors, closed).certainly_injective();
 }
 
 }  // namespace snug

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include <snug/shape/tip_limit.h>
+#include <snug/patch/patch.h>
 
 namespace snug {
 
@@ -23,6 +23,6 @@ struct StarSector {
 /// Requires:  one origin for all patches is not needed; none is a polygon; edges in common have the same points.
 /// Cost:      about 20 microseconds for six regular patches.
 /// Source:    derivations/self_contact.md, "A star".
-[[nodiscard]] bool certainly_injective(std::span<const StarSector> sectors, bool closed, TipLimits& tips);
+[[nodiscard]] bool certainly_injective(std::span<const StarSector> sectors, bool closed);
 
 }  // namespace snug

@@ -10,6 +10,7 @@
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/scheme/bezier.h>
+#include <snug/shape/corner_asymptotics.h>
 #include <support/direction.h>
 
 namespace snug {
@@ -83,8 +84,7 @@ Derivatives derivatives_of(const Vector3& x, const Vector3& y, double error) {
 
 class StretchCheck {
  public:
-  StretchCheck(std::span<const StarSector> sectors, bool closed, TipLimits& tips)
-      : sectors_(sectors), closed_(closed), tips_(tips) {}
+  StretchCheck(std::span<const StarSector> sectors, bool closed) : sectors_(sectors), closed_(closed) {}
 
   [[nodiscard]] double stretch() {
     if (sectors_.empty() || (closed_ && sectors_.size() < 3)) return INFINITY;
@@ -107,7 +107,7 @@ class StretchCheck {
       Cut cut;
       if (!patch.kind->polynomial()) {
         // Half a quad whose fourth corner alone is extraordinary has no tip: a few splits make it polynomial.
-        const TipLimit* const tip = tips_.find(*patch.kind);
+        const CharacteristicMap* const tip = asymptotics_of(*patch.kind).characteristic_map();
         if (tip == nullptr) {
           cuts_.push_back(cut);
           continue;
@@ -227,13 +227,13 @@ class StretchCheck {
 
   // Rings of pieces around a corner, each laid out smaller by its eigenvalue than the one before.
   Derivatives of_tip(Patch patch, const Places& places, const Cut& cut) {
-    const TipLimit& tip = *tips_.find(*patch.kind);
+    const CharacteristicMap& tip = *asymptotics_of(*patch.kind).characteristic_map();
     Derivatives all;
     double scale = 1;
     for (unsigned ring = 0; ring < max_rings; ++ring, scale /= cut.eigenvalue) {
       all.add(of_ring(patch, places, cut, scale));
       if (!(all.least > 0)) return unknown;
-      const Derivatives others = of_ring(tip.lasting(patch).net, places, cut, scale);
+      const Derivatives others = of_ring(tip.limit_nets(patch).net, places, cut, scale);
       if (others.least * widening >= all.least && others.most <= widening * all.most) {
         all.add(others);
         return all;
@@ -309,7 +309,6 @@ class StretchCheck {
 
   std::span<const StarSector> sectors_;
   bool closed_;
-  TipLimits& tips_;
   std::vector<Cut> cuts_;
   Rows3 axes_;
   std::vector<Point2> ring_;  // closed: one a sector; open: one more
@@ -318,8 +317,8 @@ class StretchCheck {
 
 }  // namespace
 
-double star_stretch(std::span<const StarSector> sectors, bool closed, TipLimits& tips) {
-  return StretchCheck(sectors, closed, tips).stretch();
+double star_stretch(std::span<const StarSector> sectors, bool closed) {
+  return StretchCheck(sectors, closed).stretch();
 }
 
 }  // namespace snug

@@ -1,6 +1,6 @@
 // Upper bounds of the areas of patches hold for control points anywhere.
 
-#include <snug/shape/tip_area.h>
+#include <snug/shape/corner_asymptotics.h>
 
 #include <gtest/gtest.h>
 #include <snug/patch/limit_evaluator.h>
@@ -11,7 +11,7 @@
 #include <random>
 #include <set>
 
-namespace snug::tip_area_test {
+namespace snug::corner_asymptotics_test {
 namespace {
 
 // Area of triangles between limit points of a patch, or of a quad that it is half of: near the true one.
@@ -40,19 +40,18 @@ double sampled_area(const Patch& patch) {
   return area;
 }
 
-TEST(tip_areas, bound_the_areas_of_patches) {
+TEST(corner_asymptotics, bound_the_areas_of_patches) {
   std::mt19937_64 random(11);
   std::size_t kinds = 0;
   double largest = 0;
   testing::for_each_surface(7, [&](const testing::NamedSurface& named) {
     SCOPED_TRACE(named.name);
     std::set<const Kind*> seen;
-    TipAreas areas;
     testing::for_each_patch(named.surface, [&](PatchId p) {
       Patch patch = named.surface.patch(p);
       if (!seen.insert(patch.kind).second) return;
       ++kinds;
-      const double factor = areas.factor(*patch.kind);
+      const double factor = asymptotics_of(*patch.kind).area_factor();
       ASSERT_LT(factor, 1e4) << patch.kind->key().polygon;
       for (int trial = 0; trial < 2; ++trial) {
         // Corners of a cube, at random: no point is in the middle of others.
@@ -71,4 +70,4 @@ TEST(tip_areas, bound_the_areas_of_patches) {
 }
 
 }  // namespace
-}  // namespace snug::tip_area_test
+}  // namespace snug::corner_asymptotics_test

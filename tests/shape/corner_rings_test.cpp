@@ -1,6 +1,7 @@
 // What the nets at extraordinary corners tend to, against some twenty levels of them.
 
-#include <snug/shape/tip_limit.h>
+#include <snug/shape/corner_asymptotics.h>
+#include <snug/shape/corner_rings.h>
 
 #include <gtest/gtest.h>
 
@@ -10,14 +11,14 @@
 #include <random>
 #include <vector>
 
-namespace snug::tip_limit_test {
+namespace snug::corner_rings_test {
 namespace {
 
 double unit(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; }
 
 // Control values (x, y, 0); of limits with two eigenvalues the value that does not belong to the dominant
 // tangent has no share of it.
-Patch random_values(const Kind& kind, const TipLimit& limit, std::mt19937_64& random) {
+Patch random_values(const Kind& kind, const CharacteristicMap& limit, std::mt19937_64& random) {
   Patch patch;
   patch.kind = &kind;
   patch.points.resize(kind.control_count());
@@ -81,9 +82,9 @@ double factor(const Patch& net, const Patch& level, bool second) {
 }
 
 // Down to where a level is hardly more than rounding.
-void expect_holds(const Kind& kind, const TipLimit& limit, std::mt19937_64& random) {
+void expect_holds(const Kind& kind, const CharacteristicMap& limit, std::mt19937_64& random) {
   const Patch values = random_values(kind, limit, random);
-  const TipRings rings(limit, values);
+  const CornerRings rings(limit, values);
   Patch at = values;
   std::vector<Patch> direct;
   for (std::size_t level = 0; level < rings.count(); ++level) {
@@ -102,13 +103,14 @@ void expect_holds(const Kind& kind, const TipLimit& limit, std::mt19937_64& rand
   }
   ASSERT_GT(direct.size(), std::min<std::size_t>(rings.count(), 8) - 1);
   for (std::size_t level = 0; level < direct.size(); ++level) {
-    const Patch net = rings.net(level), lasting = rings.lasting(level);
+    const Patch net = rings.net(level), further_net = rings.all_further(level);
     // Turned axes mix both values.
     if (limit.conformal()) {
       EXPECT_NEAR(factor(net, direct[level], false) / factor(net, direct[level], true), 1, 1e-3)
           << "level " << level;
-      if (lasting.error < 1e-4 * lasting.largest) {
-        EXPECT_NEAR(factor(lasting, direct[level], false) / factor(lasting, direct[level], true), 1, 0.05)
+      if (further_net.error < 1e-4 * further_net.largest) {
+        EXPECT_NEAR(factor(further_net, direct[level], false) / factor(further_net, direct[level], true), 1,
+                    0.05)
             << "level " << level;
       }
     }
@@ -117,8 +119,9 @@ void expect_holds(const Kind& kind, const TipLimit& limit, std::mt19937_64& rand
       EXPECT_LE(distance(direct[level], net, second), 2 * net.error + 1e-6 * net.largest)
           << "level " << level << (second ? " y" : " x");
       for (std::size_t further = level; further < direct.size(); ++further) {
-        if (!(lasting.error < 0.2 * lasting.largest)) break;
-        EXPECT_LE(distance(direct[further], lasting, second), 2 * lasting.error + 1e-6 * lasting.largest)
+        if (!(further_net.error < 0.2 * further_net.largest)) break;
+        EXPECT_LE(distance(direct[further], further_net, second),
+                  2 * further_net.error + 1e-6 * further_net.largest)
             << "level " << level << " and " << further << (second ? " y" : " x");
       }
     }
@@ -148,7 +151,7 @@ const Kind& turned_kind(KindCache& kinds, KindKey key) {
   return kinds.find(key);
 }
 
-TEST(tip_limit, holds_all_levels_inside) {
+TEST(corner_rings, holds_all_levels_inside) {
   std::mt19937_64 random(1);
   KindCache kinds;
   std::size_t found = 0;
@@ -158,8 +161,7 @@ TEST(tip_limit, holds_all_levels_inside) {
       key.corners[0].after = static_cast<std::uint16_t>(valence - 1);
       const Kind& kind = turned_kind(kinds, key);
       if (kind.polynomial()) continue;
-      TipLimits limits;
-      const TipLimit* limit = limits.find(kind);
+      const CharacteristicMap* limit = asymptotics_of(kind).characteristic_map();
       if (limit == nullptr) continue;
       ++found;
       EXPECT_TRUE(limit->conformal());
@@ -172,7 +174,7 @@ TEST(tip_limit, holds_all_levels_inside) {
 
 // At boundaries and creases: all places of all numbers of faces that have a tangent plane and two eigenvalues
 // that nothing else reaches; none of the others.
-TEST(tip_limit, holds_all_levels_at_boundaries) {
+TEST(corner_rings, holds_all_levels_at_boundaries) {
   std::mt19937_64 random(2);
   KindCache kinds;
   for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
@@ -189,8 +191,7 @@ TEST(tip_limit, holds_all_levels_at_boundaries) {
         if (after == 0) key.corners[last] = {0, regular, false, false, false};
         const Kind& kind = turned_kind(kinds, key);
         if (kind.polynomial()) continue;
-        TipLimits limits;
-        const TipLimit* limit = limits.find(kind);
+        const CharacteristicMap* limit = asymptotics_of(kind).characteristic_map();
         const bool wanted = loop ? faces <= 5 : faces == 3;
         EXPECT_EQ(limit != nullptr, wanted)
             << name_of(scheme) << " " << faces << " faces, " << before << " before";
@@ -204,4 +205,4 @@ TEST(tip_limit, holds_all_levels_at_boundaries) {
 }
 
 }  // namespace
-}  // namespace snug::tip_limit_test
+}  // namespace snug::corner_rings_test

@@ -1,13 +1,13 @@
-#include <snug/shape/tip_limit.h>
+#include <snug/shape/characteristic_map.h>
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <span>
 #include <utility>
 
 #include <snug/geometry/interval.h>
 #include <snug/geometry/rounding.h>
+#include <snug/shape/control_values.h>
 
 namespace snug {
 namespace {
@@ -19,15 +19,6 @@ constexpr int max_iterations = 4000;
 
 // A bound that is not proved by much is of no use.
 constexpr double enough_contraction = 0.95;
-
-// Rings that are looked at. Rests against sizes that further ones would hardly make better.
-constexpr std::size_t max_rings = 120;
-constexpr double small_rest = 0x1p-13;
-
-double extent(std::span<const double> values) {
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  return enlarged(0.5 * (*most - *least));
-}
 
 // An upper bound of the largest distance of two rows in sum, halved: by how much extents may grow.
 double growth_of(const std::vector<double>& matrix, std::size_t size) {
@@ -75,20 +66,6 @@ struct Power {
   }
 };
 
-void apply(const Stencils& rows, const std::vector<double>& from, std::vector<double>& to) {
-  to.assign(rows.row_count(), 0.0);
-  for (std::size_t r = 0; r < to.size(); ++r) {
-    const Stencils::Row row = rows.row(r);
-    for (std::size_t i = 0; i < row.sources.size(); ++i) to[r] += row.weights[i] * from[row.sources[i]];
-  }
-}
-
-double largest_of(std::span<const double> values) {
-  double largest = 0;
-  for (const double x : values) largest = std::max(largest, std::fabs(x));
-  return largest;
-}
-
 bool suitable(const Kind& kind, std::size_t corner) {
   const CornerFan& fan = kind.corner(corner);
   return !fan.odd && kind.control_count() <= largest_size;
@@ -96,7 +73,7 @@ bool suitable(const Kind& kind, std::size_t corner) {
 
 }  // namespace
 
-std::array<double, 2> TipLimit::tangent(const std::vector<double>& values) const {
+std::array<double, 2> CharacteristicMap::tangent(const std::vector<double>& values) const {
   std::array<double, 2> sums{};
   for (std::size_t t = 0; t < 2; ++t) {
     for (std::size_t c = 0; c < size_; ++c) sums[t] += rows_[t][c] * values[c];
@@ -105,7 +82,7 @@ std::array<double, 2> TipLimit::tangent(const std::vector<double>& values) const
 }
 
 // How much larger extents may be after the part along V is taken off.
-double TipLimit::projection() const {
+double CharacteristicMap::projection() const {
   double sum = 0;
   for (std::size_t t = 0; t < 2; ++t) {
     sum += (extents_[t] + direction_errors_[t]) * (row_sums_[t] + row_errors_[t]);
@@ -115,14 +92,14 @@ double TipLimit::projection() const {
 
 // Extent of what the directions found, times these numbers, are off the plane of V: (V' - V) (W V') m, of the V'
 // that is dual to W in their plane.
-double TipLimit::off_plane(const std::array<double, 2>& m) const {
+double CharacteristicMap::off_plane(const std::array<double, 2>& m) const {
   const double both = 0x1p-18 * (std::fabs(m[0]) + std::fabs(m[1]));
   return enlarged(direction_errors_[0] * (std::fabs(m[0]) + both) +
                   direction_errors_[1] * (std::fabs(m[1]) + both));
 }
 
 // From (W A)_c = l W_c, where W_c is large.
-bool TipLimit::find_eigenvalues(const Kind& kind, const Stencils& step) {
+bool CharacteristicMap::find_eigenvalues(const Kind& kind, const Stencils& step) {
   const Power a(step, size_);
   for (std::size_t t = 0; t < 2; ++t) {
     const Stencils::Row row = kind.corner_tangents().row(2 * corner_ + t);
@@ -175,7 +152,7 @@ bool TipLimit::find_eigenvalues(const Kind& kind, const Stencils& step) {
 }
 
 // By iteration: no proof rests on how near they come. Constants, which no extent sees, would grow.
-bool TipLimit::find_directions(const Stencils& step) {
+bool CharacteristicMap::find_directions(const Stencils& step) {
   for (std::size_t t = 0; t < 2; ++t) directions_[t] = rows_[t];
   std::array<std::vector<double>, 2> next;
   double before = INFINITY;
@@ -205,7 +182,7 @@ bool TipLimit::find_directions(const Stencils& step) {
   return true;
 }
 
-bool TipLimit::bound_remainders(const Stencils& step) {
+bool CharacteristicMap::bound_remainders(const Stencils& step) {
   // How far the directions, made exact by V (W V)^-1, are from these.
   double mixing = 0;
   for (std::size_t t = 0; t < 2; ++t) {
@@ -287,19 +264,19 @@ bool TipLimit::bound_remainders(const Stencils& step) {
   return true;
 }
 
-std::optional<TipLimit> make_tip_limit(const Kind& kind) {
+std::optional<CharacteristicMap> make_characteristic_map(const Kind& kind) {
   if (kind.polynomial() || kind.passing() || kind.key().polygon || !kind.key().plain()) return std::nullopt;
   for (std::size_t corner = 0; corner < 3; ++corner) {
     if (kind.regular_corner(corner) || !suitable(kind, corner)) continue;
     const KindChild& child = kind.children()[corner];
     if (child.kind != &kind || child.first != 0) continue;
-    TipLimit limit;
-    limit.kind_ = &kind;
-    limit.corner_ = corner;
-    limit.size_ = kind.control_count();
-    if (limit.find_eigenvalues(kind, child.stencils) && limit.find_directions(child.stencils) &&
-        limit.bound_remainders(child.stencils)) {
-      return limit;
+    CharacteristicMap map;
+    map.kind_ = &kind;
+    map.corner_ = corner;
+    map.size_ = kind.control_count();
+    if (map.find_eigenvalues(kind, child.stencils) && map.find_directions(child.stencils) &&
+        map.bound_remainders(child.stencils)) {
+      return map;
     }
     return std::nullopt;
   }
@@ -308,7 +285,7 @@ std::optional<TipLimit> make_tip_limit(const Kind& kind) {
 
 // Upper bound of the extents of A^j r over the least eigenvalue's powers: some powers are taken, the others
 // shrink what these leave. `rest` is r up to extents of `error`.
-double TipLimit::largest_rest(std::vector<double> rest, double error) const {
+double CharacteristicMap::largest_rest(std::vector<double> rest, double error) const {
   constexpr int powers = 16;
   const Stencils& step = kind_->children()[corner_].stencils;
   const double least = std::min(eigenvalues_[0].lower, eigenvalues_[1].lower);
@@ -327,7 +304,7 @@ double TipLimit::largest_rest(std::vector<double> rest, double error) const {
   return best;
 }
 
-TipLimit::Shares TipLimit::shares(const std::vector<double>& y, const Patch& values) const {
+CharacteristicMap::Shares CharacteristicMap::shares(const std::vector<double>& y, const Patch& values) const {
   Shares shares{tangent(y), {}};
   for (std::size_t t = 0; t < 2; ++t) {
     shares.off[t] = enlarged((row_errors_[t] + gamma_bound(size_ + 2) * row_sums_[t]) * values.largest +
@@ -337,7 +314,8 @@ TipLimit::Shares TipLimit::shares(const std::vector<double>& y, const Patch& val
 }
 
 // Upper bound, in extents, of what one value's net of these shares is off, and of all that shrinks faster.
-double TipLimit::left_out(const std::vector<double>& y, const Shares& shares, const Patch& values) const {
+double CharacteristicMap::left_out(const std::vector<double>& y, const Shares& shares,
+                                   const Patch& values) const {
   double error = 0, largest = values.largest;
   std::vector<double> rest(size_);
   for (std::size_t i = 0; i < size_; ++i) {
@@ -352,9 +330,9 @@ double TipLimit::left_out(const std::vector<double>& y, const Shares& shares, co
   return enlarged(error + largest_rest(std::move(rest), off_rest) + gamma_bound(4) * 2 * largest);
 }
 
-TipLimit::Lasting TipLimit::lasting(const Patch& patch) const {
-  Lasting lasting;
-  for (Patch* net : {&lasting.net, &lasting.dominant}) {
+CharacteristicMap::LimitNets CharacteristicMap::limit_nets(const Patch& patch) const {
+  LimitNets nets;
+  for (Patch* net : {&nets.net, &nets.dominant}) {
     net->kind = kind_;
     net->first = patch.first;
     net->points.resize(size_);
@@ -365,196 +343,16 @@ TipLimit::Lasting TipLimit::lasting(const Patch& patch) const {
     const Shares own = shares(y, patch);
     for (std::size_t i = 0; i < size_; ++i) {
       const std::array<double, 2> parts{own.m[0] * directions_[0][i], own.m[1] * directions_[1][i]};
-      lasting.net.points[i][c] = parts[0] + parts[1];
-      lasting.dominant.points[i][c] = conformal_ ? parts[0] + parts[1] : parts[dominant_];
+      nets.net.points[i][c] = parts[0] + parts[1];
+      nets.dominant.points[i][c] = conformal_ ? parts[0] + parts[1] : parts[dominant_];
     }
-    lasting.net.error = std::max(lasting.net.error, left_out(y, own, patch));
+    nets.net.error = std::max(nets.net.error, left_out(y, own, patch));
   }
-  for (Patch* net : {&lasting.net, &lasting.dominant}) {
+  for (Patch* net : {&nets.net, &nets.dominant}) {
     for (const Vector3& p : net->points) net->largest = std::max(net->largest, max_abs(p));
   }
-  lasting.dominant.error = lasting.net.error;
-  return lasting;
-}
-
-TipRings::TipRings(const TipLimit& limit, const Patch& values) : limit_(&limit), values_(&values) {
-  for (std::size_t c = 0; c < 2; ++c) decompose(c);
-  for (count_ = 1; count_ < max_rings && !(small(parts_[0]) && small(parts_[1])); ++count_) {
-    for (Value& part : parts_) descend(part);
-  }
-  // Further ones cannot be larger than those of a period; nor than what one leaves, times the growth.
-  for (Value& part : parts_) {
-    const double fading = limit.growth_ * part.rests.back().fading;
-    const auto at = [&](std::size_t level) { return part.rests[level].extent + part.rests[level].along; };
-    part.largest_after.resize(count_);
-    double largest = INFINITY;
-    for (std::size_t level = count_; level-- > 0;) {
-      largest = enlarged(std::min(limit.growth_ * at(level), std::max(at(level), largest)));
-      if (level + limit.period_ <= count_) {
-        double widest = 0;
-        for (std::size_t k = level; k < level + limit.period_; ++k) widest = std::max(widest, at(k));
-        largest = std::min(largest, enlarged(widest));
-      }
-      part.largest_after[level] = enlarged(largest + fading);
-    }
-  }
-}
-
-void TipRings::decompose(std::size_t c) {
-  const TipLimit& limit = *limit_;
-  Value& part = parts_[c];
-  std::vector<double> y(limit.size_);
-  for (std::size_t i = 0; i < y.size(); ++i) y[i] = c == 0 ? values_->points[i].x : values_->points[i].y;
-  part.own = limit.conformal_ ? 0 : c;
-  const TipLimit::Shares shares = limit.shares(y, *values_);
-  part.m = shares.m;
-  part.off = shares.off;
-  for (std::size_t t = 0; t < 2; ++t) {
-    part.ratios[t] = limit.conformal_ || t == part.own ? Interval{1}
-                                                       : limit.eigenvalues_[t] / limit.eigenvalues_[part.own];
-  }
-  if (!limit.conformal_ && limit.dominant_ != part.own) {
-    part.m[limit.dominant_] = part.off[limit.dominant_] = 0;
-  }
-  Rest rest;
-  rest.values = std::move(y);
-  double largest = values_->largest;
-  for (std::size_t i = 0; i < rest.values.size(); ++i) {
-    const double a = part.m[0] * limit.directions_[0][i], b = part.m[1] * limit.directions_[1][i];
-    largest = std::max(largest, std::fabs(a) + std::fabs(b));
-    rest.values[i] -= a + b;
-  }
-  rest.fading = enlarged((1 + limit.projection()) * (values_->error + gamma_bound(8) * 3 * largest) +
-                         limit.off_plane(part.m));
-  settle(rest);
-  part.rests.push_back(std::move(rest));
-}
-
-// One level on.
-void TipRings::descend(Value& part) const {
-  const TipLimit& limit = *limit_;
-  const Stencils& step = limit.kind_->children()[limit.corner_].stencils;
-  const Interval& eigenvalue = limit.eigenvalues_[part.own];
-  const Rest& before = part.rests.back();
-  Rest rest;
-  apply(step, before.values, rest.values);
-  const double divisor = middle(eigenvalue);
-  for (double& x : rest.values) x /= divisor;
-  const double largest = largest_of(before.values) / divisor;
-  const double error = (step.max_error() + gamma_bound(limit.size_ + 2) * step.max_abs_sum()) * largest +
-                       (gamma_bound(2) + (eigenvalue.upper - eigenvalue.lower) / eigenvalue.lower) *
-                           (step.max_abs_sum() + step.max_error()) * largest;
-  rest.fading = enlarged(before.fading + (1 + limit.projection()) * error);
-  settle(rest);
-  part.rests.push_back(std::move(rest));
-}
-
-// What it has along V goes: the exact rest has none.
-void TipRings::settle(Rest& rest) const {
-  const TipLimit& limit = *limit_;
-  // Constants last, and no extent sees them.
-  const auto centre = [&] {
-    const auto [least, most] = std::minmax_element(rest.values.begin(), rest.values.end());
-    const double middle = 0.5 * *least + 0.5 * *most;
-    for (double& x : rest.values) x -= middle;
-  };
-  double largest = largest_of(rest.values);
-  centre();
-  const std::array<double, 2> share = limit.tangent(rest.values);
-  for (std::size_t i = 0; i < rest.values.size(); ++i) {
-    const double a = share[0] * limit.directions_[0][i], b = share[1] * limit.directions_[1][i];
-    largest = std::max(largest, std::fabs(a) + std::fabs(b));
-    rest.values[i] -= a + b;
-  }
-  centre();
-  rest.fading = enlarged(rest.fading + (1 + limit.projection()) * gamma_bound(8) * 4 * largest +
-                         limit.off_plane(share));
-  rest.extent = extent(rest.values);
-  const std::array<double, 2> left = limit.tangent(rest.values);
-  const double size = largest_of(rest.values);
-  for (std::size_t t = 0; t < 2; ++t) {
-    const double most = std::fabs(left[t]) +
-                        (limit.row_errors_[t] + gamma_bound(limit.size_ + 2) * limit.row_sums_[t]) * size;
-    rest.along += (limit.extents_[t] + limit.direction_errors_[t]) * most;
-  }
-  rest.along = enlarged(rest.along);
-}
-
-// Would what is left hardly be seen beside the value's own direction?
-bool TipRings::small(const Value& part) const {
-  const double size = std::fabs(part.m[part.own]) * limit_->extents_[part.own];
-  return limit_->growth_ * part.rests.back().extent <= small_rest * size;
-}
-
-TipRings::Filled TipRings::fill(std::size_t c, std::size_t level, bool all_further, Patch& net) const {
-  const TipLimit& limit = *limit_;
-  const Value& part = parts_[c];
-  std::array<double, 2> kept{};
-  double error = 0;
-  for (std::size_t t = 0; t < 2; ++t) {
-    Interval power{1};
-    for (std::size_t i = 0; i < level && part.ratios[t] != Interval{1}; ++i) power = power * part.ratios[t];
-    const double m = std::fabs(part.m[t]), exact_extent = limit.extents_[t] + limit.direction_errors_[t];
-    if (all_further && part.ratios[t] != Interval{1}) {
-      // It shrinks faster: from its share to none.
-      error += (m + part.off[t]) * power.upper * exact_extent;
-      continue;
-    }
-    kept[t] = part.m[t] * middle(power);
-    error +=
-        ((m + part.off[t]) * limit.direction_errors_[t] + part.off[t] * limit.extents_[t]) * power.upper +
-        m * (power.upper - power.lower) * limit.extents_[t];
-  }
-  const Rest& rest = part.rests[level];
-  error += all_further ? part.largest_after[level] : limit.growth_ * rest.fading + rest.along;
-  double largest = 0, sum = 0;
-  for (std::size_t i = 0; i < limit.size_; ++i) {
-    const double a = kept[0] * limit.directions_[0][i], b = kept[1] * limit.directions_[1][i];
-    const double own = all_further ? 0 : rest.values[i];
-    (c == 0 ? net.points[i].x : net.points[i].y) = a + b + own;
-    sum = std::max(sum, std::fabs(a) + std::fabs(b) + std::fabs(own));
-    largest = std::max(largest, std::fabs(a + b + own));
-  }
-  return {largest, enlarged(error + gamma_bound(6) * sum)};
-}
-
-Patch TipRings::made(std::size_t level, bool all_further) const {
-  Patch net;
-  net.kind = limit_->kind_;
-  net.first = values_->first;
-  net.points.resize(limit_->size_);
-  std::array<Filled, 2> filled;
-  for (std::size_t c = 0; c < 2; ++c) filled[c] = fill(c, level, all_further, net);
-  // By powers of two to a size of about 1. With turned axes a condition mixes both values: then one for both.
-  if (limit_->conformal_) {
-    filled[0].largest = filled[1].largest = std::max(filled[0].largest, filled[1].largest);
-  }
-  std::array<double, 2> scales{};
-  for (std::size_t c = 0; c < 2; ++c) {
-    if (!(filled[c].largest > 0x1p-900)) {
-      net.error = INFINITY;
-      return net;
-    }
-    scales[c] = std::exp2(-std::ilogb(filled[c].largest));
-    net.largest = std::max(net.largest, scales[c] * filled[c].largest);
-    net.error = std::max(net.error, enlarged(scales[c] * filled[c].error));
-  }
-  for (Vector3& p : net.points) p = {scales[0] * p.x, scales[1] * p.y, 0};
-  return net;
-}
-
-Patch TipRings::net(std::size_t level) const { return level == 0 ? *values_ : made(level, false); }
-Patch TipRings::lasting(std::size_t level) const { return made(level, true); }
-
-const TipLimit* TipLimits::find(const Kind& kind) {
-  {
-    const std::shared_lock lock(mutex_);
-    if (const auto it = known_.find(&kind); it != known_.end()) return it->second ? &*it->second : nullptr;
-  }
-  const std::unique_lock lock(mutex_);
-  const auto [it, added] = known_.try_emplace(&kind);
-  if (added) it->second = make_tip_limit(kind);
-  return it->second ? &*it->second : nullptr;
+  nets.dominant.error = nets.net.error;
+  return nets;
 }
 
 }  // namespace snug

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include <snug/patch/kind_cache.h>
+#include <snug/shape/characteristic_map.h>
+#include <support/lazy.h>
+
+namespace snug {
+
+/// How patches of a kind behave as they are split again and again at their extraordinary corners. Each part is made
+/// on first use, then immutable. Thread-safe.
+class CornerAsymptotics {
+ public:
+  /// Requires:  the kind outlives it.
+  explicit CornerAsymptotics(const Kind& kind) : kind_(kind) {}
+
+  /// Null where there is none, see make_characteristic_map().
+  [[nodiscard]] const CharacteristicMap* characteristic_map() const;
+
+  // Upper bounds by d, the diagonal of the box around the control points, for patches and for whole quads that
+  // patches are halves of. Infinite where none is found, which happens to Midedge alone, beside a face of very many
+  // corners. Cost: that of the kind's step, and some dense products.
+  /// A factor c such that the area is at most c d^2.
+  /// Source:    derivations/measures.md, "What is left at a corner".
+  [[nodiscard]] double area_factor() const { return factor(areas); }
+  /// A factor c such that the distance of any two points along the surface is at most c d.
+  /// Source:    derivations/self_contact.md, "Lengths".
+  [[nodiscard]] double length_factor() const { return factor(lengths); }
+
+ private:
+  class FactorSearch;
+  enum Measure : std::uint8_t { areas, lengths };
+  [[nodiscard]] double factor(Measure measure) const;
+
+  const Kind& kind_;
+  Lazy<std::optional<CharacteristicMap>> map_;
+  std::array<Lazy<double>, 2> factors_;  // of each Measure
+};
+
+/// That of a kind, kept with it. Thread-safe.
+[[nodiscard]] const CornerAsymptotics& asymptotics_of(const Kind& kind);
+
+}  // namespace snug
