@@ -11,7 +11,7 @@
 namespace snug {
 namespace {
 
-// What the triangle is widened by beside the error of the hull points.
+// Widens the triangle, beside the error of the hull points.
 constexpr double margin = 1e-12;
 
 // Images of the rows under the layout.

@@ -277,7 +277,7 @@ class RowWriter {
 };
 
 // Below it a few levels of subdivision leave nothing that passes.
-constexpr double least_sharpness = 2;
+constexpr double min_sharpness = 2;
 
 }  // namespace
 
@@ -287,7 +287,7 @@ std::size_t CreaseRows::bytes() const {
 
 CreaseRows make_crease_rows(const Kind& kind) {
   const auto line = crease_line(kind);
-  if (!line || line->sharpness < least_sharpness) return {};
+  if (!line || line->sharpness < min_sharpness) return {};
   const auto levels = static_cast<unsigned>(std::floor(line->sharpness));
   const double width = std::ldexp(1.0, -static_cast<int>(levels)), rest = line->sharpness - levels;
   CreaseRows result;

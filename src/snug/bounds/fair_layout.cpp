@@ -20,7 +20,7 @@ namespace {
 constexpr double fairness = 0.3;
 // Of a limit at a corner of the patch, against one elsewhere: what cannot be fair shall not collapse for it.
 constexpr double corner_weight = 100;
-// What holds control points that no equation does; far below anything else.
+// Weight of the equations that hold control points which no other one does; far below all others.
 constexpr double hold = 1e-11;
 // Samples at all corners of pieces on this level.
 constexpr unsigned sample_level = 2;

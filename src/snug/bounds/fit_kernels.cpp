@@ -563,7 +563,7 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, std::span<Of
   const V inside = hn::Mul(hn::Mul(hn::Set(d, 48 * unit_roundoff), t.amplify), largest);
   const ReachV<V> reach = reach_of(d, t, farthest, hn::Add(t.deviation, hn::Add(tilt, inside)));
 
-  // What control points, hull points and the placed base are off by, a coordinate.
+  // Errors of control points, hull points and the placed base, a coordinate.
   const Vec3<V> shift = scaled(middle, t.n);
   V placed = hn::Zero(d);
   for (auto& c : corner) {

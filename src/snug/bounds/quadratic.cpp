@@ -18,7 +18,7 @@ namespace {
 using Quadratic = std::array<Vector3, 6>;
 using Restriction = QuadraticRows::Restriction;
 
-// What squares, products and sums lose by underflow is less.
+// Above the losses of squares, products and sums by underflow.
 constexpr double tiny = 0x1p-500;
 // Place of each of the six among the Bezier points u^i v^j of degree 2.
 constexpr std::array<std::array<std::size_t, 2>, 6> places{{{0, 0}, {2, 0}, {0, 2}, {1, 0}, {1, 1}, {0, 1}}};
@@ -65,7 +65,7 @@ double by_hulls(const Patch& net, const Quadratic& q) {
 // Levels of the rows that say where the limit points of a layout are, and how large basis functions.
 constexpr unsigned frame_levels = 8;
 // How often the net of a piece that is no polynomial is split before what is left of it ends it.
-constexpr unsigned most_levels = 16;
+constexpr unsigned max_levels = 16;
 // How much nets may add before they are split.
 constexpr double notable_excess = 0.05;
 constexpr double corner_weight = 3;
@@ -306,7 +306,7 @@ class Comparison {
     for (std::size_t next = 0; next < opened_; ++next) {
       Open& open = *open_[next];
       const Kind& kind = *open.piece.kind;
-      const unsigned limit = kind.shared() ? most_levels : kind.passing() ? passing_levels : crowded_levels;
+      const unsigned limit = kind.shared() ? max_levels : kind.passing() ? passing_levels : crowded_levels;
       if (open.distance <= (1 + notable_excess) * farthest_ || open.level >= limit) {
         rest = std::max(rest, open.distance);
       } else {

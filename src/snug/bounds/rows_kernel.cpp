@@ -20,7 +20,7 @@ namespace snug::kernels::HWY_NAMESPACE {
 namespace {
 
 // How much tips may add to the radius of the rest, and to its height.
-constexpr double most_excess = 0.03;
+constexpr double max_excess = 0.03;
 
 // Points, a lane a patch: three coordinates of each in a row.
 struct Lanes {
@@ -166,9 +166,9 @@ HWY_INLINE void fit_lanes(D d, const RowsWithTips& rows, const Lanes& control, c
     tips = hn::Max(tips, farthest_of(d, t, boxes[i], middle));
   }
   auto good = hn::And(well_shaped(d, t), hn::Lt(largest, infinite));
-  good = hn::And(good, hn::Le(tips, hn::Mul(hn::Set(d, (1 + most_excess) * (1 + most_excess)), rest)));
+  good = hn::And(good, hn::Le(tips, hn::Mul(hn::Set(d, (1 + max_excess) * (1 + max_excess)), rest)));
   const V sticks_out = hn::Max(hn::Sub(low, lower), hn::Sub(upper, high));
-  good = hn::And(good, hn::Le(sticks_out, hn::Mul(hn::Set(d, most_excess), hn::Sub(high, low))));
+  good = hn::And(good, hn::Le(sticks_out, hn::Mul(hn::Set(d, max_excess), hn::Sub(high, low))));
 
   const ReachV<V> reach = reach_of(d, t, hn::Max(rest, tips), hn::Mul(t.stretch, hn::Abs(middle)));
   const Vec3<V> shift = scaled(middle, t.n);

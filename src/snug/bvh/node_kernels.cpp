@@ -30,7 +30,7 @@ HWY_INLINE V sum3(V a, V b, V c) { return hn::Add(hn::Add(a, b), c); }
 HWY_INLINE V max3(V a, V b, V c) { return hn::Max(hn::Max(a, b), c); }
 
 // Squares of shorter lengths lose digits to the end of single precision, or all of them.
-constexpr float least_squared = 0x1p-50F;
+constexpr float min_squared = 0x1p-50F;
 
 // Length of the vector of the positive ones of three gaps, or the largest if there are none or squares are
 // too small; of two sorts of gaps, by the better one.
@@ -45,7 +45,7 @@ HWY_INLINE V outside(const V* one, const V* two) {
   const V length_sq = hn::Max(sum3(square(one[0]), square(one[1]), square(one[2])),
                               sum3(square(two[0]), square(two[1]), square(two[2])));
   const V length = hn::Mul(hn::Sqrt(length_sq), hn::Set(d, 1 - 16 * 0x1p-24F));
-  return hn::IfThenElse(hn::Gt(largest, hn::Set(d, least_squared)), length, largest);
+  return hn::IfThenElse(hn::Gt(largest, hn::Set(d, min_squared)), length, largest);
 }
 
 // Minus infinity for what is not a number, or too large to be one of ours.
@@ -119,7 +119,7 @@ HWY_INLINE V gaps(const float* node, std::size_t at, const Row& other, V all_sla
     gap = outside(own, others);
     const V central = hn::Sub(hn::Div(hn::Sub(between_sq, taken), hn::Sqrt(between_sq)), all_slack);
     const auto apart =
-        hn::And(hn::Gt(central, zero), hn::Gt(between_sq, hn::Set(d, least_squared * least_squared)));
+        hn::And(hn::Gt(central, zero), hn::Gt(between_sq, hn::Set(d, min_squared * min_squared)));
     gap = hn::IfThenElse(apart, hn::Max(gap, central), gap);
   }
   // Lane by lane, so that it makes no difference how many a vector has.
@@ -246,8 +246,8 @@ Near seen_along(const float* node, float reach, const SeenBox& other, const Turn
     const V between = hn::Sqrt(between_sq);
     const V central = hn::Div(hn::Sub(between_sq, taken), between);
     // Of centres that coincide nothing is known, but for the direction.
-    const V known = hn::IfThenElse(hn::Gt(between_sq, hn::Set(d, least_squared * least_squared)), central,
-                                   hn::Neg(taken));
+    const V known =
+        hn::IfThenElse(hn::Gt(between_sq, hn::Set(d, min_squared * min_squared)), central, hn::Neg(taken));
     const V along = hn::Sub(dot3(d, delta, n), extent);
     store(hn::Sub(hn::Max(known, along), all_slack), prune_distance, at, out, near);
   }

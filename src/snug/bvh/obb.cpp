@@ -113,10 +113,10 @@ std::array<float, 2> sides_after(std::span<const Flat> boxes, float cosine, floa
 // Axes turned about the one of the least extent, then about that of the largest, so that a box around boxes
 // has less surface. Any axes will do, so single precision is enough, and so are some of many boxes.
 std::array<Vector3, 3> turned_to_fit(std::array<Vector3, 3> axes, std::span<const Obb> boxes) {
-  constexpr std::size_t most_boxes = 64;
+  constexpr std::size_t max_boxes = 64;
   constexpr int steps = 8;  // a right angle
-  const std::size_t stride = (boxes.size() + most_boxes - 1) / most_boxes;
-  std::array<Flat, most_boxes> flat;
+  const std::size_t stride = (boxes.size() + max_boxes - 1) / max_boxes;
+  std::array<Flat, max_boxes> flat;
   std::array<float, 3> sides;
   const auto flatten = [&](std::size_t i, std::size_t j) {
     std::size_t count = 0;
@@ -266,7 +266,7 @@ Farthest farthest_corner(std::span<const Obb> boxes, const Point3& from) {
       to_farthest = corner;
     }
   }
-  // What axes lack of orthonormality, and roundings of what is about 4 large.
+  // The axes' defect of orthonormality, and roundings of numbers of about 4.
   return {to_farthest, enlarged(std::sqrt(farthest_sq) * (1 + 64 * unit_roundoff)) +
                            64 * unit_roundoff * max_abs(from - Point3{})};
 }

@@ -14,7 +14,7 @@ constexpr double single_roundoff = 0x1p-24;
 // Gaps are lowered by it, as by a slack.
 constexpr double single_underflow = 0x1p-118;
 // Scales below leave the range of single precision, or what is placed with them does.
-constexpr double least_scale = 0x1p-96;
+constexpr double min_scale = 0x1p-96;
 
 }  // namespace
 
@@ -22,15 +22,15 @@ View::View(const PlacedFrame& target, const PlacedFrame& source) : frame(target,
   if (!frame.comparable) return;
   // All of a source that is smaller lies within 8 of these scales of its origin's image, as does what another
   // turn of that scale makes of it.
-  const bool point = frame.scale < least_scale;
+  const bool point = frame.scale < min_scale;
   for (std::size_t j = 0; j < 3; ++j) {
     for (std::size_t i = 0; i < 3; ++i) {
-      turn.columns[j][i] = static_cast<float>(point ? (i == j ? least_scale : 0) : frame.rows[i][j]);
+      turn.columns[j][i] = static_cast<float>(point ? (i == j ? min_scale : 0) : frame.rows[i][j]);
     }
   }
-  turn.scale = static_cast<float>(point ? least_scale : frame.scale);
+  turn.scale = static_cast<float>(point ? min_scale : frame.scale);
   turn.inverse_scale = 1 / turn.scale;
-  slack = float_up(frame.slack + (point ? 16 * least_scale : 0));
+  slack = float_up(frame.slack + (point ? 16 * min_scale : 0));
   to_world = static_cast<float>(frame.to_world);
 }
 

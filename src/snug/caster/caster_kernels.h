@@ -15,7 +15,7 @@ struct CasterRay {
   std::array<float, 3> origin, direction,
       inverse;  ///< direction of length 1; 1 over its coordinates, none infinite
   std::array<std::array<float, 3>, 2> across;  ///< of length 1, at right angles with it and each other
-  float rounding;                              ///< what places across the ray may be off by
+  float rounding;                              ///< error of places across the ray
 };
 /// Rays close to a first one, coordinate by coordinate.
 struct alignas(32) CasterRays {

@@ -16,7 +16,7 @@ namespace {
 
 using kernels::caster_width;
 
-constexpr unsigned most_digits = 14, bits_of_level = 4;
+constexpr unsigned max_digits = 14, bits_of_level = 4;
 
 // How close a ray must come to a quadratic, as a share of its error: neighbours are rarely off by all of it in opposite
 // directions. A hit is as far from the surface as both together.
@@ -51,11 +51,11 @@ CasterTree::Places::Places(std::span<const QuadraticPiece> pieces) {
     deepest = std::max(deepest, piece.path.level());
   }
   root_bits_ = static_cast<unsigned>(std::bit_width(last));
-  wide_ = root_bits_ + bits_of_level + 2 * std::min(deepest, most_digits) > 32;
+  wide_ = root_bits_ + bits_of_level + 2 * std::min(deepest, max_digits) > 32;
 }
 
 void CasterTree::Places::add(const QuadraticPiece& piece) {
-  const unsigned level = std::min(piece.path.level(), most_digits);
+  const unsigned level = std::min(piece.path.level(), max_digits);
   std::uint64_t place = 0;
   for (unsigned d = level; d-- > 0;) place = place << 2 | piece.path.digit(d);
   place = (place << bits_of_level | level) << root_bits_ | piece.root.value();

@@ -180,7 +180,7 @@ void keep_only(std::vector<double>& sharpness, const Keeps& keeps) {
   if (!any) sharpness.clear();
 }
 
-// What surrounds a patch whose corners' fans do not say everything, and what is sharp at its corners or, if
+// The neighbourhood of a patch whose corners' fans do not determine it, with the sharpness at its corners or, if
 // that depends on edges which do not touch them, at the far ends of their edges too.
 std::shared_ptr<const Neighbourhood> surroundings(const Topology& topology, HalfEdge start,
                                                   const SchemeOptions& options, const Sharpness& sharpness) {

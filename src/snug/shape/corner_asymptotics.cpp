@@ -24,7 +24,7 @@ double growth(double largest_sum, double overlap, double overlap_error) {
   return std::max(0.0, enlarged(largest_sum * (1 + gamma_bound(4096)) - overlap + overlap_error));
 }
 
-// What all rows have in common, a column at a time.
+// The common part of all rows, a column at a time.
 class Overlap {
  public:
   explicit Overlap(std::size_t columns) : least_(columns, INFINITY), row_(columns, 0.0) {}

@@ -89,7 +89,7 @@ void CornerRings::descend(Value& part) const {
   part.rests.push_back(std::move(rest));
 }
 
-// What it has along V goes: the exact rest has none.
+// Takes off the part along V: the exact rest has none.
 void CornerRings::remove_directions(Rest& rest) const {
   const CharacteristicMap& map = *map_;
   // Constants last, and no extent sees them.

@@ -26,8 +26,8 @@ class CornerRings {
   [[nodiscard]] Patch all_further(std::size_t level) const;
 
  private:
-  // What is left of one value without the tangents' directions, over its eigenvalue's powers. The exact one less
-  // this: along V, and the rest of it, as large as its part of level 0 that A makes it of.
+  // One value without its part along the tangents' directions, over its eigenvalue's powers. `along` and `fading` bound
+  // the exact value less this: its part along V, and the rest of it, as large as the part of level 0 that A makes it of.
   struct Rest {
     std::vector<double> values;
     double extent = 0;

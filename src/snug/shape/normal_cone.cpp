@@ -18,11 +18,11 @@ namespace {
 
 // Times that a polynomial is split where its coefficients have no cone; levels until sharpness has decayed, and
 // rings around a corner that are looked at one by one.
-constexpr unsigned most_splits = 2, passing_levels = 6, net_levels = 2, max_rings = 50;
+constexpr unsigned max_splits = 2, passing_levels = 6, net_levels = 2, max_rings = 50;
 // Of a net that stands for all further rings: its error against its size, and the angle that this adds.
-constexpr double most_error = 1.0 / 512, most_widening = 1.0 / 32;
+constexpr double max_error = 1.0 / 512, max_widening = 1.0 / 32;
 // Angles between the axis of a first trial and vectors of the second one have larger cosines.
-constexpr double least_cosine = 1.0 / 64;
+constexpr double min_cosine = 1.0 / 64;
 constexpr int axis_steps = 24;
 
 // Contains a vector. All normals are sums of such vectors, weighted by numbers that are not negative.
@@ -69,7 +69,7 @@ class NormalBalls {
 
  private:
   bool add(const Patch& patch, unsigned levels) {
-    if (patch.kind->polynomial()) return add_polynomial(patch, nullptr, most_splits);
+    if (patch.kind->polynomial()) return add_polynomial(patch, nullptr, max_splits);
     if (levels == 0) return false;
     if (const auto* tip = asymptotics_of(*patch.kind).characteristic_map())
       return add_tip(*tip, patch, levels - 1);
@@ -91,7 +91,7 @@ class NormalBalls {
         const double far = add_limit(tip, patch, corner);
         if (far <= 1) return true;
         if (axis_) return false;
-        // What is left out shrinks to a half a level, or to more.
+        // The part left out shrinks by half a level at best.
         last_rings_[place] = ring + 1 + static_cast<unsigned>(std::min(8.0, std::log2(far)));
       }
       for (unsigned child = 0; child < 4; ++child) {
@@ -106,7 +106,7 @@ class NormalBalls {
   // too large it is.
   double add_limit(const CharacteristicMap& tip, const Patch& patch, unsigned corner) {
     const CharacteristicMap::LimitNets limit = tip.limit_nets(patch);
-    const double error = limit.net.error / (most_error * limit.net.largest);
+    const double error = limit.net.error / (max_error * limit.net.largest);
     if (!(error <= 1)) return std::isfinite(error) ? error : 0x1p8;
     const std::size_t before = balls_.size();
     const bool was_complete = complete_;
@@ -116,7 +116,7 @@ class NormalBalls {
       if (child != corner)
         added = add_nets(split(limit.net, child), split(limit.dominant, child), net_levels);
     }
-    const double wide = added && complete_ ? widening(before) / most_widening : 2;
+    const double wide = added && complete_ ? widening(before) / max_widening : 2;
     complete_ = was_complete;
     if (wide > 1 && !axis_) balls_.resize(before);
     // With an axis nets are what they were without, or pieces of these.
@@ -125,7 +125,7 @@ class NormalBalls {
 
   // Halves of quads whose fourth corner is extraordinary are split before they are polynomial.
   bool add_nets(const Patch& net, const Patch& dominant, unsigned levels) {
-    if (net.kind->polynomial()) return add_polynomial(net, &dominant, most_splits);
+    if (net.kind->polynomial()) return add_polynomial(net, &dominant, max_splits);
     if (levels == 0 || asymptotics_of(*net.kind).characteristic_map() != nullptr) return false;
     for (unsigned child = 0; child < 4; ++child) {
       if (!add_nets(split(net, child), split(dominant, child), levels - 1)) return false;
@@ -247,7 +247,7 @@ class NormalBalls {
         near = complete_ = false;
         continue;
       }
-      if (axis_ && !(dot(*axis_, centre) > least_cosine * size + radius)) return false;
+      if (axis_ && !(dot(*axis_, centre) > min_cosine * size + radius)) return false;
       balls_.push_back({centre, radius});
     }
     return near;

@@ -15,7 +15,7 @@ namespace {
 // Roundings of a Bezier point, of a product in the integrands, of a mean.
 constexpr std::size_t point_roundings = 40, product_roundings = 128, mean_roundings = 512;
 
-// What underflow takes from all that is computed of a piece; sizes are between 1e-30 and 4.
+// Bound of all underflow in the computations on a piece; sizes are between 1e-30 and 4.
 constexpr double tiny = 0x1p-900;
 
 // Bezier points of one polynomial part, by axis and relative to the piece's own origin.

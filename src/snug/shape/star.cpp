@@ -24,7 +24,7 @@ constexpr std::array<double, 3> level_slopes{0, 0.35, 0.6};
 // Levels that a piece is split for its coefficients to tell.
 constexpr unsigned polynomial_levels = 2, passing_levels = 6;
 // Of a net that stands for all further rings, against its size: more would hardly do.
-constexpr double most_error = 0.02;
+constexpr double max_error = 0.02;
 // Layouts have so many bits: differences of their numbers, halves and products of two differences are exact.
 constexpr double layout_grain = 0x1p-20;
 
@@ -171,7 +171,7 @@ class SectorCheck {
     const CornerRings rings(tip, patch);
     for (std::size_t ring = 0; ring < rings.count(); ++ring) {
       const Patch further = rings.all_further(ring);
-      if (further.error < most_error * further.largest && ring_holds(further)) return true;
+      if (further.error < max_error * further.largest && ring_holds(further)) return true;
       if (!ring_holds(rings.net(ring))) return false;
       border &= ~(1u << ((corner + 1) % 3));
     }
@@ -510,7 +510,7 @@ class StarCheck {
       for (int d = 0; d < 2 * directions; ++d) {
         if (!turned_ && d % (directions / 2) != 0) continue;
         const Turn turn = turn_of(d);
-        // What is level is paid for by sides that are not where they are seen.
+        // Level edges are not where they are seen: a larger slope counts against the layout.
         if (lay_out(turn, slope, ring)) trials.push_back({steepness(ring) - 0.5 * slope, turn, slope});
       }
     }

@@ -22,14 +22,14 @@ constexpr double layout_size = 0x1p20;
 // centre come nearer, the centre of an open star goes outwards.
 constexpr double bend = 0.05;
 // Points at reflex angles are pushed outwards, at most this far.
-constexpr double most_push = 1.6;
+constexpr double max_push = 1.6;
 // Least sine of an angle, and least length of two sides, of a piece in the layout.
-constexpr double least_sine = 0.02, least_side = 0x1p10;
+constexpr double min_sine = 0.02, min_side = 0x1p10;
 // Rounding and the layout's own error, against products of sizes: see derivations/self_contact.md.
 constexpr double layout_slack = 0x1p-20;
 constexpr unsigned max_rings = 40, plain_levels = 2;
-// What a net that stands for all further rings may add to what is known of those before: its error shrinks
-// from ring to ring.
+// Largest factor by which a net that stands for all further rings may widen the bounds of those before: its error
+// shrinks from ring to ring.
 constexpr double widening = 1.3;
 // Eigenvalues are known this well, and equal ones are equal up to this.
 constexpr double eigenvalue_error = 1e-10, same_eigenvalue = 1e-9;
@@ -63,8 +63,8 @@ struct Cut {
   }
 };
 
-// What derivatives of a star after its layout are known to be: seen along the layout's plane they lead at least
-// `least` onwards in each direction, and they are at most `most` long.
+// Bounds of the derivatives of a star after its layout: seen along the layout's plane they lead at least `least`
+// onwards in each direction, and they are at most `most` long.
 struct Derivatives {
   double least = INFINITY, most = 0;
   void add(const Derivatives& other) {
@@ -178,7 +178,7 @@ class StretchCheck {
         const Point2 chord = ring_[(i + 1) % ring_.size()] - before;
         // Where its ray leaves the triangle with its neighbours; 1.02: with a margin.
         const double far = cross(before - centre_, chord) / cross(p - centre_, chord);
-        if (far > 0.99 && far < most_push) p = whole(centre_ + 1.02 * far * (p - centre_));
+        if (far > 0.99 && far < max_push) p = whole(centre_ + 1.02 * far * (p - centre_));
       }
     }
     std::vector<Point2> border = ring_;
@@ -290,7 +290,7 @@ class StretchCheck {
     const double area = cross(a, b), along_a = size_of(a), along_b = size_of(b), across = size_of(b - a);
     const double reach = along_a + along_b;
     const double products = std::max({along_a * along_b, along_a * across, along_b * across});
-    if (!(area > least_sine * products) || !(std::min(along_a, along_b) > least_side)) return unknown;
+    if (!(area > min_sine * products) || !(std::min(along_a, along_b) > min_side)) return unknown;
     const double factor = scale * static_cast<double>(degree) / area;
     Derivatives all;
     for (std::size_t j = 0; j < degree; ++j) {

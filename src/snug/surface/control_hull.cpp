@@ -96,7 +96,7 @@ namespace {
 
 // Of each vertex: how far the vertices of its faces are from it, but for roundings; squared.
 std::vector<double> ring_sizes_sq(const LimitSurface& surface) {
-  constexpr std::size_t most_compared = 16;
+  constexpr std::size_t max_compared = 16;
   const Topology& topology = surface.topology();
   std::vector<double> sizes(topology.vertex_count(), 0.0);
   const auto raise = [&](VertexId v, double size_sq) {
@@ -104,7 +104,7 @@ std::vector<double> ring_sizes_sq(const LimitSurface& surface) {
   };
   for (std::size_t f = 0; f < topology.face_count(); ++f) {
     const std::span<const VertexId> face = topology.face(FaceId(f));
-    if (face.size() > most_compared) {
+    if (face.size() > max_compared) {
       double radius_sq = 0;
       for (const VertexId v : face) {
         radius_sq = std::max(radius_sq, length_sq(surface.scaled_point(v) - surface.scaled_point(face[0])));

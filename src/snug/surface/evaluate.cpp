@@ -73,7 +73,7 @@ double write_rounded(const BoundedPoint& point, float* out) {
   return enlarged(point.error + rounding);
 }
 
-// What a thread evaluates with: some points of one face, or quad, and their numbers.
+// A thread's evaluator, with some points of one face, or quad, and their numbers.
 struct Worker {
   explicit Worker(const LimitSurface& surface) : evaluator(surface) {}
   [[nodiscard]] std::span<const SurfaceParameter> places() const { return {at.data(), count}; }

@@ -11,7 +11,7 @@ namespace snug {
 namespace {
 
 // Below this error, in scaled units, roundings are what is left.
-constexpr double least_error = 0x1p-46;
+constexpr double min_error = 0x1p-46;
 
 // How many pieces there are, for all threads.
 class Count {
@@ -30,7 +30,7 @@ void add_pieces(const LimitSurface& surface, PatchId root, const Patch& patch, d
                 std::vector<QuadraticPiece>& out) {
   if (count.too_many()) return;
   const QuadraticTriangle quadratic = quadratic_triangle(surface.library(), patch);
-  if (quadratic.error <= error || quadratic.error <= least_error ||
+  if (quadratic.error <= error || quadratic.error <= min_error ||
       patch.path.level() >= PiecePath::max_level) {
     count.add();
     out.push_back({quadratic, root, patch.path});
@@ -41,7 +41,7 @@ void add_pieces(const LimitSurface& surface, PatchId root, const Patch& patch, d
   }
 }
 
-// What make(i, counted, out) adds for each i, in their order.
+// The pieces that make(i, counted, out) adds for each i, in their order.
 template <class Make>
 RefinedPieces in_order(std::size_t count, std::uint64_t most, int threads, const WorkMonitor& monitor,
                        const Make& make) {
