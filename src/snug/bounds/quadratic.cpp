@@ -251,7 +251,7 @@ class Comparison {
     const Kind& kind = *patch.kind;
     if (!kind.shared() || (kind.polynomial() && kind.form().degree == 1)) {
       add(patch, q, 0, 0);
-      return settle();
+      return resolve();
     }
     const BoundRows& rows = library.rows(kind);
     const std::size_t tips = hull.tips().size();
@@ -269,7 +269,7 @@ class Comparison {
       open.quadratic = restricted(q, to_nets[i]);
       measure(open, gamma_bound(16) * size, 1);
     }
-    return settle();
+    return resolve();
   }
 
  private:
@@ -301,7 +301,7 @@ class Comparison {
   }
 
   // Splits nets while they add notably. The largest distance.
-  [[nodiscard]] double settle() {
+  [[nodiscard]] double resolve() {
     double rest = 0;
     for (std::size_t next = 0; next < opened_; ++next) {
       Open& open = *open_[next];
