@@ -7,7 +7,7 @@
 #include <utility>
 
 #include <snug/bounds/bounds_cache.h>
-#include <snug/bounds/characteristic_layout.h>
+#include <snug/bounds/invariant_layout.h>
 
 namespace tablegen {
 namespace {

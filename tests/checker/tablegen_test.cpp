@@ -1,7 +1,7 @@
 #include <checker/bounds_file.h>
 #include <gtest/gtest.h>
 #include <snug/bounds/bounds_cache.h>
-#include <snug/bounds/characteristic_layout.h>
+#include <snug/bounds/invariant_layout.h>
 #include <tablegen/file_writer.h>
 #include <tablegen/kinds.h>
 

@@ -1,6 +1,6 @@
 #include <snug/bounds/bounds_cache.h>
 
-#include <snug/bounds/characteristic_layout.h>
+#include <snug/bounds/invariant_layout.h>
 
 namespace snug {
 const BoundRows& BoundsCache::rows(const Kind& kind) {

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include <snug/bounds/bounds_cache.h>
-#include <snug/bounds/characteristic_layout.h>
 #include <snug/bounds/hull_points.h>
+#include <snug/bounds/invariant_layout.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <support/contract.h>
@@ -145,7 +145,7 @@ void QuadraticRows::make_fit(const BoundRows& deep) {
 }
 
 void QuadraticRows::make_frame(const Kind& kind, const BoundRows& deep) {
-  layout_ = characteristic_layout(kind);
+  layout_ = invariant_layout(kind);
   if (layout_.empty()) return;
   double size = 0;
   for (const LayoutPoint& at : layout_) size = std::max({size, std::fabs(at[0]), std::fabs(at[1])});

@@ -14,9 +14,9 @@ namespace snug {
 /// Guarantee: finite numbers, the same for the same kind. A bound needs no more: any layout is sound.
 /// Cost:      a dense system: the third power of the number of control points.
 /// Source:    [Reif95]; derivations/quadratics.md.
-[[nodiscard]] std::vector<LayoutPoint> characteristic_layout(const Kind& kind);
+[[nodiscard]] std::vector<LayoutPoint> invariant_layout(const Kind& kind);
 
-/// The layout of the tables that bound tips: the characteristic one, where make_bound_table() wants it by an affine
+/// The layout of the tables that bound tips: the invariant one, where make_bound_table() wants it by an affine
 /// map; of kinds that have none make_layout().
 [[nodiscard]] std::vector<LayoutPoint> tip_layout(const Kind& kind);
 

@@ -1,4 +1,4 @@
-#include <snug/bounds/characteristic_layout.h>
+#include <snug/bounds/invariant_layout.h>
 
 #include <algorithm>
 #include <cmath>
@@ -117,7 +117,7 @@ void project_on_eigenvectors(const Stencils& step, double eigenvalue, std::vecto
 
 }  // namespace
 
-std::vector<LayoutPoint> characteristic_layout(const Kind& kind) {
+std::vector<LayoutPoint> invariant_layout(const Kind& kind) {
   const KindChild* const again = again_at_a_corner(kind);
   if (!again) return {};
   std::size_t corner = 0;
@@ -146,7 +146,7 @@ std::vector<LayoutPoint> characteristic_layout(const Kind& kind) {
 }
 
 std::vector<LayoutPoint> tip_layout(const Kind& kind) {
-  std::vector<LayoutPoint> layout = characteristic_layout(kind);
+  std::vector<LayoutPoint> layout = invariant_layout(kind);
   if (layout.empty()) return make_layout(kind);
   if (!laid_by_rings(kind.key())) return layout;
   if (!normalise({layout[0], layout[1], layout[2]}, layout)) return make_layout(kind);
