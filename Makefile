@@ -103,7 +103,7 @@ tsan: install-packages  ## the tests of threads under thread sanitizer
 	@$(unshuffled) $(ctest) --preset tsan -L threads --repeat until-fail:$(or $(TSAN_REPEAT),3)
 
 fuzz: install-packages  ## the readers on made-up files, FUZZ_SECONDS (600) each
-	@$(call build,fuzz)
+	@$(call build,asan,fuzzers)
 	@JOBS=$(JOBS) scripts/fuzz
 
 check:  ## every gate that a commit must pass
