@@ -131,10 +131,9 @@ std::string first_ones(const Ids& ids, const NumberOf& number_of) {
 }
 
 [[noreturn]] void refuse_singular(const std::string& why) {
-  throw InputError(
-      InputProblem::refused,
-      "the points do not determine the control points: " + why +
-          "; give --smooth WEIGHT, or --least-change to leave as they are what points do not tell");
+  throw InputError(InputProblem::refused,
+                   "the points do not determine the control points: " + why +
+                       "; give --smooth WEIGHT, or --least-change to keep the others in place");
 }
 
 // Says where a system is singular, by what the mesh is and by what the points miss.
@@ -158,7 +157,7 @@ void require_regular(const LeastSquares& system, std::size_t unknowns, std::size
     }
   }
   if (rank < unknowns) {
-    refuse_singular(fmt::format("of {} directions they tell {} apart, in double precision", unknowns, rank));
+    refuse_singular(fmt::format("numerical rank {} of {}", rank, unknowns));
   }
 }
 
@@ -239,7 +238,7 @@ std::optional<MeshKernel> kernel_of(const LimitSurface& surface, const WorkMonit
 }
 
 ExitStatus run(const Options& options) {
-  if (options.output.empty()) throw UsageError("fit: -o FILE is missing: where the fitted mesh goes");
+  if (options.output.empty()) throw UsageError("fit: -o FILE is missing; name the mesh to write");
   if (options.mesh == "-" && options.points == "-") {
     throw UsageError(
         "fit: MESH and --points are both -, and there is one standard input; give a file for one");
@@ -287,20 +286,20 @@ Command fit_command() {
            "File with lines 'x y z', or all 'x y z face u v' as in eval; - for standard input")
       .required();
   list.add(Group::own, "--rounds N", &options->rounds,
-           "Without places: find the closest ones and solve at most N times, as long as points come nearer")
+           "Without places: find the closest ones and solve again, at most N times, as long as the error "
+           "falls")
       .between(1, 1000);
   list.add(Group::own, "--smooth WEIGHT", &options->smooth,
-           "Add this times the squares of what moves of control points differ from the mean of their "
-           "neighbours'")
+           "Weight of the smoothness term: displacement minus the neighbours' mean, squared")
       .between(0, 1e6);
   list.add(Group::own, "--least-change", &options->least_change,
-           "Where points do not determine control points, take those that move least");
+           "Among equally good fits, choose the smallest displacement");
   list.add(Group::effort, "--budget N", &options->budget, "Split at most N pieces for each closest point")
       .between(1, std::uint64_t{1} << 40);
   add_common_options(list, *options);
   return {"fit",
           Topic::functions,
-          "Move control points so that the limit surface comes near given points, by least squares",
+          "Fit a limit surface to given points by moving control points, by least squares",
           {"snug-research fit pawn.obj --points scan.txt -o fitted.obj",
            "snug-research fit cube.obj --points scan.txt --smooth 0.01 -o fitted.obj --json"},
           std::move(list),

@@ -40,7 +40,7 @@ Range parse_valences(const std::string& text, std::uint32_t least) {
   const auto number = [&](const std::string& word) {
     std::uint32_t value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (word.empty() || error != std::errc() || end != word.data() + word.size()) refuse("is no valence");
+    if (word.empty() || error != std::errc() || end != word.data() + word.size()) refuse("is not a valence");
     if (value < least || value > largest_valence) refuse("goes beyond what is looked at");
     return value;
   };

@@ -46,7 +46,7 @@ struct LeastSquares::Matrices {
       return static_cast<std::size_t>((factors.vectorD().array() > 0).count());
     }
     throw InputError(InputProblem::refused,
-                     "fit: how many directions the points tell could not be computed; give --smooth WEIGHT");
+                     "fit: the numerical rank could not be computed; give --smooth WEIGHT");
   }
   // Takes away what inverse iteration finds of the kernel in x.
   void remove_kernel(Columns& x) const {

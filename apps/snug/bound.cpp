@@ -166,7 +166,7 @@ void write_bound_summary(Report& report, const BoundSummary& summary, const Boun
                   how.tolerance ? "the tolerance" : "the level",
                   summary.splits >= how.budget
                       ? "the budget was spent, in the order of the mesh; give a larger --budget"
-                      : "60 levels or the precision of doubles stand in the way; give a larger --tolerance"));
+                      : "60 levels or the precision of doubles are the limit; give a larger --tolerance"));
 }
 
 ExitStatus run(const Options& options) {

@@ -199,9 +199,8 @@ Command closest_command() {
   auto options = std::make_shared<Options>();
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
-  list.add(
-          Group::own, "--points FILE", &options->points,
-          "File with one point per line, 'x y z', CSV too, or an array of NumPy (.npy); - for standard input")
+  list.add(Group::own, "--points FILE", &options->points,
+           "File with one point per line, 'x y z'; text, CSV or a NumPy array (.npy); - for standard input")
       .required();
   list.add(Group::own, "--precision LENGTH", &options->precision,
            "Largest width of a distance interval; mesh units, or percent of the mesh");

@@ -48,9 +48,10 @@ void write_answer(JsonWriter& json, const Sides& sides, const Collision& answer)
 // What decides more: rounding is in the way where the budget was not spent.
 const char* advice(const Collision& answer, const CollideOptions& asked) {
   if (answer.stats.splits >= asked.budget) return "give a larger --budget";
-  return *asked.tolerance > 0 ? "rounding is in the way: give a larger --tolerance"
-                              : "surfaces that touch cannot be told from surfaces one rounding apart: give a "
-                                "--tolerance above 0";
+  return *asked.tolerance > 0
+             ? "rounding is in the way: give a larger --tolerance"
+             : "surfaces that touch cannot be distinguished from surfaces one rounding apart: give a "
+               "--tolerance above 0";
 }
 
 // The verdict as a sentence for people.
@@ -226,7 +227,7 @@ ExitStatus run(const Options& options) {
   }
   if (depth) {
     report.text(penetration_sentence(*depth));
-    if (!depth->reached) report.text("the bounds of the depth are farther apart than 5 %");
+    if (!depth->reached) report.text("the bounds of the depth differ by more than 5 %");
   }
   if (all) {
     for (const std::string& line : contact_lines(sides_of(pair.a(), pair.b()), *all)) report.text(line);
@@ -265,20 +266,20 @@ Command collide_command() {
       .excludes("--scene")
       .excludes("--solid");
   list.add(Group::own, "--precision LENGTH", &options->precision,
-           "Largest distance of a curve from the lines between its points; mesh units, or percent of the "
-           "larger mesh")
+           "Largest distance between a curve and the line segments through its points; mesh units, or "
+           "percent of the larger mesh")
       .needs("--all");
   list.add(Group::own, "--curves FILE", &options->curves, "Write the curves as lines of an OBJ file")
       .needs("--all");
   list.add(Group::own, "--exit-code", &options->exit_code,
-           "Exit with 0 separated, 10 within, 11 intersecting, 12 undecided; of a scene the gravest: 11, 12, "
-           "10, 0")
+           "Exit with 0 if separated, 10 within, 11 intersecting, 12 undecided; for a scene, the first of "
+           "11, 12, 10, 0 that occurs")
       .excludes("--poses");
   list.at("--tolerance").excludes("--scene");
   list.at("--margin").excludes("--scene");
   add_pair_options(list, *options);
   list.add(Group::own, "--all-pairs", &options->all_pairs,
-           "List also the pairs of a scene that boxes around its parts separate")
+           "Also list the pairs of a scene that are separated by the boxes around its parts")
       .needs("--scene");
   return {"collide",
           Topic::two_surfaces,

@@ -106,7 +106,7 @@ Given sort_words(const Command& command, const std::vector<std::string>& words) 
 void fill_options(const Program& program, const Command& command, const std::vector<std::string>& words) {
   try {
     if (std::find(words.begin(), words.end(), "%") != words.end()) {
-      throw UsageError("'%' stands alone; join it to its number (1%), or put quotes around both (\"1 %\")");
+      throw UsageError("'%' is separate; join it to its number (1%), or put quotes around both (\"1 %\")");
     }
     command.options.assign(sort_words(command, words));
   } catch (const UsageError& error) {

@@ -50,10 +50,10 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 }
 
 void add_common_options(OptionList& list, CommonOptions& options) {
-  Option& scheme =
-      add_scheme_option(list, "--scheme", options.scheme,
-                        "Subdivision scheme; auto: curve if there are polylines only, flat for STL and glTF, "
-                        "that of the file if it names one, loop if all faces are triangles, else catmark");
+  Option& scheme = add_scheme_option(
+      list, "--scheme", options.scheme,
+      "Subdivision scheme; auto: curve if the file has only polylines, flat for STL and glTF, the file's own "
+      "if it names one, loop if all faces are triangles, otherwise catmark");
   scheme.choices.emplace_back("curve");
   list.add(Group::mesh, "--boundary RULE", &options.boundary,
            "Boundary rule; default: the file's tag, else edge-and-corner")
@@ -61,8 +61,9 @@ void add_common_options(OptionList& list, CommonOptions& options) {
       .alias("vtx-boundary-edge-and-corner", "edge-and-corner")
       .alias("vtx-boundary-edge-only", "edge-only")
       .alias("vtx-boundary-none", "none");
-  list.add(Group::mesh, "--weld LENGTH", &options.weld,
-           "Merge vertices this close; mesh units, or percent of the mesh (0.001%); 0: equal ones");
+  list.add(
+      Group::mesh, "--weld LENGTH", &options.weld,
+      "Merge vertices within this distance; mesh units, or percent of the mesh (0.001%); 0: equal ones only");
   list.add(Group::mesh, "--sharp ANGLE", &options.sharp,
            "For parts from CAD: edges whose face normals differ by more than ANGLE degrees stay sharp, and "
            "flat regions stay flat; auto: 30");
@@ -82,7 +83,7 @@ void add_output_options(OptionList& list, CommonOptions& options) {
 
 std::array<Option*, 2> add_bound_options(OptionList& list, CommonOptions& options) {
   Option& budget = list.add(Group::effort, "--budget N", &options.budget,
-                            "Split at most N patches, then report what was reached")
+                            "Split at most N patches, then report the bounds reached")
                        .between(0, std::uint64_t{1} << 40);
   Option& bounds = list.add(Group::research, "--bounds WHAT", &options.bounds,
                             "How patches are bounded: by bounding rows, or by the dissertation's tables")

@@ -36,9 +36,10 @@ void add_move_options(OptionList& list, const std::string& suffix, const std::st
   const std::string to = "--to" + suffix, path = "--path" + suffix, velocity = "--velocity" + suffix,
                     spin = "--spin" + suffix;
   list.add(Group::own, to + " \"NUMBERS\"", &options.to,
-           "Pose of " + mesh + " at time 1, as --place" + suffix + "; it moves there along a screw");
-  list.add(Group::own, path + " FILE", &options.path,
-           mesh + " moves along screws through the poses of a file, one per line, at times 0, 1, 2 ...")
+           "Pose of " + mesh + " at time 1, as --place" + suffix + "; it moves there along a screw motion");
+  list.add(
+          Group::own, path + " FILE", &options.path,
+          mesh + " moves along screw motions through the poses of a file, one per line, at times 0, 1, 2 ...")
       .excludes(to)
       .excludes("--place" + suffix)
       .excludes("--rotate" + suffix)
@@ -51,10 +52,10 @@ void add_move_options(OptionList& list, const std::string& suffix, const std::st
       .excludes(to)
       .excludes(path);
   list.add(Group::own, "--about" + suffix + " \"X Y Z\"", &options.about,
-           "This point at time 0, in world coordinates; else the origin of the mesh where it is placed")
+           "That point at time 0, in world coordinates; default: the mesh's origin after placement")
       .needs(spin);
   list.add(Group::own, "--deform" + suffix + " MESH", &options.deform,
-           "The same mesh at time 1: control points of " + mesh + " go there along lines")
+           "The same mesh at time 1; control points of " + mesh + " move there in straight lines")
       .excludes(path);
 }
 
@@ -152,15 +153,14 @@ std::string sentence(const TimeOfContact& answer, double tolerance, bool solid) 
       break;
   }
   if (answer.budget_ended) {
-    return fmt::format(
-        "undecided: no contact before time {}, what comes later is open; give a larger --budget", lower);
+    return fmt::format("undecided: no contact before time {}, unknown after that; give a larger --budget",
+                       lower);
   }
   if (solid && answer.time.lower == 0) {
-    return "undecided: no proof at time 0 whether one solid is inside the other; move one of them a little";
+    return "undecided: no proof at time 0 whether one solid is inside the other; move one of them slightly";
   }
   return fmt::format(
-      "undecided: no contact before time {}, then too close to be told apart; give a larger --tolerance",
-      lower);
+      "undecided: no contact before time {}, then too close to decide; give a larger --tolerance", lower);
 }
 
 // A surface that deforms, with its control points at a time.
@@ -260,12 +260,12 @@ Command contact_command() {
   add_move_options(list, "-a", "A", options->move_a);
   add_move_options(list, "-b", "B", options->move_b);
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
-           "Surfaces this close may be reported as within; the time is narrowed down until no point moves "
-           "farther meanwhile; mesh units, or percent of the larger mesh");
+           "Surfaces this close may be reported as within; the time is narrowed until no point moves farther "
+           "than this within its interval; mesh units, or percent of the larger mesh");
   list.add(Group::own, "--solid", &options->solid,
            "Compare solids bounded by closed surfaces: one inside the other is in contact");
   list.add(Group::own, "--exit-code", &options->exit_code,
-           "Exit with 0 separated, 10 within, 11 intersecting, 12 undecided");
+           "Exit with 0 if separated, 10 within, 11 intersecting, 12 undecided");
   add_pair_options(list, *options, false);
   return {"contact",
           Topic::two_surfaces,

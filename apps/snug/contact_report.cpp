@@ -89,7 +89,7 @@ std::string curve_line(const IntersectionCurve& curve, std::size_t number) {
                                  curve.closed ? "closed" : "open", curve.points.size(),
                                  text_at_most(curve.error, true), curve.region);
   return text + (curve.proved ? "proved"
-                              : fmt::format("{} of {} boxes not proved to hold one arc", unproved,
+                              : fmt::format("{} of {} boxes not proved to contain one arc", unproved,
                                             curve.boxes.size()));
 }
 

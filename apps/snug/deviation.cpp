@@ -191,8 +191,8 @@ void write_text(Report& report, const Deviation& answer, const std::array<const 
   };
   write("from the surface to the candidate", answer.from_surface, surfaces[0]);
   write("from the candidate to the surface", answer.from_candidate, surfaces[1]);
-  if (answer.inside) write("of the candidate's points inside of the solid", *answer.inside, surfaces[1]);
-  if (answer.outside) write("of the candidate's points outside of the solid", *answer.outside, surfaces[1]);
+  if (answer.inside) write("of the candidate's points inside the solid", *answer.inside, surfaces[1]);
+  if (answer.outside) write("of the candidate's points outside the solid", *answer.outside, surfaces[1]);
 }
 
 // The verdict as a sentence for people.
@@ -206,7 +206,7 @@ std::string sentence(Within verdict, double tolerance, bool narrow) {
     case Within::undecided:
       break;
   }
-  return fmt::format("undecided: a distance is too near to {:.6g} to tell; give a {}", tolerance,
+  return fmt::format("undecided: a distance is too close to {:.6g} to decide; give a {}", tolerance,
                      narrow ? "smaller --precision" : "larger --budget");
 }
 
@@ -261,27 +261,27 @@ Command deviation_command() {
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "CANDIDATE", &options->candidate,
-           "Triangles to compare with its limit surface: any, such as a tessellation or a scan");
+           "Triangles to compare with the limit surface, such as a tessellation or a scan");
   list.add(Group::own, "--precision LENGTH", &options->precision,
            "Largest width of the intervals; mesh units, or percent of MESH");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
-           "Only ask whether all points are this near; mesh units, or percent of MESH");
+           "Only decide whether all points are within this distance; mesh units, or percent of MESH");
   list.add(Group::own, "--exit-code", &options->exit_code, "Exit with 0 within, 13 exceeds, 12 undecided")
       .needs("--tolerance");
   list.add(Group::own, "--surface", &options->surface,
            "CANDIDATE is a control mesh: compare the two limit surfaces");
   list.add(Group::own, "--solid", &options->solid,
-           "MESH bounds a solid: also how far CANDIDATE lies inside and outside of it");
+           "MESH bounds a solid: also bound how far CANDIDATE lies inside and outside it");
   add_common_options(list, *options);
   list.add(Group::effort, "--budget N", &options->budget,
-           "Compare at most N parts in each direction, then report what was reached")
+           "Compare at most N parts in each direction, then report the bounds reached")
       .between(0, std::uint64_t{1} << 40);
   add_scheme_option(list, "--scheme-b", options->scheme_b, "Scheme of CANDIDATE; overrides --scheme")
       .needs("--surface");
   return {
       "deviation",
       Topic::two_surfaces,
-      "How far are a limit surface and a mesh that stands for it from each other? Bounds both ways",
+      "How far is a mesh from the limit surface that it represents? Bounds in both directions",
       {"snug deviation bust.obj tessellated.stl", "snug deviation bust.obj tessellated.stl --tolerance 0.1%"},
       std::move(list),
       [options] { return run(*options); }};

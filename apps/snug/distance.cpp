@@ -144,11 +144,11 @@ Command distance_command() {
            "Compare solids bounded by closed surfaces: 0 if one is inside the other");
   add_pair_options(list, *options);
   list.add(Group::own, "--limit LENGTH", &options->limit,
-           "List the pairs of a scene that are not farther apart than this; mesh units")
+           "List the pairs of a scene that are at most this far apart; mesh units")
       .needs("--scene");
   return {"distance",
           Topic::two_surfaces,
-          "How far apart are two limit surfaces? Bounds and two points",
+          "How far apart are two limit surfaces? Prints bounds and two points",
           {"snug distance pawn.obj bust.obj --rotate-b \"z 30\" --move-b \"9 0 0\"",
            "snug distance --scene assembly.json --limit 0.5"},
           std::move(list),

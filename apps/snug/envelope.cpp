@@ -74,13 +74,12 @@ void write_fit(Report& report, const Options& options, const Fit& fit) {
     report.text(
         fmt::format("{}: undecided, its limit surface is too near to the envelope, {}", options.part, apart));
   } else if (*fit.inside) {
-    report.text(
-        fmt::format("{}: proved, its limit surface is inside of the envelope, {}", options.part, apart));
+    report.text(fmt::format("{}: proved, its limit surface is inside the envelope, {}", options.part, apart));
   } else if (fit.clearance.upper > 0) {
-    report.text(fmt::format("{}: proved, its limit surface or a part of it is outside of the envelope, {}",
+    report.text(fmt::format("{}: proved, its limit surface or a part of it is outside the envelope, {}",
                             options.part, apart));
   } else {
-    report.text(fmt::format("{}: proved, its limit surface meets the envelope", options.part));
+    report.text(fmt::format("{}: proved, its limit surface touches the envelope", options.part));
   }
 }
 
@@ -92,7 +91,7 @@ void write_summary(Report& report, const Options& options, const LimitSurface& s
   }
   if (found.verified) {
     report.text(
-        fmt::format("{}: {} triangles around the solid, proved closed and not to meet its limit surface, at "
+        fmt::format("{}: {} triangles around the solid, proved closed and not to touch its limit surface, at "
                     "most {} from it",
                     options.output.empty() ? "envelope" : options.output, found.outer->triangles.size(),
                     text_at_most(found.outer->gap, true)));
@@ -122,7 +121,7 @@ ExitStatus run(const Options& options) {
     for (std::size_t e = 0; e < surface.topology().edge_count(); ++e) {
       if (!surface.topology().ends_fans(EdgeId(e))) continue;
       throw InputError(InputProblem::refused,
-                       "envelope: edges of more than two faces have no envelope; 'snug info' names them");
+                       "envelope: edges of more than two faces have no envelope; 'snug info' lists them");
     }
     found = hulls(model, how, monitor);
   });
@@ -148,13 +147,14 @@ Command envelope_command() {
            "Control mesh of a solid (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Largest distance between limit surface and envelope, either way; mesh units or percent (1%)");
-  list.add(Group::own, "--part FILE", &options->part,
-           "Is the limit surface of this control mesh inside of the envelope, and how far from it?");
+  list.add(
+      Group::own, "--part FILE", &options->part,
+      "Report whether the limit surface of this control mesh lies inside the envelope, and how far from it");
   add_common_options(list, *options);
-  list.add(Group::effort, "--budget N", &options->most, "Most triangles of the envelope");
+  list.add(Group::effort, "--budget N", &options->most, "At most N triangles in the envelope");
   return {"envelope",
           Topic::files,
-          "Write a closed mesh around the solid of a limit surface, proved not to meet it",
+          "Write a closed mesh around the solid bounded by a limit surface, proved not to touch it",
           {"snug envelope pawn.obj --tolerance 1% -o around.stl",
            "snug envelope pawn.obj --tolerance 2% --part pin.obj"},
           std::move(list),

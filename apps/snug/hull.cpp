@@ -103,13 +103,14 @@ Command hull_command() {
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Largest distance between limit surface and hulls, either way; mesh units or percent (1%)");
   list.add(Group::own, "--inner FILE", &options->inner,
-           "Write the triangles behind the surface: inside of the solid (OBJ, OFF, PLY, STL, USD or glTF)");
-  list.add(Group::own, "--outer FILE", &options->outer, "Write those in front of it: around the solid");
+           "Write the hull behind the surface, inside the solid (OBJ, OFF, PLY, STL, USD or glTF)");
+  list.add(Group::own, "--outer FILE", &options->outer,
+           "Write the hull in front of the surface, around the solid");
   add_common_options(list, *options);
-  list.add(Group::effort, "--budget N", &options->most, "Most triangles of a hull");
+  list.add(Group::effort, "--budget N", &options->most, "At most N triangles in a hull");
   return {"hull",
           Topic::files,
-          "Write triangles inside and outside of a limit surface, proved not to meet it",
+          "Write triangles inside and outside a limit surface, proved not to touch it",
           {"snug hull pawn.obj --tolerance 1% --inner inner.ply --outer outer.ply"},
           std::move(list),
           [options] { return run(*options); }};

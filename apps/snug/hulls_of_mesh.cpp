@@ -29,12 +29,12 @@ const char* explained(HullFault fault) {
     case HullFault::meets_other:
       return "the hulls could not be kept off each other; try a smaller --tolerance";
     case HullFault::too_few_triangles:
-      return "the budget does not allow triangles enough; give a larger --budget or --tolerance";
+      return "the budget allows too few triangles; give a larger --budget or --tolerance";
     case HullFault::not_around:
       break;
   }
-  return "the hull is on the wrong side: a part of the surface is inside of another one, or is oriented the "
-         "other way; ask about the parts one by one";
+  return "the hull is on the wrong side: part of the surface is inside another part, or is oriented the "
+         "other way; query the parts one at a time";
 }
 
 // Words for people, `place` in mesh units.

@@ -158,7 +158,7 @@ Command info_command() {
   add_common_options(list, *options);
   return {"info",
           Topic::files,
-          "Print counts, valences and defects of a mesh, even of a broken one",
+          "Print counts, valences and defects of a mesh, even a broken one",
           {"snug info pawn.obj"},
           std::move(list),
           [options] { return run(*options); }};

@@ -106,14 +106,14 @@ Command measure_command() {
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "--precision SHARE", &options->precision,
-           "Largest width of an interval, as a share of what is measured: 0.0001 or 0.01%");
+           "Largest relative width of an interval: 0.0001 or 0.01%");
   list.add(Group::effort, "--budget N", &options->budget,
-           "Split at most N pieces, shared out evenly among patches")
+           "Split at most N pieces, divided evenly among patches")
       .between(0, std::uint64_t{1} << 40);
   add_common_options(list, *options);
   return {"measure",
           Topic::one_surface,
-          "Area, volume, centroid and inertia of a limit surface, each between proved bounds",
+          "Bound the area, volume, centroid and inertia of a limit surface",
           {"snug measure pawn.obj", "snug measure part.stl --sharp auto --precision 1e-6 --json"},
           std::move(list),
           [options] { return run(*options); }};

@@ -21,13 +21,12 @@ void add_pair_options(OptionList& list, PairOptions& options, bool many) {
     list.at("B").unless("--scene");
     list.add(
         Group::own, "--scene FILE", &options.scene,
-        "Ask about the parts that a JSON file names and places, in place of A and B; under mpirun on all "
-        "its ranks");
+        "Query the parts that a JSON file names and places, instead of A and B; under mpirun, on all ranks");
     list.add(Group::own, "--resume JOURNAL", &options.journal,
-             "Keep finished answers of a scene in this file, and go on from those that it holds")
+             "Save finished answers for a scene to this file, and continue from those already in it")
         .needs("--scene");
     list.add(Group::own, "--rank-timeout SECONDS", &options.rank_timeout,
-             "Under mpirun, give up once a rank has been silent for this long; 0 waits for ever")
+             "Under mpirun, give up once a rank has been silent for this long; 0 waits forever")
         .needs("--scene")
         .between(0, 1e6);
   }

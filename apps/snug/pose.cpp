@@ -95,9 +95,9 @@ void add_pose_options(OptionList& list, const std::string& suffix, const std::st
 }
 
 Option& add_nearest_rigid_option(OptionList& list, bool& nearest_rigid) {
-  return list.add(
-      Group::placement, "--nearest-rigid", &nearest_rigid,
-      "Replace a pose that is not rigid within 1e-9 by the nearest one that is, and say how far off it was");
+  return list.add(Group::placement, "--nearest-rigid", &nearest_rigid,
+                  "Replace a pose that is not rigid to within 1e-9 by the nearest rigid one, and report how "
+                  "far off it was");
 }
 
 TakenPose take_matrix(std::span<const double> numbers, bool nearest_rigid) {

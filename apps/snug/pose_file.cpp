@@ -125,7 +125,7 @@ Motion motion_of(JsonLine& line, bool nearest_rigid, std::optional<double>& defe
       const std::vector<double> xyz = line.numbers("translation", 3);
       translation = {xyz[0], xyz[1], xyz[2]};
     } else {
-      fail(fmt::format("'{}' is no part of a pose; {}", key, forms));
+      fail(fmt::format("'{}' is not part of a pose; {}", key, forms));
     }
   });
   if (!quaternion) fail(std::string("a pose has no quaternion; ") + forms);
@@ -141,7 +141,7 @@ ReadPoses parse_json(std::string_view text, bool nearest_rigid) {
     line.object([&](const std::string& key) {
       if (key != "a" && key != "b") fail(fmt::format("'{}' is neither a nor b; {}", key, forms));
       std::optional<Motion>& pose = key == "a" ? poses.a : poses.b;
-      if (pose) fail(fmt::format("{} stands twice; {}", key, forms));
+      if (pose) fail(fmt::format("{} appears twice; {}", key, forms));
       try {
         pose = motion_of(line, nearest_rigid, poses.defect);
       } catch (const InputError& error) {

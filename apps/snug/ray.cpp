@@ -147,15 +147,15 @@ Command ray_command() {
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "--rays FILE", &options->rays,
-           "File with one ray per line, 'ox oy oz dx dy dz', for a segment with 'from to' after it, CSV too, "
-           "or "
-           "an array of NumPy (.npy); - for standard input")
+           "File with one ray per line, 'ox oy oz dx dy dz', followed by 'from to' for a segment; text, CSV "
+           "or a NumPy array (.npy); - for standard input")
       .required();
   list.add(Group::own, "--all", &options->all, "All hits, not only the nearest one");
-  list.add(Group::own, "--any", &options->any, "Any hit, not always the nearest one: is the ray blocked?")
+  list.add(Group::own, "--any", &options->any,
+           "Any hit, not necessarily the nearest, to test whether the ray is blocked")
       .excludes("--all");
   list.add(Group::own, "--precision LENGTH", &options->precision,
-           "Intended length of the interval of a hit; mesh units, or percent of the mesh");
+           "Target width of the interval of a hit; mesh units, or percent of the mesh");
   add_common_options(list, *options);
   add_bound_options(list, *options);
   return {"ray",

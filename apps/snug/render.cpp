@@ -150,10 +150,9 @@ struct Part {
 
 void require_drawable(const CurveSet& curves, const std::string& path) {
   if (curves.edge_count() <= most_curve_edges) return;
-  throw InputError(InputProblem::refused,
-                   fmt::format("{}: its polylines have {} edges, and curves of more than {} are too many to "
-                               "draw; draw a part of them",
-                               path, curves.edge_count(), most_curve_edges));
+  throw InputError(InputProblem::refused, fmt::format("{}: its polylines have {} edges, and curves of more "
+                                                      "than {} are too many to draw; draw part of them",
+                                                      path, curves.edge_count(), most_curve_edges));
 }
 
 Surface surface_of(ControlMesh mesh, const std::string& path, const Options& options) {
@@ -402,7 +401,7 @@ void require_sound(const Options& options) {
   if (!options.cut.empty()) {
     const Witness cut = parse_witness(options.cut, "--cut");
     if (cut[0] == cut[1])
-      throw UsageError("--cut: the two points are the same; the plane lies across from one to the other");
+      throw UsageError("--cut: the two points are the same; the plane is normal to the line between them");
   }
   for (const std::string& text : options.opacities) parse_opacity(text);
   if (options.opacities.size() > options.meshes.size()) {
@@ -589,7 +588,8 @@ Command render_command() {
   list.add(Group::own, "MESH", &options->meshes,
            "Control meshes (OBJ, OFF, PLY, STL, USD or glTF; - for standard input)");
   list.add(Group::own, "--size WxH", &options->size, "Pixels: WxH, or one number");
-  list.add(Group::own, "--samples N", &options->samples, "N * N rays a pixel, N from 1 to 16").between(1, 16);
+  list.add(Group::own, "--samples N", &options->samples, "N * N rays per pixel, N from 1 to 16")
+      .between(1, 16);
   list.add(Group::own, "--cage", &options->cage, "Draw the edges of the control meshes and polygons");
   list.add(
       Group::own, "--witness \"X Y Z  X Y Z\"", &options->witnesses,
@@ -598,7 +598,7 @@ Command render_command() {
   list.add(Group::own, "--label TEXT", &options->labels,
            "Write a line at the lower left, such as the verdict; may be repeated");
   list.add(Group::own, "--enclosures", &options->enclosures,
-           "Draw the enclosures of the surfaces and curves, half transparent");
+           "Draw the enclosures of the surfaces and curves, translucent");
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Split enclosures until each radius is at most half of this; mesh units or percent (1%)")
       .needs("--enclosures");
@@ -607,18 +607,16 @@ Command render_command() {
       .excludes("--tolerance")
       .needs("--enclosures");
   list.add(Group::own, "--colour NAME", &options->colour,
-           "Colours of surfaces: plain; kind: grey where they are polynomials of the regular sort; level: "
-           "how often "
-           "patches were split; thickness: of their interval triangles; curvature: the mean one; distance: "
-           "of two meshes, to the other one")
+           "Surface colours: plain; kind: grey for regular polynomial patches; level: number of splits; "
+           "thickness: of interval triangles; curvature: mean curvature; distance: from each of two meshes "
+           "to the other")
       .one_of({"plain", "kind", "level", "thickness", "curvature", "distance"});
   list.add(Group::own, "--opacity SHARE", &options->opacities,
-           "How much of the light from behind a mesh stops, from 0 to 1; one for each mesh, in order");
-  list.add(
-      Group::own, "--cut \"X Y Z  X Y Z\"", &options->cut,
-      "Leave out of surfaces what is beyond a plane through the first point, across from it to the second");
-  list.add(Group::own, "--no-shadows", &options->no_shadows, "Light surfaces as if each place were alone");
-  list.add(Group::own, "--zoom FACTOR", &options->zoom, "Show the middle this much larger, 0.01 to 1000")
+           "Opacity of a mesh, from 0 to 1; one for each mesh, in order");
+  list.add(Group::own, "--cut \"X Y Z  X Y Z\"", &options->cut,
+           "Clip surfaces by the plane through the first point, normal to the line to the second");
+  list.add(Group::own, "--no-shadows", &options->no_shadows, "Shade surfaces without cast shadows");
+  list.add(Group::own, "--zoom FACTOR", &options->zoom, "Magnify the centre of the picture, 0.01 to 1000")
       .between(0.01, 1000);
   list.add(Group::own, "--view \"X Y Z\"", &options->view,
            "Viewing direction; default: a three-quarter view from above");

@@ -87,7 +87,7 @@ class Overseer : public nlohmann::json_sax<Json> {
     return deeper();
   }
   bool key(string_t& name) override {
-    if (!names_.back().insert(name).second) fail("\"" + shortened(name) + "\" stands twice in one object");
+    if (!names_.back().insert(name).second) fail("\"" + shortened(name) + "\" appears twice in one object");
     return true;
   }
   bool end_object() override {
@@ -135,7 +135,7 @@ double number_of(const Json& value, const std::string& where) {
 double length_of(const Json& value, const std::string& where) {
   const double length = number_of(value, where);
   if (!(length >= 0 && std::isfinite(length))) {
-    fail(fmt::format("{}: {} is no length; give a number >= 0", where, quoted(value)));
+    fail(fmt::format("{}: {} is not a length; give a number >= 0", where, quoted(value)));
   }
   return length;
 }
@@ -322,7 +322,7 @@ class SceneReader {
     for (std::size_t i = 0; i < margins.size(); ++i) {
       const std::string where = fmt::format("margins[{}]", i);
       const PartPair pair = pair_at(margins[i], where, 3);
-      if (!known.insert(std::minmax(pair.a, pair.b)).second) fail(where + ": these two have a margin before");
+      if (!known.insert(std::minmax(pair.a, pair.b)).second) fail(where + ": this pair has a margin already");
       scene_.margins.push_back({pair, length_of(margins[i][2], where + "[2]")});
     }
   }

@@ -150,7 +150,7 @@ std::vector<SceneAnswer> answers_of(const Ranks::Message& message, std::span<con
         !parse_line(text.substr(0, end), parts, answer) || parts != pairs[answers.size()].parts) {
       throw InputError(
           InputProblem::unreadable,
-          fmt::format("rank {} sent what is no answer; are all ranks the same version?", message.from));
+          fmt::format("rank {} sent an invalid answer; run the same version on all ranks", message.from));
     }
     answers.push_back(std::move(answer));
     text.remove_prefix(end + 1);
@@ -474,7 +474,7 @@ ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, 
     journal.emplace(options_.journal, fingerprint(key, loaded_.fingerprint));
     std::error_code none;
     if (std::filesystem::equivalent(options_.journal, options_.output, none)) {
-      throw UsageError("--resume and -o name the same file; the document would take the journal's place");
+      throw UsageError("--resume and -o name the same file; the document would replace the journal");
     }
     const Notes notes = notes_for(options_);
     if (notes && journal->found() > 0) {

@@ -55,7 +55,7 @@ void write_text(Report& report, const SelfContact& found, std::optional<double> 
     report.text(line);
   }
   if (found.pairs.size() > most_lines) {
-    report.text(fmt::format("... {} more; --json tells all", found.pairs.size() - most_lines));
+    report.text(fmt::format("... {} more; --json lists all", found.pairs.size() - most_lines));
   }
 }
 
@@ -66,7 +66,7 @@ ExitStatus run(const Options& options) {
   std::optional<Length> tolerance, radius;
   if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--tolerance");
   if (!options.radius.empty()) radius = parse_length(options.radius, "--radius");
-  if (radius && !tolerance) throw UsageError("--radius: there is no --tolerance; give both");
+  if (radius && !tolerance) throw UsageError("--radius needs --tolerance");
   const LimitSurface surface =
       load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
   if (tolerance) wanted.tolerance = tolerance->in_mesh_units(surface.size());
@@ -91,19 +91,18 @@ Command self_command() {
   options->budget = SelfContactOptions{}.budget;
   OptionList list;
   list.add(Group::own, "MESH", &options->mesh, "Control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
-  list.add(
-      Group::own, "--tolerance T", &options->tolerance,
-      "Also: are places at most T apart (mesh units, or percent of the size) that are far apart along the "
-      "surface?");
+  list.add(Group::own, "--tolerance T", &options->tolerance,
+           "Also decide whether points at most T apart (mesh units, or percent of the size) are far apart "
+           "along the surface");
   list.add(Group::own, "--radius R", &options->radius,
-           "Far apart along the surface: more than R, at least 2 T; default 4 T");
+           "Points more than R apart along the surface are far apart; at least 2 T, default 4 T");
   list.add(Group::effort, "--budget N", &options->budget, "Compare at most N stars and pairs of pieces")
       .between(0, std::uint64_t{1} << 40);
   add_common_options(list, *options);
   return {
       "self",
       Topic::one_surface,
-      "Does a limit surface meet itself, or come near itself?",
+      "Does a limit surface intersect itself, or come near itself?",
       {"snug self pawn.obj", "snug self pawn.obj --tolerance 1%", "snug self part.stl --sharp auto --json"},
       std::move(list),
       [options] { return run(*options); }};

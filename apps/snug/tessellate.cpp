@@ -127,23 +127,23 @@ Command tessellate_command() {
   list.add(Group::own, "--tolerance LENGTH", &options->tolerance,
            "Largest distance between limit surface and triangles, either way; mesh units or percent (0.1%)");
   list.add(Group::own, "--max-triangles N", &options->max_triangles,
-           "The smallest error that is found for so many triangles, but not below --tolerance");
+           "Use at most N triangles, with the smallest error found, but not below --tolerance");
   list.add(Group::own, "--max-edge LENGTH", &options->max_edge, "Longest edge; mesh units or percent");
   list.add(Group::own, "--max-angle DEGREES", &options->max_angle,
            "Largest angle between the limit normals at corners of a triangle; 0 for any")
       .between(0, 180);
   list.add(Group::own, "--max-thickness LENGTH", &options->max_thickness,
-           "Longest side of the boxes of pieces' interval triangles, the dissertation's criterion");
+           "Longest side of the box of a piece's interval triangle, the dissertation's criterion");
   list.add(Group::own, "--eye \"X Y Z\"", &options->eye,
-           "Seen from this point no error is larger than --eye-angle; mesh units");
+           "Eye point, from which no error subtends more than --eye-angle; mesh units");
   list.add(Group::own, "--eye-angle DEGREES", &options->eye_angle,
-           "Largest angle under which an error is seen: a field of view over its pixels")
+           "Largest visible error in degrees: field of view / pixels")
       .between(1e-9, 45);
   list.add(Group::own, "--coarsen", &options->coarsen,
-           "Fewer triangles than the faces have, too: simplified, then proved to be within the tolerance");
+           "Allow fewer triangles than faces: simplify, then prove that the result is within the tolerance");
   add_common_options(list, *options);
   list.add(Group::effort, "--budget N", &options->most,
-           "Most triangles; with fewer than needed the answer says what is proved, and the status is 5");
+           "At most N triangles; if more are needed, report the bound that is proved and exit with status 5");
   return {"tessellate",
           Topic::files,
           "Write triangles within a proved distance of the limit surface",

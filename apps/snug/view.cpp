@@ -226,24 +226,25 @@ Command view_command() {
   list.add(Group::own, "MESH", &options->meshes, "Control meshes (OBJ, OFF, PLY, STL, USD or glTF)")
       .unless("--scene");
   list.add(Group::own, "--scene FILE", &options->scene,
-           "Show the parts that a JSON file names and places, in place of meshes");
+           "Show the parts that a JSON file names and places, instead of meshes");
   list.add(Group::own, "--answer FILE", &options->answer,
-           "JSON of collide or distance about the first two: shown, with its poses")
+           "Show this JSON answer of collide or distance for the first two meshes, in its poses")
       .excludes("--scene");
-  list.add(Group::own, "--template FILE", &options->page, "The page to fill, if not the installed one");
+  list.add(Group::own, "--template FILE", &options->page,
+           "Page template to use instead of the installed one");
   list.add(Group::placement, "--place \"NUMBERS\"", &options->poses,
-           "Pose of the first mesh; again for the second, and so on")
+           "Pose of the first mesh; repeat for the second, and so on")
       .excludes("--scene");
   add_nearest_rigid_option(list, options->nearest_rigid);
   add_scheme_option(list, "--scheme", options->scheme,
-                    "Subdivision scheme; auto: flat for STL and glTF, that of the file if it names one, "
-                    "loop if all faces are triangles, else catmark");
+                    "Subdivision scheme; auto: flat for STL and glTF, the file's own if it names one, loop "
+                    "if all faces are triangles, otherwise catmark");
   list.add(Group::mesh, "--sharp ANGLE", &options->sharp,
            "Edges whose face normals differ by more than ANGLE degrees stay sharp; auto: 30");
   add_output_options(list, *options);
   return {"view",
           Topic::two_surfaces,
-          "Make a page, to move parts in a browser with live answers",
+          "Write a page for moving parts in a browser, with live answers",
           {"snug view bracket.obj pin.obj --answer answer.json -o parts.html",
            "snug view --scene assembly.json -o assembly.html"},
           std::move(list),

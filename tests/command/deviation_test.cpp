@@ -154,7 +154,7 @@ TEST_F(deviation, on_each_side_of_a_solid) {
   expect_interval(out["outside"], std::sqrt(3.0), 1e-4);
   EXPECT_EQ(out["inside"], json({0, 0}));
   const Outcome words = run({quads_, inner, "--scheme", "bilinear", "--solid"});
-  EXPECT_NE(words.out.find("outside of the solid: 0, proved"), std::string::npos) << words.out;
+  EXPECT_NE(words.out.find("outside the solid: 0, proved"), std::string::npos) << words.out;
   const std::string open = write("open.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
   const Outcome refused = run({open, inner, "--solid"});
   EXPECT_EQ(refused.status, 4);

@@ -48,7 +48,7 @@ TEST(lengths, may_have_a_blank_before_the_percent_sign) {
     EXPECT_EQ(apart["tolerance"], joined["tolerance"]) << text;
   }
   expect_usage_error({"collide", star, star, "--tolerance", "2 2%"}, "'2 2%' is not a length");
-  expect_usage_error({"collide", star, star, "--tolerance", "%"}, "'%' stands alone");
+  expect_usage_error({"collide", star, star, "--tolerance", "%"}, "'%' is separate");
 }
 
 TEST(lengths, of_two_words_are_refused_with_both_ways_to_write_them) {

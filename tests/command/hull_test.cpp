@@ -210,7 +210,7 @@ TEST(envelope, tells_whether_a_part_is_inside) {
   EXPECT_GT(own["part"]["clearance"][0], 0);
   EXPECT_LE(own["part"]["clearance"][1], own["envelope"]["gap"]);
   const Outcome outcome = run_snug({"envelope", whole, "--tolerance", "2%", "--part", part(0.2, 1.5)});
-  EXPECT_NE(outcome.out.find("is outside of the envelope"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("is outside the envelope"), std::string::npos) << outcome.out;
 }
 
 TEST(envelope, says_what_is_wrong) {

@@ -265,7 +265,7 @@ TEST_F(pose_files, with_bad_lines_are_refused_by_line) {
         Case{R"({"b": "here"})", 3, "b: '[' is missing"},
         Case{R"({"b": [1,null,3]})", 3, "'null' is not a number"},
         Case{R"({"b": [1,0,0,3,0,1,0,0,0,0,1,0]} 7)", 3, "something follows"},
-        Case{R"({"b": {"quaternion": [1,0,0,0]}, "b": {"quaternion": [1,0,0,0]}})", 3, "b stands twice"},
+        Case{R"({"b": {"quaternion": [1,0,0,0]}, "b": {"quaternion": [1,0,0,0]}})", 3, "b appears twice"},
         Case{R"({"b": {"quaternion": [1,0,0,0)", 3, "']' is missing"},
         Case{R"({"b)", 3, "does not end"},
         Case{"1 0 0 0 0 1 0 0 0 0 -1 0", 4, "mirrors"},

@@ -199,7 +199,7 @@ TEST_F(scenes, that_are_wrong_are_refused_in_one_line) {
   expect_refusal({"\xff\xfe{\0}\0", 6}, "this is UTF-16 text: save it as UTF-8");
   expect_refusal({"{\0}\0", 4}, "this is UTF-16 text: save it as UTF-8");
   expect_refusal(one(R"(, "name": "")"), "parts[0].name is empty");
-  expect_refusal(one(R"(, "mesh": "ball.obj")"), "\"mesh\" stands twice");
+  expect_refusal(one(R"(, "mesh": "ball.obj")"), "\"mesh\" appears twice");
   expect_refusal(one(R"(, "place": [1, 2, 3])"), "parts[0].place has 3 numbers, not 12");
   expect_refusal(one(R"(, "place": [1,0,0,0, 0,1,0,0, 0,0,1,"x"])"), "parts[0].place[11] is a text");
   expect_refusal(one(R"(, "place": [1,0,0,0, 0,1,0,0, 0,0,1,NaN])"), "line 1");
@@ -221,8 +221,8 @@ TEST_F(scenes, that_are_wrong_are_refused_in_one_line) {
   expect_refusal(two(R"(, "pairs": [["0", ")" + screws + "\"]]"), "螺螺...");
   expect_refusal(two(R"(, "pairs": [[1, "x"]])"), "\"x\" with itself");
   expect_refusal(two(R"(, "margins": [[0, 1, 1], ["x", 0, 2]])"),
-                 "margins[1]: these two have a margin before");
-  expect_refusal(two(R"(, "margins": [[0, 1, -1]])"), "margins[0][2]: -1 is no length");
+                 "margins[1]: this pair has a margin already");
+  expect_refusal(two(R"(, "margins": [[0, 1, -1]])"), "margins[0][2]: -1 is not a length");
   expect_refusal(two(R"(, "margin": "1")"), "margin is a text");
   expect_refusal(two(R"(, "tolerance": "x%")"), "tolerance");
   expect_refusal(R"({"parts": [{"name": "1", "mesh": "ball.obj"}, {"mesh": "ball.obj"}]})",

@@ -252,7 +252,7 @@ TEST_F(solids, penetration_says_where_its_precision_was_missed_and_proves_contac
     const bool reached = found["penetration"]["reached"];
     EXPECT_EQ(outcome.status, reached ? 0 : 5) << move;
     EXPECT_EQ(text.status, outcome.status) << move;
-    EXPECT_EQ(text.out.find("farther apart than 5 %") == std::string::npos, reached) << text.out;
+    EXPECT_EQ(text.out.find("differ by more than 5 %") == std::string::npos, reached) << text.out;
     double square = 0;
     for (const double x : found["penetration"]["translation"]) square += x * x;
     EXPECT_LE(std::sqrt(square), found["penetration"]["depth"][1]) << move;

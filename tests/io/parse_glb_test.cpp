@@ -255,7 +255,7 @@ TEST(parse_glb, what_makes_no_triangles_is_left_out_with_a_note) {
   line["mode"] = 1;
   file.text["meshes"][0]["primitives"].push_back(line);
   EXPECT_EQ(file.notes(),
-            (std::vector<std::string>{"in.glb: 1 primitives are left out: they hold no triangles"}));
+            (std::vector<std::string>{"in.glb: 1 primitives are left out: they contain no triangles"}));
   file.node()["skin"] = 0;
   EXPECT_EQ(file.notes().back(), "in.glb: skins and morph targets are not applied");
   file.text["nodes"][0].erase("mesh");
@@ -285,7 +285,7 @@ TEST(parse_glb, faults_name_what_is_wrong) {
   EXPECT_EQ(changed([](File& f) { f.text["accessors"][0]["count"] = 1e15; }),
             "in.glb: glTF: accessor 0 counts more than the file can hold");
   EXPECT_EQ(changed([](File& f) { f.text["accessors"][0]["count"] = 2.5; }),
-            "in.glb: glTF: 'count' is not a whole number that counts something");
+            "in.glb: glTF: 'count' is not a whole number >= 0");
   EXPECT_EQ(changed([](File& f) { f.text["accessors"][0]["type"] = "VEC2"; }),
             "in.glb: glTF: accessor 0 is not of the type VEC3");
   EXPECT_EQ(changed([](File& f) { f.text["accessors"][1]["componentType"] = 5126; }),
@@ -293,7 +293,7 @@ TEST(parse_glb, faults_name_what_is_wrong) {
   EXPECT_EQ(changed([](File& f) { f.text["accessors"][1]["componentType"] = 5120; }),
             "in.glb: glTF: accessor 1: indices are not whole numbers from 0");
   EXPECT_EQ(changed([](File& f) { f.text["accessors"][1]["count"] = 4; }),
-            "in.glb: glTF: 4 corners are no triangles");
+            "in.glb: glTF: 4 corners are not a multiple of 3");
   EXPECT_EQ(changed([](File& f) { f.text["bufferViews"][1]["byteOffset"] = 61; }),
             "in.glb: glTF: buffer view 1 ends beyond its buffer: the file is truncated");
   EXPECT_EQ(changed([](File& f) { f.binary[61] = 7; }),
@@ -421,9 +421,9 @@ TEST(parse_glb, values_of_another_kind_are_refused) {
   }
   for (const char* value : {"-1", "1.5", "\"0\"", "1e300", "null", "[0]", "true"}) {
     const std::string message = refusal_with(std::string(",\"mesh\":") + value);
-    EXPECT_EQ(message, "in.glb: glTF: 'mesh' is not a whole number that counts something") << value;
+    EXPECT_EQ(message, "in.glb: glTF: 'mesh' is not a whole number >= 0") << value;
   }
-  EXPECT_EQ(refusal_with(",\"children\":7"), "in.glb: glTF: 'children' is no list");
+  EXPECT_EQ(refusal_with(",\"children\":7"), "in.glb: glTF: 'children' is not a list");
   for (const char* whole : {"[]", "7", "null", "\"a\"", R"({"asset": 2})", R"({"asset": {"version": 2}})"}) {
     EXPECT_EQ(unreadable([&] { static_cast<void>(parse_glb(container(whole, ""), "in.glb")); }),
               "in.glb: glTF: only version 2.0 is read");

@@ -215,7 +215,7 @@ TEST(usda, prims_that_do_not_count_are_left_out_with_a_note) {
             "in.usda: meshes are left out that are not active: '/a'");
   EXPECT_EQ(with("def Mesh \"a\" {\n int[] faceVertexCounts = []\n}\n"),
             "in.usda: meshes without faces are left out: '/a'");
-  EXPECT_EQ(with("def Sphere \"a\" {}\n"), "in.usda: shapes that are no meshes are left out: '/a'");
+  EXPECT_EQ(with("def Sphere \"a\" {}\n"), "in.usda: shapes that are not meshes are left out: '/a'");
   // What a prim says itself counts more than what is above it, of purposes only.
   EXPECT_EQ(parse("def \"x\" { uniform token purpose = \"guide\"\n" +
                   mesh_prim(quad + "uniform token purpose = \"render\"\n") + "}\n")

@@ -246,8 +246,8 @@ TEST_F(independence_command, refuses_what_is_no_question) {
   expect_refused({"--valence", "2"}, "from 3 to 200");
   expect_refused({"--valence", "30..3"}, "ends before it begins");
   expect_refused({"--valence", "3..1000000000"}, "from 3 to 200");
-  expect_refused({"--valence", "3..1e9"}, "is no valence");
-  expect_refused({"--valence", "..7"}, "is no valence");
+  expect_refused({"--valence", "3..1e9"}, "is not a valence");
+  expect_refused({"--valence", "..7"}, "is not a valence");
   expect_refused({"--valence", "7", "--domain", "ring:0"}, "--domain: 'ring:0'");
   expect_refused({"--valence", "7", "--domain", "rings:257"}, "K goes from 1 to 256");
   expect_refused({"--valence", "3..7", "--domain", "conjecture"}, "loop with valence 8 and more");

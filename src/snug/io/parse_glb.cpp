@@ -128,7 +128,7 @@ class GlbReader {
     static const std::vector<Json> none;
     const Json* const found = find(of, key);
     if (!found) return none;
-    if (!found->is_array()) fail("glTF: " + in_quotes(key) + " is no list");
+    if (!found->is_array()) fail("glTF: " + in_quotes(key) + " is not a list");
     return found->get_ref<const std::vector<Json>&>();
   }
 
@@ -145,7 +145,7 @@ class GlbReader {
     const Json* const found = find(of, key);
     if (!found) return {};
     const auto value = whole_number(*found);
-    if (!value) fail("glTF: " + in_quotes(key) + " is not a whole number that counts something");
+    if (!value) fail("glTF: " + in_quotes(key) + " is not a whole number >= 0");
     return value;
   }
 
@@ -419,7 +419,8 @@ class GlbReader {
       }
       return p;
     };
-    if (mode == 4 && count % 3 != 0) fail("glTF: " + std::to_string(count) + " corners are no triangles");
+    if (mode == 4 && count % 3 != 0)
+      fail("glTF: " + std::to_string(count) + " corners are not a multiple of 3");
     const std::size_t triangles = mode == 4 ? count / 3 : count - std::min<std::size_t>(count, 2);
     spend(3 * triangles);
     if (mesh_.face_vertices.size() + corners.size() + 3 * triangles > most_elements) {
@@ -442,7 +443,7 @@ class GlbReader {
     if (!notes_) return;
     const auto note = [&](const std::string& text) { notes_(name_ + ": " + text); };
     if (moved_) {
-      std::string text = "points are moved as the transforms of their nodes say";
+      std::string text = "points are moved by the transforms of their nodes";
       if (farthest_ > 0) {
         text += "; rounding moves a coordinate by at most ";
         append_real(text, farthest_);
@@ -450,7 +451,7 @@ class GlbReader {
       note(text);
     }
     if (no_triangles_ > 0)
-      note(std::to_string(no_triangles_) + " primitives are left out: they hold no triangles");
+      note(std::to_string(no_triangles_) + " primitives are left out: they contain no triangles");
     if (degenerate_ > 0) {
       note(std::to_string(degenerate_) +
            " triangles with two corners in one place are left out: faces are numbered "

@@ -398,7 +398,7 @@ class Assembler {
       tell_of(prims, std::string("meshes are left out that are ") + name_in(reasons, reason));
     }
     tell_of(empty_, "meshes without faces are left out");
-    tell_of(others_, "shapes that are no meshes are left out");
+    tell_of(others_, "shapes that are not meshes are left out");
     if (moved_ > 0) {
       std::string text = name_ + ": points are moved as the transforms of their prims say";
       if (farthest_ > 0) {
