@@ -16,7 +16,7 @@
 namespace snug::command {
 namespace {
 
-constexpr std::uint32_t least_valence = 3, least_boundary_faces = 1, largest_valence = 200, most_rings = 256;
+constexpr std::uint32_t min_valence = 3, min_boundary_faces = 1, largest_valence = 200, max_rings = 256;
 
 struct Options : CommonOptions {
   std::string valence, border, mesh;
@@ -82,7 +82,7 @@ std::vector<PieceCorners> pieces_of(const Options& options, Range valences) {
   return pieces;
 }
 
-// What --domain names.
+// The domains given by --domain.
 struct Domains {
   std::vector<IndependenceDomain> named;
   bool conjecture = false;
@@ -106,8 +106,8 @@ Domains parse_domains(const Options& options) {
           "or conjecture",
           text));
     }
-    if (domain->first > most_rings) {
-      throw UsageError(fmt::format("--domain: '{}': K goes from 1 to {}", text, most_rings));
+    if (domain->first > max_rings) {
+      throw UsageError(fmt::format("--domain: '{}': K goes from 1 to {}", text, max_rings));
     }
     if (options.second && domain->kind != IndependenceDomain::Kind::rings &&
         domain->kind != IndependenceDomain::Kind::omega) {
@@ -298,7 +298,7 @@ std::string text_of(const CornerEigenvalues& found, std::uint32_t valence) {
 
 ExitStatus run_on_valences(const Options& options) {
   const Range range =
-      parse_valences(options.valence, options.border.empty() ? least_valence : least_boundary_faces);
+      parse_valences(options.valence, options.border.empty() ? min_valence : min_boundary_faces);
   const ExactScheme scheme = exact_scheme(options);
   if (!options.border.empty() && scheme.dual()) {
     throw UsageError(
@@ -405,7 +405,7 @@ Command independence_command() {
   list.add(Group::own, "--second N", &options->second,
            "A second extraordinary corner of this valence, at the other end of an edge of the piece")
       .needs("--valence")
-      .between(least_valence, largest_valence);
+      .between(min_valence, largest_valence);
   list.add(Group::own, "--opposite", &options->opposite,
            "The second corner across the quad (dual schemes: the vertex)")
       .needs("--second");
@@ -420,7 +420,7 @@ Command independence_command() {
       .excludes("--eigenvalues");
   list.add(Group::own, "--face I", &options->face, "One of them, counted from a boundary edge to the other")
       .needs("--border")
-      .between(least_boundary_faces, largest_valence);
+      .between(min_boundary_faces, largest_valence);
   list.add(Group::own, "--older-rule", &options->older,
            "Catmull-Clark with the vertex points (Q + R + 2S)/4 of an early version")
       .needs("--valence");

@@ -16,7 +16,7 @@ namespace snug::command {
 namespace {
 
 // Beyond, planes above and below a function of Midedge are farther apart than functions are high.
-constexpr std::uint64_t most_of_midedge = 20;
+constexpr std::uint64_t max_midedge_valence = 20;
 
 struct Options : CommonOptions {
   std::optional<std::uint64_t> valence;
@@ -180,9 +180,10 @@ void write_text(Report& report, const LaidOut& found) {
 
 ExitStatus run(const Options& options) {
   const SchemeRules& rules = *scheme_named(options.scheme);
-  if (rules.scheme == Scheme::midedge && *options.valence > most_of_midedge) {
-    throw UsageError(fmt::format(
-        "table: planes of midedge are of no use beyond {} corners; bound has tighter sets", most_of_midedge));
+  if (rules.scheme == Scheme::midedge && *options.valence > max_midedge_valence) {
+    throw UsageError(
+        fmt::format("table: planes of midedge are of no use beyond {} corners; bound has tighter sets",
+                    max_midedge_valence));
   }
   BoundsCache cache;
   const LaidOut found = lay_out(cache, rules, *options.valence);

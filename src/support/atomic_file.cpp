@@ -109,7 +109,7 @@ AtomicFile::AtomicFile(const std::string& path)
   target_ = resolved.string();
   const unsigned permissions = status.st_mode & 0777;
   open_temporary(permissions);
-  // What the mask of new files took away; file systems without permissions refuse.
+  // Restores what the umask removed; file systems without permissions refuse.
   static_cast<void>(::fchmod(descriptor_, permissions));
 }
 

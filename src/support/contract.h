@@ -2,7 +2,7 @@
 
 namespace snug {
 
-/// What a broken contract reports: the condition as written, and where.
+/// A broken contract: the condition as written, and its place.
 struct ContractViolation {
   const char* condition;
   const char* file;

@@ -101,7 +101,7 @@ std::string text_at_most(double x, bool at_least) {
     return std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::general, digits).ptr;
   };
   const char* end = nullptr;
-  for (int digits = 6; digits <= 17; ++digits) {  // 17 tell any two doubles apart
+  for (int digits = 6; digits <= 17; ++digits) {  // 17 distinguish any two doubles
     end = written(digits);
     double read = x;
     std::from_chars(text.data(), end, read);

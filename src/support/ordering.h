@@ -105,7 +105,7 @@ std::size_t partition(Item* items, std::size_t size, const Less& less) {
 }
 
 /// How often parts are divided before heaps take over, which no input slows down.
-constexpr unsigned most_divisions(std::size_t size) {
+constexpr unsigned max_divisions(std::size_t size) {
   unsigned count = 0;
   for (; size > 1; size /= 2) count += 2;
   return count;
@@ -125,7 +125,7 @@ void sort_roughly(Item* items, std::size_t size, unsigned divisions, const Less&
 
 template <class Item, class Less>
 void sort(Item* items, std::size_t size, const Less& less) {
-  sort_roughly(items, size, most_divisions(size), less);
+  sort_roughly(items, size, max_divisions(size), less);
   insertion_sort(items, 1, size, less);
 }
 
@@ -134,7 +134,7 @@ void sort(Item* items, std::size_t size, const Less& less) {
 template <class Item, class Less>
 void nth_element(Item* items, std::size_t place, std::size_t size, const Less& less) {
   if (place >= size) return;
-  for (unsigned divisions = most_divisions(size); size > 3; --divisions) {
+  for (unsigned divisions = max_divisions(size); size > 3; --divisions) {
     if (divisions == 0) {
       heap_select(items, place + 1, size, less);
       return std::swap(items[0], items[place]);

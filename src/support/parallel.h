@@ -32,7 +32,7 @@ class SharedRanges {
 ///
 /// Guarantee: returns when all calls have. An exception of one ends the handing out, and is thrown again
 ///            here. Where the system refuses a thread (limits of processes or memory) the others do its
-///            share, threads_were_refused() tells, and results are the same.
+///            share, threads_were_refused() reports it, and results are the same.
 /// Cost:      some 20 microseconds a thread. No more are started than there are cores, but up to four anyway.
 void share_ranges(std::size_t count, int threads, const std::function<void(SharedRanges&)>& work);
 

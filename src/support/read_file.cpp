@@ -46,7 +46,7 @@ std::size_t memory_of_machine() {
 // How much is to come, and how much may.
 struct Size {
   std::size_t expected = 0;
-  unsigned most_bits = 30;  // 2^most_bits bytes, or what is expected if that is more
+  unsigned max_bits = 30;  // 2^max_bits bytes, or what is expected if that is more
 };
 
 Size size_of(int descriptor, const std::string& name) {
@@ -70,9 +70,9 @@ std::string read_file(const std::string& path, const WorkMonitor& monitor) {
 
   // The size is a hint: pipes have none, and a file may grow meanwhile.
   const Size limits = size_of(descriptor.number(), name);
-  const std::size_t most = std::max(limits.expected, std::size_t{1} << limits.most_bits);
-  constexpr std::size_t least_room = 64 * 1024;
-  std::string bytes(limits.expected + least_room, '\0');
+  const std::size_t most = std::max(limits.expected, std::size_t{1} << limits.max_bits);
+  constexpr std::size_t min_room = 64 * 1024;
+  std::string bytes(limits.expected + min_room, '\0');
   std::size_t size = 0;
   for (;;) {
     monitor.checkpoint();
@@ -83,7 +83,7 @@ std::string read_file(const std::string& path, const WorkMonitor& monitor) {
     if (got > 0) size += static_cast<std::size_t>(got);
     if (size > most) {
       fail_in_file(
-          name, "does not end after 2^" + std::to_string(limits.most_bits) + " bytes: name a file that does");
+          name, "does not end after 2^" + std::to_string(limits.max_bits) + " bytes: name a file that does");
     }
   }
   bytes.resize(size);

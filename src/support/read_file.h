@@ -15,7 +15,7 @@ namespace snug {
 ///            monitor says stop, also where a signal ends the wait for input.
 [[nodiscard]] std::string read_file(const std::string& path, const WorkMonitor& monitor = {});
 
-/// What messages call the file: its path, or "standard input" for "-".
+/// Name of the file in messages: its path, or "standard input" for "-".
 [[nodiscard]] std::string input_name(const std::string& path);
 
 /// Errors:    InputError (unreadable) that says what the bytes look like, and what to do, if they are empty,

@@ -120,8 +120,8 @@ double read_coordinate(const TextCursor& at, std::size_t vertex, std::string_vie
 }
 
 void expect_room(const TextCursor& at, std::size_t count, const char* what) {
-  if (count >= most_elements) {
-    at.fail("more than " + std::to_string(most_elements) + ' ' + what + ": split the mesh");
+  if (count >= max_elements) {
+    at.fail("more than " + std::to_string(max_elements) + ' ' + what + ": split the mesh");
   }
 }
 

@@ -62,7 +62,7 @@ class TextCursor {
 [[noreturn]] void fail_in_file(const std::string& name, const std::string& message);
 
 /// More vertices, faces or face corners than this do not fit 32-bit ids.
-inline constexpr std::uint64_t most_elements = 0xFFFFFFFE;
+inline constexpr std::uint64_t max_elements = 0xFFFFFFFE;
 
 /// The coordinate of a vertex that a word is. Fails, naming vertex and word, unless it is a finite number.
 [[nodiscard]] double read_coordinate(const TextCursor& at, std::size_t vertex, std::string_view word);

@@ -40,10 +40,10 @@ void for_all_faces(std::uint32_t most, const Do& act) {
 
 std::vector<IndependenceCase> cases(const ExactScheme& scheme, std::uint32_t n, const BoundaryFace& at,
                                     const std::vector<IndependenceDomain>& domains,
-                                    std::uint32_t least_prime = 1U << 30) {
+                                    std::uint32_t min_prime = 1U << 30) {
   std::vector<IndependenceRequest> requests;
   for (const IndependenceDomain& domain : domains) requests.push_back({domain, "", std::nullopt});
-  return independence_cases(scheme, {n, {}, false, at}, requests, {}, least_prime);
+  return independence_cases(scheme, {n, {}, false, at}, requests, {}, min_prime);
 }
 
 // What docs/derivations/independence.md proves.

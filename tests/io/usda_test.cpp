@@ -310,7 +310,7 @@ TEST(usda, says_how_far_rounding_moves_points) {
   const std::vector<std::string> notes = notes_of(mesh_prim(quad + turn));
   ASSERT_EQ(notes.size(), 1u);
   const std::string front =
-      "in.usda: points are moved as the transforms of their prims say; rounding moves a coordinate by at "
+      "in.usda: points are moved by the transforms of their prims; rounding moves a coordinate by at "
       "most ";
   ASSERT_EQ(notes[0].substr(0, front.size()), front);
   const double most = std::stod(notes[0].substr(front.size()));
@@ -319,7 +319,7 @@ TEST(usda, says_how_far_rounding_moves_points) {
   const std::string exact =
       "float xformOp:rotateX = 90\nuniform token[] xformOpOrder = [\"xformOp:rotateX\"]\n";
   EXPECT_EQ(notes_of(mesh_prim(quad + exact))[0],
-            "in.usda: points are moved as the transforms of their prims say");
+            "in.usda: points are moved by the transforms of their prims");
   EXPECT_TRUE(notes_of(mesh_prim(quad + "uniform token[] xformOpOrder = []\n")).empty());
 }
 

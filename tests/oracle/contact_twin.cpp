@@ -35,7 +35,7 @@ struct Row {
   }
 };
 
-/// What splitting a net does, whatever its points: made once for each numbering of a connectivity.
+/// The split of a net, whatever its points: made once for each numbering of a connectivity.
 struct Connectivity {
   Net<double> net;  // without meaning in its points
   bool regular;     // the patch is one polynomial

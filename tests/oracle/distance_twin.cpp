@@ -310,19 +310,19 @@ class Search {
       const Point direction{gap[0] / size, gap[1] / size, gap[2] / size};
       const Point in_a = pulled_back(place_a_, direction), in_b = pulled_back(place_b_, direction);
       std::size_t most = 0, least = 0;
-      double most_a = -kInfinity, least_b = kInfinity;
+      double max_a = -kInfinity, min_b = kInfinity;
       for (std::size_t i = 0; i < net_a.size(); ++i)
-        if (const double h = dot(in_a, net_a[i]); h > most_a) {
-          most_a = h;
+        if (const double h = dot(in_a, net_a[i]); h > max_a) {
+          max_a = h;
           most = i;
         }
       for (std::size_t i = 0; i < net_b.size(); ++i)
-        if (const double h = dot(in_b, net_b[i]); h < least_b) {
-          least_b = h;
+        if (const double h = dot(in_b, net_b[i]); h < min_b) {
+          min_b = h;
           least = i;
         }
       const Point shift{place_b_[3] - place_a_[3], place_b_[7] - place_a_[7], place_b_[11] - place_a_[11]};
-      pair.lower = std::max(pair.lower, least_b - most_a + dot(direction, shift));
+      pair.lower = std::max(pair.lower, min_b - max_a + dot(direction, shift));
       if (good_enough(pair.lower)) return;
       const Point support = placed(place_b_, net_b[least]) - placed(place_a_, net_a[most]);
       const Point along = support - gap;

@@ -70,7 +70,7 @@ class SurfaceTwin {
   [[nodiscard]] bool on_surface(const Placement& placement, const Point& point, double tolerance,
                                 std::optional<std::uint32_t> face = {});
 
-  /// What rounding can hide for this placement, in units of length.
+  /// The most that rounding can hide for this placement, in units of length.
   [[nodiscard]] double slack(const Placement& placement) const;
 
  private:

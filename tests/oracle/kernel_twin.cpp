@@ -427,7 +427,7 @@ bool vanishes(const KernelMesh& mesh, KernelScheme scheme, const std::vector<std
   for (const std::int8_t x : values) net.rows.push_back({field.ratio(x, 1)});
   const Net refined = Step(field, net, scheme).refined();
   const Step next(field, refined, scheme);
-  // What supports the surface: neither isolated vertices nor faces at the boundary of a dual scheme's.
+  // Only vertices that support the surface: neither isolated ones nor faces at the boundary of a dual scheme's.
   for (std::size_t f = 0; f < refined.mesh.faces.size(); ++f) {
     if (!next.has_surface(f)) continue;
     for (const std::uint32_t v : refined.mesh.faces[f]) {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-/// What splitting a patch does to its control points, whatever these are: for every scheme and tag. Internal
+/// The effect of a split on the control points of a patch, for every scheme and tag. Internal
 /// to limit_twin.
 namespace oracle::detail {
 
@@ -25,7 +25,7 @@ struct WeightRow {
   }
 };
 
-/// What a regular patch is, in terms of Bezier points.
+/// The Bezier form of a regular patch.
 enum class Polynomial : std::uint8_t { none, biquadratic, bicubic, quartic };
 
 /// Patches of the same connectivity, rules and sharpness. A patch lies in the convex hull of its control

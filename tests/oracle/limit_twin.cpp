@@ -225,7 +225,7 @@ Point LimitTwin::some_limit_point(std::size_t i) const {
   return tree_->points[patch.corners + i / tree_->root_count % patch.corner_count];
 }
 
-std::optional<int> LimitTwin::winding_number(const Point& point, int most_levels) {
+std::optional<int> LimitTwin::winding_number(const Point& point, int max_levels) {
   tree_->trim();
   std::vector<Id> patches(tree_->root_count);
   for (Id i = 0; i < patches.size(); ++i) patches[i] = i;
@@ -238,7 +238,7 @@ std::optional<int> LimitTwin::winding_number(const Point& point, int most_levels
       if (dot(away, tree_->points[patch.hull + k] - point) <= size * error) return false;
     return true;
   };
-  for (int level = 0; level <= most_levels; ++level) {
+  for (int level = 0; level <= max_levels; ++level) {
     if (std::all_of(patches.begin(), patches.end(), beyond)) {
       double sum = 0;
       for (const Id i : patches) {

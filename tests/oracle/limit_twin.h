@@ -10,8 +10,7 @@
 
 namespace oracle {
 
-/// What patches of one scheme and its rules do when they are split: found once for all surfaces that share
-/// it.
+/// Splits of the patches of one scheme and its rules: computed once for all surfaces that share them.
 class LimitRules {
  public:
   /// Catmull-Clark and Loop with every tag. Chaikin's dart edges are clamped, so that all masks are convex.
@@ -69,10 +68,10 @@ class LimitTwin {
   [[nodiscard]] Point some_limit_point(std::size_t i) const;
 
   /// How often the surface winds around a point. All patches are split equally often, until none has the
-  /// point in its hull; then that of the polyhedron of limit corners is the same. Nothing where `most_levels`
+  /// point in its hull; then that of the polyhedron of limit corners is the same. Nothing where `max_levels`
   /// do not reach.
   /// Requires:  a closed surface.
-  [[nodiscard]] std::optional<int> winding_number(const Point& point, int most_levels = 5);
+  [[nodiscard]] std::optional<int> winding_number(const Point& point, int max_levels = 5);
 
   /// Largest |coordinate| of the mesh.
   [[nodiscard]] double largest() const;

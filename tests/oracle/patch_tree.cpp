@@ -241,18 +241,18 @@ class ContactSearch {
     const Point* hull_a = a_.points.data() + pa.hull;
     const Point* hull_b = b_.points.data() + pb.hull;
     std::size_t most = 0, least = 0;
-    double most_a = -kInfinity, least_b = kInfinity;
+    double max_a = -kInfinity, min_b = kInfinity;
     for (std::size_t i = 0; i < pa.hull_count; ++i)
-      if (const double h = dot(in_a, hull_a[i]); h > most_a) {
-        most_a = h;
+      if (const double h = dot(in_a, hull_a[i]); h > max_a) {
+        max_a = h;
         most = i;
       }
     for (std::size_t i = 0; i < pb.hull_count; ++i)
-      if (const double h = dot(in_b, hull_b[i]); h < least_b) {
-        least_b = h;
+      if (const double h = dot(in_b, hull_b[i]); h < min_b) {
+        min_b = h;
         least = i;
       }
-    return {least_b - most_a + dot(direction, shift_), placed_b(hull_b[least]) - placed_a(hull_a[most])};
+    return {min_b - max_a + dot(direction, shift_), placed_b(hull_b[least]) - placed_a(hull_a[most])};
   }
 
   void consider_closely(Pair pair) {
@@ -314,8 +314,8 @@ void PatchTree::append(TreePatch patch) {
   patches.push_back(patch);
 }
 
-void PatchTree::trim(std::size_t most_patches, std::size_t most_points) {
-  if (patches.size() <= most_patches && points.size() <= most_points) return;
+void PatchTree::trim(std::size_t max_patches, std::size_t max_points) {
+  if (patches.size() <= max_patches && points.size() <= max_points) return;
   patches.resize(root_count);
   points.resize(root_points);
   for (TreePatch& patch : patches) patch.first_child = kNoPatch;

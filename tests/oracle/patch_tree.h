@@ -45,7 +45,7 @@ class PatchTree {
     return patches[index].first_child;
   }
   /// Forgets all but the roots if there are more patches, or points, than that.
-  void trim(std::size_t most_patches, std::size_t most_points);
+  void trim(std::size_t max_patches, std::size_t max_points);
   /// How far points of a net of this level are off, as vectors.
   [[nodiscard]] virtual double error(std::uint32_t level) const = 0;
 

@@ -32,7 +32,7 @@ constexpr double kInfinitelySharp = 10;
 
 enum class PrimalScheme { loop, catmull_clark };
 
-/// What refines the mesh, in OpenSubdiv's words.
+/// Rules that refine the mesh, in OpenSubdiv's words.
 struct Rules {
   PrimalScheme scheme = PrimalScheme::catmull_clark;
   Boundary boundary = Boundary::edge_and_corner;

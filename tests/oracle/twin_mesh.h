@@ -9,7 +9,7 @@ namespace oracle {
 using Point = std::array<double, 3>;
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// What happens at a boundary, in the words of OpenSubdiv's vertex boundary interpolation.
+/// Boundary rule, in the words of OpenSubdiv's vertex boundary interpolation.
 enum class Boundary {
   edge_and_corner,  ///< boundary edges are creases, boundary vertices of one face are corners
   edge_only,        ///< boundary edges are creases, all boundary vertices lie on them smoothly

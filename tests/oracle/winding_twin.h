@@ -10,7 +10,7 @@
 
 namespace oracle {
 
-/// What refines a closed mesh: a primal scheme's rules, or a dual scheme.
+/// Refinement of a closed mesh: a primal scheme's rules, or a dual scheme.
 using WindingScheme = std::variant<Rules, DualScheme>;
 
 /// How often the limit surface of a closed, oriented mesh winds around points, from a refined mesh and the

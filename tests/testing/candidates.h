@@ -81,7 +81,7 @@ void change_points(TriangleSet& set, const Change& change) {
   return size;
 }
 
-/// What a candidate is, beside the surface that it is to stand for.
+/// Relation of a candidate to the surface that it approximates.
 enum class CandidateKind {
   same,
   moved,

@@ -363,16 +363,16 @@ struct Trials::Pool {
       if (h == 0) h = 0.25;
       const Heights w(n, 3, dice);
       b = graph(side, Boundary::none, [&](int i, int j) { return unit * f(i, j) + h * w(i, j); });
-      int least = INT32_MAX, most = INT32_MIN, least_control = INT32_MAX, most_control = INT32_MIN;
+      int least = INT32_MAX, most = INT32_MIN, min_control = INT32_MAX, max_control = INT32_MIN;
       for (int j = 0; j <= n; ++j)
         for (int i = 0; i <= n; ++i) {
-          least_control = std::min(least_control, w(i, j)), most_control = std::max(most_control, w(i, j));
+          min_control = std::min(min_control, w(i, j)), max_control = std::max(max_control, w(i, j));
           if (i == 0 || j == 0 || i == n || j == n) continue;
           least = std::min(least, w.limit12(i, j)), most = std::max(most, w.limit12(i, j));
         }
       trial.truth.meet = least <= 0 && most >= 0;
       trial.truth.crossing = least * std::abs(h) / 12 < -0.1 && most * std::abs(h) / 12 > 0.1;
-      const int certain = std::max({0, least_control, -most_control});
+      const int certain = std::max({0, min_control, -max_control});
       trial.truth.apart = certain > 0;
       trial.truth.lower = certain * std::abs(h) / std::sqrt(1 + slope * slope) * (1 - stretch);
       trial.truth.upper =

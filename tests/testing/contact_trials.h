@@ -57,7 +57,7 @@ class Contestants {
   double size_ = 0;
 };
 
-/// What a trial is known to be, in exact arithmetic for these very doubles.
+/// The true answer of a trial, in exact arithmetic for these very doubles.
 struct Truth {
   double lower = 0;                                        ///< the distance is not less
   double upper = std::numeric_limits<double>::infinity();  ///< nor more

@@ -197,7 +197,7 @@ inline constexpr int placing_count = 4;
   return Trajectory::steady(from, {piece.velocity, piece.axis, piece.radians, piece.about + by});
 }
 
-/// What was answered.
+/// Counts of answers.
 struct Tally {
   std::array<int, 4> verdicts{};
   int wide = 0, sharp = 0;
@@ -214,9 +214,10 @@ struct Tally {
   void print() {
     const int middle = median();
     std::cout << "  " << verdicts[0] << " separated, " << verdicts[1] << " within, " << verdicts[2]
-              << " intersecting, " << verdicts[3] << " undecided; " << wide << " not told to the tolerance, "
-              << sharp << " sharp; looks " << middle << " in the median, " << looks[9 * looks.size() / 10]
-              << " at nine tenths, " << looks.back() << " at most\n";
+              << " intersecting, " << verdicts[3] << " undecided; " << wide
+              << " not decided to the tolerance, " << sharp << " sharp; looks " << middle
+              << " in the median, " << looks[9 * looks.size() / 10] << " at nine tenths, " << looks.back()
+              << " at most\n";
   }
 };
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-/// What a mesh may look like to arithmetic: scales to the ends of the doubles, offsets that leave few digits,
+/// Meshes in forms that are hard for arithmetic: scales to the ends of the doubles, offsets that leave few digits,
 /// flat and needle shapes, points that coincide.
 namespace snug::testing {
 

@@ -19,7 +19,7 @@
 
 namespace snug::testing {
 
-/// What an action throws as unreadable input; fails the test, and is empty, if it throws nothing.
+/// Message of the InputError (unreadable) that an action throws; fails the test, and is empty, if it throws nothing.
 inline std::string unreadable(const std::function<void()>& action) {
   try {
     action();
@@ -37,7 +37,7 @@ inline std::vector<std::uint32_t> corners(const ControlMesh& mesh, std::size_t f
   return ids;
 }
 
-/// Equality that tells 0 from -0.
+/// Equality that distinguishes 0 and -0.
 inline void expect_same_arrays(const ControlMesh& a, const ControlMesh& b) {
   ASSERT_EQ(a.points.size(), b.points.size());
   for (std::size_t v = 0; v < a.points.size(); ++v) {

@@ -569,7 +569,7 @@ PlacedBvh GroundTrial::placed(std::size_t side, SurfaceWorkspace& scratch) const
   return {*(*sides)[side].model, scratch, motion(places[side])};
 }
 
-/// What surfaces share, for some rows.
+/// Data shared by the surfaces of some rows.
 struct GroundTrials::Shared {
   static constexpr std::uint64_t rows = 30;
   std::uint64_t block = UINT64_MAX;

@@ -19,7 +19,7 @@
 /// Placed pairs of surfaces of every scheme, tag and rule, so that each two cases that can go together do.
 namespace snug::testing {
 
-/// What is drawn for a surface. In a surface's choices entry i is one of the values of factor i.
+/// Properties drawn for a surface. In a surface's choices entry i is one of the values of factor i.
 enum class Factor : std::uint8_t { border, holes, connection, tags, triangles, valence, scheme, sets };
 inline constexpr std::size_t factor_count = 8;
 using Choices = std::array<std::uint8_t, factor_count>;
@@ -53,7 +53,7 @@ struct GroundMesh {
   Scheme scheme = Scheme::loop;
 };
 [[nodiscard]] GroundMesh make_mesh(const Choices& choices, std::mt19937_64& random);
-/// What of the choices the mesh does not have; empty if it has all.
+/// The choices that the mesh does not realize; empty if it realizes all.
 [[nodiscard]] std::string missing(const GroundMesh& made, const Choices& choices);
 
 /// A surface as the library and as the twin see it.

@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-/// What hulls claim of a limit surface, checked by the twins from their triangles alone.
+/// Claims of hulls about a limit surface, checked by the twins from their triangles alone.
 namespace snug::testing {
 
 [[nodiscard]] inline oracle::Point twin_point(const Point3& p) { return {p.x, p.y, p.z}; }

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-/// What a tessellation claims, checked from its triangles and their parameters alone.
+/// Claims of a tessellation, checked from its triangles and their parameters alone.
 namespace snug::testing {
 
 /// How many patches the surface has at an edge of the mesh, counted face by face (vertex by vertex).

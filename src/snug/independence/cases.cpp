@@ -284,7 +284,7 @@ class PieceCases {
     return kernel.size() == found.dimension - found.rank;
   }
 
-  // What vanishes on all rings: each vector is multiplied by a number at each step, of each part.
+  // Functions that vanish on all rings: each vector is multiplied by a number at each step, of each part.
   bool conclude_for_all_rings(IndependenceCase& found, std::uint32_t rings) {
     RankCertificate& why = found.certificate;
     why.rings = rings;
@@ -475,18 +475,18 @@ std::vector<IndependenceDomain> two_corner_domains(const ExactScheme& scheme, co
 
 std::vector<IndependenceCase> independence_cases(const ExactScheme& scheme, const PieceCorners& corners,
                                                  const std::vector<IndependenceRequest>& requests,
-                                                 const WorkMonitor& monitor, std::uint32_t least_prime) {
+                                                 const WorkMonitor& monitor, std::uint32_t min_prime) {
   SNUG_EXPECT(corners.boundary || corners.valence >= 3);
   const FlintMemory memory;
-  constexpr int most_primes = 20;
-  std::uint32_t above = least_prime;
+  constexpr int max_primes = 20;
+  std::uint32_t above = min_prime;
   std::optional<PieceCases> all;
   std::vector<IndependenceCase> cases;
   cases.reserve(requests.size());
   for (const IndependenceRequest& request : requests) {
     std::optional<IndependenceCase> found;
     for (int primes = 0; !found; ++primes) {
-      if (primes == most_primes) {
+      if (primes == max_primes) {
         throw InputError(InputProblem::refused,
                          "independence: no certificate was found for " + name_of(request.domain) +
                              " at valence " + std::to_string(corners.valence) + "; ask about another domain");

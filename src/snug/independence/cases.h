@@ -61,7 +61,7 @@ struct IndependenceCase {
   [[nodiscard]] bool independent() const { return rank == dimension; }
 };
 
-/// What is asked about, and what the dissertation says of it.
+/// A domain, and the dissertation's statement about it.
 struct IndependenceRequest {
   IndependenceDomain domain;
   std::string statement;
@@ -97,6 +97,6 @@ struct IndependenceRequest {
 /// Source:    [Wu05, ch. 3]; docs/derivations/independence.md.
 [[nodiscard]] std::vector<IndependenceCase> independence_cases(
     const ExactScheme& scheme, const PieceCorners& corners, const std::vector<IndependenceRequest>& requests,
-    const WorkMonitor& monitor = {}, std::uint32_t least_prime = std::uint32_t{1} << 30);
+    const WorkMonitor& monitor = {}, std::uint32_t min_prime = std::uint32_t{1} << 30);
 
 }  // namespace snug

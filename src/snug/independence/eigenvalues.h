@@ -19,7 +19,7 @@ struct RationalEigenvalue {
   [[nodiscard]] std::size_t geometric() const { return span.size(); }
 };
 
-/// What is known of the eigenvalues of A', the step to the part of a piece that keeps its corner.
+/// Facts about the eigenvalues of A', the step to the part of a piece that keeps its corner.
 struct CornerEigenvalues {
   /// Is the characteristic polynomial the one whose roots the dissertation lists? Exact.
   bool as_stated = false;

@@ -19,7 +19,7 @@ class ExactStep {
   /// Requires:  Loop, Catmull-Clark, Doo-Sabin or Midedge; the mesh outlives it.
   ExactStep(const RuledMesh& mesh, std::uint32_t order) : mesh_(mesh), order_(order) {}
 
-  /// What makes new vertex `v`, as refine() counts them. Sharpness is a double, exactly; with Chaikin what is left of it is a
+  /// The weights of new vertex `v`, as refine() counts them. Sharpness is a double, exactly; with Chaikin what is left of it is a
   /// double too, and the share of two rules is the exact mean of such.
   [[nodiscard]] WeightRow row(VertexId v) const;
 

@@ -61,7 +61,7 @@ void require_manifold_with_surfaces(const Topology& topology, const std::vector<
   }
 }
 
-// What a step makes of values that alternate along all edges, at a vertex.
+// Result of a step, at a vertex, for values that alternate along all edges.
 enum class Alternating : std::uint8_t { vanishes, stays, unknown };
 
 Alternating fate_at(const RuledMesh& ruled, VertexId v, Star& star) {

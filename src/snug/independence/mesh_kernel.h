@@ -18,13 +18,13 @@ struct KernelVector {
 };
 
 /// The kernel of a mesh: all control values whose limit function is 0 everywhere. The vectors are a basis; no
-/// vertex is in two of them. Without any, limit points tell control points.
+/// vertex is in two of them. Without any, limit points determine control points.
 struct MeshKernel {
   std::vector<KernelVector> vectors;  ///< in the order of their first vertices
   [[nodiscard]] std::size_t dimension() const { return vectors.size(); }
 };
 
-/// What mesh_kernel() does not decide; mesh_rank() may.
+/// A case that mesh_kernel() does not decide; mesh_rank() may.
 class NotDecided : public InputError {
   using InputError::InputError;
 };

@@ -356,7 +356,7 @@ class Search {
   ZeroProof proof_;
 };
 
-// What is shown of the kernel that a prime has; nothing where a part shows that the prime is unlucky.
+// The proved part of a kernel found modulo a prime; nothing if it shows that the prime is unlucky.
 std::optional<std::vector<ExactKernelVector>> lifted(const ExactSurface& surface, const ModularKernel& kernel,
                                                      std::uint32_t prime, std::size_t columns,
                                                      const WorkMonitor& monitor) {

@@ -67,7 +67,7 @@ class RowSpace {
   std::vector<Row> rows_;
 };
 
-// What the functions of all kinds tell, from regular ones up.
+// Functionals of the functions of all kinds, from regular ones up.
 class Functionals {
  public:
   Functionals(const ExactSurface& surface, const ModularField& field) : surface_(surface), field_(field) {
@@ -97,7 +97,7 @@ class Functionals {
       monitor.checkpoint();
       const std::size_t kind = waiting_.back();
       waiting_.pop_back();
-      for (Parent& parent : parents_[kind]) tell(kind, parent);
+      for (Parent& parent : parents_[kind]) pass_on(kind, parent);
     }
   }
 
@@ -107,7 +107,7 @@ class Functionals {
   struct Parent {
     std::size_t kind;
     std::vector<SparseRow> rows;
-    std::size_t told;  // functionals of the child
+    std::size_t passed;  // functionals of the child
   };
 
   [[nodiscard]] std::vector<SparseRow> image(const ExactKind::Child& child) const {
@@ -119,11 +119,11 @@ class Functionals {
     return rows;
   }
 
-  void tell(std::size_t kind, Parent& parent) {
+  void pass_on(std::size_t kind, Parent& parent) {
     bool more = false;
     RowSpace& space = spaces_[parent.kind];
-    for (; parent.told < spaces_[kind].rows().size() && !space.full(); ++parent.told) {
-      const Row& functional = spaces_[kind].rows()[parent.told];
+    for (; parent.passed < spaces_[kind].rows().size() && !space.full(); ++parent.passed) {
+      const Row& functional = spaces_[kind].rows()[parent.passed];
       Row row(surface_.kinds[parent.kind].control_count, 0);
       for (std::size_t i = 0; i < functional.size(); ++i) {
         if (functional[i] == 0) continue;

@@ -19,7 +19,7 @@ struct ModularKernel {
   std::vector<Entries> vectors;
 };
 
-/// The functionals that tell whether the function of each patch is 0, modulo the prime: of regular patches all, of others as
+/// Functionals that decide whether the function of each patch is 0, modulo the prime: of regular patches all, of others as
 /// many splits as add to their rank.
 ///
 /// Guarantee: `rank` is at most the exact rank of the surface's functions.

@@ -51,7 +51,7 @@ void note_dropped_tags(const ControlMesh& mesh, const std::string& path, bool fa
   }
 }
 
-/// The format of a file whose name does not tell.
+/// The format of a file whose name does not show it.
 std::string sniffed_format(std::string_view bytes) {
   if (begins_like_ply(bytes)) return ".ply";
   if (begins_like_glb(bytes)) return ".glb";
@@ -96,7 +96,7 @@ std::string counted(std::size_t count, const std::string& singular, const std::s
   return std::to_string(count) + ' ' + (count == 1 ? singular : plural);
 }
 
-std::string told(const Welded& welded) {
+std::string report_of(const Welded& welded) {
   std::string text = "no two vertices are close enough to be welded";
   if (welded.vertices > 0) {
     text = counted(welded.vertices, "vertex was", "vertices were") + " welded to others, at most ";
@@ -137,7 +137,7 @@ ControlMesh read_mesh(std::string_view bytes, const std::string& path, const Rea
   if (options.weld) {
     try {
       const Welded welded = weld(mesh, options.weld(size_of(mesh)));
-      if (options.notes) options.notes(name + ": " + told(welded));
+      if (options.notes) options.notes(name + ": " + report_of(welded));
     } catch (const InputError& error) {
       throw InputError(error.problem(), name + ": " + error.what());
     }

@@ -113,7 +113,7 @@ class ObjParser {
       return VertexId(static_cast<std::size_t>(above + *index));
     }
     const auto vertex = static_cast<std::uint64_t>(*index) - 1;
-    if (vertex >= most_elements) {
+    if (vertex >= max_elements) {
       fail_in_element("index " + std::string(corner.substr(0, slash)) +
                       " is larger than a vertex count can be");
     }
@@ -131,7 +131,7 @@ class ObjParser {
                  " is a statement of the SMF format that OBJ does not have: convert the file to OBJ");
   }
 
-  /// What is being read: "face 3".
+  /// The current element, for messages: "face 3".
   [[nodiscard]] std::string element() const { return sort_ + (' ' + std::to_string(number_)); }
 
   [[noreturn]] void fail_in_element(const std::string& message) const {

@@ -45,7 +45,7 @@ double read_sharpness(const TextCursor& at, std::string_view word) {
   return real.value;
 }
 
-/// What a tag gives: it announces how many integers, numbers and strings.
+/// Values of a tag, which first states how many integers, numbers and strings follow.
 struct Values {
   std::vector<std::uint64_t> ids;
   std::vector<double> sharpness;
@@ -161,7 +161,7 @@ void ObjTagReader::ignore(const TextCursor& at, std::string_view name) {
 }
 
 std::size_t ObjTagReader::reference(const TextCursor& at, std::uint64_t id, Largest& largest) {
-  if (id >= most_elements) {
+  if (id >= max_elements) {
     at.fail(std::string("tag: ") + largest.sort + ' ' + std::to_string(id) + " does not exist");
   }
   if (largest.line == 0 || id > largest.id) {

@@ -89,9 +89,9 @@ class OffParser {
     const auto count = parse_integer(word);
     if (!count || *count < 0)
       cursor_.fail("the header says " + in_quotes(word) + " instead of a number of " + what);
-    if (static_cast<std::uint64_t>(*count) > most_elements) {
+    if (static_cast<std::uint64_t>(*count) > max_elements) {
       cursor_.fail("the header declares " + std::string(word) + ' ' + what + ": at most " +
-                   std::to_string(most_elements) + " are read");
+                   std::to_string(max_elements) + " are read");
     }
     return static_cast<std::size_t>(*count);
   }

@@ -423,8 +423,8 @@ class GlbReader {
       fail("glTF: " + std::to_string(count) + " corners are not a multiple of 3");
     const std::size_t triangles = mode == 4 ? count / 3 : count - std::min<std::size_t>(count, 2);
     spend(3 * triangles);
-    if (mesh_.face_vertices.size() + corners.size() + 3 * triangles > most_elements) {
-      fail("more than " + std::to_string(most_elements) + " corners: split the mesh");
+    if (mesh_.face_vertices.size() + corners.size() + 3 * triangles > max_elements) {
+      fail("more than " + std::to_string(max_elements) + " corners: split the mesh");
     }
     for (std::size_t t = 0; t < triangles; ++t) {
       const std::array<std::size_t, 3> at = mode == 4   ? std::array{3 * t, 3 * t + 1, 3 * t + 2}

@@ -43,7 +43,7 @@ constexpr std::array<Scalar, 8> scalars{{{"char", "int8", 1, INT8_MIN, INT8_MAX}
                                          {"float", "float32", 4},
                                          {"double", "float64", 8}}};
 
-/// What a property is to the mesh.
+/// Role of a property in the mesh.
 enum class Role : std::uint8_t { x, y, z, corners, none };
 
 constexpr auto vertex_roles = std::to_array<Named<Role>>({{"x", Role::x}, {"y", Role::y}, {"z", Role::z}});
@@ -137,8 +137,8 @@ class HeaderParser {
     element.name = at.word();
     element.line = at.line();
     if (element.name.empty()) at.fail("an element has no name");
-    if (header_.elements.size() == most_names) {
-      at.fail("the header declares more than " + std::to_string(most_names) + " kinds of elements");
+    if (header_.elements.size() == max_names) {
+      at.fail("the header declares more than " + std::to_string(max_names) + " kinds of elements");
     }
     for (const Element& other : header_.elements) {
       if (other.name == element.name) at.fail("element " + in_quotes(element.name) + " is declared twice");
@@ -169,8 +169,8 @@ class HeaderParser {
     property.name = at.word();
     if (property.name.empty()) at.fail("a property has no name");
     std::vector<Property>& properties = header_.elements.back().properties;
-    if (properties.size() == most_names) {
-      at.fail("an element has more than " + std::to_string(most_names) + " properties");
+    if (properties.size() == max_names) {
+      at.fail("an element has more than " + std::to_string(max_names) + " properties");
     }
     for (const Property& other : properties) {
       if (other.name == property.name) at.fail("property " + in_quotes(property.name) + " is declared twice");
@@ -213,7 +213,7 @@ class HeaderParser {
   }
 
   // Of elements, and of the properties of one: all names are compared with one another.
-  static constexpr std::size_t most_names = 1000;
+  static constexpr std::size_t max_names = 1000;
 
   const std::string& name_;
   char line_end_;
@@ -395,9 +395,8 @@ class MeshReader {
                                     in_quotes(element.name) +
                                     ", more than the file can hold: it is truncated, or the count is wrong");
     }
-    if (element.count > most_elements) {
-      at_.fail_at(element.line,
-                  "at most " + std::to_string(most_elements) + " elements of one kind are read");
+    if (element.count > max_elements) {
+      at_.fail_at(element.line, "at most " + std::to_string(max_elements) + " elements of one kind are read");
     }
   }
 
@@ -424,8 +423,8 @@ class MeshReader {
       if (index < 0 || static_cast<std::uint64_t>(index) >= vertices_) {
         body_.fail("index " + std::to_string(index) + " is outside 0 to " + std::to_string(vertices_ - 1));
       }
-      if (mesh_.face_vertices.size() >= most_elements) {
-        body_.fail("more than " + std::to_string(most_elements) + " face corners: split the mesh");
+      if (mesh_.face_vertices.size() >= max_elements) {
+        body_.fail("more than " + std::to_string(max_elements) + " face corners: split the mesh");
       }
       mesh_.face_vertices.emplace_back(static_cast<std::size_t>(index));
     }
@@ -461,12 +460,11 @@ ControlMesh parse_ply(std::string_view bytes, const std::string& name) {
 }
 
 std::string format_ply(const ControlMesh& mesh) {
-  std::size_t most_corners = 0;
+  std::size_t max_corners = 0;
   for (std::size_t face = 0; face < mesh.face_count(); ++face) {
-    most_corners = std::max(most_corners, mesh.face(FaceId(face)).size());
+    max_corners = std::max(max_corners, mesh.face(FaceId(face)).size());
   }
-  const bool short_counts = most_corners <= UINT8_MAX,
-             int_holds = mesh.vertex_count() <= std::size_t{1} << 31;
+  const bool short_counts = max_corners <= UINT8_MAX, int_holds = mesh.vertex_count() <= std::size_t{1} << 31;
   std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex ";
   bytes.reserve(400 + mesh.vertex_count() * 24 + mesh.face_count() + mesh.face_vertices.size() * 4);
   append_integer(bytes, mesh.vertex_count());

@@ -34,8 +34,8 @@ using Corners = std::vector<Point3>;
 
 Corners read_binary(std::string_view bytes, std::size_t facets, const std::string& name) {
   if (facets == 0) fail_in_file(name, "the file has no facets");
-  if (facets > most_elements / 3) {
-    fail_in_file(name, "more than " + std::to_string(most_elements / 3) + " facets: split the mesh");
+  if (facets > max_elements / 3) {
+    fail_in_file(name, "more than " + std::to_string(max_elements / 3) + " facets: split the mesh");
   }
   Corners corners;
   corners.reserve(3 * facets);
@@ -81,7 +81,7 @@ class AsciiParser {
   }
 
   void read_facet() {
-    if (corners_.size() / 3 >= most_elements / 3) cursor_.fail("too many facets: split the mesh");
+    if (corners_.size() / 3 >= max_elements / 3) cursor_.fail("too many facets: split the mesh");
     expect("normal");
     for (int axis = 0; axis < 3; ++axis) cursor_.word_across_lines();
     expect("outer");
@@ -132,7 +132,7 @@ Corners read_corners(std::string_view bytes, const std::string& name) {
                          std::to_string(promised) + " bytes, but has " + std::to_string(bytes.size()));
 }
 
-/// Of length 1, or zero where the triangle has no area that a double tells from zero.
+/// Of length 1, or zero where the area of the triangle is zero in doubles.
 Vector3 unit_normal(const Point3& a, const Point3& b, const Point3& c) {
   // Before the differences: they may overflow.
   const double size = std::max({max_abs(a - Point3{}), max_abs(b - Point3{}), max_abs(c - Point3{})});

@@ -43,7 +43,7 @@ constexpr auto reasons = std::to_array<Named<LeftOut>>({{"only over, without a d
                                                         {"of the purpose guide", LeftOut::guide},
                                                         {"of the purpose proxy", LeftOut::proxy}});
 
-/// What a prim has from those above it.
+/// Properties that a prim inherits from its ancestors.
 struct Inherited {
   LeftOut structure = LeftOut::none;  // over, abstract or inactive
   bool invisible = false;
@@ -82,7 +82,7 @@ class Assembler {
         left_out_[inherited_[p].left_out()].push_back(p);
       }
     }
-    tell();
+    write_notes();
     if (used_.empty()) fail_in_file(name_, "the file has no mesh that is defined, visible and for rendering");
     set_rules();
     return std::move(mesh_);
@@ -188,10 +188,10 @@ class Assembler {
       return;
     }
     if (own.points.empty()) fail_at(prim.line, quoted_path(p) + " has faces but no points");
-    if (mesh_.points.size() + own.points.size() > most_elements ||
-        mesh_.face_vertices.size() + own.face_indices.size() > most_elements) {
+    if (mesh_.points.size() + own.points.size() > max_elements ||
+        mesh_.face_vertices.size() + own.face_indices.size() > max_elements) {
       fail_at(prim.line,
-              "more than " + std::to_string(most_elements) + " vertices or corners: split the mesh");
+              "more than " + std::to_string(max_elements) + " vertices or corners: split the mesh");
     }
     const std::size_t first_vertex = mesh_.points.size(), first_face = mesh_.face_count();
     add_points(p);
@@ -381,26 +381,26 @@ class Assembler {
   // --- notes
 
   /// "2 meshes are invisible and left out: '/a', '/b'"
-  void tell_of(const std::vector<std::size_t>& prims, const std::string& what) const {
+  void note_prims(const std::vector<std::size_t>& prims, const std::string& what) const {
     if (prims.empty()) return;
-    constexpr std::size_t most_named = 3;
+    constexpr std::size_t max_named = 3;
     std::string paths;
-    for (std::size_t i = 0; i < std::min(prims.size(), most_named); ++i) {
+    for (std::size_t i = 0; i < std::min(prims.size(), max_named); ++i) {
       paths += (i == 0 ? "" : ", ") + quoted_path(prims[i]);
     }
-    if (prims.size() > most_named) paths += " and " + std::to_string(prims.size() - most_named) + " more";
+    if (prims.size() > max_named) paths += " and " + std::to_string(prims.size() - max_named) + " more";
     notes_(name_ + ": " + what + ": " + paths);
   }
 
-  void tell() const {
+  void write_notes() const {
     if (!notes_) return;
     for (const auto& [reason, prims] : left_out_) {
-      tell_of(prims, std::string("meshes are left out that are ") + name_in(reasons, reason));
+      note_prims(prims, std::string("meshes are left out that are ") + name_in(reasons, reason));
     }
-    tell_of(empty_, "meshes without faces are left out");
-    tell_of(others_, "shapes that are not meshes are left out");
+    note_prims(empty_, "meshes without faces are left out");
+    note_prims(others_, "shapes that are not meshes are left out");
     if (moved_ > 0) {
-      std::string text = name_ + ": points are moved as the transforms of their prims say";
+      std::string text = name_ + ": points are moved by the transforms of their prims";
       if (farthest_ > 0) {
         text += "; rounding moves a coordinate by at most ";
         append_real(text, farthest_);

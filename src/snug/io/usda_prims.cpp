@@ -64,8 +64,8 @@ class PrimReader {
   }
 
   void open_prim() {
-    constexpr std::size_t most_levels = 1000;
-    if (++depth_ > most_levels) text_.fail("prims are nested deeper than " + std::to_string(most_levels));
+    constexpr std::size_t max_levels = 1000;
+    if (++depth_ > max_levels) text_.fail("prims are nested deeper than " + std::to_string(max_levels));
     UsdaPrim prim;
     prim.line = text_.line();
     const UsdaToken specifier = text_.take();
@@ -275,7 +275,7 @@ class PrimReader {
     return *value;
   }
 
-  /// What is infinite is as sharp as can be.
+  /// `inf` is infinite_sharpness.
   double take_sharpness(std::string_view name) {
     const double value = text_.take_if("inf") ? infinite_sharpness : text_.real(name);
     if (value < 0) text_.fail(std::string(name) + ": a sharpness is negative");
@@ -304,9 +304,9 @@ class PrimReader {
       text_.list(name, [&] { operations.order.push_back(take_text(name)); });
       return;
     }
-    constexpr std::size_t most_numbers = 16;
+    constexpr std::size_t max_numbers = 16;
     const bool is_new =
-        operations.given.insert({name, {text_.reals(in_quotes(name), most_numbers), line}}).second;
+        operations.given.insert({name, {text_.reals(in_quotes(name), max_numbers), line}}).second;
     if (!is_new) text_.fail_at(line, in_quotes(name) + " is given twice: take one out");
   }
 

@@ -91,7 +91,7 @@ struct UsdaPrim {
   std::unique_ptr<UsdaOperations> operations;
 };
 
-/// What a USD text holds, before anything is made of it. Views are into the text.
+/// The contents of a USD text, not yet interpreted. Views point into the text.
 struct UsdaStage {
   std::vector<UsdaPrim> prims;  ///< parents before children
   std::optional<double> metres_per_unit;

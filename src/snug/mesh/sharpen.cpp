@@ -65,7 +65,7 @@ bool is_infinite(const Tagged<Key>& tags, const Key& key) {
          std::prev(after)->second >= infinite_sharpness;
 }
 
-/// What is sharp in a mesh: edges by angle, then planar regions, then vertices. Works in scaled coordinates.
+/// Finds the sharp parts of a mesh: edges by angle, then planar regions, then vertices. Works in scaled coordinates.
 class Sharpener {
  public:
   Sharpener(const ControlMesh& mesh, double angle) : mesh_(mesh), angle_(angle), topology_(mesh) {
@@ -184,10 +184,10 @@ class Sharpener {
     // No two can be farther apart than the angle if none is farther than half of it from the first.
     const auto far_from_first = [&](const Shore& s) { return apart(shores[0], s, angle_ / 2); };
     if (std::none_of(shores.begin(), shores.end(), far_from_first)) return;
-    constexpr std::size_t most_compared = 256;
+    constexpr std::size_t max_compared = 256;
     for (const Shore& s : shores) {
       sharp_[s.edge.index()] =
-          shores.size() > most_compared ||
+          shores.size() > max_compared ||
           std::any_of(shores.begin(), shores.end(), [&](const Shore& t) { return apart(s, t, angle_); });
     }
   }
