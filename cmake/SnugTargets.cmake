@@ -16,14 +16,30 @@ add_library(snug_warnings INTERFACE)
 target_compile_options(snug_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
                        -Wold-style-cast -Wnon-virtual-dtor)
 
-# Headers of the standard library, and others named <...>, are parsed once for a target, which halves what most files take to
-# compile. Not with ccache, which has the objects themselves. The preset asan compiles without, so that files include what
-# they use.
+# Headers of the standard library, and others named <...>, are parsed once and serve every target of the same flags, which
+# halves what most files take to compile. ccache keeps objects made with them only if it may overlook what they define and
+# when they were made, so it is told here. The preset web compiles without, so that files include what they use.
+if(CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache$")
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_INODECACHE=true
+      ${CMAKE_CXX_COMPILER_LAUNCHER})
+endif()
+set(snug_standard_headers <algorithm> <array> <cmath> <functional> <memory> <mutex> <optional> <span> <string> <unordered_map>
+                          <vector>)
+
+#   snug_precompile(TARGET <header>...)   what TARGET compiles
 function(snug_precompile target)
-  if(NOT CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache")
-    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <functional> <memory> <mutex> <optional> <span>
-                                                <string> <unordered_map> <vector> ${ARGN})
+  target_precompile_headers(${target} PRIVATE ${snug_standard_headers} ${ARGN})
+  if(CMAKE_CXX_COMPILER_ID MATCHES "Clang" AND NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+    target_compile_options(${target} PRIVATE "SHELL:-Xclang -fno-pch-timestamp")
   endif()
+endfunction()
+
+#   snug_precompiled(NAME <header>...)    a target with headers, and nothing else, for others: REUSE_FROM NAME
+function(snug_precompiled name)
+  file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp CONTENT "")
+  add_library(${name} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  target_link_libraries(${name} PRIVATE snug_flags snug_warnings)
+  snug_precompile(${name} ${ARGN})
 endfunction()
 
 #   snug_library(room/a.cpp ...)

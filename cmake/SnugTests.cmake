@@ -38,6 +38,10 @@ function(snug_test name)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin/tests
                                            UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 5)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_precompile_headers(${name} REUSE_FROM snug_tests_standard)
+  if(NOT ARG_LABEL STREQUAL "slow")  # compiled once, run briefly
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
   target_link_libraries(${name} PRIVATE ${ARG_LINK})
   if(NOT folder STREQUAL "oracle")
     target_link_libraries(${name} PRIVATE snug_testing)

@@ -9,6 +9,7 @@
 #include <snug/patch/evaluate.h>
 #include <support/scaling.h>
 #include <testing/containment.h>
+#include <testing/counts.h>
 #include <testing/disguises.h>
 #include <testing/patches.h>
 #include <testing/scheme_surfaces.h>
@@ -217,7 +218,7 @@ TEST(quadratic_rows, bound_a_piece_at_a_corner_by_its_layout_closely) {
       }
     }
   });
-  EXPECT_GT(compared, 300u);
+  EXPECT_GT(compared, testing::fewer(300));
 }
 
 TEST(quadratic_triangle, is_exact_for_bilinear_faces) {
@@ -266,7 +267,7 @@ TEST(distance_to_triangle, bounds_dense_samples_of_every_kind) {
     });
   });
   std::sort(turned.begin(), turned.end());
-  ASSERT_GT(turned.size(), 50u);
+  ASSERT_GT(turned.size(), testing::fewer(50));
   EXPECT_LE(turned[turned.size() / 2], 1.3);
   EXPECT_LE(turned[turned.size() * 9 / 10], 2);
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <snug/bounds/fit_kernels.h>
 #include <snug/bounds/table_triangle.h>
+#include <testing/counts.h>
 #include <testing/kinds.h>
 #include <testing/patches.h>
 #include <testing/scheme_surfaces.h>
@@ -95,7 +96,8 @@ TEST(fit_table, is_the_tables_offset_triangle_where_all_functions_are_bounded) {
   const auto check = [&](const LimitSurface& surface) {
     testing::for_each_patch(surface, [&](PatchId p) {
       const Kind& kind = surface.kind(p);
-      if (laid_by_rings(kind.key()) || seen.size() > 500 || !seen.insert(&kind).second) return;
+      if (laid_by_rings(kind.key()) || seen.size() > testing::fewer(500) || !seen.insert(&kind).second)
+        return;
       const BoundTable& table = surface.library().table(kind);
       EXPECT_EQ(table.first_bounded(), 0u);
       expect_the_tables_offset_triangle(kind, table, 1 + random.below(10), random);
@@ -106,7 +108,7 @@ TEST(fit_table, is_the_tables_offset_triangle_where_all_functions_are_bounded) {
                           std::make_shared<BoundsCache>());
   check(many);
   testing::for_each_surface(9, [&](const testing::NamedSurface& named) { check(named.surface); });
-  EXPECT_GT(seen.size(), 100u);
+  EXPECT_GT(seen.size(), testing::fewer(100));
   EXPECT_GT(most, 32u);
 }
 

@@ -8,6 +8,7 @@
 #include <snug/bounds/bound_rows.h>
 #include <tablegen/file_writer.h>
 #include <tablegen/kinds.h>
+#include <testing/counts.h>
 
 #include <algorithm>
 #include <cmath>
@@ -86,8 +87,9 @@ StoredTable crude_table(const StoredKind& kind) {
 void expect_every_one_found(const std::vector<Fault>& planted, const BoundsFile& file, std::size_t at_least) {
   ASSERT_NO_THROW(static_cast<void>(prove_file(to_bytes(file))));
   EXPECT_GE(planted.size(), at_least);
-  for (const Fault& fault : planted) {
-    EXPECT_THROW(static_cast<void>(prove_file(fault.spoil(file))), Rejected) << fault.name;
+  const std::size_t step = snug::testing::fewer(4) == 4 ? 1 : 3;
+  for (std::size_t i = 0; i < planted.size(); i += step) {
+    EXPECT_THROW(static_cast<void>(prove_file(planted[i].spoil(file))), Rejected) << planted[i].name;
   }
 }
 

@@ -12,6 +12,7 @@
 #include <oracle/contact_twin.h>
 #include <oracle/test_meshes.h>
 #include <snug/search/surface_data.h>
+#include <testing/counts.h>
 #include <testing/placements.h>
 #include <testing/scheme_surfaces.h>
 
@@ -186,9 +187,9 @@ Motion slack_placement(std::mt19937_64& random, const Vector3& to) {
 // All pairs of surfaces meet in the course of the trials: schemes, tags, sizes, copies in one place, margins.
 TEST(scene, answers_as_every_pair_by_itself_whatever_the_parts_are) {
   const std::vector<Surface> surfaces = surfaces_of_every_sort(85);
-  ASSERT_GT(surfaces.size(), 100u);
+  ASSERT_GT(surfaces.size(), testing::fewer(100));
   std::mt19937_64 random(86);
-  for (int trial = 0; trial < 40; ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(40)); ++trial) {
     constexpr double spreads[] = {0, 1e-3, 1, 3, 20, 1e9, 1e160, 1e300};
     const double spread = spreads[random() % std::size(spreads)];
     Scene scene;
@@ -286,7 +287,7 @@ TEST(broad_phase, separates_nothing_that_the_twins_know_to_be_near) {
     }
   }
   std::size_t near = 0, apart = 0;
-  for (int trial = 0; trial < 1500; ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(1500)); ++trial) {
     // Every pair of sizes and of turns, and every place.
     const std::size_t cases[] = {static_cast<std::size_t>(trial % 3),
                                  static_cast<std::size_t>(trial / 3 % 3)};
@@ -329,8 +330,8 @@ TEST(broad_phase, separates_nothing_that_the_twins_know_to_be_near) {
     }
     apart += dealt_out ? 0u : 1u;
   }
-  EXPECT_GT(near, 100u);
-  EXPECT_GT(apart, 100u);
+  EXPECT_GT(near, testing::fewer(100));
+  EXPECT_GT(apart, testing::fewer(100));
 }
 
 TEST(broad_phase, deals_out_all_of_a_thousand_equal_parts) {

@@ -11,6 +11,7 @@
 #include <snug/query/pairs.h>
 #include <snug/surface/evaluate.h>
 #include <support/error.h>
+#include <testing/counts.h>
 #include <testing/exact_triangles.h>
 #include <testing/pieces.h>
 #include <testing/tagged.h>
@@ -377,7 +378,7 @@ TEST(plain_meshes, are_as_far_from_surfaces_of_every_scheme_as_their_samples_say
   std::mt19937_64 random(16);
   const std::vector<Sampled> others = sampled_surfaces(random);
   std::size_t apart = 0, meet = 0;
-  for (int trial = 0; trial < 256 && !HasFailure(); ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(256)) && !HasFailure(); ++trial) {
     const Sampled& other = others[static_cast<std::size_t>(trial) % others.size()];
     const Scheme plain = trial / others.size() % 2 == 0 ? Scheme::flat : Scheme::bilinear;
     const double factor = std::array{1.0, 0x1p-400, 0x1p300}[random() % 3];
@@ -443,8 +444,8 @@ TEST(plain_meshes, are_as_far_from_surfaces_of_every_scheme_as_their_samples_say
     EXPECT_LE(found.distance.lower / factor, least * (1 + 1e-14) + other.error + 1e-12) << where;
   }
   std::cout << "  " << apart << " apart, " << meet << " not\n";
-  EXPECT_GT(apart, 50u);
-  EXPECT_GT(meet, 25u);
+  EXPECT_GT(apart, testing::fewer(50));
+  EXPECT_GT(meet, testing::fewer(20));
 }
 
 // The two plain schemes beside each other, against Loop and Catmull-Clark with everything sharp.

@@ -9,6 +9,7 @@
 #include <snug/patch/evaluate.h>
 #include <snug/query/deviation.h>
 #include <snug/surface/evaluate.h>
+#include <testing/counts.h>
 #include <testing/places.h>
 #include <testing/scheme_surfaces.h>
 #include <testing/tessellations.h>
@@ -69,7 +70,7 @@ TEST(tessellate, is_watertight_and_near_for_every_scheme_and_tag) {
     ++surfaces;
   });
   std::cout << surfaces << " surfaces, " << triangles << " triangles\n";
-  EXPECT_GT(surfaces, 150u);
+  EXPECT_GT(surfaces, testing::fewer(150));
 }
 
 // Of all pieces after so many splits, with their limit corners as corners of triangles.

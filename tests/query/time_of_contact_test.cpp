@@ -7,6 +7,7 @@
 #include <oracle/contact_time_twin.h>
 #include <support/error.h>
 #include <testing/cad_parts.h>
+#include <testing/counts.h>
 #include <testing/patches.h>
 #include <testing/placements.h>
 #include <testing/scheme_surfaces.h>
@@ -86,7 +87,7 @@ ControlMesh lattice_part(std::mt19937_64& random) {
 TEST(time_of_contact, of_translated_polyhedra_holds_the_exact_one) {
   std::mt19937_64 random(1);
   int met = 0, missed = 0, proved = 0, touched = 0, reached = 0;
-  for (int trial = 0; trial < 300; ++trial) {
+  for (std::uint64_t trial = 0; trial < testing::fewer(300); ++trial) {
     Part a(lattice_part(random)), b(lattice_part(random));
     const auto whole = [&](int most) {
       return static_cast<double>(static_cast<int>(random() % static_cast<unsigned>(2 * most + 1)) - most);
@@ -122,8 +123,8 @@ TEST(time_of_contact, of_translated_polyhedra_holds_the_exact_one) {
   }
   std::cout << "  " << met << " meet, " << touched << " at once, " << proved << " proved, " << reached
             << " told to the tolerance; " << missed << " miss\n";
-  EXPECT_GT(met, 100);
-  EXPECT_GT(missed, 50);
+  EXPECT_GT(met, testing::fewer(100));
+  EXPECT_GT(missed, testing::fewer(50));
 }
 
 void add_box(ControlMesh& mesh, const Point3& low, const Point3& high) {
@@ -140,7 +141,7 @@ void add_box(ControlMesh& mesh, const Point3& low, const Point3& high) {
 TEST(time_of_contact, thin_fins_are_not_jumped_over) {
   std::mt19937_64 random(8);
   int met = 0;
-  for (int trial = 0; trial < 100; ++trial) {
+  for (std::uint64_t trial = 0; trial < testing::fewer(100); ++trial) {
     ControlMesh comb;
     add_box(comb, {-1, -2, -2}, {10, 2, -1});
     for (int fins = 1 + static_cast<int>(random() % 3); fins > 0; --fins) {
@@ -164,7 +165,7 @@ TEST(time_of_contact, thin_fins_are_not_jumped_over) {
     ASSERT_LE(found.time.lower, first->get_d() + 1e-14) << trial;
     EXPECT_LE(found.time.upper, first->get_d() + 1e-4) << trial;
   }
-  EXPECT_GT(met, 40);
+  EXPECT_GT(met, testing::fewer(40));
 }
 
 // The first time at which boxes penetrate by more than `depth`, by samples and halving; nothing if none is seen.
@@ -574,7 +575,7 @@ TEST(time_of_contact, of_every_scheme_is_not_later_than_collisions_at_samples) {
       break;
     }
   });
-  EXPECT_GT(met, 10);
+  EXPECT_GT(met, testing::fewer(10));
 }
 
 }  // namespace

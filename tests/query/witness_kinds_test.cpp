@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <snug/query/pairs.h>
 #include <snug/surface/evaluate.h>
+#include <testing/counts.h>
 #include <testing/placements.h>
 #include <testing/scheme_surfaces.h>
 
@@ -124,9 +125,9 @@ TEST(witness_kinds, leave_the_verdict_as_it_is) {
               counts.close);
   for (const auto verdict :
        {Verdict::separated, Verdict::within, Verdict::intersecting, Verdict::undecided}) {
-    EXPECT_GT(counts.verdicts[verdict], 50u) << name_of(verdict);
+    EXPECT_GT(counts.verdicts[verdict], testing::fewer(50)) << name_of(verdict);
   }
-  EXPECT_GT(counts.witnesses, 300u);
+  EXPECT_GT(counts.witnesses, testing::fewer(300));
   EXPECT_GT(counts.close, counts.witnesses / 8);
 }
 

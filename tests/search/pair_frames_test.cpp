@@ -7,6 +7,7 @@
 #include <random>
 
 #include <gtest/gtest.h>
+#include <testing/counts.h>
 #include <testing/placed_points.h>
 
 namespace snug::pair_frames_test {
@@ -143,7 +144,7 @@ std::pair<long double, long double> hull_distance(const Body& a, const Body& b, 
 TEST(root_gap, is_at_most_the_distance_of_the_hulls_whatever_is_enough) {
   std::mt19937_64 random(22);
   std::size_t positive = 0, tight = 0, by_boxes = 0;
-  for (int trial = 0; trial < 8000 && !HasFailure(); ++trial) {
+  for (int trial = 0; trial < static_cast<int>(testing::fewer(8000)) && !HasFailure(); ++trial) {
     const std::array exponents{0, 0, -400, 300, -498, 495, -950, 900, -30};
     const double scale = std::ldexp(1.0, exponents[random() % exponents.size()]);
     const double far = scale * std::array{0.0, 0.1, 1.0, 3.0, 100.0, 1e9}[random() % 6];
@@ -168,9 +169,9 @@ TEST(root_gap, is_at_most_the_distance_of_the_hulls_whatever_is_enough) {
     tight += best > 0.95 * apart;
     by_boxes += best > 0 && !(root_gap(a.at(), b.at(), -INFINITY) > 0);
   }
-  EXPECT_GT(positive, 3000u);
-  EXPECT_GT(tight, 1000u);
-  EXPECT_GT(by_boxes, 300u);
+  EXPECT_GT(positive, testing::fewer(3000));
+  EXPECT_GT(tight, testing::fewer(1000));
+  EXPECT_GT(by_boxes, testing::fewer(300));
 }
 
 // Boxes face to face and balls corner to corner, so near that roundings and what motions lack of rigidity decide.

@@ -1,6 +1,7 @@
 #include <snug/surface/control_hull.h>
 
 #include <snug/patch/evaluate.h>
+#include <testing/counts.h>
 #include <testing/pieces.h>
 #include <testing/scheme_surfaces.h>
 
@@ -45,7 +46,7 @@ TEST(control_hull, contains_limit_points_of_its_patches) {
       }
     }
   });
-  EXPECT_GT(samples, 20'000u);
+  EXPECT_GT(samples, testing::fewer(20'000));
 }
 
 TEST(control_balls, contain_limit_points_of_their_patches) {
@@ -83,7 +84,7 @@ TEST(control_balls, contain_limit_points_of_their_patches) {
            std::make_shared<BoundsCache>()},
           name_of(scheme));
   }
-  EXPECT_GT(samples, 10'000u);
+  EXPECT_GT(samples, testing::fewer(10'000));
 }
 
 TEST(kind, outer_weight_is_that_of_the_ring_at_a_corner) {

@@ -1,5 +1,6 @@
 #include <snug/surface/control_nets.h>
 
+#include <testing/counts.h>
 #include <testing/instruction_sets.h>
 #include <testing/journeys.h>
 #include <testing/scheme_surfaces.h>
@@ -56,7 +57,7 @@ TEST(control_nets, boxes_are_those_of_hulls_wherever_the_points_are) {
       }
     }
   });
-  EXPECT_GT(boxes, 5'000u);
+  EXPECT_GT(boxes, testing::fewer(5'000));
 }
 
 TEST(control_nets, boxes_are_the_same_on_every_instruction_set) {
@@ -83,7 +84,7 @@ TEST(control_nets, boxes_are_the_same_on_every_instruction_set) {
     ASSERT_EQ(numbers.size(), first.size());
     EXPECT_EQ(std::memcmp(numbers.data(), first.data(), numbers.size() * sizeof(double)), 0) << name;
   });
-  EXPECT_GT(first.size(), 100u);
+  EXPECT_GT(first.size(), testing::fewer(100));
 }
 
 }  // namespace
