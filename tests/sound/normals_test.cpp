@@ -169,6 +169,10 @@ TEST(normals, cones_contain_normals_of_refined_meshes_and_rings) {
       const bool loop = scheme == oracle::PrimalScheme::loop;
       for (std::uint32_t n = centre == Centre::boundary ? 1 : 3; n <= 12; ++n) {
         for (const double amount : {0.0, 0.1, 0.5, 1.5}) {
+          // All pairs of scheme, centre, valence and amount, half of all combinations.
+          const bool flat_or_wild = amount == 0 || amount > 1,
+                     odd = (n + static_cast<std::uint32_t>(centre) + loop) % 2 != 0;
+          if (flat_or_wild == odd && trials == 1) continue;
           for (int trial = 0; trial < trials; ++trial) {
             const oracle::TaggedMesh mesh = fan(n, loop, centre, amount, random);
             oracle::Rules rules;

@@ -267,7 +267,7 @@ TEST(self, folds_are_what_they_are_made_to_be) {
 
 // Fans on the border, from smooth to crumpled, some with a crease inwards.
 TEST(self, verdicts_on_borders_are_those_of_refined_meshes) {
-  const int trials = 6 * static_cast<int>(testing::number_of("SNUG_SELF_TRIALS", 1));
+  const int trials = 3 * static_cast<int>(testing::number_of("SNUG_SELF_TRIALS", 1));
   std::mt19937_64 random(2);
   std::map<std::string, int> counts;
   for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
