@@ -37,7 +37,7 @@ endfunction()
 #   snug_precompiled(NAME <header>...)    a target with headers, and nothing else, for others: REUSE_FROM NAME
 function(snug_precompiled name)
   file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp CONTENT "")
-  add_library(${name} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  add_library(${name} OBJECT EXCLUDE_FROM_ALL ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
   target_link_libraries(${name} PRIVATE snug_flags snug_warnings)
   snug_precompile(${name} ${ARGN})
 endfunction()
