@@ -34,7 +34,7 @@ void note_nesting(const CommonOptions& options, const PlacedBvh& a, const Placed
   if (!notes || !is_closed(a.model) || !is_closed(b.model)) return;
   const Nesting found = nesting(a, b, monitor);
   if (found.inner) {
-    notes(inner_sentence(*found.inner) + ", but the surfaces do not meet; --solid compares solids");
+    notes(inner_sentence(*found.inner).append(", but the surfaces do not meet; --solid compares solids"));
   }
 }
 

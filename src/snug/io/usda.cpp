@@ -438,7 +438,7 @@ class Assembler {
 
 template <class Values, class Append>
 void append_list(std::string& text, const char* head, const Values& values, const Append& append) {
-  text += std::string("    ") + head + " = [";
+  text.append("    ").append(head).append(" = [");
   bool first = true;
   for (const auto& value : values) {
     if (!first) text += ", ";
@@ -465,7 +465,7 @@ void append_extent(std::string& text, const ControlMesh& mesh) {
 }
 
 void append_token(std::string& text, const char* head, const char* word) {
-  text += std::string("    ") + head + " = \"" + word + "\"\n";
+  text.append("    ").append(head).append(" = \"").append(word).append("\"\n");
 }
 
 /// The scheme as USD names it.
