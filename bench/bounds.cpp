@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include <snug/io/mesh_file.h>
+#include <snug/mesh.h>
 #include <snug/query/pairs.h>
 #include <snug/query/subdivide.h>
 

@@ -7,9 +7,9 @@
 #include <thread>
 #include <vector>
 
-#include <snug/front/workspace.h>
 #include <snug/query/closest.h>
 #include <snug/query/pairs.h>
+#include <snug/search/workspace.h>
 
 #include "placements.h"
 

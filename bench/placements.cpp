@@ -9,7 +9,7 @@
 #include <random>
 #include <stdexcept>
 
-#include <snug/io/mesh_file.h>
+#include <snug/mesh.h>
 
 namespace snug::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <experiments/rooms.h>
 #include <snug/query/closest.h>
 #include <snug/query/pairs.h>
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 
 namespace snug::bench {
 

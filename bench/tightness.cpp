@@ -10,7 +10,7 @@
 
 #include <experiments/quantile.h>
 #include <experiments/tightness.h>
-#include <snug/io/mesh_file.h>
+#include <snug/mesh.h>
 #include <snug/query/subdivide.h>
 
 #include "meshes.h"

@@ -13,7 +13,7 @@
 #include <experiments/quantile.h>
 #include <experiments/rooms.h>
 #include <snug/query/pairs.h>
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 #include <support/contract.h>
 #include <support/error.h>
 

@@ -16,7 +16,7 @@ import tempfile
 # A folder includes itself and folders before it, but for the exceptions. `support` is src/support, included as <support/...>:
 # what the library and its programs share.
 ORDER = ["support", "geometry", "mesh", "scheme", "patch", "bounds", "shape", "bvh", "surface", "search", "query", "independence",
-         "io", "front", "caster"]
+         "io", "caster"]
 SHARED = ORDER[0]
 EXCEPTIONS = {
     "bvh": {"support", "geometry"},  # knows sets and ids, no surfaces
@@ -39,6 +39,13 @@ POSIX = ("fcntl.h", "unistd.h", "sys/")
 # adapters, which is installed and so includes what is installed, and the renderer, a user like others.
 INDEPENDENT = {"tests/oracle": set(), "checker": {"support", "geometry"}, "adapters": set(ORDER) - set(SEPARATE),
                "apps/snug/picture": {SHARED}}
+# Folders whose files use the library like any other program: they include public headers and src/support alone. The files
+# listed with a folder are exceptions: what they need is not public.
+USERS = {
+    "apps/snug": {"bound.cpp", "curve.h", "drawn_curves.cpp", "drawn_curves.h", "eval.cpp", "field_colours.cpp", "info.cpp", "mesh_counts.cpp",
+                  "mesh_reading.cpp", "program.cpp", "scene_builder.cpp", "scene_builder.h", "subdivide.cpp"},
+    "python": set(), "web": set(), "examples": set(),
+}
 # Headers of this folder are included as <snug/adapters/...>; nothing of src/snug includes them.
 ADAPTERS = "adapters"
 # Folders whose headers are checked for #pragma once and whose includes of snug must exist.
@@ -141,6 +148,12 @@ def check_tree(root):
                            for line, _, include in includes(path)
                            if (layer_of(include) and layer_of(include) not in layers | {name})
                            or (public(include) and not layers)]
+    for name, exceptions in USERS.items():
+        for path in cpp_files(root / name):
+            if path.name not in exceptions:
+                faults += [f"{path.relative_to(root)}:{line}: {name} includes public headers alone, not <{include}>"
+                           for line, _, include in includes(path)
+                           if layer_of(include) and layer_of(include) not in (SHARED, ADAPTERS)]
     return faults
 
 
@@ -182,7 +195,7 @@ BAD_FILES = [
     ("src/snug/mesh/n.cpp", "\n", "lacks mesh/n.cpp"),
     ("src/snug/independence/k.cpp", "#include <snug/io/r.h>\n", "independence may not include io"),
     ("src/snug/independence/l.cpp", "\n", "src/snug/independence/CMakeLists.txt: lacks l.cpp"),
-    ("src/snug/front/f.cpp", "#include <snug/independence/k.h>\n", "front may not include independence"),
+    ("src/snug/caster/f.cpp", "#include <snug/independence/k.h>\n", "caster may not include independence"),
     ("examples/e.cpp", "#include <snug/independence/k.h>\n", "e.cpp:1: examples may not include independence"),
     ("apps/snug/a.cpp", "#include <snug/independence/k.h>\n", "a.cpp:1: apps/snug may not include independence"),
     ("adapters/d.h", "#pragma once\n#include <snug/independence/k.h>\n", "adapters may not include independence"),
@@ -197,6 +210,8 @@ BAD_FILES = [
     ("adapters/d.h", "#pragma once\n#include <snug/picture/p.h>\n", "adapters may not include <snug/picture/p.h>"),
     ("apps/snug/picture/p.h", "#pragma once\n#include <snug/mesh/m.h>\n", "apps/snug/picture may not include <snug/mesh/m.h>"),
     ("examples/e.cpp", "#include <snug/adapters/gone.h>\n", "<snug/adapters/gone.h> does not exist"),
+    ("apps/snug/b.cpp", "#include <snug/mesh/m.h>\n", "b.cpp:1: apps/snug includes public headers alone"),
+    ("python/src/b.cpp", "#include <snug/mesh/m.h>\n", "b.cpp:1: python includes public headers alone"),
     ("src/snug/mesh/m.cpp", "#include <snug/adapters/d.h>\n", "mesh may not include adapters"),
 ]
 

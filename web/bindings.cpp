@@ -17,7 +17,6 @@
 #include <vector>
 
 #include <picture/polyhedron.h>
-#include <snug/io/mesh_file.h>
 #include <snug/snug.h>
 
 namespace snug::web {
@@ -159,7 +158,8 @@ class Part {
                                                 " has no creases; choose loop or catmark");
     }
     how.notes = [&](const std::string& line) { notes_.push_back(name + ": " + line); };
-    ControlMesh mesh = parse_mesh(bytes, name, [this](const std::string& line) { notes_.push_back(line); });
+    ControlMesh mesh =
+        parse_mesh(bytes, name, {.notes = [this](const std::string& line) { notes_.push_back(line); }});
     try {
       if (const auto distance = option<double>(options, "weld")) weld(mesh, *distance);
       if (sharp) sharpen(mesh, *sharp);

@@ -7,6 +7,7 @@
 #include <experiments/bound_counts.h>
 #include <experiments/older_catmark.h>
 #include <fmt/core.h>
+#include <snug/search/surface_data.h>
 #include <support/atomic_file.h>
 
 #include "commands.h"
@@ -47,8 +48,8 @@ std::vector<Row> count_rows(ControlMesh mesh, const CountsOptions& options,
     });
     return rows;
   }
-  const LimitSurface surface =
-      make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  const Surface held = make_surface(std::move(mesh), options.mesh, options, options.scheme);
+  const LimitSurface& surface = held.data()->limit();
   scheme = name_of(surface.options().scheme);
   if (tolerance) how.tolerance = tolerance->in_mesh_units(surface.size());
   LayoutTables tables(surface.library());
@@ -96,7 +97,7 @@ ExitStatus subdivide_older(const OlderOptions& options) {
   ControlMesh mesh = load_mesh(options.mesh, options);
   naming(options.mesh, [&] { mesh = subdivide_by_older_rule(std::move(mesh), options.level); });
   AtomicFile file(options.output);
-  write_mesh(mesh, file, options.output, notes_for(options), stopped_by_interrupts());
+  write_mesh(mesh, file, options.output, options);
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("subdivide", to_standard_output);

@@ -119,7 +119,7 @@ RateOptions rate_options(const RatesOptions& options) {
   wanted.levels = options.levels;
   wanted.seed = options.seed;
   wanted.threads = options.threads;
-  if (const SchemeRules* rules = scheme_named(options.of)) wanted.scheme = rules->scheme;
+  if (const SchemeRules* rules = rules_named(options.of)) wanted.scheme = rules->scheme;
   if (rules_of(wanted.scheme).local) {
     throw UsageError(
         "rates: " + options.of +

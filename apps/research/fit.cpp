@@ -9,8 +9,9 @@
 #include <apps/snug/words.h>
 #include <fmt/core.h>
 #include <snug/independence/mesh_kernel.h>
-#include <snug/io/mesh_file.h>
+#include <snug/mesh.h>
 #include <snug/query/closest.h>
+#include <snug/search/surface_data.h>
 #include <snug/surface/evaluate.h>
 #include <snug/surface/unscale.h>
 #include <support/atomic_file.h>
@@ -40,9 +41,9 @@ struct Samples {
 };
 
 // Lines "x y z", or all "x y z face u v".
-Samples read_samples(const std::string& path, const LimitSurface& surface) {
+Samples read_samples(const std::string& path, const Surface& surface) {
   const std::string text = read_file(path, stopped_by_interrupts());
-  const std::string with_place = "x y z " + place_words(surface.rules());
+  const std::string with_place = "x y z " + place_words(surface.traits());
   Samples samples;
   for_each_line(text, [&](std::string_view line, std::size_t number) {
     const std::string where = path + ":" + std::to_string(number) + ": ";
@@ -245,8 +246,9 @@ ExitStatus run(const Options& options) {
   }
   if (options.json && options.output == "-")
     throw UsageError("fit: --json and -o - both want standard output");
-  LimitSurface surface = load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
-  Samples samples = read_samples(options.points, surface);
+  const Surface given = read_surface(options.mesh, options, options.scheme);
+  LimitSurface surface = given.data()->limit();
+  Samples samples = read_samples(options.points, given);
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("fit", to_standard_output);
@@ -262,7 +264,7 @@ ExitStatus run(const Options& options) {
   }
   AtomicFile file(options.output);
   const ControlMesh& mesh = found->surface.mesh();
-  write_mesh(mesh, file, options.output, notes_for(options), stopped_by_interrupts());
+  write_mesh(mesh, file, options.output, options);
   report.heads({options.mesh}, {name_of(found->surface.options().scheme)});
   if (report.json()) write_json(report.write(), *found, kernel);
   if (options.output != "-") {

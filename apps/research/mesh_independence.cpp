@@ -149,7 +149,10 @@ std::string verdict_of(const MeshRank& rank) {
 ExitStatus independence_of_mesh(const std::string& path, const CommonOptions& options) {
   const ControlMesh mesh = load_mesh(path, options);
   refuse_curves(mesh, options.scheme, path);
-  const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
+  const SurfaceOptions how = surface_options(options, options.scheme, mesh);
+  const SchemeOptions rules = with_tags(
+      {*how.scheme, how.boundary.value_or(mesh.tags.boundary.value_or(BoundaryRule::edge_and_corner))},
+      mesh.tags);
   Report report("independence", options);
   Answer found;
   {

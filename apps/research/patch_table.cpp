@@ -179,7 +179,7 @@ void write_text(Report& report, const LaidOut& found) {
 }
 
 ExitStatus run(const Options& options) {
-  const SchemeRules& rules = *scheme_named(options.scheme);
+  const SchemeRules& rules = *rules_named(options.scheme);
   if (rules.scheme == Scheme::midedge && *options.valence > max_midedge_valence) {
     throw UsageError(
         fmt::format("table: planes of midedge are of no use beyond {} corners; bound has tighter sets",
@@ -203,7 +203,7 @@ Command table_command() {
   options->scheme.clear();
   OptionList list;
   Option& scheme = list.add(Group::own, "--scheme NAME", &options->scheme, "Subdivision scheme").required();
-  for (const SchemeRules* rules : all_schemes()) {
+  for (const SchemeRules* rules : all_rules()) {
     if (rules->local) continue;
     scheme.choices.emplace_back(rules->name);
     for (const char* other : rules->other_names) scheme.alias(other, rules->name);

@@ -6,6 +6,7 @@
 #include <apps/snug/progress_bar.h>
 #include <apps/snug/words.h>
 #include <fmt/core.h>
+#include <snug/search/surface_data.h>
 #include <snug/surface/evaluate.h>
 
 #include "commands.h"
@@ -29,9 +30,9 @@ Weights weights_at(const LimitSurface& surface, const SurfaceParameter& at) {
   return sums;
 }
 
-void write_row(Report& report, const LimitSurface& surface, const SurfaceParameter& at,
+void write_row(Report& report, const Surface& surface, const SurfaceParameter& at,
                const SurfacePoint& point) {
-  const Weights weights = weights_at(surface, at);
+  const Weights weights = weights_at(surface.data()->limit(), at);
   if (report.json()) {
     JsonWriter& json = report.write();
     json.begin_object();
@@ -42,7 +43,7 @@ void write_row(Report& report, const LimitSurface& surface, const SurfaceParamet
     return;
   }
   std::string line = fmt::format("{} {} {}{} ", at.owner, at.u, at.v,
-                                 surface.rules().triangular() ? "" : fmt::format(" {}", at.corner));
+                                 surface.traits().triangular ? "" : fmt::format(" {}", at.corner));
   for (const auto& [vertex, weight] : weights) line += fmt::format(" {}:{}", vertex, weight);
   report.text(line);
 }
@@ -52,17 +53,15 @@ ExitStatus run(const Options& options) {
   if (is_curve(mesh, options.scheme)) {
     throw UsageError("weights: " + options.mesh + " is answered as curves; weights are those of surfaces");
   }
-  const LimitSurface surface =
-      make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  const Surface surface = make_surface(std::move(mesh), options.mesh, options, options.scheme);
   const auto places = options.at.empty() ? std::vector<SurfaceParameter>() : read_places(options.at, surface);
   Report report("weights", options);
-  const SchemeRules& rules = surface.rules();
-  report.heads({options.mesh}, {rules.name});
-  report.text(
-      fmt::format("# {} u v{}  vertex:weight ...", rules.owner(), rules.triangular() ? "" : " corner"));
+  report.heads({options.mesh}, {surface.traits().name});
+  report.text(fmt::format("# {} u v{}  vertex:weight ...", surface.traits().owner(),
+                          surface.traits().triangular ? "" : " corner"));
   if (report.json()) report.write().key("points").begin_array();
   std::size_t count = 0;
-  SurfaceEvaluator evaluator(surface);
+  SurfaceEvaluator evaluator(surface.data()->limit());
   const auto answer = [&](const SurfaceParameter& at) {
     write_row(report, surface, at, evaluator(at));
     ++count;

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 #include <picture/polyhedron.h>
-#include <snug/io/mesh_file.h>
+#include <snug/bound.h>
 #include <support/atomic_file.h>
 
 #include <algorithm>
@@ -27,8 +27,8 @@ struct Options : CommonOptions {
   bool normals = false;
 };
 
-template <std::size_t N>
-void write_box_corners(JsonWriter& json, const char* key, const Enclosure<N>& piece, Point3 Box3::*end) {
+template <class Piece>
+void write_box_corners(JsonWriter& json, const char* key, const Piece& piece, Point3 Box3::*end) {
   json.key(key).begin_array();
   for (const Box3& box : piece.interval.corner) json.value(box.*end);
   json.end_array();
@@ -41,9 +41,9 @@ void write_points(JsonWriter& json, const char* key, const std::array<Point3, N>
   json.end_array();
 }
 
-template <std::size_t N>
-void write_enclosure(JsonWriter& json, const Enclosure<N>& piece, unsigned level) {
-  json.field("piece", piece.path.text()).field("level", level);
+template <class Piece>
+void write_enclosure(JsonWriter& json, const Piece& piece, const std::string& name, unsigned level) {
+  json.field("piece", name).field("level", level);
   write_box_corners(json, "lower", piece, &Box3::lower);
   write_box_corners(json, "upper", piece, &Box3::upper);
   write_points(json, "base", piece.offset.base);
@@ -60,20 +60,18 @@ void write_cone(JsonWriter& json, const std::optional<NormalCone>& cone) {
   json.begin_object().field("axis", cone->axis).field("angle", cone->angle).end_object();
 }
 
-void write_piece(JsonWriter& json, const LimitSurface& surface, const PieceEnclosure& piece, bool normals) {
-  const SchemeRules& rules = surface.rules();
-  const PatchPlace place = surface.place(piece.patch);
+void write_piece(JsonWriter& json, const Surface& surface, const PatchEnclosure& piece, bool normals) {
   json.begin_object();
-  json.field(rules.owner(), place.owner);
-  if (!rules.triangular()) json.field("part", place.part);
-  write_enclosure(json, piece, piece.path.level() + (surface.after_first_split(piece.patch) ? 1 : 0));
+  json.field(surface.traits().owner(), piece.patch.owner);
+  if (!surface.traits().triangular) json.field("part", piece.patch.part);
+  write_enclosure(json, piece, piece.piece, piece.level);
   if (normals) write_cone(json, piece.normals);
   json.end_object();
 }
 
 void write_piece(JsonWriter& json, const CurveSet&, const CurveEnclosure& piece) {
   json.begin_object().field("edge", piece.edge.index());
-  write_enclosure(json, piece, piece.path.level());
+  write_enclosure(json, piece, piece.path.text(), piece.path.level());
   json.end_object();
 }
 
@@ -82,7 +80,7 @@ class Polyhedra {
  public:
   explicit Polyhedra(bool triangles) : triangles_(triangles) {}
 
-  void add(const PieceEnclosure& piece) {
+  void add(const PatchEnclosure& piece) {
     Box3 all;
     for (const Box3& box : piece.interval.corner) all.add(box);
     require_representable(longest_side(all));
@@ -122,8 +120,7 @@ void write_polyhedra(const Polyhedra& polyhedra, const Options& options, AtomicF
   if (polyhedra.count() == 0) {
     throw InputError(InputProblem::refused, options.mesh + ": no enclosure is a solid or a polygon to write");
   }
-  write_mesh(as_facets(polyhedra.mesh(), options.polyhedra), file, options.polyhedra, notes_for(options),
-             stopped_by_interrupts());
+  write_facets(polyhedra.mesh(), file, options.polyhedra, options);
   report.text(fmt::format("{}: {} polyhedra with {} facets, for pictures", options.polyhedra,
                           polyhedra.count(), polyhedra.mesh().face_count()));
 }
@@ -171,7 +168,7 @@ void write_bound_summary(Report& report, const BoundSummary& summary, const Boun
 
 ExitStatus run(const Options& options) {
   if (options.polyhedra == "-") throw UsageError("bound: --polyhedra - : give a file");
-  const bool triangles = !options.polyhedra.empty() && !writes_polygons(options.polyhedra);
+  const bool triangles = !options.polyhedra.empty() && !format_of(options.polyhedra).polygons;
   if (!options.polyhedra.empty()) require_writable(options.polyhedra);
   BoundOptions how;
   how.level = options.level;
@@ -182,7 +179,7 @@ ExitStatus run(const Options& options) {
   if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--tolerance");
   ControlMesh mesh = load_mesh(options.mesh, options);
   std::optional<CurveSet> curves;
-  std::optional<LimitSurface> surface;
+  std::optional<Surface> surface;
   if (asks_for_curves("bound", mesh, options.mesh, options, options.degree)) {
     for (const auto& [asked, option] :
          {std::pair(!options.polyhedra.empty(), "--polyhedra"), std::pair(options.normals, "--normals"),
@@ -193,13 +190,12 @@ ExitStatus run(const Options& options) {
     }
     curves = make_curves(std::move(mesh), options.mesh, curve_degree(options.degree));
   } else {
-    surface =
-        make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+    surface = make_surface(std::move(mesh), options.mesh, options, options.scheme);
   }
   Polyhedra polyhedra(triangles);
   Report report("bound", options);
   curves ? curve_heads(report, options.mesh, curve_degree(options.degree))
-         : report.heads({options.mesh}, {name_of(surface->options().scheme)});
+         : report.heads({options.mesh}, {name_of(surface->scheme())});
   BoundSummary summary;
   ConeCount cones;
   naming(options.mesh, [&] {
@@ -209,18 +205,18 @@ ExitStatus run(const Options& options) {
     const auto keep_curve = [&](const CurveEnclosure& piece) {
       if (report.json()) write_piece(report.write(), *curves, piece);
     };
-    const auto keep = [&](const PieceEnclosure& piece) {
+    const auto keep = [&](const PatchEnclosure& piece) {
       if (report.json()) write_piece(report.write(), *surface, piece, options.normals);
       if (options.normals) cones.add(piece.normals);
       if (!options.polyhedra.empty()) polyhedra.add(piece);
     };
-    summary = curves ? bound(*curves, how, keep_curve, bar.monitor())
-                     : bound(*surface, how, keep, bar.monitor(), bound_method(options));
+    summary =
+        curves ? bound(*curves, how, keep_curve, bar.monitor()) : bound(*surface, how, keep, bar.monitor());
   });
   const std::string whole = curves ? fmt::format("{} edges contain the limit curves of degree {}",
                                                  curves->edge_count(), static_cast<int>(curves->degree()))
                                    : fmt::format("{} {} contain the limit surface", surface->owner_count(),
-                                                 surface->rules().primal ? "faces" : "vertices");
+                                                 surface->traits().dual ? "vertices" : "faces");
   write_bound_summary(report, summary, how,
                       fmt::format("{}: {} enclosures of {}", options.mesh, summary.count, whole));
   if (options.normals) report.text(cones.text());

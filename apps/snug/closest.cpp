@@ -1,4 +1,4 @@
-#include <snug/query/closest.h>
+#include <snug/closest.h>
 
 #include <cmath>
 
@@ -41,16 +41,16 @@ struct Result {
   [[nodiscard]] bool reached() const { return with_sign ? with_sign->reached : nearest.reached; }
 };
 
-std::vector<Result> find(const SurfaceBvh& model, std::span<const Point3> points,
-                         const ClosestOptions& wanted, const Options& options, const WorkMonitor& monitor) {
+std::vector<Result> find(const Surface& surface, std::span<const Point3> points, const ClosestOptions& wanted,
+                         const Options& options, const WorkMonitor& monitor) {
   std::vector<Result> results;
   results.reserve(points.size());
   if (options.with_sign) {
-    for (SignedDistance& found : signed_distances(model, points, wanted, options.threads, monitor)) {
+    for (SignedDistance& found : signed_distances(surface, points, wanted, options.threads, monitor)) {
       results.push_back({found.nearest, found});
     }
   } else {
-    for (ClosestPoint& found : closest_points(model, points, wanted, options.threads, monitor)) {
+    for (ClosestPoint& found : closest_points(surface, points, wanted, options.threads, monitor)) {
       results.push_back({found, {}});
     }
   }
@@ -79,7 +79,7 @@ void write_sign(JsonWriter& json, const SignedDistance& found) {
   }
 }
 
-void write_result(Report& report, const LimitSurface& surface, const Result& result) {
+void write_result(Report& report, const Surface& surface, const Result& result) {
   const ClosestPoint& near = result.nearest;
   if (!report.json()) {
     report.text(fmt::format(
@@ -87,7 +87,7 @@ void write_result(Report& report, const LimitSurface& surface, const Result& res
         result.with_sign ? text_of_bounds(result.with_sign->distance.lower, result.with_sign->distance.upper)
                          : text_of_bounds(near.distance.lower, near.distance.upper),
         near.point.x, near.point.y, near.point.z, near.at.owner, near.at.u, near.at.v,
-        surface.rules().triangular() ? "" : fmt::format(" {}", near.at.corner)));
+        surface.traits().triangular ? "" : fmt::format(" {}", near.at.corner)));
     return;
   }
   JsonWriter& json = report.write();
@@ -104,17 +104,16 @@ void write_result(Report& report, const LimitSurface& surface, const Result& res
 }
 
 // Columns of a file of answers, a row a point.
-ColumnTable table_of(const std::vector<Result>& results, const LimitSurface& surface,
-                     const Options& options) {
+ColumnTable table_of(const std::vector<Result>& results, const Surface& surface, const Options& options) {
   using Type = ColumnTable::Type;
-  const bool has_corner = !surface.rules().triangular();
+  const bool has_corner = !surface.traits().triangular;
   std::vector<ColumnTable::Column> columns;
   for (const char* name : {"x", "y", "z", "error", "distance_lower", "distance_upper"}) {
     columns.push_back({name, Type::real});
   }
   if (options.with_sign)
     columns.insert(columns.end(), {{"signed_lower", Type::real}, {"signed_upper", Type::real}});
-  columns.push_back({surface.rules().owner(), Type::integer});
+  columns.push_back({surface.traits().owner(), Type::integer});
   if (has_corner) columns.push_back({"corner", Type::integer});
   columns.insert(columns.end(), {{"u", Type::real}, {"v", Type::real}, {"reached", Type::flag}});
   ColumnTable table(std::move(columns), options.output);
@@ -136,7 +135,7 @@ ColumnTable table_of(const std::vector<Result>& results, const LimitSurface& sur
 }
 
 // All answers as a document or as lines; returns whether all reached what was asked for.
-bool write_results(Report& report, const LimitSurface& surface, const std::vector<Result>& results) {
+bool write_results(Report& report, const Surface& surface, const std::vector<Result>& results) {
   bool reached = true;
   for (const Result& result : results) {
     write_result(report, surface, result);
@@ -145,7 +144,7 @@ bool write_results(Report& report, const LimitSurface& surface, const std::vecto
   return reached;
 }
 
-ExitStatus finish_with_table(Report& report, const Options& options, const LimitSurface& surface,
+ExitStatus finish_with_table(Report& report, const Options& options, const Surface& surface,
                              const std::vector<Result>& results) {
   const ColumnTable table = table_of(results, surface, options);
   AtomicFile file(options.output);
@@ -161,9 +160,7 @@ ExitStatus finish_with_table(Report& report, const Options& options, const Limit
 ExitStatus run(const Options& options) {
   const Length precision = parse_length(options.precision, "--precision", true);
   const std::vector<Point3> points = read_points(options.points);
-  const SurfaceBvhOptions how = model_options(options);
-  const LimitSurface surface =
-      load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  const Surface surface = read_surface(options.mesh, options, options.scheme);
   ClosestOptions wanted;
   wanted.absolute = precision.in_mesh_units(surface.size());
   wanted.relative = options.relative;
@@ -172,22 +169,19 @@ ExitStatus run(const Options& options) {
   {
     ProgressBar bar("closest points", options.quiet);
     const WorkMonitor monitor = bar.monitor();
-    naming(options.mesh, [&] {
-      const SurfaceBvh model(surface, how, monitor);
-      results = find(model, points, wanted, options, monitor);
-    });
+    naming(options.mesh, [&] { results = find(surface, points, wanted, options, monitor); });
   }
   const bool as_table = ColumnTable::is_table(options.output);
   CommonOptions shown = options;
   if (as_table) shown.output.clear();
   Report report("closest", shown);
-  report.heads({options.mesh}, {name_of(surface.options().scheme)});
+  report.heads({options.mesh}, {name_of(surface.scheme())});
   if (report.json()) report.write().field("precision", *wanted.absolute).field("relative", *wanted.relative);
   if (as_table) return finish_with_table(report, options, surface, results);
   if (report.json()) report.write().key("results").begin_array();
   report.text(fmt::format("# {}  x y z  {} u v{}",
                           options.with_sign ? "signed distance: lower upper" : "distance: lower upper",
-                          surface.rules().owner(), surface.rules().triangular() ? "" : " corner"));
+                          surface.traits().owner(), surface.traits().triangular ? "" : " corner"));
   const bool reached = write_results(report, surface, results);
   if (report.json()) report.write().end_array();
   return report.finish(reached);

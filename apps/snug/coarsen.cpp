@@ -1,8 +1,7 @@
 #include "coarsen.h"
 
 #include <meshoptimizer.h>
-#include <snug/query/deviation.h>
-#include <snug/query/tessellate.h>
+#include <snug/deviation.h>
 
 #include <algorithm>
 #include <array>
@@ -74,10 +73,10 @@ Tessellation part_of(const Tessellation& fine, const std::vector<unsigned int>& 
 
 }  // namespace
 
-Tessellation coarsened(const SurfaceBvh& surface, TessellateOptions how, const WorkMonitor& monitor) {
+Tessellation coarsened(const Surface& surface, TessellateOptions how, const WorkMonitor& monitor) {
   const double tolerance = how.tolerance.value();
   const WorkMonitor silent{.on_progress = {}, .stop = monitor.stop};
-  Tessellation best = tessellate(surface.surface(), how, silent);
+  Tessellation best = tessellate(surface, how, silent);
   best.owners.clear();
   if (!best.reached) return best;
 
@@ -103,7 +102,7 @@ Tessellation coarsened(const SurfaceBvh& surface, TessellateOptions how, const W
     how.tolerance = share * tolerance;
     Tessellation fine;
     try {
-      fine = share == 1 ? best : tessellate(surface.surface(), how, silent);
+      fine = share == 1 ? best : tessellate(surface, how, silent);
     } catch (const InputError&) {
       continue;  // too fine for the arithmetic
     }

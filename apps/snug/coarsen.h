@@ -1,6 +1,5 @@
 #pragma once
 
-#include <snug/search/surface_bvh.h>
 #include <snug/tessellate.h>
 
 namespace snug::command {
@@ -12,7 +11,7 @@ namespace snug::command {
 ///            position_error; without owners. If nothing coarser is near enough, the tessellation itself, whose
 ///            `reached` may be false.
 /// Requires:  `how` with a tolerance, and no other goal.
-[[nodiscard]] Tessellation coarsened(const SurfaceBvh& surface, TessellateOptions how,
+[[nodiscard]] Tessellation coarsened(const Surface& surface, TessellateOptions how,
                                      const WorkMonitor& monitor);
 
 }  // namespace snug::command

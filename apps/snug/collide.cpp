@@ -1,10 +1,9 @@
-#include <snug/front/scene_workers.h>
-#include <snug/query/pairs.h>
+#include <snug/collide.h>
 
 #include <optional>
 
 #include <fmt/core.h>
-#include <snug/query/contacts.h>
+#include <snug/contacts.h>
 #include <support/atomic_file.h>
 
 #include "contact_report.h"
@@ -110,10 +109,10 @@ std::string row(const Collision& answer) {
 ExitStatus run_poses(PairArguments& pair, Report& report, const CollideOptions& wanted,
                      const WorkMonitor& monitor) {
   const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
-  const auto ask = [&](const PlacedBvh& a, const PlacedBvh& b) {
-    Collision answer = collide(a, b, wanted, stop_only);
+  const auto ask = [&](const PlacedSurface& a, const PlacedSurface& b, Workspace& workspace) {
+    Collision answer = collide(a, b, wanted, stop_only, workspace);
     return PoseAnswer{
-        .fields = [answer, sides = sides_of(a, b)](JsonWriter& json) { write_answer(json, sides, answer); },
+        .fields = [answer, sides = Sides{a, b}](JsonWriter& json) { write_answer(json, sides, answer); },
         .row = row(answer),
         .reached = answer.verdict != Verdict::undecided};
   };
@@ -166,7 +165,7 @@ ExitStatus run_scene(const Options& options) {
     wanted.tolerance = tolerance.in_mesh_units(run.size_of(pair.parts));
     wanted.budget = options.budget;
     wanted.solid = options.solid;
-    tell(collide_pair(run.scene(), pair, wanted, stop_only, workspace), run, pair, answer, json);
+    tell(collide(run.scene(), pair, wanted, stop_only, workspace), run, pair, answer, json);
   };
   question.separated = [&](const ScenePair& pair, SceneAnswer& answer, JsonWriter* json) {
     Collision apart;
@@ -202,6 +201,7 @@ ExitStatus run(const Options& options) {
   pair.write_heads(report);
   if (report.json()) report.write().field("tolerance", *wanted.tolerance).field("margin", wanted.margin);
   if (!options.poses.empty()) return run_poses(pair, report, wanted, monitor);
+  const Sides sides{pair.a(), pair.b()};
   Collision answer = collide(pair.a(), pair.b(), wanted, monitor);
   std::optional<Penetration> depth;
   if (options.penetration) depth = penetration(pair.a(), pair.b(), {}, monitor);
@@ -214,14 +214,14 @@ ExitStatus run(const Options& options) {
   std::optional<AtomicFile> curves;
   if (all && !options.curves.empty()) write_curves(all->curves, curves.emplace(options.curves));
   if (report.json()) {
-    write_poses(report.write(), {pair.pose_a(), pair.pose_b()});
-    write_answer(report.write(), sides_of(pair.a(), pair.b()), answer);
+    write_poses(report.write(), {pair.a().pose(), pair.b().pose()});
+    write_answer(report.write(), sides, answer);
     if (depth) write_penetration(report.write(), *depth);
-    if (all) write_contacts(report.write(), sides_of(pair.a(), pair.b()), *all);
+    if (all) write_contacts(report.write(), sides, *all);
   }
   report.text(sentence(answer, wanted));
   if (answer.witness) {
-    for (const std::string& line : witness_lines(sides_of(pair.a(), pair.b()), *answer.witness, answer.at)) {
+    for (const std::string& line : witness_lines(sides, *answer.witness, answer.at)) {
       report.text(line);
     }
   }
@@ -230,7 +230,7 @@ ExitStatus run(const Options& options) {
     if (!depth->reached) report.text("the bounds of the depth differ by more than 5 %");
   }
   if (all) {
-    for (const std::string& line : contact_lines(sides_of(pair.a(), pair.b()), *all)) report.text(line);
+    for (const std::string& line : contact_lines(sides, *all)) report.text(line);
   }
   if (answer.verdict == Verdict::separated && !options.solid)
     note_nesting(options, pair.a(), pair.b(), monitor);

@@ -4,11 +4,9 @@
 #include <unordered_set>
 
 #include <fmt/core.h>
-#include <snug/io/mesh_file.h>
-#include <snug/mesh/tag_names.h>
-#include <snug/scheme/rules.h>
 #include <support/atomic_file.h>
 #include <support/error.h>
+#include <support/names.h>
 #include <support/parallel.h>
 #include "column_table.h"
 
@@ -19,11 +17,19 @@
 #include "version.h"
 
 namespace snug::command {
+namespace {
+
+constexpr auto boundary_rules =
+    std::to_array<Named<BoundaryRule>>({{"none", BoundaryRule::none},
+                                        {"edge-only", BoundaryRule::edge_only},
+                                        {"edge-and-corner", BoundaryRule::edge_and_corner}});
+
+}  // namespace
 
 void require_output(const std::string& command, const std::string& output) {
   if (output.empty() || output == "-") return;
   if (command == "subdivide" || command == "tessellate" || command == "envelope" || command == "fit") {
-    require_writable_ending(output);
+    static_cast<void>(format_of(output));
   } else if (command == "view") {
     if (!output.ends_with(".html")) {
       throw UsageError("-o " + output + ": view writes a page; give a file that ends in .html");
@@ -42,9 +48,10 @@ void require_output(const std::string& command, const std::string& output) {
 Option& add_scheme_option(OptionList& list, const std::string& name, std::string& scheme,
                           const std::string& help) {
   Option& option = list.add(Group::mesh, name + " NAME", &scheme, help).one_of({"auto"});
-  for (const SchemeRules* rules : all_schemes()) {
-    option.choices.emplace_back(rules->name);
-    for (const char* other : rules->other_names) option.alias(other, rules->name);
+  for (const Scheme known : all_schemes) {
+    const SchemeTraits& traits = traits_of(known);
+    option.choices.emplace_back(traits.name);
+    for (const char* other : traits.other_names) option.alias(other, traits.name);
   }
   return option;
 }
@@ -57,7 +64,7 @@ void add_common_options(OptionList& list, CommonOptions& options) {
   scheme.choices.emplace_back("curve");
   list.add(Group::mesh, "--boundary RULE", &options.boundary,
            "Boundary rule; default: the file's tag, else edge-and-corner")
-      .one_of(all_names(boundary_rule_names))
+      .one_of(all_names(boundary_rules))
       .alias("vtx-boundary-edge-and-corner", "edge-and-corner")
       .alias("vtx-boundary-edge-only", "edge-only")
       .alias("vtx-boundary-none", "none");
@@ -92,24 +99,26 @@ std::array<Option*, 2> add_bound_options(OptionList& list, CommonOptions& option
 }
 
 Scheme choose_scheme(const std::string& name, const ControlMesh& mesh) {
-  const SchemeRules* const rules = scheme_named(name);
-  return rules ? rules->scheme : natural_scheme(mesh);
+  return scheme_named(name).value_or(natural_scheme(mesh));
 }
 
-SchemeOptions choose_rules(const CommonOptions& options, const std::string& scheme, const ControlMesh& mesh) {
-  SchemeOptions rules;
-  rules.scheme = choose_scheme(scheme, mesh);
-  if (!options.sharp.empty() && !rules_of(rules.scheme).creases) {
-    throw UsageError(std::string("--sharp: ") + name_of(rules.scheme) +
+SurfaceOptions surface_options(const CommonOptions& options, const std::string& scheme,
+                               const ControlMesh& mesh) {
+  SurfaceOptions result;
+  result.scheme = choose_scheme(scheme, mesh);
+  const SchemeTraits& traits = traits_of(*result.scheme);
+  if (!options.sharp.empty() && !traits.creases) {
+    throw UsageError(std::string("--sharp: ") + traits.name +
                      " has no creases; give --scheme loop or catmark");
   }
-  if (!options.boundary.empty() && !rules_of(rules.scheme).primal) {
-    throw UsageError(std::string("--boundary: ") + name_of(rules.scheme) +
+  if (!options.boundary.empty() && traits.dual) {
+    throw UsageError(std::string("--boundary: ") + traits.name +
                      " has no patches at boundaries under any rule; leave it out");
   }
-  rules.boundary = options.boundary.empty() ? mesh.tags.boundary.value_or(rules.boundary)
-                                            : *value_in(boundary_rule_names, options.boundary);
-  return with_tags(rules, mesh.tags);
+  if (!options.boundary.empty()) result.boundary = value_in(boundary_rules, options.boundary);
+  result.bounds = bound_method(options);
+  result.threads = options.threads;
+  return result;
 }
 
 Notes notes_for(const CommonOptions& options) {
@@ -144,8 +153,9 @@ ControlMesh load_mesh(const std::string& path, const CommonOptions& options) {
 
 ControlMesh mesh_of(std::string_view bytes, const std::string& path, const CommonOptions& options) {
   const ReadOptions reading{weld_distance(options), notes_for(options), stopped_by_interrupts()};
-  return prepared(read_mesh(bytes, path, reading), path, options);
+  return prepared(parse_mesh(bytes, path, reading), path, options);
 }
+
 void naming(const std::string& path, const std::function<void()>& work) {
   try {
     work();
@@ -154,22 +164,46 @@ void naming(const std::string& path, const std::function<void()>& work) {
   }
 }
 
-LimitSurface load_surface(const std::string& path, const CommonOptions& options, const std::string& scheme,
-                          const std::shared_ptr<BoundsCache>& library) {
-  return make_surface(load_mesh(path, options), path, options, scheme, library);
+Surface read_surface(const std::string& path, const CommonOptions& options, const std::string& scheme) {
+  return make_surface(load_mesh(path, options), path, options, scheme);
 }
 
-LimitSurface make_surface(ControlMesh mesh, const std::string& path, const CommonOptions& options,
-                          const std::string& scheme, const std::shared_ptr<BoundsCache>& library) {
+Surface make_surface(ControlMesh mesh, const std::string& path, const CommonOptions& options,
+                     const std::string& scheme) {
   refuse_curves(mesh, scheme, path);
-  std::optional<LimitSurface> surface;
+  std::optional<Surface> surface;
   naming(path, [&] {
-    const SchemeOptions rules = choose_rules(options, scheme, mesh);
+    SurfaceOptions how = surface_options(options, scheme, mesh);
     ProgressBar bar("preparing " + path, options.quiet);
-    surface.emplace(std::move(mesh), rules, library, bar.monitor());
+    how.monitor = bar.monitor();
+    surface.emplace(std::move(mesh), how);
   });
   note_smoothing(*surface, path, options, scheme);
-  return std::move(*surface);
+  return *surface;
+}
+
+void require_closed(const Surface& surface) {
+  if (const auto reason = surface.open_reason()) {
+    throw InputError(InputProblem::refused, "solids are bounded by closed surfaces, and " + *reason +
+                                                "; close the mesh or ask about its surface");
+  }
+}
+
+void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& path,
+                const CommonOptions& options, std::span<const Vector3> normals) {
+  const WorkMonitor monitor = stopped_by_interrupts();
+  const std::string bytes = format_mesh(mesh, path, {.normals = normals, .notes = notes_for(options)});
+  constexpr std::size_t part = std::size_t{1} << 20;
+  for (std::size_t begin = 0; begin < bytes.size(); begin += part) {
+    monitor.checkpoint();
+    file.write(std::string_view(bytes).substr(begin, part));
+  }
+}
+
+void write_facets(ControlMesh mesh, AtomicFile& file, const std::string& path, const CommonOptions& options,
+                  std::span<const Vector3> normals) {
+  if (format_of(path).scheme) mesh.tags.scheme = Scheme::flat;
+  write_mesh(mesh, file, path, options, normals);
 }
 
 BoundMethod bound_method(const CommonOptions& options) {

@@ -9,10 +9,8 @@
 #include <string>
 #include <vector>
 
-#include <snug/io/mesh_file.h>
 #include <snug/mesh.h>
-#include <snug/query/bound.h>
-#include <snug/surface/limit_surface.h>
+#include <snug/surface.h>
 #include <support/number.h>
 
 #include "command_line.h"
@@ -53,10 +51,10 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
 
 /// The scheme that --scheme (or an override of it) names for this mesh.
 [[nodiscard]] Scheme choose_scheme(const std::string& name, const ControlMesh& mesh);
-/// The rules for a mesh: the option if given, else the file's tag, else edge-and-corner.
+/// How a mesh becomes a surface: with the options given, else by its tags.
 /// Errors:    UsageError for --sharp and --boundary with a dual scheme.
-[[nodiscard]] SchemeOptions choose_rules(const CommonOptions& options, const std::string& scheme,
-                                         const ControlMesh& mesh);
+[[nodiscard]] SurfaceOptions surface_options(const CommonOptions& options, const std::string& scheme,
+                                             const ControlMesh& mesh);
 
 /// Where notes of readers and writers go: standard error, unless quiet, each line once.
 [[nodiscard]] Notes notes_for(const CommonOptions& options);
@@ -69,15 +67,22 @@ Option& add_scheme_option(OptionList& list, const std::string& name, std::string
                                   const CommonOptions& options);
 
 /// Reads a mesh and makes its surface. Refusals name the file.
-[[nodiscard]] LimitSurface load_surface(const std::string& path, const CommonOptions& options,
-                                        const std::string& scheme,
-                                        const std::shared_ptr<BoundsCache>& library);
+[[nodiscard]] Surface read_surface(const std::string& path, const CommonOptions& options,
+                                   const std::string& scheme);
 /// The same for a mesh that has been read from `path`.
-[[nodiscard]] LimitSurface make_surface(ControlMesh mesh, const std::string& path,
-                                        const CommonOptions& options, const std::string& scheme,
-                                        const std::shared_ptr<BoundsCache>& library);
+[[nodiscard]] Surface make_surface(ControlMesh mesh, const std::string& path, const CommonOptions& options,
+                                   const std::string& scheme);
+/// Throws InputError (refused) unless the surface bounds a solid.
+void require_closed(const Surface& surface);
 /// Calls `work` and puts the name of the file in front of refusals it throws.
 void naming(const std::string& path, const std::function<void()>& work);
+
+/// Writes a mesh into a file that was opened for `path`.
+void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& path,
+                const CommonOptions& options, std::span<const Vector3> normals = {});
+/// The same for faces that are meant as they are, which is said where the format names schemes.
+void write_facets(ControlMesh mesh, AtomicFile& file, const std::string& path, const CommonOptions& options,
+                  std::span<const Vector3> normals = {});
 
 /// What --bounds names.
 [[nodiscard]] BoundMethod bound_method(const CommonOptions& options);

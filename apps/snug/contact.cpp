@@ -3,8 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include <snug/query/moving_body.h>
-#include <snug/query/pairs.h>
+#include <snug/time_of_contact.h>
 #include <support/error.h>
 
 #include <fmt/core.h>
@@ -163,11 +162,16 @@ std::string sentence(const TimeOfContact& answer, double tolerance, bool solid) 
       "undecided: no contact before time {}, then too close to decide; give a larger --tolerance", lower);
 }
 
-// A surface that deforms, with its control points at a time.
-std::optional<LimitSurface> surface_at(const MovingBvh& moving, double time) {
-  if (moving.end.empty()) return std::nullopt;
-  const LimitSurface& surface = moving.model.surface();
-  return LimitSurface(surface, points_between(surface.mesh().points, moving.end, time));
+// The surface with its control points at a time.
+Surface surface_at(const DeformingSurface& moving, double time) {
+  if (moving.end.empty()) return moving.surface;
+  const std::span<const Point3> begin = moving.surface.mesh().points;
+  std::vector<Point3> points;
+  for (std::size_t v = 0; v < begin.size(); ++v) {
+    Point3& p = points.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) p[k] = (1 - time) * begin[v][k] + time * moving.end[v][k];
+  }
+  return MovingSurface(moving.surface).move(points);
 }
 
 // With --exit-code.
@@ -206,8 +210,8 @@ ExitStatus run(const Options& options) {
   const Length tolerance = parse_length(options.tolerance, "--tolerance", true);
   PairArguments pair(options);
   const Mending mending{options.nearest_rigid, notes_for(options)};
-  const Trajectory motion_a = motion_of(options.move_a, "-a", pair.pose_a(), mending),
-                   motion_b = motion_of(options.move_b, "-b", pair.pose_b(), mending);
+  const Trajectory motion_a = motion_of(options.move_a, "-a", pair.a().pose(), mending),
+                   motion_b = motion_of(options.move_b, "-b", pair.b().pose(), mending);
   const std::string &deform_a = options.move_a.deform, &deform_b = options.move_b.deform;
   if (motion_a.duration() == 0 && motion_b.duration() == 0 && deform_a.empty() && deform_b.empty()) {
     throw UsageError(
@@ -220,21 +224,17 @@ ExitStatus run(const Options& options) {
   ProgressBar bar("moving", options.quiet);
   const WorkMonitor monitor = bar.monitor();
   pair.prepare(monitor);
-  const SurfaceBvh &model_a = pair.model_a(), &model_b = pair.model_b();
-  const std::vector<Point3> end_a = deformed(deform_a, options.mesh_a, model_a.surface().mesh(), options),
-                            end_b = deformed(deform_b, options.mesh_b, model_b.surface().mesh(), options);
+  const std::vector<Point3> end_a = deformed(deform_a, options.mesh_a, pair.a().surface().mesh(), options),
+                            end_b = deformed(deform_b, options.mesh_b, pair.b().surface().mesh(), options);
   if (options.solid) pair.require_closed();
   Report report("contact", options);
   pair.write_heads(report);
-  const MovingBvh a{model_a, pair.a().scratch, motion_a, end_a},
-      b{model_b, pair.b().scratch, motion_b, end_b};
+  const DeformingSurface a{pair.a().surface(), end_a, motion_a}, b{pair.b().surface(), end_b, motion_b};
   const TimeOfContact answer = time_of_contact(a, b, wanted, monitor);
   // Where the witnesses are: at contact, or at the beginning.
   const double time = answer.time.upper < INFINITY ? answer.time.upper : 0;
   const PosePair at{motion_a.at(time), motion_b.at(time)};
-  const std::optional<LimitSurface> then_a = surface_at(a, time), then_b = surface_at(b, time);
-  const Sides sides{{then_a ? &*then_a : &model_a.surface(), then_b ? &*then_b : &model_b.surface()},
-                    {at.a, at.b}};
+  const Sides sides{surface_at(a, time).at(at.a), surface_at(b, time).at(at.b)};
   if (report.json()) {
     report.write().field("tolerance", *wanted.tolerance);
     const double last = end_a.empty() && end_b.empty() ? 0 : 1;

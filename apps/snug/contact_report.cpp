@@ -68,7 +68,7 @@ std::string number_of(std::size_t count, const char* one, const char* many) {
 
 std::string region_line(const Sides& sides, const ContactRegion& region, std::size_t number) {
   const auto owners = [&](std::size_t s) {
-    const bool primal = sides.surfaces[s]->rules().primal;
+    const bool primal = !sides[s].surface().traits().dual;
     return number_of(region.owners[s].size(), primal ? "face" : "vertex", primal ? "faces" : "vertices");
   };
   const Vector3 sides_of_box = region.box.upper - region.box.lower;

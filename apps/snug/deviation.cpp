@@ -5,12 +5,10 @@
 #include <variant>
 
 #include <fmt/core.h>
-#include <snug/search/surface_data.h>
 #include <support/error.h>
 
 #include "curve.h"
 #include "length.h"
-#include "mesh_reading.h"
 #include "progress_bar.h"
 #include "witness.h"
 
@@ -32,25 +30,6 @@ using Candidate = std::variant<std::vector<Triangle>, Surface>;
 
 /// What --tolerance asks for: do both sets stay that near each other?
 enum class Within { yes, no, undecided };
-
-const LimitSurface& limit_of(const Surface& surface) { return surface.data()->limit(); }
-
-// The surface of a mesh file under the rules that the options and its tags give.
-Surface read_surface(const std::string& path, const Options& options, const std::string& scheme) {
-  ControlMesh mesh = load_mesh(path, options);
-  refuse_curves(mesh, scheme, path);
-  std::optional<Surface> surface;
-  naming(path, [&] {
-    const SchemeOptions rules = choose_rules(options, scheme, mesh);
-    ProgressBar bar("preparing " + path, options.quiet);
-    surface.emplace(std::move(mesh), SurfaceOptions{.scheme = rules.scheme,
-                                                    .boundary = rules.boundary,
-                                                    .threads = options.threads,
-                                                    .monitor = bar.monitor()});
-  });
-  note_smoothing(limit_of(*surface), path, options, scheme);
-  return *surface;
-}
 
 // Whatever else may be wrong with them does not matter: a set of triangles is all that is asked for.
 std::vector<Triangle> triangles_of(const ControlMesh& mesh, const std::string& path) {
@@ -115,7 +94,7 @@ void write_interval(JsonWriter& json, const char* key, const Interval& interval)
 }
 
 // Null where the farthest point lies on no surface.
-void write_place_of(JsonWriter& json, const OneSidedDistance& found, const LimitSurface* on) {
+void write_place_of(JsonWriter& json, const OneSidedDistance& found, const Surface* on) {
   if (!found.at || on == nullptr) {
     json.null();
     return;
@@ -131,7 +110,7 @@ void write_points(JsonWriter& json, const OneSidedDistance& found) {
 
 // Of the points of the candidate on one side of the solid; no points where there are none.
 void write_side(JsonWriter& json, const std::string& side, const OneSidedDistance& found,
-                const LimitSurface* candidate) {
+                const Surface* candidate) {
   write_interval(json, side.c_str(), found.distance);
   const bool none = found.distance.upper == 0;
   json.key(side + "_points");
@@ -146,8 +125,7 @@ void write_side(JsonWriter& json, const std::string& side, const OneSidedDistanc
   write_place_of(json, found, none ? nullptr : candidate);
 }
 
-void write_answer(JsonWriter& json, const Deviation& answer,
-                  const std::array<const LimitSurface*, 2>& surfaces) {
+void write_answer(JsonWriter& json, const Deviation& answer, const std::array<const Surface*, 2>& surfaces) {
   const std::array sides{&answer.from_surface, &answer.from_candidate};
   json.field("reached", answer.reached);
   write_interval(json, "from_surface", sides[0]->distance);
@@ -170,18 +148,18 @@ std::string text_of(const Interval& distance) {
 }
 
 // The farthest point, what is near it, and where it lies.
-std::string text_of(const OneSidedDistance& found, const LimitSurface* on) {
+std::string text_of(const OneSidedDistance& found, const Surface* on) {
   std::string text = fmt::format("  ({:.8g} {:.8g} {:.8g}), and near it ({:.8g} {:.8g} {:.8g})", found.from.x,
                                  found.from.y, found.from.z, found.to.x, found.to.y, found.to.z);
   if (!found.at || on == nullptr) return text;
-  const SchemeRules& rules = on->rules();
-  return text + fmt::format(", {} {}{} u {:.6g} v {:.6g}", rules.owner(), found.at->owner,
-                            rules.triangular() ? "" : fmt::format(" corner {}", found.at->corner),
-                            found.at->u, found.at->v);
+  const SchemeTraits& traits = on->traits();
+  return text + fmt::format(", {} {}{} u {:.6g} v {:.6g}", traits.owner(), found.at->owner,
+                            traits.triangular ? "" : fmt::format(" corner {}", found.at->corner), found.at->u,
+                            found.at->v);
 }
 
-void write_text(Report& report, const Deviation& answer, const std::array<const LimitSurface*, 2>& surfaces) {
-  const auto write = [&](const std::string& what, const OneSidedDistance& found, const LimitSurface* on) {
+void write_text(Report& report, const Deviation& answer, const std::array<const Surface*, 2>& surfaces) {
+  const auto write = [&](const std::string& what, const OneSidedDistance& found, const Surface* on) {
     if (found.distance.upper == 0) {
       report.text(what + ": 0, proved");
       return;
@@ -226,12 +204,12 @@ ExitStatus run(const Options& options) {
   {
     ProgressBar bar("comparing", options.quiet);
     const WorkMonitor monitor = bar.monitor();
-    if (options.solid) naming(options.mesh, [&] { static_cast<void>(surface.data()->bvh().solid()); });
+    if (options.solid) naming(options.mesh, [&] { require_closed(surface); });
     answer =
         std::visit([&](const auto& other) { return deviation(surface, other, wanted, monitor); }, candidate);
   }
   const Surface* const other = std::get_if<Surface>(&candidate);
-  const std::array<const LimitSurface*, 2> surfaces{&limit_of(surface), other ? &limit_of(*other) : nullptr};
+  const std::array<const Surface*, 2> surfaces{&surface, other};
   Report report("deviation", options);
   report.heads({options.mesh, options.candidate},
                {snug::name_of(surface.scheme()), snug::name_of(other ? other->scheme() : Scheme::flat)});

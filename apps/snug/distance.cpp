@@ -1,5 +1,4 @@
-#include <snug/front/scene_workers.h>
-#include <snug/query/pairs.h>
+#include <snug/distance.h>
 
 #include <fmt/core.h>
 
@@ -41,10 +40,10 @@ std::string row(const Distance& answer) {
 ExitStatus run_poses(PairArguments& pair, Report& report, const DistanceOptions& wanted,
                      const WorkMonitor& monitor) {
   const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
-  const auto ask = [&](const PlacedBvh& a, const PlacedBvh& b) {
-    Distance answer = distance(a, b, wanted, stop_only);
+  const auto ask = [&](const PlacedSurface& a, const PlacedSurface& b, Workspace& workspace) {
+    Distance answer = distance(a, b, wanted, stop_only, workspace);
     return PoseAnswer{
-        .fields = [answer, sides = sides_of(a, b)](JsonWriter& json) { write_answer(json, sides, answer); },
+        .fields = [answer, sides = Sides{a, b}](JsonWriter& json) { write_answer(json, sides, answer); },
         .row = row(answer),
         .reached = answer.reached};
   };
@@ -73,7 +72,7 @@ ExitStatus run_scene(const Options& options) {
     wanted.relative = options.relative;
     wanted.budget = options.budget;
     wanted.solid = options.solid;
-    const std::optional<Distance> found = distance_of_pair(run.scene(), pair, wanted, stop_only, workspace);
+    const std::optional<Distance> found = distance(run.scene(), pair, wanted, stop_only, workspace);
     if (!found) {
       answer.verdict = Verdict::separated;
       return;
@@ -108,10 +107,11 @@ ExitStatus run(const Options& options) {
   pair.write_heads(report);
   if (report.json()) report.write().field("precision", *wanted.absolute).field("relative", *wanted.relative);
   if (!options.poses.empty()) return run_poses(pair, report, wanted, monitor);
+  const Sides sides{pair.a(), pair.b()};
   const Distance answer = distance(pair.a(), pair.b(), wanted, monitor);
   if (report.json()) {
-    write_poses(report.write(), {pair.pose_a(), pair.pose_b()});
-    write_answer(report.write(), sides_of(pair.a(), pair.b()), answer);
+    write_poses(report.write(), {pair.a().pose(), pair.b().pose()});
+    write_answer(report.write(), sides, answer);
   }
   if (answer.distance.upper == 0) {
     report.text(answer.inner ? "proved: " + inner_sentence(*answer.inner)
@@ -124,7 +124,7 @@ ExitStatus run(const Options& options) {
                                 ? "; the precision was not reached, give a larger --budget"
                                 : "; the precision was not reached because of rounding or memory"));
   }
-  for (const std::string& line : witness_lines(sides_of(pair.a(), pair.b()), answer.witness, answer.at)) {
+  for (const std::string& line : witness_lines(sides, answer.witness, answer.at)) {
     report.text(line);
   }
   if (answer.distance.lower > 0 && !options.solid) note_nesting(options, pair.a(), pair.b(), monitor);

@@ -1,14 +1,14 @@
 #include <fmt/core.h>
-#include <snug/io/mesh_file.h>
-#include <snug/query/closest.h>
-#include <snug/query/hull.h>
-#include <snug/query/pairs.h>
-#include <snug/surface/evaluate.h>
+#include <snug/closest.h>
+#include <snug/distance.h>
+#include <snug/evaluate.h>
+#include <snug/hull.h>
 #include <support/atomic_file.h>
 #include <support/error.h>
 
 #include "hulls_of_mesh.h"
 #include "length.h"
+#include "mesh_counts.h"
 #include "progress_bar.h"
 
 namespace snug::command {
@@ -34,27 +34,23 @@ void require_options(const Options& options) {
   }
 }
 
-// Surfaces that do not meet are inside of each other patch by patch.
-Fit fit_of(const LimitSurface& part, const Hull& envelope, const Options& options,
-           const WorkMonitor& monitor) {
-  const LimitSurface around(mesh_of(envelope), SchemeOptions{Scheme::flat}, part.shared_library(), monitor);
-  const SurfaceBvh part_model(part, {.threads = options.threads}, monitor),
-      around_model(around, {.threads = options.threads}, monitor);
-  SurfaceWorkspace own(part_model), other(around_model);
+// Of surfaces that do not meet, all of a face is inside of the other one or none of it.
+Fit fit_of(const Surface& part, const Hull& envelope, const Options& options, const WorkMonitor& monitor) {
+  const Surface around(mesh_of(envelope),
+                       {.scheme = Scheme::flat, .threads = options.threads, .monitor = monitor});
   const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
-  const Distance found =
-      distance({part_model, own, {}}, {around_model, other, {}}, {.relative = 0.01}, stop_only);
+  const Distance found = distance(part, around, {.relative = 0.01}, stop_only);
   Fit fit{.inside = {}, .clearance = found.distance};
   if (found.distance.upper == 0) fit.inside = false;
   if (!(found.distance.lower > 0)) return fit;
   fit.inside = true;
-  for (std::size_t p = 0; p < part.patch_count() && fit.inside == true; ++p) {
-    if (!part.has_patch(PatchId(p))) continue;
-    const SurfaceParameter middle = place_of(part, PatchId(p), {1.0 / 3, 1.0 / 3});
+  for (std::uint32_t owner = 0; owner < part.owner_count() && fit.inside == true; ++owner) {
+    const SurfaceParameter middle{owner, 0, 1.0 / 3, 1.0 / 3};
+    if (!part.has(middle)) continue;
     const SurfacePoint at = evaluate(part, middle);
     // The limit point that it stands for is on the same side.
     if (2 * at.error > found.distance.lower) return {.inside = {}, .clearance = found.distance};
-    fit.inside = contains(other, at.position, stop_only);
+    fit.inside = contains(around, at.position, stop_only);
   }
   return fit;
 }
@@ -83,7 +79,7 @@ void write_fit(Report& report, const Options& options, const Fit& fit) {
   }
 }
 
-void write_summary(Report& report, const Options& options, const LimitSurface& surface, double tolerance,
+void write_summary(Report& report, const Options& options, const Surface& surface, double tolerance,
                    const Hulls& found) {
   if (report.json()) {
     report.write().field("tolerance", tolerance).key("envelope");
@@ -96,34 +92,31 @@ void write_summary(Report& report, const Options& options, const LimitSurface& s
                     options.output.empty() ? "envelope" : options.output, found.outer->triangles.size(),
                     text_at_most(found.outer->gap, true)));
   }
-  write_verdict(report, found, surface.rules().primal);
+  write_verdict(report, found, surface.traits().owner());
 }
 
 ExitStatus run(const Options& options) {
   require_options(options);
-  const auto library = std::make_shared<BoundsCache>();
-  const LimitSurface surface = load_surface(options.mesh, options, options.scheme, library);
-  std::optional<LimitSurface> part;
-  if (!options.part.empty()) part.emplace(load_surface(options.part, options, options.scheme, library));
+  const Surface surface = read_surface(options.mesh, options, options.scheme);
+  std::optional<Surface> part;
+  if (!options.part.empty()) part.emplace(read_surface(options.part, options, options.scheme));
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("envelope", to_standard_output);
-  report.heads({options.mesh}, {name_of(surface.options().scheme)});
+  report.heads({options.mesh}, {name_of(surface.scheme())});
   HullOptions how{.inner = false, .budget = options.most, .threads = options.threads};
-  how.single_precision = !options.output.empty() && writes_floats(options.output);
+  how.single_precision = !options.output.empty() && format_of(options.output).floats;
   Hulls found;
   ProgressBar bar("making an envelope of " + options.mesh, options.quiet);
   const WorkMonitor monitor = bar.monitor();
   naming(options.mesh, [&] {
     how.tolerance = parse_length(options.tolerance, "--tolerance").in_mesh_units(surface.size());
-    const SurfaceBvh model(surface, {.threads = options.threads}, monitor);
-    static_cast<void>(model.solid());  // refuses what is open
-    for (std::size_t e = 0; e < surface.topology().edge_count(); ++e) {
-      if (!surface.topology().ends_fans(EdgeId(e))) continue;
+    require_closed(surface);
+    if (has_edges_of_many_faces(surface.mesh())) {
       throw InputError(InputProblem::refused,
                        "envelope: edges of more than two faces have no envelope; 'snug info' lists them");
     }
-    found = hulls(model, how, monitor);
+    found = hulls(surface, how, monitor);
   });
   std::optional<Fit> fit;
   if (part && found.verified)
@@ -133,8 +126,7 @@ ExitStatus run(const Options& options) {
   const bool reached = found.verified && (!fit || fit->inside);
   if (options.output.empty() || !found.verified) return report.finish(reached);
   AtomicFile file(options.output);
-  write_mesh(as_facets(mesh_of(*found.outer), options.output), file, options.output, notes_for(options),
-             stopped_by_interrupts());
+  write_facets(mesh_of(*found.outer), file, options.output, options);
   return report.finish(reached, {&file});
 }
 

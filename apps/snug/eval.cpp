@@ -26,10 +26,10 @@ struct Options : CommonOptions {
 
 using Columns = std::vector<ColumnTable::Column>;
 
-Columns columns_of(const LimitSurface& surface) {
+Columns columns_of(const Surface& surface) {
   using Type = ColumnTable::Type;
-  Columns columns{{surface.rules().owner(), Type::integer}, {"corner", Type::integer}};
-  if (surface.rules().triangular()) columns.pop_back();
+  Columns columns{{surface.traits().owner(), Type::integer}, {"corner", Type::integer}};
+  if (surface.traits().triangular) columns.pop_back();
   for (const char* name : {"u", "v", "x", "y", "z", "error", "normal_x", "normal_y", "normal_z", "du_x",
                            "du_y", "du_z", "dv_x", "dv_y", "dv_z"}) {
     columns.push_back({name, Type::real});
@@ -38,10 +38,10 @@ Columns columns_of(const LimitSurface& surface) {
   return columns;
 }
 
-void add_row(ColumnTable& table, const LimitSurface& surface, const SurfaceParameter& at,
+void add_row(ColumnTable& table, const Surface& surface, const SurfaceParameter& at,
              const SurfacePoint& point) {
   table.add(at.owner);
-  if (!surface.rules().triangular()) table.add(at.corner);
+  if (!surface.traits().triangular) table.add(at.corner);
   for (const double x : {at.u, at.v, point.position.x, point.position.y, point.position.z, point.error})
     table.add(x);
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -58,14 +58,14 @@ struct Output {
   ColumnTable* table;
 };
 
-void write_point(const Output& output, const LimitSurface& surface, const SurfaceParameter& at,
+void write_point(const Output& output, const Surface& surface, const SurfaceParameter& at,
                  const SurfacePoint& point) {
   if (output.table) return add_row(*output.table, surface, at, point);
   Report& report = output.report;
-  const SchemeRules& rules = surface.rules();
+  const SchemeTraits& traits = surface.traits();
   if (!report.json()) {
     report.text(fmt::format("{} {} {}{}  {} {} {}", at.owner, at.u, at.v,
-                            rules.triangular() ? "" : fmt::format(" {}", at.corner), point.position.x,
+                            traits.triangular ? "" : fmt::format(" {}", at.corner), point.position.x,
                             point.position.y, point.position.z));
     return;
   }
@@ -76,15 +76,13 @@ void write_point(const Output& output, const LimitSurface& surface, const Surfac
 }
 
 // Writes the points of a lattice on an owner; returns how many.
-std::size_t write_lattice(const Output& output, const Options& options, const LimitSurface& surface,
+std::size_t write_lattice(const Output& output, const Options& options, const Surface& surface,
                           std::uint32_t owner) {
-  SurfaceEvaluator evaluator(surface);
-  std::size_t count = 0;
-  for_each_place(surface, owner, options.samples, [&](const SurfaceParameter& at) {
-    write_point(output, surface, at, evaluator(at));
-    ++count;
-  });
-  return count;
+  std::vector<SurfaceParameter> places;
+  for_each_place(surface, owner, options.samples, [&](const SurfaceParameter& at) { places.push_back(at); });
+  const std::vector<SurfacePoint> points = evaluate(surface, places, 1);
+  for (std::size_t i = 0; i < places.size(); ++i) write_point(output, surface, places[i], points[i]);
+  return places.size();
 }
 
 // A place on a curve.
@@ -203,14 +201,13 @@ ExitStatus run(const Options& options) {
       if (lines) report.text("# edge t  x y z");
     });
   }
-  const LimitSurface surface =
-      make_surface(std::move(mesh), options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  const Surface surface = make_surface(std::move(mesh), options.mesh, options, options.scheme);
   return answer(options, surface, surface.owner_count(), [&](Report& report, bool lines) {
-    const Scheme scheme = surface.options().scheme;
+    const Scheme scheme = surface.scheme();
     report.heads({options.mesh}, {name_of(scheme)});
     if (!lines) return;
-    report.text(fmt::format("# {} u v{}  x y z", surface.rules().owner(),
-                            surface.rules().triangular() ? "" : " corner"));
+    report.text(fmt::format("# {} u v{}  x y z", surface.traits().owner(),
+                            surface.traits().triangular ? "" : " corner"));
   });
 }
 

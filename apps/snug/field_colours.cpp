@@ -123,21 +123,21 @@ double mean_curvature(const PatchEvaluator& evaluate_at, TriangleParameter at) {
 std::shared_ptr<Field> distances(const PlacedSurface& surface, const PlacedSurface& other, int threads,
                                  const WorkMonitor& monitor) {
   constexpr std::uint32_t steps = 8;
-  const SurfaceBvh model(limit_of(*other.surface));
-  const Motion to_other = other.pose.inverse() * surface.pose;
+  const SurfaceBvh model(limit_of(other.surface()));
+  const Motion to_other = other.pose().inverse() * surface.pose();
   // All points first, so that they are asked for together.
   std::vector<Point3> points;
   const auto collect = [&](PatchId, const PatchEvaluator& evaluate_at, TriangleParameter at) {
     points.push_back(to_other.apply(evaluate_at(at).position));
     return 0.0;
   };
-  static_cast<void>(Field(limit_of(*surface.surface), steps, 1, monitor, collect));
+  static_cast<void>(Field(limit_of(surface.surface()), steps, 1, monitor, collect));
   ClosestOptions how;
-  how.absolute = 1e-3 * other.surface->size();
+  how.absolute = 1e-3 * other.surface().size();
   const std::vector<ClosestPoint> found = closest_points(model, points, how, threads, monitor);
   std::size_t next = 0;
   return std::make_shared<Field>(
-      limit_of(*surface.surface), steps, 1, monitor,
+      limit_of(surface.surface()), steps, 1, monitor,
       [&](PatchId, const PatchEvaluator&, TriangleParameter) { return found[next++].distance.upper; });
 }
 
@@ -168,7 +168,7 @@ std::vector<double> thicknesses(const LimitSurface& surface, int threads, const 
 std::function<Colour(const QuickHit&)> colours_by(std::string_view name, const PlacedSurface& surface,
                                                   const PlacedSurface& other, int threads,
                                                   const WorkMonitor& monitor) {
-  const LimitSurface* const limit = &limit_of(*surface.surface);
+  const LimitSurface* const limit = &limit_of(surface.surface());
   if (name == "level") {
     return [](const QuickHit& hit) { return ramp(hit.level / 6.0); };
   }

@@ -1,9 +1,8 @@
-#include <snug/query/hull.h>
+#include <snug/hull.h>
 
 #include <deque>
 
 #include <fmt/core.h>
-#include <snug/io/mesh_file.h>
 #include <support/atomic_file.h>
 
 #include "hulls_of_mesh.h"
@@ -27,12 +26,12 @@ void require_options(const Options& options) {
   for (const std::string& file : {options.inner, options.outer}) {
     if (file == "-") throw UsageError("hull: standard output takes no hull; give a file");
     if (file.empty()) continue;
-    require_writable_ending(file);
+    static_cast<void>(format_of(file));
     require_writable(file);
   }
 }
 
-HullOptions how_to(const Options& options, const LimitSurface& surface) {
+HullOptions how_to(const Options& options, const Surface& surface) {
   HullOptions how;
   how.tolerance = parse_length(options.tolerance, "--tolerance").in_mesh_units(surface.size());
   how.inner = !options.inner.empty();
@@ -40,11 +39,11 @@ HullOptions how_to(const Options& options, const LimitSurface& surface) {
   how.budget = options.most;
   how.threads = options.threads;
   how.single_precision =
-      (how.inner && writes_floats(options.inner)) || (how.outer && writes_floats(options.outer));
+      (how.inner && format_of(options.inner).floats) || (how.outer && format_of(options.outer).floats);
   return how;
 }
 
-void write_summary(Report& report, const Options& options, const LimitSurface& surface, double tolerance,
+void write_summary(Report& report, const Options& options, const Surface& surface, double tolerance,
                    const Hulls& found) {
   if (report.json()) {
     JsonWriter& json = report.write();
@@ -64,28 +63,26 @@ void write_summary(Report& report, const Options& options, const LimitSurface& s
   if (found.verified && !found.closed) {
     report.text("the surface is open: the hulls are sheets behind and in front of it, not solids");
   }
-  write_verdict(report, found, surface.rules().primal);
+  write_verdict(report, found, surface.traits().owner());
 }
 
 ExitStatus run(const Options& options) {
   require_options(options);
-  const LimitSurface surface =
-      load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  const Surface surface = read_surface(options.mesh, options, options.scheme);
   Report report("hull", options);
-  report.heads({options.mesh}, {name_of(surface.options().scheme)});
+  report.heads({options.mesh}, {name_of(surface.scheme())});
   HullOptions how;
   Hulls found;
   naming(options.mesh, [&] {
     how = how_to(options, surface);
     ProgressBar bar("making hulls of " + options.mesh, options.quiet);
     const WorkMonitor monitor = bar.monitor();
-    found = hulls(SurfaceBvh(surface, {.threads = options.threads}, monitor), how, monitor);
+    found = hulls(surface, how, monitor);
   });
   std::deque<AtomicFile> files;
   for (const auto& [hull, path] : {std::pair{&found.inner, &options.inner}, {&found.outer, &options.outer}}) {
     if (!*hull || !found.verified) continue;
-    write_mesh(as_facets(mesh_of(**hull), *path), files.emplace_back(*path), *path, notes_for(options),
-               stopped_by_interrupts());
+    write_facets(mesh_of(**hull), files.emplace_back(*path), *path, options);
   }
   write_summary(report, options, surface, how.tolerance, found);
   std::vector<AtomicFile*> written;

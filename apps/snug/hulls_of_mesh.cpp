@@ -80,8 +80,7 @@ void write_hull(JsonWriter& json, const std::optional<Hull>& hull, bool verified
   json.field("verified", verified).end_object();
 }
 
-void write_verdict(Report& report, const Hulls& hulls, bool primal) {
-  const char* const owner = primal ? "face" : "vertex";
+void write_verdict(Report& report, const Hulls& hulls, const char* owner) {
   const std::size_t printed = std::min(hulls.problems.size(), most_printed);
   if (report.json()) {
     JsonWriter& json = report.write();

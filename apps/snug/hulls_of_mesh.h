@@ -4,7 +4,6 @@
 #include <string>
 
 #include <snug/hull.h>
-#include <snug/surface/limit_surface.h>
 
 #include "common.h"
 
@@ -21,8 +20,8 @@ void require_tolerance(const std::string& command, const std::string& tolerance)
 /// {vertices, triangles, gap, verified}, or null.
 void write_hull(JsonWriter& json, const std::optional<Hull>& hull, bool verified);
 
-/// Whether all is proved, and where not, in words and as "verified", "problems". The surface's patches belong to
-/// faces if it is `primal`, else to vertices.
-void write_verdict(Report& report, const Hulls& hulls, bool primal);
+/// Whether all is proved, and where not, in words and as "verified", "problems". `owner`: what the
+/// surface's patches belong to, in a word.
+void write_verdict(Report& report, const Hulls& hulls, const char* owner);
 
 }  // namespace snug::command

@@ -1,11 +1,11 @@
 #include <fmt/core.h>
-#include <snug/front/smoothing_note.h>
+#include <snug/evaluate.h>
 #include <snug/mesh/loose_creases.h>
 #include <snug/mesh/validate.h>
-#include <snug/query/bound.h>
 #include <snug/query/containment.h>
+#include <snug/query/smoothing_note.h>
 #include <snug/scheme/rules.h>
-#include <snug/search/solid.h>
+#include <snug/search/surface_data.h>
 #include <support/names.h>
 
 #include "common.h"
@@ -60,18 +60,17 @@ std::string taken_as(const ControlMesh& mesh, const SchemeRules& scheme, const O
 }
 
 // An owner of a shell that lies within another one, or overlaps it, turned the same way.
-std::optional<std::uint32_t> owner_wound_twice(const LimitSurface& surface, int threads) {
-  if (!is_closed(surface)) return {};
-  const SurfaceBvh bvh(surface, {.threads = threads}, stopped_by_interrupts());
-  const std::optional<PatchId> patch = wound_twice(bvh, stopped_by_interrupts());
-  return patch ? std::optional(surface.place(*patch).owner) : std::nullopt;
+std::optional<std::uint32_t> owner_wound_twice(const Surface& surface) {
+  if (surface.open_reason()) return {};
+  const std::optional<PatchId> patch = wound_twice(surface.data()->bvh(), stopped_by_interrupts());
+  return patch ? std::optional(surface.data()->limit().place(*patch).owner) : std::nullopt;
 }
 
 ExitStatus run(const Options& options) {
   const ControlMesh mesh = load_mesh(options.mesh, options);
   refuse_curves(mesh, options.scheme, options.mesh);
-  const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
-  const SchemeRules& scheme = rules_of(rules.scheme);
+  const SurfaceOptions how = surface_options(options, options.scheme, mesh);
+  const SchemeRules& scheme = rules_of(*how.scheme);
   const MeshCounts counts = count_elements(mesh, scheme.regular_valence);
   const std::size_t odd_ones = extraordinary(mesh, counts, scheme);
   const std::vector<Defect> found = defects(mesh);
@@ -82,12 +81,12 @@ ExitStatus run(const Options& options) {
   double size = 0;
   std::string refusal;
   try {
-    const LimitSurface surface(mesh, rules, std::make_shared<BoundsCache>());
+    const Surface surface(mesh, how);
     apart = limit_to_faces(surface, options.threads);
     size = surface.size();
     kinds = surface.kind_count();
-    if (counts.closed && counts.boxes_meet) twice = owner_wound_twice(surface, options.threads);
-    if (!counts.closed && counts.boundary_edges == 0) open = ": " + open_reason(surface).value_or("");
+    if (counts.closed && counts.boxes_meet) twice = owner_wound_twice(surface);
+    if (!counts.closed && counts.boundary_edges == 0) open = ": " + surface.open_reason().value_or("");
     note_smoothing(surface, options.mesh, options, options.scheme, apart);
   } catch (const InputError& error) {
     refusal = error.what();

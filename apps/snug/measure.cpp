@@ -1,7 +1,6 @@
-#include <snug/query/measure.h>
+#include <snug/measure.h>
 
 #include <fmt/core.h>
-#include <snug/search/solid.h>
 
 #include "common.h"
 #include "length.h"
@@ -80,8 +79,7 @@ ExitStatus run(const Options& options) {
   wanted.relative = relative_precision(options.precision);
   wanted.budget = options.budget;
   wanted.threads = options.threads;
-  const LimitSurface surface =
-      load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  const Surface surface = read_surface(options.mesh, options, options.scheme);
   Report report("measure", options);
   Measures found;
   {
@@ -89,9 +87,9 @@ ExitStatus run(const Options& options) {
     const WorkMonitor monitor = bar.monitor();
     naming(options.mesh, [&] { found = measure(surface, wanted, monitor); });
   }
-  report.heads({options.mesh}, {name_of(surface.options().scheme)});
+  report.heads({options.mesh}, {name_of(surface.scheme())});
   if (report.json()) write_json(report.write(), found, *wanted.relative);
-  write_text(report, found, open_reason(surface));
+  write_text(report, found, surface.open_reason());
   if (!found.reached) {
     report.text("the precision was not reached; give a larger --budget or --precision");
   }

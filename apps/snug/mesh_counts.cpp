@@ -194,6 +194,14 @@ MeshCounts count_elements(const ControlMesh& mesh, std::size_t regular_valence) 
   return result;
 }
 
+bool has_edges_of_many_faces(const ControlMesh& mesh) {
+  const HalfEdgeGroups groups(mesh.face_offsets, mesh.face_vertices, mesh.vertex_count());
+  for (std::size_t e = 0; e < groups.edge_count(); ++e) {
+    if (groups.of_edge(EdgeId(e)).size() > 2) return true;
+  }
+  return false;
+}
+
 Coincidences coincidences(const ControlMesh& mesh) {
   Coincidences found;
   std::vector<bool> used(mesh.vertex_count(), false);

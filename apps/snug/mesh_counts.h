@@ -24,6 +24,9 @@ struct MeshCounts {
 /// Cost:      linear, times the logarithm of the largest valence.
 [[nodiscard]] MeshCounts count_elements(const ControlMesh& mesh, std::size_t regular_valence);
 
+/// Does an edge belong to three faces or more?
+[[nodiscard]] bool has_edges_of_many_faces(const ControlMesh& mesh);
+
 /// Vertices and boundary edges that stand where others do and are not joined: faces meet there to the eye
 /// alone.
 struct Coincidences {

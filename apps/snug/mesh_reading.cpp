@@ -3,9 +3,10 @@
 #include <charconv>
 
 #include <fmt/core.h>
-#include <snug/front/smoothing_note.h>
+#include <snug/evaluate.h>
 #include <snug/mesh.h>
-#include <snug/query/bound.h>
+#include <snug/query/smoothing_note.h>
+#include <snug/search/surface_data.h>
 
 #include "curve.h"
 #include "mesh_counts.h"
@@ -59,7 +60,7 @@ void sharpen_mesh(ControlMesh& mesh, const std::string& path, double angle, cons
                      " is answered as curves, which have no edges to sharpen; leave it out");
   }
   const std::size_t faces = mesh.face_count();
-  const Sharpened done = sharpen(mesh, angle);
+  const SharpenReport done = sharpen(mesh, angle);
   const Notes note = notes_for(options);
   if (!note) return;
   std::string text = fmt::format(
@@ -77,17 +78,17 @@ void sharpen_mesh(ControlMesh& mesh, const std::string& path, double angle, cons
   note(text);
 }
 
-void note_smoothing(const LimitSurface& surface, const std::string& path, const CommonOptions& options,
+void note_smoothing(const Surface& surface, const std::string& path, const CommonOptions& options,
                     const std::string& scheme, std::optional<double> apart) {
   const Notes note = notes_for(options);
-  if (!note || surface.rules().local) return;
+  if (!note || surface.traits().local) return;
   if (options.sharp.empty()) {
     if (scheme != "auto") return;
-    const std::string line = smoothing_note(surface, "--scheme", apart, options.threads);
+    const std::string line = smoothing_note(surface.data()->limit(), "--scheme", apart, options.threads);
     if (!line.empty()) note(path + ": " + line);
     return;
   }
-  if (!apart && surface.face_count() > most_measured_faces) return;
+  if (!apart && surface.mesh().face_count() > most_measured_faces) return;
   if (!apart) apart = limit_to_faces(surface, options.threads);
   if (apart && *apart > 0) {
     note(path + ": where it is smooth the limit surface differs from the faces: at most " +

@@ -3,8 +3,6 @@
 #include <optional>
 #include <string>
 
-#include <snug/mesh/control_mesh.h>
-
 #include "common.h"
 
 namespace snug::command {
@@ -27,7 +25,7 @@ void sharpen_mesh(ControlMesh& mesh, const std::string& path, double angle, cons
 /// Without --sharp, a note where `scheme`, what --scheme names for this surface, is auto and smooths triangles that no tag
 /// says are a control mesh; with it, a note how far curved regions are from their faces. `apart` is limit_to_faces() if it
 /// is known.
-void note_smoothing(const LimitSurface& surface, const std::string& path, const CommonOptions& options,
+void note_smoothing(const Surface& surface, const std::string& path, const CommonOptions& options,
                     const std::string& scheme, std::optional<double> apart = {});
 
 }  // namespace snug::command

@@ -6,13 +6,6 @@
 
 namespace snug::command {
 
-SurfaceBvhOptions model_options(const CommonOptions& options) {
-  SurfaceBvhOptions result;
-  result.method = bound_method(options);
-  result.threads = options.threads;
-  return result;
-}
-
 void add_pair_options(OptionList& list, PairOptions& options, bool many) {
   list.add(Group::own, "A", &options.mesh_a, "First control mesh (OBJ, OFF, PLY, STL, USD or glTF)");
   list.add(Group::own, "B", &options.mesh_b, "Second control mesh");
@@ -56,8 +49,7 @@ void write_poses(JsonWriter& json, const PosePair& poses) {
   }
 }
 
-PairArguments::PairArguments(const PairOptions& options)
-    : options_(options), model_options_(model_options(options)) {
+PairArguments::PairArguments(const PairOptions& options) : options_(options) {
   const bool unplaced = options.pose_a.place.empty() && options.pose_b.place.empty() && options.poses.empty();
   if (options.nearest_rigid && unplaced && !options.moves) {
     throw UsageError("--nearest-rigid needs --place-a, --place-b or --poses");
@@ -66,37 +58,34 @@ PairArguments::PairArguments(const PairOptions& options)
     throw UsageError("--scheme has no effect beside --scheme-a and --scheme-b");
   }
   const Mending mending{options.nearest_rigid, notes_for(options)};
-  pose_a_ = pose_of(options.pose_a, "-a", mending);
-  pose_b_ = pose_of(options.pose_b, "-b", mending);
-  const auto library = std::make_shared<BoundsCache>();
+  const Motion pose_a = pose_of(options.pose_a, "-a", mending),
+               pose_b = pose_of(options.pose_b, "-b", mending);
   const auto load = [&](const std::string& mesh, const std::string& own, const char* option) {
     try {
-      return load_surface(mesh, options, own.empty() ? options.scheme : own, library);
+      return read_surface(mesh, options, own.empty() ? options.scheme : own);
     } catch (const InputError& error) {
       if (error.problem() != InputProblem::refused || options.scheme == "auto" || !own.empty()) throw;
       throw InputError(error.problem(),
                        fmt::format("{}; {} names the scheme of this mesh alone", error.what(), option));
     }
   };
-  surface_a_.emplace(load(options.mesh_a, options.scheme_a, "--scheme-a"));
-  surface_b_.emplace(load(options.mesh_b, options.scheme_b, "--scheme-b"));
+  a_.emplace(load(options.mesh_a, options.scheme_a, "--scheme-a"), pose_a);
+  b_.emplace(load(options.mesh_b, options.scheme_b, "--scheme-b"), pose_b);
 }
 
-void PairArguments::prepare(const WorkMonitor& monitor) {
-  naming(options_.mesh_a, [&] { model_a_.emplace(*surface_a_, model_options_, monitor); });
-  naming(options_.mesh_b, [&] { model_b_.emplace(*surface_b_, model_options_, monitor); });
-  scratch_a_.emplace(*model_a_);
-  scratch_b_.emplace(*model_b_);
+void PairArguments::prepare(const WorkMonitor& monitor) const {
+  naming(options_.mesh_a, [&] { a().surface().prepare(monitor); });
+  naming(options_.mesh_b, [&] { b().surface().prepare(monitor); });
 }
 
 void PairArguments::require_closed() const {
-  naming(options_.mesh_a, [&] { static_cast<void>(model_a_->solid()); });
-  naming(options_.mesh_b, [&] { static_cast<void>(model_b_->solid()); });
+  naming(options_.mesh_a, [&] { command::require_closed(a().surface()); });
+  naming(options_.mesh_b, [&] { command::require_closed(b().surface()); });
 }
 
 void PairArguments::write_heads(Report& report) const {
   report.heads({options_.mesh_a, options_.mesh_b},
-               {name_of(surface_a_->options().scheme), name_of(surface_b_->options().scheme)});
+               {name_of(a().surface().scheme()), name_of(b().surface().scheme())});
 }
 
 }  // namespace snug::command

@@ -4,15 +4,12 @@
 #include <optional>
 #include <string>
 
-#include <snug/search/workspace.h>
+#include <snug/surface.h>
 
 #include "common.h"
 #include "pose.h"
 
 namespace snug::command {
-
-/// How a surface is made ready for queries.
-[[nodiscard]] SurfaceBvhOptions model_options(const CommonOptions& options);
 
 struct PairOptions : CommonOptions {
   std::string mesh_a, mesh_b;
@@ -37,35 +34,27 @@ class PairArguments {
   /// Errors:    UsageError; InputError that names the mesh or the pose.
   explicit PairArguments(const PairOptions& options);
 
-  /// Makes the models.
-  void prepare(const WorkMonitor& monitor);
+  /// Prepares both for queries.
+  void prepare(const WorkMonitor& monitor) const;
   /// For --solid.
   /// Requires:  prepare().
   /// Errors:    InputError (refused) that names the mesh which is not closed.
   void require_closed() const;
   /// Requires:  prepare().
-  [[nodiscard]] PlacedBvh a() { return {*model_a_, *scratch_a_, pose_a_}; }
-  [[nodiscard]] PlacedBvh b() { return {*model_b_, *scratch_b_, pose_b_}; }
-  [[nodiscard]] const SurfaceBvh& model_a() const { return *model_a_; }
-  [[nodiscard]] const SurfaceBvh& model_b() const { return *model_b_; }
-  [[nodiscard]] const Motion& pose_a() const { return pose_a_; }
-  [[nodiscard]] const Motion& pose_b() const { return pose_b_; }
+  [[nodiscard]] const PlacedSurface& a() const { return *a_; }
+  [[nodiscard]] const PlacedSurface& b() const { return *b_; }
   [[nodiscard]] const std::string& poses() const { return options_.poses; }
   [[nodiscard]] bool nearest_rigid() const { return options_.nearest_rigid; }
   [[nodiscard]] int threads() const { return options_.threads; }
   [[nodiscard]] Notes notes() const { return notes_for(options_); }
   /// Of the longer one.
-  [[nodiscard]] double size() const { return std::max(surface_a_->size(), surface_b_->size()); }
+  [[nodiscard]] double size() const { return std::max(a_->surface().size(), b_->surface().size()); }
   /// The fields of both in the head of a report.
   void write_heads(Report& report) const;
 
  private:
   const PairOptions& options_;
-  SurfaceBvhOptions model_options_;
-  Motion pose_a_, pose_b_;
-  std::optional<LimitSurface> surface_a_, surface_b_;
-  std::optional<SurfaceBvh> model_a_, model_b_;
-  std::optional<SurfaceWorkspace> scratch_a_, scratch_b_;
+  std::optional<PlacedSurface> a_, b_;
 };
 
 }  // namespace snug::command

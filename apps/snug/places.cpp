@@ -9,14 +9,14 @@
 
 namespace snug::command {
 
-std::string place_words(const SchemeRules& rules) {
-  return std::string(rules.owner()) + (rules.triangular() ? " u v" : " u v [corner]");
+std::string place_words(const SchemeTraits& traits) {
+  return std::string(traits.owner()) + (traits.triangular ? " u v" : " u v [corner]");
 }
 
-SurfaceParameter read_place(std::string_view line, const LimitSurface& surface, const std::string& where,
+SurfaceParameter read_place(std::string_view line, const Surface& surface, const std::string& where,
                             const std::string& expected) {
-  const SchemeRules& rules = surface.rules();
-  const std::string owner = rules.owner();
+  const SchemeTraits& traits = surface.traits();
+  const std::string owner = traits.owner();
   const auto unreadable = [&](const std::string& why) {
     return InputError(InputProblem::unreadable, where + why);
   };
@@ -24,25 +24,24 @@ SurfaceParameter read_place(std::string_view line, const LimitSurface& surface, 
   bool good =
       parse(next_word(line), at.owner) && parse(next_word(line), at.u) && parse(next_word(line), at.v);
   if (const std::string_view corner = next_word(line); good && !corner.empty()) {
-    good = !rules.triangular() && parse(corner, at.corner) && next_word(line).empty();
+    good = !traits.triangular && parse(corner, at.corner) && next_word(line).empty();
   }
   if (!good) throw unreadable("a line is '" + expected + "'");
   if (at.owner >= surface.owner_count()) {
     throw unreadable(owner + " " + std::to_string(at.owner) + " of " + std::to_string(surface.owner_count()) +
                      " (they count from 0)");
   }
-  if (rules.triangular() ? !(at.u >= 0 && at.v >= 0 && at.u + at.v <= 1)
-                         : !(at.u >= 0 && at.v >= 0 && at.u <= 1 && at.v <= 1)) {
-    throw unreadable(rules.triangular() ? "u and v must be >= 0, and u + v <= 1"
-                                        : "u and v must be from 0 to 1");
+  if (traits.triangular ? !(at.u >= 0 && at.v >= 0 && at.u + at.v <= 1)
+                        : !(at.u >= 0 && at.v >= 0 && at.u <= 1 && at.v <= 1)) {
+    throw unreadable(traits.triangular ? "u and v must be >= 0, and u + v <= 1"
+                                       : "u and v must be from 0 to 1");
   }
-  const LimitSurface::PatchRange range = surface.patches_of(at.owner);
-  const std::size_t corners = std::max<std::size_t>(1, (range.end - range.begin) / 2);
+  const std::size_t corners = std::max<std::size_t>(1, surface.corner_count(at.owner));
   if (at.corner >= corners) {
     throw unreadable("corner " + std::to_string(at.corner) + " of " + owner + " " + std::to_string(at.owner) +
                      ", which counts from 0 to " + std::to_string(corners - 1));
   }
-  if (!patch_at(surface, at)) {
+  if (!surface.has(at)) {
     throw InputError(InputProblem::refused,
                      where + owner + " " + std::to_string(at.owner) +
                          " has no limit surface: it lies at the boundary, or is a hole");
@@ -50,9 +49,9 @@ SurfaceParameter read_place(std::string_view line, const LimitSurface& surface, 
   return at;
 }
 
-std::vector<SurfaceParameter> read_places(const std::string& path, const LimitSurface& surface) {
+std::vector<SurfaceParameter> read_places(const std::string& path, const Surface& surface) {
   const std::string text = read_file(path, stopped_by_interrupts());
-  const std::string expected = place_words(surface.rules());
+  const std::string expected = place_words(surface.traits());
   std::vector<SurfaceParameter> places;
   for_each_line(text, [&](std::string_view line, std::size_t number) {
     places.push_back(read_place(line, surface, path + ":" + std::to_string(number) + ": ", expected));
@@ -60,11 +59,11 @@ std::vector<SurfaceParameter> read_places(const std::string& path, const LimitSu
   return places;
 }
 
-void write_place(JsonWriter& json, const LimitSurface& surface, const SurfaceParameter& at,
+void write_place(JsonWriter& json, const Surface& surface, const SurfaceParameter& at,
                  const SurfacePoint& point) {
-  const SchemeRules& rules = surface.rules();
-  json.field(rules.owner(), at.owner).field("u", at.u).field("v", at.v);
-  if (!rules.triangular()) json.field("corner", at.corner);
+  const SchemeTraits& traits = surface.traits();
+  json.field(traits.owner(), at.owner).field("u", at.u).field("v", at.v);
+  if (!traits.triangular) json.field("corner", at.corner);
   json.field("position", point.position).field("error", point.error).key("normal");
   point.normal ? json.value(*point.normal) : json.null();
   json.key("tangents").begin_array().value(point.tangents[0]).value(point.tangents[1]).end_array();

@@ -6,8 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include <snug/surface/evaluate.h>
-#include <snug/surface/limit_surface.h>
+#include <snug/evaluate.h>
 
 #include "json_writer.h"
 #include "options.h"
@@ -15,24 +14,24 @@
 namespace snug::command {
 
 /// The words that name a place on this surface: "face u v", "vertex u v [corner]" and the like.
-[[nodiscard]] std::string place_words(const SchemeRules& rules);
+[[nodiscard]] std::string place_words(const SchemeTraits& traits);
 
 /// The place that the rest of a line names. `where` begins messages, `expected` is what a line is.
 /// Errors:    InputError: (unreadable) for another form and what is out of range; (refused) where there is no
 ///            surface.
-[[nodiscard]] SurfaceParameter read_place(std::string_view line, const LimitSurface& surface,
+[[nodiscard]] SurfaceParameter read_place(std::string_view line, const Surface& surface,
                                           const std::string& where, const std::string& expected);
 /// The places of all lines of a file; blank lines and those that begin with # are skipped. Errors as above.
-[[nodiscard]] std::vector<SurfaceParameter> read_places(const std::string& path, const LimitSurface& surface);
+[[nodiscard]] std::vector<SurfaceParameter> read_places(const std::string& path, const Surface& surface);
 
 /// Calls visit(place) for those places of a lattice of `steps` on a face, or on each quad of its first split, where
 /// there is a surface.
 template <class Visit>
-void for_each_place(const LimitSurface& surface, std::uint32_t owner, unsigned steps, Visit&& visit) {
+void for_each_place(const Surface& surface, std::uint32_t owner, unsigned steps, Visit&& visit) {
   const auto visit_surface = [&](const SurfaceParameter& at) {
-    if (patch_at(surface, at)) visit(at);
+    if (surface.has(at)) visit(at);
   };
-  if (surface.rules().triangular()) {
+  if (surface.traits().triangular) {
     for (unsigned j = 0; j <= steps; ++j) {
       for (unsigned i = 0; i + j <= steps; ++i) {
         // The far edge is met exactly: u + v rounds to at most 1.
@@ -42,8 +41,7 @@ void for_each_place(const LimitSurface& surface, std::uint32_t owner, unsigned s
     }
     return;
   }
-  const LimitSurface::PatchRange range = surface.patches_of(owner);
-  for (std::uint32_t corner = 0; corner < (range.end - range.begin) / 2; ++corner) {
+  for (std::uint32_t corner = 0; corner < surface.corner_count(owner); ++corner) {
     for (unsigned j = 0; j <= steps; ++j) {
       for (unsigned i = 0; i <= steps; ++i) {
         visit_surface(
@@ -57,7 +55,7 @@ void for_each_place(const LimitSurface& surface, std::uint32_t owner, unsigned s
 Option& add_place_options(OptionList& list, unsigned& samples, std::string& at);
 
 /// The fields of a place and of the limit point there, in an object that has begun.
-void write_place(JsonWriter& json, const LimitSurface& surface, const SurfaceParameter& at,
+void write_place(JsonWriter& json, const Surface& surface, const SurfaceParameter& at,
                  const SurfacePoint& point);
 
 }  // namespace snug::command

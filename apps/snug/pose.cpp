@@ -105,12 +105,16 @@ TakenPose take_matrix(std::span<const double> numbers, bool nearest_rigid) {
   if (numbers.size() == 16) {
     std::array<double, 16> whole;
     std::copy(numbers.begin(), numbers.end(), whole.begin());
-    matrix = upper_rows(whole);
+    if (!std::equal(whole.begin() + 12, whole.end(), std::array{0.0, 0.0, 0.0, 1.0}.begin())) {
+      return {Motion::from_4x4(whole), {}};  // says what is wrong
+    }
+    std::copy_n(whole.begin(), matrix.size(), matrix.begin());
   } else {
     std::copy(numbers.begin(), numbers.end(), matrix.begin());
   }
-  if (!nearest_rigid || rigidity_defect(matrix) <= rigidity_tolerance) return {Motion::from_3x4(matrix), {}};
+  if (!nearest_rigid) return {Motion::from_3x4(matrix), {}};
   const NearestRigid nearest = snug::nearest_rigid(matrix);
+  if (nearest.defect <= 1e-9) return {Motion::from_3x4(matrix), {}};
   return {nearest.motion, nearest};
 }
 

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include <fmt/core.h>
-#include <snug/query/pairs.h>
 #include <support/error.h>
+#include <support/workers.h>
 
 #include "pose_file.h"
 
@@ -55,20 +55,18 @@ std::string json_of(const PoseAnswer& answer, const PosePair& poses, std::size_t
 class PoseAnswers {
  public:
   PoseAnswers(PairArguments& pair, Report& report, const AskPose& ask)
-      : pair_(pair), report_(report), ask_(ask), scratches_(pair.model_a(), pair.model_b(), pair.threads()) {}
+      : pair_(pair), report_(report), ask_(ask), workers_(Workspace::of_this_thread(), pair.threads()) {}
 
   // Answers for some lines, one after the other where they are written, in parallel before that.
   void answer(const PoseFile& file, const std::vector<PoseLine>& lines, const WorkMonitor& monitor) {
     items_.assign(lines.size(), {});
-    scratches_.for_each(lines.size(),
-                        [&](SurfaceWorkspace& a, SurfaceWorkspace& b, std::size_t i) {
-                          try {
-                            items_[i] = answer_line(lines[i], a, b, monitor);
-                          } catch (const InputError& error) {
-                            items_[i].error = error;
-                          }
-                        },
-                        {.on_progress = {}, .stop = monitor.stop});
+    workers_.for_each(lines.size(), [&](Workspace& workspace, std::size_t i) {
+      try {
+        items_[i] = answer_line(lines[i], workspace, monitor);
+      } catch (const InputError& error) {
+        items_[i].error = error;
+      }
+    });
     for (std::size_t i = 0; i < lines.size(); ++i) write(items_[i], file, lines[i].number);
     report_.flush();
   }
@@ -78,12 +76,12 @@ class PoseAnswers {
   [[nodiscard]] bool reached() const { return reached_; }
 
  private:
-  Item answer_line(const PoseLine& line, SurfaceWorkspace& a, SurfaceWorkspace& b,
-                   const WorkMonitor& monitor) const {
+  Item answer_line(const PoseLine& line, Workspace& workspace, const WorkMonitor& monitor) const {
     monitor.checkpoint();
     const ReadPoses read = parse_pose_line(line.text, pair_.nearest_rigid());
-    const PosePair poses{read.a.value_or(pair_.pose_a()), read.b.value_or(pair_.pose_b())};
-    const PoseAnswer answer = ask_({pair_.model_a(), a, poses.a}, {pair_.model_b(), b, poses.b});
+    const PosePair poses{read.a.value_or(pair_.a().pose()), read.b.value_or(pair_.b().pose())};
+    const PoseAnswer answer =
+        ask_(pair_.a().surface().at(poses.a), pair_.b().surface().at(poses.b), workspace);
     return {.json = report_.json() ? json_of(answer, poses, line.number) : "",
             .row = fmt::format("{} {}", line.number, answer.row),
             .reached = answer.reached,
@@ -106,7 +104,7 @@ class PoseAnswers {
   PairArguments& pair_;
   Report& report_;
   const AskPose& ask_;
-  PairWorkspaces scratches_;
+  Workers<Workspace> workers_;
   std::vector<Item> items_;
   Mended mended_;
   std::size_t count_ = 0;

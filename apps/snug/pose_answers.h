@@ -14,7 +14,8 @@ struct PoseAnswer {
   bool reached = true;
 };
 /// Asks about one pose; called by several threads.
-using AskPose = std::function<PoseAnswer(const PlacedBvh& a, const PlacedBvh& b)>;
+using AskPose =
+    std::function<PoseAnswer(const PlacedSurface& a, const PlacedSurface& b, Workspace& workspace)>;
 
 /// Answers every pose of --poses in the file's order, to the end of the report: `results` and `count`, or a row each below
 /// `header`.

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include <snug/geometry/motion.h>
 #include <snug/monitor.h>
+#include <snug/motion.h>
 
 namespace snug::command {
 

@@ -1,4 +1,4 @@
-#include <snug/query/ray.h>
+#include <snug/ray.h>
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +47,7 @@ std::vector<Ray> read_rays(const std::string& path) {
   return rays;
 }
 
-void write_hit(JsonWriter& json, const LimitSurface& surface, const RayHit& hit) {
+void write_hit(JsonWriter& json, const Surface& surface, const RayHit& hit) {
   json.begin_object()
       .key("t")
       .begin_array()
@@ -63,8 +63,8 @@ void write_hit(JsonWriter& json, const LimitSurface& surface, const RayHit& hit)
   json.end_object();
 }
 
-std::string line_of(std::size_t ray, const LimitSurface& surface, const RayHit& hit) {
-  const std::string corner = surface.rules().triangular() ? "" : fmt::format(" {}", hit.at.corner);
+std::string line_of(std::size_t ray, const Surface& surface, const RayHit& hit) {
+  const std::string corner = surface.traits().triangular ? "" : fmt::format(" {}", hit.at.corner);
   return fmt::format("{}  {} {}  {}  {} {} {}  {} {} {}{}", ray, hit.t.lower, hit.t.upper,
                      hit.certified ? "certified" : "uncertified", hit.point.x, hit.point.y, hit.point.z,
                      hit.at.owner, hit.at.u, hit.at.v, corner);
@@ -77,7 +77,7 @@ bool reached(const RayHits& answer, RayQuery query) {
          });
 }
 
-void write_answer(Report& report, const LimitSurface& surface, std::size_t ray, const RayHits& answer,
+void write_answer(Report& report, const Surface& surface, std::size_t ray, const RayHits& answer,
                   bool narrow_enough) {
   if (report.json()) {
     JsonWriter& json = report.write();
@@ -108,9 +108,7 @@ bool decided(const RayHits& answer) {
 ExitStatus run(const Options& options) {
   const Length precision = parse_length(options.precision, "--precision", true);
   const std::vector<Ray> rays = read_rays(options.rays);
-  const SurfaceBvhOptions how = model_options(options);
-  const LimitSurface surface =
-      load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  const Surface surface = read_surface(options.mesh, options, options.scheme);
   RayOptions wanted;
   wanted.query = options.all ? RayQuery::all : options.any ? RayQuery::any : RayQuery::nearest;
   wanted.precision = precision.in_mesh_units(surface.size());
@@ -119,16 +117,13 @@ ExitStatus run(const Options& options) {
   {
     ProgressBar bar("rays", options.quiet);
     const WorkMonitor monitor = bar.monitor();
-    naming(options.mesh, [&] {
-      const SurfaceBvh model(surface, how, monitor);
-      answers = trace(model, rays, wanted, options.threads, monitor);
-    });
+    naming(options.mesh, [&] { answers = trace(surface, rays, wanted, options.threads, monitor); });
   }
   Report report("ray", options);
-  report.heads({options.mesh}, {name_of(surface.options().scheme)});
+  report.heads({options.mesh}, {name_of(surface.scheme())});
   if (report.json()) report.write().field("precision", *wanted.precision).key("results").begin_array();
-  report.text(fmt::format("# ray  t: lower upper  proof  x y z  {} u v{}", surface.rules().owner(),
-                          surface.rules().triangular() ? "" : " corner"));
+  report.text(fmt::format("# ray  t: lower upper  proof  x y z  {} u v{}", surface.traits().owner(),
+                          surface.traits().triangular ? "" : " corner"));
   bool all_decided = true;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const bool narrow_enough = reached(answers[i], wanted.query);

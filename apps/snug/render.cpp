@@ -21,7 +21,6 @@
 #include "curve.h"
 #include "drawn_curves.h"
 #include "field_colours.h"
-#include "mesh_reading.h"
 #include "numbers.h"
 #include "pose.h"
 #include "progress_bar.h"
@@ -155,22 +154,6 @@ void require_drawable(const CurveSet& curves, const std::string& path) {
                                                       path, curves.edge_count(), most_curve_edges));
 }
 
-Surface surface_of(ControlMesh mesh, const std::string& path, const Options& options) {
-  refuse_curves(mesh, options.scheme, path);
-  std::optional<Surface> surface;
-  naming(path, [&] {
-    const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
-    ProgressBar bar("preparing " + path, options.quiet);
-    surface.emplace(std::move(mesh), SurfaceOptions{.scheme = rules.scheme,
-                                                    .boundary = rules.boundary,
-                                                    .bounds = bound_method(options),
-                                                    .threads = options.threads,
-                                                    .monitor = bar.monitor()});
-  });
-  note_smoothing(limit_of(*surface), path, options, options.scheme);
-  return *surface;
-}
-
 std::vector<Part> load_parts(const Options& options, const std::vector<Motion>& poses) {
   std::vector<Part> parts;
   for (std::size_t part = 0; part < options.meshes.size(); ++part) {
@@ -181,7 +164,7 @@ std::vector<Part> load_parts(const Options& options, const std::vector<Motion>& 
       require_drawable(curves, path);
       parts.push_back({path, std::move(curves), poses[part]});
     } else {
-      parts.push_back({path, surface_of(std::move(mesh), path, options), poses[part]});
+      parts.push_back({path, make_surface(std::move(mesh), path, options, options.scheme), poses[part]});
     }
   }
   return parts;
@@ -286,7 +269,7 @@ std::vector<Point3> surface_points(const Options& options, std::span<const Part>
   for (const Part& part : parts) {
     if (!part.surface()) continue;
     naming(part.path, [&] {
-      const PlacedSurface placed{part.surface(), part.pose};
+      const PlacedSurface placed{*part.surface(), part.pose};
       const std::vector<Point3> more = limit_points(placed, units, steps, options.threads, monitor);
       points.insert(points.end(), more.begin(), more.end());
     });
@@ -433,8 +416,8 @@ void add_surfaces(Shot& shot, const Options& options, std::span<const Part> part
     const Part& other = parts[part == 0 ? parts.size() - 1 : 0];
     naming(parts[part].path, [&] {
       shot.scene.surfaces.back().colour =
-          colours_by(options.colour, {parts[part].surface(), parts[part].pose}, {other.surface(), other.pose},
-                     options.threads, monitor);
+          colours_by(options.colour, {*parts[part].surface(), parts[part].pose},
+                     {*other.surface(), other.pose}, options.threads, monitor);
     });
   }
 }
@@ -477,7 +460,7 @@ Shot compose(const Options& options, std::span<const Part> parts, const Enclosur
   if (options.cage) {
     const double width = palette::cage_width * line_scale;
     for (const Part& part : parts) {
-      if (part.surface()) add_cage(shot.scene, {part.surface(), part.pose}, units, width, palette::ink);
+      if (part.surface()) add_cage(shot.scene, {*part.surface(), part.pose}, units, width, palette::ink);
     }
     for (const auto& [part, drawn] : curves) drawn.add_polygons(shot.scene, width, palette::ink);
     for (const Line& line : shot.scene.lines) visible.insert(visible.end(), {line.a, line.b});

@@ -61,7 +61,7 @@ std::size_t patch_count(const Surface& surface) {
 
 std::vector<Point3> limit_points(const PlacedSurface& part, const PictureUnits& units, std::uint32_t steps,
                                  int threads, const WorkMonitor& monitor) {
-  const LimitSurface& surface = limit_of(*part.surface);
+  const LimitSurface& surface = limit_of(part.surface());
   std::vector<PatchId> patches;
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
     if (surface.has_patch(PatchId(p))) patches.emplace_back(p);
@@ -78,7 +78,7 @@ std::vector<Point3> limit_points(const PlacedSurface& part, const PictureUnits& 
           // The far edge is met exactly: u + v rounds to at most 1.
           const double v = static_cast<double>(j) / steps,
                        u = std::fmin(static_cast<double>(i) / steps, 1 - v);
-          points[at] = units(part.pose, evaluate_at(TriangleParameter{u, v}).position);
+          points[at] = units(part.pose(), evaluate_at(TriangleParameter{u, v}).position);
         }
       }
     }
@@ -161,8 +161,8 @@ CutPlane cut_plane(const std::array<Point3, 2>& points, const PictureUnits& unit
 
 void add_cage(PictureScene& scene, const PlacedSurface& part, const PictureUnits& units, double line_width,
               Colour line_colour) {
-  const Topology& topology = limit_of(*part.surface).topology();
-  const auto place = [&](VertexId v) { return units(part.pose, part.surface->mesh().points[v.index()]); };
+  const Topology& topology = limit_of(part.surface()).topology();
+  const auto place = [&](VertexId v) { return units(part.pose(), part.surface().mesh().points[v.index()]); };
   for (std::size_t e = 0; e < topology.edge_count(); ++e) {
     const HalfEdge h = topology.half_of(EdgeId(e));
     scene.lines.push_back({place(topology.from(h)), place(topology.to(h)), line_width, line_colour});

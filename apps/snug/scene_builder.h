@@ -8,19 +8,12 @@
 #include <picture/camera.h>
 #include <picture/polyhedron.h>
 #include <picture/scene.h>
-#include <snug/geometry/motion.h>
 #include <snug/monitor.h>
+#include <snug/motion.h>
 #include <snug/query/bound.h>
 #include <snug/surface/limit_surface.h>
 
 namespace snug::command {
-
-/// A surface where it stands in the picture.
-/// Requires:  the surface outlives it.
-struct PlacedSurface {
-  const Surface* surface;
-  Motion pose;
-};
 
 [[nodiscard]] const LimitSurface& limit_of(const Surface& surface);
 /// How many of its patches have a limit surface.

@@ -10,8 +10,6 @@
 #include <unordered_map>
 
 #include <fmt/core.h>
-#include <snug/scheme/rules.h>
-#include <snug/search/surface_data.h>
 #include <support/error.h>
 #include <support/number.h>
 #include <support/parallel.h>
@@ -337,9 +335,9 @@ class SceneReader {
 };
 
 // What is wrong with options is wrong with the scene file here.
-SchemeOptions rules_for(const SceneMesh& mesh, const ControlMesh& control) {
+SurfaceOptions options_for(const SceneMesh& mesh, const ControlMesh& control) {
   try {
-    return choose_rules(mesh.options, mesh.options.scheme, control);
+    return surface_options(mesh.options, mesh.options.scheme, control);
   } catch (const UsageError& error) {
     throw InputError(InputProblem::refused, error.what());
   }
@@ -350,16 +348,13 @@ Surface surface_of(std::string_view bytes, const SceneMesh& mesh, const WorkMoni
   refuse_curves(control, mesh.options.scheme, mesh.file);
   std::optional<Surface> surface;
   naming(mesh.file, [&] {
-    const SchemeOptions rules = rules_for(mesh, control);
-    surface.emplace(std::move(control), SurfaceOptions{.scheme = rules.scheme,
-                                                       .boundary = rules.boundary,
-                                                       .bounds = bound_method(mesh.options),
-                                                       .tight = false,
-                                                       .threads = 1,
-                                                       .monitor = monitor});
-    static_cast<void>(surface->data()->bvh());  // with the file's name where that fails
+    SurfaceOptions how = options_for(mesh, control);
+    how.threads = 1;
+    how.monitor = monitor;
+    surface.emplace(std::move(control), how);
+    surface->prepare();  // with the file's name where that fails
   });
-  note_smoothing(surface->data()->limit(), mesh.file, mesh.options, mesh.options.scheme);
+  note_smoothing(*surface, mesh.file, mesh.options, mesh.options.scheme);
   return *surface;
 }
 

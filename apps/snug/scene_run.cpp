@@ -12,8 +12,6 @@
 #include <utility>
 
 #include <fmt/core.h>
-#include <snug/front/scene_workers.h>
-#include <snug/search/surface_data.h>
 #include <support/in_order.h>
 #include <support/parallel.h>
 #include <support/read_file.h>
@@ -24,6 +22,8 @@
 
 namespace snug::command {
 namespace {
+
+constexpr std::size_t pairs_of_a_batch = 16384;
 
 // Pairs that a rank is given at once, at most.
 constexpr std::size_t most_pairs = 2048;
@@ -48,10 +48,10 @@ double cost_of(const SceneBroadPhase& boxes, const Scene& scene, const ScenePair
     share_a *= share(a);
     share_b *= share(b);
   }
-  const auto patches = [&](std::uint32_t part) {
-    return static_cast<double>(scene.parts[part].surface().data()->limit().patch_count());
+  const auto owners = [&](std::uint32_t part) {
+    return static_cast<double>(scene.parts[part].surface().owner_count());
   };
-  return 8 + share_a * patches(pair.parts.a) + share_b * patches(pair.parts.b);
+  return 8 + share_a * owners(pair.parts.a) + share_b * owners(pair.parts.b);
 }
 
 // Pairs that are answered before further ones are.
@@ -164,7 +164,7 @@ class Batch {
   using Ask = std::function<SceneAnswer(const ScenePair&, Workspace&)>;
   using Put = std::function<void(std::size_t, SceneAnswer)>;
   Batch(const std::vector<ScenePair>& pairs, std::vector<double> costs, const Ranks* ranks,
-        SceneWorkers& workers, const WorkMonitor& monitor, const Ask& ask, const Put& put)
+        Workers<Workspace>& workers, const WorkMonitor& monitor, const Ask& ask, const Put& put)
       : pairs_(pairs),
         queue_(std::move(costs), workers.threads() * (ranks ? static_cast<std::size_t>(ranks->size()) : 1)),
         ranks_(ranks),
@@ -257,7 +257,7 @@ class Batch {
   const std::vector<ScenePair>& pairs_;
   PairQueue queue_;
   const Ranks* ranks_;
-  SceneWorkers& workers_;
+  Workers<Workspace>& workers_;
   const WorkMonitor& monitor_;
   const Ask& ask_;
   const Put& put_;
@@ -375,8 +375,7 @@ void SceneRun::tell_rank_0(InputProblem problem, const char* reason) const {
 void SceneRun::require_closed() const {
   told_once([&] {
     for (std::size_t i = 0; i < loaded_.surfaces.size(); ++i) {
-      naming(loaded_.text.meshes[i].file,
-             [&] { static_cast<void>(loaded_.surfaces[i].data()->bvh().solid()); });
+      naming(loaded_.text.meshes[i].file, [&] { command::require_closed(loaded_.surfaces[i]); });
     }
   });
 }
@@ -386,8 +385,7 @@ double SceneRun::size_of(const PartPair& parts) const {
 }
 
 Sides SceneRun::sides_of(const PartPair& parts) const {
-  const PlacedSurface &a = scene().parts[parts.a], &b = scene().parts[parts.b];
-  return {{&a.surface().data()->limit(), &b.surface().data()->limit()}, {a.pose(), b.pose()}};
+  return {scene().parts[parts.a], scene().parts[parts.b]};
 }
 
 SceneAnswer SceneRun::answer_pair(const SceneQuestion& question, const ScenePair& pair, Workspace* workspace,
@@ -406,7 +404,7 @@ SceneAnswer SceneRun::answer_pair(const SceneQuestion& question, const ScenePair
 
 // Answers some pairs, which go to rank 0 a few times a second: what is lost with a rank is no more than that.
 void SceneRun::serve(const SceneQuestion& question, const std::vector<ScenePair>& pairs,
-                     SceneWorkers& workers) const {
+                     Workers<Workspace>& workers) const {
   const bool json = options_.json || !options_.output.empty() || !options_.journal.empty();
   std::vector<std::string> lines(pairs.size());
   std::size_t sent = 0;
@@ -439,7 +437,7 @@ void SceneRun::serve(const SceneQuestion& question, const std::vector<ScenePair>
 // Answers what rank 0 sends, until that is nothing.
 void SceneRun::serve(const SceneQuestion& question) {
   try {
-    SceneWorkers workers(options_.threads);
+    Workers<Workspace> workers(Workspace::of_this_thread(), options_.threads);
     ranks_->send(0, std::string(1, answers_follow));
     while (true) {
       const std::vector<ScenePair> pairs = pairs_of(ranks_->receive(true)->bytes);
@@ -486,7 +484,7 @@ ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, 
   results.begin(question, options_.scene);
   const bool json = report.json() || journal.has_value();
   SceneBroadPhase broad(scene, question.margin, question.all_pairs, options_.threads, monitor_);
-  SceneWorkers workers(options_.threads);
+  Workers<Workspace> workers(Workspace::of_this_thread(), options_.threads);
   std::vector<int> idle;
   const std::size_t wanted = pairs_of_a_batch * static_cast<std::size_t>(ranks_ ? ranks_->size() : 1);
   // Other ranks would wait for rank 0 between two batches.
@@ -525,7 +523,10 @@ ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, 
       return answer_pair(question, pair, &workspace, json);
     };
     const Batch::Put put = [&](std::size_t i, SceneAnswer answer) {
-      report_part(monitor_, before, now.share, done++, todo.size());
+      if (const std::size_t before_it = done++; before_it % 64 == 0) {
+        monitor_.report(before + (now.share - before) * static_cast<double>(before_it) /
+                                     static_cast<double>(todo.size()));
+      }
       if (journal) journal->add(todo[i].parts, answer);
       answers.put(places[i], std::move(answer));
     };

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include <snug/front/scene_workers.h>
+#include <support/workers.h>
 
 #include "placed_pair.h"
 #include "ranks.h"
@@ -58,7 +58,8 @@ class SceneRun {
   void told_once(const std::function<void()>& work) const;
   [[noreturn]] void tell_rank_0(InputProblem problem, const char* reason) const;
   void serve(const SceneQuestion& question);
-  void serve(const SceneQuestion& question, const std::vector<ScenePair>& pairs, SceneWorkers& workers) const;
+  void serve(const SceneQuestion& question, const std::vector<ScenePair>& pairs,
+             Workers<Workspace>& workers) const;
   [[nodiscard]] SceneAnswer answer_pair(const SceneQuestion& question, const ScenePair& pair,
                                         Workspace* workspace, bool json) const;
 

@@ -1,4 +1,4 @@
-#include <snug/query/self.h>
+#include <snug/self.h>
 
 #include <fmt/core.h>
 
@@ -17,7 +17,8 @@ struct Options : CommonOptions {
   std::string tolerance, radius;
 };
 
-void write_json(JsonWriter& json, const SelfContact& found, std::optional<double> tolerance, bool primal) {
+void write_json(JsonWriter& json, const SelfContact& found, std::optional<double> tolerance,
+                const char* owner) {
   json.field("verdict", name_of(found.verdict));
   if (tolerance) json.field("tolerance", *tolerance).field("radius", found.radius);
   json.key("pairs").begin_array();
@@ -25,7 +26,7 @@ void write_json(JsonWriter& json, const SelfContact& found, std::optional<double
     json.begin_object().field("verdict", name_of(pair.verdict));
     json.key("at").begin_array();
     for (const SurfaceParameter& at : pair.at) {
-      json.begin_object().field(primal ? "face" : "vertex", at.owner).field("corner", at.corner);
+      json.begin_object().field(owner, at.owner).field("corner", at.corner);
       json.field("u", at.u).field("v", at.v).end_object();
     }
     json.end_array().key("witness").begin_array();
@@ -67,8 +68,7 @@ ExitStatus run(const Options& options) {
   if (!options.tolerance.empty()) tolerance = parse_length(options.tolerance, "--tolerance");
   if (!options.radius.empty()) radius = parse_length(options.radius, "--radius");
   if (radius && !tolerance) throw UsageError("--radius needs --tolerance");
-  const LimitSurface surface =
-      load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  const Surface surface = read_surface(options.mesh, options, options.scheme);
   if (tolerance) wanted.tolerance = tolerance->in_mesh_units(surface.size());
   if (radius) wanted.radius = radius->in_mesh_units(surface.size());
   Report report("self", options);
@@ -78,9 +78,10 @@ ExitStatus run(const Options& options) {
     const WorkMonitor monitor = bar.monitor();
     naming(options.mesh, [&] { found = self_contact(surface, wanted, monitor); });
   }
-  report.heads({options.mesh}, {name_of(surface.options().scheme)});
-  if (report.json()) write_json(report.write(), found, wanted.tolerance, surface.rules().primal);
-  write_text(report, found, wanted.tolerance, surface.rules().owner());
+  report.heads({options.mesh}, {name_of(surface.scheme())});
+  const char* const owner = surface.traits().owner();
+  if (report.json()) write_json(report.write(), found, wanted.tolerance, owner);
+  write_text(report, found, wanted.tolerance, owner);
   return report.finish(found.verdict != SelfVerdict::undecided);
 }
 

@@ -1,23 +1,9 @@
 #include "solids.h"
 
 #include <fmt/core.h>
-#include <snug/query/containment.h>
-#include <snug/search/solid.h>
-#include <support/error.h>
+#include <snug/collide.h>
 
 namespace snug::command {
-namespace {
-
-bool is_closed(const SurfaceBvh& model) {
-  try {
-    static_cast<void>(model.solid());
-    return true;
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
-}  // namespace
 
 void write_inner(JsonWriter& json, const std::optional<std::size_t>& inner) {
   json.key("inner");
@@ -28,11 +14,12 @@ std::string inner_sentence(std::size_t inner) {
   return inner == 0 ? "A or a part of it lies inside B" : "B or a part of it lies inside A";
 }
 
-void note_nesting(const CommonOptions& options, const PlacedBvh& a, const PlacedBvh& b,
+void note_nesting(const CommonOptions& options, const PlacedSurface& a, const PlacedSurface& b,
                   const WorkMonitor& monitor) {
   const Notes notes = notes_for(options);
-  if (!notes || !is_closed(a.model) || !is_closed(b.model)) return;
-  const Nesting found = nesting(a, b, monitor);
+  if (!notes || a.surface().open_reason() || b.surface().open_reason()) return;
+  const Collision found =
+      collide(a, b, {.witness = WitnessKind::none, .solid = true, .measure = false}, monitor);
   if (found.inner) {
     notes(inner_sentence(*found.inner).append(", but the surfaces do not meet; --solid compares solids"));
   }

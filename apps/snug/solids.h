@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <optional>
 
-#include <snug/query/pairs.h>
+#include <snug/collide.h>
 
 #include "placed_pair.h"
 
@@ -16,7 +16,7 @@ void write_inner(JsonWriter& json, const std::optional<std::size_t>& inner);
 [[nodiscard]] std::string inner_sentence(std::size_t inner);
 
 /// Two surfaces that do not meet, closed both, one inside the other: a note that they do as solids.
-void note_nesting(const CommonOptions& options, const PlacedBvh& a, const PlacedBvh& b,
+void note_nesting(const CommonOptions& options, const PlacedSurface& a, const PlacedSurface& b,
                   const WorkMonitor& monitor);
 
 /// "penetration": {depth, translation, reached}, and as a sentence.

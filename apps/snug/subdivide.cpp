@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include <fmt/core.h>
-#include <snug/io/mesh_file.h>
 #include <snug/query/subdivide.h>
 #include <support/atomic_file.h>
 
@@ -50,13 +49,17 @@ ExitStatus run(const Options& options) {
           subdivide_curves(mesh, curve_degree(options.degree), options.level, options.limit, bar.monitor());
       return;
     }
-    const SchemeOptions rules = choose_rules(options, options.scheme, mesh);
-    scheme = rules.scheme;
+    const SurfaceOptions how = surface_options(options, options.scheme, mesh);
+    scheme = *how.scheme;
+    // Also of a mesh without a limit surface, which no Surface can have.
+    const SchemeOptions rules =
+        with_tags({scheme, how.boundary.value_or(mesh.tags.boundary.value_or(BoundaryRule::edge_and_corner))},
+                  mesh.tags);
     result = subdivide(std::move(mesh), rules, options.level, options.limit, bar.monitor());
   });
-  if (!curves && names_scheme(options.output)) result.tags.scheme = scheme;
+  if (!curves && format_of(options.output).scheme) result.tags.scheme = scheme;
   AtomicFile file(options.output);
-  write_mesh(result, file, options.output, notes_for(options), stopped_by_interrupts());
+  write_mesh(result, file, options.output, options);
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("subdivide", to_standard_output);

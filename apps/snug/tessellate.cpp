@@ -1,7 +1,6 @@
-#include <snug/query/tessellate.h>
+#include <snug/tessellate.h>
 
 #include <fmt/core.h>
-#include <snug/io/mesh_file.h>
 #include <support/atomic_file.h>
 
 #include "coarsen.h"
@@ -49,7 +48,7 @@ void require_options(const Options& options) {
   }
 }
 
-TessellateOptions how_to(const Options& options, const LimitSurface& surface) {
+TessellateOptions how_to(const Options& options, const Surface& surface) {
   TessellateOptions how;
   how.tolerance = length_of(options.tolerance, "--tolerance", surface.size());
   how.max_edge = length_of(options.max_edge, "--max-edge", surface.size());
@@ -62,8 +61,8 @@ TessellateOptions how_to(const Options& options, const LimitSurface& surface) {
   how.max_triangles = options.max_triangles;
   how.budget = options.most;
   how.threads = options.threads;
-  how.single_precision = writes_floats(options.output);
-  how.normals = writes_normals(options.output);
+  how.single_precision = format_of(options.output).floats;
+  how.normals = format_of(options.output).normals;
   return how;
 }
 
@@ -97,8 +96,7 @@ void write_summary(Report& report, const Options& options, const Tessellation& r
 
 ExitStatus run(const Options& options) {
   require_options(options);
-  const LimitSurface surface =
-      load_surface(options.mesh, options, options.scheme, std::make_shared<BoundsCache>());
+  const Surface surface = read_surface(options.mesh, options, options.scheme);
   CommonOptions to_standard_output = options;
   to_standard_output.output.clear();
   Report report("tessellate", to_standard_output);
@@ -106,13 +104,12 @@ ExitStatus run(const Options& options) {
   naming(options.mesh, [&] {
     ProgressBar bar((options.coarsen ? "simplifying " : "tessellating ") + options.mesh, options.quiet);
     const TessellateOptions how = how_to(options, surface);
-    result = options.coarsen ? coarsened(SurfaceBvh(surface), how, bar.monitor())
-                             : tessellate(surface, how, bar.monitor());
+    result =
+        options.coarsen ? coarsened(surface, how, bar.monitor()) : tessellate(surface, how, bar.monitor());
   });
   AtomicFile file(options.output);
-  write_mesh(as_facets(mesh_of(result), options.output), file, options.output, notes_for(options),
-             stopped_by_interrupts(), result.normals);
-  report.heads({options.mesh}, {name_of(surface.options().scheme)});
+  write_facets(mesh_of(result), file, options.output, options, result.normals);
+  report.heads({options.mesh}, {name_of(surface.scheme())});
   write_summary(report, options, result);
   return report.finish(result.reached, {&file});
 }

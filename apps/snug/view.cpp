@@ -5,7 +5,6 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <snug/io/formats.h>
 #include <support/atomic_file.h>
 #include <support/error.h>
 #include <support/read_file.h>
@@ -84,13 +83,12 @@ void write_file(JsonWriter& json, const std::string& name, std::string_view byte
 
 // `files` and `parts` of the meshes on the command line; equal names are one file.
 void write_meshes(JsonWriter& json, const Options& options, const std::vector<Motion>& poses) {
-  const auto cache = std::make_shared<BoundsCache>();
   std::map<std::string, std::size_t> files;
   json.key("files").begin_array();
   for (const std::string& path : options.meshes) {
     if (!files.emplace(path, files.size()).second) continue;
     // Refused here, not in the page.
-    static_cast<void>(load_surface(path, options, options.scheme, cache));
+    static_cast<void>(read_surface(path, options, options.scheme));
     write_file(json, path, read_file(path));
   }
   json.end_array().key("parts").begin_array();
@@ -108,7 +106,7 @@ std::string as_read(const SceneMesh& mesh, const Surface& surface) {
   ControlMesh control = surface.mesh();
   control.tags.scheme = surface.scheme();
   if (!mesh.options.boundary.empty()) control.tags.boundary = surface.boundary();
-  return format_obj(control);
+  return format_mesh(control, "part.obj");
 }
 
 // `files` and `parts` of a scene. `options`: what the command about two parts needs, to read a mesh in the same way.

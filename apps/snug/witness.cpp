@@ -1,16 +1,16 @@
 #include "witness.h"
 
 #include <fmt/core.h>
+#include <snug/evaluate.h>
 
 namespace snug::command {
 
-void write_place(JsonWriter& json, const LimitSurface& surface, const SurfaceParameter& at,
-                 const Motion& pose) {
-  const SchemeRules& rules = surface.rules();
-  json.field(rules.owner(), at.owner);
-  if (!rules.triangular()) json.field("corner", at.corner);
+void write_place(JsonWriter& json, const PlacedSurface& surface, const SurfaceParameter& at) {
+  const SchemeTraits& traits = surface.surface().traits();
+  json.field(traits.owner(), at.owner);
+  if (!traits.triangular) json.field("corner", at.corner);
   json.field("u", at.u).field("v", at.v);
-  const std::optional<SurfaceNormal> normal = normal_at(surface, at, pose);
+  const std::optional<SurfaceNormal> normal = normal_at(surface, at);
   json.key("normal");
   normal ? json.value(normal->direction) : json.null();
   json.key("normal_error");
@@ -36,7 +36,7 @@ void write_places(JsonWriter& json, const Sides& sides, const WitnessPlaces* pla
       continue;
     }
     json.begin_object();
-    write_place(json, *sides.surfaces[s], *(*places)[s], sides.poses[s]);
+    write_place(json, sides[s], *(*places)[s]);
     json.end_object();
   }
   json.end_array();
@@ -53,10 +53,10 @@ std::vector<std::string> witness_lines(const Sides& sides, const std::array<Poin
   for (std::size_t s = 0; s < 2; ++s) {
     if (!places[s]) continue;
     const SurfaceParameter& at = *places[s];
-    const SchemeRules& rules = sides.surfaces[s]->rules();
+    const SchemeTraits& traits = sides[s].surface().traits();
     const std::string place =
-        fmt::format("{} {}{} u {:.6g} v {:.6g}", rules.owner(), at.owner,
-                    rules.triangular() ? "" : fmt::format(" corner {}", at.corner), at.u, at.v);
+        fmt::format("{} {}{} u {:.6g} v {:.6g}", traits.owner(), at.owner,
+                    traits.triangular ? "" : fmt::format(" corner {}", at.corner), at.u, at.v);
     lines.push_back(
         line(s == 0 ? "A" : "B", number(witness[s].x), number(witness[s].y), number(witness[s].z), place));
   }

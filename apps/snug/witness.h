@@ -5,8 +5,6 @@
 #include <vector>
 
 #include <snug/collide.h>
-#include <snug/search/workspace.h>
-#include <snug/surface/evaluate.h>
 
 #include "json_writer.h"
 
@@ -14,17 +12,10 @@ namespace snug::command {
 
 /// The fields face (dual: vertex), part or corner of its split, u, v, normal and normal_error of a place,
 /// into the object that is open.
-void write_place(JsonWriter& json, const LimitSurface& surface, const SurfaceParameter& at,
-                 const Motion& pose = {});
+void write_place(JsonWriter& json, const PlacedSurface& surface, const SurfaceParameter& at);
 
 /// Two surfaces where they are placed.
-struct Sides {
-  std::array<const LimitSurface*, 2> surfaces;
-  std::array<Motion, 2> poses;
-};
-[[nodiscard]] inline Sides sides_of(const PlacedBvh& a, const PlacedBvh& b) {
-  return {{&a.model.surface(), &b.model.surface()}, {a.pose, b.pose}};
-}
+using Sides = std::array<PlacedSurface, 2>;
 
 /// Witnesses and where they lie: "witness_at": two objects, null for a witness that is a point of the other
 /// surface alone, or null without witnesses.

@@ -63,8 +63,7 @@ struct BoundSummary {
 ///
 /// Guarantee: every limit point of a patch lies in the union of its pieces' offset triangles, and in the union
 ///            of their interval triangles, rounding included, even if `reached` is false. At every point of a
-///            piece with a cone the limit surface has a normal, and the cone contains it. The output does not
-///            depend on threads.
+///            piece with a cone the limit surface has a normal, and the cone contains it.
 /// Errors:    InputError: (value) for a tolerance that is not finite and positive or a level above 60,
 ///            (unrepresentable) if a result does not fit a double; whatever `sink` throws. Interrupted.
 /// Cost:      3 to 5 microseconds per piece of a regular patch, twice that with normals; a tenth to half a
@@ -90,19 +89,15 @@ class SNUG_API PatchBounds {
 
   /// Bounds of all patches for these control points, in mesh units.
   ///
-  /// Guarantee: every limit point of a patch is in its offset triangle, rounding included. Results do not
-  ///            depend on threads (0: all cores). With one thread only the first call allocates memory.
+  /// Guarantee: every limit point of a patch is in its offset triangle, rounding included. With one thread only the
+  ///            first call allocates memory.
   /// Errors:    InputError: (value) unless points.size() is the number of vertices of the mesh and
   ///            out.size() == patches().size(); (refused) if a point that a face uses is not finite or a
   ///            result does not fit a double, and the contents of `out` are then unspecified.
   void update(std::span<const Point3> points, std::span<OffsetTriangle> out, int threads = 1);
 
-  /// Boxes of all patches while every control point moves along a line from its position in `begin` to that in
-  /// `end`, in mesh units, for motion blur.
-  ///
-  /// Guarantee: every limit point of a patch is in its box at every time in between, both ends and rounding
-  ///            included; so is the hull of all these points.
-  /// Errors:    those of the other update(), with out.size() == patches().size().
+  /// Boxes of all patches for motion blur: every limit point of a patch is in its box while the control points
+  /// move along lines from `begin` to `end`, both ends and rounding included. Errors likewise.
   /// Cost:      that of two calls of the other update(). Memory: 96 bytes per patch from the first call on.
   /// Source:    docs/derivations/moving.md.
   void update(std::span<const Point3> begin, std::span<const Point3> end, std::span<Box3> out,

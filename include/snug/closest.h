@@ -37,7 +37,7 @@ struct ClosestPoint {
                                                   const ClosestOptions& options = {},
                                                   const WorkMonitor& monitor = {},
                                                   Workspace& workspace = Workspace::of_this_thread());
-/// The same for many points, in the same order; results do not depend on threads.
+/// The same for many points, in the same order.
 [[nodiscard]] SNUG_API std::vector<ClosestPoint> closest_points(const Surface& surface,
                                                                 std::span<const Point3> to,
                                                                 const ClosestOptions& options = {},
@@ -56,7 +56,7 @@ struct ClosestPoint {
 [[nodiscard]] SNUG_API std::optional<bool> contains(const Surface& surface, const Point3& point,
                                                     const WorkMonitor& monitor = {},
                                                     Workspace& workspace = Workspace::of_this_thread());
-/// The same for many points, in the same order; results do not depend on threads.
+/// The same for many points, in the same order.
 [[nodiscard]] SNUG_API std::vector<std::optional<bool>> contains(const Surface& surface,
                                                                  std::span<const Point3> points,
                                                                  int threads = 0,
@@ -71,14 +71,13 @@ struct SignedDistance {
 
 /// The signed distance of a point. Its sign comes from the winding number, never from a normal.
 ///
-/// Guarantee: `distance` contains it, whether the precision is reached or not. The result depends on the
-///            input alone.
+/// Guarantee: `distance` contains it, whether the precision is reached or not.
 /// Errors, Cost: those of closest_point() and contains().
 [[nodiscard]] SNUG_API SignedDistance signed_distance(const Surface& surface, const Point3& point,
                                                       const ClosestOptions& options = {},
                                                       const WorkMonitor& monitor = {},
                                                       Workspace& workspace = Workspace::of_this_thread());
-/// The same for many points, in the same order; results do not depend on threads.
+/// The same for many points, in the same order.
 [[nodiscard]] SNUG_API std::vector<SignedDistance> signed_distances(const Surface& surface,
                                                                     std::span<const Point3> points,
                                                                     const ClosestOptions& options = {},

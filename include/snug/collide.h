@@ -34,9 +34,8 @@ struct CollideOptions {
   WitnessKind witness = WitnessKind::exact;  ///< no verdict depends on it
   bool prove_contact = true;                 ///< before returning `within`, try to prove `intersecting`
   bool solid = false;  ///< compare the solids that closed surfaces bound: one inside the other intersects it
-  /// For separated surfaces, refine `distance` until its lower end is at least half its upper end, and give
-  /// witnesses if any are asked for: about ten microseconds more. Without it the lower end is a by-product of
-  /// the search: a third of the distance in the median for surfaces far apart, a hundredth of it for close ones.
+  /// For separated surfaces, refine `distance` until its lower end is at least half its upper end, and give witnesses
+  /// if any are asked for: about ten microseconds more. Without it the lower end is a by-product of the search.
   bool measure = true;
 };
 
@@ -72,8 +71,7 @@ struct Collision {
 /// Guarantee: `separated` means distance > margin, `within` distance <= margin + tolerance, `intersecting`
 ///            distance = 0 (or solids with a common point), all in exact arithmetic for the given doubles.
 ///            `distance` contains the distance of the surfaces, with `solid` that of the solids. If several
-///            verdicts are true, which one is returned depends on the input alone, not on threads or earlier
-///            queries.
+///            verdicts are true, which one is returned depends on the input alone.
 /// Errors:    InputError: (value) for a tolerance or margin that is negative or not finite; (unrepresentable)
 ///            if a result does not fit a double; (refused) if no face of a mesh has a limit surface, and with
 ///            `solid` if a surface is not closed. Interrupted.
@@ -83,8 +81,7 @@ struct Collision {
                                          const CollideOptions& options = {}, const WorkMonitor& monitor = {},
                                          Workspace& workspace = Workspace::of_this_thread());
 
-/// The same for many poses; answers are in the same order.
-/// Guarantee: the same bits as from single queries, for any number of threads (0: all cores).
+/// The same bits for many poses, in the same order, on any number of threads (0: all cores).
 [[nodiscard]] SNUG_API std::vector<Collision> collide(const Surface& a, const Surface& b,
                                                       std::span<const PosePair> poses,
                                                       const CollideOptions& options = {}, int threads = 0,
@@ -107,11 +104,6 @@ struct Penetration {
 };
 
 /// Bounds of the penetration depth of two closed, placed surfaces.
-///
-/// Upper end: translations in many directions, shortened along the normals of the remaining contact, each proved by
-/// collide(). Where that misses the precision, up to 4,000 translations into holes and between parts, as far as one
-/// budget of splits lasts. Lower end: two balls around one point, each inside one solid, still meet after every
-/// translation shorter than the sum of their radii.
 ///
 /// Guarantee: `depth` contains the depth, and with `translation` added to B's pose the solids are separated. The
 ///            upper end is that of a local minimum, which may be far from the depth where parts interlock.

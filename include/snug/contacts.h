@@ -94,7 +94,7 @@ struct Contacts {
 /// Guarantee: if `complete`, any two points of A and B within the tolerance lie on the two patches of a listed
 ///            contact, and any common point lies in a box of a curve or in an open box. A curve that is `proved` and
 ///            `closed` is one closed curve of the intersection. All of this holds for the given doubles, rounding
-///            included. The result depends only on the input, not on threads or earlier queries.
+///            included.
 /// Errors:    InputError: (value) for a tolerance that is negative or not finite, and a precision that is not
 ///            positive; (unrepresentable) if a result does not fit a double; (refused) if no face of a mesh has a
 ///            limit surface. Interrupted.

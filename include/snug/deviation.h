@@ -43,8 +43,7 @@ struct Deviation {
 /// The two one-sided Hausdorff distances between a limit surface and any triangles: in any order and
 /// orientation, open, crossing each other, degenerate.
 ///
-/// Guarantee: each interval contains the exact distance for the given doubles, whether the precision is
-///            reached or not. The result depends on the input alone, not on threads.
+/// Guarantee: each interval contains the exact distance for the given doubles, whether the precision is reached or not.
 /// Errors:    InputError: (value) without triangles, for a corner that is not finite, a negative
 ///            tolerance, or a precision that is not positive or below 2^-38 of the largest coordinate;
 ///            (refused) if no face of the mesh has a limit surface, and with `solid` if it is not closed;

@@ -26,8 +26,7 @@ struct Distance {
 
 /// The distance of two placed limit surfaces.
 ///
-/// Guarantee: `distance` contains the exact distance for the given doubles, whether the precision is reached
-///            or not. The result depends on the input alone, not on threads or earlier queries.
+/// Guarantee: `distance` contains the exact distance for the given doubles, whether the precision is reached or not.
 /// Errors:    InputError: (value) for a precision that is negative or not finite; (unrepresentable) if a
 ///            result does not fit a double; (refused) if no face of a mesh has a limit surface, and with
 ///            `solid` if a surface is not closed. Interrupted.
@@ -36,8 +35,7 @@ struct Distance {
                                          const DistanceOptions& options = {}, const WorkMonitor& monitor = {},
                                          Workspace& workspace = Workspace::of_this_thread());
 
-/// The same for many poses; answers are in the same order.
-/// Guarantee: the same bits as from single queries, for any number of threads (0: all cores).
+/// The same bits for many poses, in the same order, on any number of threads (0: all cores).
 [[nodiscard]] SNUG_API std::vector<Distance> distance(const Surface& a, const Surface& b,
                                                       std::span<const PosePair> poses,
                                                       const DistanceOptions& options = {}, int threads = 0,

@@ -26,7 +26,7 @@ struct SurfacePoint : BoundedPoint {
 ///            (unrepresentable) if a coordinate does not fit a double.
 /// Cost:      half a microsecond; about 2 near extraordinary corners.
 [[nodiscard]] SNUG_API SurfacePoint evaluate(const Surface& surface, const SurfaceParameter& at);
-/// The same for many points, in the same order; results do not depend on threads.
+/// The same for many points, in the same order.
 /// Cost:      0.1 to 0.3 microseconds a point where a face has many, in any order.
 [[nodiscard]] SNUG_API std::vector<SurfacePoint> evaluate(const Surface& surface,
                                                           std::span<const SurfaceParameter> at,
@@ -57,13 +57,11 @@ struct SurfaceNormal {
 [[nodiscard]] SNUG_API std::optional<SurfaceNormal> normal_at(const PlacedSurface& surface,
                                                               const SurfaceParameter& at);
 
-/// How far the limit surface may be from the faces of its control mesh, in mesh units: the error of using
-/// facets as a control mesh.
+/// How far the limit surface may be from the faces of its control mesh, in mesh units.
 ///
 /// Guarantee: every limit point of a face is at most this far from the convex hull of the face's corners,
-///            rounding included. A triangle is its own hull, and so is a planar convex polygon. 0 if every
-///            face with a surface has only infinitely sharp edges and corners, see sharpen(). Empty with a
-///            dual scheme, whose patches do not belong to faces.
+///            rounding included. 0 if every face with a surface has only infinitely sharp edges and corners, see
+///            sharpen(). Empty with a dual scheme, whose patches do not belong to faces.
 /// Tightness: 1.02 to 1.43 times the largest distance sampled on seven models.
 /// Errors:    InputError (unrepresentable) if a result does not fit a double.
 /// Cost:      1 microsecond a patch.
@@ -73,9 +71,8 @@ struct SurfaceNormal {
 /// The control mesh after `level` steps of subdivision; with `limit` the limit positions of its vertices, in
 /// double precision.
 ///
-/// With `limit`, faces without a limit surface are left out, and so are vertices that only they use: holes,
-/// faces at boundary vertices with BoundaryRule::none, and in a dual scheme faces that touch a boundary
-/// vertex of the refined mesh. In a dual scheme the limit position of a vertex is the middle of its patch.
+/// With `limit`, faces without a limit surface are left out, and so are vertices that only they use. In a dual
+/// scheme the limit position of a vertex is the middle of its patch.
 ///
 /// Guarantee: positions are within a few units in the last place of the largest coordinate, per level. The
 ///            sharpness of tags is reduced by the number of steps.

@@ -4,9 +4,8 @@
 #include <cstddef>
 #include <limits>
 
-/// Points and sets as plain values. Arithmetic on them is private to the library, since its error bounds
-/// depend on how it is compiled. Comparisons are inlined wherever they are used: the library has its own,
-/// never those of a program built with other flags.
+/// Points and sets as plain values. Arithmetic on them is private to the library, since its error bounds depend on how it
+/// is compiled. Comparisons are inlined: the library never uses those of a program built with other flags.
 namespace snug {
 
 /// A displacement. Points and vectors are different types: two points cannot be added by accident.

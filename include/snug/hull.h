@@ -63,7 +63,7 @@ struct Hulls {
 ///            of its own hull except in shared vertices and edges; hull and surface are nowhere farther than
 ///            Hull::gap <= tolerance from each other; the solid of a closed surface lies inside the outer hull
 ///            and contains the inner one. Everything holds for the returned doubles and, except for a gap below
-///            the tolerance, was proved from them, not from how they were found. Does not depend on threads. A
+///            the tolerance, was proved from them, not from how they were found. A
 ///            surface that touches itself, or whose sheets leave no room for hulls between them, is usually not
 ///            `verified`.
 /// Errors:    InputError: (value) for a tolerance that is not finite and positive, above half the size, or

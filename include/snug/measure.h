@@ -38,8 +38,7 @@ struct Measures {
 
 /// Measures of a limit surface.
 ///
-/// Guarantee: each interval contains the exact value for the given doubles, whether the precision is reached
-///            or not. The result depends on the input alone, not on threads.
+/// Guarantee: each interval contains the exact value for the given doubles, whether the precision is reached or not.
 /// Errors:    InputError: (value) for a precision that is negative or not finite; (refused) if no face of
 ///            the mesh has a limit surface, or with Midedge beside a face of several hundred corners;
 ///            (unrepresentable) if a result does not fit a double. Interrupted.

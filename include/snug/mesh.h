@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
@@ -7,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <snug/geometry.h>
@@ -43,7 +45,23 @@ enum class Scheme : std::uint8_t {
   bilinear,   ///< quads are bilinear patches, other faces are first split into quads, as in OpenSubdiv
   flat,       ///< triangles as they are
 };
+inline constexpr std::array all_schemes{Scheme::loop,    Scheme::catmark,  Scheme::doo_sabin,
+                                        Scheme::midedge, Scheme::bilinear, Scheme::flat};
+
+struct SchemeTraits {
+  const char* name;
+  std::span<const char* const> other_names;  ///< those of USD and OpenSubdiv
+  bool dual;                                 ///< patches belong to vertices, else to faces
+  bool triangular;                           ///< a face is one patch; else patches are halves of quads
+  bool creases;                              ///< does sharpness change the surface?
+  bool local;                                ///< does the surface of a face depend on that face alone?
+  std::size_t regular_valence;  ///< edges of a regular vertex; with a dual scheme, of a regular face
+  [[nodiscard]] const char* owner() const { return dual ? "vertex" : "face"; }
+};
+[[nodiscard]] SNUG_API const SchemeTraits& traits_of(Scheme scheme);
 [[nodiscard]] SNUG_API const char* name_of(Scheme scheme);
+/// By any of its names.
+[[nodiscard]] SNUG_API std::optional<Scheme> scheme_named(std::string_view name);
 
 /// How the boundary of a mesh is subdivided, as in OpenSubdiv and USD.
 enum class BoundaryRule : std::uint8_t {
@@ -82,9 +100,8 @@ struct MeshTags {
   std::optional<Scheme> scheme;
 };
 
-/// A polygonal control mesh: positions, faces as counter-clockwise vertex cycles, tags, and polylines.
-/// Polylines are the control polygons of curves, closed if the last vertex is the first. A plain value, which
-/// may hold a defective mesh; Surface checks it.
+/// A polygonal control mesh: positions, faces as counter-clockwise vertex cycles, tags, and polylines, the control
+/// polygons of curves, closed if the last vertex is the first. May hold a defective mesh; Surface checks it.
 ///
 /// Requires:  face_offsets has face_count() + 1 entries that start at 0 and do not decrease; polyline_offsets
 ///            likewise.
@@ -117,6 +134,9 @@ struct ControlMesh {
   }
 };
 
+/// The scheme of a mesh for which nobody names one: its tag, else Loop if all faces are triangles, else Catmull-Clark.
+[[nodiscard]] SNUG_API Scheme natural_scheme(const ControlMesh& mesh);
+
 /// Receives one line for everything that a reader or writer drops although it changes the surface.
 using Notes = std::function<void(const std::string& line)>;
 
@@ -137,6 +157,26 @@ struct ReadOptions {
 ///            weld(). Interrupted.
 [[nodiscard]] SNUG_API ControlMesh read_mesh(const std::string& path, const ReadOptions& options = {});
 
+/// The same for the bytes that such a file holds.
+[[nodiscard]] SNUG_API ControlMesh parse_mesh(std::string_view bytes, const std::string& path,
+                                              const ReadOptions& options = {});
+
+/// What the format of a file holds, by its extension.
+struct MeshFormat {
+  bool polygons;  ///< faces other than triangles
+  bool floats;    ///< coordinates in single precision only
+  bool normals;   ///< of vertices
+  bool scheme;    ///< a scheme is always named: without a tag, that of the faces
+};
+/// Errors:    InputError (unreadable) for an extension that write_mesh() does not know.
+[[nodiscard]] SNUG_API MeshFormat format_of(const std::string& path);
+
+struct WriteOptions {
+  std::span<const Vector3> normals{};  ///< of vertices, where the format holds them
+  Notes notes{};
+  WorkMonitor monitor{};
+};
+
 /// Writes a control mesh, completely or not at all. The extension selects the format: .obj, .off, .ply
 /// (binary, little endian), .stl (binary), .glb or .usda; "-" is OBJ on standard output.
 ///
@@ -145,47 +185,45 @@ struct ReadOptions {
 ///            line if the mesh is tagged flat.
 /// Errors:    InputError: (unreadable) for another extension, or if the file cannot be written; (refused) if
 ///            the format cannot hold the faces, such as STL those that are not triangles. Interrupted.
-SNUG_API void write_mesh(const ControlMesh& mesh, const std::string& path, const Notes& notes = {},
-                         const WorkMonitor& monitor = {});
+SNUG_API void write_mesh(const ControlMesh& mesh, const std::string& path, const WriteOptions& options = {});
+/// The bytes of such a file. Errors likewise.
+[[nodiscard]] SNUG_API std::string format_mesh(const ControlMesh& mesh, const std::string& path,
+                                               const WriteOptions& options = {});
 
-/// What weld() did to a mesh.
-struct Welded {
+/// Changes that weld() made to a mesh.
+struct WeldReport {
   std::size_t vertices = 0;   ///< vertices merged into an earlier one
   double farthest = 0;        ///< the largest distance of such a vertex from the earlier one
   std::size_t shortened = 0;  ///< faces that lost corners and still have at least three different ones
   std::size_t dropped = 0;    ///< faces that were removed, with fewer than three left
 };
 
-/// Merges vertices with equal coordinates (0 equals -0) or, given a distance, vertices at most that far
-/// apart, measured in double precision. Chains of such vertices merge too, so the ends of a chain may be
-/// farther apart.
+/// Merges vertices with equal coordinates (0 equals -0) or, given a distance, vertices at most that far apart, in
+/// double precision. Chains of such vertices merge too, so the ends of a chain may be farther apart.
 ///
-/// Guarantee: the first of the merged vertices stays where it is. The remaining vertices, faces and polylines
-///            keep their order. If consecutive corners of a face merge, it keeps one of them; a face left
-///            with fewer than three different corners is removed. Other corners of a face may merge too, and
-///            the face then names a vertex twice. Polylines keep all their points; one whose ends merge is
-///            closed. Creases and corners move to the remaining vertices, and the sharpest counts where
-///            several coincide. Creases whose ends merge and holes that are removed disappear.
+/// Guarantee: the first of the merged vertices stays where it is, and what remains keeps its order. If consecutive
+///            corners of a face merge, it keeps one of them; a face left with fewer than three different corners
+///            is removed. Other corners of a face may merge too, and the face then names a vertex twice.
+///            Polylines keep all their points. Tags move to the remaining vertices, and the sharpest counts.
 /// Errors:    InputError: (value) for a distance that is negative or not finite; (refused) for a positive one
 ///            below 2^-40 of the largest coordinate, and for points that are not finite. The mesh is then
 ///            unchanged.
 /// Cost:      linear without a distance; with one, points are also sorted and paired with neighbouring cells:
 ///            about a second for a million points.
-SNUG_API Welded weld(ControlMesh& mesh, double distance = 0);
+SNUG_API WeldReport weld(ControlMesh& mesh, double distance = 0);
 
 /// The default angle of sharpen(), in degrees.
 inline constexpr double default_sharp_angle = 30;
 
-/// What sharpen() did to a mesh.
-struct Sharpened {
+/// Changes that sharpen() made to a mesh.
+struct SharpenReport {
   std::size_t creases = 0;  ///< tags added, on edges that were not infinitely sharp
   std::size_t corners = 0;  ///< tags added
-  /// Planar regions between sharp edges; their limit surface is now the region itself.
-  std::size_t flat_regions = 0;
-  /// Curved regions that stay faceted, because all their vertices are corners.
-  std::size_t fixed_regions = 0;
-  /// Non-convex faces of flat and fixed regions that were split into triangles.
-  std::size_t split_faces = 0;
+  std::size_t flat_regions =
+      0;  ///< planar regions between sharp edges, which are now their own limit surface
+  std::size_t fixed_regions =
+      0;                        ///< curved regions that stay faceted, because all their vertices are corners
+  std::size_t split_faces = 0;  ///< non-convex faces of both that were split into triangles
   /// Faces of these regions that cross or touch themselves and could not be split. Their limit surface may
   /// leave the polygon.
   std::size_t crossed_faces = 0;
@@ -193,33 +231,19 @@ struct Sharpened {
   std::vector<FaceId> parts_of;
 };
 
-/// Tags sharp edges by angle, for parts from CAD, whose facets are the intended shape.
+/// Tags sharp edges by angle, for parts from CAD, whose facets are the intended shape: edges of two faces whose
+/// normals differ by more than `angle` degrees become infinitely sharp creases; planar regions between them stay
+/// planar, and their turns become corners; curved regions whose vertices are all corners stay faceted. Non-convex
+/// faces of regions that stay are split into triangles, of which the first keeps the number of the face and the
+/// others are appended. The rules in full, and the accuracy that coordinates are assumed to have: the source.
 ///
-/// - An edge of two faces whose normals differ by more than `angle` degrees becomes an infinitely sharp
-///   crease. Boundary edges and non-manifold ones are sharp by rule and get no tag.
-/// - A region of faces bounded by such edges, or by edges that were infinitely sharp before, is planar if its
-///   vertices lie between two parallel planes at most 2 t apart. All its edges become infinitely sharp, and
-///   all its vertices corners.
-/// - A vertex where two sharp edges meet at a turn of more than `angle` becomes a corner. One with three or
-///   more sharp edges is a corner by rule and gets no tag; one with a single sharp edge stays a dart.
-/// - A curved region whose vertices are all corners, such as the wall of a hole with one row of facets, stays
-///   faceted: all its edges become infinitely sharp.
-/// - Non-convex faces of these regions are split into triangles. The first keeps the number of the face, the
-///   others are appended after all faces. Holes are not split.
-///
-/// Here t is the assumed accuracy of coordinates: 2^-17 of the longest side of the bounding box of the used
-/// vertices, or if that is more, 2^-22 (if all coordinates are floats, else 2^-48) of the largest coordinate.
-/// A face narrower than t (twice its area over half its perimeter) has no reliable normal: for its edges, the
-/// faces on the far sides of such faces are compared.
-///
-/// Guarantee: with Loop and Catmull-Clark the limit surface of a face whose edges are infinitely sharp and
-///            whose vertices are corners lies in the convex hull of its vertices and ends at its edges. With
-///            Loop it is the triangle itself, with Catmull-Clark the polygon, if that is planar and convex.
-///            After sharpen() all faces of these regions are of this kind, except crossed_faces. Which edges
-///            are sharp is decided in double precision and may depend on rounding; the limit surface of the
-///            resulting tags does not. Existing tags are kept, and new ones, which take precedence, are
-///            appended. Positions do not change. Faces keep their numbers.
-///            Dual schemes ignore the tags.
+/// Guarantee: with Loop and Catmull-Clark the limit surface of a face whose edges are infinitely sharp and whose
+///            vertices are corners lies in the convex hull of its vertices and ends at its edges; it is the face
+///            itself if that is planar and convex. After sharpen() all faces of regions that stay are of this
+///            kind, except crossed_faces. Which edges are sharp is decided in double precision and may depend on
+///            rounding; the limit surface of the resulting tags does not. Existing tags are kept, and new ones,
+///            which take precedence, are appended. Positions and numbers of faces do not change. Dual schemes
+///            ignore the tags.
 /// Scheme:    who sharpens takes the mesh as a control mesh: the scheme of a mesh without one, or tagged flat,
 ///            is Loop from now on if all faces are triangles, else that of the faces.
 /// Errors:    InputError (value) unless 0 <= angle < 180.
@@ -227,7 +251,7 @@ struct Sharpened {
 ///            face. A mesh with faces of fewer than three vertices, references to missing vertices or
 ///            coordinates that are not finite is left unchanged; Surface refuses it.
 /// Source:    derivations/sharp_parts.md; corners and rules: derivations/creases.md.
-SNUG_API Sharpened sharpen(ControlMesh& mesh, double angle = default_sharp_angle);
+SNUG_API SharpenReport sharpen(ControlMesh& mesh, double angle = default_sharp_angle);
 
 }  // namespace snug
 

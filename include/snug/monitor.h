@@ -9,8 +9,7 @@ namespace snug {
 
 /// How long-running work reports progress and is stopped. Both members are optional.
 struct WorkMonitor {
-  /// Called with the fraction done, in [0, 1], at most a few thousand times. Must be thread-safe: several
-  /// threads may call it at once.
+  /// Called with the fraction done, in [0, 1], at most a few thousand times, by several threads at once.
   std::function<void(double)> on_progress;
   /// Set from elsewhere, such as a signal handler, to stop the work.
   const std::atomic<bool>* stop = nullptr;

@@ -77,13 +77,12 @@ struct NearestRigid {
   double change = 0;  ///< the largest change of an entry of R
 };
 
-/// The motion with the same t whose R is nearest to that of the matrix in the Frobenius norm: its orthogonal
-/// polar factor, up to a few roundings divided by the sum of its two smallest singular values.
+/// The motion with the same t whose R is the orthogonal polar factor of the matrix, which is nearest in the Frobenius
+/// norm, up to a few roundings divided by the sum of its two smallest singular values.
 ///
 /// Errors:    InputError (pose) for numbers that are not finite, and for a matrix that mirrors or is
 ///            singular, with its smallest singular value below 1e-12 of the largest.
-/// Source:    [Higham86]; differs: one-sided Jacobi rotations [Hestenes58] for singular vectors, which also
-///            distinguish mirrored from singular matrices, then one Newton-Schulz step.
+/// Source:    [Higham86]; differs: one-sided Jacobi rotations [Hestenes58], then one Newton-Schulz step.
 [[nodiscard]] SNUG_API NearestRigid nearest_rigid(const std::array<double, 12>& matrix);
 
 }  // namespace snug

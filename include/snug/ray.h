@@ -53,8 +53,7 @@ struct RayHit {
   std::optional<Vector3> normal;  ///< of the surface at `at`, of length 1; empty where there is none
 };
 
-/// The hits of one ray, sorted by the lower ends of t. Intervals that are not certified may begin before `from` and
-/// end behind `to`.
+/// The hits of one ray, sorted by the lower ends of t. Uncertified intervals may begin before `from` and end behind `to`.
 struct RayHits {
   /// With RayQuery::nearest the last one is certified, if any is; those before it may be hits. With `any`: one
   /// certified hit, or else all hits that are not certified.
@@ -73,7 +72,6 @@ struct RayHits {
 ///            answers; in particular no ray slips through between faces. The interval of a certified answer
 ///            contains a hit. With `all`, certified answers of a surface have as many signs as the ray crosses
 ///            it, except for even numbers of crossings that are too close to each other to be told apart.
-///            The result depends only on the input.
 /// Errors:    InputError: (value) for a number that is not finite where it must be, a direction of length 0,
 ///            from > to, a precision that is negative or not finite; (refused) if no face of the mesh has a
 ///            limit surface; (unrepresentable) for a result that does not fit a double. Interrupted.
@@ -83,8 +81,7 @@ struct RayHits {
 [[nodiscard]] SNUG_API RayHits trace(const Surface& surface, const Ray& ray, const RayOptions& options = {},
                                      const WorkMonitor& monitor = {},
                                      Workspace& workspace = Workspace::of_this_thread());
-/// The same for many rays, in the same order; results do not depend on threads. Faster if consecutive rays are
-/// close to each other.
+/// The same for many rays, in the same order. Faster if consecutive rays are close to each other.
 [[nodiscard]] SNUG_API std::vector<RayHits> trace(const Surface& surface, std::span<const Ray> rays,
                                                   const RayOptions& options = {}, int threads = 0,
                                                   const WorkMonitor& monitor = {});

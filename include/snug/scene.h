@@ -35,23 +35,18 @@ struct Scene {
 struct ScenePair {
   PartPair parts;
   double margin = 0;
-  /// Lower bound of the distance, from boxes around both parts.
-  double gap = 0;
+  double gap = 0;  ///< lower bound of the distance, from boxes around both parts
   [[nodiscard]] bool separated_by_boxes() const { return gap > margin; }
 };
 
-/// The broad phase: which pairs of a scene may be within their margins of each other? Returns these pairs in batches,
-/// in the order of Scene::pairs.
+/// The broad phase: the pairs of a scene that may be within their margins of each other, in the order of Scene::pairs.
 ///
 /// Guarantee: a pair that is not returned is farther apart than its margin, in exact arithmetic for the given
-///            doubles, and so are the solids that closed parts bound. Which pairs are returned does not depend on
-///            threads.
-/// Errors:    InputError: (value) naming the pair or margin, for an index that no part has, a part paired with
-///            itself, a second margin for a pair, or a margin that is negative or not finite; (refused) naming the
-///            part, if no face of a mesh has a limit surface. Interrupted.
-/// Cost:      construction: the preparation of surfaces that have not been queried yet, plus one to four
-///            microseconds and 200 bytes per part; then some hundred nanoseconds per part and per returned pair, on
-///            all threads (bench/results/scenes.txt).
+///            doubles, and so are the solids that closed parts bound.
+/// Errors:    InputError: (value) naming the pair or margin, for an index that no part has, a part paired with itself, a
+///            second margin for a pair, or a bad margin; (refused) naming the part, if it has no limit surface. Interrupted.
+/// Cost:      to construct: Surface::prepare(), one to four microseconds and 200 bytes per part; then some hundred
+///            nanoseconds per part and per returned pair (bench/results/scenes.txt).
 class SNUG_API SceneBroadPhase {
  public:
   /// `margin`: for pairs that Scene::margins does not name; `all`: also return pairs that boxes separate.
@@ -62,8 +57,7 @@ class SNUG_API SceneBroadPhase {
   SceneBroadPhase(const SceneBroadPhase&) = delete;
   SceneBroadPhase& operator=(const SceneBroadPhase&) = delete;
 
-  /// At least `count` further pairs; fewer only at the end. The pairs of one part come together, so there may be
-  /// more.
+  /// At least `count` further pairs, all those of a part together; fewer only at the end.
   [[nodiscard]] std::vector<ScenePair> next(std::size_t count);
   /// Number of pairs that the scene queries.
   [[nodiscard]] std::uint64_t pair_count() const;
@@ -86,22 +80,27 @@ struct SceneCounts {
   std::uint64_t separated = 0, within = 0, intersecting = 0, undecided = 0;
 };
 
+/// collide() of one pair, for callers that share out pairs themselves. The margin is that of the pair; errors name the parts.
+[[nodiscard]] SNUG_API Collision collide(const Scene& scene, const ScenePair& pair,
+                                         CollideOptions options = {}, const WorkMonitor& monitor = {},
+                                         Workspace& workspace = Workspace::of_this_thread());
+/// distance() of one pair, likewise; empty if it is farther apart than the margin.
+[[nodiscard]] SNUG_API std::optional<Distance> distance(const Scene& scene, const ScenePair& pair,
+                                                        const DistanceOptions& options = {},
+                                                        const WorkMonitor& monitor = {},
+                                                        Workspace& workspace = Workspace::of_this_thread());
+
 struct PairCollision {
   PartPair parts;
   Collision answer;
 };
 
-/// Which parts of a scene touch?
-///
-/// Passes the pairs that boxes do not separate to `sink`, in the order of Scene::pairs, each as soon as all pairs
+/// Which parts of a scene touch? Passes the pairs that boxes do not separate to `sink`, in the order of Scene::pairs, each as soon as all pairs
 /// before it are answered, and on one thread at a time.
 ///
-/// Guarantee: each answer is bit-identical to that of collide() for the two parts, for any number of threads (0: all
-///            cores).
-/// Errors:    those of SceneBroadPhase and collide(), naming the parts, and whatever `sink` throws. Pairs passed on
-///            before that remain valid.
-/// Cost:      that of SceneBroadPhase, plus collide() for each pair. Memory does not grow with the number of all
-///            pairs, but with the number of pairs of one part.
+/// Guarantee: each answer is bit-identical to that of collide() for the two parts.
+/// Errors:    those of SceneBroadPhase and collide(), naming the parts, and whatever `sink` throws.
+/// Cost:      that of SceneBroadPhase, plus collide() for each pair. Memory: in proportion to the pairs of one part.
 SNUG_API SceneCounts collide(const Scene& scene, const CollideOptions& options,
                              const std::function<void(const PairCollision&)>& sink, int threads = 0,
                              const WorkMonitor& monitor = {});
@@ -111,9 +110,7 @@ struct PairDistance {
   Distance answer;
 };
 
-/// All clearances of a scene up to `limit`: passes on the pairs that are not proved farther apart, as above. Ignores
-/// Scene::margins.
-///
+/// All clearances of a scene up to `limit`, passed on likewise. Ignores Scene::margins.
 /// Guarantee: each answer is bit-identical to that of distance() for the two parts.
 /// Errors:    those of SceneBroadPhase and distance(); InputError (value) for a limit that is negative or not finite.
 SNUG_API SceneCounts distance(const Scene& scene, double limit, const DistanceOptions& options,

@@ -59,8 +59,7 @@ struct SelfContact {
 /// With a tolerance, `clear` also proves that any two points within it are joined by a path on the surface no longer
 /// than the radius, and `near` that two points within it are not joined by such a path.
 ///
-/// Guarantee: `clear`, `intersecting` and `near` hold in exact arithmetic for the given doubles. Results do not
-///            depend on threads. Places where the surface is not an immersion (spikes, folded creases, collapsed
+/// Guarantee: `clear`, `intersecting` and `near` hold in exact arithmetic for the given doubles. Places where the surface is not an immersion (spikes, folded creases, collapsed
 ///            patches, vertices and edges that are not manifold) are `undecided`, never `clear`; so are darts, and
 ///            smooth vertices of boundaries and creases with many faces (docs/self_contact.md).
 /// Errors:    InputError: (value) for more than 20 levels, for a tolerance that is not positive and finite, and for a

@@ -1,6 +1,7 @@
 #pragma once
 
-/// Proved answers about limit surfaces of subdivision meshes; docs/start.md shows the way.
+/// Proved answers about limit surfaces of subdivision meshes; docs/start.md shows the way. Results depend on the input
+/// alone, not on threads or earlier queries.
 
 #include <snug/bound.h>
 #include <snug/closest.h>

@@ -16,6 +16,7 @@ namespace snug {
 
 class PlacedSurface;
 class SharedPlan;
+struct SurfaceParameter;
 class SurfaceData;
 
 /// How pieces of a surface are bounded.
@@ -34,15 +35,14 @@ struct SurfaceOptions {
   /// for surfaces that are queried thousands of times. Otherwise the BVH is built only from control points.
   bool tight = false;
   int threads = 0;  ///< for preparation; 0: all cores
-  /// Receives one line where triangles are smoothed though nobody said so: no `scheme`, and no tag of the
-  /// mesh. It says how far the surface may be from them, see limit_to_faces(), which costs a microsecond a
-  /// face and is left out above 200,000 faces.
+  /// Receives one line where triangles are smoothed although neither `scheme` nor a tag says so, with the result of
+  /// limit_to_faces() up to 200,000 faces.
   Notes notes{};
   WorkMonitor monitor{};
 };
 
-/// The limit surface of a control mesh: a handle that is cheap to copy. The surface never changes and lives
-/// as long as any handle to it. Any number of threads may use it at once.
+/// The limit surface of a control mesh: a handle that is cheap to copy. The surface never changes, lives as long as
+/// any handle to it, and may be used by any number of threads at once.
 ///
 /// Cost:      linear in the mesh. The first query also builds a BVH: half a microsecond per patch; a tenth
 ///            of a microsecond for large meshes, whose BVH is built only where queries need it.
@@ -62,9 +62,25 @@ class SNUG_API Surface {
 
   [[nodiscard]] const ControlMesh& mesh() const;
   [[nodiscard]] Scheme scheme() const;
+  [[nodiscard]] const SchemeTraits& traits() const { return traits_of(scheme()); }
   [[nodiscard]] BoundaryRule boundary() const;
   /// Longest side of the bounding box of the vertices that faces use; may overflow to infinity.
   [[nodiscard]] double size() const;
+  /// Faces, or vertices of a dual scheme: see SurfaceParameter::owner.
+  [[nodiscard]] std::size_t owner_count() const;
+  /// Values of SurfaceParameter::corner on an owner. 0 of a vertex that no quad surrounds; 1 for triangles.
+  /// Requires:  owner < owner_count().
+  [[nodiscard]] std::size_t corner_count(std::uint32_t owner) const;
+  /// Is there a limit point at these parameters?
+  [[nodiscard]] bool has(const SurfaceParameter& at) const;
+  /// Different patch topologies, by which bounds are shared.
+  [[nodiscard]] std::size_t kind_count() const;
+  /// Why it bounds no solid: names an edge whose faces do not run both ways, or a face without a surface.
+  /// Empty if it is closed.
+  [[nodiscard]] std::optional<std::string> open_reason() const;
+  /// Builds the BVH now, and not at the first query.
+  /// Errors:    InputError (refused) if no face has a limit surface. Interrupted.
+  void prepare(const WorkMonitor& monitor = {}) const;
   /// Memory of the surface and its BVH, without the mesh.
   [[nodiscard]] std::size_t bytes() const;
 
@@ -79,24 +95,20 @@ class SNUG_API Surface {
 };
 
 /// The limit surface of a mesh file, with the file's rules and tags unless `options` overrides them. Notes of
-/// the reader, such as about tags that snug does not know, and that of Surface go to `options.notes`, with the
-/// name of the file.
-/// Errors:    those of read_mesh() and Surface, with the name of the file.
+/// the reader and of Surface, and errors, name the file.
 [[nodiscard]] SNUG_API Surface load(const std::string& path, const SurfaceOptions& options = {});
 
 /// A surface whose control points move while its faces, tags and rules stay the same. Each set of positions is a
 /// Surface of its own, a frame, which reuses the patch topologies and the order of the BVH of earlier frames: only
 /// its boxes are recomputed, at the first query. For one thread at a time; its frames are Surfaces like all others.
 ///
-/// Guarantee: frames never change: a handle to an earlier frame shows that frame as long as it is kept, and a query
-///            of one frame uses no results computed for another. Once one more frame exists than are held at the
-///            same time, move() and the preparation of its frames allocate no memory, nor do collide(), distance()
-///            and closest_point() where earlier queries reached as far; the bounds of patch topologies that no
-///            other patch shares still do.
-/// Cost:      0.06 microseconds per patch for a frame and its BVH, see bench/results/moving.txt. The BVH is rebuilt
-///            when its boxes would be half as large again, relative to their patches, as when it was last built.
-///            SurfaceOptions::tight affects only the first surface. Memory: that of as many surfaces as frames were
-///            ever held at the same time, plus one or two.
+/// Guarantee: frames never change: a handle shows its frame as long as it is kept, and a query of one frame uses no
+///            results computed for another. Once one more frame exists than are held at the same time, move(),
+///            collide(), distance() and closest_point() allocate no memory where earlier queries reached as far,
+///            except for patch topologies that no other patch shares.
+/// Cost:      0.06 microseconds per patch for a frame and its BVH (bench/results/moving.txt), which is rebuilt when
+///            its boxes have grown by half. SurfaceOptions::tight affects only the first surface. Memory: that of
+///            the frames held at the same time, plus one or two.
 class SNUG_API MovingSurface {
  public:
   /// The first frame is `first` itself.
@@ -132,10 +144,9 @@ class PlacedSurface {
   Motion pose_;
 };
 
-/// Parameters of a point on a surface. For Loop, (1 - u - v) c0 + u c1 + v c2 on a face. For the other schemes,
-/// (u, v) on a quad, from corner 0 with u towards corner 1. The quad is the face itself if that has four corners
-/// (in a dual scheme, the faces around the vertex). Else it is the quad that the first split makes at `corner`,
-/// and u runs from there along the edge that follows.
+/// Parameters of a point on a surface. For Loop, (1 - u - v) c0 + u c1 + v c2 on a face. Else (u, v) on a quad, from
+/// corner 0 with u towards corner 1: the face itself if it has four corners (in a dual scheme, the faces around the
+/// vertex), else the quad that the first split makes at `corner`, u along the edge that follows.
 struct SurfaceParameter {
   std::uint32_t owner = 0;  ///< face; in a dual scheme, vertex
   std::uint32_t corner = 0;

@@ -22,11 +22,9 @@ struct TessellateOptions {
   /// Largest angle between limit normals at the corners of a triangle, in degrees: in double precision, and only
   /// for triangles with a side longer than the tolerance (without one, a millionth of the size).
   std::optional<double> max_angle{};
-  /// A triangle at distance d from the eye may have an error of d sin(angle), so that no error subtends a larger
-  /// angle at the eye.
+  /// A triangle at distance d from the eye may have an error of d sin(angle).
   std::optional<Viewpoint> view{};
-  /// Largest thickness of a piece, in mesh units: the longest side of the three boxes of its interval triangle
-  /// [Wu05, sec. 5.3]. Thicker pieces are split in four, and their neighbours cut as needed.
+  /// Largest thickness of a piece, in mesh units: the longest side of its interval triangle's boxes [Wu05, sec. 5.3].
   std::optional<double> max_thickness{};
   /// Most triangles: finds the smallest error it can with that many, but not below the tolerance, if given.
   std::optional<std::uint64_t> max_triangles{};
@@ -63,9 +61,7 @@ struct Tessellation {
 ///            parameters of all patches. So, face by face, surface and triangles are nowhere farther than that
 ///            from each other, nor are boundaries and creases and the edges along them. If `reached`,
 ///            error_bound <= tolerance, and each triangle's own error is as small as `view` requires. An edge
-///            belongs to as many triangles as the surface has sheets there: two inside, one at the boundary; no
-///            vertex lies inside an edge, and two triangles share at most an edge. Results do not depend on
-///            threads.
+///            belongs to as many triangles as the surface has sheets there, and no vertex lies inside an edge.
 /// Holes and faces without a surface are omitted. Triangles without area are kept: where control vertices
 /// coincide, omitting them would open the surface.
 /// Errors:    InputError: (value) for options that are not finite and positive, if none is given, for a tolerance

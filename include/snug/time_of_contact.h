@@ -92,8 +92,8 @@ struct TimeOfContact {
   /// The surfaces have no common point at any time before the lower end. The upper end is infinite if they were
   /// not found to come near each other, as for `separated`, whose lower end is the end of the motion.
   Interval time{0, std::numeric_limits<double>::infinity()};
-  /// True if in `time` no point of one surface moves by more than the tolerance, or 1e-10 of the size, relative to
-  /// the other one; where control points move, no point that could meet a point of the other.
+  /// True if in `time` no point that could meet the other surface moves by more than the tolerance, or 1e-10 of the
+  /// size, relative to it.
   bool reached = false;
   std::optional<std::array<Point3, 2>> witness;  ///< the closest points found at time.upper, on A and on B
   double witness_error = 0;                      ///< as in Collision
@@ -108,8 +108,7 @@ struct TimeOfContact {
 ///
 /// Guarantee: the surfaces (with `solid` the solids) have no common point at any time in [0, time.lower), nor at
 ///            time.lower itself unless it is 0 or time.upper; with `separated`, at no time at all. `within`
-///            holds at time.upper; `intersecting` holds at time.upper or between the ends. All of this is for
-///            the exact motions of the Trajectory, rounding included. The answer depends only on the input.
+///            holds at time.upper; `intersecting` holds at time.upper or between the ends, for the exact motions.
 /// Requires:  motions of the same duration, or one surface that stays.
 /// Errors:    InputError: (value) for a tolerance that is negative or not finite, and for durations that
 ///            differ; (unrepresentable) if a result does not fit a double; (refused) if no face of a mesh has
@@ -125,9 +124,8 @@ struct TimeOfContact {
                                                      const WorkMonitor& monitor = {},
                                                      Workspace& workspace = Workspace::of_this_thread());
 
-/// The same for moving control points: at time s they are (1 - s) times those of the mesh plus s times `end`,
-/// in exact arithmetic, and likewise the limit surface. Points of a turning part thus move along chords; split a
-/// large rotation into several steps.
+/// The same for moving control points: at time s they are (1 - s) times those of the mesh plus s times `end`.
+/// Points of a turning part thus move along chords; split a large rotation into several steps.
 ///
 /// Requires:  motions that stay or last for one unit of time.
 /// Errors:    also InputError (value) if the number of control points is not that of the mesh, (refused) for a

@@ -310,8 +310,8 @@ void write(const ControlMesh& mesh, const py::object& file) {
     Call call;
     return call.run([&](const WorkMonitor& monitor) {
       notes.clear();
-      write_mesh(
-          mesh, path, [&](const std::string& line) { notes.push_back(line); }, monitor);
+      write_mesh(mesh, path,
+                 {.notes = [&](const std::string& line) { notes.push_back(line); }, .monitor = monitor});
       return true;
     });
   });

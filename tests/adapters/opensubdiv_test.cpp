@@ -14,7 +14,7 @@
 #include <snug/adapters/opensubdiv.h>
 #include <snug/evaluate.h>
 #include <snug/io/formats.h>
-#include <snug/io/mesh_file.h>
+#include <snug/mesh.h>
 #include <snug/search/surface_data.h>
 #include <testing/places.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <snug/io/mesh_file.h>
+#include <snug/mesh.h>
 
 #include "run_snug.h"
 

@@ -1,4 +1,4 @@
-#include <snug/io/mesh_file.h>
+#include <snug/mesh.h>
 #include <snug/mesh/topology.h>
 #include <support/read_file.h>
 

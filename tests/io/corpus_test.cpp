@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <snug/io/formats.h>
-#include <snug/io/mesh_file.h>
+#include <snug/mesh.h>
 #include <testing/places.h>
 
 #include <testing/files.h>

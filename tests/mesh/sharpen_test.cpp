@@ -48,7 +48,7 @@ ControlMesh tube(std::size_t sides, std::size_t rows) {
 TEST(sharpen, makes_every_edge_of_a_box_sharp) {
   for (const bool triangles : {false, true}) {
     ControlMesh mesh = testing::box({0, 0, 0}, {40, 20, 10}, triangles);
-    const Sharpened done = sharpen(mesh);
+    const SharpenReport done = sharpen(mesh);
     EXPECT_EQ(done.creases, triangles ? 18u : 12u);
     EXPECT_EQ(creases(mesh).size(), edge_count(mesh));
     EXPECT_EQ(done.flat_regions, 6u);
@@ -58,7 +58,7 @@ TEST(sharpen, makes_every_edge_of_a_box_sharp) {
 
 TEST(sharpen, keeps_smooth_what_turns_less_than_the_angle) {
   ControlMesh mesh = tube(24, 3);  // 15 degrees an edge
-  const Sharpened done = sharpen(mesh);
+  const SharpenReport done = sharpen(mesh);
   EXPECT_EQ(done.creases, 48u);  // the rims
   EXPECT_EQ(done.corners, 48u);  // of flat caps, which are kept as polygons
   EXPECT_EQ(done.flat_regions, 2u);
@@ -69,7 +69,7 @@ TEST(sharpen, keeps_smooth_what_turns_less_than_the_angle) {
 
 TEST(sharpen, keeps_a_wall_without_inner_vertices_facet_by_facet) {
   ControlMesh mesh = tube(24, 1);
-  const Sharpened done = sharpen(mesh);
+  const SharpenReport done = sharpen(mesh);
   EXPECT_EQ(done.fixed_regions, 1u);
   EXPECT_EQ(creases(mesh).size(), edge_count(mesh));
 }
@@ -94,7 +94,7 @@ TEST(sharpen, makes_corners_where_a_crease_turns_and_leaves_darts_smooth) {
 TEST(sharpen, splits_flat_faces_that_are_not_convex) {
   ControlMesh mesh = testing::l_prism(false);
   ASSERT_EQ(mesh.face_count(), 8u);
-  const Sharpened done = sharpen(mesh);
+  const SharpenReport done = sharpen(mesh);
   EXPECT_EQ(done.split_faces, 2u);
   EXPECT_EQ(mesh.face_count(), 8u + 6u);
   EXPECT_EQ(done.parts_of,
@@ -111,7 +111,7 @@ TEST(sharpen, does_not_split_holes_and_names_faces_that_cross_themselves) {
   ControlMesh bow;
   bow.points = {{0, 0, 0}, {2, 3, 0}, {2, 0, 0}, {0, 2, 0}};
   testing::add_face(bow, {0, 1, 2, 3});
-  const Sharpened done = sharpen(bow);
+  const SharpenReport done = sharpen(bow);
   EXPECT_EQ(done.split_faces, 0u);
   EXPECT_EQ(done.crossed_faces, 1u);
 }
@@ -148,7 +148,7 @@ TEST(sharpen, sees_flat_regions_through_the_rounding_of_long_thin_triangles) {
     ControlMesh mesh = tall ? testing::perforated_plate(3, 2, 20, 5.2, 8, 96)
                             : testing::pin(5, 0, 60, 400, true);  // fans of 398 triangles, 0.08 across
     mesh = testing::turned(std::move(mesh), random, true, shift);
-    const Sharpened done = sharpen(mesh);
+    const SharpenReport done = sharpen(mesh);
     if (shift < 5000) {  // there, rounding is wider than three neighbours on a rim are high
       EXPECT_EQ(done.flat_regions, tall ? 6u : 2u) << trial;
       EXPECT_EQ(done.fixed_regions, tall ? 6u : 1u) << trial;
@@ -189,7 +189,7 @@ TEST(sharpen, looks_through_faces_without_a_width) {
   EXPECT_EQ(creases(narrow), creases(plain));
   // Between two faces of a box it does not join them, whatever its normal.
   ControlMesh box = with_narrow_face(testing::box({0, 0, 0}, {1, 1, 1}, false), 0, 1);
-  const Sharpened done = sharpen(box, 50);
+  const SharpenReport done = sharpen(box, 50);
   EXPECT_EQ(done.flat_regions, 7u);
   EXPECT_EQ(creases(box).size(), edge_count(box));
 }

@@ -120,7 +120,7 @@ Numbers corners(const ControlMesh& mesh, std::size_t face) {
 TEST(welded_mesh, six_sheets_become_a_cube) {
   for (const double gap : {0.0, 1e-7}) {
     ControlMesh mesh = six_sheets(gap);
-    const Welded welded = weld(mesh, 3 * gap);
+    const WeldReport welded = weld(mesh, 3 * gap);
     EXPECT_EQ(welded.vertices, 16u);
     EXPECT_NEAR(welded.farthest, gap * std::sqrt(2.0), 1e-9);
     EXPECT_EQ(welded.dropped + welded.shortened, 0u);
@@ -144,7 +144,7 @@ TEST(welded_mesh, faces_lose_corners_and_those_with_fewer_than_three_go) {
   ControlMesh mesh = mesh_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 0}, {0, 0, 0}, {0, 1, 0}},
                              {{0, 1, 2, 3}, {2, 3, 5}, {0, 1, 4, 5}, {5, 0, 1}, {0, 2, 4, 3}, {3, 1, 2}});
   mesh.tags.holes = {FaceId(0), FaceId(1), FaceId(3)};
-  const Welded welded = weld(mesh);
+  const WeldReport welded = weld(mesh);
   EXPECT_EQ(welded.vertices, 2u);
   EXPECT_EQ(welded.shortened, 1u);
   EXPECT_EQ(welded.dropped, 3u);  // (2, 3, 5), (0, 2, 4, 3) and (3, 1, 2)

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <peer_fcl.h>
-#include <snug/io/mesh_file.h>
+#include <snug/mesh.h>
 #include <snug/query/pairs.h>
 #include <testing/placements.h>
 

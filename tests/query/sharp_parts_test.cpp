@@ -9,7 +9,7 @@
 #include <snug/mesh/split_polygon.h>
 #include <snug/query/bound.h>
 #include <snug/query/pairs.h>
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 #include <snug/surface/evaluate.h>
 #include <testing/cad_parts.h>
 #include <testing/counts.h>

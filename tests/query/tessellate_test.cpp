@@ -5,7 +5,7 @@
 #include <snug/bounds/enclosure.h>
 #include <snug/bounds/hull_points.h>
 #include <snug/bounds/quadratic.h>
-#include <snug/io/mesh_file.h>
+#include <snug/mesh.h>
 #include <snug/patch/evaluate.h>
 #include <snug/query/deviation.h>
 #include <snug/surface/evaluate.h>

@@ -1,7 +1,7 @@
 #include <snug/query/tessellate.h>
 
 #include <gtest/gtest.h>
-#include <snug/io/mesh_file.h>
+#include <snug/mesh.h>
 #include <testing/places.h>
 
 namespace snug::tessellate_threads_test {

@@ -132,7 +132,7 @@ double random_coordinate(std::mt19937_64& random) {
 TEST(basis, functions_are_those_of_the_bezier_rows_within_the_stated_roundings) {
   std::mt19937_64 random(31);
   double worst_value = 0, worst_slope = 0;
-  for (const SchemeRules* rules : all_schemes()) {
+  for (const SchemeRules* rules : all_rules()) {
     const BezierTwin twin(*rules);
     const std::vector<std::size_t> lattice = twin.lattice();
     ASSERT_EQ(lattice.size(), basis_count(rules->basis)) << rules->name;

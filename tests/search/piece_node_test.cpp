@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <oracle/polygon_twin.h>
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 #include <testing/containment.h>
 #include <testing/counts.h>
 #include <testing/disguises.h>

@@ -1,4 +1,4 @@
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 
 #include <gtest/gtest.h>
 #include <snug/bounds/table_triangle.h>

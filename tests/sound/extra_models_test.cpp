@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
-#include <snug/io/mesh_file.h>
+#include <snug/mesh.h>
 #include <support/error.h>
 #include <testing/containment.h>
 #include <testing/twins.h>

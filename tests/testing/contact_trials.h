@@ -10,7 +10,7 @@
 #include <string>
 
 #include <oracle/contact_twin.h>
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 #include <snug/surface/limit_surface.h>
 
 /// Placed pairs of Loop surfaces on which the queries are tried, with what is known about them beforehand.

@@ -12,7 +12,7 @@
 
 #include <oracle/limit_twin.h>
 #include <oracle/tagged_mesh.h>
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 #include <snug/surface/limit_surface.h>
 #include <testing/journeys.h>
 

@@ -1,4 +1,4 @@
-#include <snug/io/mesh_file.h>
+#include <snug/mesh.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -96,7 +96,7 @@ std::string counted(std::size_t count, const std::string& singular, const std::s
   return std::to_string(count) + ' ' + (count == 1 ? singular : plural);
 }
 
-std::string report_of(const Welded& welded) {
+std::string report_of(const WeldReport& welded) {
   std::string text = "no two vertices are close enough to be welded";
   if (welded.vertices > 0) {
     text = counted(welded.vertices, "vertex was", "vertices were") + " welded to others, at most ";
@@ -122,21 +122,12 @@ void note_loose_creases(const ControlMesh& mesh, const std::string& name, const 
 
 }  // namespace
 
-ControlMesh parse_mesh(std::string_view bytes, const std::string& name, const Notes& notes) {
-  return parsed(bytes, format_to_read(name), name, notes);
-}
-
-ControlMesh read_mesh(const std::string& path, const ReadOptions& options) {
-  static_cast<void>(format_to_read(path));  // before the file is opened
-  return read_mesh(read_file(path, options.monitor), path, options);
-}
-
-ControlMesh read_mesh(std::string_view bytes, const std::string& path, const ReadOptions& options) {
+ControlMesh parse_mesh(std::string_view bytes, const std::string& path, const ReadOptions& options) {
   const std::string name = input_name(path);
   ControlMesh mesh = parsed(bytes, format_to_read(path), name, options.notes);
   if (options.weld) {
     try {
-      const Welded welded = weld(mesh, options.weld(size_of(mesh)));
+      const WeldReport welded = weld(mesh, options.weld(size_of(mesh)));
       if (options.notes) options.notes(name + ": " + report_of(welded));
     } catch (const InputError& error) {
       throw InputError(error.problem(), name + ": " + error.what());
@@ -146,46 +137,38 @@ ControlMesh read_mesh(std::string_view bytes, const std::string& path, const Rea
   return mesh;
 }
 
-void require_writable_ending(const std::string& path) { static_cast<void>(format_to_write(path)); }
-
-bool writes_polygons(const std::string& path) {
-  const std::string ending = format_to_write(path);
-  return ending != ".stl" && ending != ".glb";
+ControlMesh read_mesh(const std::string& path, const ReadOptions& options) {
+  static_cast<void>(format_to_read(path));  // before the file is opened
+  return parse_mesh(read_file(path, options.monitor), path, options);
 }
 
-bool writes_floats(const std::string& path) { return !writes_polygons(path); }
-
-bool names_scheme(const std::string& path) { return format_to_write(path) == ".usda"; }
-
-ControlMesh as_facets(ControlMesh mesh, const std::string& path) {
-  if (names_scheme(path)) mesh.tags.scheme = Scheme::flat;
-  return mesh;
+MeshFormat format_of(const std::string& path) {
+  const std::string ending = format_to_write(path);
+  const bool triangles = ending == ".stl" || ending == ".glb";
+  return {
+      .polygons = !triangles, .floats = triangles, .normals = ending == ".glb", .scheme = ending == ".usda"};
 }
 
-bool writes_normals(const std::string& path) { return format_to_write(path) == ".glb"; }
-
-void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& path, const Notes& notes,
-                const WorkMonitor& monitor, std::span<const Vector3> normals) {
+std::string format_mesh(const ControlMesh& mesh, const std::string& path, const WriteOptions& options) {
   const std::string ending = format_to_write(path);
-  const auto note_if = [&](bool dropped, const char* what) {
-    if (dropped && notes) notes(path + what);
-  };
-  if (notes && !holds_tags(ending)) note_dropped_tags(mesh, path, !writes_polygons(path), notes);
-  note_if(ending != ".obj" && mesh.polyline_count() > 0, ": this format has no polylines: they are dropped");
-  monitor.checkpoint();
-  const std::string bytes = formatted(mesh, ending, path, notes, normals);
+  const Notes& notes = options.notes;
+  if (notes && !holds_tags(ending)) note_dropped_tags(mesh, path, !format_of(path).polygons, notes);
+  if (notes && ending != ".obj" && mesh.polyline_count() > 0) {
+    notes(path + ": this format has no polylines: they are dropped");
+  }
+  options.monitor.checkpoint();
+  return formatted(mesh, ending, path, notes, options.normals);
+}
+
+void write_mesh(const ControlMesh& mesh, const std::string& path, const WriteOptions& options) {
+  static_cast<void>(format_to_write(path));
+  AtomicFile file(path);
+  const std::string bytes = format_mesh(mesh, path, options);
   constexpr std::size_t part = std::size_t{1} << 20;
   for (std::size_t begin = 0; begin < bytes.size(); begin += part) {
-    monitor.checkpoint();
+    options.monitor.checkpoint();
     file.write(std::string_view(bytes).substr(begin, part));
   }
-}
-
-void write_mesh(const ControlMesh& mesh, const std::string& path, const Notes& notes,
-                const WorkMonitor& monitor) {
-  require_writable_ending(path);
-  AtomicFile file(path);
-  write_mesh(mesh, file, path, notes, monitor);
   file.commit();
 }
 

@@ -86,7 +86,7 @@ void spread_sharpness(const TextCursor& at, const std::string& tag, std::vector<
 
 std::string names_of_schemes() {
   std::string names;
-  for (const SchemeRules* rules : all_schemes())
+  for (const SchemeRules* rules : all_rules())
     names += (names.empty() ? "" : ", ") + std::string(rules->name);
   return names;
 }
@@ -140,7 +140,7 @@ void ObjTagReader::read(TextCursor& at) {
     if (values.ids.empty() || values.ids[0] >= numbered_rules.size()) refuse_choice("0, 1 and 2");
     tags_.boundary = numbered_rules[values.ids[0]];
   } else if (name == "scheme") {
-    const SchemeRules* const rules = scheme_named(values.text);
+    const SchemeRules* const rules = rules_named(values.text);
     if (!rules) refuse_choice(names_of_schemes());
     tags_.scheme = rules->scheme;
   } else {

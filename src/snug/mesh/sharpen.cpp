@@ -92,7 +92,7 @@ class Sharpener {
   [[nodiscard]] const Vector3& area(FaceId f) const { return areas_[f.index()]; }
 
   /// Appends the tags that are missing, and counts them and the regions.
-  void tag(MeshTags& tags, Sharpened& result) const {
+  void tag(MeshTags& tags, SharpenReport& result) const {
     result.flat_regions = flat_regions_;
     result.fixed_regions = fixed_regions_;
     for (std::size_t e = 0; e < sharp_.size(); ++e) {
@@ -317,7 +317,7 @@ class Sharpener {
 };
 
 /// Splits the faces of planar regions that are not convex.
-void split_faces(ControlMesh& mesh, const Sharpener& sharp, Sharpened& result) {
+void split_faces(ControlMesh& mesh, const Sharpener& sharp, SharpenReport& result) {
   std::vector<bool> hole(mesh.face_count(), false);
   for (const FaceId f : mesh.tags.holes) {
     if (f.index() < hole.size()) hole[f.index()] = true;
@@ -357,12 +357,12 @@ void split_faces(ControlMesh& mesh, const Sharpener& sharp, Sharpened& result) {
 
 }  // namespace
 
-Sharpened sharpen(ControlMesh& mesh, double angle) {
+SharpenReport sharpen(ControlMesh& mesh, double angle) {
   if (!(angle >= 0 && angle < 180)) {
     throw InputError(InputProblem::value,
                      "the angle of sharp edges must be at least 0 and below 180 degrees");
   }
-  Sharpened result;
+  SharpenReport result;
   if (!can_be_sharpened(mesh)) return result;
   std::optional<Sharpener> sharp(std::in_place, mesh, angle);
   split_faces(mesh, *sharp, result);

@@ -135,7 +135,7 @@ class Welder {
     }
   }
 
-  Welded weld() {
+  WeldReport weld() {
     move_points();
     move_faces();
     for (VertexId& v : mesh_.polyline_vertices) v = moved(v);
@@ -231,7 +231,7 @@ class Welder {
   ControlMesh& mesh_;
   std::vector<VertexId> becomes_;
   std::vector<FaceId> new_face_;
-  Welded result_;
+  WeldReport result_;
 };
 
 }  // namespace
@@ -259,7 +259,7 @@ std::vector<std::uint32_t> first_of_welded(std::span<const Point3> points, doubl
   return first;
 }
 
-Welded weld(ControlMesh& mesh, double distance) {
+WeldReport weld(ControlMesh& mesh, double distance) {
   return Welder(mesh, first_of_welded(mesh.points, distance)).weld();
 }
 

@@ -9,6 +9,7 @@
 #include <snug/bounds/table_triangle.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
+#include <snug/search/surface_data.h>
 #include <snug/shape/normal_cone.h>
 #include <snug/surface/unscale.h>
 #include <support/parallel.h>
@@ -199,6 +200,19 @@ BoundSummary bound(const LimitSurface& surface, const BoundOptions& options,
 BoundSummary bound(const CurveSet& curves, const BoundOptions& options,
                    const std::function<void(const CurveEnclosure&)>& sink, const WorkMonitor& monitor) {
   return bound_all(CurvePieces(curves), curves.edge_count(), options, sink, monitor);
+}
+
+BoundSummary bound(const Surface& surface, const BoundOptions& options,
+                   const std::function<void(const PatchEnclosure&)>& sink, const WorkMonitor& monitor) {
+  const LimitSurface& limit = surface.data()->limit();
+  return bound(
+      limit, options,
+      [&](const PieceEnclosure& piece) {
+        sink({limit.place(piece.patch), piece.path.text(),
+              piece.path.level() + (limit.after_first_split(piece.patch) ? 1 : 0), piece.corners,
+              piece.offset, piece.interval, piece.normals});
+      },
+      monitor, surface.data()->method());
 }
 
 }  // namespace snug

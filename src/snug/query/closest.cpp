@@ -1,4 +1,5 @@
 #include <snug/query/closest.h>
+#include <snug/search/workspace.h>
 
 #include <algorithm>
 #include <cmath>
@@ -226,6 +227,38 @@ std::vector<SignedDistance> signed_distances(const SurfaceBvh& model, std::span<
     results[i] = signed_distance(workspace, points[i], options, monitor);
   });
   return results;
+}
+
+ClosestPoint closest_point(const Surface& surface, const Point3& to, const ClosestOptions& options,
+                           const WorkMonitor& monitor, Workspace& workspace) {
+  return closest_point(workspace.pieces().of(surface), to, options, monitor);
+}
+
+std::vector<ClosestPoint> closest_points(const Surface& surface, std::span<const Point3> to,
+                                         const ClosestOptions& options, int threads,
+                                         const WorkMonitor& monitor) {
+  return closest_points(surface.data()->bvh(), to, options, threads, monitor);
+}
+
+std::optional<bool> contains(const Surface& surface, const Point3& point, const WorkMonitor& monitor,
+                             Workspace& workspace) {
+  return contains(workspace.pieces().of(surface), point, monitor);
+}
+
+std::vector<std::optional<bool>> contains(const Surface& surface, std::span<const Point3> points, int threads,
+                                          const WorkMonitor& monitor) {
+  return contains(surface.data()->bvh(), points, threads, monitor);
+}
+
+SignedDistance signed_distance(const Surface& surface, const Point3& point, const ClosestOptions& options,
+                               const WorkMonitor& monitor, Workspace& workspace) {
+  return signed_distance(workspace.pieces().of(surface), point, options, monitor);
+}
+
+std::vector<SignedDistance> signed_distances(const Surface& surface, std::span<const Point3> points,
+                                             const ClosestOptions& options, int threads,
+                                             const WorkMonitor& monitor) {
+  return signed_distances(surface.data()->bvh(), points, options, threads, monitor);
 }
 
 }  // namespace snug

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <snug/closest.h>
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 
 /// The questions of closest.h about a surface whose tree and workspace are at hand.
 namespace snug {

@@ -289,4 +289,15 @@ Collision collide(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& 
   return answer;
 }
 
+Collision collide(const PlacedSurface& a, const PlacedSurface& b, const CollideOptions& options,
+                  const WorkMonitor& monitor, Workspace& workspace) {
+  const PlacedPair at(a, b, workspace);
+  return collide(at.a, at.b, options, monitor);
+}
+
+std::vector<Collision> collide(const Surface& a, const Surface& b, std::span<const PosePair> poses,
+                               const CollideOptions& options, int threads, const WorkMonitor& monitor) {
+  return PairWorkspaces(a.data()->bvh(), b.data()->bvh(), threads).answers(collide, poses, options, monitor);
+}
+
 }  // namespace snug

@@ -10,6 +10,7 @@
 #include <snug/mesh/disjoint_sets.h>
 #include <snug/query/contact_curves.h>
 #include <snug/query/contacts.h>
+#include <snug/query/pairs.h>
 #include <snug/query/touching_boxes.h>
 #include <snug/search/crossing.h>
 #include <snug/search/pair_frames.h>
@@ -363,6 +364,12 @@ Contacts contacts(const PlacedBvh& a, const PlacedBvh& b, const ContactsOptions&
     return none;
   }
   return Query(a, b, wanted, monitor).run();
+}
+
+Contacts contacts(const PlacedSurface& a, const PlacedSurface& b, const ContactsOptions& options,
+                  const WorkMonitor& monitor, Workspace& workspace) {
+  const PlacedPair at(a, b, workspace);
+  return contacts(at.a, at.b, options, monitor);
 }
 
 }  // namespace snug

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <snug/contacts.h>
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 
 namespace snug {
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <optional>
 
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 #include <snug/surface/evaluate.h>
 
 namespace snug {

@@ -1,4 +1,5 @@
 #include <snug/query/deviation.h>
+#include <snug/search/surface_data.h>
 
 #include <algorithm>
 #include <array>
@@ -12,8 +13,8 @@
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/query/one_sided.h>
+#include <snug/search/surface_workspace.h>
 #include <snug/search/winding.h>
-#include <snug/search/workspace.h>
 #include <snug/surface/evaluate.h>
 #include <snug/surface/quadratic_pieces.h>
 #include <snug/surface/unscale.h>
@@ -394,6 +395,16 @@ Deviation deviation(const SurfaceBvh& model, const SurfaceBvh& candidate, const 
   SurfaceSet first(model.surface(), asked.scale, asked.first_error(), options, monitor);
   SurfaceSet second(candidate.surface(), asked.scale, asked.first_error(), options, monitor);
   return compare(model, first, second, asked, options, monitor);
+}
+
+Deviation deviation(const Surface& surface, std::span<const Triangle> candidate,
+                    const DeviationOptions& options, const WorkMonitor& monitor) {
+  return deviation(surface.data()->bvh(), candidate, options, monitor);
+}
+
+Deviation deviation(const Surface& surface, const Surface& candidate, const DeviationOptions& options,
+                    const WorkMonitor& monitor) {
+  return deviation(surface.data()->bvh(), candidate.data()->bvh(), options, monitor);
 }
 
 }  // namespace snug

@@ -205,4 +205,15 @@ Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions&
   return answer;
 }
 
+Distance distance(const PlacedSurface& a, const PlacedSurface& b, const DistanceOptions& options,
+                  const WorkMonitor& monitor, Workspace& workspace) {
+  const PlacedPair at(a, b, workspace);
+  return distance(at.a, at.b, options, monitor);
+}
+
+std::vector<Distance> distance(const Surface& a, const Surface& b, std::span<const PosePair> poses,
+                               const DistanceOptions& options, int threads, const WorkMonitor& monitor) {
+  return PairWorkspaces(a.data()->bvh(), b.data()->bvh(), threads).answers(distance, poses, options, monitor);
+}
+
 }  // namespace snug

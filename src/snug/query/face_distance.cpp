@@ -4,6 +4,7 @@
 
 #include <snug/geometry/rounding.h>
 #include <snug/query/bound.h>
+#include <snug/search/surface_data.h>
 #include <snug/surface/batch_bounds.h>
 #include <snug/surface/unscale.h>
 
@@ -87,6 +88,10 @@ std::optional<double> limit_to_faces(const LimitSurface& surface, int threads) {
     most = std::max(most, enlarged(from_base + surface.scale().apply(offsets[i].radius)));
   }
   return require_representable(unscaled_up(most, surface.scale().inverse()));
+}
+
+std::optional<double> limit_to_faces(const Surface& surface, int threads) {
+  return limit_to_faces(surface.data()->limit(), threads);
 }
 
 }  // namespace snug

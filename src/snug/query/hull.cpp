@@ -1,4 +1,5 @@
 #include <snug/query/hull.h>
+#include <snug/search/surface_data.h>
 
 #include <algorithm>
 #include <cmath>
@@ -580,6 +581,10 @@ Hulls hulls(const SurfaceBvh& model, const HullOptions& options, const WorkMonit
   keep_some(result.problems);
   monitor.report(1);
   return result;
+}
+
+Hulls hulls(const Surface& surface, const HullOptions& options, const WorkMonitor& monitor) {
+  return hulls(surface.data()->bvh(), options, monitor);
 }
 
 }  // namespace snug

@@ -1,4 +1,5 @@
-#include <snug/query/measure.h>
+#include <snug/measure.h>
+#include <snug/search/surface_data.h>
 
 #include <algorithm>
 #include <atomic>
@@ -464,9 +465,9 @@ class SurfaceMeasurer {
 
 }  // namespace
 
-Measures measure(const LimitSurface& surface, const MeasureOptions& options, const WorkMonitor& monitor) {
+Measures measure(const Surface& surface, const MeasureOptions& options, const WorkMonitor& monitor) {
   if (options.relative) require_length(*options.relative, "the relative precision");
-  return SurfaceMeasurer(surface, options, monitor).run();
+  return SurfaceMeasurer(surface.data()->limit(), options, monitor).run();
 }
 
 }  // namespace snug

@@ -9,7 +9,7 @@
 #include <snug/query/linear_patches.h>
 #include <snug/query/pairs.h>
 #include <snug/query/trajectory.h>
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 
 namespace snug {
 

@@ -41,6 +41,17 @@ struct MovingBvh {
                                       const PenetrationOptions& options = {},
                                       const WorkMonitor& monitor = {});
 
+/// Two placed surfaces with their trees and their parts of a workspace.
+struct PlacedPair {
+  PlacedPair(const PlacedSurface& in_a, const PlacedSurface& in_b, Workspace& workspace)
+      : PlacedPair(in_a, in_b, workspace.pieces().of(in_a.surface(), in_b.surface())) {}
+  PlacedBvh a, b;
+
+ private:
+  PlacedPair(const PlacedSurface& in_a, const PlacedSurface& in_b, const Workspace::Pieces::Pair& pieces)
+      : a{pieces.a.model(), pieces.a, in_a.pose()}, b{pieces.b.model(), pieces.b, in_b.pose()} {}
+};
+
 /// Workspaces of two models for many poses, one pair a thread: what a thread has found out about pieces is of
 /// use for its next pose.
 class PairWorkspaces {

@@ -290,4 +290,10 @@ Penetration penetration(const PlacedBvh& a, const PlacedBvh& b, const Penetratio
   return Search(a, b, options, monitor).run();
 }
 
+Penetration penetration(const PlacedSurface& a, const PlacedSurface& b, const PenetrationOptions& options,
+                        const WorkMonitor& monitor, Workspace& workspace) {
+  const PlacedPair at(a, b, workspace);
+  return penetration(at.a, at.b, options, monitor);
+}
+
 }  // namespace snug

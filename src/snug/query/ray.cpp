@@ -1,4 +1,5 @@
 #include <snug/query/ray.h>
+#include <snug/search/workspace.h>
 
 #include <atomic>
 #include <cmath>
@@ -107,6 +108,16 @@ std::vector<RayHits> trace(const SurfaceBvh& model, std::span<const Ray> rays, c
         monitor.report(static_cast<double>(done += end - begin) / static_cast<double>(rays.size()));
       });
   return answers;
+}
+
+RayHits trace(const Surface& surface, const Ray& ray, const RayOptions& options, const WorkMonitor& monitor,
+              Workspace& workspace) {
+  return trace(workspace.pieces().of(surface), ray, options, monitor);
+}
+
+std::vector<RayHits> trace(const Surface& surface, std::span<const Ray> rays, const RayOptions& options,
+                           int threads, const WorkMonitor& monitor) {
+  return trace(surface.data()->bvh(), rays, options, threads, monitor);
 }
 
 }  // namespace snug

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <snug/ray.h>
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 
 /// The questions of ray.h about a surface whose tree and workspace are at hand.
 namespace snug {

@@ -1,4 +1,5 @@
-#include <snug/query/self.h>
+#include <snug/search/surface_data.h>
+#include <snug/self.h>
 
 #include <algorithm>
 #include <cmath>
@@ -352,7 +353,7 @@ class SelfSearch {
 
 const char* name_of(SelfVerdict verdict) { return name_in(verdict_names, verdict); }
 
-SelfContact self_contact(const LimitSurface& surface, const SelfContactOptions& options,
+SelfContact self_contact(const Surface& surface, const SelfContactOptions& options,
                          const WorkMonitor& monitor) {
   require_value(options.levels <= 20, "self: more than 20 levels; give fewer");
   if (options.tolerance) {
@@ -368,7 +369,7 @@ SelfContact self_contact(const LimitSurface& surface, const SelfContactOptions& 
         "self: the radius is less than twice the tolerance, where even flat places are near each other "
         "beyond it; give a longer one");
   }
-  return SelfSearch(surface, options, monitor).run();
+  return SelfSearch(surface.data()->limit(), options, monitor).run();
 }
 
 }  // namespace snug

@@ -1,4 +1,5 @@
 #include <snug/query/subdivide.h>
+#include <snug/search/surface_data.h>
 
 #include <algorithm>
 #include <cmath>
@@ -152,6 +153,11 @@ ControlMesh subdivide_curves(const ControlMesh& mesh, CurveDegree degree, unsign
     result.add_polyline(line);
   }
   return result;
+}
+
+ControlMesh subdivided(const Surface& surface, unsigned level, bool limit_positions,
+                       const WorkMonitor& monitor) {
+  return subdivide(surface.mesh(), surface.data()->limit().options(), level, limit_positions, monitor);
 }
 
 }  // namespace snug

@@ -1,4 +1,5 @@
 #include <snug/query/tessellate.h>
+#include <snug/search/surface_data.h>
 
 #include <algorithm>
 #include <atomic>
@@ -768,6 +769,11 @@ LocalTessellation tessellate(const LimitSurface& surface, std::span<const double
   result.mesh = refinement.result(&result.errors);
   result.mesh.reached = reached;
   return result;
+}
+
+Tessellation tessellate(const Surface& surface, const TessellateOptions& options,
+                        const WorkMonitor& monitor) {
+  return tessellate(surface.data()->limit(), options, monitor);
 }
 
 }  // namespace snug

@@ -497,4 +497,19 @@ TimeOfContact time_of_contact(const MovingBvh& a, const MovingBvh& b, const Time
   return Query(a, b, wanted, monitor).run();
 }
 
+TimeOfContact time_of_contact(const Surface& a, const Trajectory& motion_a, const Surface& b,
+                              const Trajectory& motion_b, const TimeOfContactOptions& options,
+                              const WorkMonitor& monitor, Workspace& workspace) {
+  return time_of_contact({a, {}, motion_a}, {b, {}, motion_b}, options, monitor, workspace);
+}
+
+TimeOfContact time_of_contact(const DeformingSurface& a, const DeformingSurface& b,
+                              const TimeOfContactOptions& options, const WorkMonitor& monitor,
+                              Workspace& workspace) {
+  const Workspace::Pieces::Pair pieces = workspace.pieces().of(a.surface, b.surface);
+  const MovingBvh moving_a{pieces.a.model(), pieces.a, a.motion, a.end},
+      moving_b{pieces.b.model(), pieces.b, b.motion, b.end};
+  return time_of_contact(moving_a, moving_b, options, monitor);
+}
+
 }  // namespace snug

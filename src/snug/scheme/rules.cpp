@@ -11,20 +11,38 @@ const SchemeRules& midedge_rules();
 const SchemeRules& bilinear_rules();
 const SchemeRules& flat_rules();
 
-std::span<const SchemeRules* const> all_schemes() {
+std::span<const SchemeRules* const> all_rules() {
   static const std::array all{&loop_rules(),    &catmark_rules(),  &doo_sabin_rules(),
                               &midedge_rules(), &bilinear_rules(), &flat_rules()};
   return all;
 }
 
-const SchemeRules& rules_of(Scheme scheme) { return *all_schemes()[static_cast<std::size_t>(scheme)]; }
+const SchemeRules& rules_of(Scheme scheme) { return *all_rules()[static_cast<std::size_t>(scheme)]; }
 
-const SchemeRules* scheme_named(std::string_view name) {
-  for (const SchemeRules* rules : all_schemes()) {
+const SchemeRules* rules_named(std::string_view name) {
+  for (const SchemeRules* rules : all_rules()) {
     const auto& others = rules->other_names;
     if (rules->name == name || std::find(others.begin(), others.end(), name) != others.end()) return rules;
   }
   return nullptr;
+}
+
+const SchemeTraits& traits_of(Scheme scheme) {
+  static const auto all = [] {
+    std::array<SchemeTraits, all_schemes.size()> traits;
+    for (const SchemeRules* rules : all_rules()) {
+      traits[static_cast<std::size_t>(rules->scheme)] = {
+          rules->name,    rules->other_names, !rules->primal,        rules->triangular(),
+          rules->creases, rules->local,       rules->regular_valence};
+    }
+    return traits;
+  }();
+  return all[static_cast<std::size_t>(scheme)];
+}
+
+std::optional<Scheme> scheme_named(std::string_view name) {
+  const SchemeRules* const rules = rules_named(name);
+  return rules ? std::optional(rules->scheme) : std::nullopt;
 }
 
 bool SchemeRules::answers(DefectKind kind) const {

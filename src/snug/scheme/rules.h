@@ -103,9 +103,9 @@ class SchemeRules : public SchemeFacts {
 
 [[nodiscard]] const SchemeRules& rules_of(Scheme scheme);
 /// The rules of all schemes, in the order of Scheme.
-[[nodiscard]] std::span<const SchemeRules* const> all_schemes();
+[[nodiscard]] std::span<const SchemeRules* const> all_rules();
 /// The rules of the scheme with this name, its own or another one; none: there is no such scheme.
-[[nodiscard]] const SchemeRules* scheme_named(std::string_view name);
+[[nodiscard]] const SchemeRules* rules_named(std::string_view name);
 
 // For the files of schemes.
 

@@ -20,8 +20,6 @@ struct SchemeOptions {
 /// The rules for this mesh: its tags name the crease method and the treatment of triangles.
 [[nodiscard]] SchemeOptions with_tags(SchemeOptions options, const MeshTags& tags);
 
-/// The scheme that a mesh's tag names; without one that of its faces.
-[[nodiscard]] Scheme natural_scheme(const ControlMesh& mesh);
 /// Loop for triangles alone, else Catmull-Clark, whatever the tag.
 [[nodiscard]] Scheme scheme_of_faces(const ControlMesh& mesh);
 /// Do tags other than that of the scheme change the surface?

@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 
 namespace snug {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 
 namespace snug {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 #include <support/error.h>
 #include <support/ordering.h>
 

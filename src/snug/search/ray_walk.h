@@ -5,7 +5,7 @@
 
 #include <snug/ray.h>
 #include <snug/search/ray_crossing.h>
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 
 namespace snug {
 

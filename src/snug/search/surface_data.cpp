@@ -55,8 +55,8 @@ void SurfaceData::move(std::span<const Point3> points) {
   number_ = next_number();
 }
 
-const SurfaceBvh& SurfaceData::bvh() const {
-  if (!plan_) return bvh_.get([&] { return SurfaceBvh(limit_, bvh_options_); });
+const SurfaceBvh& SurfaceData::bvh(const WorkMonitor& monitor) const {
+  if (!plan_) return bvh_.get([&] { return SurfaceBvh(limit_, bvh_options_, monitor); });
   return bvh_.get([&] { return SurfaceBvh(limit_, bvh_options_, *plan_); },
                   [&](SurfaceBvh& old) { old.refit(*plan_); });
 }

@@ -25,7 +25,7 @@ class SurfaceData {
 
   [[nodiscard]] const LimitSurface& limit() const { return limit_; }
   /// Errors:    InputError (refused) if nothing of the mesh has a limit surface.
-  [[nodiscard]] const SurfaceBvh& bvh() const;
+  [[nodiscard]] const SurfaceBvh& bvh(const WorkMonitor& monitor = {}) const;
   [[nodiscard]] BoundMethod method() const { return bvh_options_.method; }
   [[nodiscard]] std::size_t bytes() const;
   /// Another one for each surface of the process, and for each frame of one that moves.

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 
 namespace snug {
 

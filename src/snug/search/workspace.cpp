@@ -1,140 +1,97 @@
 #include <snug/search/workspace.h>
 
 #include <algorithm>
-#include <utility>
+#include <vector>
 
 namespace snug {
 namespace {
 
-constexpr std::size_t max_bytes = std::size_t{256} << 20;
-
-SplitNode split_node(const SurfaceBvh& model, const Patch& parent) {
-  thread_local Patch child;
-  std::array<PieceSketch, 4> pieces;
-  for (unsigned i = 0; i < 4; ++i) {
-    split(parent, i, child);
-    pieces[i] = sketch(model.surface().library(), child, model.method());
-  }
-  return SplitNode(pieces);
-}
+constexpr std::size_t byte_limit = std::size_t{512} << 20;
+// What workspaces hold is added up once in so many queries, and when a surface is met for the first time.
+constexpr std::uint64_t queries_between_looks = 1024;
 
 }  // namespace
 
-SurfaceWorkspace::Roots::Place& SurfaceWorkspace::Roots::place_of(std::uint32_t patch) {
-  const std::size_t mask = places_.size() - 1;
-  std::size_t at = (patch * 0x9e3779b97f4a7c15u >> 32) & mask;
-  while (places_[at].round == round_ && places_[at].patch != patch) at = (at + 1) & mask;
-  return places_[at];
+SurfaceWorkspace& Workspace::Pieces::of(const Surface& surface) {
+  begin_query();
+  return find(surface, false);
 }
 
-SurfaceWorkspace::Root& SurfaceWorkspace::Roots::operator[](std::uint32_t patch) {
-  if (2 * (count_ + 1) > places_.size()) {
-    std::vector<Place> old(std::max<std::size_t>(64, 2 * places_.size()));
-    old.swap(places_);
-    for (const Place& place : old) {
-      if (place.round == round_) place_of(place.patch) = place;
+Workspace::Pieces::Pair Workspace::Pieces::of(const Surface& a, const Surface& b) {
+  begin_query();
+  SurfaceWorkspace& first = find(a, false);
+  return {first, find(b, a.data() == b.data())};
+}
+
+void Workspace::Pieces::begin_query() {
+  if (++query_ % queries_between_looks == 0) drop_old();
+}
+
+SurfaceWorkspace& Workspace::Pieces::find(const Surface& surface, bool second) {
+  const SurfaceData& data = *surface.data();
+  const std::uint64_t name = 2 * data.storage() + (second ? 1 : 0);
+  Recent& recent = recent_[name % recent_.size()];
+  if (recent.name != name) {
+    Entry& entry = entries_[name];
+    if (!entry.pieces) {
+      entry.query = query_;
+      entry.surface = surface.data();
+      drop_old();
+      entry.pieces = std::make_unique<SurfaceWorkspace>(data.bvh());
+      entry.number = data.number();
     }
+    recent = {name, &entry};
   }
-  Place& place = place_of(patch);
-  if (place.round != round_) {
-    place = {patch, round_, {}};
-    ++count_;
+  if (recent.entry->number != data.number()) {
+    recent.entry->pieces->renew(data.bvh());
+    recent.entry->number = data.number();
   }
-  return place.root;
+  recent.entry->query = query_;
+  return *recent.entry->pieces;
 }
 
-void SurfaceWorkspace::Roots::clear() {
-  count_ = 0;
-  if (++round_ == 0) *this = {};
-}
-
-std::size_t SurfaceWorkspace::bytes() const {
-  return splits_.size() * sizeof(Split) + patches_.size() * sizeof(Patch) + bytes_of_points_ + roots_.bytes();
-}
-
-void SurfaceWorkspace::begin() {
-  touched_ = 0;
-  if (++query_ == 0 || bytes() > max_bytes) {
-    roots_ = {};
-    splits_.clear();
-    patches_.clear();
-    split_count_ = patch_count_ = 0;
-    bytes_of_points_ = 0;
-    query_ = 1;
+void Workspace::Pieces::drop_old() {
+  recent_ = {};
+  std::erase_if(entries_, [&](const auto& item) {
+    return item.second.query != query_ && (item.second.surface.expired() || !item.second.pieces);
+  });
+  std::size_t sum = bytes();
+  if (sum <= byte_limit) return;
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> by_age;  // last query, name
+  for (const auto& [name, entry] : entries_) {
+    if (entry.query != query_) by_age.emplace_back(entry.query, name);
+  }
+  std::sort(by_age.begin(), by_age.end());
+  for (const auto& [query, name] : by_age) {
+    if (sum <= byte_limit) return;
+    sum -= entries_[name].pieces->bytes();
+    entries_.erase(name);
   }
 }
 
-void SurfaceWorkspace::renew(const SurfaceBvh& model) {
-  model_ = &model;
-  roots_.clear();
-  split_count_ = patch_count_ = 0;
+std::size_t Workspace::Pieces::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& [name, entry] : entries_) sum += entry.pieces ? entry.pieces->bytes() : 0;
+  return sum;
 }
 
-Patch& SurfaceWorkspace::next_patch() {
-  if (patch_count_ == patches_.size()) patches_.emplace_back();
-  return patches_[patch_count_];
+void Workspace::Pieces::clear() {
+  recent_ = {};
+  entries_.clear();
 }
 
-std::uint32_t SurfaceWorkspace::patch_place(const Node& node) {
-  const bool whole = node.kind == Node::Kind::patch;
-  std::uint32_t& place =
-      whole ? roots_[root_of(node).value()].patch : splits_[node.owner].patches[node.place];
-  if (place == none) {
-    Patch& next = next_patch();
-    const std::size_t before = next.points.capacity();
-    if (whole) {
-      model_->surface().patch(root_of(node), next);
-    } else {
-      split(patches_[splits_[node.owner].parent], node.place, next);
-    }
-    bytes_of_points_ += (next.points.capacity() - before) * sizeof(Vector3);
-    place = static_cast<std::uint32_t>(patch_count_++);
-  }
-  return place;
+Workspace::Workspace() : pieces_(std::make_unique<Pieces>()) {}
+Workspace::~Workspace() = default;
+Workspace::Workspace(Workspace&& other) noexcept = default;
+Workspace& Workspace::operator=(Workspace&& other) noexcept = default;
+
+Workspace& Workspace::of_this_thread() {
+  thread_local Workspace workspace;
+  return workspace;
 }
 
-const Patch& SurfaceWorkspace::patch(const Node& node) { return patches_[patch_place(node)]; }
-
-Piece SurfaceWorkspace::piece(const Node& node, HullPoints& scratch) {
-  return make_piece(model_->surface().library(), root_of(node), patch(node), scratch, model_->method());
-}
-
-std::uint32_t& SurfaceWorkspace::split_place(const Node& node) {
-  return node.kind == Node::Kind::patch ? roots_[root_of(node).value()].split
-                                        : splits_[node.owner].splits[node.place];
-}
-
-SurfaceWorkspace::Opened SurfaceWorkspace::open(const Node& node) {
-  if (node.kind == Node::Kind::tree) {
-    const std::uint32_t name = static_cast<const TreeNode*>(node.boxes)->names[node.place];
-    if ((name & WideBvh::leaf_bit) == 0) return {&model_->tree().node(name), Node::Kind::tree, 0};
-    const std::uint32_t leaf = name & ~WideBvh::leaf_bit;
-    return {&model_->leaf(leaf), Node::Kind::patch, leaf};
-  }
-  std::uint32_t place = split_place(node);
-  if (place == none) {
-    const std::uint32_t parent = patch_place(node);
-    const PatchId root = root_of(node);
-    const Split made{split_node(*model_, patches_[parent]),
-                     root,
-                     {none, none, none, none},
-                     {none, none, none, none},
-                     0,
-                     parent};
-    if (split_count_ == splits_.size()) {
-      splits_.push_back(made);
-    } else {
-      splits_[split_count_] = made;
-    }
-    place = static_cast<std::uint32_t>(split_count_++);
-    split_place(node) = place;
-  }
-  Split& split = splits_[place];
-  if (split.query != query_) {
-    split.query = query_;
-    ++touched_;
-  }
-  return {&split.pieces, Node::Kind::piece, place};
-}
+std::size_t Workspace::bytes() const { return pieces_->bytes(); }
+std::size_t Workspace::max_bytes() { return byte_limit; }
+void Workspace::clear() { pieces_->clear(); }
 
 }  // namespace snug

@@ -1,5 +1,6 @@
 #include <snug/snug.h>
 
+#include <atomic>
 #include <fstream>
 #include <limits>
 #include <memory>
@@ -9,7 +10,7 @@
 #include <snug/query/closest.h>
 #include <snug/query/pairs.h>
 #include <snug/search/surface_data.h>
-#include <snug/search/workspace.h>
+#include <snug/search/surface_workspace.h>
 #include <testing/places.h>
 
 #include <testing/files.h>
@@ -155,6 +156,66 @@ TEST(handles, evaluate_refine_and_measure) {
   EXPECT_EQ(subdivided(a, 2).face_count(), 16 * a.mesh().face_count());
   EXPECT_GT(limit_to_faces(a).value(), 0);
   EXPECT_EQ(limit_to_faces(load(model("star.obj"), {.scheme = Scheme::flat})).value_or(1) < 1e-10, true);
+}
+
+TEST(handles, say_where_they_have_a_surface) {
+  const auto count_places = [](const Surface& surface) {
+    std::size_t places = 0;
+    for (std::uint32_t owner = 0; owner < surface.owner_count(); ++owner) {
+      for (std::uint32_t corner = 0; corner < surface.corner_count(owner); ++corner) {
+        places += surface.has({owner, corner, 0.25, 0.25}) ? 1u : 0u;
+      }
+      EXPECT_FALSE(surface.has({owner, static_cast<std::uint32_t>(surface.corner_count(owner)), 0.25, 0.25}));
+      EXPECT_FALSE(surface.has({owner, 0, 0.25, std::numeric_limits<double>::quiet_NaN()}));
+    }
+    EXPECT_FALSE(surface.has({static_cast<std::uint32_t>(surface.owner_count()), 0, 0.25, 0.25}));
+    return places;
+  };
+  // A pentagon, beside it a quad.
+  ControlMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, 2, 0}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0}};
+  mesh.add_face(std::array{VertexId(0), VertexId(1), VertexId(2), VertexId(3), VertexId(4)});
+  mesh.add_face(std::array{VertexId(1), VertexId(5), VertexId(6), VertexId(2)});
+  EXPECT_EQ(count_places(Surface(mesh)), 6u);
+  mesh.tags.holes = {FaceId(0)};
+  EXPECT_EQ(count_places(Surface(mesh)), 1u);
+  const Surface pawn = load(model("pawn.obj"), {.scheme = Scheme::loop});
+  EXPECT_EQ(count_places(pawn), pawn.mesh().face_count());
+  EXPECT_EQ(load(model("pawn.obj"), {.scheme = Scheme::doo_sabin}).owner_count(), pawn.mesh().vertex_count());
+}
+
+TEST(handles, say_whether_they_are_closed) {
+  EXPECT_EQ(load(model("pawn.obj")).open_reason(), std::nullopt);
+  ControlMesh open = load(model("pawn.obj")).mesh();
+  open.tags.holes.emplace_back(0);
+  EXPECT_NE(Surface(open).open_reason().value_or("").find("face 0"), std::string::npos);
+}
+
+TEST(handles, are_prepared_once) {
+  const Surface a = load(model("pawn.obj"));
+  const std::size_t before = a.bytes();
+  a.prepare();
+  EXPECT_GT(a.bytes(), before);
+  std::atomic<bool> stop{true};
+  const Surface b = load(model("pawn.obj"));
+  EXPECT_THROW(b.prepare({.on_progress = {}, .stop = &stop}), Interrupted);
+  EXPECT_EQ(collide(a, b).verdict, Verdict::within);  // prepared after all
+  ControlMesh triangle;
+  triangle.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  triangle.add_face(std::array{VertexId(0), VertexId(1), VertexId(2)});
+  EXPECT_THROW(Surface(triangle, {.boundary = BoundaryRule::none}).prepare(), InputError);
+}
+
+TEST(schemes, are_found_by_each_of_their_names) {
+  for (const Scheme scheme : all_schemes) {
+    const SchemeTraits& traits = traits_of(scheme);
+    EXPECT_EQ(scheme_named(traits.name), scheme);
+    EXPECT_EQ(std::string(traits.name), name_of(scheme));
+    for (const char* other : traits.other_names) EXPECT_EQ(scheme_named(other), scheme) << other;
+    EXPECT_EQ(traits.dual, scheme == Scheme::doo_sabin || scheme == Scheme::midedge);
+    EXPECT_EQ(traits.triangular, scheme == Scheme::loop || scheme == Scheme::flat);
+  }
+  EXPECT_EQ(scheme_named("auto"), std::nullopt);
 }
 
 }  // namespace

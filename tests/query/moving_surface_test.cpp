@@ -1,8 +1,8 @@
 #include <snug/snug.h>
 
 #include <gtest/gtest.h>
-#include <snug/front/workspace.h>
 #include <snug/search/surface_data.h>
+#include <snug/search/workspace.h>
 #include <testing/journeys.h>
 #include <testing/places.h>
 

@@ -1,4 +1,4 @@
-#include <snug/front/smoothing_note.h>
+#include <snug/query/smoothing_note.h>
 
 #include <cmath>
 

@@ -13,15 +13,18 @@
 #include <utility>
 
 #include <snug/bvh/box_tree.h>
-#include <snug/front/scene_workers.h>
 #include <snug/search/placed_box.h>
 #include <snug/search/surface_data.h>
 #include <support/error.h>
 #include <support/in_order.h>
 #include <support/parallel.h>
+#include <support/workers.h>
 
 namespace snug {
 namespace {
+
+// Pairs that are answered between two calls of the broad phase.
+constexpr std::size_t pairs_of_a_batch = 16384;
 
 // Parts whose neighbours are looked for between two looks at how many there are.
 constexpr std::size_t least_block = 16, most_block = 4096;
@@ -220,37 +223,13 @@ double SceneBroadPhase::share() const {
 
 const Box3& SceneBroadPhase::box(std::uint32_t part) const { return state_->boxes.at(part); }
 
-SceneWorkers::SceneWorkers(int threads)
-    : own_(Workspace::of_this_thread()),
-      others_(static_cast<std::size_t>((threads > 0 ? threads : hardware_threads()) - 1)) {}
+namespace {
 
-void SceneWorkers::run(const std::function<void(Workspace&)>& work) {
-  share(threads(), [&](SharedRanges&, Workspace& workspace) { work(workspace); });
-}
-
-void SceneWorkers::for_each(std::size_t count, const std::function<void(Workspace&, std::size_t)>& answer) {
-  share(count, [&](SharedRanges& ranges, Workspace& workspace) {
-    while (const auto range = ranges.next()) {
-      for (std::size_t i = range->begin; i < range->end; ++i) answer(workspace, i);
-    }
-  });
-}
-
-void SceneWorkers::share(std::size_t count, const std::function<void(SharedRanges&, Workspace&)>& work) {
-  const std::thread::id caller = std::this_thread::get_id();
-  std::atomic<std::size_t> taken{0};
-  share_ranges(count, static_cast<int>(threads()), [&](SharedRanges& ranges) {
-    const bool own = std::this_thread::get_id() == caller;
-    work(ranges, own ? own_ : others_[taken++]);
-  });
-}
-
+// Calls what a monitor has for a part of the work that takes it from `from` to `to`.
 void report_part(const WorkMonitor& monitor, double from, double to, std::size_t done, std::size_t count) {
   if (done % 64 != 0) return monitor.checkpoint();
   monitor.report(from + (to - from) * static_cast<double>(done) / static_cast<double>(count));
 }
-
-namespace {
 
 // All that an answer depends on: two surfaces, the bits of their poses, options.
 template <class... Options>
@@ -296,8 +275,8 @@ auto question_of(const PlacedSurface& a, const PlacedSurface& b, const CollideOp
 
 }  // namespace
 
-Collision collide_pair(const Scene& scene, const ScenePair& pair, CollideOptions options,
-                       const WorkMonitor& monitor, Workspace& workspace) {
+Collision collide(const Scene& scene, const ScenePair& pair, CollideOptions options,
+                  const WorkMonitor& monitor, Workspace& workspace) {
   const PlacedSurface &a = scene.parts[pair.parts.a], &b = scene.parts[pair.parts.b];
   options.margin = pair.margin;
   const auto question = question_of(a, b, options);
@@ -310,9 +289,8 @@ Collision collide_pair(const Scene& scene, const ScenePair& pair, CollideOptions
   return answer;
 }
 
-std::optional<Distance> distance_of_pair(const Scene& scene, const ScenePair& pair,
-                                         const DistanceOptions& options, const WorkMonitor& monitor,
-                                         Workspace& workspace) {
+std::optional<Distance> distance(const Scene& scene, const ScenePair& pair, const DistanceOptions& options,
+                                 const WorkMonitor& monitor, Workspace& workspace) {
   const PlacedSurface &a = scene.parts[pair.parts.a], &b = scene.parts[pair.parts.b];
   const auto& [absolute, relative, budget, solid] = options;
   const Question question(a, b, pair.margin, absolute, relative, budget, solid);
@@ -340,7 +318,7 @@ namespace {
 template <class Answer, class Ask, class Take>
 std::uint64_t answer_pairs(SceneBroadPhase& pairs, int threads, const WorkMonitor& monitor, const Ask& ask,
                            const Take& take) {
-  SceneWorkers workers(threads);
+  Workers<Workspace> workers(Workspace::of_this_thread(), threads);
   std::uint64_t count = 0;
   for (double before = 0;; before = pairs.share()) {
     const std::vector<ScenePair> batch = pairs.next(pairs_of_a_batch);
@@ -364,7 +342,7 @@ SceneCounts collide(const Scene& scene, const CollideOptions& options,
   const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
   SceneCounts counts;
   const auto ask = [&](const ScenePair& pair, Workspace& workspace) {
-    return collide_pair(scene, pair, options, stop_only, workspace);
+    return collide(scene, pair, options, stop_only, workspace);
   };
   const auto take = [&](const ScenePair& pair, Collision& answer) {
     const Verdict verdict = answer.verdict;
@@ -389,7 +367,7 @@ SceneCounts distance(const Scene& scene, double limit, const DistanceOptions& op
   const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
   SceneCounts counts;
   const auto ask = [&](const ScenePair& pair, Workspace& workspace) {
-    return distance_of_pair(bare, pair, options, stop_only, workspace);
+    return distance(bare, pair, options, stop_only, workspace);
   };
   const auto take = [&](const ScenePair& pair, std::optional<Distance>& answer) {
     if (!answer) {

@@ -2,8 +2,10 @@
 
 #include <utility>
 
-#include <snug/front/smoothing_note.h>
+#include <snug/query/smoothing_note.h>
+#include <snug/search/solid.h>
 #include <snug/search/surface_data.h>
+#include <snug/surface/evaluate.h>
 
 namespace snug {
 
@@ -22,6 +24,15 @@ PlacedSurface Surface::at(const Motion& pose) const { return {*this, pose}; }
 const ControlMesh& Surface::mesh() const { return data_->limit().mesh(); }
 Scheme Surface::scheme() const { return data_->limit().options().scheme; }
 BoundaryRule Surface::boundary() const { return data_->limit().options().boundary; }
+std::size_t Surface::owner_count() const { return data_->limit().owner_count(); }
+std::size_t Surface::corner_count(std::uint32_t owner) const {
+  const LimitSurface::PatchRange patches = data_->limit().patches_of(owner);
+  return traits().triangular ? 1 : (patches.end - patches.begin) / 2;
+}
+bool Surface::has(const SurfaceParameter& at) const { return patch_at(data_->limit(), at).has_value(); }
+std::size_t Surface::kind_count() const { return data_->limit().kind_count(); }
+std::optional<std::string> Surface::open_reason() const { return snug::open_reason(data_->limit()); }
+void Surface::prepare(const WorkMonitor& monitor) const { static_cast<void>(data_->bvh(monitor)); }
 double Surface::size() const { return data_->limit().size(); }
 std::size_t Surface::bytes() const { return data_->bytes(); }
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <snug/front/workspace.h>
 #include <snug/search/surface_data.h>
+#include <snug/search/workspace.h>
 #include <snug/snug.h>
 #include <testing/places.h>
 

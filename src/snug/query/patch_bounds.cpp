@@ -4,26 +4,12 @@
 #include <vector>
 
 #include <snug/geometry/rounding.h>
-#include <snug/query/bound.h>
 #include <snug/search/surface_data.h>
 #include <snug/surface/batch_bounds.h>
 #include <support/error.h>
 #include <support/scaling.h>
 
 namespace snug {
-
-BoundSummary bound(const Surface& surface, const BoundOptions& options,
-                   const std::function<void(const PatchEnclosure&)>& sink, const WorkMonitor& monitor) {
-  const LimitSurface& limit = surface.data()->limit();
-  return bound(
-      limit, options,
-      [&](const PieceEnclosure& piece) {
-        sink({limit.place(piece.patch), piece.path.text(),
-              piece.path.level() + (limit.after_first_split(piece.patch) ? 1 : 0), piece.corners,
-              piece.offset, piece.interval, piece.normals});
-      },
-      monitor, surface.data()->method());
-}
 
 struct PatchBounds::Inside {
   std::shared_ptr<const SurfaceData> surface;

@@ -242,6 +242,21 @@ TEST(scene, distances_are_those_of_every_pair_by_itself) {
 }
 
 // Distances that equal a margin are not above it. All numbers here are exact.
+TEST(scene, one_pair_is_answered_with_its_margin_and_named) {
+  const Scene scene{
+      {cube(), cube().at(Motion::translation({1.5, 0, 0})), cube().at(Motion::translation({9e307, 0, 0}))}};
+  EXPECT_EQ(collide(scene, {{0, 1}, 0, 0}).verdict, Verdict::separated);
+  EXPECT_EQ(collide(scene, {{0, 1}, 0.6, 0}).verdict, Verdict::within);
+  EXPECT_FALSE(distance(scene, {{0, 1}, 0.4, 0}).has_value());
+  EXPECT_TRUE(distance(scene, {{0, 1}, 0.5, 0}, {.absolute = 1e-6}).value().distance.contains(0.5));
+  try {
+    static_cast<void>(collide(scene, {{0, 1}, -1, 0}));
+    ADD_FAILURE() << "a negative margin was taken";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("parts 0 and 1"), std::string::npos) << error.what();
+  }
+}
+
 TEST(broad_phase, deals_out_parts_whose_distance_is_the_margin) {
   const Surface shape = cube();
   const double places[] = {0, 1, 2.25, -3, 1024};

@@ -140,9 +140,9 @@ TEST(files_of_facets, are_read_as_facets_without_a_note) {
     const std::string path = folder.file(name);
     Lines dropped;
     ControlMesh mesh = box();
-    write_mesh(mesh, path, [&](const std::string& line) { dropped.push_back(line); });
+    write_mesh(mesh, path, {.notes = [&](const std::string& line) { dropped.push_back(line); }});
     mesh.tags.scheme = Scheme::flat;
-    write_mesh(mesh, path, [&](const std::string& line) { dropped.push_back(line); });
+    write_mesh(mesh, path, {.notes = [&](const std::string& line) { dropped.push_back(line); }});
     EXPECT_EQ(dropped, Lines{}) << name;
     EXPECT_EQ(loaded(path).scheme, Scheme::flat) << name;
     EXPECT_EQ(loaded(path).lines, Lines{}) << name;
@@ -186,7 +186,7 @@ TEST(writing, says_that_a_format_loses_facets_only_where_it_does) {
     Lines found;
     ControlMesh mesh = box();
     mesh.tags.scheme = scheme;
-    write_mesh(mesh, folder.file(name), [&](const std::string& line) { found.push_back(line); });
+    write_mesh(mesh, folder.file(name), {.notes = [&](const std::string& line) { found.push_back(line); }});
     return found;
   };
   for (const char* name : {"a.off", "a.ply"}) {

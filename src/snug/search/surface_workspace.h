@@ -1,0 +1,142 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include <snug/geometry/motion.h>
+#include <snug/search/surface_bvh.h>
+
+namespace snug {
+
+/// A box in a surface's tree: of the tree itself, of a leaf, which is a whole patch, or of pieces that a patch
+/// was split into.
+struct Node {
+  enum class Kind : std::uint8_t { tree, patch, piece };
+  const WideNode* boxes;
+  std::uint8_t place;
+  Kind kind;
+  std::uint32_t owner;  ///< of patches the leaf, of pieces the split that made them
+
+  [[nodiscard]] bool bounded() const { return kind != Kind::tree; }
+  [[nodiscard]] float size() const { return boxes->size_of(place); }
+};
+
+/// What queries have split of one surface. One a thread. Dropped between two queries when it has grown beyond
+/// 256 MiB.
+/// Guarantee: a node opens to the same boxes whatever came before: no answer depends on earlier queries.
+class SurfaceWorkspace {
+ public:
+  /// A query splits at most this many different pieces, which bounds its memory.
+  explicit SurfaceWorkspace(const SurfaceBvh& model, std::size_t most_pieces = 50'000)
+      : model_(&model), most_pieces_(most_pieces) {}
+
+  [[nodiscard]] const SurfaceBvh& model() const { return *model_; }
+  [[nodiscard]] std::size_t bytes() const;
+
+  /// For queries: to be called first.
+  void begin();
+  /// Forgets all that was split, when the surface has moved. Keeps its memory.
+  void renew(const SurfaceBvh& model);
+  [[nodiscard]] Node root() const { return {&model_->tree().root(), 0, Node::Kind::tree, 0}; }
+  /// What is known of a patch or a piece.
+  /// Requires:  node.bounded(), here and below.
+  [[nodiscard]] static const PieceRecord& record(const Node& node) {
+    return node.kind == Node::Kind::patch ? static_cast<const LeafNode*>(node.boxes)->records[node.place]
+                                          : static_cast<const SplitNode*>(node.boxes)->records[node.place];
+  }
+  /// Its control points, which stay where they are until begin().
+  [[nodiscard]] const Patch& patch(const Node& node);
+  /// The whole patch that it belongs to.
+  [[nodiscard]] PatchId root_of(const Node& node) const {
+    return node.kind == Node::Kind::patch ? model_->patch(node.owner, node.place) : splits_[node.owner].root;
+  }
+  /// The piece with its offset triangle, made anew.
+  [[nodiscard]] Piece piece(const Node& node, HullPoints& scratch);
+  /// False for a piece that need not be split: at the last level, or where rounding makes up its radius.
+  [[nodiscard]] static bool can_open(const Node& node) {
+    if (node.kind == Node::Kind::tree) return true;
+    const std::uint8_t can_split = node.kind == Node::Kind::patch
+                                       ? static_cast<const LeafNode*>(node.boxes)->can_split
+                                       : static_cast<const SplitNode*>(node.boxes)->can_split;
+    return (can_split >> node.place & 1u) != 0;
+  }
+
+  /// What a node opens to, made if need be.
+  struct Opened {
+    const WideNode* boxes;
+    Node::Kind kind;
+    std::uint32_t owner;
+    [[nodiscard]] std::size_t count() const { return boxes->count(); }
+    [[nodiscard]] Node child(std::size_t place) const {
+      return {boxes, static_cast<std::uint8_t>(place), kind, owner};
+    }
+  };
+  /// Requires:  can_open(node), or a piece above the last level.
+  [[nodiscard]] Opened open(const Node& node);
+
+  /// Has the query split as many different pieces as one may?
+  [[nodiscard]] bool full() const { return touched_ >= most_pieces_; }
+
+ private:
+  static constexpr std::uint32_t none = UINT32_MAX;
+  // The pieces of a patch or a piece.
+  struct Split {
+    SplitNode pieces;
+    PatchId root;
+    std::array<std::uint32_t, 4> splits{none, none, none, none};   // of these pieces
+    std::array<std::uint32_t, 4> patches{none, none, none, none};  // in patches_
+    std::uint32_t query = 0;                                       // that opened it last
+    std::uint32_t parent;                                          // in patches_
+  };
+  struct Root {
+    std::uint32_t split = none, patch = none;
+  };
+  // Of whole patches, by number; open addressing.
+  class Roots {
+   public:
+    // Stays where it is until another patch is asked for.
+    [[nodiscard]] Root& operator[](std::uint32_t patch);
+    // Keeps its memory.
+    void clear();
+    [[nodiscard]] std::size_t bytes() const { return places_.capacity() * sizeof(Place); }
+
+   private:
+    struct Place {
+      std::uint32_t patch = 0, round = 0;
+      Root root;
+    };
+    [[nodiscard]] Place& place_of(std::uint32_t patch);
+
+    std::vector<Place> places_;  // a power of two of them, at most half in use
+    std::size_t count_ = 0;
+    std::uint32_t round_ = 1;  // places of earlier ones are free
+  };
+  [[nodiscard]] std::uint32_t patch_place(const Node& node);
+  [[nodiscard]] std::uint32_t& split_place(const Node& node);
+  [[nodiscard]] Patch& next_patch();
+
+  const SurfaceBvh* model_;
+  std::size_t most_pieces_;
+  Roots roots_;
+  // What is behind the counts is memory for more.
+  std::deque<Split> splits_;
+  std::deque<Patch> patches_;
+  std::size_t split_count_ = 0, patch_count_ = 0;
+  std::size_t bytes_of_points_ = 0;
+  std::uint32_t query_ = 0;
+  std::size_t touched_ = 0;
+};
+
+/// A surface where a query is to see it.
+struct PlacedBvh {
+  const SurfaceBvh& model;
+  SurfaceWorkspace& scratch;  ///< of this model and of no other one in the same query
+  Motion pose;
+  /// Upper bound, in mesh units, of how far from there the place that is meant of a point may be. Crossings and
+  /// points inside of solids are proved for that place too; distances are those of `pose` itself.
+  double deviation = 0;
+};
+
+}  // namespace snug

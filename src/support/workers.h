@@ -1,0 +1,52 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <thread>
+#include <vector>
+
+#include <support/parallel.h>
+
+namespace snug {
+
+/// Threads with a state each, such as a Workspace, which is kept from one loop to the next. That of the thread which
+/// made this is given, and may last longer.
+template <class State>
+class Workers {
+ public:
+  /// `threads`: 0 for all cores.
+  Workers(State& own, int threads)
+      : own_(own), others_(static_cast<std::size_t>((threads > 0 ? threads : hardware_threads()) - 1)) {}
+
+  /// Calls work(state) on all threads, each with its own.
+  /// Errors:    what `work` throws is thrown again once all have ended, of several one.
+  void run(const std::function<void(State&)>& work) {
+    share(threads(), [&](SharedRanges&, State& state) { work(state); });
+  }
+  /// Calls answer(state, i) for each i in [0, count), no two at once with the same state.
+  /// Errors:    what `answer` throws ends the loop and is thrown again, of several one.
+  void for_each(std::size_t count, const std::function<void(State&, std::size_t)>& answer) {
+    share(count, [&](SharedRanges& ranges, State& state) {
+      while (const auto range = ranges.next()) {
+        for (std::size_t i = range->begin; i < range->end; ++i) answer(state, i);
+      }
+    });
+  }
+  [[nodiscard]] std::size_t threads() const { return others_.size() + 1; }
+
+ private:
+  void share(std::size_t count, const std::function<void(SharedRanges&, State&)>& work) {
+    const std::thread::id caller = std::this_thread::get_id();
+    std::atomic<std::size_t> taken{0};
+    share_ranges(count, static_cast<int>(threads()), [&](SharedRanges& ranges) {
+      const bool own = std::this_thread::get_id() == caller;
+      work(ranges, own ? own_ : others_[taken++]);
+    });
+  }
+
+  State& own_;
+  std::vector<State> others_;
+};
+
+}  // namespace snug
