@@ -161,6 +161,8 @@ TEST(mesh_file, bytes_are_those_of_the_file) {
     expect_same_arrays(parse_mesh(read_file(path), path), read_mesh(path));
   }
   EXPECT_TRUE(format_of("a.glb").normals);
+  const std::vector<Vector3> one(1);
+  EXPECT_THROW(static_cast<void>(format_mesh(creased_triangle(), "a.glb", {.normals = one})), InputError);
   EXPECT_TRUE(format_of("a.usda").scheme && !format_of("a.usda").floats);
 }
 

@@ -169,6 +169,8 @@ TEST(handles, say_where_they_have_a_surface) {
       EXPECT_FALSE(surface.has({owner, 0, 0.25, std::numeric_limits<double>::quiet_NaN()}));
     }
     EXPECT_FALSE(surface.has({static_cast<std::uint32_t>(surface.owner_count()), 0, 0.25, 0.25}));
+    EXPECT_THROW(static_cast<void>(surface.corner_count(static_cast<std::uint32_t>(surface.owner_count()))),
+                 InputError);
     return places;
   };
   // A pentagon, beside it a quad.

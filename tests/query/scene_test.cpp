@@ -248,6 +248,10 @@ TEST(scene, one_pair_is_answered_with_its_margin_and_named) {
   EXPECT_EQ(collide(scene, {{0, 1}, 0, 0}).verdict, Verdict::separated);
   EXPECT_EQ(collide(scene, {{0, 1}, 0.6, 0}).verdict, Verdict::within);
   EXPECT_FALSE(distance(scene, {{0, 1}, 0.4, 0}).has_value());
+  for (const PartPair& parts : {PartPair{0, 3}, PartPair{7, 0}, PartPair{1, 1}}) {
+    EXPECT_THROW(static_cast<void>(collide(scene, {parts, 0, 0})), InputError);
+    EXPECT_THROW(static_cast<void>(distance(scene, {parts, 0, 0})), InputError);
+  }
   EXPECT_TRUE(distance(scene, {{0, 1}, 0.5, 0}, {.absolute = 1e-6}).value().distance.contains(0.5));
   try {
     static_cast<void>(collide(scene, {{0, 1}, -1, 0}));

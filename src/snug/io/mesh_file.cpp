@@ -151,6 +151,8 @@ MeshFormat format_of(const std::string& path) {
 
 std::string format_mesh(const ControlMesh& mesh, const std::string& path, const WriteOptions& options) {
   const std::string ending = format_to_write(path);
+  require_value(options.normals.empty() || options.normals.size() == mesh.vertex_count(),
+                "write_mesh: give a normal for each vertex, or none");
   const Notes& notes = options.notes;
   if (notes && !holds_tags(ending)) note_dropped_tags(mesh, path, !format_of(path).polygons, notes);
   if (notes && ending != ".obj" && mesh.polyline_count() > 0) {

@@ -277,6 +277,7 @@ auto question_of(const PlacedSurface& a, const PlacedSurface& b, const CollideOp
 
 Collision collide(const Scene& scene, const ScenePair& pair, CollideOptions options,
                   const WorkMonitor& monitor, Workspace& workspace) {
+  require_parts(pair.parts, scene.parts.size(), "the pair");
   const PlacedSurface &a = scene.parts[pair.parts.a], &b = scene.parts[pair.parts.b];
   options.margin = pair.margin;
   const auto question = question_of(a, b, options);
@@ -291,6 +292,7 @@ Collision collide(const Scene& scene, const ScenePair& pair, CollideOptions opti
 
 std::optional<Distance> distance(const Scene& scene, const ScenePair& pair, const DistanceOptions& options,
                                  const WorkMonitor& monitor, Workspace& workspace) {
+  require_parts(pair.parts, scene.parts.size(), "the pair");
   const PlacedSurface &a = scene.parts[pair.parts.a], &b = scene.parts[pair.parts.b];
   const auto& [absolute, relative, budget, solid] = options;
   const Question question(a, b, pair.margin, absolute, relative, budget, solid);

@@ -6,6 +6,7 @@
 #include <snug/search/solid.h>
 #include <snug/search/surface_data.h>
 #include <snug/surface/evaluate.h>
+#include <support/error.h>
 
 namespace snug {
 
@@ -26,6 +27,7 @@ Scheme Surface::scheme() const { return data_->limit().options().scheme; }
 BoundaryRule Surface::boundary() const { return data_->limit().options().boundary; }
 std::size_t Surface::owner_count() const { return data_->limit().owner_count(); }
 std::size_t Surface::corner_count(std::uint32_t owner) const {
+  require_value(owner < owner_count(), "corner_count: the surface has no such face or vertex");
   const LimitSurface::PatchRange patches = data_->limit().patches_of(owner);
   return traits().triangular ? 1 : (patches.end - patches.begin) / 2;
 }
