@@ -126,6 +126,21 @@ TEST(ray_caster, is_as_near_as_it_says_where_the_tolerance_is_small) {
   EXPECT_GT(worst, 0);
 }
 
+TEST(ray_caster, hits_do_not_depend_on_threads) {
+  const Surface surface = load(model("bust.obj"));
+  const RayCaster caster(surface, 1e-3 * surface.size());
+  const std::vector<Ray> rays = rays_around(surface, 20'000);
+  std::vector<QuickHit> expected(rays.size()), found(rays.size());
+  caster.cast(rays, expected, 1);
+  for (const int threads : {2, 3, 7}) {
+    caster.cast(rays, found, threads);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      ASSERT_EQ(found[i].t, expected[i].t) << "ray " << i << ", " << threads << " threads";
+      ASSERT_EQ(found[i].normal, expected[i].normal) << "ray " << i << ", " << threads << " threads";
+    }
+  }
+}
+
 TEST(ray_caster, keeps_to_segments_and_refuses_what_is_none) {
   const Surface surface = sharp_cube();
   const RayCaster caster(surface, 1e-4);
