@@ -66,7 +66,7 @@ function(snug_library)
 
   if(BUILD_SHARED_LIBS)  # whose private symbols cannot be linked
     add_library(snug_private STATIC $<TARGET_OBJECTS:snug_objects>)
-    target_link_libraries(snug_private PUBLIC hwy::hwy Threads::Threads)
+    target_link_libraries(snug_private PRIVATE hwy::hwy Threads::Threads)  # as snug does: the same flags, the same objects
   else()
     add_library(snug_private INTERFACE)
     target_link_libraries(snug_private INTERFACE snug)
