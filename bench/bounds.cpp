@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <snug/mesh.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/query/subdivide.h>
 
 #include "runner.h"
@@ -32,7 +32,7 @@ void bench_patches(const char* title, ControlMesh mesh, std::shared_ptr<BoundsCa
   std::vector<OffsetTriangle> triangles;
   Group group(title, "patch", options);
   group.add("box of the control points", count, [&] { return subject.box(faces, boxes); });
-  group.add("offset triangle from hull rows", count, [&] { return subject.enclose(faces, triangles); });
+  group.add("offset triangle from bounding rows", count, [&] { return subject.enclose(faces, triangles); });
   group.run();
 }
 

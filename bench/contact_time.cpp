@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include "peers.h"
 

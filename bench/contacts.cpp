@@ -6,7 +6,7 @@
 #include <string>
 
 #include <snug/query/contacts.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include "meshes.h"
 #include "placements.h"

@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
     unsigned level = 0;
     while (model.mesh.face_count() << 2 * (level + 1) <= 100'000u >> (options.quick ? 4 : 0)) ++level;
     const ControlMesh mesh = subdivide(model.mesh, surface.options(), level, true);
-    // What CGAL is given for the surface is one level finer, and still farther off than the precision.
+    // CGAL's mesh for the surface is one level finer, and still farther off than the precision.
     const ControlMesh finer = subdivide(model.mesh, surface.options(), level + 1, true);
     for (const double moved : {0.0, 0.005}) {
       const Vector3 by{moved * size, 0, 0};

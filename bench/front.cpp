@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <snug/query/closest.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/search/workspace.h>
 
 #include "placements.h"

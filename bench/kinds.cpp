@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
     if (options.quick && c == 500) continue;
     const KindKey key{Scheme::loop, {inside(a), inside(b), inside(c)}};
     BoundsCache library;
-    const BoundRows rows = make_bound_rows(library.kinds().find(key));
+    const BoundingRows rows = make_bounding_rows(library.kinds().find(key));
     const std::string name = "valences " + std::to_string(a) + " " + std::to_string(b) + " " +
                              std::to_string(c) + ", " + std::to_string(rows.count()) + " rows of " +
                              std::to_string(rows.control_count()) + ", " +
@@ -42,13 +42,13 @@ int main(int argc, char** argv) {
     // Rows to the full depth, though a library composes some of those of other kinds.
     group.add(name, 1, [key] {
       KindCache cold;
-      return static_cast<double>(make_bound_rows(cold.find(key)).count());
+      return static_cast<double>(make_bounding_rows(cold.find(key)).count());
     });
     if (c > 50) continue;
     group.add("  its table", 1, [key] {
       KindCache cold;
       const Kind& kind = cold.find(key);
-      return make_bound_table(kind, make_bound_rows(kind)).upper.back()[0];
+      return make_bound_table(kind, make_bounding_rows(kind)).upper.back()[0];
     });
   }
   group.run();

@@ -14,7 +14,7 @@
 namespace snug::bench {
 namespace {
 
-constexpr std::uint32_t least_valence = 3, most_valence = 12;
+constexpr std::uint32_t min_valence = 3, max_valence = 12;
 
 // In [-1, 1), the same on every machine.
 double unit(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-52 - 1; }
@@ -55,9 +55,8 @@ class Flipper {
     const HalfEdge t = twin_[h];
     const HalfEdge bc = next(h), ca = next(bc), ad = next(t), db = next(ad);
     const VertexId a = from_[h], b = from_[t], c = from_[ca], d = from_[db];
-    if (valence_[a.index()] == least_valence || valence_[b.index()] == least_valence ||
-        valence_[c.index()] == most_valence || valence_[d.index()] == most_valence || c == d ||
-        joined(ca, d)) {
+    if (valence_[a.index()] == min_valence || valence_[b.index()] == min_valence ||
+        valence_[c.index()] == max_valence || valence_[d.index()] == max_valence || c == d || joined(ca, d)) {
       return false;
     }
     const std::array<HalfEdge, 4> outer{twin_[bc], twin_[ca], twin_[ad], twin_[db]};

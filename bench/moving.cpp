@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <snug/query/closest.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/search/surface_data.h>
 #include <snug/snug.h>
 
@@ -118,7 +118,7 @@ void bench_frames(const std::string& name, const ControlMesh& mesh, const Option
               ControlMesh copy = mesh;
               copy.points = now;
               const Surface surface(std::move(copy));
-              return checksum(SurfaceBvh(surface.data()->limit(), {.threads = 1, .least_lazy = SIZE_MAX}));
+              return checksum(SurfaceBvh(surface.data()->limit(), {.threads = 1, .min_lazy = SIZE_MAX}));
             }));
   group.add("built anew: Surface and what a first query needs", items,
             each_frame([&](const std::vector<Point3>& now) {
@@ -131,8 +131,8 @@ void bench_frames(const std::string& name, const ControlMesh& mesh, const Option
 }
 
 // A tree with its workspace.
-struct Asked {
-  explicit Asked(const SurfaceBvh& tree) : model(tree), scratch(tree) {}
+struct QueriedModel {
+  explicit QueriedModel(const SurfaceBvh& tree) : model(tree), scratch(tree) {}
   const SurfaceBvh& model;
   SurfaceWorkspace scratch;
 };
@@ -149,8 +149,8 @@ void bench_queries(const std::string& name, const ControlMesh& mesh, const Way& 
   }
   static_cast<void>(refit_looser);
   const LimitSurface& limit = moving.now().data()->limit();
-  const SurfaceBvh built(limit, {.threads = 1, .least_lazy = SIZE_MAX});
-  Asked fresh(built), refitted(moving.now().data()->bvh()), against(other.data()->bvh());
+  const SurfaceBvh built(limit, {.threads = 1, .min_lazy = SIZE_MAX});
+  QueriedModel fresh(built), refitted(moving.now().data()->bvh()), against(other.data()->bvh());
 
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -164,14 +164,14 @@ void bench_queries(const std::string& name, const ControlMesh& mesh, const Way& 
                                 {size * unit(random), size * unit(random), 0.5 * size * unit(random)}));
   }
   const auto items = static_cast<double>(points.size());
-  const auto closest = [&](Asked& in) {
+  const auto closest = [&](QueriedModel& in) {
     return [&in, &points] {
       double sum = 0;
       for (const Point3& p : points) sum += closest_point(in.scratch, p, {.relative = 1e-3}).distance.upper;
       return sum;
     };
   };
-  const auto pair = [&](Asked& in, const auto& ask) {
+  const auto pair = [&](QueriedModel& in, const auto& ask) {
     return [&in, &poses, &against, ask] {
       double sum = 0;
       for (const Motion& pose : poses) {
@@ -193,8 +193,8 @@ void bench_queries(const std::string& name, const ControlMesh& mesh, const Way& 
     group.run();
   };
   against_fresh("closest point", closest);
-  against_fresh("distance", [&](Asked& in) { return pair(in, ask_distance); });
-  against_fresh("collide", [&](Asked& in) { return pair(in, ask_contact); });
+  against_fresh("distance", [&](QueriedModel& in) { return pair(in, ask_distance); });
+  against_fresh("collide", [&](QueriedModel& in) { return pair(in, ask_contact); });
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 namespace snug::bench {
 
 /// Contestants of bench_faces() and bench_quads().
-inline constexpr const char *one_by_one = "offset triangle from hull rows, a patch at a time",
-                            *from_rows = "offset triangle from hull rows",
+inline constexpr const char *one_by_one = "offset triangle from bounding rows, a patch at a time",
+                            *from_rows = "offset triangle from bounding rows",
                             *from_tables = "offset triangle from tables";
 std::vector<Times> bench_faces(const std::string& title, Subject& subject, const std::vector<PatchId>& faces,
                                const Options& options);
@@ -21,7 +21,7 @@ std::vector<std::vector<Times>> bench_quads(const std::string& title, const Cont
 
 [[nodiscard]] inline SchemeOptions catmark() { return {Scheme::catmark, BoundaryRule::edge_and_corner}; }
 
-/// What it took to bound all patches of a mesh in memory, nothing known before.
+/// Costs of bounding all patches of a mesh in memory, with empty caches.
 struct ColdBounds {
   double radii = 0;  ///< their sum
   std::size_t kinds = 0, bytes = 0;

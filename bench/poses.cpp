@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include "placements.h"
 

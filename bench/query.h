@@ -5,7 +5,7 @@
 
 #include <experiments/rooms.h>
 #include <snug/query/closest.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/search/surface_workspace.h>
 
 namespace snug::bench {
@@ -44,7 +44,7 @@ class PointQueries {
   SurfaceWorkspace scratch_;
 };
 
-/// What queries did, in all.
+/// Work of queries, in all.
 class Work {
  public:
   void add(const SearchStats& stats);

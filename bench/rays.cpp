@@ -22,7 +22,7 @@ namespace {
 using namespace snug;
 using namespace snug::bench;
 
-// What an eye above the model, to its right, sees on 800 x 600 pixels; the model fills about half of their height.
+// Rays of an eye above the model, to its right, for 800 x 600 pixels; the model fills about half of their height.
 struct Pixels {
   Point3 eye;
   double size;  // of a pixel at the model's middle

@@ -43,7 +43,7 @@ std::vector<Table> tables(const ControlMesh& mesh) {
 #endif
 
 #ifdef SNUG_BENCH_OPENSUBDIV
-// As many limit points a patch as snug has hull points, spread evenly: what a bound from the peer's points
+// As many limit points a patch as snug has bounding points, spread evenly: what a bound from the peer's points
 // would need at least, were it a proof.
 void bench_as_many_points(const Options& options) {
   const ControlMesh mesh = irregular_mesh(options.size(5'000, 2'000));
@@ -64,7 +64,7 @@ void bench_as_many_points(const Options& options) {
   BatchBounds bounds = subject.bounds(all_faces(mesh.face_count()));
   std::vector<OffsetTriangle> triangles;
   Group group("new positions, " + std::to_string(mesh.face_count()) + " faces, " + std::to_string(wanted) +
-                  " hull points a patch in the mean",
+                  " bounding points a patch in the mean",
               "patch", options);
   group.add("snug: offset triangles", count, [&] { return update(bounds, moved.points, triangles); });
   group.add("Far: as many limit points, double", count, [&] { return stencils.update(moved.points); });

@@ -9,7 +9,7 @@
 
 namespace snug::bench {
 
-/// What every program of bench/ understands.
+/// Options of every program of bench/.
 struct Options {
   int rounds = 7;                  ///< --rounds N, at least 1
   bool quick = false;              ///< --quick: small inputs and two rounds, to see that it runs

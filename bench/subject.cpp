@@ -24,7 +24,7 @@ double Subject::enclose(std::span<const PatchId> faces, std::vector<OffsetTriang
 std::size_t Subject::hull_point_count() {
   std::size_t sum = 0;
   for (const PatchId f : all_faces(surface_->face_count())) {
-    hull_points(*library_, surface_->patch(f), scratch_);
+    bounding_points(*library_, surface_->patch(f), scratch_);
     sum += scratch_.size();
   }
   return sum;

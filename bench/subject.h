@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include <snug/bounds/bounding_points.h>
 #include <snug/bounds/enclosure.h>
-#include <snug/bounds/hull_points.h>
 #include <snug/surface/batch_bounds.h>
 #include <snug/surface/limit_surface.h>
 
@@ -42,7 +42,7 @@ class Subject {
  private:
   std::shared_ptr<BoundsCache> library_;
   std::unique_ptr<LimitSurface> surface_;
-  HullPoints scratch_;
+  BoundingPoints scratch_;
 };
 
 /// Offset triangles for these control points, in mesh units, on one thread.

@@ -29,7 +29,7 @@ struct Ratios {
   void add(Subject& subject, PatchId face, const OffsetTriangle& enclosure, int side) {
     if (enclosure.radius <= 1000 * enclosure.rounding) return;
     const Patch patch = subject.surface().patch(face);
-    all.push_back(enclosure.radius / LimitLattice(patch, side).least_radius(enclosure.base));
+    all.push_back(enclosure.radius / LimitLattice(patch, side).min_radius(enclosure.base));
   }
   void print(const std::string& name) const {
     if (all.empty()) return;

@@ -79,7 +79,7 @@ struct StoredFrame {
   std::vector<std::array<double, 2>> offsets;
 };
 
-/// What quadratic triangles near patches rest on.
+/// Data that quadratic triangles near patches rest on.
 struct StoredQuadratics {
   std::vector<SixWeights> fit;  // of each control point; nothing rests on them
   std::array<StoredComparison, 2> comparisons;

@@ -16,8 +16,8 @@ namespace checker {
 
 class Shapes;
 
-/// What all patches of Catmull-Clark, Doo-Sabin or Midedge with these faces at the corners of their quad have
-/// in common: the net around them, with control points numbered as snug/patch/neighbourhood.h documents.
+/// The net shared by all patches of Catmull-Clark, Doo-Sabin or Midedge with these faces at the corners of their
+/// quad, with control points numbered as snug/patch/neighbourhood.h documents.
 /// Catmull-Clark: face 0 is the quad. Dual schemes: vertex 0 is the patch's own, its faces are the corners.
 class Shape {
  public:

@@ -9,7 +9,7 @@
 
 namespace checker {
 
-/// What the proof of a kind's rows found.
+/// Result of the proof of a kind's rows.
 struct RowsProof {
   std::vector<Row>
       hull;  ///< exact rows, each close to a stored one: the patch lies in the hull of their images
@@ -18,7 +18,7 @@ struct RowsProof {
   unsigned depth = 0;       ///< of the smallest piece
 };
 
-/// Proves that the stored rows of a kind are hull rows as BoundRows (snug/basis/bound_rows.h) promises.
+/// Proves that the stored rows of a kind are bounding rows as BoundingRows (snug/basis/bounding_rows.h) promises.
 /// Errors:    Rejected if that could not be proved.
 /// Source:    derivations/checker.md.
 [[nodiscard]] RowsProof prove_rows(const StoredKind& kind);
@@ -39,7 +39,7 @@ void prove_comparison(const StoredComparison& comparison, Scheme scheme, const K
 /// Errors:    Rejected if that could not be proved.
 void prove_frame(const StoredFrame& frame, Scheme scheme, const Key& key);
 
-/// What the proof of a whole file found.
+/// Result of the proof of a whole file.
 struct FileProof {
   std::size_t kinds = 0, tables = 0, comparisons = 0, frames = 0, stored_rows = 0, pieces = 0, covered = 0;
   unsigned depth = 0;

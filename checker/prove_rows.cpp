@@ -72,7 +72,7 @@ bool on(const Place& p, const Segment& s) {
   return true;
 }
 
-// Proves that stored rows are hull rows; those of a comparison also that they are so together with the points
+// Proves that stored rows are bounding rows; those of a comparison also that they are so together with the points
 // of any quadratic, but for the pieces that it has nets of.
 class RowsProver {
  public:
@@ -219,7 +219,7 @@ class RowsProver {
   std::vector<std::vector<Segment>> missing_;  // for each point not stored, the edges it lies on
 };
 
-// What is promised of the stored numbers alone.
+// Guarantees of the stored numbers alone.
 void prove_sums(const StoredRows& stored) {
   for (std::size_t r = 0; r < stored.rows; ++r) {
     Real sum, magnitude;

@@ -5,7 +5,7 @@
 
 namespace checker {
 
-/// What the arithmetic keeps for a thread between operations is given back when this goes.
+/// Frees, when destroyed, the memory that the arithmetic keeps for a thread between operations.
 struct KeptByThread {
   KeptByThread() = default;
   ~KeptByThread() { mpfr_free_cache(); }

@@ -98,13 +98,13 @@ PieceCount count_pieces(const LimitSurface& surface, LayoutTables& tables, Bound
                         const std::function<void(PatchId, const Patch&, double)>& sink,
                         const WorkMonitor& monitor) {
   const PowerOfTwo back = surface.scale().inverse();
-  HullPoints scratch;
+  BoundingPoints scratch;
   const auto size_of = [&](const Patch& patch) -> Size {
     if (way == BoundWay::control_box) return size_of_box(control_box(patch, scratch), patch.error, back);
     const OffsetTriangle offset = tables.offset(patch, source_of(way), scratch);
     return {unscaled(offset, back).radius, offset.radius <= 2 * offset.rounding};
   };
-  const auto passes = [&](const Patch& patch) { return way == BoundWay::split && patch.kind->passing(); };
+  const auto passes = [&](const Patch& patch) { return way == BoundWay::split && patch.kind->transient(); };
   Counter<Patch> counter(options, 4, size_of, monitor);
   for (std::size_t p = 0; p < surface.patch_count(); ++p) {
     const PatchId root(p);
@@ -121,13 +121,13 @@ PieceCount count_pieces(const LimitSurface& surface, LayoutTables& tables, Bound
 PieceCount count_pieces(const CurveSet& curves, BoundWay way, const CountOptions& options,
                         const WorkMonitor& monitor) {
   require_value(way == BoundWay::rows || way == BoundWay::control_box,
-                "pieces: curves have hull rows and control boxes only");
+                "pieces: curves have bounding rows and control boxes only");
   const PowerOfTwo back = curves.scale().inverse();
-  HullPoints scratch;
+  BoundingPoints scratch;
   const auto size_of = [&](const CurvePiece& piece) -> Size {
     if (way == BoundWay::control_box) return size_of_box(control_box(piece, scratch), piece.error, back);
     const std::array<LimitPoint, 2> ends = limit_ends(piece);
-    hull_points(piece, scratch);
+    bounding_points(piece, scratch);
     const OffsetSegment offset = offset_segment(scratch, {ends[0].relative, ends[1].relative});
     return {unscaled(offset, back).radius, offset.radius <= 2 * offset.rounding};
   };

@@ -15,11 +15,11 @@ namespace snug {
 
 /// Ways to bound a surface. The library has the first two; the others lost.
 enum class BoundWay : std::uint8_t {
-  rows,            ///< hull rows
+  rows,            ///< bounding rows
   ngon,            ///< the dissertation's tables
   characteristic,  ///< tables over the control net of the characteristic map
   control_box,     ///< boxes of control points
-  split,  ///< hull rows after passing kinds are split until what passes has passed, whatever the tolerance
+  split,  ///< bounding rows after transient kinds are split until what passes has passed, whatever the tolerance
 };
 inline constexpr std::array all_bound_ways{BoundWay::rows, BoundWay::ngon, BoundWay::characteristic,
                                            BoundWay::control_box, BoundWay::split};
@@ -46,7 +46,7 @@ struct PieceCount {
                                       const std::function<void(PatchId, const Patch&, double)>& sink = {},
                                       const WorkMonitor& monitor = {});
 
-/// The same of curves, which know hull rows and control boxes.
+/// The same of curves, which know bounding rows and control boxes.
 /// Errors:    InputError (value) for the other ways, too.
 [[nodiscard]] PieceCount count_pieces(const CurveSet& curves, BoundWay way, const CountOptions& options,
                                       const WorkMonitor& monitor = {});

@@ -54,13 +54,14 @@ std::vector<LayoutPoint> characteristic_layout(const Kind& kind) {
 const BoundTable& LayoutTables::get(const Kind& kind, BoundSource source) {
   SNUG_EXPECT(source != BoundSource::rows);
   if (source == BoundSource::ngon || !lone_centre(kind)) return library_.table(kind);
-  return characteristic_.get(
-      kind.id(), [&] { return make_bound_table(kind, make_bound_rows(kind), characteristic_layout(kind)); });
+  return characteristic_.get(kind.id(), [&] {
+    return make_bound_table(kind, make_bounding_rows(kind), characteristic_layout(kind));
+  });
 }
 
-OffsetTriangle LayoutTables::offset(const Patch& patch, BoundSource source, HullPoints& scratch) {
+OffsetTriangle LayoutTables::offset(const Patch& patch, BoundSource source, BoundingPoints& scratch) {
   if (source != BoundSource::rows) return offset_triangle(table_triangle(get(*patch.kind, source), patch));
-  hull_points(library_, patch, scratch);
+  bounding_points(library_, patch, scratch);
   return offset_triangle(library_, scratch, limit_corners(patch));
 }
 

@@ -4,16 +4,16 @@
 #include <cstdint>
 #include <vector>
 
+#include <snug/bounds/bounding_points.h>
 #include <snug/bounds/bounds_cache.h>
 #include <snug/bounds/enclosure.h>
-#include <snug/bounds/hull_points.h>
 #include <snug/bounds/kind_slots.h>
 
-/// What bounds a patch in the experiments: as in the library, or by tables of the layout that lost.
+/// How patches are bounded in the experiments: as in the library, or by tables of the layout that lost.
 namespace snug {
 
 enum class BoundSource : std::uint8_t {
-  rows,            ///< hull rows
+  rows,            ///< bounding rows
   ngon,            ///< the library's tables: the dissertation's layout, spokes of equal length and angle
   characteristic,  ///< tables over the control net of the characteristic map
 };
@@ -38,7 +38,7 @@ class LayoutTables {
   /// Errors:    SNUG_EXPECT for BoundSource::rows.
   [[nodiscard]] const BoundTable& get(const Kind& kind, BoundSource source);
   /// The offset triangle of a patch, by any source.
-  [[nodiscard]] OffsetTriangle offset(const Patch& patch, BoundSource source, HullPoints& scratch);
+  [[nodiscard]] OffsetTriangle offset(const Patch& patch, BoundSource source, BoundingPoints& scratch);
 
  private:
   BoundsCache& library_;

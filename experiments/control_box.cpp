@@ -7,12 +7,12 @@
 
 namespace snug {
 
-void control_points(const Patch& patch, HullPoints& out) {
+void control_points(const Patch& patch, BoundingPoints& out) {
   out.restart(patch.origin);
   out.add(patch.points, patch.error, patch.largest);
 }
 
-void control_points(const CurvePiece& piece, HullPoints& out) {
+void control_points(const CurvePiece& piece, BoundingPoints& out) {
   out.restart(piece.origin);
   const auto add = [&](const Vector3& point, double error) { out.add({&point, 1}, error, max_abs(point)); };
   const std::array<LimitPoint, 2> ends = limit_ends(piece);
@@ -26,7 +26,7 @@ void control_points(const CurvePiece& piece, HullPoints& out) {
   }
 }
 
-Box3 outer_box(const HullPoints& points) {
+Box3 outer_box(const BoundingPoints& points) {
   Box3 box;
   const kernels::Coordinates all = points.coordinates();
   const std::array<const double*, 3> axes{all.x, all.y, all.z};

@@ -46,8 +46,9 @@ struct PieceThickness {
   double rounding;
 };
 
-PieceThickness by_rows(BoundsCache& library, const Patch& patch, const Vector3& normal, HullPoints& points) {
-  hull_points(library, patch, points);
+PieceThickness by_rows(BoundsCache& library, const Patch& patch, const Vector3& normal,
+                       BoundingPoints& points) {
+  bounding_points(library, patch, points);
   const std::array<Vector3, 3> corners = limit_corners(patch);
   const OffsetTriangle offset = offset_triangle(library, points, corners);
   const Slab slab = outer_slab(points, normal);
@@ -172,7 +173,7 @@ std::array<Thicknesses, 3> corner_thicknesses(const LimitSurface& surface, Patch
   const std::optional<Vector3> normal = limit_frame(patch, TriangleParameter{0, 0}).normal;
   const PowerOfTwo back = surface.scale().inverse();
   std::array<Thicknesses, 3> result;
-  HullPoints points;
+  BoundingPoints points;
   for (unsigned level = 0;; ++level) {
     const Vector3 across = normal.value_or(Vector3{0, 0, 1});
     const PieceThickness piece = source == BoundSource::rows
@@ -204,13 +205,13 @@ double fitted_factor(std::span<const double> values) {
 double expected_factor(std::size_t n, BoundSource source, ThicknessMeasure measure, Scheme scheme) {
   const CornerEigenvalues eigenvalues = corner_eigenvalues(n, scheme);
   if (scheme != Scheme::loop) {
-    // Hull rows: below valence 4 the limit leaves the triangle of its corners sideways. The fair layout of
+    // Bounding rows: below valence 4 the limit leaves the triangle of its corners sideways. The fair layout of
     // tables is that of the characteristic map at regular corners alone.
     const bool vanishes =
         measure == ThicknessMeasure::normal || n == 4 || (source == BoundSource::rows && n > 4);
     return vanishes ? eigenvalues.next : eigenvalues.subdominant;
   }
-  // Hull rows: below valence 6 the limit leaves the triangle of its corners sideways.
+  // Bounding rows: below valence 6 the limit leaves the triangle of its corners sideways.
   const bool affine_part_vanishes = n == 6 || measure == ThicknessMeasure::normal ||
                                     source == BoundSource::characteristic ||
                                     (source == BoundSource::rows && n > 6);

@@ -68,7 +68,7 @@ using Thicknesses = std::vector<double>;
 [[nodiscard]] double fitted_factor(std::span<const double> values);
 
 /// The factor that theory gives inside the mesh: 1/4 at a regular corner. Else the `next` eigenvalue for the
-/// normal measure, for Loop's tables of the characteristic layout, and for hull rows where the limit stays
+/// normal measure, for Loop's tables of the characteristic layout, and for bounding rows where the limit stays
 /// inside the triangle of its corners; the subdominant one for the others.
 /// Source:    docs/convergence.md.
 [[nodiscard]] double expected_factor(std::size_t n, BoundSource source, ThicknessMeasure measure,
@@ -78,7 +78,7 @@ using Thicknesses = std::vector<double>;
 [[nodiscard]] double expected_factor(Scheme scheme, const NetPlace& place, BoundSource source,
                                      ThicknessMeasure measure);
 
-/// Loop inside: hull rows and tables of both layouts. Elsewhere: hull rows, and tables, whose two layouts are
+/// Loop inside: bounding rows and tables of both layouts. Elsewhere: bounding rows, and tables, whose two layouts are
 /// one there. Faces around the middle: inside Loop's experiment_valences, other schemes up to 12; boundaries
 /// and corners 1 to 12, creases and darts 3 to 12; semi-sharp creases on a regular mesh, with the sharpnesses
 /// experiment_sharpnesses.

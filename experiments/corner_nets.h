@@ -56,7 +56,7 @@ inline constexpr std::array all_net_shapes{NetShape::bent, NetShape::bumpy, NetS
 /// Errors:    InputError (value) unless n >= 3.
 [[nodiscard]] ControlMesh corner_net(NetShape shape, std::size_t n, std::uint64_t seed);
 
-/// What is in the middle of a net. All but the first are for Loop and Catmull-Clark.
+/// The middle of a net. All but the first are for Loop and Catmull-Clark.
 enum class NetCentre : std::uint8_t {
   interior,    ///< an extraordinary vertex, for a dual scheme face
   boundary,    ///< a vertex on a smooth boundary
@@ -69,7 +69,7 @@ inline constexpr std::array all_net_centres{NetCentre::interior, NetCentre::boun
                                             NetCentre::crease,   NetCentre::dart,     NetCentre::semi_sharp};
 [[nodiscard]] const char* name_of(NetCentre centre);
 
-/// What is in the middle of a net, with n faces, and for semi_sharp its sharpness.
+/// The middle of a net, with n faces, and for semi_sharp its sharpness.
 struct NetPlace {
   NetCentre centre = NetCentre::interior;
   std::size_t faces = 6;

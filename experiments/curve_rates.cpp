@@ -38,9 +38,9 @@ std::array<Thicknesses, 2> thicknesses(const CurveSet& curves, EdgeId edge, unsi
   const PowerOfTwo back = curves.scale().inverse();
   CurvePiece piece = curves.piece(edge);
   std::array<Thicknesses, 2> result;
-  HullPoints points;
+  BoundingPoints points;
   for (unsigned level = 0; level <= levels; ++level, piece = split(piece, 0)) {
-    hull_points(piece, points);
+    bounding_points(piece, points);
     const std::array<LimitPoint, 2> limits = limit_ends(piece);
     const std::array<Vector3, 2> ends{limits[0].relative, limits[1].relative};
     const OffsetSegment offset = offset_segment(points, ends);

@@ -44,9 +44,9 @@ struct Measured {
 };
 
 // In the patch's own units.
-Measured measure(BoundsCache& library, const Patch& patch, int steps, HullPoints& scratch) {
+Measured measure(BoundsCache& library, const Patch& patch, int steps, BoundingPoints& scratch) {
   const std::array<Vector3, 3> corners = limit_corners(patch);
-  hull_points(library, patch, scratch);
+  bounding_points(library, patch, scratch);
   const OffsetTriangle offset = offset_triangle(library, scratch, corners);  // refines tips
   const Prism prism = kobbelt_prism(scratch, corners);
   const Vector3 across = cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -89,7 +89,7 @@ std::vector<PrismRow> measure_prisms(const TightnessOptions& options, const Work
     const NetShape shape = all_net_shapes[job / experiment_valences.size()];
     const std::size_t n = experiment_valences[job % experiment_valences.size()];
     std::vector<Measured> all(2 * options.nets);
-    const auto work = [&](HullPoints& scratch, std::size_t begin, std::size_t end) {
+    const auto work = [&](BoundingPoints& scratch, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         monitor.checkpoint();
         const LimitSurface surface(corner_net(shape, n, options.seed + i / 2), {}, library);
@@ -103,7 +103,7 @@ std::vector<PrismRow> measure_prisms(const TightnessOptions& options, const Work
       }
     };
     parallel_for_with(
-        all.size(), options.threads, [] { return HullPoints{}; }, work);
+        all.size(), options.threads, [] { return BoundingPoints{}; }, work);
     PrismRow row{shape, n, all.size(), 0, 0, {}};
     for (const Measured& patch : all) {
       row.left += patch.outside > 0;

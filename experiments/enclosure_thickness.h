@@ -21,7 +21,7 @@ struct PrismRow {
   EnclosureThickness thickness;  ///< medians, in mesh units
 };
 
-/// Rows of all shapes and valences: two patches a net, by hull rows.
+/// Rows of all shapes and valences: two patches a net, by bounding rows.
 ///
 /// Guarantee: the same for any number of threads.
 /// Errors:    InputError (value) unless nets >= 1 and steps >= 1.

@@ -44,7 +44,7 @@ class LeafMaker {
   const LimitSurface& surface_;
   const LeafOptions& options_;
   PowerOfTwo back_;
-  HullPoints scratch_;
+  BoundingPoints scratch_;
   std::vector<OffsetTriangle>& out_;
 };
 

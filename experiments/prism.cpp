@@ -5,7 +5,7 @@
 
 namespace snug {
 
-Prism kobbelt_prism(const HullPoints& points, const std::array<Vector3, 3>& corners) {
+Prism kobbelt_prism(const BoundingPoints& points, const std::array<Vector3, 3>& corners) {
   const Vector3 direction = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const double size = length(direction);
   const Vector3 normal = size > 0 ? (1 / size) * direction : Vector3{};

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <snug/bounds/hull_points.h>
+#include <snug/bounds/bounding_points.h>
 #include <snug/geometry/triangle.h>
 
 namespace snug {
@@ -14,7 +14,7 @@ struct Prism {
 };
 
 /// Errors:    a triangle without a normal gives lower == upper.
-[[nodiscard]] Prism kobbelt_prism(const HullPoints& points, const std::array<Vector3, 3>& corners);
+[[nodiscard]] Prism kobbelt_prism(const BoundingPoints& points, const std::array<Vector3, 3>& corners);
 
 /// How far a point lies outside the prism: 0 inside, else its largest distance to a facet's plane that it is
 /// beyond.

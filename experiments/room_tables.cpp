@@ -12,7 +12,7 @@
 #include <experiments/printed_hierarchy.h>
 #include <experiments/quantile.h>
 #include <experiments/rooms.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/search/surface_workspace.h>
 #include <support/contract.h>
 #include <support/error.h>
@@ -20,7 +20,7 @@
 namespace snug {
 namespace {
 
-// What Moeller adds against rounding.
+// Tolerance of Moeller against rounding.
 constexpr double moeller_epsilon = 1e-6;
 // Surfaces this near are counted as hits.
 constexpr double contact = 1e-7;

@@ -21,7 +21,7 @@ inline constexpr std::array room_sides{6.0, 3.0, 4.5, 2.4};
 
 /// Table 5.1: leaves at one tolerance.
 struct LeafCounts {
-  std::uint64_t rows = 0;     ///< hull rows
+  std::uint64_t rows = 0;     ///< bounding rows
   std::uint64_t tables = 0;   ///< the dissertation's tables, for every kind of patch
   std::uint64_t printed = 0;  ///< its tables, and at most one extraordinary corner, as it has it
   std::uint64_t boxes =
@@ -35,7 +35,7 @@ struct LeafCounts {
 struct CreationTimes {
   double model = 0;    ///< a query model as it is by default: pieces are bounded when a query touches them
   double tight = 0;    ///< one with a tight tree
-  double rows = 0;     ///< all leaves by hull rows and a tree of oriented boxes
+  double rows = 0;     ///< all leaves by bounding rows and a tree of oriented boxes
   double printed = 0;  ///< the same by the dissertation's tables, at most one extraordinary corner
 };
 /// Errors:    InputError (value) unless rounds >= 1.
@@ -56,7 +56,7 @@ struct RoomOptions {
 /// The text adds an epsilon to the radii without saying which: the tolerance, which is timed, or Moeller's
 /// own.
 struct RoomRow {
-  double rows = 0;         ///< collide(), hull rows
+  double rows = 0;         ///< collide(), bounding rows
   double tables = 0;       ///< collide(), the dissertation's tables
   double printed = 0;      ///< the dissertation's hierarchy with its own pair test
   std::uint64_t hits = 0;  ///< the limit surfaces meet, or are at most 1e-7 apart
@@ -73,7 +73,7 @@ struct RoomRow {
 [[nodiscard]] RoomRow measure_room(const LimitSurface& a, const LimitSurface& b, const RoomOptions& options,
                                    const WorkMonitor& monitor = {});
 
-/// The queries of one room by a tree of one sort of volumes over hull rows' leaves.
+/// The queries of one room by a tree of one sort of volumes over bounding rows' leaves.
 struct VolumeRow {
   Volume volume = Volume::obb;
   Turning turning = Turning::bounded;
@@ -84,7 +84,7 @@ struct VolumeRow {
   std::uint64_t possible = 0;      ///< placements in which a pair of leaves is not apart
   std::uint64_t verdicts_sum = 0;  ///< a checksum of all verdicts, the same for all rows
 };
-/// What remains when hierarchy, leaves, order and test at leaves are the same: how many tests each sort needs,
+/// Comparison of volumes with equal hierarchy, leaves, order and test at leaves: how many tests each sort needs,
 /// and what following a rotation costs. A row for each sort, and each turning of the k-DOPs.
 /// Requires:  unit models (rooms.h).
 /// Errors:    InputError (value) unless placements >= 1.

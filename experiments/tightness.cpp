@@ -23,7 +23,7 @@ LimitLattice::LimitLattice(const Patch& patch, int steps) : patch_(patch), steps
   }
 }
 
-double LimitLattice::least_radius(const Triangle& base) const {
+double LimitLattice::min_radius(const Triangle& base) const {
   const Vector3 corner = base[0] - patch_.origin;
   const TriangleFoot foot(corner, base[1] - patch_.origin, base[2] - patch_.origin);
   const auto deviation = [&](const Vector3& q) { return length(foot.rest(q)); };
@@ -61,7 +61,7 @@ std::vector<TightnessRow> measure_tightness(const TightnessOptions& options, con
     const NetShape shape = all_net_shapes[job / experiment_valences.size()];
     const std::size_t n = experiment_valences[job % experiment_valences.size()];
     std::vector<std::array<Measured, all_bound_sources.size()>> all(2 * options.nets);
-    const auto measure = [&](HullPoints& scratch, std::size_t begin, std::size_t end) {
+    const auto measure = [&](BoundingPoints& scratch, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         monitor.checkpoint();
         const LimitSurface surface(corner_net(shape, n, options.seed + i / 2), {}, library);
@@ -73,12 +73,12 @@ std::vector<TightnessRow> measure_tightness(const TightnessOptions& options, con
           const OffsetTriangle offset = tables.offset(patch, all_bound_sources[s], scratch);
           if (all_bound_sources[s] == BoundSource::rows) of_rows = offset.radius;
           if (offset.radius <= 1000 * offset.rounding) continue;
-          all[i][s] = {offset.radius / lattice.least_radius(offset.base), offset.radius / of_rows};
+          all[i][s] = {offset.radius / lattice.min_radius(offset.base), offset.radius / of_rows};
         }
       }
     };
     parallel_for_with(
-        all.size(), options.threads, [] { return HullPoints{}; }, measure);
+        all.size(), options.threads, [] { return BoundingPoints{}; }, measure);
     for (std::size_t s = 0; s < all_bound_sources.size(); ++s) {
       std::vector<double> ratios, over_rows;
       for (const auto& patch : all) {

@@ -28,7 +28,7 @@ class LimitLattice {
   /// Guarantee: the distance of a limit point from the triangle, up to rounding: a lower bound of the least
   ///            radius, and how near it comes is not proved.
   /// Cost:      some 20 ns a lattice point, and about a hundred limit points.
-  [[nodiscard]] double least_radius(const Triangle& base) const;
+  [[nodiscard]] double min_radius(const Triangle& base) const;
 
  private:
   struct Sample {
@@ -54,7 +54,7 @@ struct TightnessRow {
   BoundSource source;
   std::size_t patches;        ///< that were measured: of which rounding makes up less than a thousandth
   double median, high, most;  ///< quantiles 0.5, 0.95 and 1; 0 if no patch was measured
-  double over_rows;           ///< median of the radius over that of hull rows for the same patch; likewise
+  double over_rows;  ///< median of the radius over that of bounding rows for the same patch; likewise
 };
 
 /// Rows of all shapes, valences and sources, in this order.

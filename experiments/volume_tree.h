@@ -42,7 +42,7 @@ struct VolumeView {
 /// The same of oriented boxes.
 [[nodiscard]] double gap(const Obb& box, const Obb& other, const RelativeFrame& frame);
 
-/// What becomes of the k-DOPs of the second model, which turns: those that a walk meets are bounded by k-DOPs
+/// How k-DOPs of the second model follow its rotation: those that a walk meets are bounded by k-DOPs
 /// along the axes of the first, or all are fitted again to the turned leaves. Oriented boxes turn with it.
 enum class Turning : std::uint8_t { bounded, refitted };
 [[nodiscard]] const char* name_of(Turning turning);

@@ -17,13 +17,13 @@ from plotting import GREY, panels, save
 
 # One look for each source of bounds: colour-blind safe, and told apart by its mark as well.
 SOURCES = {
-    ("rows", None): ("hull rows", "#0072b2", "o"),
+    ("rows", None): ("bounding rows", "#0072b2", "o"),
     ("table", "ngon"): ("table, n-gon", "#d55e00", "s"),
     ("table", "characteristic"): ("table, characteristic", "#009e73", "^"),
 }
 SCHEMES = {"loop": "Loop", "catmark": "Catmull-Clark", "doo-sabin": "Doo-Sabin", "midedge": "Midedge"}
-MEASURES = {("rows", "radius"): ("radius, hull rows", "#0072b2", "o"),
-            ("rows", "normal"): ("slab, hull rows", "#d55e00", "s"),
+MEASURES = {("rows", "radius"): ("radius, bounding rows", "#0072b2", "o"),
+            ("rows", "normal"): ("slab, bounding rows", "#d55e00", "s"),
             ("table", "radius"): ("radius, table", "#009e73", "^")}
 PLACES = ("boundary", "corner", "crease", "dart")
 SHARPNESSES = {0.5: "#56b4e9", 1.5: "#009e73", 2.5: "#e69f00", 4.5: "#d55e00", None: "#222222"}
@@ -52,7 +52,7 @@ def plot_rates(rows, path):
         for key, (words, colour, mark) in SOURCES.items():
             axis.plot(radii[key]["thickness"], mark, color=colour, ls="-", label=f"radius, {words}")
         _, colour, mark = SOURCES["rows", None]
-        axis.plot(across["thickness"], mark, color=colour, ls="--", mfc="white", ms=4, label="slab along the normal, hull rows")
+        axis.plot(across["thickness"], mark, color=colour, ls="--", mfc="white", ms=4, label="slab along the normal, bounding rows")
         # Theory: through the last measured radius of each layout.
         for key, style in ((("table", "ngon"), "--"), (("table", "characteristic"), ":")):
             row = radii[key]

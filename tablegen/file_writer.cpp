@@ -63,13 +63,13 @@ void add_key(const snug::KindKey& key, Bytes& out) {
   }
 }
 
-void add_rows(const snug::BoundRows& rows, Bytes& out) {
+void add_rows(const snug::BoundingRows& rows, Bytes& out) {
   out.add(rows.entry_error());
   out.add(rows.abs_sum());
   for (std::size_t c = 0; c < rows.control_count(); ++c) out.add(rows.column(c), rows.count());
 }
 
-void add_comparison(const snug::BoundRows& rows,
+void add_comparison(const snug::BoundingRows& rows,
                     const std::vector<snug::QuadraticRows::Restriction>& restrictions, Bytes& out) {
   out.add(static_cast<std::uint32_t>(rows.count()));
   out.add(static_cast<std::uint32_t>(rows.bezier_count()));
@@ -98,7 +98,7 @@ void add_quadratics(snug::BoundsCache& library, const snug::Kind& kind, Bytes& o
 }
 
 void add_kind(snug::BoundsCache& library, const snug::Kind& kind, Bytes& out) {
-  const snug::BoundRows rows = snug::make_bound_rows(kind);
+  const snug::BoundingRows rows = snug::make_bounding_rows(kind);
   const std::size_t begin = out.size();
   out.add(std::uint64_t{0});
   out.add(static_cast<std::uint64_t>(kind.key().scheme));

@@ -9,7 +9,7 @@
 namespace tablegen {
 
 /// The rows of each kind down to tip_depth(), its table, and the one for tips of this kind (tip_layout()), as
-/// make_bound_rows and make_bound_table give them; and what quadratic_triangle() uses of it.
+/// make_bounding_rows and make_bound_table give them; and what quadratic_triangle() uses of it.
 ///
 /// The file, version 5: little-endian, every field at a multiple of its size, every part at a multiple of 8.
 ///

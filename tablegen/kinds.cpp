@@ -15,7 +15,7 @@ CornerFan at_boundary(std::size_t before, std::size_t after) {
 }
 
 // Keys are turned so that they are the least of the three they could be.
-snug::KindKey least_turn(const std::array<CornerFan, 3>& fans) {
+snug::KindKey min_turn(const std::array<CornerFan, 3>& fans) {
   std::array<CornerFan, 3> best = fans;
   for (std::size_t first = 1; first < 3; ++first) {
     best =
@@ -28,7 +28,7 @@ snug::KindKey least_turn(const std::array<CornerFan, 3>& fans) {
 // is.
 snug::KindKey with_regular_others(const CornerFan& fan) {
   const bool first_edge = !fan.closed && fan.before == 0, last_edge = !fan.closed && fan.after == 0;
-  return least_turn(
+  return min_turn(
       {fan, first_edge ? at_boundary(2, 0) : inside(6), last_edge ? at_boundary(0, 2) : inside(6)});
 }
 
@@ -36,11 +36,11 @@ std::vector<snug::KindKey> loop_kinds() {
   std::vector<snug::KindKey> keys;
   const CornerFan touching = at_boundary(1, 1);  // regular, with no boundary edge on the patch
   keys.push_back(with_regular_others(inside(6)));
-  keys.push_back(least_turn({touching, inside(6), inside(6)}));
-  keys.push_back(least_turn({touching, touching, inside(6)}));
-  keys.push_back(least_turn({touching, touching, touching}));
-  keys.push_back(least_turn({at_boundary(0, 2), at_boundary(2, 0), inside(6)}));
-  keys.push_back(least_turn({at_boundary(0, 2), at_boundary(2, 0), touching}));
+  keys.push_back(min_turn({touching, inside(6), inside(6)}));
+  keys.push_back(min_turn({touching, touching, inside(6)}));
+  keys.push_back(min_turn({touching, touching, touching}));
+  keys.push_back(min_turn({at_boundary(0, 2), at_boundary(2, 0), inside(6)}));
+  keys.push_back(min_turn({at_boundary(0, 2), at_boundary(2, 0), touching}));
   for (std::uint16_t n = 3; n <= 12; ++n) {
     if (n != 6) keys.push_back(with_regular_others(inside(n)));
   }

@@ -164,20 +164,20 @@ ExitStatus creation_table(const Options& options) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::string& name = models.names[i / table_tolerances.size()];
     const double tolerance = table_tolerances[i % table_tolerances.size()];
-    const double ready = 1e3 * rows[i].model, tight = 1e3 * rows[i].tight, hull_rows = 1e3 * rows[i].rows,
+    const double ready = 1e3 * rows[i].model, tight = 1e3 * rows[i].tight, bounding_rows = 1e3 * rows[i].rows,
                  printed = 1e3 * rows[i].printed;
     const std::optional<double> obb = uniform ? std::optional(uniform->at(i).obb) : std::nullopt,
                                 obbrss = uniform ? std::optional(uniform->at(i).obbrss) : std::nullopt;
     if (report.json()) {
       JsonWriter& json = report.write();
       json.begin_object().field("model", name).field("tolerance", tolerance).field("ready_ms", ready);
-      json.field("tight_ms", tight).field("rows_ms", hull_rows).field("printed_ms", printed);
+      json.field("tight_ms", tight).field("rows_ms", bounding_rows).field("printed_ms", printed);
       write_number(json, "uniform_obb_ms", obb);
       write_number(json, "uniform_obbrss_ms", obbrss);
       json.end_object();
     }
     report.text(fmt::format("{:<10} {:>5} % {:>8.2f} {:>8.2f} {:>8.2f} {:>8.2f} {:>12} {:>15}", name,
-                            100 * tolerance, ready, tight, hull_rows, printed, text_of(obb, "{:.2f}"),
+                            100 * tolerance, ready, tight, bounding_rows, printed, text_of(obb, "{:.2f}"),
                             text_of(obbrss, "{:.2f}")));
   }
   end_table(report, uniform.has_value());

@@ -16,7 +16,7 @@
 namespace snug::command {
 namespace {
 
-constexpr std::size_t most_facets = 4'000'000;
+constexpr std::size_t max_facets = 4'000'000;
 
 struct Options : CommonOptions {
   std::string mesh;
@@ -99,11 +99,11 @@ class Polyhedra {
         mesh_.add_face({});
       }
     }
-    if (mesh_.face_count() > most_facets) {
+    if (mesh_.face_count() > max_facets) {
       throw InputError(
           InputProblem::refused,
           fmt::format("--polyhedra: more than {} facets; give a larger --tolerance or a lower --level",
-                      most_facets));
+                      max_facets));
     }
   }
 

@@ -17,8 +17,8 @@ namespace {
 // The first is 1, of which there is a tessellation already.
 constexpr std::array shares{1.0, 0.7, 0.5, 1.4, 2.0, 0.25};
 // Of the tolerance: errors of meshoptimizer's own, which does not measure distances to the surface.
-constexpr double least_share = 1.0 / 16, most_share = 8;
-constexpr int most_attempts = 7;
+constexpr double min_share = 1.0 / 16, max_share = 8;
+constexpr int max_attempts = 7;
 
 // Indices and positions as meshoptimizer takes them: floats, about the middle.
 struct FloatMesh {
@@ -110,10 +110,10 @@ Tessellation coarsened(const Surface& surface, TessellateOptions how, const Work
     fine.owners.clear();
     const FloatMesh floats(fine);
     // Halving in logarithms: what is near enough goes below, what is not above.
-    double low = least_share * tolerance, high = most_share * tolerance;
+    double low = min_share * tolerance, high = max_share * tolerance;
     if (share > 1 && !consider(fine)) high = low;
-    for (int attempt = 0; attempt < most_attempts && low < high; ++attempt, ++done) {
-      monitor.report(done / static_cast<double>(shares.size() * most_attempts));
+    for (int attempt = 0; attempt < max_attempts && low < high; ++attempt, ++done) {
+      monitor.report(done / static_cast<double>(shares.size() * max_attempts));
       const double error = std::sqrt(low * high);
       (consider(part_of(fine, floats.simplified(error))) ? low : high) = error;
     }

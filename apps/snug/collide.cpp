@@ -44,7 +44,7 @@ void write_answer(JsonWriter& json, const Sides& sides, const Collision& answer)
   write_stats(json, answer.stats);
 }
 
-// What decides more: rounding is in the way where the budget was not spent.
+// How to decide more: where the budget was not spent, rounding is in the way.
 const char* advice(const Collision& answer, const CollideOptions& asked) {
   if (answer.stats.splits >= asked.budget) return "give a larger --budget";
   return *asked.tolerance > 0
@@ -138,8 +138,8 @@ std::optional<Contacts> all_contacts(const Options& options, double tolerance, d
 }
 
 // Fills the row, and writes the fields where they are wanted.
-void tell(const Collision& found, const SceneRun& run, const ScenePair& pair, SceneAnswer& answer,
-          JsonWriter* json) {
+void write_to(const Collision& found, const SceneRun& run, const ScenePair& pair, SceneAnswer& answer,
+              JsonWriter* json) {
   answer.verdict = found.verdict;
   answer.reached = found.verdict != Verdict::undecided;
   answer.row = row(found);
@@ -165,13 +165,13 @@ ExitStatus run_scene(const Options& options) {
     wanted.tolerance = tolerance.in_mesh_units(run.size_of(pair.parts));
     wanted.budget = options.budget;
     wanted.solid = options.solid;
-    tell(collide(run.scene(), pair, wanted, stop_only, workspace), run, pair, answer, json);
+    write_to(collide(run.scene(), pair, wanted, stop_only, workspace), run, pair, answer, json);
   };
   question.separated = [&](const ScenePair& pair, SceneAnswer& answer, JsonWriter* json) {
     Collision apart;
     apart.verdict = Verdict::separated;
     apart.distance.lower = pair.gap;
-    tell(apart, run, pair, answer, json);
+    write_to(apart, run, pair, answer, json);
   };
   question.head = [&](JsonWriter& json) {
     json.key("tolerance");

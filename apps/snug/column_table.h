@@ -16,7 +16,7 @@ class ColumnTable {
     Type type;
   };
 
-  /// `path` tells the format: its ending is one of is_table().
+  /// The ending of `path` chooses the format: one of is_table().
   ColumnTable(std::vector<Column> columns, const std::string& path);
 
   /// The next number of a row, in the order of the columns; reals may be NaN.
@@ -27,7 +27,7 @@ class ColumnTable {
   /// row a vertex; `.csv`, the names and then a line a row, numbers as the shortest decimals that read back.
   [[nodiscard]] std::string file() const;
 
-  /// Does the ending of a name, in upper or lower case, tell one of these formats?
+  /// Does a name, in upper or lower case, end like one of these formats?
   [[nodiscard]] static bool is_table(const std::string& path);
 
  private:

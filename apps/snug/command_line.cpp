@@ -13,7 +13,7 @@
 namespace snug::command {
 namespace {
 
-// What a command line gives, by the names of options and arguments.
+// Values of a command line, by the names of options and arguments.
 using Given = std::map<std::string, std::vector<std::string>>;
 
 std::vector<std::string> names_of(const std::vector<Command>& commands) {

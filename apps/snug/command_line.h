@@ -9,7 +9,7 @@
 
 namespace snug::command {
 
-/// What commands are about; --help of the program lists them by it, in this order.
+/// Subjects of commands; --help of the program groups commands by them, in this order.
 enum class Topic { two_surfaces, one_surface, files, functions, tables, comparisons };
 
 /// A command: what --help says of it, its options, and what runs when it is chosen.
@@ -40,7 +40,7 @@ struct Program {
   std::vector<Elsewhere> elsewhere = {};
 };
 
-/// What a command line asks for.
+/// A parsed command line.
 struct Invocation {
   const Command* command = nullptr;          ///< to run, if not null
   std::string text = {};                     ///< else to print,
@@ -53,7 +53,7 @@ struct Invocation {
 [[nodiscard]] Invocation read_command_line(const Program& program, const std::vector<std::string>& words,
                                            const std::string& version);
 
-/// What --help prints, of the program and of one of its commands.
+/// Text of --help, of the program and of one of its commands.
 [[nodiscard]] std::string help_of(const Program& program);
 [[nodiscard]] std::string help_of(const Program& program, const Command& command);
 

@@ -126,9 +126,9 @@ Notes notes_for(const CommonOptions& options) {
   return [](const std::string& line) {
     // A file that is read twice has the same notes twice.
     static std::mutex mutex;
-    static std::unordered_set<std::string> told;
+    static std::unordered_set<std::string> reported;
     const std::lock_guard lock(mutex);
-    if (told.insert(line).second) tell("note: " + line);
+    if (reported.insert(line).second) print_message("note: " + line);
   };
 }
 
@@ -265,7 +265,7 @@ ExitStatus Report::finish(bool reached, const std::vector<AtomicFile*>& others) 
   if (notes_ && threads_were_refused()) {
     notes_("the system refused to start threads: fewer did the work, and it took longer");
   }
-  // What may fail comes before any file is put in its place.
+  // Steps that may fail come before any file is put in its place.
   std::vector<AtomicFile*> files;
   for (Target* target : {text_.get(), target_.get()}) {
     if (target) files.push_back(&target->file);

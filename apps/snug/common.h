@@ -84,7 +84,7 @@ void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& pa
 void write_facets(ControlMesh mesh, AtomicFile& file, const std::string& path, const CommonOptions& options,
                   std::span<const Vector3> normals = {});
 
-/// What --bounds names.
+/// The method that --bounds names.
 [[nodiscard]] BoundMethod bound_method(const CommonOptions& options);
 
 /// Before any work: can what -o names be written, and is its ending one that the command writes?

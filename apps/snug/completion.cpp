@@ -7,7 +7,7 @@
 namespace snug::command {
 namespace {
 
-// What bash offers, by a table with these keys:
+// Offers of bash, by a table with these keys:
 //
 //   "@commands"         the commands
 //   "COMMAND"           its options

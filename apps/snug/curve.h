@@ -7,7 +7,7 @@
 
 #include "common.h"
 
-/// What commands do with limit curves: those of a mesh's polylines.
+/// Commands on limit curves, those of a mesh's polylines.
 namespace snug::command {
 
 /// --degree, where it is given.

@@ -28,7 +28,7 @@ struct Options : CommonOptions {
 /// Triangles as they are, or a control mesh with its own limit surface.
 using Candidate = std::variant<std::vector<Triangle>, Surface>;
 
-/// What --tolerance asks for: do both sets stay that near each other?
+/// Answer to --tolerance: do both sets stay that near each other?
 enum class Within { yes, no, undecided };
 
 // Whatever else may be wrong with them does not matter: a set of triangles is all that is asked for.

@@ -19,7 +19,7 @@ struct Options : CommonOptions {
   std::uint64_t most = HullOptions{}.budget;
 };
 
-// Where a part is: its surface and the envelope are `clearance` apart; nothing where it cannot be told whether
+// Where a part is: its surface and the envelope are `clearance` apart; nothing where it is undecided whether
 // it is inside.
 struct Fit {
   std::optional<bool> inside;

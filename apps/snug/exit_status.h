@@ -2,7 +2,7 @@
 
 namespace snug::command {
 
-/// What the command ends with; scripts rely on these numbers (docs/command.md).
+/// Exit status of the command; scripts rely on these numbers (docs/command.md).
 enum class ExitStatus : int {
   answered = 0,
   usage = 2,

@@ -15,7 +15,7 @@
 namespace snug::command {
 namespace {
 
-// Light and dark tell the same as blue and yellow.
+// Lightness carries the same information as blue and yellow.
 Colour ramp(double share) {
   constexpr std::array<Colour, 5> stops{Colour::hex(0x3a2a78), Colour::hex(0x3b6c97), Colour::hex(0x3fa58c),
                                         Colour::hex(0x9fd05a), Colour::hex(0xf8e75b)};
@@ -29,7 +29,7 @@ Colour ramp(double share) {
 
 Colour colour_of_kind(const Kind& kind) {
   if (kind.polynomial()) return Colour::hex(0xc9ced6);
-  // Those of Okabe and Ito, told apart without colour vision.
+  // Those of Okabe and Ito, distinct without colour vision.
   constexpr std::array<std::uint32_t, 7> codes{0xe69f00, 0x56b4e9, 0x009e73, 0xf0e442,
                                                0x0072b2, 0xd55e00, 0xcc79a7};
   return Colour::hex(codes[kind.id().index() % codes.size()]);
@@ -146,12 +146,12 @@ std::shared_ptr<Field> distances(const PlacedSurface& surface, const PlacedSurfa
 std::vector<double> thicknesses(const LimitSurface& surface, int threads, const WorkMonitor& monitor) {
   std::vector<double> sides(surface.patch_count());
   parallel_for(sides.size(), threads, [&](std::size_t begin, std::size_t end) {
-    HullPoints points;
+    BoundingPoints points;
     for (std::size_t p = begin; p < end; ++p) {
       if (!surface.has_patch(PatchId(p))) continue;
       monitor.checkpoint();
       const Patch patch = surface.patch(PatchId(p));
-      hull_points(surface.library(), patch, points);
+      bounding_points(surface.library(), patch, points);
       const IntervalTriangle triangle = interval_simplex<3>(points, limit_corners(patch));
       for (const Box3& box : triangle.corner) sides[p] = std::max(sides[p], longest_side(box));
     }

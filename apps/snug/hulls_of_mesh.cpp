@@ -11,9 +11,9 @@
 namespace snug::command {
 namespace {
 
-constexpr std::size_t most_printed = 10;
+constexpr std::size_t max_printed = 10;
 
-// What went wrong and what helps.
+// The fault, and what helps.
 const char* explained(HullFault fault) {
   switch (fault) {
     case HullFault::no_position:
@@ -81,7 +81,7 @@ void write_hull(JsonWriter& json, const std::optional<Hull>& hull, bool verified
 }
 
 void write_verdict(Report& report, const Hulls& hulls, const char* owner) {
-  const std::size_t printed = std::min(hulls.problems.size(), most_printed);
+  const std::size_t printed = std::min(hulls.problems.size(), max_printed);
   if (report.json()) {
     JsonWriter& json = report.write();
     json.field("verified", hulls.verified).key("problems").begin_array();

@@ -7,7 +7,7 @@
 
 #include "common.h"
 
-/// What `hull` and `envelope` have in common.
+/// Code shared by `hull` and `envelope`.
 namespace snug::command {
 
 /// A hull as a mesh to write or to ask.

@@ -2,7 +2,7 @@
 #include <snug/evaluate.h>
 #include <snug/mesh/loose_creases.h>
 #include <snug/mesh/validate.h>
-#include <snug/query/containment.h>
+#include <snug/query/nesting.h>
 #include <snug/query/smoothing_note.h>
 #include <snug/scheme/rules.h>
 #include <snug/search/surface_data.h>
@@ -43,7 +43,7 @@ std::size_t extraordinary(const ControlMesh& mesh, const MeshCounts& counts, con
   return found;
 }
 
-// What the mesh is taken to be, because of what, and how far that is from its faces.
+// The scheme that the mesh is read with, why, and how far the surface is from its faces.
 std::string taken_as(const ControlMesh& mesh, const SchemeRules& scheme, const Options& options,
                      const std::optional<double>& apart, double size) {
   const char* const because = options.scheme != "auto" ? "--scheme"

@@ -74,7 +74,7 @@ void Journal::read_entries(const std::string& head) {
     text.resize(old + static_cast<std::size_t>(got));
     ended = got == 0;
     if (!headed && (text.size() >= head.size() || ended)) {
-      // What was torn in the first line holds no answer.
+      // A journal torn in its first line holds no answer.
       if (text != head.substr(0, text.size()) && !text.starts_with(head)) {
         fail(text.starts_with(title) ? "is the journal of another scene, other meshes or other options; name "
                                        "another one, or remove it"

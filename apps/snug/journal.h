@@ -26,7 +26,7 @@ class Journal {
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  /// What an earlier run has found.
+  /// The answer of an earlier run, if there is one.
   [[nodiscard]] std::optional<SceneAnswer> find(const PartPair& parts) const;
   [[nodiscard]] std::size_t found() const { return entries_.size(); }
   /// Writes an answer; may be called by several threads.

@@ -105,7 +105,7 @@ void to_standard_error(std::string_view text) noexcept {
   }
 }
 
-void tell(std::string_view text) noexcept {
+void print_message(std::string_view text) noexcept {
   try {
     // At once, so that lines of others stay whole.
     to_standard_error(std::string(program_name()) + ": " + one_line(text) + "\n");

@@ -18,7 +18,7 @@ namespace snug::command {
 void to_standard_error(std::string_view text) noexcept;
 
 /// The name of the program, a colon and the text, on one line of standard error.
-void tell(std::string_view text) noexcept;
+void print_message(std::string_view text) noexcept;
 
 /// The name that messages begin with, `snug` until it is set.
 /// Requires:  a string that stays where it is.

@@ -88,14 +88,14 @@ void read_text(std::string_view text, const Wanted& wanted) {
   }
 }
 
-/// What the head of an array says.
+/// Contents of the head of an array.
 struct ArrayHead {
   bool doubles = false, fortran = false;
   std::endian order = std::endian::little;
   std::uint64_t rows = 0, columns = 0;
 };
 
-/// What stands behind 'key': in a Python dictionary, up to the next key.
+/// The text after 'key': in a Python dictionary, up to the next key.
 std::string_view entry(std::string_view head, std::string_view key) {
   const std::size_t found = head.find("'" + std::string(key) + "'");
   if (found == std::string_view::npos) return {};

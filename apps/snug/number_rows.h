@@ -15,7 +15,7 @@ namespace snug {
 /// Reads:     text, a row a line, numbers separated by blanks, or by one comma or semicolon each; blank lines
 ///            and those that begin with # are skipped, and so is a first line without any number, the heads
 ///            of the columns. And arrays of NumPy (.npy) with as many columns as rows have numbers, float32
-///            or float64 of both byte orders, in the order of C or Fortran. Which of the two is told by the
+///            or float64 of both byte orders, in the order of C or Fortran. Which of the two follows from the
 ///            first bytes.
 /// Guarantee: numbers are the nearest doubles; they may be infinite or none at all.
 /// Errors:    InputError (unreadable) "name:line: expected" or "name: row i: expected" for a row that has none

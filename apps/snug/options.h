@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-/// What commands declare: their options, where --help lists them, and what values they take.
+/// Options as commands declare them: where --help lists them, and what values they take.
 ///
 ///     options.add(Group::own, "--level N", level, "Steps of subdivision").between(0, 12).excludes("--tolerance");
 ///

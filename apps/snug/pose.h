@@ -21,10 +21,10 @@ void add_pose_options(OptionList& list, const std::string& suffix, const std::st
                       PoseOptions& options);
 Option& add_nearest_rigid_option(OptionList& list, bool& nearest_rigid);
 
-/// What is done about matrices that are no motions.
+/// How matrices that are no motions are treated.
 struct Mending {
   bool nearest_rigid = false;  ///< take the nearest motion; else they are refused
-  Notes notes = {};            ///< told of each
+  Notes notes = {};            ///< one for each
 };
 
 /// The motion of twelve numbers, row-major 3x4, or of sixteen.

@@ -20,7 +20,7 @@ struct Item {
   std::optional<InputError> error;
 };
 
-// What --nearest-rigid did, in the order of the file.
+// Changes made by --nearest-rigid, in the order of the file.
 class Mended {
  public:
   void add(const Item& item, std::size_t line) {
@@ -28,7 +28,7 @@ class Mended {
     if (count_++ == 0) first_ = line;
     worst_ = std::max(worst_, *item.mended);
   }
-  void tell(const Notes& notes, const std::string& file) const {
+  void report(const Notes& notes, const std::string& file) const {
     if (count_ == 0 || !notes) return;
     notes(fmt::format(
         "{}: {} lines with poses off from rigid by up to {:.2g} (an entry of R'R), the first is line {}; "
@@ -71,7 +71,7 @@ class PoseAnswers {
     report_.flush();
   }
 
-  void finish(const PoseFile& file) const { mended_.tell(pair_.notes(), file.name()); }
+  void finish(const PoseFile& file) const { mended_.report(pair_.notes(), file.name()); }
   [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] bool reached() const { return reached_; }
 

@@ -29,7 +29,7 @@ class PoseFile {
   PoseFile(const PoseFile&) = delete;
   PoseFile& operator=(const PoseFile&) = delete;
 
-  /// What messages call a line: "poses.txt:7".
+  /// Name of a line in messages: "poses.txt:7".
   [[nodiscard]] std::string name_of(std::size_t line) const;
   [[nodiscard]] const std::string& name() const { return name_; }
   /// The next lines but blank ones and those that begin with #: what is there at once, at least one. None at

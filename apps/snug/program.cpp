@@ -49,7 +49,7 @@ void prepare_for_lack_of_memory() {
 }
 
 int fail(ExitStatus status, std::string_view message) {
-  tell(message);
+  print_message(message);
   return static_cast<int>(status);
 }
 
@@ -70,7 +70,7 @@ int answer(const Program& program, const std::vector<std::string>& words) {
 }
 
 int interruption() {
-  tell_interrupted();
+  report_interrupted();
   return static_cast<int>(ExitStatus::interrupted);
 }
 

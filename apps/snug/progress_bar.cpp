@@ -21,12 +21,12 @@ constexpr std::string_view clear_line = "\r\033[K";
 constexpr suseconds_t grace = 300'000;  // microseconds
 
 std::atomic<bool> drawn{false};  // is there a bar on the terminal?
-std::atomic<bool> told{false};
+std::atomic<bool> reported{false};
 
 [[noreturn]] void end_at_once() {
   remove_unfinished_files();
   if (drawn.exchange(false)) to_standard_error(clear_line);
-  tell_interrupted();
+  report_interrupted();
   _exit(static_cast<int>(ExitStatus::interrupted));
 }
 
@@ -58,13 +58,13 @@ void note_interrupt(int signal) {
 
 }  // namespace
 
-void tell_interrupted() noexcept {
-  if (told.exchange(true)) return;
+void report_interrupted() noexcept {
+  if (reported.exchange(true)) return;
   to_standard_error(program_name());
   to_standard_error(": interrupted\n");
 }
 
-void leave_interruption_to_others() noexcept { told = true; }
+void leave_interruption_to_others() noexcept { reported = true; }
 
 WorkMonitor stopped_by_interrupts() {
   WorkMonitor result;

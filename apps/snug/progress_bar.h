@@ -41,8 +41,8 @@ extern std::atomic<bool> stop_requested;
 /// A monitor that stops at an interrupt and shows nothing.
 [[nodiscard]] WorkMonitor stopped_by_interrupts();
 /// "snug: interrupted" on standard error, once a process. Async-signal-safe.
-void tell_interrupted() noexcept;
-/// From here on another process tells: of several ranks one does.
+void report_interrupted() noexcept;
+/// From here on another process reports it: of several ranks one does.
 void leave_interruption_to_others() noexcept;
 
 }  // namespace snug::command

@@ -24,7 +24,7 @@ class Ranks {
   /// How many of them share this machine.
   [[nodiscard]] int size_of_node() const { return size_of_node_; }
 
-  /// What rank 0 has; to be called by all.
+  /// The bytes that rank 0 passes; to be called by all.
   [[nodiscard]] std::string broadcast(std::string bytes) const;
   void send(int to, std::string_view bytes) const;
   struct Message {

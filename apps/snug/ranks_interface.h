@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-/// What snug_mpi.so, the only part that is linked with MPI, does for the command, which loads it under mpirun alone.
+/// Functions of snug_mpi.so, the only part linked with MPI; the command loads it under mpirun alone.
 /// Nothing here blocks for ever: each wait ends once a rank has been silent for too long.
 extern "C" {
 struct SnugRanks {

@@ -10,7 +10,7 @@
 
 namespace {
 
-constexpr std::size_t most_at_once = std::size_t{1} << 30;  // counts are int
+constexpr std::size_t max_at_once = std::size_t{1} << 30;  // counts are int
 constexpr int tag = 1;
 
 // None without a limit, and where MPI allows one thread alone.
@@ -58,8 +58,8 @@ int join(double patience, int* rank, int* size, int* size_of_node) {
 }
 
 bool broadcast(char* bytes, std::size_t count) {
-  for (std::size_t begin = 0; begin < count; begin += most_at_once) {
-    const int part = static_cast<int>(std::min(most_at_once, count - begin));
+  for (std::size_t begin = 0; begin < count; begin += max_at_once) {
+    const int part = static_cast<int>(std::min(max_at_once, count - begin));
     MPI_Request request;
     MPI_Ibcast(bytes + begin, part, MPI_BYTE, 0, MPI_COMM_WORLD, &request);
     if (!wait_for(request)) return false;

@@ -33,19 +33,19 @@ namespace {
 constexpr double surface_pixels = 0.2;
 constexpr std::size_t framing_points = 1'000'000;
 // In units of the picture: single precision is what rays are traced in.
-constexpr double least_tolerance = 1e-6;
+constexpr double min_tolerance = 1e-6;
 // Curves: how far their chords are from them, and the sides of tubes from circles, in pixels; unless there
 // would be too many of them.
 constexpr double curve_deviation = 0.1;
-constexpr double most_chords = 100'000;
-constexpr std::size_t most_curve_edges = 50'000;
-constexpr std::size_t most_tube_triangles = 2'000'000;
-constexpr unsigned fewest_sides = 6, most_sides = 256;
+constexpr double max_chords = 100'000;
+constexpr std::size_t max_curve_edges = 50'000;
+constexpr std::size_t max_tube_triangles = 2'000'000;
+constexpr unsigned fewest_sides = 6, max_sides = 256;
 // The radius of tubes, in the longest side of the scene. Where there is much to draw, tubes side by side would
 // cover this share of its face.
-constexpr double usual_radius = 0.006, least_radius = 0.0015, covered_share = 0.5;
+constexpr double usual_radius = 0.006, min_radius = 0.0015, covered_share = 0.5;
 constexpr double share_in_enclosures = 1.0 / 3;  // which would be inside of wider ones
-constexpr std::uint64_t most_enclosures = 200'000;
+constexpr std::uint64_t max_enclosures = 200'000;
 constexpr int largest_side = 16'384;
 // A three-quarter view from above, of models whose front is towards +z.
 constexpr Vector3 default_view{-0.55, -0.35, -0.85};
@@ -137,7 +137,7 @@ Colours colours_of_part(std::size_t part) {
   return {palette::clay, palette::amber, palette::amber_edge};
 }
 
-// What a file is answered as, and where it stands.
+// A drawn file: its scheme and its pose.
 struct Part {
   std::string path;
   std::variant<Surface, CurveSet> shape;
@@ -148,10 +148,10 @@ struct Part {
 };
 
 void require_drawable(const CurveSet& curves, const std::string& path) {
-  if (curves.edge_count() <= most_curve_edges) return;
+  if (curves.edge_count() <= max_curve_edges) return;
   throw InputError(InputProblem::refused, fmt::format("{}: its polylines have {} edges, and curves of more "
                                                       "than {} are too many to draw; draw part of them",
-                                                      path, curves.edge_count(), most_curve_edges));
+                                                      path, curves.edge_count(), max_curve_edges));
 }
 
 std::vector<Part> load_parts(const Options& options, const std::vector<Motion>& poses) {
@@ -188,8 +188,8 @@ void require_of_use(const Options& options, const std::vector<Part>& parts) {
   }
 }
 
-// What encloses the surfaces and curves, in mesh units, for each part; a segment as a triangle that ends at
-// one of its corners twice.
+// Enclosures of the surfaces and curves, in mesh units, for each part; a segment is a triangle with one corner
+// twice.
 struct Enclosures {
   std::vector<std::vector<IntervalTriangle>> of_part;
   std::size_t count = 0;
@@ -215,15 +215,15 @@ std::uint64_t room_for_splits(const Options& options, const std::vector<Part>& p
     count += pieces.count;
     at_level += pieces.count << (pieces.children == 4 ? 2 * options.level : options.level);
   }
-  if (at_level > most_enclosures) {
+  if (at_level > max_enclosures) {
     throw InputError(
         InputProblem::refused,
         fmt::format(
             "render: {} patches and edges at level {} have more than {} enclosures, too many to draw; "
             "give a lower --level, or leave out --enclosures",
-            count, options.level, most_enclosures));
+            count, options.level, max_enclosures));
   }
-  return most_enclosures - count;
+  return max_enclosures - count;
 }
 
 Enclosures enclose(const Options& options, const std::optional<Length>& tolerance,
@@ -312,7 +312,7 @@ double radius_of_tubes(const Options& options, std::span<const PartCurves> drawn
   double polygons = 0;
   for (const auto& [part, curves] : drawn) polygons += curves.polygon_length();
   const double suited = covered_share / (2 * std::max(polygons, 1.0));
-  return std::clamp(suited, least_radius, usual_radius) * (options.enclosures ? share_in_enclosures : 1);
+  return std::clamp(suited, min_radius, usual_radius) * (options.enclosures ? share_in_enclosures : 1);
 }
 
 // A tube around a curve, and which part that is of.
@@ -350,19 +350,19 @@ double useful_deviation(std::span<const PartCurves> drawn, double scale) {
   const double deviation = curve_deviation / scale;
   double chords = 0;
   for (const auto& [part, curves] : drawn) chords += curves.chord_count(deviation);
-  return deviation * std::pow(std::max(1.0, chords / most_chords), 2);
+  return deviation * std::pow(std::max(1.0, chords / max_chords), 2);
 }
 
 void add_tubes(PictureScene& scene, std::span<const PartTube> tubes, double radius_in_pixels) {
   const double side = 2 * std::acos(std::max(0.5, 1 - curve_deviation / radius_in_pixels));
   auto sides = static_cast<unsigned>(
-      std::clamp(std::ceil(2 * std::numbers::pi / side), double{fewest_sides}, double{most_sides}));
+      std::clamp(std::ceil(2 * std::numbers::pi / side), double{fewest_sides}, double{max_sides}));
   const auto triangles = [&] {
     std::size_t count = 0;
     for (const auto& [part, tube] : tubes) count += tube.triangle_count(sides);
     return count;
   };
-  while (sides > fewest_sides && triangles() > most_tube_triangles) {
+  while (sides > fewest_sides && triangles() > max_tube_triangles) {
     sides = std::max(fewest_sides, sides - sides / 6);
   }
   scene.triangles.reserve(scene.triangles.size() + triangles());
@@ -406,7 +406,7 @@ struct Shot {
 // Adds the surfaces, as fine as the camera shows them.
 void add_surfaces(Shot& shot, const Options& options, std::span<const Part> parts, const PictureUnits& units,
                   double pixels_a_unit, const WorkMonitor& monitor) {
-  shot.tolerance = std::max(surface_pixels / pixels_a_unit, least_tolerance);
+  shot.tolerance = std::max(surface_pixels / pixels_a_unit, min_tolerance);
   shot.casters = make_casters(options, parts, units.to_mesh(shot.tolerance), monitor);
   for (std::size_t part = 0; part < parts.size(); ++part) {
     if (!shot.casters[part]) continue;
@@ -557,7 +557,7 @@ ExitStatus run(const Options& options) {
       report.text(fmt::format(
           "the tolerance was not reached everywhere: budget, levels, rounding, or {} enclosures that "
           "can be drawn",
-          most_enclosures));
+          max_enclosures));
     }
   }
   return report.finish(enclosures.reached, {&file});

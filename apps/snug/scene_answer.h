@@ -20,7 +20,7 @@ struct SceneAnswer {
 /// A line that holds a pair and its answer, with a line feed and a checksum.
 [[nodiscard]] std::string line_of(const PartPair& parts, const SceneAnswer& answer);
 
-/// What such a line, without its line feed, holds; false for another text, such as a torn line.
+/// Reads such a line, without its line feed; false for another text, such as a torn line.
 [[nodiscard]] bool parse_line(std::string_view line, PartPair& parts, SceneAnswer& answer);
 
 }  // namespace snug::command

@@ -27,7 +27,7 @@ namespace {
 using Json = nlohmann::json;
 
 // Deeper than any scene: parts, a part, a placement, its numbers.
-constexpr int most_levels = 8;
+constexpr int max_levels = 8;
 
 // Fit for a message of one line, as meshes' words are: control characters by their codes.
 std::string printable(std::string_view text) {
@@ -51,7 +51,7 @@ std::string shortened(const std::string& text) {
   while ((static_cast<unsigned char>(text[size]) & 0xc0) == 0x80) --size;  // not inside a character of UTF-8
   return text.substr(0, size) + "...";
 }
-// What stands there, for messages.
+// A value as messages quote it.
 std::string quoted(const Json& value) {
   return shortened(value.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
@@ -103,7 +103,7 @@ class Overseer : public nlohmann::json_sax<Json> {
 
  private:
   bool deeper() {
-    if (++depth_ > most_levels) fail(fmt::format("lists and objects nested more than {} deep", most_levels));
+    if (++depth_ > max_levels) fail(fmt::format("lists and objects nested more than {} deep", max_levels));
     return true;
   }
 
@@ -334,7 +334,7 @@ class SceneReader {
       meshes_;
 };
 
-// What is wrong with options is wrong with the scene file here.
+// Faults of options are faults of the scene file here.
 SurfaceOptions options_for(const SceneMesh& mesh, const ControlMesh& control) {
   try {
     return surface_options(mesh.options, mesh.options.scheme, control);

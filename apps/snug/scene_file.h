@@ -20,7 +20,7 @@ struct SceneMesh {
   CommonOptions options;  ///< those of the command line, with what the part says in place of some
 };
 
-/// What a scene file says.
+/// Contents of a scene file.
 struct SceneText {
   struct Part {
     std::string name;    ///< its place where the file gives none
@@ -60,7 +60,7 @@ using ReadBytes = std::function<std::string(const std::string& path)>;
 [[nodiscard]] LoadedScene load_scene(const std::string& path, const CommonOptions& options,
                                      bool nearest_rigid, const ReadBytes& read, const WorkMonitor& monitor);
 
-/// FNV-1a, from a previous value on: for files that are told apart, not for attackers.
+/// FNV-1a, from a previous value on: to distinguish files, not against attackers.
 [[nodiscard]] std::uint64_t fingerprint(std::string_view bytes, std::uint64_t from = 0xcbf29ce484222325u);
 
 }  // namespace snug::command

@@ -26,10 +26,10 @@ namespace {
 constexpr std::size_t pairs_of_a_batch = 16384;
 
 // Pairs that a rank is given at once, at most.
-constexpr std::size_t most_pairs = 2048;
+constexpr std::size_t max_pairs = 2048;
 // A rank sends its answers that often, or once there are so many bytes of them.
 constexpr std::chrono::milliseconds between_messages{100};
-constexpr std::size_t most_bytes = std::size_t{1} << 26;
+constexpr std::size_t max_bytes = std::size_t{1} << 26;
 // How long rank 0 waits before it looks for messages again, at first and at most: a look takes some microseconds from a core
 // that works.
 constexpr std::chrono::microseconds shortest_wait{50}, longest_wait{1000};
@@ -87,8 +87,7 @@ class PairQueue {
     Range range{next_, next_};
     const double wanted = left_ / (8 * takers_);
     double cost = 0;
-    while (range.end < costs_.size() && range.end - range.begin < most_pairs &&
-           (cost == 0 || cost < wanted)) {
+    while (range.end < costs_.size() && range.end - range.begin < max_pairs && (cost == 0 || cost < wanted)) {
       cost += costs_[range.end++];
     }
     left_ -= cost;
@@ -121,7 +120,7 @@ std::vector<ScenePair> pairs_of(const std::string& bytes) {
   return pairs;
 }
 
-// What a rank sends: answers after the first letter, or why it has ended.
+// Messages of a rank: after the first letter come answers, or why it has ended.
 constexpr char answers_follow = 'A', failure_follows = 'F', interruption_follows = 'I';
 
 void throw_failure(const Ranks::Message& message) {
@@ -336,7 +335,7 @@ class Results {
   std::chrono::steady_clock::time_point flushed_{};
 };
 
-// What a command line gives to one of several ranks on a machine: its share of the cores, and silence but for rank 0.
+// Options for one of several ranks on a machine: its share of the cores, and --quiet but for rank 0.
 PairOptions for_rank(PairOptions options, const Ranks* ranks) {
   if (ranks == nullptr) return options;
   if (options.threads == 0) options.threads = std::max(1, hardware_threads() / ranks->size_of_node());
@@ -354,26 +353,27 @@ SceneRun::SceneRun(const PairOptions& options, const WorkMonitor& monitor)
     if (!ranks_) return read_file(path, monitor_);
     return ranks_->broadcast(ranks_->rank() == 0 ? read_file(path, monitor_) : std::string());
   };
-  told_once([&] { loaded_ = load_scene(options_.scene, options_, options_.nearest_rigid, read, monitor_); });
+  reported_once(
+      [&] { loaded_ = load_scene(options_.scene, options_, options_.nearest_rigid, read, monitor_); });
 }
 
 // All ranks refuse the same bytes: rank 0 tells, and ends all.
-void SceneRun::told_once(const std::function<void()>& work) const {
+void SceneRun::reported_once(const std::function<void()>& work) const {
   try {
     work();
   } catch (const InputError& error) {
     if (!ranks_ || ranks_->rank() == 0) throw;
-    tell_rank_0(error.problem(), error.what());
+    report_to_rank_0(error.problem(), error.what());
   }
 }
 
-void SceneRun::tell_rank_0(InputProblem problem, const char* reason) const {
+void SceneRun::report_to_rank_0(InputProblem problem, const char* reason) const {
   ranks_->send(0, failure_follows + std::to_string(static_cast<int>(problem)) + reason);
   while (true) static_cast<void>(ranks_->receive(true));
 }
 
 void SceneRun::require_closed() const {
-  told_once([&] {
+  reported_once([&] {
     for (std::size_t i = 0; i < loaded_.surfaces.size(); ++i) {
       naming(loaded_.text.meshes[i].file, [&] { command::require_closed(loaded_.surfaces[i]); });
     }
@@ -424,7 +424,7 @@ void SceneRun::serve(const SceneQuestion& question, const std::vector<ScenePair>
           monitor_.checkpoint();
           lines[i] = line_of(pairs[i].parts, answer_pair(question, pairs[i], &workspace, json));
           bytes += lines[i].size();
-        } while (bytes < most_bytes && std::chrono::steady_clock::now() < until);
+        } while (bytes < max_bytes && std::chrono::steady_clock::now() < until);
       });
     } catch (...) {
       send();
@@ -448,9 +448,9 @@ void SceneRun::serve(const SceneQuestion& question) {
     ranks_->send(0, std::string(1, interruption_follows));
     while (true) static_cast<void>(ranks_->receive(true));
   } catch (const InputError& error) {
-    tell_rank_0(error.problem(), error.what());
+    report_to_rank_0(error.problem(), error.what());
   } catch (const std::exception& error) {
-    tell_rank_0(InputProblem::refused, error.what());
+    report_to_rank_0(InputProblem::refused, error.what());
   }
 }
 
@@ -536,7 +536,7 @@ ExitStatus SceneRun::answer(const SceneQuestion& question, const char* command, 
   }
   const ExitStatus status = results.finish(broad.pair_count(), exit_code);
   if (ranks_) {
-    // Those that have not yet told that they are there are waited for.
+    // Ranks that have not yet reported are waited for.
     while (idle.size() + 1 < static_cast<std::size_t>(ranks_->size())) {
       const Ranks::Message message = *ranks_->receive(true);
       throw_failure(message);

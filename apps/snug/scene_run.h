@@ -15,7 +15,7 @@
 
 namespace snug::command {
 
-/// What a command asks about every pair of a scene.
+/// The question that a command asks about every pair of a scene.
 struct SceneQuestion {
   std::string key;         ///< all options that answers depend on, but those of meshes; for journals
   double margin = 0;       ///< of pairs without their own
@@ -55,8 +55,8 @@ class SceneRun {
   [[nodiscard]] ExitStatus answer(const SceneQuestion& question, const char* command, bool exit_code);
 
  private:
-  void told_once(const std::function<void()>& work) const;
-  [[noreturn]] void tell_rank_0(InputProblem problem, const char* reason) const;
+  void reported_once(const std::function<void()>& work) const;
+  [[noreturn]] void report_to_rank_0(InputProblem problem, const char* reason) const;
   void serve(const SceneQuestion& question);
   void serve(const SceneQuestion& question, const std::vector<ScenePair>& pairs,
              Workers<Workspace>& workers) const;

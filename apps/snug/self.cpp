@@ -46,8 +46,8 @@ void write_text(Report& report, const SelfContact& found, std::optional<double> 
     report.text(fmt::format("near      at most {} apart, and more than {} along the surface", *tolerance,
                             found.radius));
   }
-  constexpr std::size_t most_lines = 10;
-  for (std::size_t i = 0; i < std::min(most_lines, found.pairs.size()); ++i) {
+  constexpr std::size_t max_lines = 10;
+  for (std::size_t i = 0; i < std::min(max_lines, found.pairs.size()); ++i) {
     const SelfContactPair& pair = found.pairs[i];
     const Point3& p = pair.points[0];
     std::string line = fmt::format("{:<12}  {} {} and {}, at {} {} {}", name_of(pair.verdict), owner,
@@ -55,8 +55,8 @@ void write_text(Report& report, const SelfContact& found, std::optional<double> 
     if (pair.verdict == SelfVerdict::near) line += fmt::format(", at most {} apart", pair.distance.upper);
     report.text(line);
   }
-  if (found.pairs.size() > most_lines) {
-    report.text(fmt::format("... {} more; --json lists all", found.pairs.size() - most_lines));
+  if (found.pairs.size() > max_lines) {
+    report.text(fmt::format("... {} more; --json lists all", found.pairs.size() - max_lines));
   }
 }
 

@@ -57,7 +57,7 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-// What the page does with it is the page's; this only tells another file from an answer.
+// Only distinguishes an answer from another file; the page reads it.
 std::string read_answer(const std::string& path) {
   std::string text = read_file(path);
   const auto begin = text.find_first_not_of(" \t\r\n"), end = text.find_last_not_of(" \t\r\n");
@@ -131,7 +131,7 @@ void write_scene(JsonWriter& json, const LoadedScene& loaded) {
   json.end_array();
 }
 
-// What the page shows, as a JSON document without '<', which might look like an end of the script.
+// Data of the page, as a JSON document without '<', which might look like an end of the script.
 std::string data_of(const Options& options, const std::vector<Motion>& poses, const LoadedScene* scene) {
   std::string text;
   JsonWriter json([&](std::string_view part) { text += part; }, JsonWriter::Lines::one);

@@ -15,7 +15,7 @@
 namespace snug::bench {
 namespace {
 
-constexpr std::size_t own_models = 7, most_others = 10;
+constexpr std::size_t own_models = 7, max_others = 10;
 constexpr std::array<std::array<const char*, 2>, 2> more_pairs{{{"bust", "figure"}, {"ring", "head"}}};
 
 // The model of a file if it suits.
@@ -55,7 +55,7 @@ std::vector<ModelPair> choose_pairs(const std::vector<std::string>& files) {
   std::sort(others.begin(), others.end(), [](const Model& a, const Model& b) {
     return std::pair(a.mesh.face_count(), a.name) < std::pair(b.mesh.face_count(), b.name);
   });
-  const std::size_t half = std::min(others.size(), most_others) / 2;
+  const std::size_t half = std::min(others.size(), max_others) / 2;
   const auto at = [&](std::size_t i) { return i * others.size() / (2 * half); };
   for (std::size_t i = 0; i < half; ++i) pairs.push_back({others[at(i)], others[at(i + half)]});
   for (const ModelPair& pair : pairs) {

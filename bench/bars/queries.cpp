@@ -11,7 +11,7 @@
 namespace snug::bench {
 namespace {
 
-// What collide() is asked, and what FCL's times over its are to be.
+// A question to collide(), and the bar for FCL's time over its own.
 struct Question {
   const char* name;
   std::size_t room;

@@ -18,9 +18,9 @@ std::size_t BarTable::Row::worst() const {
 }
 
 bool BarTable::Row::held() const {
-  const double least_of_all = 0.8;
-  return at_least ? median() >= bar && values[worst()] >= least_of_all * bar
-                  : median() <= bar && least_of_all * values[worst()] <= bar;
+  const double min_of_all = 0.8;
+  return at_least ? median() >= bar && values[worst()] >= min_of_all * bar
+                  : median() <= bar && min_of_all * values[worst()] <= bar;
 }
 
 void BarTable::add(const Row& row) {

@@ -5,7 +5,7 @@
 
 namespace snug::bench {
 
-/// What is to be reached, row by row: in each the values of several pairs of models, or of several meshes.
+/// The bars, row by row: in each the values of several pairs of models, or of several meshes.
 class BarTable {
  public:
   /// A value of the row `name`, which is made where it is new. `measured`: what the value is, such as

@@ -25,7 +25,7 @@ class EmbreeMesh {
   void first_hits(const Point3& eye, std::span<const Vector3> directions, std::span<float> out) const;
   void first_hits_by_eights(const Point3& eye, std::span<const Vector3> directions,
                             std::span<float> out) const;
-  /// What Embree has allocated, the mesh's buffers included.
+  /// Memory of Embree, the mesh's buffers included.
   [[nodiscard]] std::size_t bytes() const;
 
  private:

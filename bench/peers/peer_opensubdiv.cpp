@@ -320,11 +320,11 @@ int osd_uniform_level(const ControlMesh& mesh, double tolerance) {
   for (int level = 0; level <= 10; ++level) {
     const std::vector<Point3> points = osd_uniform(mesh, level).points;
     const std::vector<Point3> limit = osd_uniform(mesh, level, true).points;
-    double most_sq = 0;
+    double max_sq = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      most_sq = std::max(most_sq, length_sq(limit[i] - points[i]));
+      max_sq = std::max(max_sq, length_sq(limit[i] - points[i]));
     }
-    if (4 * most_sq <= tolerance * tolerance) return level;
+    if (4 * max_sq <= tolerance * tolerance) return level;
   }
   throw std::runtime_error("uniform refinement does not reach the tolerance at level 10");
 }

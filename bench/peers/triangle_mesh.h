@@ -8,7 +8,7 @@
 
 namespace snug::bench {
 
-/// What the peers work on: triangles as indices of points.
+/// Input of the peers: triangles as indices of points.
 struct TriangleMesh {
   std::vector<Point3> points;
   std::vector<std::array<std::uint32_t, 3>> triangles;

@@ -10,9 +10,9 @@
 /// Source:    the heap of [Floyd64]; introspective sort [Musser97] with the steps of libstdc++.
 namespace snug::ordering {
 
-/// Of a heap whose hole is at `hole`: moves the larger child up until a leaf, then `value` from there up to its place.
+/// Fills the hole of a heap: moves larger children up until a leaf, then `value` from there up to its place.
 template <class Item, class Less>
-void settle(Item* heap, std::size_t size, std::size_t hole, Item value, const Less& less) {
+void sift_down(Item* heap, std::size_t size, std::size_t hole, Item value, const Less& less) {
   const std::size_t top = hole;
   for (std::size_t child = 2 * hole + 1; child < size; child = 2 * hole + 1) {
     if (child + 1 < size && !less(heap[child + 1], heap[child])) ++child;
@@ -27,10 +27,10 @@ void settle(Item* heap, std::size_t size, std::size_t hole, Item value, const Le
 
 template <class Item, class Less>
 void make_heap(Item* heap, std::size_t size, const Less& less) {
-  for (std::size_t i = size / 2; i > 0; --i) settle(heap, size, i - 1, Item(std::move(heap[i - 1])), less);
+  for (std::size_t i = size / 2; i > 0; --i) sift_down(heap, size, i - 1, Item(std::move(heap[i - 1])), less);
 }
 
-/// Adds what stands at the end of a vector to the heap before it.
+/// Adds the last element of a vector to the heap before it.
 template <class Item, class Less>
 void push_heap(Item* heap, std::size_t size, const Less& less) {
   Item value = std::move(heap[size - 1]);
@@ -47,7 +47,7 @@ void pop_heap(Item* heap, std::size_t size, const Less& less) {
   if (size < 2) return;
   Item value = std::move(heap[size - 1]);
   heap[size - 1] = std::move(heap[0]);
-  settle(heap, size - 1, 0, std::move(value), less);
+  sift_down(heap, size - 1, 0, std::move(value), less);
 }
 
 /// The `middle` least elements come first, as a heap.
@@ -59,7 +59,7 @@ void heap_select(Item* items, std::size_t middle, std::size_t size, const Less& 
     if (!less(items[i], items[0])) continue;
     Item value = std::move(items[i]);
     items[i] = std::move(items[0]);
-    settle(items, middle, 0, std::move(value), less);
+    sift_down(items, middle, 0, std::move(value), less);
   }
 }
 

@@ -41,7 +41,7 @@ void share_ranges(std::size_t count, int threads, const std::function<void(Share
 void parallel_for(std::size_t count, int threads, const std::function<void(std::size_t, std::size_t)>& body);
 
 /// Calls body(state, begin, end) likewise, where `state` is what make() returned on this thread: scratch
-/// memory that is dear to make. Results must not depend on what is left in it.
+/// memory that is expensive to make. Results must not depend on its contents.
 template <class Make, class Body>
 void parallel_for_with(std::size_t count, int threads, const Make& make, const Body& body) {
   share_ranges(count, threads, [&](SharedRanges& ranges) {
@@ -52,7 +52,7 @@ void parallel_for_with(std::size_t count, int threads, const Make& make, const B
   });
 }
 
-/// The number of threads that 0 stands for.
+/// The number of threads that 0 means.
 [[nodiscard]] int hardware_threads();
 
 /// Has the system refused to start a thread since the process began?

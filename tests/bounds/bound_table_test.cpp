@@ -44,12 +44,12 @@ std::vector<oracle::LimitSample> samples_of(const oracle::TwinMesh& twin, int de
   return samples;
 }
 
-// What the header promises, tested in extended precision against the twin.
+// The guarantees of the header, tested in extended precision against the twin.
 TEST(bound_table, holds_the_domain_and_every_basis_function) {
   KindCache library;
   for (const KindKey& key : testing::assorted_kinds()) {
     const Kind& kind = library.find(key);
-    const BoundRows rows = make_bound_rows(kind);
+    const BoundingRows rows = make_bounding_rows(kind);
     const BoundTable table = make_bound_table(kind, rows);
     ASSERT_EQ(table.control_count(), kind.control_count());
     ASSERT_EQ(table.lower.size() + 3, kind.control_count());
@@ -84,7 +84,7 @@ TEST(bound_table, has_planes_that_touch) {
   KindCache library;
   for (const KindKey& key : testing::assorted_kinds()) {
     const Kind& kind = library.find(key);
-    const BoundRows rows = make_bound_rows(kind);
+    const BoundingRows rows = make_bounding_rows(kind);
     const BoundTable table = make_bound_table(kind, rows);
     const auto& t = table.triangle;
     for (std::size_t i = 3; i < kind.control_count(); ++i) {
@@ -125,7 +125,7 @@ TEST(ngon_layout, touches_the_far_edge_and_keeps_to_its_triangle) {
       centre = 0;
     }
     const Kind& kind = library.find(key);
-    const BoundTable table = make_bound_table(kind, make_bound_rows(kind));
+    const BoundTable table = make_bound_table(kind, make_bounding_rows(kind));
     const auto from_centre = [&](double s, double t) {  // how far across, 1 on the far edge
       return 1 - (centre == 0 ? 1 - s - t : t);
     };

@@ -1,7 +1,7 @@
 #include <snug/bounds/bounds_cache.h>
 
 #include <gtest/gtest.h>
-#include <snug/bounds/hull_points.h>
+#include <snug/bounds/bounding_points.h>
 #include <support/parallel.h>
 #include <testing/patches.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 TEST(bound_library, hands_every_thread_the_same_rows_and_tables) {
   BoundsCache library;
-  std::vector<const BoundRows*> seen(400);
+  std::vector<const BoundingRows*> seen(400);
   std::vector<const BoundTable*> tables(400);
   parallel_for(seen.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -31,18 +31,18 @@ TEST(bound_library, hands_every_thread_the_same_rows_and_tables) {
   EXPECT_GT(library.bytes(), 0u);
 }
 
-// Everything that bounding all patches of some surfaces makes of rows: with no tips, one and several, passing
-// and crowded.
+// Everything that bounding all patches of some surfaces makes of rows: with no tips, one and several, transient
+// and high-valence.
 std::vector<std::vector<double>> numbers_with(const std::shared_ptr<BoundsCache>& library) {
   std::vector<std::vector<double>> all;
   for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
     for (const oracle::TwinMesh& twin :
          {oracle::meshes::icosahedron(), oracle::meshes::bipyramid(7), oracle::meshes::bipyramid(40)}) {
       const LimitSurface surface(testing::control_mesh(twin), {scheme}, library);
-      HullPoints points;
+      BoundingPoints points;
       for (std::size_t p = 0; p < surface.patch_count(); ++p) {
-        prepare_hull_points(*library, surface.kind(PatchId(p)));
-        hull_points(*library, surface.patch(PatchId(p)), points);
+        prepare_bounding_points(*library, surface.kind(PatchId(p)));
+        bounding_points(*library, surface.patch(PatchId(p)), points);
         std::vector<double>& numbers = all.emplace_back(std::vector{points.error, points.largest});
         for (std::size_t i = 0; i < points.size(); ++i) {
           const Vector3 at = points.at(i);

@@ -1,7 +1,7 @@
 #include <snug/bounds/crease_rows.h>
 
 #include <gtest/gtest.h>
-#include <snug/bounds/hull_points.h>
+#include <snug/bounds/bounding_points.h>
 #include <testing/patches.h>
 #include <testing/tagged.h>
 

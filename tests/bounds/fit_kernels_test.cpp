@@ -151,7 +151,7 @@ Vector3 any_point(Random& random, const Corners& c) {
   return p;
 }
 
-// What part of the rounding term it took to reach the true distance; sound up to 1.
+// Share of the rounding term that reaches the true distance; sound up to 1.
 double used(const kernels::Reach& reach, Quad truth) {
   return static_cast<double>((truth - (Quad(reach.distance) - Quad(reach.rounding))) / Quad(reach.rounding));
 }
@@ -444,8 +444,8 @@ class Nets {
     const Kind& kind = surface_.kind(PatchId(0));
     const std::size_t n = order_.size();
     const Patch patch = make_patch(kind, 0, points_, std::span(control_).subspan(i * n, n));
-    HullPoints hull;
-    hull_points(surface_.library().rows(kind), patch, hull);
+    BoundingPoints hull;
+    bounding_points(surface_.library().rows(kind), patch, hull);
     return offset_triangle(surface_.library(), hull, limit_corners(patch));
   }
 
@@ -573,7 +573,7 @@ using Bits = std::vector<std::uint64_t>;
 
 void add(Bits& bits, double x) { bits.push_back(std::isnan(x) ? ~0ull : std::bit_cast<std::uint64_t>(x)); }
 
-// What all kernels say of inputs with all cases and tails, and with heights that are zeros of both signs.
+// Results of all kernels for inputs with all cases and tails, and with heights that are zeros of both signs.
 Bits everything() {
   Random random(51);
   Bits bits;

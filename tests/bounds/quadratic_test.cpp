@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
 #include <oracle/polygon_twin.h>
-#include <snug/bounds/hull_points.h>
+#include <snug/bounds/bounding_points.h>
 #include <snug/patch/evaluate.h>
 #include <support/scaling.h>
 #include <testing/containment.h>
@@ -194,7 +194,7 @@ TEST(quadratic_rows, bound_a_piece_at_a_corner_by_its_layout_closely) {
         Patch patch = named.surface.patch(p);
         for (int level = 0; level < 12; ++level) patch = split(patch, corner);
         const Kind& kind = *patch.kind;
-        if (!kind.shared() || kind.polynomial()) continue;
+        if (!kind.cacheable() || kind.polynomial()) continue;
         patch.first = 0;
         const auto limits = limit_corners(patch);
         std::array<Vector3, 6> linear{limits[0], limits[1], limits[2]};
@@ -248,8 +248,8 @@ TEST(distance_to_triangle, bounds_dense_samples_of_every_kind) {
         triangle[k] =
             patch.origin + limits[k] + (0.1 * static_cast<double>(random() % 2)) * limits[(k + 1) % 3];
       }
-      HullPoints hull;
-      if (patch.kind->shared()) hull_points(named.surface.library(), patch, hull);
+      BoundingPoints hull;
+      if (patch.kind->cacheable()) bounding_points(named.surface.library(), patch, hull);
       const double bound = distance_to_triangle(named.surface.library(), patch, hull, triangle);
       double sampled = 0;
       for (int i = 0; i <= 8; ++i) {

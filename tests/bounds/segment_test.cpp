@@ -9,8 +9,8 @@
 namespace snug::segment_test {
 namespace {
 
-HullPoints points_of(const std::vector<Vector3>& list) {
-  HullPoints points;
+BoundingPoints points_of(const std::vector<Vector3>& list) {
+  BoundingPoints points;
   points.add(list, 0, 0);
   return points;
 }
@@ -28,7 +28,7 @@ TEST(segment, rests_are_perpendicular_inside_and_reach_to_the_ends_outside) {
 }
 
 TEST(segment, is_moved_to_the_middle_of_an_arc) {
-  const HullPoints points = points_of({{0, 0, 0}, {1, 1, 0}, {2, 1, 0}, {3, 0, 0}});
+  const BoundingPoints points = points_of({{0, 0, 0}, {1, 1, 0}, {2, 1, 0}, {3, 0, 0}});
   const OffsetSegment offset = offset_segment(points, {Vector3{0, 0, 0}, Vector3{3, 0, 0}});
   EXPECT_EQ(offset.base[0], (Point3{0, 0.5, 0}));
   EXPECT_EQ(offset.base[1], (Point3{3, 0.5, 0}));
@@ -43,7 +43,7 @@ TEST(segment, is_moved_to_the_middle_of_an_arc) {
 TEST(segment, of_what_is_not_finite_has_an_infinite_radius) {
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    const HullPoints points = points_of({{0, 0, 0}, {1, bad, 0}, {3, 0, 0}});
+    const BoundingPoints points = points_of({{0, 0, 0}, {1, bad, 0}, {3, 0, 0}});
     EXPECT_EQ(offset_segment(points, {Vector3{0, 0, 0}, Vector3{3, 0, 0}}).radius,
               std::numeric_limits<double>::infinity());
   }

@@ -15,7 +15,7 @@ TEST(tip_table, gives_the_boxes_of_the_table_triangle) {
   testing::for_each_surface(87, [&](const testing::NamedSurface& named) {
     testing::for_each_patch(named.surface, [&](PatchId p) {
       Patch patch = named.surface.patch(p);
-      if (!patch.kind->shared() || ++compared % 8 != 0) return;
+      if (!patch.kind->cacheable() || ++compared % 8 != 0) return;
       patch.first = 0;
       patch.origin = {};
       const BoundTable& table = named.surface.library().table(*patch.kind);
@@ -39,7 +39,7 @@ TEST(tip_table, holds_limit_corners_of_points_far_from_the_origin) {
   testing::for_each_surface(88, [&](const testing::NamedSurface& named) {
     testing::for_each_patch(named.surface, [&](PatchId p) {
       Patch patch = named.surface.patch(p);
-      if (!patch.kind->shared() || p.index() % 8 != 0) return;
+      if (!patch.kind->cacheable() || p.index() % 8 != 0) return;
       for (Vector3& point : patch.points) point = 0x1p-40 * point + Vector3{0.3, -0.7, 0.1};
       patch.error = 0;
       patch.largest = 1;

@@ -216,7 +216,7 @@ TEST(bounding_tree, made_by_threads_at_once_is_that_of_one) {
   }
 }
 
-// What interrupts the making of a part leaves nothing half made.
+// An interruption while a part is made leaves nothing half made.
 TEST(bounding_tree, makes_a_part_again_that_failed) {
   const std::vector<Point3> points = scattered(3000);
   int calls = 0;

@@ -157,7 +157,7 @@ struct TwoNodes {
   float prune_distance;
 };
 
-// What is told of the places follows from the gaps.
+// The reported places follow from the gaps.
 void expect_agrees(const WideNode::Near& near, const WideNode::Distances& gaps, std::size_t count,
                    float prune) {
   float others = INFINITY;
@@ -181,10 +181,10 @@ TEST(wide_node, distances_to_a_box_of_another_never_exceed_those_of_the_contents
     const auto in_a = two.images(0), in_b = two.images(1);
     for (std::size_t j = 0; j < in_b.size(); ++j) {
       std::array<WideNode::Distances, 2> found;
-      for (const std::size_t sort : {0u, 1u}) {
+      for (const std::size_t which : {0u, 1u}) {
         const WideNode::Near near = two.nodes[0].distances(two.nodes[1], j, two.view, two.prune_distance,
-                                                           both_gaps[sort], found[sort]);
-        expect_agrees(near, found[sort], in_a.size(), two.prune_distance);
+                                                           both_gaps[which], found[which]);
+        expect_agrees(near, found[which], in_a.size(), two.prune_distance);
         dropped += in_a.size() - static_cast<std::size_t>(std::popcount(near.places));
       }
       for (std::size_t i = 0; i < in_a.size(); ++i) {
@@ -193,12 +193,12 @@ TEST(wide_node, distances_to_a_box_of_another_never_exceed_those_of_the_contents
         line_alone += found[1][i] > 0 && !(found[0][i] > 0);
         if (!(found[0][i] > 0) && !(found[1][i] > 0)) continue;
         const long double exact = distance_from_above(in_a[i], in_b[j], random);
-        for (const std::size_t sort : {0u, 1u}) {
-          if (!(found[sort][i] > 0)) continue;
-          ++gaps[sort];
-          const double gap = static_cast<double>(found[sort][i]) * two.view.frame.to_world;
-          tight[sort] += gap > 0.9 * static_cast<double>(exact);
-          ASSERT_LE(gap, exact + two.rounding()) << trial << ": " << i << ' ' << j << ", sort " << sort;
+        for (const std::size_t which : {0u, 1u}) {
+          if (!(found[which][i] > 0)) continue;
+          ++gaps[which];
+          const double gap = static_cast<double>(found[which][i]) * two.view.frame.to_world;
+          tight[which] += gap > 0.9 * static_cast<double>(exact);
+          ASSERT_LE(gap, exact + two.rounding()) << trial << ": " << i << ' ' << j << ", which " << which;
         }
       }
     }
@@ -286,8 +286,8 @@ TEST(wide_node, distances_are_the_same_on_every_instruction_set) {
         all.insert(all.end(), one.begin(), one.end());
       };
       for (std::size_t j = 0; j < two.nodes[1].count() && two.view.frame.comparable; ++j) {
-        for (const WideNode::Gaps sort : both_gaps) {
-          add(two.nodes[0].distances(two.nodes[1], j, two.view, two.prune_distance, sort, one));
+        for (const WideNode::Gaps which : both_gaps) {
+          add(two.nodes[0].distances(two.nodes[1], j, two.view, two.prune_distance, which, one));
         }
       }
       add(two.nodes[0].distances(seen, two.view.frame.slack, two.prune_distance, one));
@@ -324,9 +324,9 @@ TEST(wide_node, distances_hold_for_sources_of_any_smallness) {
       std::vector<Extended> in_a, in_b;
       for (const Point3& p : a) in_a.push_back(image(frame_a, p));
       for (const Point3& p : b) in_b.push_back(image(frame_b, p));
-      for (const WideNode::Gaps sort : both_gaps) {
+      for (const WideNode::Gaps which : both_gaps) {
         WideNode::Distances found;
-        static_cast<void>(one.distances(other, 0, view, 0, sort, found));
+        static_cast<void>(one.distances(other, 0, view, 0, which, found));
         gaps += found[0] > 0;
         ASSERT_LE(static_cast<double>(found[0]) * view.frame.to_world,
                   distance_from_above(in_a, in_b, random))
@@ -371,9 +371,9 @@ TEST(wide_node, boxes_side_by_side_are_as_far_as_they_are) {
   const Obb a = cube(0), b = cube(3);
   const WideNode one({&a, 1}), two({&b, 1});
   const View view(unmoved(), unmoved());
-  for (const WideNode::Gaps sort : both_gaps) {
+  for (const WideNode::Gaps which : both_gaps) {
     WideNode::Distances found;
-    static_cast<void>(one.distances(two, 0, view, INFINITY, sort, found));
+    static_cast<void>(one.distances(two, 0, view, INFINITY, which, found));
     EXPECT_NEAR(found[0], 2, 0.001);
     EXPECT_LE(found[0], 2);
   }
@@ -389,17 +389,17 @@ TEST(wide_node, what_is_not_finite_is_apart_from_nothing) {
     const Obb a = box_of(Obb{}.axes, {far, far, far}), b = box_around({{9, 9, 9}});
     const std::array both{b, a}, turned{a, b};
     const View view(unmoved(), unmoved());
-    for (const WideNode::Gaps sort : both_gaps) {
+    for (const WideNode::Gaps which : both_gaps) {
       // A box of a node where another one is not finite is not apart from anything either, or it is.
       for (const auto& [one, other, place] : {std::tuple{WideNode({&a, 1}), WideNode({&b, 1}), 0u},
                                               std::tuple{WideNode({&b, 1}), WideNode({&a, 1}), 0u},
                                               std::tuple{WideNode({&b, 1}), WideNode(both), 1u},
                                               std::tuple{WideNode(turned), WideNode({&b, 1}), 0u}}) {
         WideNode::Distances found;
-        const WideNode::Near near = one.distances(other, place, view, 0, sort, found);
+        const WideNode::Near near = one.distances(other, place, view, 0, which, found);
         EXPECT_FALSE(found[0] > 0) << bad;
         EXPECT_EQ(near.places & 1u, 1u) << bad;
-        static_cast<void>(one.distances(other, place, view, INFINITY, sort, found));
+        static_cast<void>(one.distances(other, place, view, INFINITY, which, found));
         EXPECT_FALSE(found[0] > 0) << bad;
       }
     }

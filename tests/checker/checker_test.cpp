@@ -5,7 +5,7 @@
 #include <checker/quadratic.h>
 #include <checker/rejected.h>
 #include <gtest/gtest.h>
-#include <snug/bounds/bound_rows.h>
+#include <snug/bounds/bounding_rows.h>
 #include <tablegen/file_writer.h>
 #include <tablegen/kinds.h>
 #include <testing/counts.h>
@@ -26,7 +26,7 @@ const std::vector<std::byte>& common_bytes() {
 
 Key of_loop(Fan a, Fan b, Fan c) { return {a, b, c, no_corner}; }
 
-StoredKind stored(const snug::KindKey& key, const snug::BoundRows& rows) {
+StoredKind stored(const snug::KindKey& key, const snug::BoundingRows& rows) {
   StoredKind kind;
   kind.scheme = schemes.at(static_cast<std::size_t>(key.scheme));
   for (std::size_t i = 0; i < 4; ++i) {
@@ -44,7 +44,7 @@ StoredKind stored(const snug::KindKey& key, const snug::BoundRows& rows) {
 
 StoredKind made(const snug::KindKey& key) {
   snug::KindCache library;
-  return stored(key, snug::make_bound_rows(library.find(key)));
+  return stored(key, snug::make_bounding_rows(library.find(key)));
 }
 
 snug::CornerFan inside(std::size_t n) { return {0, static_cast<std::uint16_t>(n - 1), true, false}; }

@@ -22,7 +22,7 @@ bool same_bits(const Values& a, const Others& b) {
   return one.size() == two.size() && std::memcmp(one.data(), two.data(), one.size()) == 0;
 }
 
-void expect_same(const checker::StoredRows& made, const snug::BoundRows& on_demand) {
+void expect_same(const checker::StoredRows& made, const snug::BoundingRows& on_demand) {
   ASSERT_EQ(made.rows, on_demand.count());
   ASSERT_EQ(made.controls, on_demand.control_count());
   EXPECT_TRUE(same_bits(std::array{made.entry_error, made.abs_sum},
@@ -32,7 +32,7 @@ void expect_same(const checker::StoredRows& made, const snug::BoundRows& on_dema
 }
 
 // Bezier points of the rows that patches are bounded with are the first of those that are proved.
-void expect_first(const checker::StoredKind& made, const snug::BoundRows& kept) {
+void expect_first(const checker::StoredKind& made, const snug::BoundingRows& kept) {
   ASSERT_LE(kept.bezier_count(), made.rows);
   for (std::size_t c = 0; c < made.controls; ++c) {
     for (std::size_t r = 0; r < kept.bezier_count(); ++r) ASSERT_EQ(made.weight(r, c), kept.weight(r, c));
@@ -54,7 +54,7 @@ checker::Key key_of(const KindKey& key) {
   return fans;
 }
 
-void expect_same(const checker::StoredComparison& made, const snug::BoundRows& on_demand,
+void expect_same(const checker::StoredComparison& made, const snug::BoundingRows& on_demand,
                  const std::vector<snug::QuadraticRows::Restriction>& restrictions) {
   expect_same(static_cast<const checker::StoredRows&>(made), on_demand);
   ASSERT_EQ(made.quadratic.size(), on_demand.bezier_count());
@@ -98,10 +98,10 @@ TEST(tablegen, makes_bit_by_bit_the_rows_tables_and_quadratics_made_on_demand) {
     ASSERT_EQ(made.tables.size(), 2u);
     expect_same(made.tables[0], tables_first.table(tables_first.kinds().find(keys[i])));
     const snug::Kind& kind = rows_first.kinds().find(keys[i]);
-    expect_same(made, snug::make_bound_rows(kind));
+    expect_same(made, snug::make_bounding_rows(kind));
     expect_same(made.tables[0], rows_first.table(kind));
     expect_same(made.tables[1],
-                snug::make_bound_table(kind, snug::make_bound_rows(kind), snug::tip_layout(kind)));
+                snug::make_bound_table(kind, snug::make_bounding_rows(kind), snug::tip_layout(kind)));
     expect_first(made, rows_first.rows(kind));
     ASSERT_TRUE(made.quadratics);
     expect_same(*made.quadratics, rows_first, kind);

@@ -86,7 +86,7 @@ TEST(budget, bounds_the_work_and_the_memory_of_every_command) {
   }
 }
 
-// What is advised is enough, and one less is not; what is not known is not named.
+// The advised budget is enough, and one less is not; an unknown one is not named.
 TEST(budget, numbers_of_triangles_that_are_named_are_enough) {
   const TemporaryFolder folder;
   const std::string out = folder.file("out.off"), pawn = model("pawn.obj");

@@ -109,8 +109,8 @@ TEST_F(contact, of_meshes_that_deform_is_told) {
 
 // Following what each message advises decides the question.
 TEST_F(contact, that_is_undecided_names_what_decides_it) {
-  const auto told = [&](std::vector<std::string> more, const std::string& tolerance,
-                        const std::string& budget) {
+  const auto output = [&](std::vector<std::string> more, const std::string& tolerance,
+                          const std::string& budget) {
     more.insert(more.end(), {"--tolerance", tolerance, "--budget", budget});
     const Outcome outcome = refused(more);
     EXPECT_EQ(outcome.status, outcome.out.find("undecided") == std::string::npos ? 0 : 5) << outcome.out;
@@ -118,12 +118,12 @@ TEST_F(contact, that_is_undecided_names_what_decides_it) {
   };
   // Along the other one, 1e-5 above it.
   const std::vector<std::string> close{"--move-b", "-5 0 1.00001", "--velocity-b", "10 0 0"};
-  EXPECT_NE(told(close, "1e-7", "4000").find("give a larger --budget\n"), std::string::npos);
-  EXPECT_NE(told(close, "1e-7", "1000000").find("separated: proved"), std::string::npos);
+  EXPECT_NE(output(close, "1e-7", "4000").find("give a larger --budget\n"), std::string::npos);
+  EXPECT_NE(output(close, "1e-7", "1000000").find("separated: proved"), std::string::npos);
   // On it.
   const std::vector<std::string> on{"--move-b", "-0.5 0 1", "--velocity-b", "1 0 0"};
-  EXPECT_NE(told(on, "0", "1000000").find("give a larger --tolerance\n"), std::string::npos);
-  EXPECT_NE(told(on, "1e-7", "1000000").find("within: "), std::string::npos);
+  EXPECT_NE(output(on, "0", "1000000").find("give a larger --tolerance\n"), std::string::npos);
+  EXPECT_NE(output(on, "1e-7", "1000000").find("within: "), std::string::npos);
 }
 
 TEST_F(contact, refusals_name_the_option_and_the_next_step) {

@@ -26,7 +26,7 @@ struct Outcome {
 /// The same of snug-research.
 [[nodiscard]] Outcome run_research(const std::vector<std::string>& arguments, const std::string& input = "");
 
-/// What is different from a usual start of the command.
+/// Differences from a usual start of the command.
 struct Surroundings {
   /// Called in the new process once its standard files are in place, before the command begins.
   std::function<void()> before;

@@ -50,7 +50,7 @@ TEST_F(scene_runs, go_on_after_being_killed_at_any_moment) {
   EXPECT_GT(killed_in_all, 0);
 }
 
-// What a line for the shell prints, and its status.
+// Output and status of a line for the shell.
 Outcome shell(const std::string& line) {
   Outcome outcome;
   FILE* const pipe =

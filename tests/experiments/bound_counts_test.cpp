@@ -53,10 +53,10 @@ TEST(bound_counts, split_until_sharpness_has_decayed) {
       area[root.index()] += std::ldexp(1.0, -2 * static_cast<int>(level));
       Patch patch = surface.patch(root);
       for (const char digit : piece.path.text()) {
-        EXPECT_TRUE(patch.kind->passing());
+        EXPECT_TRUE(patch.kind->transient());
         patch = split(patch, static_cast<unsigned>(digit - '0'));
       }
-      EXPECT_FALSE(patch.kind->passing());
+      EXPECT_FALSE(patch.kind->transient());
     };
     const PieceCount pieces = count_pieces(surface, tables, BoundWay::split, {}, check);
     EXPECT_TRUE(pieces.reached);
@@ -74,9 +74,9 @@ TEST(bound_counts, of_control_boxes_are_far_more) {
   const CountOptions options{.tolerance = 0.05};
   EXPECT_GT(count_pieces(surface, tables, BoundWay::control_box, options).count,
             4 * count_pieces(surface, tables, BoundWay::rows, options).count);
-  HullPoints rows, control;
+  BoundingPoints rows, control;
   const Patch patch = surface.patch(PatchId(0));
-  hull_points(surface.library().rows(*patch.kind), patch, rows);
+  bounding_points(surface.library().rows(*patch.kind), patch, rows);
   EXPECT_LT(2 * longest_side(outer_box(rows)), longest_side(control_box(patch, control)));
 }
 
@@ -91,7 +91,7 @@ TEST(bound_counts, refuse_what_cannot_be_counted) {
 }
 
 TEST(control_boxes, contain_limit_points_of_patches) {
-  HullPoints scratch;
+  BoundingPoints scratch;
   for (const oracle::TwinMesh& twin : testing::assorted_meshes(18)) {
     const LimitSurface surface = testing::surface_of(twin);
     const double unit = surface.scale().inverse().apply(1.0);
@@ -108,7 +108,7 @@ TEST(control_boxes, contain_limit_points_of_patches) {
 }
 
 TEST(control_boxes, contain_limit_points_of_curves) {
-  HullPoints scratch;
+  BoundingPoints scratch;
   for (const oracle::TwinPolyline& twin : testing::assorted_polylines(7)) {
     for (const int degree : {2, 3}) {
       const CurveSet curves = testing::curve_set(twin, degree);

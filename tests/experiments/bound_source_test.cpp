@@ -56,7 +56,7 @@ TEST(characteristic_layout, is_that_of_the_library_where_not_one_corner_alone_is
 // Tables of any layout are sound: limit points of the twin lie in what they give.
 TEST(layout_tables, contain_limit_points_near_every_corner) {
   std::mt19937_64 random(45);
-  HullPoints scratch;
+  BoundingPoints scratch;
   std::size_t checks = 0;
   for (const std::uint32_t n : {3u, 4u, 5u, 6u, 7u, 9u, 12u, 40u}) {
     // Two rings around the middle: its patches have one extraordinary corner.

@@ -15,7 +15,7 @@
 namespace snug::convergence_test {
 namespace {
 
-// What all claims about measured factors look at: few nets, all levels.
+// Data of all claims about measured factors: few nets, all levels.
 const std::vector<RateRow>& measured() {
   static const std::vector<RateRow> rows = [] {
     RateOptions options;

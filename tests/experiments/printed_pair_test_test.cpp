@@ -16,7 +16,7 @@ using testing::inner;
 using testing::minus;
 
 // The point of least norm in the flat through one to three points, if it lies in their simplex.
-std::optional<Extended> least_in_flat(const std::vector<Extended>& points) {
+std::optional<Extended> min_in_flat(const std::vector<Extended>& points) {
   // Least |p0 + s e1 + t e2|: the normal equations, by Cramer's rule.
   const Extended& p = points[0];
   if (points.size() == 1) return p;
@@ -56,7 +56,7 @@ BruteDistance brute_distance(const Triangle& a, const Triangle& b) {
   BruteDistance result{0, INFINITY};
   Extended best{};
   const auto attempt = [&](const std::vector<Extended>& points) {
-    const std::optional<Extended> least = least_in_flat(points);
+    const std::optional<Extended> least = min_in_flat(points);
     if (!least) return;
     const long double size = std::sqrt(inner(*least, *least));
     if (size < result.upper) {
@@ -77,7 +77,7 @@ BruteDistance brute_distance(const Triangle& a, const Triangle& b) {
   return result;
 }
 
-// What the certified distance may lose: nearest points with an error of a few units in the last place give a
+// Loss of the certified distance: nearest points with an error of a few units in the last place give a
 // direction with that error over the distance, and the support of triangles of size 1 is off by as much.
 double slack_at(long double distance) { return static_cast<double>(1e-14L / distance); }
 

@@ -19,11 +19,11 @@ TEST(kobbelt_prism, misses_a_strongly_curved_patch_that_our_enclosures_contain) 
   }
   const LimitSurface surface = testing::surface_of(cap);
   double worst = 0;
-  HullPoints points;
+  BoundingPoints points;
   for (std::size_t f = 0; f < surface.face_count(); ++f) {
     const Patch patch = surface.patch(PatchId(f));
     const auto corners = limit_corners(patch);
-    hull_points(surface.library().rows(*patch.kind), patch, points);
+    bounding_points(surface.library().rows(*patch.kind), patch, points);
     const Prism prism = kobbelt_prism(points, corners);
     const OffsetTriangle offset = offset_triangle(surface.library(), points, corners);
     for (int i = 0; i <= 32; ++i) {
@@ -41,9 +41,9 @@ TEST(kobbelt_prism, misses_a_strongly_curved_patch_that_our_enclosures_contain) 
 
 TEST(kobbelt_prism, contains_a_flat_patch) {
   const LimitSurface surface = testing::surface_of(oracle::meshes::grid(5, 5));
-  HullPoints points;
+  BoundingPoints points;
   const Patch patch = surface.patch(PatchId(24));
-  hull_points(surface.library().rows(*patch.kind), patch, points);
+  bounding_points(surface.library().rows(*patch.kind), patch, points);
   const Prism prism = kobbelt_prism(points, limit_corners(patch));
   EXPECT_LT(distance_outside(prism, patch.origin + limit_point(patch, {0.25, 0.25}).relative), 1e-14);
 }

@@ -37,7 +37,7 @@ TEST(corner_nets, have_one_extraordinary_vertex) {
 }
 
 TEST(tightness, no_radius_is_below_the_least) {
-  HullPoints scratch;
+  BoundingPoints scratch;
   for (const NetShape shape : all_net_shapes) {
     for (const std::size_t n : experiment_valences) {
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -47,7 +47,7 @@ TEST(tightness, no_radius_is_below_the_least) {
         LayoutTables tables(surface.library());
         for (const BoundSource source : all_bound_sources) {
           const OffsetTriangle offset = tables.offset(patch, source, scratch);
-          EXPECT_GE(offset.radius, lattice.least_radius(offset.base)) << name_of(shape) << n;
+          EXPECT_GE(offset.radius, lattice.min_radius(offset.base)) << name_of(shape) << n;
         }
       }
     }
@@ -62,11 +62,11 @@ TEST(tightness, finds_the_height_of_a_triangle_over_a_flat_patch) {
   const auto corners = limit_corners(patch);
   Triangle base;
   for (std::size_t k = 0; k < 3; ++k) base[k] = patch.origin + corners[k] + Vector3{0, 0, 0.375};
-  EXPECT_NEAR(lattice.least_radius(base), 0.375, 1e-14);
+  EXPECT_NEAR(lattice.min_radius(base), 0.375, 1e-14);
   // Of a tilted one the farthest point is off the lattice's own: the far corner beyond the base's.
   base[1] = base[0] + 0.5 * (base[1] - base[0]);
   base[2] = base[0] + 0.5 * (base[2] - base[0]);
-  EXPECT_NEAR(lattice.least_radius(base), std::hypot(0.375, 0.5 * length(corners[1] - corners[0])), 1e-12);
+  EXPECT_NEAR(lattice.min_radius(base), std::hypot(0.375, 0.5 * length(corners[1] - corners[0])), 1e-12);
 }
 
 // Points between those of the lattice count: a coarse lattice finds what a fine one does.
@@ -75,17 +75,17 @@ TEST(tightness, searches_between_the_points_of_the_lattice) {
     const LimitSurface surface = surface_of_net(corner_net(NetShape::bent, n, 2));
     const Patch patch = surface.patch(PatchId(0));
     const OffsetTriangle offset = [&] {
-      HullPoints scratch;
+      BoundingPoints scratch;
       return make_piece(surface.library(), PatchId(0), patch, scratch).offset;
     }();
-    EXPECT_NEAR(LimitLattice(patch, 8).least_radius(offset.base),
-                LimitLattice(patch, 200).least_radius(offset.base), 1e-7);
+    EXPECT_NEAR(LimitLattice(patch, 8).min_radius(offset.base),
+                LimitLattice(patch, 200).min_radius(offset.base), 1e-7);
   }
 }
 
-// docs/convergence.md: why radii of hull rows shrink by the subdominant eigenvalue only below valence six.
+// docs/convergence.md: why radii of bounding rows shrink by the subdominant eigenvalue only below valence six.
 TEST(tightness, flat_patches_bulge_beyond_their_corners_below_valence_six_and_not_above) {
-  HullPoints scratch;
+  BoundingPoints scratch;
   for (const std::size_t n : experiment_valences) {
     const LimitSurface surface = surface_of_net(fan_mesh(n, 2));
     Patch patch = surface.patch(PatchId(0));
@@ -93,7 +93,7 @@ TEST(tightness, flat_patches_bulge_beyond_their_corners_below_valence_six_and_no
     const auto corners = limit_corners(patch);
     const double edge = length(corners[1] - corners[0]);
     const OffsetTriangle offset = make_piece(surface.library(), PatchId(0), patch, scratch).offset;
-    const double bulge = LimitLattice(patch, 64).least_radius(offset.base) / edge;
+    const double bulge = LimitLattice(patch, 64).min_radius(offset.base) / edge;
     const double radius = offset.radius / edge;
     if (n < 6) {
       EXPECT_NEAR(bulge, n == 3 ? 0.249 : n == 4 ? 0.107 : 0.0385, 5e-4) << n;

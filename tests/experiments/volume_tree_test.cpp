@@ -3,7 +3,7 @@
 #include <experiments/room_tables.h>
 #include <experiments/rooms.h>
 #include <gtest/gtest.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <testing/patches.h>
 #include <testing/placed_points.h>
 #include <testing/placements.h>

@@ -19,7 +19,7 @@ inline void claim(bool holds, const char* what) {
   std::abort();
 }
 
-/// What every reader promises of a mesh.
+/// Guarantees of every reader.
 inline void claim_well_formed(const ControlMesh& mesh) {
   claim(!mesh.points.empty() && mesh.face_count() + mesh.polyline_count() > 0,
         "there are vertices, and faces or polylines");

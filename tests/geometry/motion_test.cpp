@@ -21,7 +21,7 @@ Numbers turned(double angle, double stretch = 1) {
   return {c, -s, 0, 1, s, c, 0, 2, 0, 0, stretch, 3};
 }
 
-// What an action throws, or nothing.
+// Message of the error that an action throws, or nothing.
 template <class Action>
 std::string refusal(Action&& action) {
   try {

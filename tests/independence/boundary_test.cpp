@@ -46,7 +46,7 @@ std::vector<IndependenceCase> cases(const ExactScheme& scheme, std::uint32_t n, 
   return independence_cases(scheme, {n, {}, false, at}, requests, {}, min_prime);
 }
 
-// What docs/derivations/independence.md proves.
+// Claims of docs/derivations/independence.md.
 std::uint32_t proved_dimension(const ExactScheme& scheme, std::uint32_t n, std::uint32_t i) {
   return (is_loop(scheme) ? n + 7 : 2 * n + 9) - (i == 1 ? 1 : 0) - (i == n ? 1 : 0);
 }

@@ -371,7 +371,7 @@ TEST(mesh_kernel, of_plain_meshes_is_what_no_surface_uses) {
   EXPECT_EQ(kernel.vectors[0].vertices, std::vector<VertexId>{VertexId(5)});
 }
 
-// What is not proved is refused, and says what to do.
+// Unproved cases are refused, with the next step.
 TEST(mesh_kernel, refuses_what_is_not_decided) {
   std::mt19937_64 random(4);
   const auto message = [](const ControlMesh& mesh, SchemeOptions options) -> std::string {

@@ -210,7 +210,7 @@ void compare(const Shape& shape, Scheme scheme, Tally& tally) {
   }
 }
 
-// What the theorem leaves out, and what is beside it.
+// Cases that the theorem leaves out, and their neighbours.
 using Feature = std::pair<const char*, std::function<void(Shape&, std::mt19937_64&)>>;
 
 std::uint32_t below(std::size_t n, std::mt19937_64& random) {
@@ -369,7 +369,7 @@ std::vector<ClosedMesh> small_meshes() {
           torus(3, 3),   trapezohedron(3), trapezohedron(5), bipyramid(4)};
 }
 
-Tally tally_of_pairs(Scheme scheme, int rounds, std::size_t most_vertices) {
+Tally tally_of_pairs(Scheme scheme, int rounds, std::size_t max_vertices) {
   Tally tally;
   std::mt19937_64 random(7);
   const std::vector<ClosedMesh> meshes = small_meshes();
@@ -384,7 +384,7 @@ Tally tally_of_pairs(Scheme scheme, int rounds, std::size_t most_vertices) {
           shape.name += std::string(", ") + all[k].first;
         }
         if (scheme == Scheme::loop) shape = triangulated(shape);
-        if (shape.mesh.points.size() <= most_vertices) compare(shape, scheme, tally);
+        if (shape.mesh.points.size() <= max_vertices) compare(shape, scheme, tally);
       }
     }
   }
@@ -443,7 +443,7 @@ TEST(mesh_rank, has_the_masks_of_refine) {
   }
 }
 
-// What each scheme's pairs must have met, so that the comparison means something.
+// Cases that each scheme's pairs must cover.
 TEST(mesh_rank, of_pairs_of_features_with_catmark) {
   const Tally tally = tally_of_pairs(Scheme::catmark, 2, 34);
   EXPECT_EQ(tally.refused, 0);
@@ -572,14 +572,14 @@ TEST(mesh_rank, says_what_it_does_not_decide) {
 
 // The proof alone: what is in the kernel vanishes, what is near it does not.
 TEST(mesh_rank, proves_only_what_vanishes) {
-  const auto proves = [](const Shape& shape, Scheme scheme, const std::vector<bool>& bare,
+  const auto proves = [](const Shape& shape, Scheme scheme, const std::vector<bool>& without_surface,
                          std::uint32_t order, const std::vector<std::vector<mpq_class>>& entries) {
     const FlintMemory memory;
     const ControlMesh mesh = control_mesh_of(shape);
     const Topology topology(mesh);
     const SchemeOptions options{.scheme = scheme};
     const Sharpness none;
-    const ExactSurface surface = exact_surface({topology, options, none}, bare, order, {});
+    const ExactSurface surface = exact_surface({topology, options, none}, without_surface, order, {});
     const RealField field(order);
     ZeroProof proof(surface, field);
     ZeroProof::Values values;
@@ -603,13 +603,13 @@ TEST(mesh_rank, proves_only_what_vanishes) {
   }
   // One quad of a torus sees sixteen places.
   const Shape torus = shape_of(testing::torus(6, 6));
-  std::vector<bool> bare(36, true);
-  bare[0] = false;
+  std::vector<bool> without_surface(36, true);
+  without_surface[0] = false;
   std::size_t unseen = 0;
   for (std::size_t v = 0; v < 36; ++v) {
     std::vector<std::vector<mpq_class>> one(36);
     one[v] = {1};
-    unseen += proves(torus, Scheme::catmark, bare, 1, one) ? 1 : 0;
+    unseen += proves(torus, Scheme::catmark, without_surface, 1, one) ? 1 : 0;
   }
   EXPECT_EQ(unseen, 20);
   const Shape seven = fan({7});

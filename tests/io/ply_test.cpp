@@ -33,7 +33,7 @@ const std::string head =
 const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n";
 const std::string faces = "3 0 2 1\n4 0 1 3 2\n";
 
-ControlMesh random_mesh(std::size_t vertex_count, std::size_t most_corners) {
+ControlMesh random_mesh(std::size_t vertex_count, std::size_t max_corners) {
   std::mt19937_64 random(9);
   ControlMesh mesh;
   while (mesh.vertex_count() < vertex_count) {
@@ -42,7 +42,7 @@ ControlMesh random_mesh(std::size_t vertex_count, std::size_t most_corners) {
   }
   for (std::size_t face = 0; face < 500; ++face) {
     std::vector<VertexId> cycle;
-    for (std::size_t k = 0; k <= face % most_corners; ++k) cycle.emplace_back(random() % mesh.vertex_count());
+    for (std::size_t k = 0; k <= face % max_corners; ++k) cycle.emplace_back(random() % mesh.vertex_count());
     mesh.add_face(cycle);
   }
   return mesh;
@@ -114,8 +114,8 @@ TEST(ply, each_type_of_coordinate_gives_its_number) {
 }
 
 TEST(ply, written_doubles_are_read_bit_by_bit) {
-  for (const std::size_t most_corners : {7, 300}) {  // counted by bytes, and not
-    const ControlMesh mesh = random_mesh(5000, most_corners);
+  for (const std::size_t max_corners : {7, 300}) {  // counted by bytes, and not
+    const ControlMesh mesh = random_mesh(5000, max_corners);
     for (const PlyForm format : formats) expect_same_arrays(mesh, parse(ply_of(mesh, format)));
   }
 }

@@ -180,7 +180,7 @@ TEST(usda, meshes_with_other_rules_are_refused_by_name) {
             "in.usda:9: interpolateBoundary of '/b' is not that of '/a': write them to different files");
   EXPECT_EQ(refusal(pair("", "token triangleSubdivisionRule = \"smooth\"\n")),
             "in.usda:8: triangleSubdivisionRule of '/b' is not that of '/a': write them to different files");
-  // What is the default may be said or not; none and bilinear are the same for polygons.
+  // Defaults may be written or not; none and bilinear are the same for polygons.
   EXPECT_EQ(parse(pair("",
                        "token interpolateBoundary = \"edgeAndCorner\"\nuniform token subdivisionScheme = "
                        "\"catmullClark\"\ntoken triangleSubdivisionRule = \"catmullClark\"\n"))
@@ -216,7 +216,7 @@ TEST(usda, prims_that_do_not_count_are_left_out_with_a_note) {
   EXPECT_EQ(with("def Mesh \"a\" {\n int[] faceVertexCounts = []\n}\n"),
             "in.usda: meshes without faces are left out: '/a'");
   EXPECT_EQ(with("def Sphere \"a\" {}\n"), "in.usda: shapes that are not meshes are left out: '/a'");
-  // What a prim says itself counts more than what is above it, of purposes only.
+  // Of purposes only, a prim overrides its ancestors.
   EXPECT_EQ(parse("def \"x\" { uniform token purpose = \"guide\"\n" +
                   mesh_prim(quad + "uniform token purpose = \"render\"\n") + "}\n")
                 .face_count(),

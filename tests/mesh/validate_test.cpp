@@ -75,8 +75,8 @@ TEST(defects, see_bad_tags) {
   EXPECT_TRUE(has(mesh, DefectKind::bad_tag));
 }
 
-// What neighbours would show is left out only where the topology says that there is nothing: of random soups
-// of few vertices, many of them manifold by accident, folded, with faces twice.
+// Reports of neighbours are left out only where the topology has none: random soups of few vertices, many of them
+// manifold by accident, folded, with faces twice.
 TEST(defects_of_elements, are_all_but_legal_ones_of_a_manifold_mesh) {
   std::mt19937_64 random(41);
   const auto serious = [](const std::vector<Defect>& all) {

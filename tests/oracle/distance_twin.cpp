@@ -167,9 +167,9 @@ struct Goal {
 };
 
 template <class Tree>
-class Search {
+class GapSearch {
  public:
-  Search(Tree& a, const Placement& place_a, Tree& b, const Placement& place_b, const Goal& goal)
+  GapSearch(Tree& a, const Placement& place_a, Tree& b, const Placement& place_b, const Goal& goal)
       : a_(a),
         b_(b),
         place_a_(place_a),
@@ -366,7 +366,7 @@ TwinDistance search(Tree& a, const Placement& place_a, Tree& b, const Placement&
   check_placement(place_b);
   a.trim();
   b.trim();
-  return Search<Tree>(a, place_a, b, place_b, goal).run(roots_of(a, face), roots_of(b, {}));
+  return GapSearch<Tree>(a, place_a, b, place_b, goal).run(roots_of(a, face), roots_of(b, {}));
 }
 
 TwinDistance widened(TwinDistance found, double slack) {

@@ -92,9 +92,9 @@ struct Node {
   friend bool operator<(const Node& a, const Node& b) { return a.upper < b.upper; }
 };
 
-class Search {
+class FarthestSearch {
  public:
-  Search(const std::vector<Corners>& from, const std::vector<Corners>& to, const HausdorffGoal& goal)
+  FarthestSearch(const std::vector<Corners>& from, const std::vector<Corners>& to, const HausdorffGoal& goal)
       : goal_(goal) {
     if (from.empty() || to.empty()) throw std::invalid_argument("a distance of no triangles");
     origin_ = {to[0][0][0], to[0][0][1], to[0][0][2]};
@@ -273,7 +273,7 @@ class Search {
 
 HausdorffBounds one_sided_hausdorff(const std::vector<Corners>& from, const std::vector<Corners>& to,
                                     const HausdorffGoal& goal) {
-  return Search(from, to, goal).run();
+  return FarthestSearch(from, to, goal).run();
 }
 
 HausdorffBounds distance_to_triangles(const Point& point, const std::vector<Corners>& to) {

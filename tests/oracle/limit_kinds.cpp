@@ -207,7 +207,7 @@ class PrimalKinds final : public PatchKinds {
     kind.point_count = static_cast<Id>(piece.own);
     const Neighbours near(units);
     for (const Id v : units.faces[0].vertices) {
-      const auto limit = settled_limit(units, near, v, rules_);
+      const auto limit = limit_in_star(units, near, v, rules_);
       kind.corners.push_back(limit ? std::optional(rounded(*limit)) : std::nullopt);
     }
     const bool loop = rules_.scheme == PrimalScheme::loop;

@@ -123,13 +123,13 @@ Quad largest(const PolygonNet& net) {
 }  // namespace
 
 template <class P>
-std::optional<P> settled_limit(const NetOf<P>& net, const Neighbours& near, Id v, const Rules& rules) {
+std::optional<P> limit_in_star(const NetOf<P>& net, const Neighbours& near, Id v, const Rules& rules) {
   const Future kind = future(net, near, v, rules);
   if (kind == Future::ring || kind == Future::open) return {};
   return closed_formula(net, near, v, kind, rules);
 }
-template std::optional<QuadPoint> settled_limit(const PolygonNet&, const Neighbours&, Id, const Rules&);
-template std::optional<SparseRow> settled_limit(const NetOf<SparseRow>&, const Neighbours&, Id, const Rules&);
+template std::optional<QuadPoint> limit_in_star(const PolygonNet&, const Neighbours&, Id, const Rules&);
+template std::optional<SparseRow> limit_in_star(const NetOf<SparseRow>&, const Neighbours&, Id, const Rules&);
 
 Limits limit_points(const PolygonNet& net, const Rules& rules, const std::vector<char>& wanted) {
   const Neighbours near(net);

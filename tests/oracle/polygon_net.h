@@ -86,11 +86,11 @@ struct Limits {
 
 /// The limit of a vertex where a closed formula is known and its masks stay the same from here on.
 template <class P>
-[[nodiscard]] std::optional<P> settled_limit(const NetOf<P>& net, const Neighbours& near, std::uint32_t v,
+[[nodiscard]] std::optional<P> limit_in_star(const NetOf<P>& net, const Neighbours& near, std::uint32_t v,
                                              const Rules& rules);
-extern template std::optional<QuadPoint> settled_limit(const PolygonNet&, const Neighbours&, std::uint32_t,
+extern template std::optional<QuadPoint> limit_in_star(const PolygonNet&, const Neighbours&, std::uint32_t,
                                                        const Rules&);
-extern template std::optional<SparseRow> settled_limit(const NetOf<SparseRow>&, const Neighbours&,
+extern template std::optional<SparseRow> limit_in_star(const NetOf<SparseRow>&, const Neighbours&,
                                                        std::uint32_t, const Rules&);
 
 /// sum += weight * p

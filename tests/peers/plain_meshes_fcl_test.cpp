@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <peer_fcl.h>
 #include <snug/mesh.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <testing/placements.h>
 
 #include <iostream>

@@ -73,7 +73,7 @@ class EmbreeTriangles {
 
 TEST(rays, first_meet_models_where_embree_does) {
   const std::size_t rays = testing::number_of("SNUG_PLACEMENTS", 27'000) / 9;
-  std::size_t compared = 0, missed = 0, near_silhouettes = 0, untold = 0;
+  std::size_t compared = 0, missed = 0, near_silhouettes = 0, undecided = 0;
   double largest = 0;
   for (const char* const name :
        {"bracket", "bust", "demon", "figure", "head", "pawn", "pin", "ring", "star"}) {
@@ -116,7 +116,7 @@ TEST(rays, first_meet_models_where_embree_does) {
         continue;
       }
       if (!found.certain_hit()) {
-        ++untold;
+        ++undecided;
         EXPECT_FALSE(found.certain_miss()) << name << ", ray " << i;
         continue;
       }
@@ -128,9 +128,9 @@ TEST(rays, first_meet_models_where_embree_does) {
   }
   std::cout << "  " << compared << " hits compared, off by at most " << largest
             << " of the triangles' error over the cosine; " << missed << " misses, " << near_silhouettes
-            << " near silhouettes, " << untold << " not told\n";
+            << " near silhouettes, " << undecided << " not decided\n";
   EXPECT_GT(compared, rays);
-  EXPECT_LE(untold * 1000, compared);
+  EXPECT_LE(undecided * 1000, compared);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ PAIRS = [("bracket", "pin"), ("pawn", "bust"), ("ring", "star")]
 POSES = [moved(), moved(0, 0, 0.5), turned(135, 0.05, 0.05, 0.5), turned(17, 1.1, -0.3, 0.2), turned(80, 9, 1, 2)]
 
 
-def told(*words, stdin=None):
+def output_of(*words, stdin=None):
     done = subprocess.run([COMMAND, *map(str, words), "--json", "--quiet"], capture_output=True, text=True, input=stdin,
                           env=ENVIRONMENT)
     assert done.stdout, done.stderr
@@ -51,24 +51,24 @@ def test_pairs(names):
     files = [MODELS / f"{name}.obj" for name in names]
     a, b = map(snug.read, files)
     for pose in POSES:
-        document = told("collide", *files, "--place-b", text(pose))
+        document = output_of("collide", *files, "--place-b", text(pose))
         answer = snug.collide(a, b, pose_b=pose)
         assert document["verdict"] == answer.verdict
         same_pair(document, answer)
-        document, answer = told("distance", *files, "--place-b", text(pose)), snug.distance(a, b, pose_b=pose)
+        document, answer = output_of("distance", *files, "--place-b", text(pose)), snug.distance(a, b, pose_b=pose)
         assert document["reached"] == answer.reached
         same_pair(document, answer)
     many = snug.collide(a, b, pose_b=POSES)
     for i, pose in enumerate(POSES):
-        assert told("collide", *files, "--place-b", text(pose))["distance"][0] == many.lower[i]
+        assert output_of("collide", *files, "--place-b", text(pose))["distance"][0] == many.lower[i]
 
 
 def test_solids_and_options():
     files = MODELS / "bracket.obj", MODELS / "pin.obj"
     a, b = map(snug.read, files)
-    document = told("collide", *files, "--place-b", text(moved(0, 0, 0.5)), "--solid", "--margin", "1%", "--tolerance", "0.01")
+    document = output_of("collide", *files, "--place-b", text(moved(0, 0, 0.5)), "--solid", "--margin", "1%", "--tolerance", "0.01")
     same_pair(document, snug.collide(a, b, pose_b=moved(0, 0, 0.5), solid=True, margin="1%", tolerance=0.01))
-    document = told("distance", *files, "--precision", "0", "--relative", "1e-6")
+    document = output_of("distance", *files, "--precision", "0", "--relative", "1e-6")
     same_pair(document, snug.distance(a, b, relative=1e-6))
 
 
@@ -79,22 +79,22 @@ def test_one_surface(name, scheme, tmp_path):
     surface = snug.read(file, scheme=scheme)
     points = np.random.default_rng(3).uniform(-1, 1, (20, 3)) * surface.size
     (tmp_path / "points.txt").write_text("".join(" ".join(map(repr, p)) + "\n" for p in points.tolist()))
-    results = told("closest", file, "--points", tmp_path / "points.txt", "--signed", "--scheme", scheme)["results"]
+    results = output_of("closest", file, "--points", tmp_path / "points.txt", "--signed", "--scheme", scheme)["results"]
     near, signed, inside = surface.closest_point(points), surface.signed_distance(points), surface.contains(points)
     assert [r["distance"] for r in results] == np.column_stack([near.lower, near.upper]).tolist()
     assert [r["point"] for r in results] == near.point.tolist()
     assert [r["signed_distance"] for r in results] == np.column_stack([signed.lower, signed.upper]).tolist()
     assert [r["inside"] for r in results] == inside.inside.tolist()
     measures = surface.measure()
-    document = told("measure", file, "--scheme", scheme)
+    document = output_of("measure", file, "--scheme", scheme)
     assert [document["area"], document["volume"]] == [list(measures.area), list(measures.volume)]
     assert [document["centroid"], document["inertia"]] == [measures.centroid.tolist(), measures.inertia.tolist()]
-    pieces = told("bound", file, "--tolerance", "5%", "--scheme", scheme)["enclosures"]
+    pieces = output_of("bound", file, "--tolerance", "5%", "--scheme", scheme)["enclosures"]
     bound = surface.bound(tolerance="5%")
     for key in ("piece", "level", "lower", "upper", "base", "radius", "corners"):
         assert [p[key] for p in pieces] == np.asarray(getattr(bound, "pieces" if key == "piece" else key)).tolist()
     rays = "".join(" ".join(map(repr, p)) + " 0.1 0.2 -1\n" for p in points.tolist())
     hits = surface.cast_rays(points, [0.1, 0.2, -1], query="all")
-    flat = [hit for r in told("ray", file, "--rays", "-", "--all", "--scheme", scheme, stdin=rays)["results"] for hit in r["hits"]]
+    flat = [hit for r in output_of("ray", file, "--rays", "-", "--all", "--scheme", scheme, stdin=rays)["results"] for hit in r["hits"]]
     assert [h["t"] for h in flat] == np.column_stack([hits.lower, hits.upper]).tolist()
     assert [h["side"] for h in flat] == hits.side.tolist()

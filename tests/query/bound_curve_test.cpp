@@ -98,8 +98,8 @@ TEST(bound_curve, has_enclosures_at_the_last_level) {
   for (const int degree : {2, 3}) {
     CurvePiece piece = testing::curve_set(testing::assorted_polylines(3)[5], degree).piece(EdgeId(0));
     while (piece.path.level() < PiecePath::max_level) piece = split(piece, 1);
-    HullPoints points;
-    hull_points(piece, points);
+    BoundingPoints points;
+    bounding_points(piece, points);
     const auto limits = limit_ends(piece);
     EXPECT_LT(offset_segment(points, {limits[0].relative, limits[1].relative}).radius, 1e-12);
     EXPECT_LT(longest_side(control_box(piece, points)), 1e-12);

@@ -1,4 +1,4 @@
-// What a caller of the library gets wrong is an InputError with a code, never the end of the process.
+// A caller's mistake is an InputError with a code, never the end of the process.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -14,7 +14,7 @@
 #include <snug/patch/evaluate.h>
 #include <snug/query/bound.h>
 #include <snug/query/closest.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/surface/batch_bounds.h>
 #include <snug/surface/evaluate.h>
 

@@ -1,9 +1,9 @@
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include <gtest/gtest.h>
 #include <snug/patch/evaluate.h>
 #include <snug/query/closest.h>
-#include <snug/query/containment.h>
+#include <snug/query/nesting.h>
 #include <snug/search/piece_pairs.h>
 #include <snug/search/solid.h>
 #include <support/error.h>
@@ -301,7 +301,7 @@ TEST(collide, surfaces_in_one_plane_end_within_bounded_memory) {
                                    {pair.model_b, pair.scratch_b, turned}, testing::verdict_only());
   EXPECT_EQ(answer.verdict, Verdict::undecided);
   EXPECT_LT(pair.scratch_a.bytes() + pair.scratch_b.bytes(),
-            std::size_t{256} << 20);  // what most_touched allows
+            std::size_t{256} << 20);  // what max_touched allows
 }
 
 TEST(collide, takes_closed_surfaces_for_solids_if_asked) {

@@ -218,7 +218,7 @@ TEST(contacts, of_mirrored_surfaces_are_one_closed_curve_with_tiny_gaps) {
 }
 
 // Two sheets of the same squares, upright to each other: edges meet edges in single points of a line.
-TEST(contacts, have_specks_as_small_as_derived_where_edges_meet_edges) {
+TEST(contacts, have_end_boxes_as_small_as_derived_where_edges_meet_edges) {
   const Surface a = plane(2.5);
   ControlMesh upright = a.mesh();
   for (Point3& p : upright.points) p = {p.x, 0, p.y};

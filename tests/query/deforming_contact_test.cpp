@@ -1,7 +1,7 @@
 // First times of contact where control points move, against limit points of the twins, which go along lines too: two of
 // them are brought together at a known time, of every scheme, tag and way to deform; walls and boxes have known times.
 
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include <gtest/gtest.h>
 #include <snug/search/crossing.h>
@@ -349,7 +349,7 @@ TEST(deforming_contact, looks_at_control_points_within_their_rounding) {
 // Down there pieces keep their size beside the origin alone.
 TEST(deforming_contact, may_ask_for_crossings_of_pieces_at_the_last_levels) {
   ControlMesh mesh = testing::control_mesh(oracle::meshes::triangulated(oracle::meshes::pyramid(7)));
-  HullPoints scratch;
+  BoundingPoints scratch;
   for (int round = 0; round < 3; ++round) {
     // Vertex 0, the apex, is a corner of face 0: its limit point comes to the origin.
     const LimitSurface surface(mesh, {Scheme::loop}, std::make_shared<BoundsCache>());
@@ -360,7 +360,7 @@ TEST(deforming_contact, may_ask_for_crossings_of_pieces_at_the_last_levels) {
     const Point3 at = surface.scale().inverse().apply(limit_triangle(piece.patch).corners[apex]);
     for (unsigned level = 0; level < PiecePath::max_level; ++level) {
       piece = child_of(surface.library(), piece, apex, scratch);
-      const Crossed crossed(piece, heights_of(piece, scratch));
+      const CrossingTest crossed(piece, heights_of(piece, scratch));
       EXPECT_FALSE(crossed.possible() && crossed.holds(piece.offset.base, piece.offset.radius)) << level;
     }
     for (Point3& p : mesh.points) p = p - (at - Point3{});

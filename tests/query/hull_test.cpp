@@ -376,7 +376,7 @@ std::set<HullFault> faults_of(const Model& model, const Hulls& hulls, double tol
   return faults;
 }
 
-// What hulls() asks at the end knows nothing of how its hulls were made: it must find what is wrong with them.
+// The final check of hulls() does not know how its hulls were made: it must find their faults.
 TEST(hulls, that_are_spoiled_are_found_out) {
   const Model model(meshes::cube());
   const double tolerance = 0.02;

@@ -59,7 +59,7 @@ class MovingAllocation : public ::testing::Test {
   std::vector<Point3> points_;
 };
 
-// What a frame takes beyond what the same queries take about surfaces that stay.
+// Allocations of a frame beyond those of the same queries about surfaces that stay.
 TEST_F(MovingAllocation, a_warm_frame_takes_no_memory) {
   if (!counting) GTEST_SKIP() << "a sanitizer has the allocator";
   for (const char* const name : {"star.obj", "bust.obj", "pawn.obj"}) {

@@ -8,7 +8,7 @@
 #include <oracle/tagged_shapes.h>
 #include <snug/query/bound.h>
 #include <snug/query/closest.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/surface/evaluate.h>
 #include <support/error.h>
 #include <testing/counts.h>
@@ -67,7 +67,7 @@ struct Soup {
   }
 };
 
-// What all pairs of triangles have in common.
+// Intersections of all pairs of triangles.
 struct Truth {
   bool meet = false, pierce = false;
   long double distance = INFINITY;

@@ -1,4 +1,4 @@
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include <gtest/gtest.h>
 #include <support/error.h>

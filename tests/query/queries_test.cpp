@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 #include <snug/query/closest.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/search/surface_data.h>
 #include <snug/search/surface_workspace.h>
 #include <testing/places.h>

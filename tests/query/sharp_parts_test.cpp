@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <snug/mesh/split_polygon.h>
 #include <snug/query/bound.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/search/surface_workspace.h>
 #include <snug/surface/evaluate.h>
 #include <testing/cad_parts.h>
@@ -234,7 +234,7 @@ TEST(sharp_parts, polygons_of_catmull_clark_end_at_their_edges) {
   }
 }
 
-// What is missing without the edges inside: the limit surface leaves the face through its notch.
+// Without the edges inside: the limit surface leaves the face through its notch.
 TEST(sharp_parts, an_outline_alone_does_not_hold_a_flat_face) {
   ControlMesh outline =  // fans around (0, 0)
       testing::prism({{0, 0}, {4, 0}, {4, 2}, {2, 2}, {2, 4}, {0, 4}}, 0, 1, true, 0);
@@ -318,7 +318,7 @@ TEST(sharp_parts, boxes_five_into_each_other_meet_and_one_apart_do_not) {
   const Distance apart = distance_of(box, box, {41, 0, 0});
   EXPECT_NEAR(apart.distance.lower, 1, 1e-9);
   EXPECT_NEAR(apart.distance.upper, 1, 1e-9);
-  // What the facets are without: two blobs, far apart.
+  // The facets without it: two blobs, far apart.
   const LimitSurface blob = surface_of(testing::box({0, 0, 0}, {40, 20, 10}, true));
   EXPECT_EQ(collision_of(blob, blob, {35, 3, 2}, 0.01).verdict, Verdict::separated);
 }

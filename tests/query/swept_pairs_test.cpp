@@ -1,6 +1,6 @@
 // Parts that slide, turn and screw past each other at a small clearance, against separating axes at many times.
 
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include <gtest/gtest.h>
 #include <oracle/contact_time_twin.h>
@@ -77,7 +77,7 @@ long double overlap(const Part& a, const Motion& pose_a, const Part& b, const Mo
   return most;
 }
 
-// What moves along what, at which clearance, in a frame of its own.
+// Moving pieces, their paths and a clearance, in a frame of its own.
 struct Scene {
   std::string name;
   std::vector<Box> still, moving;

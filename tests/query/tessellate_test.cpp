@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 #include <oracle/test_meshes.h>
+#include <snug/bounds/bounding_points.h>
 #include <snug/bounds/enclosure.h>
-#include <snug/bounds/hull_points.h>
 #include <snug/bounds/quadratic.h>
 #include <snug/mesh.h>
 #include <snug/patch/evaluate.h>
@@ -82,8 +82,8 @@ double error_of_uniform(const LimitSurface& surface, const Patch& piece, unsigne
     }
     return largest;
   }
-  HullPoints hull;
-  if (piece.kind->shared()) hull_points(surface.library(), piece, hull);
+  BoundingPoints hull;
+  if (piece.kind->cacheable()) bounding_points(surface.library(), piece, hull);
   const std::array<Vector3, 3> c = limit_corners(piece);
   return distance_to_triangle(surface.library(), piece, hull,
                               {piece.origin + c[0], piece.origin + c[1], piece.origin + c[2]});
@@ -215,7 +215,7 @@ TEST(tessellate, refuses_what_it_cannot_hold) {
   const std::string message = refusal(surface, options);
   const std::size_t at = message.find("take ");
   ASSERT_NE(at, std::string::npos) << message;
-  // What it names is taken.
+  // The named value is taken.
   options.tolerance = std::stod(message.substr(at + 5));
   options.budget = 1000;
   EXPECT_FALSE(tessellate(surface, options).reached);
@@ -286,8 +286,8 @@ TEST(tessellate, shows_no_error_from_where_it_is_seen) {
 
 // How many pieces a patch has that are split in four until they are thin.
 std::size_t thin_pieces(BoundsCache& library, const Patch& patch, double thin) {
-  HullPoints hull;
-  hull_points(library, patch, hull);
+  BoundingPoints hull;
+  bounding_points(library, patch, hull);
   double longest = 0;
   for (const Box3& box : interval_simplex<3>(hull, limit_corners(patch)).corner) {
     longest = std::max(longest, longest_side(box));

@@ -1,7 +1,7 @@
 // First times of contact against exact ones: translated polyhedra in rational arithmetic, boxes along every kind of
 // motion into every kind of contact by their separating axes at many times, and known ones.
 
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include <gtest/gtest.h>
 #include <oracle/contact_time_twin.h>

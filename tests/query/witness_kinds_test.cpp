@@ -1,8 +1,7 @@
-// What comes with a verdict is a matter of taste, the verdict is not: the same for exact, approximate and no
-// witnesses. Approximate ones are as near their limit points as they say.
+// The verdict does not depend on the kind of witness: it is the same for exact, approximate and no witnesses. Approximate ones are as near their limit points as they say.
 
 #include <gtest/gtest.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/surface/evaluate.h>
 #include <testing/counts.h>
 #include <testing/placements.h>

@@ -201,7 +201,7 @@ TEST_F(fit_command, names_the_kernel_of_a_cube) {
     EXPECT_EQ(found["kernel"][0]["vertices"], (json{0, 1, 2, 3, 4, 5, 6, 7}));
     const json signs = found["kernel"][0]["signs"];
     EXPECT_EQ(signs, (json{1, -1, -1, 1, -1, 1, 1, -1}));
-    // What changed has no part in the kernel, and is all of the difference but for that.
+    // The change has no part in the kernel, and is all of the difference otherwise.
     const ControlMesh before = read_mesh(begin), after = read_mesh(output()), truth = read_mesh(box);
     for (std::size_t x = 0; x < 3; ++x) {
       double along = 0, missed = 0;

@@ -91,7 +91,7 @@ TEST(tables_page, prints_the_triangles_that_the_program_counts) {
     EXPECT_NEAR(range.least, counted.least, half_a_digit) << words;
     EXPECT_NEAR(range.most, counted.most, half_a_digit) << words;
   };
-  expect_range("Hull rows take", of_printed, 0.005);
+  expect_range("Bounding rows take", of_printed, 0.005);
   if (of_uniform.most > 0) expect_range("triangles at 0.5 %, and", of_uniform, 0.005);
   expect_range("it takes", of_boxes, 5);
 }

@@ -126,8 +126,8 @@ std::vector<bool> on_half(const std::string& scheme, const Rings& rings, int lev
   return found;
 }
 
-// What a program that knows the table alone says of a coordinate of a patch: values of two planes at the corners
-// of the triangle.
+// Bounds of a coordinate of a patch by a program that knows the table alone: values of two planes at the corners of
+// the triangle.
 struct Planes {
   std::array<double, 3> lower, upper;
 
@@ -225,7 +225,7 @@ class PatchSamples {
       for (std::size_t x = 0; x < 3; ++x) {
         std::vector<double> control;
         for (const Point& p : net) control.push_back(p[x]);
-        static_cast<void>(least_room(planes_around(table_, control), limits, x));
+        static_cast<void>(min_room(planes_around(table_, control), limits, x));
       }
     }
   }
@@ -238,15 +238,15 @@ class PatchSamples {
       const std::vector<Point> limits = half_.limits(net);
       for (std::size_t x = 0; x < 3 && i + x < count_; ++x) {
         const Planes planes{table_["below"][i + x - first], table_["above"][i + x - first]};
-        for (const double room : least_room(planes, limits, x)) EXPECT_LT(room, 0.03) << "function " << i + x;
+        for (const double room : min_room(planes, limits, x)) EXPECT_LT(room, 0.03) << "function " << i + x;
       }
     }
   }
 
  private:
   // The least room that the limit points have in a coordinate, which is not to be negative.
-  std::array<double, 2> least_room(const Planes& planes, const std::vector<Point>& limits,
-                                   std::size_t x) const {
+  std::array<double, 2> min_room(const Planes& planes, const std::vector<Point>& limits,
+                                 std::size_t x) const {
     std::array<double, 2> least{1, 1};
     EXPECT_EQ(limits.size(), weights_.size());
     for (std::size_t k = 0; k < limits.size(); ++k) {

@@ -205,7 +205,7 @@ TEST(root_gap, of_cuboids_that_nearly_touch_is_at_most_their_distance) {
     const Vector3 by = random() % 2 == 0 ? Vector3{step * half.x, 0, 0}
                                          : Vector3{step * half.x, -step * half.y, step * half.z};
     Body a(mesh, pose({})), b(mesh, pose(random() % 2 == 0 ? by : -by));
-    long double least_sq = 0, largest = 0;
+    long double min_sq = 0, largest = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       std::array<std::pair<long double, long double>, 2> sides{
           {{INFINITY, -INFINITY}, {INFINITY, -INFINITY}}};
@@ -218,12 +218,12 @@ TEST(root_gap, of_cuboids_that_nearly_touch_is_at_most_their_distance) {
       }
       const long double gap =
           std::max({0.0L, sides[0].first - sides[1].second, sides[1].first - sides[0].second});
-      least_sq += gap * gap;
+      min_sq += gap * gap;
     }
     double best = -INFINITY;
     for (const double enough : std::array<double, 3>{-INFINITY, 0.0, INFINITY}) {
       const double gap = root_gap(a.at(), b.at(), enough);
-      EXPECT_LE(static_cast<long double>(gap), std::sqrt(least_sq) + 1e-18L * largest)
+      EXPECT_LE(static_cast<long double>(gap), std::sqrt(min_sq) + 1e-18L * largest)
           << trial << ", size " << size;
       best = std::max(best, gap);
     }

@@ -52,7 +52,7 @@ TEST(workspace, opens_to_the_same_pieces_in_any_order) {
     const Node x = a.child(child), y = b.child(child);
     EXPECT_EQ(first.patch(x).path, second.patch(y).path);
     EXPECT_EQ(x.boxes->origin(), y.boxes->origin());
-    const PieceRecord &of_x = SurfaceWorkspace::record(x), &of_y = SurfaceWorkspace::record(y);
+    const PieceBounds &of_x = SurfaceWorkspace::bounds_of(x), &of_y = SurfaceWorkspace::bounds_of(y);
     EXPECT_EQ(of_x.radius(), of_y.radius());
     EXPECT_EQ(of_x.error(), of_y.error());
     EXPECT_EQ(of_x.base(x.boxes->origin()), of_y.base(y.boxes->origin()));
@@ -91,7 +91,7 @@ TEST(piece, boxes_and_extents_hold_it) {
         const auto& [piece, heights, box] = known;
         const Vector3 direction{testing::unit(random) - 0.5, testing::unit(random) - 0.5,
                                 testing::unit(random) - 0.5};
-        const HullPoints& hull = maker->hull(known);
+        const BoundingPoints& hull = maker->hull(known);
         const std::array<Extent, 2> extents{extent_of(hull, direction), extent_of(piece.offset, direction)};
         for (int i = 0; i < 12; ++i) {
           TriangleParameter at = testing::random_parameter(random);

@@ -81,14 +81,14 @@ TEST(quadratic_bvh, certain_distances_hold_and_are_narrow) {
         p = point_of(quadratics[draw.below(quadratics.size())], draw.parameter()) + draw.vector(1e-3);
       QuadraticFoot foot = tree.nearest(p);
       const double gap = 1e-4, certain = tree.certain_distance(p, gap, foot);
-      double sampled = INFINITY, most_error = 0;
+      double sampled = INFINITY, max_error = 0;
       for (const QuadraticTriangle& q : quadratics) {
         sampled = std::min(sampled, sampled_distance(q, p, 24) - q.error);
-        most_error = std::max(most_error, q.error);
+        max_error = std::max(max_error, q.error);
       }
       EXPECT_LE(certain, std::max(0.0, sampled));
-      EXPECT_GE(certain, foot.distance - gap - most_error - 1e-11);
-      EXPECT_LE(foot.distance, sampled + most_error + gap) << "there is a nearer point";
+      EXPECT_GE(certain, foot.distance - gap - max_error - 1e-11);
+      EXPECT_LE(foot.distance, sampled + max_error + gap) << "there is a nearer point";
       EXPECT_NEAR(distance(foot.point, p), foot.distance, 1e-15);
       EXPECT_LT(distance(point_of(quadratics[foot.piece], foot.at), foot.point), 1e-12);
     }
@@ -123,7 +123,7 @@ TEST(quadratic_bvh, below_is_the_restriction_to_feet) {
   }
 }
 
-// What is not marked is farther away than the reach; what cannot meet is apart.
+// Unmarked pieces are farther away than the reach; pieces that cannot meet are apart.
 TEST(quadratic_bvh, marks_all_that_is_near_and_denies_no_contact) {
   Draw draw(5);
   int denied = 0, pairs = 0;

@@ -1,4 +1,4 @@
-// What SeenPiece tells of a piece and lines beside a ray, against dense limit points: pieces of every sort of kind,
+// SeenPiece for lines beside a ray, against dense limit points: pieces of every sort of kind,
 // lines through them, past them, along them and near their borders, alone and with all lines within a reach.
 
 #include <snug/search/ray_crossing.h>
@@ -16,7 +16,7 @@
 namespace snug::ray_crossing_test {
 namespace {
 
-using State = Crossing::State;
+using State = LinePieceCrossing::State;
 constexpr int steps = 12;         // of samples along a side
 constexpr int border_steps = 48;  // of the border
 
@@ -27,7 +27,7 @@ struct Seen {
 
 class Trial {
  public:
-  Trial(const Patch& patch, const PieceSketch& sketch, const Point3& origin)
+  Trial(const Patch& patch, const PieceBuild& sketch, const Point3& origin)
       : patch_(patch), record_(sketch.offset, sketch.quadratic, origin), origin_(origin) {}
 
   [[nodiscard]] Seen seen(const RayFrame& ray, TriangleParameter at) const {
@@ -64,7 +64,7 @@ class Trial {
 
  private:
   const Patch& patch_;
-  PieceRecord record_;
+  PieceBounds record_;
   Point3 origin_;
 };
 
@@ -91,7 +91,7 @@ std::optional<int> winding(const std::vector<Seen>& border, const Offset2& place
 void check(const Trial& trial, const RayFrame& ray, const Offset2& place, double reach,
            const std::string& name, Counts& counts) {
   const SeenPiece piece = trial.piece(ray);
-  const Crossing crossing = piece.crossing(place, reach);
+  const LinePieceCrossing crossing = piece.crossing(place, reach);
   ++counts.states[static_cast<std::size_t>(crossing.state)];
   for (int i = 0; i <= steps; ++i)
     for (int j = 0; i + j <= steps; ++j) {
@@ -139,7 +139,7 @@ void check_piece(const Trial& trial, std::mt19937_64& random, const std::string&
     const RayFrame ray(target - away * direction, direction);
     const SeenPiece piece = trial.piece(ray);
     // Its own point is on the line, up to its error and to roundings of the origin.
-    const Crossing through = piece.crossing({}, 0);
+    const LinePieceCrossing through = piece.crossing({}, 0);
     const Seen own = trial.seen(ray, at);
     EXPECT_NE(through.state, State::none) << name << ", line " << i;
     EXPECT_GE(piece.error(), static_cast<double>(off(own, {}))) << name;
@@ -176,8 +176,8 @@ TEST(ray_crossing, holds_for_pieces_of_every_sort) {
         Patch patch = surface.patch(p);
         for (auto levels = random() % 12; levels > 0; --levels)
           patch = split(patch, static_cast<unsigned>(random() % 4));
-        const PieceSketch known =
-            sketch(surface.library(), patch, random() % 4 == 0 ? BoundMethod::table : BoundMethod::rows);
+        const PieceBuild known =
+            build_piece(surface.library(), patch, random() % 4 == 0 ? BoundMethod::table : BoundMethod::rows);
         check_piece(Trial(patch, known, known.box.centre), random,
                     named.name + ", " + (plain ? "plain" : disguise.name) + ", patch " +
                         std::to_string(p.value()) + " " + patch.path.text(),

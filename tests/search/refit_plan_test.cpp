@@ -98,7 +98,7 @@ TEST(refit_plan, boxes_hold_limit_points_wherever_the_control_points_went) {
       SCOPED_TRACE(named.name + ", " + testing::name_of(journey));
       LimitSurface surface(named.surface, there ? here : start);
       SharedPlan plan;
-      SurfaceBvh model(surface, {.threads = 1, .most_looser = refits % 2 == 0 ? INFINITY : 1.5}, plan);
+      SurfaceBvh model(surface, {.threads = 1, .max_looser = refits % 2 == 0 ? INFINITY : 1.5}, plan);
       static_cast<void>(model.leaf(0));
       surface.move(there ? start : here);
       model.refit(plan);
@@ -171,7 +171,7 @@ TEST(refit_plan, boxes_depend_on_the_points_and_the_plan_alone) {
   const std::vector<Point3> rest = surface.mesh().points,
                             other = testing::start_of(Journey::bent, rest, random);
   SharedPlan shared;
-  SurfaceBvh model(surface, {.threads = 1, .most_looser = INFINITY}, shared);
+  SurfaceBvh model(surface, {.threads = 1, .max_looser = INFINITY}, shared);
   const auto boxes = [&] {
     const auto all = model.tree().node_boxes();
     std::vector<Point3> numbers;

@@ -39,7 +39,7 @@ TEST(self_contact, of_a_sphere_there_is_none) {
             self_contacts(mesh.points, mesh.triangles, 100, 1));
 }
 
-// Where everything meets everything each is told of, but not with each other one.
+// Where all triangles meet, each is reported, but not every pair.
 TEST(self_contact, of_triangles_on_each_other_takes_little_memory) {
   Mesh mesh;
   constexpr std::uint32_t count = 300;
@@ -49,9 +49,9 @@ TEST(self_contact, of_triangles_on_each_other_takes_little_memory) {
   }
   const auto found = self_contacts(mesh.points, mesh.triangles, 1'000'000, 2);
   EXPECT_LE(found.size(), 16u * count);
-  std::vector<bool> told(count);
-  for (const auto& [a, b] : found) told[a] = told[b] = true;
-  EXPECT_EQ(std::count(told.begin(), told.end(), true), count);
+  std::vector<bool> reported(count);
+  for (const auto& [a, b] : found) reported[a] = reported[b] = true;
+  EXPECT_EQ(std::count(reported.begin(), reported.end(), true), count);
 }
 
 // A vertex pushed through the other side, a little or a lot; onto a triangle; onto another vertex.

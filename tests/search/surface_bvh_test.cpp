@@ -23,7 +23,7 @@ void expect_same(const LeafNode& x, const LeafNode& y) {
   ASSERT_EQ(x.count(), y.count());
   EXPECT_EQ(x.origin(), y.origin());
   EXPECT_EQ(x.can_split, y.can_split);
-  EXPECT_EQ(std::memcmp(x.records.data(), y.records.data(), sizeof(x.records)), 0);
+  EXPECT_EQ(std::memcmp(x.bounds.data(), y.bounds.data(), sizeof(x.bounds)), 0);
   WideNode::Distances of_x, of_y;
   x.distances(Point3{3, -2, 1}, 0, of_x);
   y.distances(Point3{3, -2, 1}, 0, of_y);
@@ -82,7 +82,7 @@ TEST(surface_bvh, has_every_patch_in_one_leaf) {
   for (std::uint32_t i = 0; i < model.tree().leaf_count(); ++i) {
     for (std::size_t place = 0; place < model.leaf(i).count(); ++place) {
       ++found[model.patch(i, place).index()];
-      const Triangle base = model.leaf(i).records[place].base(model.leaf(i).origin());
+      const Triangle base = model.leaf(i).bounds[place].base(model.leaf(i).origin());
       const Point3 middle = surface.middle(model.patch(i, place));
       for (const Point3& corner : base) EXPECT_LT(distance(corner, middle), model.leaf(i).size_of(place));
     }

@@ -1,4 +1,4 @@
-// What the nets at extraordinary corners tend to, against some twenty levels of them.
+// Limits of the nets at extraordinary corners, against some twenty levels of them.
 
 #include <snug/shape/corner_asymptotics.h>
 #include <snug/shape/corner_rings.h>
@@ -68,7 +68,7 @@ double distance(const Patch& is, const Patch& was, bool second) {
   return 0.5 * (*high - *low);
 }
 
-// What a level's value is the net's times, about.
+// Approximate ratio of a level's value to the net's.
 double factor(const Patch& net, const Patch& level, bool second) {
   const auto width = [&](const Patch& patch) {
     double low = INFINITY, high = -INFINITY;

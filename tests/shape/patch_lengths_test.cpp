@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <oracle/tagged_shapes.h>
 #include <snug/patch/evaluate.h>
-#include <snug/shape/star_stretch.h>
+#include <snug/shape/star_distortion.h>
 #include <snug/surface/level_complex.h>
 #include <testing/tagged.h>
 
@@ -113,10 +113,10 @@ double stretch_at(const LimitSurface& surface, const LevelVertex& vertex, unsign
   }
   std::vector<StarSector> sectors;
   for (std::size_t s = 0; s < patches.size(); ++s) sectors.push_back({&patches[s], star.sectors[s].centre});
-  return star_stretch(sectors, star.closed);
+  return star_distortion(sectors, star.closed);
 }
 
-TEST(star_stretch, of_smooth_vertices_is_small_and_of_folds_what_their_angle_says) {
+TEST(star_distortion, of_smooth_vertices_is_small_and_of_folds_what_their_angle_says) {
   for (const Scheme scheme : {Scheme::loop, Scheme::catmark}) {
     for (const double degrees : {10.0, 45.0, 90.0, 170.0}) {
       oracle::TaggedMesh mesh = meshes::quad_grid(4, 4);
@@ -186,7 +186,7 @@ TEST(star_stretch, of_smooth_vertices_is_small_and_of_folds_what_their_angle_say
 }
 
 // In a plane: where the surface turns over, places on both sides of the turn have one point.
-TEST(star_stretch, of_what_turns_over_is_infinite) {
+TEST(star_distortion, of_what_turns_over_is_infinite) {
   std::mt19937_64 random(3);
   int turned = 0;
   for (int trial = 0; trial < 20; ++trial) {

@@ -277,7 +277,7 @@ oracle::TaggedMesh half_disc(std::uint32_t n, bool triangles, double turns,
 }
 
 // The most faces that a smooth border vertex may have (derivations/self_contact.md, "Which corners").
-std::uint32_t most_faces(bool triangles) { return triangles ? 5 : 3; }
+std::uint32_t max_faces(bool triangles) { return triangles ? 5 : 3; }
 
 TEST(star, at_a_boundary_of_few_faces_is_injective) {
   for (const bool triangles : {true, false}) {
@@ -287,7 +287,7 @@ TEST(star, at_a_boundary_of_few_faces_is_injective) {
       const LimitSurface surface = surface_of(bowl, triangles ? Scheme::loop : Scheme::catmark);
       for (unsigned level = 2; level <= 4; ++level) {
         const CentreStar star = star_at_centre(surface, level);
-        EXPECT_EQ(certainly_injective(star.sectors, star.closed), n <= most_faces(triangles))
+        EXPECT_EQ(certainly_injective(star.sectors, star.closed), n <= max_faces(triangles))
             << n << " level " << level;
       }
     }

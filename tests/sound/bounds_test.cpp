@@ -37,7 +37,7 @@ std::string piece_at(double u, double v, unsigned level) {
   return digits;
 }
 
-// What the enclosures come from.
+// Source of the enclosures.
 struct Source {
   const char* name;
   BoundMethod method;
@@ -56,8 +56,8 @@ Enclosures enclosures_of(const LimitSurface& surface, const Patch& patch, const 
     const TableTriangle triangle = table_triangle(surface.library().table(*patch.kind), patch);
     return {unscaled(offset_triangle(triangle), back), unscaled(triangle.interval, back)};
   }
-  HullPoints points;
-  hull_points(surface.library(), patch, points);
+  BoundingPoints points;
+  bounding_points(surface.library(), patch, points);
   const auto corners = limit_corners(patch);
   const OffsetTriangle offset = offset_triangle(surface.library(), points, corners);
   return {unscaled(offset, back), unscaled(interval_simplex(points, corners), back)};

@@ -59,14 +59,14 @@ Point random_point(Trial& trial, Contestants& pair) {
 
 TEST(closest, points_are_the_nearest) {
   const std::uint64_t first = testing::first_trial(), count = testing::trial_count(800);
-  constexpr int most_failures = 20;
+  constexpr int max_failures = 20;
   int failures = 0;
   std::size_t reached = 0, asked = 0, open = 0;
   double seconds = 0, slowest = 0;
   std::uint64_t slowest_trial = 0;
   testing::Trials trials;
   const auto start = std::chrono::steady_clock::now();
-  for (std::uint64_t i = 0; i < count && failures < most_failures; ++i) {
+  for (std::uint64_t i = 0; i < count && failures < max_failures; ++i) {
     Trial trial = trials.make(first + i);
     Contestants& pair = *trial.pair;
     const double size = pair.size();

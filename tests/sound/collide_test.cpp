@@ -1,7 +1,7 @@
 // Verdicts against the brute-force twin, on random placements of which a third are tuned to a true distance
 // between 0.5 and 2 tolerances. SNUG_PLACEMENTS sets how many; the default keeps the test short.
 
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include <gtest/gtest.h>
 #include <oracle/distance_twin.h>
@@ -32,7 +32,7 @@ struct Contestants {
         a(testing::surface_of(twin_a)),
         b(testing::surface_of(twin_b)),
         model_a(a, {.threads = 1}),
-        model_b(b, {.threads = 1, .least_lazy = 0, .part_level = 1}),
+        model_b(b, {.threads = 1, .min_lazy = 0, .part_level = 1}),
         scratch_a(model_a),
         scratch_b(model_b),
         distance_twin(twin_a, twin_b),

@@ -7,7 +7,7 @@
 // with trial N: with SNUG_PLACEMENTS=1 one that failed alone, and SNUG_DUMP=FOLDER writes its meshes there.
 // SNUG_SHOW=1 names what stayed undecided.
 
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/search/winding.h>
 
 #include <gtest/gtest.h>
@@ -32,9 +32,9 @@ using oracle::Point;
 using testing::Contestants;
 using testing::Trial;
 
-constexpr int most_failures = 20;
+constexpr int max_failures = 20;
 
-/// What a reply says, in twin units.
+/// A reply in twin units.
 struct Reply {
   Verdict verdict;
   double lower;
@@ -89,7 +89,7 @@ class Checks {
       between_ +=
           reply_.verdict == Verdict::within || (reply_.lower > 0 && reply_.lower <= 2 * trial.tolerance);
     }
-    return failures_ < most_failures;
+    return failures_ < max_failures;
   }
 
   void report() const {
@@ -273,7 +273,7 @@ class Checks {
       for (std::size_t r = 0; r < 3; ++r) largest = std::max(largest, std::abs((*m)[4 * r + 3]));
     return 0x1p-50 * largest;
   }
-  /// What the twin cannot see: its own bounds have it in them, those of points as they are written do not.
+  /// Error that the bounds of the twin include, and those of points as written do not.
   [[nodiscard]] double twin_rounding() const { return rounding(); }
 
   Trial* trial_ = nullptr;
@@ -367,7 +367,7 @@ TEST(contact, bounds_hold_for_sizes_from_one_end_of_the_doubles_to_the_other) {
 // surface, outside if a ray away from it does.
 TEST(contact, winding_numbers_tell_inside_from_outside) {
   testing::Trials trials;
-  std::size_t inside = 0, outside = 0, untold = 0;
+  std::size_t inside = 0, outside = 0, undecided = 0;
   const std::uint64_t count = testing::trial_count(1200);
   for (std::uint64_t i = 0; i < count && !HasFailure(); ++i) {
     Trial trial = trials.make(testing::first_trial() + i);
@@ -389,7 +389,7 @@ TEST(contact, winding_numbers_tell_inside_from_outside) {
         const Point3 scaled{scale.apply(trial.pair->scaled(p[0])), scale.apply(trial.pair->scaled(p[1])),
                             scale.apply(trial.pair->scaled(p[2]))};
         const std::optional<int> found = winding_number(trial.pair->scratch(side), scaled, 1e-15);
-        untold += !found && std::abs(t - 1) > 1e-5;
+        undecided += !found && std::abs(t - 1) > 1e-5;
         inside += is_inside;
         outside += is_outside;
         if (found) {
@@ -398,10 +398,10 @@ TEST(contact, winding_numbers_tell_inside_from_outside) {
       }
     }
   }
-  std::printf("  inside %zu, outside %zu, not told though not near %zu\n", inside, outside, untold);
+  std::printf("  inside %zu, outside %zu, not decided though not near %zu\n", inside, outside, undecided);
   EXPECT_GT(inside, 50u);
   EXPECT_GT(outside, 50u);
-  EXPECT_LE(untold * 100, inside + outside);
+  EXPECT_LE(undecided * 100, inside + outside);
 }
 
 }  // namespace

@@ -151,7 +151,7 @@ class Checks {
                        [&](const OpenBox& b) { return holds(b.box, p, slack); });
   }
 
-  // What is said of regions and curves fits together.
+  // Regions and curves are consistent.
   void check_shape(const Contacts& found) {
     for (const ContactRegion& region : found.regions) {
       EXPECT_FALSE(region.contacts.empty());
@@ -220,7 +220,7 @@ TEST(contacts, hold_for_every_scheme_tag_and_rule_with_each_other) {
   std::map<std::string, std::size_t> counts;
   for (std::uint64_t i = first; i < first + count; ++i) {
     GroundTrial trial = trials.make(i);
-    // What bounds patches at such vertices takes seconds, whatever the query.
+    // Bounds of patches at such vertices take seconds, whatever the query.
     const bool long_one = (*trial.sides)[0].has_many() || (*trial.sides)[1].has_many();
     if (long_one && i % 16 != 0 && count > 1) continue;
     Checks(trial).run(counts);

@@ -31,7 +31,7 @@ long double area(const Vector3& n, const Point3& p, const Point3& q, const Point
 void expect_sound(const testing::KnownPiece& known, std::mt19937_64& random, const std::string& name,
                   Counts& counts) {
   const Piece& piece = known.piece;
-  const Crossed crossed(piece, known.heights);
+  const CrossingTest crossed(piece, known.heights);
   ++counts.pieces;
   if (!crossed.possible()) return;
   ++counts.possible;
@@ -48,7 +48,7 @@ void expect_sound(const testing::KnownPiece& known, std::mt19937_64& random, con
       ASSERT_FALSE(crossed.holds(thrice(x), error)) << name;
     }
     const auto [x, error] = point(testing::random_parameter(random));
-    const Crossed::Sides sides = crossed.sides(thrice(x), error);
+    const CrossingTest::Sides sides = crossed.sides(thrice(x), error);
     ASSERT_FALSE(sides.below || sides.above) << name;
   }
   const Triangle corners = limit_triangle(piece.patch).corners;

@@ -122,10 +122,10 @@ TEST(curves, lie_in_their_enclosures_after_fifty_splits) {
         for (const std::uint64_t turns :
              {std::uint64_t{0}, ~std::uint64_t{0}, static_cast<std::uint64_t>(random())}) {
           CurvePiece piece = curves.piece(EdgeId(edge));
-          HullPoints points;
+          BoundingPoints points;
           for (unsigned level = 0; level <= 50; ++level) {
             const testing::Range range = testing::range_of(piece.path);
-            hull_points(piece, points);
+            bounding_points(piece, points);
             const auto limits = limit_ends(piece);
             const std::array<Vector3, 2> ends{limits[0].relative, limits[1].relative};
             const OffsetSegment offset = unscaled(offset_segment(points, ends), back);

@@ -3,7 +3,7 @@
 //
 //   SNUG_DEFORMATIONS=2000 build/release/bin/tests/sound_test --gtest_filter='deforming_contact.*'
 
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include <gtest/gtest.h>
 #include <oracle/contact_twin.h>
@@ -77,7 +77,7 @@ TEST(deforming_contact, no_points_of_loop_surfaces_meet_before) {
     for (int i = 0; i <= 40; ++i) times.push_back(i / 40.0);
     for (int i = 0; i < 10; ++i) times.push_back(std::min(1.0, found.time.lower) * (1 - std::exp2(-2 * i)));
     for (const double s : times) {
-      // What the twin finds to be that near has met, but for what moves in the last moment.
+      // Surfaces that the twin finds that near have met, but for those that move in the last moment.
       if (bounds_at(s).upper > 1e-9 * size) continue;
       ++checked;
       ASSERT_LE(found.time.lower, s + 1e-6) << what;

@@ -1,5 +1,5 @@
 // Deviations of extraordinary corners from a few triangles, and from other such surfaces: the precision is
-// reached, or the tolerance told, wherever the budget was not spent.
+// reached, or the tolerance decided, wherever the budget was not spent.
 //
 //   SNUG_PLACEMENTS=20000 build/release/bin/tests/sound_test --gtest_filter='*reached*'
 
@@ -72,7 +72,7 @@ TriangleSet soup_at(const Point& place, double size, double away, std::mt19937_6
 }
 
 struct Reached {
-  std::size_t asked = 0, spent = 0, told = 0;
+  std::size_t asked = 0, spent = 0, decided = 0;
 };
 
 double width(const Interval& d) { return d.upper - d.lower; }
@@ -95,9 +95,9 @@ Deviation expect_reached(const Surface& surface, const Candidate& candidate, con
   ++counts.asked;
   bool answered = true;
   for (const Interval& d : {found.from_surface.distance, found.from_candidate.distance}) {
-    const bool told = options.tolerance && (d.lower > *options.tolerance || d.upper <= *options.tolerance);
-    answered = answered && (told || width(d) <= *options.absolute);
-    counts.told += told;
+    const bool decided = options.tolerance && (d.lower > *options.tolerance || d.upper <= *options.tolerance);
+    answered = answered && (decided || width(d) <= *options.absolute);
+    counts.decided += decided;
   }
   EXPECT_EQ(found.reached, answered) << name;
   if (answered) return found;
@@ -149,8 +149,9 @@ TEST(deviation, of_extraordinary_corners_is_reached_unless_the_budget_is_spent) 
         soup_at(mesh.points[random() % mesh.points.size()], sizes[size], aways[away], random);
     check(surface, testing::candidate_of(soup), precisions[precision], name, random, counts);
   }
-  std::cout << "  " << counts.asked << " questions, " << counts.told << " distances told by a tolerance; "
-            << counts.spent << " budgets spent; " << pairs.missing() << " pairs of choices not drawn\n";
+  std::cout << "  " << counts.asked << " questions, " << counts.decided
+            << " distances decided by a tolerance; " << counts.spent << " budgets spent; " << pairs.missing()
+            << " pairs of choices not drawn\n";
   EXPECT_LE(20 * counts.spent, counts.asked);
 }
 

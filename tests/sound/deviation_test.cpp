@@ -234,13 +234,13 @@ double largest(const TriangleSet& set) {
 }
 
 struct Counts {
-  std::size_t asked = 0, solids = 0, spent = 0, told = 0, untold = 0;
+  std::size_t asked = 0, solids = 0, spent = 0, decided = 0, undecided = 0;
   std::array<std::size_t, 2> unreached{};  // beside candidates without and with triangles in the surface
 };
 
 // With a tolerance about as large as the distance every answer is right.
-void expect_told(const Surface& surface, const Trial& trial, const HausdorffBounds& there,
-                 const HausdorffBounds& back, double factor, Counts& counts) {
+void expect_decided(const Surface& surface, const Trial& trial, const HausdorffBounds& there,
+                    const HausdorffBounds& back, double factor, Counts& counts) {
   DeviationOptions options;
   options.threads = 1;
   options.budget = budget;
@@ -251,14 +251,14 @@ void expect_told(const Surface& surface, const Trial& trial, const HausdorffBoun
       << trial.name << text_of(found.from_surface.distance, there);
   EXPECT_TRUE(agree(found.from_candidate.distance, back, 0))
       << trial.name << text_of(found.from_candidate.distance, back);
-  bool told = true;
+  bool decided = true;
   for (const Interval& d : {found.from_surface.distance, found.from_candidate.distance}) {
     const bool own = d.lower > *options.tolerance || d.upper <= *options.tolerance;
     const bool narrow = d.upper - d.lower <= *options.absolute;
     EXPECT_TRUE(own || narrow || !found.reached) << trial.name;
-    told = told && (own || narrow);
+    decided = decided && (own || narrow);
   }
-  ++(told ? counts.told : counts.untold);
+  ++(decided ? counts.decided : counts.undecided);
 }
 
 void check(const Surface& surface, const Trial& trial, double precision, std::mt19937_64& random,
@@ -315,7 +315,7 @@ void check(const Surface& surface, const Trial& trial, double precision, std::mt
   }
   if (counts.asked % 4 == 1 && slack == 0) {
     constexpr std::array factors{0.5, 0.99, 1.01, 2.0};
-    expect_told(surface, trial, there, back, factors[random() % 4], counts);
+    expect_decided(surface, trial, there, back, factors[random() % 4], counts);
   }
 }
 
@@ -355,11 +355,11 @@ TEST(deviation, of_polyhedra_contains_that_of_the_twin) {
   std::cout << "  " << counts.asked << " pairs, " << counts.solids << " of them with solids; "
             << counts.unreached[1] << " not as narrow as asked beside triangles in one plane, "
             << counts.unreached[0] << " beside others, the twin not in " << counts.spent << "; "
-            << counts.told << " questions told, " << counts.untold << " not; " << pairs.missing()
+            << counts.decided << " questions decided, " << counts.undecided << " not; " << pairs.missing()
             << " pairs of choices not drawn\n";
   EXPECT_GT(10 * counts.asked, 9 * trials);
   EXPECT_LE(50 * counts.unreached[0], counts.asked + 50);
-  EXPECT_LE(10 * (counts.unreached[1] + counts.untold), counts.asked);
+  EXPECT_LE(10 * (counts.unreached[1] + counts.undecided), counts.asked);
   EXPECT_TRUE(trials < usual_trials || pairs.missing() == 0);
 }
 

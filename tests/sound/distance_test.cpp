@@ -2,7 +2,7 @@
 //
 //   SNUG_PLACEMENTS=100000 build/release/bin/tests/sound_test --gtest_filter=distance.intervals_hold_the_truth
 
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include <gtest/gtest.h>
 #include <testing/contact_trials.h>
@@ -31,7 +31,7 @@ struct Counts {
 
 TEST(distance, intervals_hold_the_truth) {
   const std::uint64_t first = testing::first_trial(), count = testing::trial_count(250);
-  constexpr int most_failures = 20;
+  constexpr int max_failures = 20;
   int failures = 0;
   std::size_t open = 0;
   std::map<std::string, Counts> counts;
@@ -39,7 +39,7 @@ TEST(distance, intervals_hold_the_truth) {
   std::uint64_t slowest_trial = 0;
   testing::Trials trials;
   const auto start = std::chrono::steady_clock::now();
-  for (std::uint64_t i = 0; i < count && failures < most_failures; ++i) {
+  for (std::uint64_t i = 0; i < count && failures < max_failures; ++i) {
     Trial trial = trials.make(first + i);
     Contestants& pair = *trial.pair;
     const double size = pair.size();

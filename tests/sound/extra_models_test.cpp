@@ -2,7 +2,7 @@
 // is accepted is bounded and compared with the twin.
 
 #include <snug/query/bound.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include <gtest/gtest.h>
 #include <oracle/loop_twin.h>
@@ -21,7 +21,7 @@
 namespace snug::extra_models_test {
 namespace {
 
-constexpr std::size_t most_faces = 8000;  // what the twin samples in a few seconds
+constexpr std::size_t max_faces = 8000;  // what the twin samples in a few seconds
 
 // Checks samples of every face against the union of its pieces; returns how many there were.
 std::size_t check(const LimitSurface& surface, const BoundOptions& options,
@@ -55,7 +55,7 @@ TEST(extra_models, limit_points_lie_inside_their_enclosures) {
     if (!path.ends_with(".obj") && !path.ends_with(".off")) continue;
     try {
       const ControlMesh mesh = read_mesh(path);
-      if (mesh.face_count() > most_faces) continue;
+      if (mesh.face_count() > max_faces) continue;
       SchemeOptions rules{natural_scheme(mesh), mesh.tags.boundary.value_or(BoundaryRule::edge_and_corner)};
       const LimitSurface surface(mesh, rules, std::make_shared<BoundsCache>());
       // The twin knows plain Loop surfaces.

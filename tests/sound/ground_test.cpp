@@ -8,7 +8,7 @@
 // SNUG_PLACEMENTS=1 one that failed alone, and SNUG_DUMP=FOLDER writes its meshes there.
 
 #include <snug/query/closest.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <support/error.h>
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ using oracle::Point;
 using testing::GroundSide;
 using testing::GroundTrial;
 
-constexpr int most_failures = 20;
+constexpr int max_failures = 20;
 constexpr std::uint64_t of_each_row = 1;
 
 double between(const Point& p, const Point& q) { return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]); }
@@ -61,7 +61,7 @@ class Checks {
     timed("distance", [&] { check_distance(); });
     timed("closest", [&] { check_closest(trial.random() % 2); });
     if (side(0).is_solid() && side(1).is_solid()) timed("solids", [&] { check_solids(); });
-    return failures_ < most_failures;
+    return failures_ < max_failures;
   }
 
   void report() const {

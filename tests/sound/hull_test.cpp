@@ -21,7 +21,7 @@ namespace {
 using oracle::TaggedMesh;
 using testing::HullCounts;
 
-// What became of the surfaces that were asked about.
+// Results for the surfaces.
 struct Outcomes {
   HullCounts counts;
   std::size_t verified = 0;

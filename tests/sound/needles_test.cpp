@@ -6,7 +6,7 @@
 // runs 4,000 of each; a placement takes some 10 ms.
 
 #include <snug/query/closest.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include <gtest/gtest.h>
 #include <testing/counts.h>
@@ -121,7 +121,7 @@ struct Setting {
       if (lattice.layer() < 64 * hair && lattice.layer() > hair / 64) break;
     }
     options.tight = random() % 3 == 0;
-    if (random() % 2 == 0) options.least_lazy = 0;
+    if (random() % 2 == 0) options.min_lazy = 0;
     options.part_level = 1 + static_cast<unsigned>(random() % 2);
     options.threads = 1;
     if (random() % 3 != 0) options.method = BoundMethod::table;

@@ -2,12 +2,12 @@
 // translations that an independent search proves to separate them, which none may be shorter than the lower
 // bound.
 
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include <gtest/gtest.h>
 #include <oracle/contact_twin.h>
 #include <snug/patch/evaluate.h>
-#include <snug/query/containment.h>
+#include <snug/query/nesting.h>
 #include <snug/surface/evaluate.h>
 #include <testing/patches.h>
 #include <testing/placements.h>

@@ -1,4 +1,4 @@
-// What queries know of a piece, in pairs of cases that other tests draw apart: every sort of kind in every
+// Bounds of pieces, in pairs of cases that other tests draw apart: every sort of kind in every
 // disguise (scales to the ends of the doubles, far away, flat, needles, lines, points), by rows and by tables
 // of both layouts, some levels down.
 //
@@ -51,7 +51,7 @@ std::vector<Sample> samples_of(const Patch& patch, std::mt19937_64& random) {
   return samples;
 }
 
-void expect_holds(const testing::KnownPiece& known, const HullPoints& hull, const Vector3& direction,
+void expect_holds(const testing::KnownPiece& known, const BoundingPoints& hull, const Vector3& direction,
                   const std::vector<Sample>& samples, const std::string& name) {
   const auto& [piece, heights, box] = known;
   const Vector3 normal = unit_normal(piece.offset.base);

@@ -240,7 +240,7 @@ Point mixed(const Point& a, const Point& b, double share) {
   return {a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])};
 }
 
-// What an answer says about the exact hits.
+// An answer compared with the exact hits.
 struct Hits {
   std::vector<ExactHit> of_line;
   [[nodiscard]] static bool holds(const RayHit& hit, const mpq_class& t) {

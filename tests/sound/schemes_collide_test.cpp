@@ -1,7 +1,7 @@
 // Verdicts for Catmull-Clark, creases, boundaries, polygons and the dual schemes against dense limit samples
 // of the twins: no pair of samples is nearer than what is called separated.
 
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include <gtest/gtest.h>
 #include <oracle/dual_twin.h>
@@ -32,7 +32,7 @@ struct Body {
        const std::shared_ptr<BoundsCache>& library)
       : name(std::move(title)),
         surface(std::move(mesh), options, library),
-        model(surface, {.threads = 1, .least_lazy = 0, .part_level = 1}) {}
+        model(surface, {.threads = 1, .min_lazy = 0, .part_level = 1}) {}
 
   void add(const oracle::Point& p, double e) {
     samples.push_back({p[0], p[1], p[2]});
@@ -128,7 +128,7 @@ NearestPair nearest_pair(const std::vector<Point3>& a, const std::vector<Point3>
   return result;
 }
 
-// What samples can say of one placement; `counts` tells how often each verdict came.
+// Checks one placement against samples; `counts` counts verdicts.
 void check(const Body& a, const Body& b, const Motion& place_a, const Motion& place_b,
            std::map<std::string, int>& counts) {
   const std::string where = a.name + " and " + b.name;

@@ -1,4 +1,4 @@
-// What patches of every scheme must agree on: names of corners with limit points, children with their parent
+// Agreement of patches of every scheme: names of corners with limit points, children with their parent
 // and with each other.
 
 #include <snug/surface/evaluate.h>

@@ -24,7 +24,7 @@ struct Sample {
   double error;
 };
 
-// What bound() says of one patch, by path.
+// Results of bound() for one patch, by path.
 using Pieces = std::map<std::string, PieceEnclosure>;
 
 bool contains(const PieceEnclosure& piece, const Sample& s, const char*& what) {
@@ -176,7 +176,7 @@ TEST(catmark, limit_points_of_disguised_meshes_lie_inside_their_enclosures) {
 }
 
 // Many faces between creases or boundaries: kinds that have no rows of their own.
-TEST(crowded_corners, limit_points_lie_inside_their_enclosures) {
+TEST(high_valence_corners, limit_points_lie_inside_their_enclosures) {
   Counted counted;
   std::mt19937_64 random(74);
   for (const oracle::PrimalScheme scheme :
@@ -203,7 +203,7 @@ TEST(crowded_corners, limit_points_lie_inside_their_enclosures) {
     check("corner", mesh);
     if (HasFailure()) return;
   }
-  print("crowded corners", counted);
+  print("high-valence corners", counted);
 }
 
 // Samples of a dual scheme name their patch, no parameter: each lies in one of the pieces; and the grid of

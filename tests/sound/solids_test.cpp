@@ -7,7 +7,7 @@
 // asks about so many points; SNUG_FIRST=N begins with solid N.
 
 #include <snug/query/closest.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/search/solid.h>
 #include <snug/search/winding.h>
 

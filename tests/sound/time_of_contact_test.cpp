@@ -3,7 +3,7 @@
 //
 //   SNUG_MOTIONS=2000 build/release/bin/tests/sound_test --gtest_filter='time_of_contact.*'
 
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include <gtest/gtest.h>
 #include <oracle/contact_twin.h>
@@ -85,7 +85,7 @@ TEST(time_of_contact, no_points_of_loop_surfaces_meet_before) {
     for (int i = 0; i <= 60; ++i) times.push_back(end * i / 60);
     for (int i = 0; i < 12; ++i) times.push_back(found.time.lower * (1 - std::exp2(-2 * i)));
     for (const double t : times) {
-      // What the twin finds to be that near has met, but for what moves in the last moment.
+      // Surfaces that the twin finds that near have met, but for those that move in the last moment.
       if (bounds_at(t).upper > 1e-9 * size) continue;
       ++checked;
       ASSERT_LE(found.time.lower, t + 1e-6 * end) << what;

@@ -5,7 +5,7 @@
 #include <oracle/polygon_net.h>
 #include <oracle/polygon_twin.h>
 #include <snug/query/closest.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/surface/evaluate.h>
 #include <testing/placements.h>
 #include <testing/scheme_surfaces.h>

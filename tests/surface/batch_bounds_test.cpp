@@ -41,7 +41,7 @@ TEST(batch_bounds, are_those_of_single_patches) {
       BatchBounds bounds(surface, method);
       std::vector<OffsetTriangle> out(bounds.patches().size());
       bounds.update(surface.mesh().points, out);
-      HullPoints scratch;
+      BoundingPoints scratch;
       for (std::size_t i = 0; i < out.size(); ++i) {
         const PatchId f = bounds.patches()[i];
         const Piece piece = make_piece(surface.library(), f, surface.patch(f), scratch, method);
@@ -61,7 +61,7 @@ TEST(batch_bounds, of_irregular_patches_are_at_most_a_little_wider_than_of_singl
   std::vector<OffsetTriangle> out(bounds.patches().size());
   bounds.update(surface.mesh().points, out);
   std::vector<const OffsetTriangle*> of(surface.face_count(), nullptr);
-  HullPoints scratch;
+  BoundingPoints scratch;
   std::size_t irregular = 0, same = 0;
   for (std::size_t i = 0; i < out.size(); ++i) {
     const PatchId f = bounds.patches()[i];
@@ -179,7 +179,7 @@ TEST(batch_bounds, of_quads_contain_the_limit_and_are_a_little_wider_than_of_sin
       BatchBounds bounds(surface);
       std::vector<OffsetTriangle> out(bounds.patches().size());
       bounds.update(surface.mesh().points, out);
-      HullPoints scratch;
+      BoundingPoints scratch;
       for (std::size_t i = 0; i < out.size(); ++i) {
         const PatchId p = bounds.patches()[i];
         const OffsetTriangle single = unscaled(

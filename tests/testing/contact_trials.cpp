@@ -86,7 +86,7 @@ SurfaceBvhOptions random_options(Dice& dice) {
   if (dice.one_in(6)) options.method = BoundMethod::table;
   options.tight = dice.one_in(3);
   if (dice.one_in(2)) {
-    options.least_lazy = 0;
+    options.min_lazy = 0;
     options.part_level = 1 + dice.below(2);
   }
   return options;
@@ -798,7 +798,7 @@ std::string describe(const Trial& trial) {
           (trial.truth.crossing ? " crossing" : "");
   const SurfaceBvhOptions& options = trial.pair->options();
   text += std::string("; ") + (options.method == BoundMethod::table ? "tables" : "rows") +
-          (options.tight ? ", tight" : "") + (options.least_lazy == 0 ? ", lazy" : "");
+          (options.tight ? ", tight" : "") + (options.min_lazy == 0 ? ", lazy" : "");
   if (const char* folder = std::getenv("SNUG_DUMP")) {
     for (std::size_t side = 0; side < 2; ++side) {
       std::ofstream file(std::string(folder) + (side == 0 ? "/a.obj" : "/b.obj"));

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <snug/query/moving_body.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 
 #include <gtest/gtest.h>
 #include <oracle/dual_twin.h>

@@ -640,7 +640,7 @@ void GroundTrials::make_moved(GroundSide& side, const SurfaceBvhOptions& options
   side.surface->move(start_of(*side.journey, here, random));
   side.plan.set(nullptr);
   SurfaceBvhOptions moving = options;
-  if (row / journey_count % 2 == 0) moving.most_looser = INFINITY;
+  if (row / journey_count % 2 == 0) moving.max_looser = INFINITY;
   side.model = std::make_unique<SurfaceBvh>(*side.surface, moving, side.plan);
   side.scratch = std::make_unique<SurfaceWorkspace>(*side.model);
   const Ball& ball = side.model->ball();

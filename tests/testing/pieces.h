@@ -1,6 +1,6 @@
 #pragma once
 
-#include <snug/bounds/hull_points.h>
+#include <snug/bounds/bounding_points.h>
 #include <snug/search/piece.h>
 
 #include <random>
@@ -36,8 +36,8 @@ class Pieces {
     return piece;
   }
   /// Points whose hull holds it, until the next call.
-  [[nodiscard]] const HullPoints& hull(const KnownPiece& of) {
-    hull_points(surface_.library(), of.piece.patch, scratch_);
+  [[nodiscard]] const BoundingPoints& hull(const KnownPiece& of) {
+    bounding_points(surface_.library(), of.piece.patch, scratch_);
     return scratch_;
   }
 
@@ -52,7 +52,7 @@ class Pieces {
 
   const LimitSurface& surface_;
   BoundMethod method_;
-  HullPoints scratch_;
+  BoundingPoints scratch_;
 };
 
 }  // namespace snug::testing

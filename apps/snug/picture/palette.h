@@ -2,7 +2,7 @@
 
 #include <picture/scene.h>
 
-/// The colours of snug's pictures: one meaning each, told apart by lightness too.
+/// The colours of snug's pictures: one meaning each, distinct in lightness too.
 namespace snug::palette {
 
 inline constexpr Colour ink = Colour::hex(0x27303c);         ///< cage edges

@@ -20,7 +20,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Point3 origin;
 // Of a surface that lets light through.
-constexpr int most_layers = 24;
+constexpr int max_layers = 24;
 // Rays for the light from all around, of each sample, and how far they go, in units of the picture; the least share
 // of that light; how wide the key light is, as a tangent.
 constexpr int ambient_rays = 2;
@@ -353,7 +353,7 @@ std::array<double, 2> scattered(int column, int row) {
   return result;
 }
 
-// What lies under a displacement of the picture, seen from a surface.
+// A displacement of the picture, in coordinates of a surface.
 Vector3 in_mesh(const SceneSurface& surface, Vector3 displacement) {
   return times(surface.to_mesh, displacement);
 }
@@ -379,7 +379,7 @@ void Renderer::hit_surface(std::uint32_t index, Scratch& scratch) const {
   std::vector<std::uint32_t> samples(scratch.rays.size());
   std::vector<double> begins(scratch.rays.size(), 0);
   for (std::uint32_t i = 0; i < samples.size(); ++i) samples[i] = i;
-  for (int layer = 0; !samples.empty() && layer < most_layers; ++layer) {
+  for (int layer = 0; !samples.empty() && layer < max_layers; ++layer) {
     scratch.mesh_rays.clear();
     std::vector<std::uint32_t> asked;
     for (const std::uint32_t sample : samples) {

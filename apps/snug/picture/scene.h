@@ -59,7 +59,7 @@ struct CutPlane {
   double offset;
 };
 
-/// What is drawn. Triangles that share an edge share its end points exactly, or the seam may show.
+/// The drawn scene. Triangles that share an edge must share its end points exactly, or the seam may show.
 struct PictureScene {
   std::vector<Material> materials;
   std::vector<ShadedTriangle> triangles;

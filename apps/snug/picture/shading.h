@@ -18,7 +18,7 @@ struct Finish {
 /// Shares of the light from all around and of the key light that reach a place, in [0, 1].
 struct Reached {
   double ambient = 1, key = 1;
-  bool traced = false;  ///< told by rays, which also tell where a surface turns away from the light
+  bool traced = false;  ///< found by rays, as is where a surface turns away from the light
 };
 /// Where the key light is, in camera coordinates, of length 1.
 [[nodiscard]] Vector3 key_direction();

@@ -11,7 +11,7 @@
 namespace snug {
 namespace {
 
-// Widens the triangle, beside the error of the hull points.
+// Widens the triangle, beside the error of the bounding points.
 constexpr double margin = 1e-12;
 
 // Images of the rows under the layout.
@@ -20,7 +20,7 @@ struct DomainPoints {
   double error = 0;  // a coordinate
 };
 
-DomainPoints domain_points(const BoundRows& rows, const std::vector<LayoutPoint>& layout) {
+DomainPoints domain_points(const BoundingRows& rows, const std::vector<LayoutPoint>& layout) {
   DomainPoints points{std::vector<double>(rows.count(), 0.0), std::vector<double>(rows.count(), 0.0)};
   double largest = 0;
   for (std::size_t c = 0; c < layout.size(); ++c) {
@@ -94,11 +94,11 @@ class PlaneFitter {
 
 }  // namespace
 
-BoundTable make_bound_table(const Kind& kind, const BoundRows& rows) {
+BoundTable make_bound_table(const Kind& kind, const BoundingRows& rows) {
   return make_bound_table(kind, rows, make_layout(kind));
 }
 
-BoundTable make_bound_table(const Kind& kind, const BoundRows& rows, std::vector<LayoutPoint> layout) {
+BoundTable make_bound_table(const Kind& kind, const BoundingRows& rows, std::vector<LayoutPoint> layout) {
   SNUG_EXPECT(rows.control_count() == kind.control_count() && layout.size() == kind.control_count());
   BoundTable table;
   table.layout = std::move(layout);

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <snug/bounds/bound_rows.h>
+#include <snug/bounds/bounding_rows.h>
 #include <snug/bounds/layout.h>
 
 namespace snug {
@@ -19,7 +19,7 @@ namespace snug {
 ///            corners of `triangle`.
 ///            So  x = l(u) + sum_i (c_i - l(layout_i)) N_i  has linear bounds over `triangle`, whatever
 ///            linear l is; by rings the one through the first three control points, whose terms vanish.
-/// Source:    [Wu05, sec. 4.3 to 4.5]; differs: planes are fitted to hull rows instead of a net after seven
+/// Source:    [Wu05, sec. 4.3 to 4.5]; differs: planes are fitted to bounding rows instead of a net after seven
 ///            subdivisions in floating point, and the triangle is widened until the domain is proved to lie
 ///            inside; several extraordinary corners and boundaries are bounded directly.
 ///            derivations/tables.md.
@@ -43,13 +43,13 @@ struct BoundTable {
 };
 
 /// The table of a kind from its rows: each plane is the one of least volume over the triangle above (below)
-/// the hull points of its function, up to about 1e-12.
+/// the bounding points of its function, up to about 1e-12.
 ///
 /// Requires:  rows of this kind.
 /// Cost:      two linear programmes a control point, linear in the number of rows.
-[[nodiscard]] BoundTable make_bound_table(const Kind& kind, const BoundRows& rows);
+[[nodiscard]] BoundTable make_bound_table(const Kind& kind, const BoundingRows& rows);
 /// The same over any layout; where laid_by_rings(), its first three points are (0, 0), (1, 0), (0, 1).
-[[nodiscard]] BoundTable make_bound_table(const Kind& kind, const BoundRows& rows,
+[[nodiscard]] BoundTable make_bound_table(const Kind& kind, const BoundingRows& rows,
                                           std::vector<LayoutPoint> layout);
 
 }  // namespace snug

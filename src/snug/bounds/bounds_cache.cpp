@@ -3,9 +3,9 @@
 #include <snug/bounds/invariant_layout.h>
 
 namespace snug {
-const BoundRows& BoundsCache::rows(const Kind& kind) {
+const BoundingRows& BoundsCache::rows(const Kind& kind) {
   return rows_.get(kind.id(), [&] {
-    return make_bound_rows(kind, has_lasting_tips(kind) ? levels_before_tips : deepest_tip);
+    return make_bounding_rows(kind, has_self_similar_tips(kind) ? levels_before_tips : deepest_tip);
   });
 }
 
@@ -14,17 +14,18 @@ const Stencils* BoundsCache::crease_rows(const Kind& kind) {
   return made.rows ? &*made.rows : nullptr;
 }
 
-const BoundRows& BoundsCache::level_rows(const Kind& kind) {
-  return level_rows_.get(kind.id(), [&] { return make_bound_rows(kind, 1); });
+const BoundingRows& BoundsCache::level_rows(const Kind& kind) {
+  return level_rows_.get(kind.id(), [&] { return make_bounding_rows(kind, 1); });
 }
 
 const BoundTable& BoundsCache::table(const Kind& kind) {
-  return tables_.get(kind.id(), [&] { return make_bound_table(kind, make_bound_rows(kind)); });
+  return tables_.get(kind.id(), [&] { return make_bound_table(kind, make_bounding_rows(kind)); });
 }
 
 const TipTable& BoundsCache::tip_table(const Kind& kind) {
-  return tip_tables_.get(
-      kind.id(), [&] { return TipTable(make_bound_table(kind, make_bound_rows(kind), tip_layout(kind))); });
+  return tip_tables_.get(kind.id(), [&] {
+    return TipTable(make_bound_table(kind, make_bounding_rows(kind), tip_layout(kind)));
+  });
 }
 
 const QuadraticRows& BoundsCache::quadratic_rows(const Kind& kind) {

@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-#include <snug/bounds/bound_rows.h>
 #include <snug/bounds/bound_table.h>
+#include <snug/bounds/bounding_rows.h>
 #include <snug/bounds/crease_rows.h>
 #include <snug/bounds/kind_slots.h>
 #include <snug/bounds/quadratic.h>
@@ -21,27 +21,27 @@ inline constexpr unsigned levels_before_tips = 2;
 ///         are needed, and a thread keeps its last eight. No result depends on it.
 class BoundsCache {
  public:
-  explicit BoundsCache(std::size_t most_bytes_of_rows = std::size_t{256} << 20)
-      : rows_(most_bytes_of_rows),
-        level_rows_(most_bytes_of_rows),
-        tip_tables_(most_bytes_of_rows),
-        quadratics_(most_bytes_of_rows) {}
+  explicit BoundsCache(std::size_t max_bytes_of_rows = std::size_t{256} << 20)
+      : rows_(max_bytes_of_rows),
+        level_rows_(max_bytes_of_rows),
+        tip_tables_(max_bytes_of_rows),
+        quadratics_(max_bytes_of_rows) {}
 
   [[nodiscard]] KindCache& kinds() { return kinds_; }
   [[nodiscard]] const KindCache& kinds() const { return kinds_; }
 
   /// The rows of a kind of kinds(), levels_before_tips levels of them: tips are bounded by the tables of
   /// their own kinds, of which there are far fewer. KindSlots keeps them.
-  [[nodiscard]] const BoundRows& rows(const Kind& kind);
+  [[nodiscard]] const BoundingRows& rows(const Kind& kind);
   /// One level of them.
-  [[nodiscard]] const BoundRows& level_rows(const Kind& kind);
+  [[nodiscard]] const BoundingRows& level_rows(const Kind& kind);
   /// The table of a kind, made from rows that go down to tip_depth(). It stays as long as this.
   /// See make_crease_rows(); null where there are none.
   [[nodiscard]] const Stencils* crease_rows(const Kind& kind);
   [[nodiscard]] const BoundTable& table(const Kind& kind);
   /// The same for the boxes of tips of this kind.
   [[nodiscard]] const TipTable& tip_table(const Kind& kind);
-  /// What the quadratic triangles of a kind share.
+  /// Rows for the quadratic triangles of a kind.
   [[nodiscard]] const QuadraticRows& quadratic_rows(const Kind& kind);
 
   /// Kinds whose rows are kept, and the memory of all rows and tables that are.
@@ -53,7 +53,7 @@ class BoundsCache {
 
  private:
   KindCache kinds_;
-  KindSlots<BoundRows> rows_, level_rows_;
+  KindSlots<BoundingRows> rows_, level_rows_;
   KindSlots<CreaseRows> crease_rows_;
   KindSlots<BoundTable> tables_;
   KindSlots<TipTable> tip_tables_;

@@ -128,7 +128,7 @@ std::optional<std::array<std::uint32_t, 16>> lattice(const Topology& topology) {
 }
 
 std::optional<CreaseLine> crease_line(const Kind& kind) {
-  if (kind.scheme() != Scheme::catmark || kind.key().polygon || !kind.passing()) return {};
+  if (kind.scheme() != Scheme::catmark || kind.key().polygon || !kind.transient()) return {};
   const Neighbourhood around = neighbourhood(kind.key());
   const std::vector<double>& sharpness = around.sharpness.edges;
   const auto positive = [](double s) { return s > 0; };

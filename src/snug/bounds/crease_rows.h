@@ -20,7 +20,7 @@ struct CreaseRows {
 /// than uniform, have none.
 ///
 /// Guarantee: for all control points the patch lies in the convex hull of the rows' points.
-/// Source:    [NiessnerLoop12]; derivations/hull_rows.md, "One semi-sharp crease".
+/// Source:    [NiessnerLoop12]; derivations/bounding_rows.md, "One semi-sharp crease".
 [[nodiscard]] CreaseRows make_crease_rows(const Kind& kind);
 
 }  // namespace snug

@@ -11,17 +11,17 @@ namespace {
 // How much the boxes of tips may add to a hull before it is worth refining them.
 constexpr double notable_excess = 0.03;
 
-// Relative to the hull points' origin.
+// Relative to the bounding points' origin.
 using Ends = std::array<Vector3, 2>;
 using Corners = std::array<Vector3, 3>;
 
-// The way to the middle of the hull points.
+// The way to the middle of the bounding points.
 struct Shift {
   Vector3 by;
   bool tips_stick_out = false;  // along the normal, by a notable part of the hull's height
 };
 
-Shift to_middle(const HullPoints& points, const Corners& corners) {
+Shift to_middle(const BoundingPoints& points, const Corners& corners) {
   const Vector3 normal = normalized(cross(corners[1] - corners[0], corners[2] - corners[0]));
   if (normal == Vector3{}) return {};
   const kernels::Coordinates all = points.coordinates();
@@ -36,7 +36,7 @@ Shift to_middle(const HullPoints& points, const Corners& corners) {
   return {(0.5 * (lower + upper)) * normal, stick_out};
 }
 
-Shift to_middle(const HullPoints& points, const Ends& ends) {
+Shift to_middle(const BoundingPoints& points, const Ends& ends) {
   thread_local std::vector<Vector3> rests;
   rests.clear();
   const SegmentFoot foot(ends[0], ends[1]);
@@ -63,7 +63,7 @@ struct Base {
 };
 
 template <std::size_t N>
-Base<N> moved_base(const HullPoints& points, const std::array<Vector3, N>& corners) {
+Base<N> moved_base(const BoundingPoints& points, const std::array<Vector3, N>& corners) {
   const Shift shift = to_middle(points, corners);
   Base<N> base{corners, {}, 0, shift.tips_stick_out};
   for (std::size_t k = 0; k < N; ++k) {
@@ -87,7 +87,7 @@ struct Rests {
 
 // Of the points `begin` to `end` - 1.
 template <std::size_t N>
-Rests rests_of(const HullPoints& points, std::size_t begin, std::size_t end,
+Rests rests_of(const BoundingPoints& points, std::size_t begin, std::size_t end,
                const std::array<Vector3, N>& corner) {
   const auto foot = foot_on(corner);
   Rests all;
@@ -115,7 +115,7 @@ Rests rests_of(const HullPoints& points, std::size_t begin, std::size_t end,
 }
 
 // The nearest points of the edges, each found on its own.
-kernels::Reach farthest_by_feet(const HullPoints& points, std::size_t begin, std::size_t end,
+kernels::Reach farthest_by_feet(const BoundingPoints& points, std::size_t begin, std::size_t end,
                                 const Corners& corner) {
   const Rests rests = rests_of(points, begin, end, corner);
   const double rounding = spatial_error(rests.error);
@@ -123,9 +123,10 @@ kernels::Reach farthest_by_feet(const HullPoints& points, std::size_t begin, std
 }
 
 // Of the three tips' points, 0 for none, and of all others: in the triangle's plane, if it has one.
-std::array<kernels::Reach, 4> farthest(const HullPoints& points, const Corners& corner) {
+std::array<kernels::Reach, 4> farthest(const BoundingPoints& points, const Corners& corner) {
   std::array<std::size_t, 3> splits;
-  for (std::size_t i = 0; i < 3; ++i) splits[i] = std::min((i + 1) * HullPoints::tip_size, points.tips_end());
+  for (std::size_t i = 0; i < 3; ++i)
+    splits[i] = std::min((i + 1) * BoundingPoints::tip_size, points.tips_end());
   const auto in_plane = kernels::farthest(points.coordinates(), splits, corner[0], corner[1], corner[2]);
   if (in_plane) return *in_plane;
   std::array<kernels::Reach, 4> reach{};
@@ -141,7 +142,7 @@ std::array<kernels::Reach, 4> farthest(const HullPoints& points, const Corners& 
 // Refines the tips that stick out of the rest of the hull. Those that stick out along the normal have moved
 // the base towards them: then both sides are about as far.
 bool refine_what_sticks_out(BoundsCache& library, bool along_normal,
-                            const std::array<kernels::Reach, 4>& reach, HullPoints& points) {
+                            const std::array<kernels::Reach, 4>& reach, BoundingPoints& points) {
   const double most = (along_normal ? 1 - notable_excess : 1 + notable_excess) * reach[3].distance;
   bool refined = false;
   for (std::size_t tip = 0; tip < points.tips().size(); ++tip) {
@@ -154,14 +155,14 @@ bool refine_what_sticks_out(BoundsCache& library, bool along_normal,
 
 }  // namespace
 
-OffsetSegment offset_segment(const HullPoints& points, const std::array<Vector3, 2>& ends) {
+OffsetSegment offset_segment(const BoundingPoints& points, const std::array<Vector3, 2>& ends) {
   const Base<2> base = moved_base(points, ends);
   const Rests rests = rests_of(points, 0, points.size(), base.relative);
   const double rounding = enlarged(spatial_error(enlarged(points.error + base.placing_error + rests.error)));
   return {base.placed, enlarged(rests.farthest + rounding), rounding};
 }
 
-OffsetTriangle offset_triangle(BoundsCache& library, HullPoints& points,
+OffsetTriangle offset_triangle(BoundsCache& library, BoundingPoints& points,
                                const std::array<Vector3, 3>& corners) {
   for (std::size_t round = 0;; ++round) {
     const Base<3> base = moved_base(points, corners);
@@ -181,7 +182,7 @@ OffsetTriangle offset_triangle(BoundsCache& library, HullPoints& points,
 }
 
 template <std::size_t N>
-IntervalSimplex<N> interval_simplex(const HullPoints& points, const std::array<Vector3, N>& corners) {
+IntervalSimplex<N> interval_simplex(const BoundingPoints& points, const std::array<Vector3, N>& corners) {
   const Base<N> base = moved_base(points, corners);
   const Rests rests = rests_of(points, 0, points.size(), base.relative);
   const double error = enlarged(points.error + base.placing_error + rests.error);
@@ -195,7 +196,7 @@ IntervalSimplex<N> interval_simplex(const HullPoints& points, const std::array<V
   return result;
 }
 
-template IntervalSegment interval_simplex(const HullPoints&, const Ends&);
-template IntervalTriangle interval_simplex(const HullPoints&, const Corners&);
+template IntervalSegment interval_simplex(const BoundingPoints&, const Ends&);
+template IntervalTriangle interval_simplex(const BoundingPoints&, const Corners&);
 
 }  // namespace snug

@@ -319,7 +319,7 @@ struct LoopShape {
     split_once(d, b, out);
   }
 
-  // Every hull point but those of an edge is a sum of Bezier points with at most half of the weight on that
+  // Every bounding point but those of an edge is a sum of Bezier points with at most half of the weight on that
   // edge. So none is outside if all others lie as deep inside each edge's line as its own stick out: then
   // `farthest` meets those of the edges. The lanes of which that is true; derivations/rounding.md, "Batches".
   template <class D, class V = hn::Vec<D>>
@@ -370,7 +370,7 @@ struct BicubicShape {
   // Place of each control point in the lattice of 4 x 4, as patch/neighbourhood.h draws it.
   static constexpr std::array<std::size_t, 16> place{5, 6, 10, 9, 1, 2, 7, 11, 14, 13, 8, 4, 0, 3, 15, 12};
 
-  // The bicubic Bezier points (i, j), at i + 4 j, that each hull point is a sum of.
+  // The bicubic Bezier points (i, j), at i + 4 j, that each bounding point is a sum of.
   struct Sums {
     std::size_t terms[hull_count] = {}, point[hull_count][8] = {};
     double weight[hull_count][8] = {};
@@ -499,7 +499,7 @@ HWY_INLINE Framed<V, Shape::bezier> framed_points(D d, const PlanarTriangle<V>& 
   return framed;
 }
 
-// The middle of the heights of the hull points, and their largest squared distance from P moved there.
+// The middle of the heights of the bounding points, and their largest squared distance from P moved there.
 template <class V>
 struct Measured {
   V middle, farthest_sq;
@@ -563,7 +563,7 @@ HWY_INLINE void fit_group(D d, const double* HWY_RESTRICT gathered, std::span<Of
   const V inside = hn::Mul(hn::Mul(hn::Set(d, 48 * unit_roundoff), t.amplify), largest);
   const ReachV<V> reach = reach_of(d, t, farthest, hn::Add(t.deviation, hn::Add(tilt, inside)));
 
-  // Errors of control points, hull points and the placed base, a coordinate.
+  // Errors of control points, bounding points and the placed base, a coordinate.
   const Vec3<V> shift = scaled(middle, t.n);
   V placed = hn::Zero(d);
   for (auto& c : corner) {

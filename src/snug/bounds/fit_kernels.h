@@ -73,7 +73,7 @@ struct Reach {
 /// Offset triangles of regular patches inside the surface, straight from their control points: Bezier points,
 /// one split of de Casteljau's, fit; a patch a lane. A negative radius is no answer: take the general way.
 ///
-/// Guarantee: as offset_triangle() on the patch's hull points; marked where farthest() has no answer.
+/// Guarantee: as offset_triangle() on the patch's bounding points; marked where farthest() has no answer.
 /// Requires:  control: twelve vertices of `points` a patch, in the kind's order; out.size() patches; points
 ///            as in farthest().
 /// Cost:      about 0.07 microseconds a patch with eight lanes, 0.08 with four.

@@ -23,7 +23,7 @@ template <class T>
 class KindSlots {
  public:
   /// Keeps so many bytes of values, and the value that goes beyond them; others are made where needed.
-  explicit KindSlots(std::size_t most_bytes = SIZE_MAX) : most_bytes_(most_bytes) {}
+  explicit KindSlots(std::size_t max_bytes = SIZE_MAX) : max_bytes_(max_bytes) {}
   KindSlots(const KindSlots&) = delete;
   KindSlots& operator=(const KindSlots&) = delete;
   ~KindSlots() {
@@ -40,7 +40,7 @@ class KindSlots {
   [[nodiscard]] const T& get(KindId id, Make&& make) {
     std::atomic<const T*>& place = slot(id.index());
     if (const T* ready = place.load(std::memory_order_acquire)) return *ready;
-    if (bytes() >= most_bytes_) {
+    if (bytes() >= max_bytes_) {
       thread_local RecentValues<std::pair<std::uint64_t, KindId>, T, 8> recent;
       return recent.get({serial_, id}, make);
     }
@@ -75,7 +75,7 @@ class KindSlots {
   }
 
   std::array<std::atomic<Block*>, 4096> blocks_{};
-  std::size_t most_bytes_;
+  std::size_t max_bytes_;
   // No two share it, as they may an address one after the other.
   static inline std::atomic<std::uint64_t> last_serial_{0};
   std::uint64_t serial_ = ++last_serial_;

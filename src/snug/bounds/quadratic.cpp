@@ -4,8 +4,8 @@
 #include <cmath>
 #include <memory>
 
+#include <snug/bounds/bounding_points.h>
 #include <snug/bounds/bounds_cache.h>
-#include <snug/bounds/hull_points.h>
 #include <snug/bounds/invariant_layout.h>
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
@@ -69,8 +69,8 @@ constexpr unsigned max_levels = 16;
 // How much nets may add before they are split.
 constexpr double notable_excess = 0.05;
 constexpr double corner_weight = 3;
-// The same for kinds that few share: one of a passing kind, and at a crowded corner.
-constexpr unsigned passing_levels = 5, crowded_levels = 12;
+// The same for kinds that few share: one of a transient kind, and at a high-valence corner.
+constexpr unsigned transient_levels = 5, high_valence_levels = 12;
 
 // Corners of the convex hull, up to rounding.
 std::vector<LayoutPoint> convex_hull(std::vector<LayoutPoint> points) {
@@ -118,7 +118,7 @@ std::size_t QuadraticRows::bytes() const {
 
 // Least squares: of all quadratics the one whose Bezier points, raised, are nearest to those of the patch;
 // the corners count as several.
-void QuadraticRows::make_fit(const BoundRows& deep) {
+void QuadraticRows::make_fit(const BoundingRows& deep) {
   const std::size_t count = deep.bezier_count();
   std::vector<double> weight_of(count, 1.0);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -144,7 +144,7 @@ void QuadraticRows::make_fit(const BoundRows& deep) {
   }
 }
 
-void QuadraticRows::make_frame(const Kind& kind, const BoundRows& deep) {
+void QuadraticRows::make_frame(const Kind& kind, const BoundingRows& deep) {
   layout_ = invariant_layout(kind);
   if (layout_.empty()) return;
   double size = 0;
@@ -219,19 +219,19 @@ double QuadraticRows::distance(const Kind& kind, const Patch& patch, const Quadr
 }
 
 QuadraticRows make_quadratic_rows(BoundsCache& library, const Kind& kind) {
-  SNUG_EXPECT(kind.shared());
+  SNUG_EXPECT(kind.cacheable());
   QuadraticRows result;
   if (kind.polynomial()) {
     result.make_fit(library.rows(kind));
     return result;
   }
-  for (const BoundRows::Net& net : library.rows(kind).nets()) {
+  for (const BoundingRows::Net& net : library.rows(kind).nets()) {
     result.to_nets_.push_back(restriction_to(net.place));
   }
-  for (const BoundRows::Net& net : library.level_rows(kind).nets()) {
+  for (const BoundingRows::Net& net : library.level_rows(kind).nets()) {
     result.to_level_nets_.push_back(restriction_to(net.place));
   }
-  const BoundRows deep = make_bound_rows(kind, frame_levels);
+  const BoundingRows deep = make_bounding_rows(kind, frame_levels);
   result.make_fit(deep);
   result.make_frame(kind, deep);
   return result;
@@ -242,18 +242,18 @@ namespace {
 // Bounds |patch - quadratic|: Bezier points of pieces, and nets that are split while they add notably.
 class Comparison {
  public:
-  // Of a patch in its kind's order, and its hull points.
+  // Of a patch in its kind's order, and its bounding points.
   [[nodiscard]] double distance(BoundsCache& library, const Patch& patch, const Quadratic& q,
-                                const HullPoints& hull) {
+                                const BoundingPoints& hull) {
     library_ = &library;
     opened_ = 0;
     farthest_ = 0;
     const Kind& kind = *patch.kind;
-    if (!kind.shared() || (kind.polynomial() && kind.form().degree == 1)) {
+    if (!kind.cacheable() || (kind.polynomial() && kind.form().degree == 1)) {
       add(patch, q, 0, 0);
       return resolve();
     }
-    const BoundRows& rows = library.rows(kind);
+    const BoundingRows& rows = library.rows(kind);
     const std::size_t tips = hull.tips().size();
     SNUG_EXPECT(hull.size() == hull.tips_end() + (tips > 0 ? rows.bezier_count() : rows.count()));
     const double size = std::max(hull.largest, largest_of(q));
@@ -275,7 +275,7 @@ class Comparison {
  private:
   // Bezier points of a patch and of a quadratic that is off by at most `given`, a coordinate; none of them larger
   // than `size`.
-  void compare(const kernels::Coordinates& points, double error, const BoundRows& rows, const Quadratic& q,
+  void compare(const kernels::Coordinates& points, double error, const BoundingRows& rows, const Quadratic& q,
                double size, double given) {
     take(kernels::farthest_from_quadratic(points.first(rows.bezier_count()), rows.quadratic(0), q),
          error + given + gamma_bound(32) * size);
@@ -284,10 +284,10 @@ class Comparison {
   // A piece in its kind's order.
   void add(const Patch& piece, const Quadratic& q, double given, unsigned level) {
     const Kind& kind = *piece.kind;
-    if (!kind.shared()) return add_parts(piece, q, given, level);
+    if (!kind.cacheable()) return add_parts(piece, q, given, level);
     if (kind.polynomial() && kind.form().degree == 1) return add_plane(piece, q, given);
-    const BoundRows& rows = library_->level_rows(kind);
-    hull_points(rows, piece, points_);
+    const BoundingRows& rows = library_->level_rows(kind);
+    bounding_points(rows, piece, points_);
     const double size = std::max(points_.largest, largest_of(q));
     compare(points_.coordinates(), points_.error, rows, q, size, given);
     if (rows.nets().empty()) return;
@@ -306,7 +306,9 @@ class Comparison {
     for (std::size_t next = 0; next < opened_; ++next) {
       Open& open = *open_[next];
       const Kind& kind = *open.piece.kind;
-      const unsigned limit = kind.shared() ? max_levels : kind.passing() ? passing_levels : crowded_levels;
+      const unsigned limit = kind.cacheable()   ? max_levels
+                             : kind.transient() ? transient_levels
+                                                : high_valence_levels;
       if (open.distance <= (1 + notable_excess) * farthest_ || open.level >= limit) {
         rest = std::max(rest, open.distance);
       } else {
@@ -329,8 +331,9 @@ class Comparison {
     const Kind& kind = *open.piece.kind;
     open.given = given;
     open.level = level;
-    open.distance =
-        kind.shared() ? library_->quadratic_rows(kind).distance(kind, open.piece, open.quadratic) : INFINITY;
+    open.distance = kind.cacheable()
+                        ? library_->quadratic_rows(kind).distance(kind, open.piece, open.quadratic)
+                        : INFINITY;
     if (open.distance == INFINITY) open.distance = by_hulls(open.piece, open.quadratic);
     open.distance = enlarged(open.distance + spatial_error(given) + tiny);
   }
@@ -368,7 +371,7 @@ class Comparison {
   }
 
   BoundsCache* library_ = nullptr;
-  HullPoints points_;
+  BoundingPoints points_;
   std::vector<std::unique_ptr<Open>> open_;  // as many as there ever were
   std::size_t opened_ = 0;
   double farthest_ = 0;
@@ -398,7 +401,7 @@ struct Fit {
   double error;
 };
 
-double distance_to(BoundsCache& library, const Patch& patch, const Quadratic& q, const HullPoints& hull) {
+double distance_to(BoundsCache& library, const Patch& patch, const Quadratic& q, const BoundingPoints& hull) {
   thread_local Comparison comparison;
   thread_local Patch whole;
   whole = patch;
@@ -407,10 +410,10 @@ double distance_to(BoundsCache& library, const Patch& patch, const Quadratic& q,
   return comparison.distance(library, whole, q, hull);
 }
 
-Fit fit_of(BoundsCache& library, const Patch& patch, const HullPoints& hull) {
+Fit fit_of(BoundsCache& library, const Patch& patch, const BoundingPoints& hull) {
   Fit fit{{}, 0};
   const Kind& kind = *patch.kind;
-  if (!kind.shared()) {
+  if (!kind.cacheable()) {
     Patch whole = patch;
     whole.first = 0;
     whole.path = {};
@@ -429,7 +432,7 @@ Fit fit_of(BoundsCache& library, const Patch& patch, const HullPoints& hull) {
 
 }  // namespace
 
-QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch, const HullPoints& hull) {
+QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch, const BoundingPoints& hull) {
   const auto [quadratic, distance] = fit_of(library, patch, hull);
   QuadraticTriangle result;
   double largest = 0;
@@ -448,12 +451,12 @@ QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch, c
 }
 
 QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch) {
-  thread_local HullPoints hull;
-  if (patch.kind->shared()) hull_points(library, patch, hull);
+  thread_local BoundingPoints hull;
+  if (patch.kind->cacheable()) bounding_points(library, patch, hull);
   return quadratic_triangle(library, patch, hull);
 }
 
-double distance_to_triangle(BoundsCache& library, const Patch& patch, const HullPoints& hull,
+double distance_to_triangle(BoundsCache& library, const Patch& patch, const BoundingPoints& hull,
                             const Triangle& triangle) {
   Quadratic flat;
   for (std::size_t k = 0; k < 3; ++k) flat[patch.to_kind(k)] = triangle[k] - patch.origin;

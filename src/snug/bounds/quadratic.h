@@ -4,14 +4,14 @@
 #include <cstddef>
 #include <vector>
 
-#include <snug/bounds/bound_rows.h>
+#include <snug/bounds/bounding_rows.h>
 #include <snug/bounds/layout.h>
 #include <snug/patch/patch.h>
 
 namespace snug {
 
 class BoundsCache;
-class HullPoints;
+class BoundingPoints;
 
 /// A quadratic Bezier triangle near a patch, parameter by parameter.
 struct QuadraticTriangle {
@@ -20,7 +20,7 @@ struct QuadraticTriangle {
   double error;                   ///< |patch(t) - quadratic(t)| <= error for all t; infinite if not finite
 };
 
-/// What the quadratic triangles of a kind share. Immutable.
+/// Rows that make and bound the quadratic triangles of a kind. Immutable.
 ///
 /// Guarantee: whatever the fit is, errors are proved for the quadratics that came out.
 /// Source:    derivations/quadratics.md.
@@ -33,7 +33,7 @@ class QuadraticRows {
   [[nodiscard]] const std::vector<Restriction>& to_level_nets() const { return to_level_nets_; }
   /// Weights of one control point in the six points of the quadratic.
   [[nodiscard]] const double* fit() const { return fit_.data(); }
-  /// What distance() rests on: places of control points, none where it is infinite; corners of a polygon that
+  /// Inputs of distance(): places of control points, none where it is infinite; corners of a polygon that
   /// holds, up to an error a coordinate, where limit points of the places are less their parameters; upper
   /// bounds of basis functions' sizes.
   [[nodiscard]] const std::vector<LayoutPoint>& layout() const { return layout_; }
@@ -49,8 +49,8 @@ class QuadraticRows {
 
  private:
   friend QuadraticRows make_quadratic_rows(BoundsCache& library, const Kind& kind);
-  void make_fit(const BoundRows& deep);
-  void make_frame(const Kind& kind, const BoundRows& deep);
+  void make_fit(const BoundingRows& deep);
+  void make_frame(const Kind& kind, const BoundingRows& deep);
 
   std::vector<Restriction> to_nets_, to_level_nets_;
   std::vector<double> fit_;  // 6 x controls, column by column
@@ -62,26 +62,26 @@ class QuadraticRows {
   std::vector<double> largest_;
 };
 
-/// Requires:  a patch, no polygon, that is shared().
+/// Requires:  a patch, no polygon, that is cacheable().
 /// Cost:      0.1 to 1 ms up to valence 12.
 [[nodiscard]] QuadraticRows make_quadratic_rows(BoundsCache& library, const Kind& kind);
 
 /// The quadratic triangle of a patch, least squares over Bezier points, with its error.
 ///
 /// Guarantee: QuadraticTriangle::error, rounding and the patch's own error included.
-/// Requires:  hull: of hull_points() for this patch, no tip of it refined.
+/// Requires:  hull: of bounding_points() for this patch, no tip of it refined.
 /// Tightness: in the median 1.3 times the largest distance over all parameters.
 /// Cost:      given the hull about 0.1 microseconds; with extraordinary corners 0.3 each, and one product a
 ///            level that is refined.
 [[nodiscard]] QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch,
-                                                   const HullPoints& hull);
+                                                   const BoundingPoints& hull);
 /// The same without a hull at hand.
 [[nodiscard]] QuadraticTriangle quadratic_triangle(BoundsCache& library, const Patch& patch);
 
 /// Upper bound of |patch(t) - l(t)| over all t, for the linear map l of the patch's parameters to this triangle,
 /// corner to corner; infinite if not finite. Rounding and the patch's own error included.
-/// Requires, Cost: those of quadratic_triangle(); no hull is needed unless kind->shared().
-[[nodiscard]] double distance_to_triangle(BoundsCache& library, const Patch& patch, const HullPoints& hull,
-                                          const Triangle& triangle);
+/// Requires, Cost: those of quadratic_triangle(); no hull is needed unless kind->cacheable().
+[[nodiscard]] double distance_to_triangle(BoundsCache& library, const Patch& patch,
+                                          const BoundingPoints& hull, const Triangle& triangle);
 
 }  // namespace snug

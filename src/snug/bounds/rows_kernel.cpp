@@ -213,12 +213,12 @@ namespace snug::kernels {
 HWY_EXPORT(FitRows);
 
 bool RowsWithTips::fit(const Kind& kind) {
-  return kind.shared() && !kind.polynomial() && has_lasting_tips(kind);
+  return kind.cacheable() && !kind.polynomial() && has_self_similar_tips(kind);
 }
 
 RowsWithTips::RowsWithTips(BoundsCache& library, const Kind& kind, unsigned levels)
     : control_count_(kind.control_count()) {
-  const BoundRows rows = make_bound_rows(kind, levels);
+  const BoundingRows rows = make_bounding_rows(kind, levels);
   const Stencils& limits = kind.corner_limits();
   weights_.assign((3 + rows.count()) * control_count_, 0.0);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -232,7 +232,7 @@ RowsWithTips::RowsWithTips(BoundsCache& library, const Kind& kind, unsigned leve
       weights_[(3 + r) * control_count_ + c] = rows.weight(r, c);
     }
   }
-  for (const BoundRows::Net& net : rows.nets()) {
+  for (const BoundingRows::Net& net : rows.nets()) {
     Tip& own = tips_.emplace_back(Tip{3 + net.begin, net.kind->control_count(), {}, {}});
     own.table = flatten(library.tip_table(*net.kind), *net.kind, own.columns);
   }

@@ -10,11 +10,10 @@
 
 namespace snug::kernels {
 
-/// What fit_rows() needs of a kind: its rows of a few levels, and instead of all below the tables of the tips
-/// there.
+/// Input of fit_rows() for a kind: its rows of a few levels, and tables for the tips below these.
 class RowsWithTips {
  public:
-  /// Has a kind tips with tables: is it shared, no polynomial, with lasting tips (bound_rows.h)?
+  /// Has a kind tips with tables: is it cacheable, no polynomial, with self-similar tips?
   [[nodiscard]] static bool fit(const Kind& kind);
   /// Tips begin `levels` down.
   /// Requires:  fit(kind); the library outlives this.

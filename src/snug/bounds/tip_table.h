@@ -37,7 +37,7 @@ class TipTable {
   [[nodiscard]] const std::array<LayoutPoint, 3>& triangle() const { return triangle_; }
   [[nodiscard]] const std::vector<Column>& columns() const { return columns_; }
   [[nodiscard]] std::size_t first_bounded() const { return first_bounded_; }
-  /// What boxes are off by: times the error of control points, times the largest coordinate, and beside it.
+  /// Error of boxes: factors of the error of control points and of the largest coordinate, and a constant.
   [[nodiscard]] double error_of_points() const { return error_of_points_; }
   [[nodiscard]] double error_of_largest() const { return error_of_largest_; }
   [[nodiscard]] double error_at_least() const { return error_at_least_; }

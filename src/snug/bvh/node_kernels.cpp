@@ -123,8 +123,8 @@ HWY_INLINE V gaps(const float* node, std::size_t at, const Row& other, V all_sla
     gap = hn::IfThenElse(apart, hn::Max(gap, central), gap);
   }
   // Lane by lane, so that it makes no difference how many a vector has.
-  const auto settled = hn::Gt(gap, hn::Set(d, prune_distance));
-  if (!hn::AllTrue(d, settled)) {
+  const auto pruned = hn::Gt(gap, hn::Set(d, prune_distance));
+  if (!hn::AllTrue(d, pruned)) {
     // Cross products of axes are at most 1 long: overlaps along short ones say little, so only gaps count.
     V across = all_slack;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -139,7 +139,7 @@ HWY_INLINE V gaps(const float* node, std::size_t at, const Row& other, V all_sla
       }
     }
     across = hn::Sub(across, all_slack);
-    const auto wider = hn::AndNot(settled, hn::Gt(across, zero));
+    const auto wider = hn::AndNot(pruned, hn::Gt(across, zero));
     gap = hn::IfThenElse(wider, hn::Max(gap, across), gap);
   }
   return gap;
@@ -212,7 +212,7 @@ Near seen_box(const float* node, float reach, const SeenBox& other, const Turn& 
   return compare<false>(node, box, doubt + slack, prune_distance, out);
 }
 
-// Along the line of the centres and along the direction. Overlaps are told by the former.
+// Along the line of the centres and along the direction. The former decides overlaps.
 Near seen_along(const float* node, float reach, const SeenBox& other, const Turn& turn, float slack,
                 float prune_distance, float* out) {
   OtherBox box;
@@ -317,8 +317,8 @@ Near obb_distances(const float* node, float reach, const OtherBox& other, float 
 }
 
 Near obb_distances(const float* node, float reach, const SeenBox& other, const Turn& turn, float slack,
-                   float prune_distance, Gaps sort, float* out) {
-  if (sort == Gaps::lines) {
+                   float prune_distance, Gaps which, float* out) {
+  if (which == Gaps::lines) {
     return HWY_DYNAMIC_DISPATCH(seen_along)(node, reach, other, turn, slack, prune_distance, out);
   }
   return HWY_DYNAMIC_DISPATCH(seen_box)(node, reach, other, turn, slack, prune_distance, out);

@@ -51,10 +51,10 @@ struct SeenBox {
   float offset[3];    ///< of the other node's origin from this one's, here
 };
 /// Which gaps are looked for: across fifteen axes, or along the line of the centres and Turn::direction,
-/// which tell more of boxes that are far apart.
+/// which are sharper for boxes that are far apart.
 enum class Gaps : std::uint8_t { axes, lines };
 /// The same for such a box.
 Near obb_distances(const float* node, float reach, const SeenBox& other, const Turn& turn, float slack,
-                   float prune_distance, Gaps sort, float* out);
+                   float prune_distance, Gaps which, float* out);
 
 }  // namespace snug::kernels

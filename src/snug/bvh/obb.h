@@ -37,7 +37,7 @@ using Axes = std::array<Vector3, 3>;
 [[nodiscard]] Axes principal_axes(std::span<const Point3> points);
 
 /// Axes that are orthonormal up to a few roundings: the first along `a`, the second in the plane of a and b
-/// where that can be told, else anywhere; the coordinate axes where `a` is zero or not finite.
+/// where that is determined, else anywhere; the coordinate axes where `a` is zero or not finite.
 [[nodiscard]] Axes orthonormal_axes(const Vector3& a, const Vector3& b);
 
 /// The box with given axes around a set with these extents along them, rounding included; one that nothing is

@@ -50,11 +50,11 @@ class WideBvh {
   /// Makes all boxes anew, around these boxes of the leaves, along given axes: one triple for each node by
   /// its name, for the box around all of it. Without axes they are chosen as for a whole tree. Memory is
   /// taken the first time only. Not while others read.
-  /// Guarantee: as ever. The axes need be orthonormal up to a few roundings, no more.
+  /// Guarantee: that of a new tree. Axes need only be orthonormal up to a few roundings.
   /// Requires:  made by in_order() or in_order_of(); leaf_count() boxes; node_count() axes or none.
   void refit(std::span<const Obb> leaves, std::span<const Axes> axes = {});
   [[nodiscard]] std::size_t node_count() const { return nodes_.size(); }
-  /// What refit() made: a box around all of each node, by name.
+  /// Boxes made by refit(): one around all of each node, by name.
   [[nodiscard]] std::span<const Obb> node_boxes() const { return node_boxes_; }
   /// The leaves below a node: from `begin` to before `end`.
   struct LeafRange {
@@ -118,7 +118,7 @@ class WideBvh {
   void finish_refit(std::span<const Obb> leaves);
 
   std::vector<std::uint32_t> begins_;  // name of the first node of each level; of leaves 0
-  // Written before `made_` tells.
+  // Written before `made_` is set.
   mutable std::vector<std::uint32_t> items_;
   mutable std::vector<TreeNode> nodes_;
   mutable std::vector<std::atomic<bool>> made_;

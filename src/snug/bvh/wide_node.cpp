@@ -91,14 +91,14 @@ Obb WideNode::box(std::size_t place) const {
 }
 
 WideNode::Near WideNode::distances(const WideNode& other, std::size_t place, const View& view,
-                                   float prune_distance, Gaps sort, Distances& out) const {
+                                   float prune_distance, Gaps which, Distances& out) const {
   const Vector3 offset = view.frame.apply(other.origin_) - origin_;
   const kernels::SeenBox seen{
       other.rows_.data() + place,
       other.reach_,
       {static_cast<float>(offset.x), static_cast<float>(offset.y), static_cast<float>(offset.z)}};
   const Near near = kernels::obb_distances(rows_.data(), reach_, seen, view.turn, view.slack, prune_distance,
-                                           sort, out.data());
+                                           which, out.data());
   return {near.places & ((1u << count_) - 1), near.others};
 }
 

@@ -59,7 +59,7 @@ class alignas(32) WideNode {
   ///            finite.
   /// Requires:  view.frame.comparable.
   /// Source:    derivations/boxes.md; [Gottschalk96] for the axes.
-  Near distances(const WideNode& other, std::size_t place, const View& view, float prune_distance, Gaps sort,
+  Near distances(const WideNode& other, std::size_t place, const View& view, float prune_distance, Gaps which,
                  Distances& out) const;
   /// The same to a box in this node's frame, less `slack`.
   Near distances(const PlacedBox& other, double slack, float prune_distance, Distances& out) const;

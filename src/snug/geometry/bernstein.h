@@ -77,7 +77,7 @@ struct Binomials<Bernstein<domain, A, B>> {
 /// Scaled coefficients over Bezier coefficients.
 template <class P>
 inline constexpr std::array<double, P::count> binomials = detail::Binomials<P>::all();
-/// Means over the domain of what scaled coefficients stand before.
+/// Means over the domain of the basis functions of scaled coefficients.
 template <class P>
 inline constexpr std::array<double, P::count> means = detail::Binomials<P>::means();
 /// The polynomial 1.
@@ -125,7 +125,7 @@ template <class P, class Q>
   return out;
 }
 
-/// Means of q times each function that the coefficients of a P stand before: mean(p q) is the sum of p.scaled
+/// Means of q times each basis function of P: mean(p q) is the sum of p.scaled
 /// times these.
 template <class P, class Q>
 [[nodiscard]] std::array<double, P::count> means_with(const Q& q) {

@@ -55,7 +55,7 @@ Numbers with_offset(Numbers numbers, const Vector3& t) {
   return numbers;
 }
 
-// What to do about a matrix that is off from a rotation by `defect`.
+// Advice for a matrix that is off from a rotation by `defect`.
 std::string mended(const Numbers& numbers, double defect) {
   const auto [a, b, c] = columns_of(numbers);
   const double scale = length(a);

@@ -26,11 +26,11 @@ bool contains_origin(const std::array<Vector3, 3>& t, const Vector3& p) {
 }  // namespace
 
 Vector3 nearest_to_origin(std::span<const Vector3> points) {
-  constexpr int most_steps = 200;
+  constexpr int max_steps = 200;
   // A triangle of points, corners of which may be the same.
   std::array<Vector3, 3> simplex{points[0], points[0], points[0]};
   Vector3 nearest = points[0];
-  for (int step = 0; step < most_steps; ++step) {
+  for (int step = 0; step < max_steps; ++step) {
     const auto along = [&](const Vector3& a, const Vector3& b) { return dot(nearest, a) < dot(nearest, b); };
     const Vector3 next = *std::min_element(points.begin(), points.end(), along);
     const double square = length_sq(nearest);

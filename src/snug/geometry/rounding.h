@@ -17,7 +17,7 @@ namespace snug {
 /// Half the distance from 1 to the next double: one rounding to nearest errs by at most this, relatively.
 inline constexpr double unit_roundoff = 0x1p-53;
 
-/// What flushing of denormals, which programs that link snug may do, can take from one operation.
+/// Error of one operation where denormals are flushed, which programs that link snug may do.
 inline constexpr double underflow_error = DBL_MIN;
 
 /// Upper bound of k u / (1 - k u), the relative error of k roundings in a row [Higham02, lemma 3.1].

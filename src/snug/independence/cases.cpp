@@ -151,7 +151,7 @@ class PieceCases {
   }
 
   // So many rings have the rank of all. With one corner: once the next adds nothing, no more does. With two: no more than
-  // tell both parts apart, each alone.
+  // distinguish both parts, each alone.
   std::uint32_t rings_that_count() {
     std::uint32_t k = 1;
     if (!corners_.second) {

@@ -13,7 +13,7 @@
 
 namespace snug {
 
-/// Where nodal functions are looked at: parts of a piece with one extraordinary corner, or of what is around the corner.
+/// Domains of nodal functions: parts of a piece with one extraordinary corner, or of what is around the corner.
 /// Rings are counted from 1; ring k + 1 is the half of ring k in size, nearer to the corner.
 struct IndependenceDomain {
   enum class Kind {
@@ -44,7 +44,7 @@ struct RankCertificate {
   std::optional<std::uint32_t> rings;  ///< omega: so many are enough for it
   std::optional<std::uint32_t> steps;  ///< global: after so many steps
   Bound bound = Bound::full;           ///< why it is no greater
-  std::uint32_t left_out = 0;          ///< irrational rows that the kernel is not asked about
+  std::uint32_t left_out = 0;          ///< irrational rows left out of the kernel
   std::optional<mpq_class> factor;     ///< omega: a step maps each vector to this multiple of itself
   std::vector<PolynomialVector> kernel;
 };

@@ -64,9 +64,9 @@ class RowBuilder {
   WeightRow row_;
 };
 
-class Refinement {
+class NetRefinement {
  public:
-  Refinement(const ControlNet& net, const ExactScheme& scheme, std::uint32_t order)
+  NetRefinement(const ControlNet& net, const ExactScheme& scheme, std::uint32_t order)
       : net_(net), scheme_(scheme), order_(order), edges_(directed_edges(net)), out_(net.points) {
     for (const auto& [edge, at] : edges_) out_[edge.first].push_back(edge.second);
     result_.of_vertex.resize(net.points);
@@ -356,7 +356,7 @@ Weight twice_cosine(std::uint32_t j, std::uint32_t m, std::uint32_t order) {
 }
 
 RefinedNet refine(const ControlNet& net, const ExactScheme& scheme, std::uint32_t order) {
-  return Refinement(net, scheme, order).run();
+  return NetRefinement(net, scheme, order).run();
 }
 
 std::vector<std::uint32_t> embedded(const ControlNet& net, std::array<std::uint32_t, 2> edge,

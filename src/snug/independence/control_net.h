@@ -22,7 +22,7 @@ struct ControlNet {
   std::set<std::uint32_t> corners = {};                             ///< sharp boundary vertices: they stay
 };
 
-/// Rules of refinement that chapter 3 of the dissertation tells apart.
+/// Rules of refinement that chapter 3 of the dissertation distinguishes.
 struct ExactScheme {
   Scheme scheme = Scheme::loop;
   bool older_vertices = false;  ///< Catmull-Clark with vertex points (Q + R + 2S)/4, R the mean of neighbours

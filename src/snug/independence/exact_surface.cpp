@@ -112,15 +112,15 @@ class Builder {
 
 }  // namespace
 
-ExactSurface exact_surface(const RuledMesh& mesh, const std::vector<bool>& bare, std::uint32_t order,
-                           const WorkMonitor& monitor) {
+ExactSurface exact_surface(const RuledMesh& mesh, const std::vector<bool>& without_surface,
+                           std::uint32_t order, const WorkMonitor& monitor) {
   ExactSurface surface{order, {}, {}};
   const SchemeRules& rules = rules_of(mesh.options.scheme);
   Builder builder(surface, rules);
   std::vector<VertexId> control;
-  for (std::size_t owner = 0; owner < bare.size(); ++owner) {
+  for (std::size_t owner = 0; owner < without_surface.size(); ++owner) {
     monitor.checkpoint();
-    if (bare[owner]) continue;
+    if (without_surface[owner]) continue;
     const HalfEdge start =
         rules.primal ? mesh.topology.first_of(FaceId(owner)) : mesh.topology.leaving(VertexId(owner));
     const std::uint32_t kind = builder.find(mesh, start, control);

@@ -42,11 +42,11 @@ struct ExactSurface {
 
 /// Takes the mesh apart as LimitSurface does: by patch/neighbourhood.h. Kinds are finitely many, as sharpness decays.
 ///
-/// Requires:  Loop, Catmull-Clark, Doo-Sabin or Midedge; a surface for each owner that is not `bare`: faces, of dual schemes
+/// Requires:  Loop, Catmull-Clark, Doo-Sabin or Midedge; a surface for each owner not in `without_surface`: faces, of dual schemes
 ///            vertices; a multiple of order_of_masks().
 /// Errors:    InputError (refused): more than max_exact_kinds. Interrupted.
 /// Cost:      up to a millisecond a kind.
-[[nodiscard]] ExactSurface exact_surface(const RuledMesh& mesh, const std::vector<bool>& bare,
+[[nodiscard]] ExactSurface exact_surface(const RuledMesh& mesh, const std::vector<bool>& without_surface,
                                          std::uint32_t order, const WorkMonitor& monitor);
 
 }  // namespace snug

@@ -16,29 +16,30 @@ namespace {
 }
 
 // Faces without a surface; with a dual scheme those without a vertex inside, which support no patch.
-std::vector<bool> bare_faces(const ControlMesh& mesh, const RuledMesh& ruled) {
+std::vector<bool> faces_without_surface(const ControlMesh& mesh, const RuledMesh& ruled) {
   const Topology& topology = ruled.topology;
-  std::vector<bool> bare(mesh.face_count(), false);
+  std::vector<bool> without_surface(mesh.face_count(), false);
   if (!rules_of(ruled.options.scheme).primal) {
-    for (std::size_t f = 0; f < bare.size(); ++f) {
+    for (std::size_t f = 0; f < without_surface.size(); ++f) {
       const auto face = topology.face(FaceId(f));
-      bare[f] = std::all_of(face.begin(), face.end(), [&](VertexId v) { return topology.on_boundary(v); });
+      without_surface[f] =
+          std::all_of(face.begin(), face.end(), [&](VertexId v) { return topology.on_boundary(v); });
     }
-    return bare;
+    return without_surface;
   }
-  for (const FaceId f : mesh.tags.holes) bare[f.index()] = true;
+  for (const FaceId f : mesh.tags.holes) without_surface[f.index()] = true;
   if (ruled.options.boundary == BoundaryRule::none) {
-    for (std::size_t f = 0; f < bare.size(); ++f) {
-      bare[f] = bare[f] || loses_surface(topology, ruled.sharpness, FaceId(f));
+    for (std::size_t f = 0; f < without_surface.size(); ++f) {
+      without_surface[f] = without_surface[f] || loses_surface(topology, ruled.sharpness, FaceId(f));
     }
   }
-  return bare;
+  return without_surface;
 }
 
 // With Doo-Sabin, all modes of a face show at its corners inside and beside these: there are enough of them.
-void require_small_faces(const Topology& topology, const std::vector<bool>& bare) {
-  for (std::size_t f = 0; f < bare.size(); ++f) {
-    if (bare[f]) continue;
+void require_small_faces(const Topology& topology, const std::vector<bool>& without_surface) {
+  for (std::size_t f = 0; f < without_surface.size(); ++f) {
+    if (without_surface[f]) continue;
     const auto face = topology.face(FaceId(f));
     const std::size_t n = face.size();
     std::size_t shown = 0;
@@ -52,11 +53,11 @@ void require_small_faces(const Topology& topology, const std::vector<bool>& bare
   }
 }
 
-void require_manifold_with_surfaces(const Topology& topology, const std::vector<bool>& bare) {
+void require_manifold_with_surfaces(const Topology& topology, const std::vector<bool>& without_surface) {
   if (!topology.is_manifold()) refuse("it is not manifold; 'snug info' names where, mend it");
-  const auto first = std::find(bare.begin(), bare.end(), true);
-  if (first != bare.end()) {
-    refuse("face " + std::to_string(first - bare.begin()) +
+  const auto first = std::find(without_surface.begin(), without_surface.end(), true);
+  if (first != without_surface.end()) {
+    refuse("face " + std::to_string(first - without_surface.begin()) +
            " has no surface; remove the tag of the hole, or take another boundary rule");
   }
 }
@@ -81,9 +82,9 @@ struct Colouring {
   VertexId unknown;
 };
 
-// Colours the component of `first`, along edges of faces that are not bare, by 1 and -1 in `signs`, where 0 is
+// Colours the component of `first`, along edges of faces with a surface, by 1 and -1 in `signs`, where 0 is
 // not yet met.
-Colouring colour(const RuledMesh& ruled, const std::vector<bool>& bare, VertexId first,
+Colouring colour(const RuledMesh& ruled, const std::vector<bool>& without_surface, VertexId first,
                  std::vector<std::int8_t>& signs) {
   const Topology& topology = ruled.topology;
   Colouring result;
@@ -95,7 +96,7 @@ Colouring colour(const RuledMesh& ruled, const std::vector<bool>& bare, VertexId
     const std::int8_t sign = signs[v.index()];
     // Faces are cycles: edges that leave vertices lead everywhere.
     walk_fans(topology, v, [&](HalfEdge h) {
-      if (bare[topology.face_of(h).index()]) return;
+      if (without_surface[topology.face_of(h).index()]) return;
       const VertexId end = topology.to(h);
       std::int8_t& other = signs[end.index()];
       if (other == 0) {
@@ -113,24 +114,25 @@ Colouring colour(const RuledMesh& ruled, const std::vector<bool>& bare, VertexId
   return result;
 }
 
-// Vertices of faces that are not bare.
-std::vector<bool> used_vertices(const Topology& topology, const std::vector<bool>& bare) {
+// Vertices of faces with a surface.
+std::vector<bool> used_vertices(const Topology& topology, const std::vector<bool>& without_surface) {
   std::vector<bool> used(topology.vertex_count(), false);
-  for (std::size_t f = 0; f < bare.size(); ++f) {
-    if (bare[f]) continue;
+  for (std::size_t f = 0; f < without_surface.size(); ++f) {
+    if (without_surface[f]) continue;
     for (const VertexId v : topology.face(FaceId(f))) used[v.index()] = true;
   }
   return used;
 }
 
 // Adds a vector for each component whose alternating values vanish.
-void add_alternating(const RuledMesh& ruled, const std::vector<bool>& bare, const std::vector<bool>& used,
-                     const WorkMonitor& monitor, std::vector<KernelVector>& out) {
+void add_alternating(const RuledMesh& ruled, const std::vector<bool>& without_surface,
+                     const std::vector<bool>& used, const WorkMonitor& monitor,
+                     std::vector<KernelVector>& out) {
   std::vector<std::int8_t> signs(used.size(), 0);
   for (std::size_t v = 0; v < used.size(); ++v) {
     monitor.checkpoint();
     if (signs[v] != 0 || !used[v]) continue;
-    Colouring found = colour(ruled, bare, VertexId(v), signs);
+    Colouring found = colour(ruled, without_surface, VertexId(v), signs);
     if (!found.two_colours || !found.vanishes) continue;
     if (found.unknown.valid()) {
       refuse("vertex " + std::to_string(found.unknown.index()) +
@@ -151,17 +153,18 @@ MeshKernel mesh_kernel(const ControlMesh& mesh, const SchemeOptions& options, co
   const Topology topology = require_surface(mesh, how);
   const Sharpness sharpness = rules.primal ? sharpness_of(mesh, topology) : Sharpness{};
   const RuledMesh ruled{topology, how, sharpness};
-  const std::vector<bool> bare = bare_faces(mesh, ruled), used = used_vertices(topology, bare);
+  const std::vector<bool> without_surface = faces_without_surface(mesh, ruled),
+                          used = used_vertices(topology, without_surface);
 
   MeshKernel kernel;
   for (std::size_t v = 0; v < used.size(); ++v) {
     if (!used[v]) kernel.vectors.push_back({{VertexId(v)}, {1}});
   }
   if (rules.local) return kernel;
-  if (rules.primal) require_manifold_with_surfaces(topology, bare);
-  if (how.scheme == Scheme::doo_sabin) require_small_faces(topology, bare);
+  if (rules.primal) require_manifold_with_surfaces(topology, without_surface);
+  if (how.scheme == Scheme::doo_sabin) require_small_faces(topology, without_surface);
   if (how.scheme == Scheme::catmark || how.scheme == Scheme::midedge) {
-    add_alternating(ruled, bare, used, monitor, kernel.vectors);
+    add_alternating(ruled, without_surface, used, monitor, kernel.vectors);
   }
   std::sort(kernel.vectors.begin(), kernel.vectors.end(), [](const KernelVector& a, const KernelVector& b) {
     return a.vertices.front() < b.vertices.front();

@@ -33,22 +33,22 @@ void require_size(std::size_t count) {
 }
 
 // Owners without a surface: faces, of dual schemes vertices.
-std::vector<bool> bare_owners(const ControlMesh& mesh, const RuledMesh& ruled) {
+std::vector<bool> owners_without_surface(const ControlMesh& mesh, const RuledMesh& ruled) {
   const Topology& topology = ruled.topology;
   if (!rules_of(ruled.options.scheme).primal) {
-    std::vector<bool> bare(topology.vertex_count());
-    for (std::size_t v = 0; v < bare.size(); ++v) {
-      bare[v] = topology.isolated(VertexId(v)) || topology.on_boundary(VertexId(v));
+    std::vector<bool> without_surface(topology.vertex_count());
+    for (std::size_t v = 0; v < without_surface.size(); ++v) {
+      without_surface[v] = topology.isolated(VertexId(v)) || topology.on_boundary(VertexId(v));
     }
-    return bare;
+    return without_surface;
   }
-  std::vector<bool> bare(topology.face_count());
-  for (std::size_t f = 0; f < bare.size(); ++f) {
-    bare[f] =
+  std::vector<bool> without_surface(topology.face_count());
+  for (std::size_t f = 0; f < without_surface.size(); ++f) {
+    without_surface[f] =
         ruled.options.boundary == BoundaryRule::none && loses_surface(topology, ruled.sharpness, FaceId(f));
   }
-  for (const FaceId f : mesh.tags.holes) bare[f.index()] = true;
-  return bare;
+  for (const FaceId f : mesh.tags.holes) without_surface[f.index()] = true;
+  return without_surface;
 }
 
 std::uint32_t folded(std::uint64_t index, std::uint32_t order) {
@@ -289,9 +289,9 @@ Residues::Vectors numbers_of(const ModularKernel& kernel) {
 }
 
 // The kernel of a small part, of as many primes as it takes.
-class Search {
+class KernelSearch {
  public:
-  Search(const ExactSurface& surface, std::size_t columns, const WorkMonitor& monitor)
+  KernelSearch(const ExactSurface& surface, std::size_t columns, const WorkMonitor& monitor)
       : surface_(surface),
         columns_(columns),
         monitor_(monitor),
@@ -376,7 +376,7 @@ std::optional<std::vector<ExactKernelVector>> lifted(const ExactSurface& surface
       continue;
     }
     const ExactSurface part = part_of(surface, block.columns);
-    Search search(part, block.columns.size(), monitor);
+    KernelSearch search(part, block.columns.size(), monitor);
     Shown found = search.run();
     if (found.size() < block.vectors.size()) return {};
     // All of them or none: only vectors of one prime are independent by their form.
@@ -436,7 +436,7 @@ MeshRank mesh_rank(const ControlMesh& mesh, const SchemeOptions& options, const 
         "the rank of the mesh is not computed: the least common multiple of its valences exceeds a million; "
         "give a part of it");
   }
-  const ExactSurface surface = exact_surface(ruled, bare_owners(mesh, ruled), order, monitor);
+  const ExactSurface surface = exact_surface(ruled, owners_without_surface(mesh, ruled), order, monitor);
   return rank_of(surface, mesh.vertex_count(), monitor);
 }
 

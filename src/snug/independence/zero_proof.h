@@ -12,7 +12,7 @@ namespace snug {
 
 /// Shows that control values make the function 0, by exact arithmetic.
 ///
-/// For each kind it keeps a space of control values. What is asked for joins the space of its kind, unless it lies there; then
+/// For each kind it keeps a space of control values. A requested value joins the space of its kind, unless it lies there; then
 /// so do its images in the children. Once nothing is left to ask, all spaces together are closed under splitting, and 0 on
 /// regular patches: so all functions are 0 on regular pieces of each depth, which are dense.
 class ZeroProof {

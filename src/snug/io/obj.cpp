@@ -83,9 +83,9 @@ class ObjParser {
     mesh_.points.push_back(point);
   }
 
-  void read_element(const char* sort, const char* plural, std::vector<VertexId>& vertices,
+  void read_element(const char* kind, const char* plural, std::vector<VertexId>& vertices,
                     std::vector<std::uint32_t>& offsets) {
-    sort_ = sort;
+    kind_ = kind;
     number_ = offsets.size() - 1;
     expect_room(cursor_, number_, plural);
     std::string_view corner = cursor_.word();
@@ -132,7 +132,7 @@ class ObjParser {
   }
 
   /// The current element, for messages: "face 3".
-  [[nodiscard]] std::string element() const { return sort_ + (' ' + std::to_string(number_)); }
+  [[nodiscard]] std::string element() const { return kind_ + (' ' + std::to_string(number_)); }
 
   [[noreturn]] void fail_in_element(const std::string& message) const {
     cursor_.fail(element() + ": " + message);
@@ -142,7 +142,7 @@ class ObjParser {
   ObjTagReader tags_;
   ControlMesh mesh_;
   Reference largest_;
-  const char* sort_ = "face";
+  const char* kind_ = "face";
   std::size_t number_ = 0;
 };
 

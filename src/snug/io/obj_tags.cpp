@@ -162,7 +162,7 @@ void ObjTagReader::ignore(const TextCursor& at, std::string_view name) {
 
 std::size_t ObjTagReader::reference(const TextCursor& at, std::uint64_t id, Largest& largest) {
   if (id >= max_elements) {
-    at.fail(std::string("tag: ") + largest.sort + ' ' + std::to_string(id) + " does not exist");
+    at.fail(std::string("tag: ") + largest.kind + ' ' + std::to_string(id) + " does not exist");
   }
   if (largest.line == 0 || id > largest.id) {
     largest.id = id;
@@ -174,7 +174,7 @@ std::size_t ObjTagReader::reference(const TextCursor& at, std::uint64_t id, Larg
 MeshTags ObjTagReader::finish(const TextCursor& at, std::size_t vertex_count, std::size_t face_count) {
   const auto check = [&](const Largest& largest, std::size_t count) {
     if (largest.line == 0 || largest.id < count) return;
-    at.fail_at(largest.line, std::string("tag: ") + largest.sort + ' ' + std::to_string(largest.id) +
+    at.fail_at(largest.line, std::string("tag: ") + largest.kind + ' ' + std::to_string(largest.id) +
                                  " does not exist: tags count from 0 to " + std::to_string(count - 1) +
                                  " here");
   };

@@ -24,7 +24,7 @@ namespace snug {
 ///     smoothtriangles      "catmark", "smooth"
 ///     scheme               the name of a scheme of surfaces; this one is snug's own
 ///
-/// Vertices and faces count from 0 here, although `f` counts from 1. Tags may stand before what they name. Of
+/// Vertices and faces count from 0 here, although `f` counts from 1. Tags may precede the elements they name. Of
 /// the last four the last one in the file holds. `facevaryinginterpolateboundary` does not concern the
 /// surface and is ignored; so are hierarchical edits (`vertexedit`, `edgeedit`, `faceedit`) and unknown
 /// names, each name with one note.
@@ -33,7 +33,7 @@ class ObjTagReader {
   /// Requires:  the reader does not outlive `notes`.
   explicit ObjTagReader(const Notes& notes) : notes_(notes) {}
 
-  /// Reads one statement; the cursor stands behind the word `t`.
+  /// Reads one statement; the cursor is after the word `t`.
   ///
   /// Errors:    InputError (unreadable) naming line and value: too few or too many values, ids that are
   ///            negative or no whole numbers, a sharpness that is negative or not finite, an unknown choice.
@@ -47,7 +47,7 @@ class ObjTagReader {
  private:
   /// The largest id of a sort that tags name, and where.
   struct Largest {
-    const char* sort;
+    const char* kind;
     std::uint64_t id = 0;
     std::size_t line = 0;
   };

@@ -183,7 +183,7 @@ class PrimReader {
     return text_.take();
   }
 
-  /// Of the attribute of this name; the suffix is what stands behind a dot.
+  /// Of the attribute of this name; the suffix follows a dot.
   void read_value(std::string_view name, std::string_view suffix, std::size_t line, bool is_array) {
     UsdaPrim& prim = stage_.prims[prim_];
     const auto known = std::ranges::find(usda_attribute_names, name);

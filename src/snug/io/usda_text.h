@@ -13,10 +13,10 @@ struct UsdaToken {
   enum class Kind : std::uint8_t {
     end,
     word,   ///< a number, a name with its namespaces and suffix, a keyword
-    text,   ///< what stands between quotes, escapes as they are
+    text,   ///< between quotes, escapes as they are
     asset,  ///< between @ or @@@
     path,   ///< between < and >
-    mark,   ///< one of ( ) [ ] { } = , ; and whatever else stands alone
+    mark,   ///< one of ( ) [ ] { } = , ; or another lone character
   };
   Kind kind = Kind::end;
   std::string_view text;
@@ -26,7 +26,7 @@ struct UsdaToken {
 };
 
 /// Walks over the tokens of a USD text, and knows the line for messages. Blanks, line ends and comments
-/// (`#`, `//` and `/* */`) stand between tokens.
+/// (`#`, `//` and `/* */`) separate tokens.
 ///
 /// Guarantee: nothing recurses: values may be nested as deeply as the text is long.
 /// Requires:  the text and the name outlive the cursor; the text outlives the tokens.
@@ -43,7 +43,7 @@ class UsdaText {
   /// Takes the next token if it is this one.
   bool take_if(char mark);
   bool take_if(std::string_view word);
-  /// Takes this mark; fails if another token stands there. `where` ends the message: "in the metadata".
+  /// Takes this mark; fails on another token. `where` ends the message: "in the metadata".
   void expect(char mark, const std::string& where);
   /// Of the next token; of the last one at the end.
   [[nodiscard]] std::size_t line() const { return next_line_; }
@@ -56,7 +56,7 @@ class UsdaText {
 
   /// A finite number. `what` begins messages: "points".
   [[nodiscard]] double real(std::string_view what);
-  /// The numbers of a value, whatever tuples they stand in: at most `most`.
+  /// The numbers of a value, in any tuples: at most `most`.
   [[nodiscard]] std::vector<double> reals(std::string_view what, std::size_t most);
   /// Calls item() for the items of a list in square brackets, which takes each.
   template <class Item>

@@ -90,8 +90,8 @@ class Inspector {
   }
 
   void check_tags() {
-    const auto expect = [&](bool good, const char* sort, std::size_t i, const std::string& text) {
-      if (!good) add(DefectKind::bad_tag, sort + (" tag " + number(i)) + text);
+    const auto expect = [&](bool good, const char* kind, std::size_t i, const std::string& text) {
+      if (!good) add(DefectKind::bad_tag, kind + (" tag " + number(i)) + text);
     };
     const auto good_sharpness = [](double s) { return std::isfinite(s) && s >= 0; };
     const auto there = [&](VertexId v) { return v.index() < mesh_.vertex_count(); };

@@ -52,8 +52,8 @@ inline TriangleParameter checked(TriangleParameter at) {
   return on_triangle(at);
 }
 
-// What a piece at the depth limit answers for each of its parameters: a corner, off by the size of its
-// control net, which bounds the distance of any two of its limit points.
+// Answer of a piece at the depth limit for all its parameters: a corner, with the size of its control net as the
+// error, which bounds the distance of any two of its limit points.
 inline LimitPoint stopped_point(const Patch& piece) {
   Box3 box;
   for (const Vector3& p : piece.points) box.add(Point3{} + p);

@@ -138,7 +138,7 @@ KindStep make_step(KindCache& library, const KindKey& key) {
   return step;
 }
 
-bool is_passing(const Neighbourhood& around, const KindKey& key) {
+bool is_transient(const Neighbourhood& around, const KindKey& key) {
   if (key.plain()) return false;
   const auto semi = [](const std::vector<double>& all) {
     return std::any_of(all.begin(), all.end(), is_semi_sharp);
@@ -188,13 +188,13 @@ Kind::Kind(KindCache& library, KindId id, const KindKey& key, const Neighbourhoo
       order_(key, around.topology),
       form_(polynomial_form(key)) {
   control_count_ = around.topology.vertex_count();
-  passing_ = is_passing(around, key);
+  transient_ = is_transient(around, key);
 }
 
 double Kind::outer_weight() const {
   SNUG_EXPECT(!key_.polygon);
   return outer_weight_.get([&] {
-    if (!key_.plain() || crowded()) return 1.0;
+    if (!key_.plain() || high_valence()) return 1.0;
     const std::size_t inner = rules().primal ? rules().corners : 1;
     if (inner == control_count_) return 0.0;
     std::vector<Vector3> values(control_count_, Vector3{1, 0, 0});
@@ -211,7 +211,7 @@ const Stencils& Kind::corner_limits() const {
     for (std::size_t i = 0; i < 3; ++i) {
       const HalfEdge corner = rules().corner_of(around.topology, i);
       if (rules().add_corner_limit(around.ruled(), corner, limits)) continue;
-      if (passing_) {  // the child at the corner shares the work with other patches
+      if (transient_) {  // the child at the corner shares the work with other patches
         const KindChild& child = children()[i];
         add_product(child.kind->corner_limits().row((3 + i - child.first) % 3), child.stencils, {}, limits);
       } else {
@@ -226,13 +226,13 @@ namespace {
 constexpr std::size_t many_faces = 64, many_beside_creases = 16;
 }
 
-bool Kind::crowded() const {
-  if (crowded_beside_creases()) return true;
+bool Kind::high_valence() const {
+  if (high_valence_beside_creases()) return true;
   return !rules_.full_step && std::any_of(key_.corners.begin(), key_.corners.end(),
                                           [](const CornerFan& fan) { return fan.faces() > many_faces; });
 }
 
-bool Kind::crowded_beside_creases() const {
+bool Kind::high_valence_beside_creases() const {
   return std::any_of(key_.corners.begin(), key_.corners.end(), [](const CornerFan& fan) {
     return fan.faces() > many_beside_creases && (!fan.closed || fan.odd);
   });
@@ -279,7 +279,7 @@ const Kind::FarCorner& Kind::far_corner() const {
     FarCorner far;
     rules().add_corner_tangents(around.ruled(), corner, far.tangents);
     if (rules().add_corner_limit(around.ruled(), corner, far.limit)) return far;
-    if (!passing_) {
+    if (!transient_) {
       rules().add_limit_row(around.ruled(), around.topology.from(corner), far.limit);
       return far;
     }

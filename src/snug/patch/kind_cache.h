@@ -50,7 +50,7 @@ struct KindLattice {
   Stencils ghosts;                    ///< points beyond boundaries and creases, from control points
 };
 
-/// What all patches with equal connectivity share. Immutable; parts that cost much are made on first use.
+/// Data that all patches with equal connectivity share. Immutable; expensive parts are made on first use.
 /// Thread-safe.
 class Kind {
  public:
@@ -71,15 +71,15 @@ class Kind {
   /// Is the surface near corner 0, 1 or 2 as on a regular lattice, at least a few levels down?
   [[nodiscard]] bool regular_corner(std::size_t i) const { return rules_.regular(key_.corners[i]); }
   /// Not for ever: sharpness decays, or polygons that are no quads lie around it.
-  [[nodiscard]] bool passing() const { return passing_; }
+  [[nodiscard]] bool transient() const { return transient_; }
   /// Is a corner one of more faces than 64, or than 16 between creases or boundaries? The matrix of points that bound
   /// one of its patches would have as many rows, and more, as the patch has control points: to split the patch takes
   /// fewer operations, but for Doo-Sabin, whose step is such a matrix itself.
-  [[nodiscard]] bool crowded() const;
+  [[nodiscard]] bool high_valence() const;
   /// Is one of them between creases or boundaries, so that each patch at it is of a kind of its own?
-  [[nodiscard]] bool crowded_beside_creases() const;
-  /// Do many patches share such kinds, so that rows are kept for them? Others are split first.
-  [[nodiscard]] bool shared() const { return !passing() && !crowded(); }
+  [[nodiscard]] bool high_valence_beside_creases() const;
+  /// Do many patches share such kinds, so that rows are cached for them? Others are split first.
+  [[nodiscard]] bool cacheable() const { return !transient() && !high_valence(); }
 
   /// Is the patch polynomial, or made of two polynomials (Midedge)? Only then it has a form.
   /// Guarantee: entries of its rows are small fractions, each rounded once.
@@ -121,7 +121,7 @@ class Kind {
   KindId id_;
   KindKey key_;
   ControlOrder order_;
-  bool passing_ = false;
+  bool transient_ = false;
   std::size_t control_count_ = 0;
   std::optional<BezierRows> form_;
   Lazy<double> outer_weight_;

@@ -112,7 +112,7 @@ std::uint32_t LimitEvaluator::make_child(std::uint32_t piece, unsigned child) {
 }
 
 // Whether the parameter is an extraordinary corner of the piece, for all practical ends.
-bool LimitEvaluator::settle_at_corner(Place& place) const {
+bool LimitEvaluator::stop_at_corner(Place& place) const {
   const Piece& piece = pieces_[place.piece];
   std::size_t corner = triangular_ ? triangle_corner(place.u, place.v) : quad_corner(place.u, place.v);
   const bool stop = piece.level >= PiecePath::max_level;
@@ -170,7 +170,7 @@ void LimitEvaluator::locate(Place& place) {
   }
   place.first = pieces_[0].first;
   place.lattice = lattice_;
-  while (place.lattice == nullptr && !settle_at_corner(place)) descend(place);
+  while (place.lattice == nullptr && !stop_at_corner(place)) descend(place);
 }
 
 LimitPoint LimitEvaluator::corner_point(const Place& place) const {

@@ -61,7 +61,7 @@ class LimitEvaluator {
   struct Place;
 
   void locate(Place& place);
-  [[nodiscard]] bool settle_at_corner(Place& place) const;
+  [[nodiscard]] bool stop_at_corner(Place& place) const;
   void descend(Place& place);
   void refine(Piece& piece);
   [[nodiscard]] std::uint32_t make_child(std::uint32_t piece, unsigned child);

@@ -49,7 +49,7 @@ class SurfacePieces {
       const TableTriangle triangle = table_triangle(surface_.library().table(*patch.kind), patch);
       return snug::enclose(corners, patch.origin, offset_triangle(triangle), triangle.interval, back_, out);
     }
-    hull_points(surface_.library(), patch, points_);
+    bounding_points(surface_.library(), patch, points_);
     const OffsetTriangle offset = offset_triangle(surface_.library(), points_, corners);
     return snug::enclose(corners, patch.origin, offset, interval_simplex(points_, corners), back_, out);
   }
@@ -60,7 +60,7 @@ class SurfacePieces {
   const LimitSurface& surface_;
   BoundMethod method_;
   PowerOfTwo back_;
-  HullPoints points_;
+  BoundingPoints points_;
 };
 
 class CurvePieces {
@@ -77,7 +77,7 @@ class CurvePieces {
     out.edge = EdgeId(i);
     const std::array<LimitPoint, 2> limits = limit_ends(piece);
     const std::array<Vector3, 2> ends{limits[0].relative, limits[1].relative};
-    hull_points(piece, points_);
+    bounding_points(piece, points_);
     return snug::enclose(ends, piece.origin, offset_segment(points_, ends), interval_simplex(points_, ends),
                          back_, out);
   }
@@ -86,10 +86,10 @@ class CurvePieces {
  private:
   const CurveSet& curves_;
   PowerOfTwo back_;
-  HullPoints points_;
+  BoundingPoints points_;
 };
 
-// What became of one patch, or one edge.
+// Result for one patch, or one edge.
 template <class Pieces>
 struct Bounded {
   std::vector<typename Pieces::Enclosure> enclosures;
@@ -153,15 +153,15 @@ BoundSummary bound_all(const Pieces& wholes, std::size_t all, const BoundOptions
   require_value(options.level <= PiecePath::max_level, "bound: the level is too high; give at most 60");
   // Patches or edges worked on at once: as many as their pieces are few, so that memory stays small and
   // threads are busy.
-  constexpr std::size_t most_wholes = 1024, most_pieces = 1 << 16;
+  constexpr std::size_t max_wholes = 1024, max_pieces = 1 << 16;
   std::size_t chunk = 1;
   BoundSummary summary;
   std::vector<Bounded<Pieces>> results;
   for (std::size_t begin = 0, count = 0; begin < all; begin += count) {
     count = std::min(chunk, all - begin);
     // One that needs more than its share of the memory is done again, alone.
-    const std::uint64_t left = std::min<std::uint64_t>(
-        options.budget - summary.splits, std::max<std::uint64_t>(64, most_pieces / (3 * count)));
+    const std::uint64_t left = std::min<std::uint64_t>(options.budget - summary.splits,
+                                                       std::max<std::uint64_t>(64, max_pieces / (3 * count)));
     results.assign(count, {});
     parallel_for_with(
         count, options.threads, [&] { return Bounder<Pieces>(wholes, options, monitor); },
@@ -183,7 +183,7 @@ BoundSummary bound_all(const Pieces& wholes, std::size_t all, const BoundOptions
       for (const auto& enclosure : result.enclosures) sink(enclosure);
       pieces += result.enclosures.size();
     }
-    chunk = std::clamp<std::size_t>(most_pieces * count / (pieces + 1), 1, std::min(4 * count, most_wholes));
+    chunk = std::clamp<std::size_t>(max_pieces * count / (pieces + 1), 1, std::min(4 * count, max_wholes));
     monitor.report(static_cast<double>(begin + count) / static_cast<double>(all));
   }
   return summary;

@@ -11,7 +11,7 @@
 
 namespace snug {
 
-/// What encloses one piece, in mesh units.
+/// Enclosures of one piece, in mesh units.
 template <std::size_t N>
 struct Enclosure {
   PiecePath path;

@@ -22,9 +22,9 @@ namespace {
 // Bounds of gaps err by some hundred roundings of coordinates.
 constexpr double noise = 0x1p-45;
 
-// A point that is asked about, in units of the surface.
-struct Asked {
-  Asked(const LimitSurface& surface, const Point3& point, const char* query) {
+// A query point in units of the surface.
+struct QueryPoint {
+  QueryPoint(const LimitSurface& surface, const Point3& point, const char* query) {
     if (!is_finite(point)) {
       throw InputError(InputProblem::value,
                        std::string(query) + ": a coordinate of the point is not finite; give three numbers");
@@ -42,10 +42,10 @@ struct Asked {
   bool tame;
 };
 
-class Query {
+class ClosestSearch {
  public:
-  Query(SurfaceWorkspace& workspace, const Asked& to, const ClosestOptions& options,
-        const WorkMonitor& monitor)
+  ClosestSearch(SurfaceWorkspace& workspace, const QueryPoint& to, const ClosestOptions& options,
+                const WorkMonitor& monitor)
       : workspace_(workspace),
         surface_(workspace.model().surface()),
         to_(to.at),
@@ -75,12 +75,12 @@ class Query {
   bool visit(Node node, double gap, NearestFirst<NodeGap>& open) {
     if (node.bounded()) {
       monitor_.checkpoint();
-      const PieceRecord& record = SurfaceWorkspace::record(node);
+      const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
       gap = std::max(gap, look_at(node, {record.base(node.boxes->origin()), record.radius()}));
       const bool last = !SurfaceWorkspace::can_open(node);
       if (last && gap < bounds_.prune_distance()) {
         // Single precision is what is left of it.
-        thread_local HullPoints scratch;
+        thread_local BoundingPoints scratch;
         gap = std::max(gap, look_at(node, workspace_.piece(node, scratch).offset));
       }
       if (gap >= bounds_.prune_distance() || last) {
@@ -132,7 +132,7 @@ class Query {
   [[nodiscard]] double plane_gap(const Node& node, const Vector3& direction) {
     const Vector3 w = normalized(direction);
     if (w == Vector3{}) return 0;
-    const PieceRecord& record = SurfaceWorkspace::record(node);
+    const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
     const Vector3 from = node.boxes->origin() - to_;
     const double gap = dot(w, from) - record.extent(-w) - enlarged(record.error());
     // |w| is 1 up to 5 roundings.
@@ -165,16 +165,16 @@ class Query {
 ClosestPoint closest_point(SurfaceWorkspace& workspace, const Point3& to, const ClosestOptions& options,
                            const WorkMonitor& monitor) {
   const LimitSurface& surface = workspace.model().surface();
-  const Asked asked(surface, to, "closest");
+  const QueryPoint asked(surface, to, "closest");
   const ClosestOptions wanted = with_precision(options, surface.size());
   require_value(asked.tame,
                 "closest: a point is more than 10^12 sizes of the surface away; give closer points");
-  return Query(workspace, asked, wanted, monitor).run();
+  return ClosestSearch(workspace, asked, wanted, monitor).run();
 }
 
 std::optional<bool> contains(SurfaceWorkspace& workspace, const Point3& point, const WorkMonitor& monitor) {
   const SurfaceBvh& model = workspace.model();
-  const Asked asked(model.surface(), point, "contains");
+  const QueryPoint asked(model.surface(), point, "contains");
   static_cast<void>(model.solid());
   workspace.begin();
   if (!asked.tame) return false;

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include <snug/geometry/rounding.h>
-#include <snug/query/containment.h>
-#include <snug/query/pairs.h>
+#include <snug/query/nesting.h>
+#include <snug/query/pair_queries.h>
 #include <snug/search/crossing.h>
 #include <snug/search/pair_frames.h>
 #include <snug/search/precision.h>
@@ -24,14 +24,15 @@ constexpr auto verdict_names = std::to_array<Named<Verdict>>({{"separated", Verd
 // Attempts to prove that surfaces intersect: of surfaces that nearly lie in each other every pair looks like
 // a crossing.
 constexpr int max_attempts = 2000, max_attempts_within = 64;
-// Where nearness is all that is asked for: pairs of pieces that wait for others before one of them is split, and Newton
+// Where only nearness matters: pairs of pieces that wait for others before one of them is split, and Newton
 // steps towards a common point of two pieces, on their quadratics and on the limit surfaces.
-constexpr std::size_t most_waiting = 16;
+constexpr std::size_t max_waiting = 16;
 constexpr int quadratic_steps = 2, limit_steps = 2;
 
-class Query {
+class CollideSearch {
  public:
-  Query(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options, const WorkMonitor& monitor)
+  CollideSearch(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& options,
+                const WorkMonitor& monitor)
       : frames_(a, b), options_(options), monitor_(monitor) {
     margin_ = frames_.length_up(options.margin);
     reach_ = frames_.length_down((options.margin + *options.tolerance) * (1 - unit_roundoff));
@@ -77,7 +78,7 @@ class Query {
     double apart;
   };
 
-  // What is to be opened next: a pair of pieces, or one that has waited in its place; nothing if it is done with, or waits.
+  // The pair to open next: this one, or one that has waited in its place; nothing if it is done, or waits.
   std::optional<NodePair> after_a_look(const NodePair& pair, std::vector<Waiting>& waiting) {
     monitor_.checkpoint();
     const PiecePair pieces = pieces_.nearest(pair);
@@ -89,7 +90,7 @@ class Query {
     // Others may show at once what a split may show.
     if (proving_) return pair;
     waiting.push_back({pair, length(pieces.between)});
-    if (waiting.size() <= most_waiting) return {};
+    if (waiting.size() <= max_waiting) return {};
     return nearest_of(waiting);
   }
 
@@ -145,7 +146,7 @@ class Query {
     if (worth_proving(pair, pieces.radii[0] + pieces.radii[1])) {
       if (pieces.near.certain_distance == 0) {
         ++attempts_;
-        crossing_ = certainly_cross(frames_, pieces);
+        crossing_ = proves_crossing(frames_, pieces);
       } else if (found_) {
         ++attempts_;
       }
@@ -182,14 +183,14 @@ class Query {
       const Witness witness = exact ? pieces_.witness(*near_) : PiecePairs::approximate_witness(*near_);
       if (witness.distance < best_.distance) best_ = witness;
     }
-    // Pairs that were not looked at, or not resolved, may be as near as 0.
+    // Pairs that were not visited, or not resolved, may be as near as 0.
     const bool whole = answer.verdict == Verdict::separated;
     answer.distance.lower = whole ? unscaled_down(std::min(lower_, best_.distance), back) : 0.0;
     if (best_.distance < INFINITY) {
-      // What two quadratics tell may be nearer than their limit points as doubles.
+      // Two quadratics may be nearer than their limit points as doubles.
       const double upper = near_ ? std::min(best_.distance, near_->near_distance) : best_.distance;
       answer.distance.upper = require_representable(unscaled_up(upper, back));
-      if (options_.witness != WitnessKind::none) pieces_.tell(best_, answer);
+      if (options_.witness != WitnessKind::none) pieces_.write_to(best_, answer);
     }
     if (crossing_) answer.distance.upper = 0;
     return answer;
@@ -217,7 +218,7 @@ void make_solid(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monit
   const bool separated = answer.verdict == Verdict::separated;
   const Nesting found = separated ? nesting(a, b, monitor) : common_point(a, b, monitor);
   if (found.inner) {
-    found.tell(answer);
+    found.write_to(answer);
     answer.verdict = Verdict::intersecting;
   } else if (!separated && have_inner_point_in_common(a, b, monitor)) {
     answer.verdict = Verdict::intersecting;
@@ -236,7 +237,7 @@ Collision ask(const PlacedBvh& a, const PlacedBvh& b, const CollideOptions& opti
     answer.distance.lower = gap;
     return answer;
   }
-  answer = Query(a, b, options, monitor).run();
+  answer = CollideSearch(a, b, options, monitor).run();
   const bool proved = answer.verdict == Verdict::intersecting ||
                       (answer.verdict == Verdict::within && !options.prove_contact);
   if (options.solid && !proved) make_solid(a, b, monitor, answer);

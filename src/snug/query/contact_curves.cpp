@@ -20,9 +20,9 @@ constexpr unsigned max_level = 40;
 // Pieces smaller than the precision are split down to this share of it, as long as there are at most so many pairs.
 constexpr double smallest_open = 0x1p-5;
 constexpr std::size_t max_late = 1024;
-// What bends less than this share of its size is flat.
-constexpr double least_bend = 0x1p-12;
-// Upper bound of what a parameter of a root patch is off where it is computed from that of a piece.
+// Pieces that bend less than this share of their size count as flat.
+constexpr double min_bend = 0x1p-12;
+// Error of a parameter of a root patch that is computed from that of a piece.
 constexpr double path_error = 0x1p-48;
 
 // ---- Pieces against each other ----
@@ -32,11 +32,11 @@ struct PlacedPatch {
   PlacedPiece placed;
 };
 
-// What became of two pieces; `late`: they are as small as was asked, but smaller ones may be told apart.
+// Result for two pieces; `late`: they are as small as was asked, but smaller ones may be separable.
 struct Outcome {
-  enum class State : std::uint8_t { apart, arcs, open, split, late } state = State::apart;
+  enum class State : std::uint8_t { apart, arcs, unresolved, split, late } state = State::apart;
   std::vector<CutArc> arcs;
-  std::vector<Box3> specks;
+  std::vector<Box3> end_boxes;
   Box3 box;
   bool reached = true;
 };
@@ -63,12 +63,12 @@ class Cutter {
                                     [&](const CutArc& arc) { return arc.deviation <= precision_; });
       outcome.state = outcome.reached || last ? Outcome::State::arcs : Outcome::State::split;
       outcome.arcs = std::move(found.arcs);
-      outcome.specks = std::move(found.specks);
+      outcome.end_boxes = std::move(found.end_boxes);
       return outcome;
     }
     const double size = std::max(longest_side(a.placed.box()), longest_side(b.placed.box()));
     outcome.reached = size <= precision_;
-    outcome.state = last || size <= smallest_open * precision_ ? Outcome::State::open
+    outcome.state = last || size <= smallest_open * precision_ ? Outcome::State::unresolved
                     : outcome.reached                          ? Outcome::State::late
                                                                : Outcome::State::split;
     return outcome;
@@ -88,7 +88,7 @@ class Cutter {
       can[s] = both[s]->patch->path.level() < max_level;
       size[s] = longest_side(both[s]->placed.box());
       fine[s] = size[s] <= limit;
-      bend[s] = std::clamp(both[s]->placed.slope(), least_bend, 1.0) * size[s];
+      bend[s] = std::clamp(both[s]->placed.slope(), min_bend, 1.0) * size[s];
     }
     for (std::size_t s = 0; s < 2; ++s) {
       const std::size_t other = 1 - s;
@@ -123,13 +123,13 @@ class Cutter {
 
 // A line along which pieces meet: a side of a root patch, or one inside of it. Parts of one line have equal names.
 struct Line {
-  std::uint32_t sort =
+  std::uint32_t kind =
       0;  // 0 to 2: inside of a patch, by which parameter is constant; 3, 4: inside an owner, an edge
   std::uint32_t number = 0;
   double constant = 0;
   double from = 0, to = 0;  // where the part begins and ends
 
-  [[nodiscard]] auto name() const { return std::tie(sort, number, constant); }
+  [[nodiscard]] auto name() const { return std::tie(kind, number, constant); }
 };
 
 Line line_of(const LimitSurface& surface, PatchId root, const PiecePath& path, std::size_t edge) {
@@ -160,16 +160,17 @@ Line line_of(const LimitSurface& surface, PatchId root, const PiecePath& path, s
 
 // Does the surface certainly end at a line? Only edges of its mesh can be such.
 bool is_border(const LimitSurface& surface, const Line& line) {
-  if (line.sort != 4) return false;
+  if (line.kind != 4) return false;
   const Topology& topology = surface.topology();
   const HalfEdge half = topology.half_of(EdgeId(line.number)), twin = topology.twin(half);
   if (surface.rules().primal && twin == no_half_edge) return true;
-  const auto bare = [&](std::size_t owner) {
+  const auto without_surface = [&](std::size_t owner) {
     const LimitSurface::PatchRange range = surface.patches_of(owner);
     return range.begin == range.end || !surface.has_patch(PatchId(range.begin));
   };
-  if (!surface.rules().primal) return bare(topology.from(half).index()) || bare(topology.to(half).index());
-  return bare(topology.face_of(half).index()) || bare(topology.face_of(twin).index());
+  if (!surface.rules().primal)
+    return without_surface(topology.from(half).index()) || without_surface(topology.to(half).index());
+  return without_surface(topology.face_of(half).index()) || without_surface(topology.face_of(twin).index());
 }
 
 // A parameter that a piece's kind counts, as the piece does.
@@ -178,7 +179,7 @@ TriangleParameter turned(const Patch& patch, TriangleParameter p) {
   return {weights[patch.to_kind(1)], weights[patch.to_kind(2)]};
 }
 
-// What is known of an end: a point of a line of one surface and of a root patch of the other.
+// An end: a point of a line of one surface and of a root patch of the other.
 struct PlacedEnd {
   std::size_t side = 0;  // that the line is of
   Line line;
@@ -279,15 +280,15 @@ CutSurfaces cut_surfaces(const std::array<const LimitSurface*, 2>& surfaces,
     Outcome& outcome = item.outcome;
     if (outcome.state == Outcome::State::late) late.push_back(std::move(item));
     if (outcome.state == Outcome::State::split) rest.push_back(std::move(item.pieces));
-    if (outcome.state == Outcome::State::arcs || outcome.state == Outcome::State::open) {
+    if (outcome.state == Outcome::State::arcs || outcome.state == Outcome::State::unresolved) {
       result.reached = result.reached && outcome.reached;
     }
-    if (outcome.state == Outcome::State::open) {
-      result.open.push_back({outcome.box, item.pieces.roots, item.pieces.contact});
+    if (outcome.state == Outcome::State::unresolved) {
+      result.unresolved.push_back({outcome.box, item.pieces.roots, item.pieces.contact});
     }
     if (outcome.state != Outcome::State::arcs) return;
-    for (const Box3& speck : outcome.specks) {
-      result.open.push_back({speck, item.pieces.roots, item.pieces.contact});
+    for (const Box3& box : outcome.end_boxes) {
+      result.unresolved.push_back({box, item.pieces.roots, item.pieces.contact});
     }
     for (CutArc& arc : outcome.arcs) {
       const auto number = static_cast<std::uint32_t>(2 * result.arcs.size());
@@ -311,7 +312,7 @@ CutSurfaces cut_surfaces(const std::array<const LimitSurface*, 2>& surfaces,
       if (few) {
         rest.push_back(std::move(item.pieces));
       } else {
-        result.open.push_back({item.outcome.box, item.pieces.roots, item.pieces.contact});
+        result.unresolved.push_back({item.outcome.box, item.pieces.roots, item.pieces.contact});
       }
     }
     late.clear();
@@ -320,7 +321,7 @@ CutSurfaces cut_surfaces(const std::array<const LimitSurface*, 2>& surfaces,
     for (const CrossingPieces& p : rest) {
       const PlacedPatch a = cutter.place(0, p.pieces[0]), b = cutter.place(1, p.pieces[1]);
       const Box3 box = common_box(a.placed.box(), b.placed.box());
-      if (!box.empty()) result.open.push_back({box, p.roots, p.contact});
+      if (!box.empty()) result.unresolved.push_back({box, p.roots, p.contact});
     }
     result.reached = result.reached && rest.empty();
   };
@@ -401,9 +402,9 @@ class Chainer {
  private:
   // Joins two ends that lie in the same set of open boxes, if no third one does.
   void link_through_open() {
-    if (cut_.open.empty()) return;
+    if (cut_.unresolved.empty()) return;
     std::vector<Box3> boxes;
-    for (const OpenPieces& open : cut_.open) boxes.push_back(open.box);
+    for (const UnresolvedPieces& open : cut_.unresolved) boxes.push_back(open.box);
     const std::size_t open_count = boxes.size();
     std::vector<std::uint32_t> loose;
     for (std::uint32_t i = 0; i < link_.size(); ++i) {

@@ -19,8 +19,8 @@ struct CrossingPieces {
   std::uint32_t contact;  ///< a number of the caller's that goes with whatever is found
 };
 
-/// The same once more, where it is not known how they cut each other.
-struct OpenPieces {
+/// Two pieces, where it is not known how they cut each other.
+struct UnresolvedPieces {
   Box3 box;  ///< holds what they have in common
   std::array<PatchId, 2> roots;
   std::uint32_t contact;
@@ -44,10 +44,10 @@ struct ChainArc {
   std::array<bool, 2> at_border{};  ///< does an end certainly lie on the border of a surface?
 };
 
-/// What two placed surfaces have in common, in the units of their frames.
+/// Intersection of two placed surfaces, in the units of their frames.
 struct CutSurfaces {
   std::vector<ChainArc> arcs;
-  std::vector<OpenPieces> open;
+  std::vector<UnresolvedPieces> unresolved;
   std::uint64_t compared = 0;  ///< pairs of pieces
   bool reached = true;         ///< false if open pieces are coarser than the precision
 };

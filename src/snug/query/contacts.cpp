@@ -10,7 +10,7 @@
 #include <snug/mesh/disjoint_sets.h>
 #include <snug/query/contact_curves.h>
 #include <snug/query/contacts.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/query/touching_boxes.h>
 #include <snug/search/crossing.h>
 #include <snug/search/pair_frames.h>
@@ -26,7 +26,7 @@ namespace {
 constexpr double largest_share = 0x1p-5, smallest_share = 0x1p-3;
 
 // Two pieces that may be within the tolerance of each other. Lengths are in the query's units.
-struct NearPieces {
+struct ContactPair {
   std::array<PatchId, 2> roots;
   std::array<Box3, 2> boxes;
   Interval distance;
@@ -53,9 +53,10 @@ Box3 widened(Box3 box, double by) {
   return box;
 }
 
-class Query {
+class ContactsSearch {
  public:
-  Query(const PlacedBvh& a, const PlacedBvh& b, const ContactsOptions& options, const WorkMonitor& monitor)
+  ContactsSearch(const PlacedBvh& a, const PlacedBvh& b, const ContactsOptions& options,
+                 const WorkMonitor& monitor)
       : models_{&a.model, &b.model},
         frames_(a, b),
         options_(options),
@@ -67,7 +68,7 @@ class Query {
     walk();
     if (options_.curves) find_curves();
     find_regions();
-    tell_curves();
+    add_curves();
     answer_.stats = stats_;
     answer_.compared = cut_.compared;
     return std::move(answer_);
@@ -94,7 +95,7 @@ class Query {
       const bool none = opening == PairWalk::Opening::none;
       if (pair.bounded() && (none || !walk_.may_open(pair, opening, options_.budget))) {
         const PiecePair pieces = pieces_.nearest(pair);
-        // What cannot be split is as fine as it gets.
+        // Pieces that cannot be split are as fine as they get.
         if (!none || (within_ > 0 && !(pieces.near_distance <= within_))) answer_.reached = false;
         list(pair, pieces);
         continue;
@@ -127,7 +128,7 @@ class Query {
   }
 
   void list(const NodePair& pair, const PiecePair& pieces) {
-    NearPieces item;
+    ContactPair item;
     const double gap = std::max(pieces.gap, pieces_.gap_along(pair.nodes, pieces.between));
     if (gap > tolerance_) return;
     item.within = pieces.near_distance <= within_;
@@ -141,7 +142,7 @@ class Query {
       if (gap <= 0 && options_.curves) item.pieces[s] = std::make_shared<const Patch>(patch);
     }
     if (gap <= 0 && !options_.curves && pieces.near.certain_distance == 0) {
-      item.crossing = certainly_cross(frames_, pieces);
+      item.crossing = proves_crossing(frames_, pieces);
     }
     near_.push_back(std::move(item));
   }
@@ -151,7 +152,7 @@ class Query {
   void find_curves() {
     std::vector<CrossingPieces> crossing;
     for (std::uint32_t i = 0; i < near_.size(); ++i) {
-      NearPieces& item = near_[i];
+      ContactPair& item = near_[i];
       if (item.pieces[0]) crossing.push_back({std::move(item.pieces), item.roots, i});
     }
     cut_ = cut_surfaces(
@@ -168,7 +169,7 @@ class Query {
     for (const CrossingPieces& pair : crossing) met[pair.contact] = true;
     std::vector<bool> left(near_.size());
     for (const ChainArc& arc : cut_.arcs) left[arc.contact] = true;
-    for (const OpenPieces& open : cut_.open) left[open.contact] = true;
+    for (const UnresolvedPieces& open : cut_.unresolved) left[open.contact] = true;
     // With no tolerance, what has no common point is no contact.
     kept_.assign(near_.size(), true);
     for (std::size_t i = 0; i < near_.size(); ++i) kept_[i] = tolerance_ > 0 || left[i] || !met[i];
@@ -187,10 +188,10 @@ class Query {
   void find_regions() {
     if (kept_.empty()) kept_.assign(near_.size(), true);
     std::vector<Box3> boxes;
-    for (const NearPieces& item : near_) boxes.push_back(item.boxes[0]);
+    for (const ContactPair& item : near_) boxes.push_back(item.boxes[0]);
     DisjointSets sets(near_.size());
     for_each_touching(boxes, [&](std::uint32_t i, std::uint32_t k) {
-      const NearPieces &x = near_[i], &y = near_[k];
+      const ContactPair &x = near_[i], &y = near_[k];
       if (!kept_[i] || !kept_[k] || sets.least(i) == sets.least(k)) return;
       if (!touch(x.boxes[1], y.boxes[1])) return;
       if (neighbours(0, x.roots[0], y.roots[0]) && neighbours(1, x.roots[1], y.roots[1])) sets.join(i, k);
@@ -213,8 +214,8 @@ class Query {
     std::uint32_t nearest = items.front(), arc = ChainArc::none;
     double lower = INFINITY, upper = INFINITY;
     for (const std::uint32_t i : items) {
-      const NearPieces& item = near_[i];
-      const Interval distance = told(item);
+      const ContactPair& item = near_[i];
+      const Interval distance = distance_of(item);
       const std::array<std::uint32_t, 2> roots{item.roots[0].value(), item.roots[1].value()};
       const auto [at, added] = contacts.try_emplace(roots);
       PatchContact& contact = at->second;
@@ -228,7 +229,7 @@ class Query {
       region.verdict = better(region.verdict, verdict_of(item));
       lower = std::min(lower, distance.lower);
       upper = std::min(upper, distance.upper);
-      // What is farther than the tolerance from the other piece is in no contact.
+      // Points farther than the tolerance from the other piece are in no contact.
       for (std::size_t s = 0; s < 2; ++s) {
         box.add(common_box(item.boxes[s], widened(item.boxes[1 - s], tolerance_)));
       }
@@ -246,20 +247,20 @@ class Query {
     region.box = unscaled(box, frames_.to_mesh_units());
     region.distance = {lower, upper};
     if (arc != ChainArc::none) {
-      tell_witness(cut_.arcs[arc].roots, cut_.arcs[arc].ends[0].at, region);
+      set_witness(cut_.arcs[arc].roots, cut_.arcs[arc].ends[0].at, region);
     } else {
-      tell_witness(near_[nearest].roots, near_[nearest].at, region);
+      set_witness(near_[nearest].roots, near_[nearest].at, region);
     }
     return region;
   }
 
-  [[nodiscard]] Interval told(const NearPieces& item) const {
+  [[nodiscard]] Interval distance_of(const ContactPair& item) const {
     const PowerOfTwo back = frames_.to_mesh_units();
     if (item.crossing) return {0, 0};
     return {unscaled_down(item.distance.lower, back),
             require_representable(unscaled_up(item.distance.upper, back))};
   }
-  [[nodiscard]] static Verdict verdict_of(const NearPieces& item) {
+  [[nodiscard]] static Verdict verdict_of(const ContactPair& item) {
     return item.crossing ? Verdict::intersecting : item.within ? Verdict::within : Verdict::undecided;
   }
   [[nodiscard]] static Verdict better(Verdict a, Verdict b) {
@@ -269,8 +270,8 @@ class Query {
     return Verdict::undecided;
   }
 
-  void tell_witness(const std::array<PatchId, 2>& roots, const std::array<TriangleParameter, 2>& at,
-                    ContactRegion& region) const {
+  void set_witness(const std::array<PatchId, 2>& roots, const std::array<TriangleParameter, 2>& at,
+                   ContactRegion& region) const {
     const PowerOfTwo back = frames_.to_mesh_units();
     double error = 0;
     for (std::size_t s = 0; s < 2; ++s) {
@@ -284,7 +285,7 @@ class Query {
     region.witness_error = unscaled_up(error, back) + underflow_error;
   }
 
-  void tell_curves() {
+  void add_curves() {
     const PowerOfTwo back = frames_.to_mesh_units();
     for (const Chains::Chain& chain : chains_of(cut_).chains) {
       IntersectionCurve curve;
@@ -319,11 +320,11 @@ class Query {
           curve.points.push_back(point(out));
         }
       }
-      // Two ends that are one point are told as one of them.
+      // Two ends that are one point are reported as one of them.
       curve.error = unscaled_up(enlarged(3 * error), back) + underflow_error;
       answer_.curves.push_back(std::move(curve));
     }
-    for (const OpenPieces& open : cut_.open) {
+    for (const UnresolvedPieces& open : cut_.unresolved) {
       answer_.open.push_back(
           {unscaled(open.box, back),
            {models_[0]->surface().place(open.roots[0]), models_[1]->surface().place(open.roots[1])},
@@ -340,7 +341,7 @@ class Query {
   const WorkMonitor& monitor_;
   double tolerance_, within_;
   double fine_ = 0;
-  std::vector<NearPieces> near_;
+  std::vector<ContactPair> near_;
   std::vector<bool> kept_;
   std::vector<std::uint32_t> region_, arc_in_;
   CutSurfaces cut_;
@@ -363,7 +364,7 @@ Contacts contacts(const PlacedBvh& a, const PlacedBvh& b, const ContactsOptions&
     none.complete = none.reached = true;
     return none;
   }
-  return Query(a, b, wanted, monitor).run();
+  return ContactsSearch(a, b, wanted, monitor).run();
 }
 
 Contacts contacts(const PlacedSurface& a, const PlacedSurface& b, const ContactsOptions& options,

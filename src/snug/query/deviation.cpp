@@ -12,7 +12,7 @@
 
 #include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
-#include <snug/query/one_sided.h>
+#include <snug/query/hausdorff.h>
 #include <snug/search/surface_workspace.h>
 #include <snug/search/winding.h>
 #include <snug/surface/evaluate.h>
@@ -25,7 +25,7 @@ namespace snug {
 namespace {
 
 // In common units: below, roundings would be most of an interval.
-constexpr double least_precision = 0x1p-37;
+constexpr double min_precision = 0x1p-37;
 // Errors of quadratics: at first a share of the size, then smaller by a factor where that is not enough, at
 // last a share of the precision.
 constexpr double first_share = 0x1p-12, next_share = 0x1p-3, last_share = 0x1p-3;
@@ -36,7 +36,7 @@ constexpr std::uint64_t parts_a_piece = 8, pieces_beside = 1u << 17;
 class ComparedSet {
  public:
   virtual ~ComparedSet() = default;
-  // Splits what `which` names until errors are at most `error`; tells of which piece each one is a part. None,
+  // Splits what `which` names until errors are at most `error`; returns the piece that each one is a part of. None,
   // and all as it was, where there would be too many.
   virtual std::vector<std::uint32_t> refine(std::span<const std::uint8_t> which, double error) = 0;
   [[nodiscard]] virtual BoundedPoint point(std::uint32_t piece, TriangleParameter at) const = 0;
@@ -81,14 +81,14 @@ class SurfaceSet final : public ComparedSet {
       : surface_(surface),
         to_common_(scale * surface.scale().inverse()),
         threads_(options.threads),
-        most_(pieces_beside + options.budget / parts_a_piece),
+        max_(pieces_beside + options.budget / parts_a_piece),
         monitor_{.on_progress = {}, .stop = monitor.stop},
         pieces_(quadratic_pieces(surface, own(error), threads_, monitor_)) {
     take();
   }
   std::vector<std::uint32_t> refine(std::span<const std::uint8_t> which, double error) override {
     RefinedPieces parts = refined(surface_, pieces_, which, own(error), threads_, monitor_,
-                                  std::max<std::uint64_t>(most_, pieces_.size()));
+                                  std::max<std::uint64_t>(max_, pieces_.size()));
     full_ = parts.pieces.empty();
     if (full_) return {};
     pieces_ = std::move(parts.pieces);
@@ -129,34 +129,34 @@ class SurfaceSet final : public ComparedSet {
   const LimitSurface& surface_;
   PowerOfTwo to_common_;
   int threads_;
-  std::uint64_t most_;
+  std::uint64_t max_;
   WorkMonitor monitor_;
   std::vector<QuadraticPiece> pieces_;
 };
 
-// One of the questions: how far is a set, or what of it lies on one side, from the other set?
-class Question {
+// Distance of a set, or of its part on one side, from the other set.
+class HausdorffBound {
  public:
-  Question(ComparedSet& from, ComparedSet& to, OneSidedOptions options)
+  HausdorffBound(ComparedSet& from, ComparedSet& to, HausdorffOptions options)
       : from_(from), to_(to), options_(std::move(options)), active_(from.quadratics().size()) {
     for (std::size_t i = 0; i < active_.size(); ++i) active_[i] = static_cast<std::uint32_t>(i);
   }
 
-  void settle(bool last, const WorkMonitor& monitor) {
+  void resolve(bool last, const WorkMonitor& monitor) {
     const QuadraticSet set{from_.quadratics(), [this](std::uint32_t piece, TriangleParameter at) {
                              return from_.point(piece, at);
                            }};
-    unsettled_ = snug::settle(set, active_, to_.tree(options_.threads), options_, last, farthest_, monitor);
+    unresolved_ = snug::resolve(set, active_, to_.tree(options_.threads), options_, last, farthest_, monitor);
     if (!farthest_.at) return;
     keep(farthest_.from, *farthest_.at, farthest_.to);
     farthest_.at.reset();
   }
-  [[nodiscard]] bool settled() const { return unsettled_.empty(); }
+  [[nodiscard]] bool resolved() const { return unresolved_.empty(); }
   [[nodiscard]] bool open() const { return !active_.empty(); }
 
   // Marks the pieces whose errors are in the way.
   void mark(const ComparedSet& of, std::span<std::uint8_t> marks) const {
-    for (const Unsettled& u : unsettled_) {
+    for (const Unresolved& u : unresolved_) {
       if (&of == &from_) {
         marks[u.piece] = 1;
       } else {
@@ -168,13 +168,13 @@ class Question {
   void go_on(std::span<const std::uint32_t> origins) {
     active_.clear();
     if (origins.empty()) {
-      for (const Unsettled& u : unsettled_) active_.push_back(u.piece);
+      for (const Unresolved& u : unresolved_) active_.push_back(u.piece);
       std::sort(active_.begin(), active_.end());
       return;
     }
     std::vector<std::uint32_t> left;
-    left.reserve(unsettled_.size());
-    for (const Unsettled& u : unsettled_) left.push_back(u.piece);
+    left.reserve(unresolved_.size());
+    for (const Unresolved& u : unresolved_) left.push_back(u.piece);
     std::sort(left.begin(), left.end());
     for (std::size_t i = 0; i < origins.size(); ++i) {
       if (std::binary_search(left.begin(), left.end(), origins[i])) {
@@ -212,9 +212,9 @@ class Question {
 
   ComparedSet& from_;
   ComparedSet& to_;
-  OneSidedOptions options_;
+  HausdorffOptions options_;
   std::vector<std::uint32_t> active_;
-  std::vector<Unsettled> unsettled_;
+  std::vector<Unresolved> unresolved_;
   Farthest farthest_;
   bool found_ = false;
   BoundedPoint from_point_;
@@ -236,29 +236,29 @@ SideTest side_test(const SurfaceBvh& model, PowerOfTwo from_common, bool inside)
   };
 }
 
-// What is asked, in common units.
-struct Asked {
-  Asked(const DeviationOptions& options, const LimitSurface& surface, PowerOfTwo of_candidate)
+// Options in common units.
+struct ScaledOptions {
+  ScaledOptions(const DeviationOptions& options, const LimitSurface& surface, PowerOfTwo of_candidate)
       : scale(std::min(surface.scale().exponent(), of_candidate.exponent())),
         size(scale.apply(std::min(surface.size(), std::numeric_limits<double>::max()))) {
     if (options.absolute) {
       require_value(*options.absolute > 0 && std::isfinite(*options.absolute),
                     "deviation: the precision must be finite and greater than 0");
       precision = scale.apply(*options.absolute);
-      if (precision < least_precision) {
+      if (precision < min_precision) {
         throw InputError(InputProblem::value, "deviation: doubles allow no precision below " +
-                                                  shortest(scale.inverse().apply(least_precision)) +
+                                                  shortest(scale.inverse().apply(min_precision)) +
                                                   " for coordinates of this size; ask for that or more");
       }
     } else {
-      precision = std::max(1e-4 * size, least_precision);
+      precision = std::max(1e-4 * size, min_precision);
     }
     if (options.tolerance) {
       require_length(*options.tolerance, "deviation: the tolerance");
       tolerance = scale.apply(*options.tolerance) * (1 - 4 * unit_roundoff);
     }
   }
-  [[nodiscard]] OneSidedOptions options(const DeviationOptions& given) const {
+  [[nodiscard]] HausdorffOptions options(const DeviationOptions& given) const {
     // Less by the roundings of the way back.
     return {.precision = precision * (1 - 0x1p-10),
             .tolerance = tolerance,
@@ -289,57 +289,59 @@ OneSidedDistance farther(const OneSidedDistance& a, const OneSidedDistance& b) {
   return result;
 }
 
-Deviation compare(const SurfaceBvh& model, ComparedSet& surface, ComparedSet& candidate, const Asked& asked,
-                  const DeviationOptions& options, const WorkMonitor& monitor) {
-  std::vector<Question> questions;
-  questions.emplace_back(surface, candidate, asked.options(options));
+Deviation compare(const SurfaceBvh& model, ComparedSet& surface, ComparedSet& candidate,
+                  const ScaledOptions& asked, const DeviationOptions& options, const WorkMonitor& monitor) {
+  std::vector<HausdorffBound> directions;
+  directions.emplace_back(surface, candidate, asked.options(options));
   if (options.solid) {
     const PowerOfTwo from_common = model.surface().scale() * asked.scale.inverse();
     for (const bool inside : {true, false}) {
-      OneSidedOptions one_side = asked.options(options);
+      HausdorffOptions one_side = asked.options(options);
       one_side.make_side_test = [&model, from_common, inside] {
         return side_test(model, from_common, inside);
       };
-      questions.emplace_back(candidate, surface, std::move(one_side));
+      directions.emplace_back(candidate, surface, std::move(one_side));
     }
   } else {
-    questions.emplace_back(candidate, surface, asked.options(options));
+    directions.emplace_back(candidate, surface, asked.options(options));
   }
 
   const WorkMonitor stop_only{.on_progress = {}, .stop = monitor.stop};
   double error = asked.first_error();
   double done = 0;
-  const auto all_settled = [&] {
-    return std::all_of(questions.begin(), questions.end(), [](const Question& q) { return q.settled(); });
+  const auto all_resolved = [&] {
+    return std::all_of(directions.begin(), directions.end(),
+                       [](const HausdorffBound& q) { return q.resolved(); });
   };
   for (;;) {
     const bool last = error <= asked.last_error() || surface.is_full() || candidate.is_full();
-    for (Question& question : questions) {
-      if (!question.open()) continue;
-      question.settle(last, stop_only);
-      done += (1 - done) / static_cast<double>(2 * questions.size());
+    for (HausdorffBound& direction : directions) {
+      if (!direction.open()) continue;
+      direction.resolve(last, stop_only);
+      done += (1 - done) / static_cast<double>(2 * directions.size());
       monitor.report(done);
     }
-    if (last || all_settled()) break;
+    if (last || all_resolved()) break;
     error = std::max(next_share * error, asked.last_error());
     std::array<ComparedSet*, 2> sets{&surface, &candidate};
     std::array<std::vector<std::uint8_t>, 2> marks;
     for (std::size_t i = 0; i < 2; ++i) {
       marks[i].assign(sets[i]->quadratics().size(), 0);
-      for (const Question& question : questions) question.mark(*sets[i], marks[i]);
+      for (const HausdorffBound& direction : directions) direction.mark(*sets[i], marks[i]);
     }
     std::array<std::vector<std::uint32_t>, 2> origins;
     for (std::size_t i = 0; i < 2; ++i) origins[i] = sets[i]->refine(marks[i], error);
-    for (Question& question : questions) question.go_on(origins[&question.from() == &surface ? 0 : 1]);
+    for (HausdorffBound& direction : directions)
+      direction.go_on(origins[&direction.from() == &surface ? 0 : 1]);
   }
 
   const PowerOfTwo back = asked.scale.inverse();
   Deviation result;
-  result.from_surface = questions[0].answer(back);
-  result.from_candidate = questions[1].answer(back);
+  result.from_surface = directions[0].answer(back);
+  result.from_candidate = directions[1].answer(back);
   if (options.solid) {
     result.inside = result.from_candidate;
-    result.outside = questions[2].answer(back);
+    result.outside = directions[2].answer(back);
     result.from_candidate = farther(*result.inside, *result.outside);
   }
   const double precision = unscaled_up(asked.precision, back);
@@ -381,7 +383,7 @@ Deviation deviation(const SurfaceBvh& model, std::span<const Triangle> candidate
   const LimitSurface& surface = model.surface();
   // Zero fits any scale.
   const PowerOfTwo own = largest > 0 ? PowerOfTwo::normalising(largest) : surface.scale();
-  const Asked asked(options, surface, own);
+  const ScaledOptions asked(options, surface, own);
   require_closed_if_solid(model, options);
   SurfaceSet first(surface, asked.scale, asked.first_error(), options, monitor);
   TriangleSet second(candidate, asked.scale);
@@ -390,7 +392,7 @@ Deviation deviation(const SurfaceBvh& model, std::span<const Triangle> candidate
 
 Deviation deviation(const SurfaceBvh& model, const SurfaceBvh& candidate, const DeviationOptions& options,
                     const WorkMonitor& monitor) {
-  const Asked asked(options, model.surface(), candidate.surface().scale());
+  const ScaledOptions asked(options, model.surface(), candidate.surface().scale());
   require_closed_if_solid(model, options);
   SurfaceSet first(model.surface(), asked.scale, asked.first_error(), options, monitor);
   SurfaceSet second(candidate.surface(), asked.scale, asked.first_error(), options, monitor);

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include <snug/geometry/rounding.h>
-#include <snug/query/containment.h>
-#include <snug/query/pairs.h>
+#include <snug/query/nesting.h>
+#include <snug/query/pair_queries.h>
 #include <snug/search/crossing.h>
 #include <snug/search/pair_frames.h>
 #include <snug/search/precision.h>
@@ -21,16 +21,17 @@ constexpr std::size_t beam = 4;
 // Pieces beyond a plane that are searched instead of whole surfaces.
 constexpr std::size_t max_beyond = 32;
 // Limit points are evaluated where they may be nearer by so much of the precision.
-constexpr double least_gain = 0.125;
+constexpr double min_gain = 0.125;
 // Bounds of gaps err by some hundred roundings of what is about 4 large.
 constexpr double noise = 0x1p-43;
 
 bool nearer(const NodePair& x, const NodePair& y) { return x.gap < y.gap; }
 bool farther(const NodePair& x, const NodePair& y) { return x.gap > y.gap; }
 
-class Query {
+class DistanceSearch {
  public:
-  Query(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options, const WorkMonitor& monitor)
+  DistanceSearch(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions& options,
+                 const WorkMonitor& monitor)
       : frames_(a, b),
         options_(options),
         monitor_(monitor),
@@ -55,7 +56,7 @@ class Query {
         break;
       }
     }
-    // What was not looked at, since the bounds are near enough or the budget has ended.
+    // Pairs not visited, since the bounds are near enough or the budget has ended.
     for (const NodePair& pair : stack) bounds_.prune(std::max(static_cast<double>(pair.gap), 0.0));
     return result();
   }
@@ -142,7 +143,7 @@ class Query {
   void improve(const NodePair& pair, PiecePair pieces) {
     if (length(pieces.between) < bounds_.upper() + pieces.error) {
       pieces_.approach(pieces);
-      const double gain = bounds_.upper() == INFINITY ? 0 : least_gain * bounds_.precision();
+      const double gain = bounds_.upper() == INFINITY ? 0 : min_gain * bounds_.precision();
       if (length(pieces.between) < bounds_.upper() - gain) take(pieces_.witness(pieces));
     }
     try_crossing(pair, pieces);
@@ -160,7 +161,7 @@ class Query {
     const bool flat = radii <= static_cast<double>(std::min(walk_.size(pair, 0), walk_.size(pair, 1))) / 16;
     if (pieces.near.certain_distance == 0 && flat && attempts_ < max_attempts) {
       ++attempts_;
-      if (certainly_cross(frames_, pieces)) bounds_.reduce_upper(0);
+      if (proves_crossing(frames_, pieces)) bounds_.reduce_upper(0);
     }
   }
 
@@ -171,7 +172,7 @@ class Query {
     answer.distance = {unscaled_down(bounds_.lower(), back),
                        require_representable(unscaled_up(bounds_.upper(), back))};
     answer.reached = near_enough(answer.distance, options_);
-    pieces_.tell(witness_, answer);
+    pieces_.write_to(witness_, answer);
     return answer;
   }
 
@@ -192,11 +193,11 @@ Distance distance(const PlacedBvh& a, const PlacedBvh& b, const DistanceOptions&
                   const WorkMonitor& monitor) {
   const DistanceOptions wanted = with_precision(options, a.model.surface().size(), b.model.surface().size());
   if (options.solid) require_solids(a, b);
-  Distance answer = Query(a, b, wanted, monitor).run();
+  Distance answer = DistanceSearch(a, b, wanted, monitor).run();
   if (!options.solid || answer.distance.upper == 0) return answer;
   const Nesting found = answer.distance.lower > 0 ? nesting(a, b, monitor) : common_point(a, b, monitor);
   if (found.inner) {
-    found.tell(answer);
+    found.write_to(answer);
     answer.reached = true;
   } else if (!found.certain) {
     answer.distance.lower = 0;

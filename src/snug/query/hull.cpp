@@ -15,7 +15,7 @@
 #include <snug/geometry/rounding.h>
 #include <snug/query/closest.h>
 #include <snug/query/deviation.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/query/tessellate.h>
 #include <snug/search/piece.h>
 #include <snug/search/quadratic_bvh.h>
@@ -44,7 +44,7 @@ constexpr auto fault_names = std::to_array<Named<HullFault>>({
 
 // Of the tolerance: that of the triangles which are moved, at first; below which it is no longer made smaller,
 // where a vertex has no position, and where facets meet something.
-constexpr double first_share = 0.4, least_share = 0x1p-6, least_share_apart = 0x1p-8;
+constexpr double first_share = 0.4, min_share = 0x1p-6, min_share_apart = 0x1p-8;
 // And down to which it is made smaller at once where facets turn over.
 constexpr double turned_share = 0x1p-3;
 // Of the tolerance of a triangle: how much farther off its plane than its error its facet is kept, and the error
@@ -52,8 +52,8 @@ constexpr double turned_share = 0x1p-3;
 constexpr double clearance = 0.1, quadratic_share = 0x1p-6;
 // And how far Bezier points of its parts may stick out of them.
 constexpr double flat_share = 0x1p-5;
-constexpr std::size_t most_problems = 100, most_contacts = 1'000'000;
-constexpr int most_rounds = 24;
+constexpr std::size_t max_problems = 100, max_contacts = 1'000'000;
+constexpr int max_rounds = 24;
 // Most quadratics that facets are kept off: of the budget, and beside a few of them.
 constexpr std::uint64_t pieces_a_triangle = 16, pieces_beside = 1u << 17;
 // To show that a hull is off the surface: splits, and different pieces split of each, for each of its triangles and
@@ -61,7 +61,7 @@ constexpr std::uint64_t pieces_a_triangle = 16, pieces_beside = 1u << 17;
 constexpr std::uint64_t splits_a_triangle = 16, splits_beside = 1'000'000;
 constexpr std::uint64_t splits_kept_a_triangle = 2, splits_kept_beside = 50'000;
 
-// What triangles do along their edges.
+// How triangles meet along their edges.
 struct Sides {
   std::optional<std::array<std::size_t, 2>> same_way;  // two that run along an edge the same way
   bool border = false;                                 // does an edge belong to one triangle only?
@@ -113,10 +113,10 @@ void keep_some(std::vector<HullProblem>& problems) {
   std::set<std::tuple<HullFault, bool, std::optional<std::uint32_t>>> known;
   std::erase_if(problems,
                 [&](const HullProblem& p) { return !known.emplace(p.fault, p.inner, p.owner).second; });
-  if (problems.size() > most_problems) problems.resize(most_problems);
+  if (problems.size() > max_problems) problems.resize(max_problems);
 }
 
-std::uint64_t most_pieces(const LimitSurface& surface, const HullOptions& options) {
+std::uint64_t max_pieces(const LimitSurface& surface, const HullOptions& options) {
   const std::uint64_t triangles = std::max<std::uint64_t>(options.budget, surface.patch_count());
   return pieces_beside + pieces_a_triangle * std::min(triangles, std::uint64_t{1} << 40);
 }
@@ -152,7 +152,7 @@ class OneHull {
       piece_marks_.assign(pieces_.size(), 0);
       if (!any_turned_) keep_off();
       if (problems_.empty()) break;
-      if (round + 1 == most_rounds || !mesh_.reached || !refine()) break;
+      if (round + 1 == max_rounds || !mesh_.reached || !refine()) break;
     }
     return std::move(problems_);
   }
@@ -188,7 +188,7 @@ class OneHull {
     if (first_pieces_.empty()) {
       const double error = quadratic_share * first_share * scale_.apply(options_.tolerance);
       first_pieces_ =
-          quadratic_pieces(surface_, error, options_.threads, monitor_, most_pieces(surface_, options_));
+          quadratic_pieces(surface_, error, options_.threads, monitor_, max_pieces(surface_, options_));
     }
     if (first_pieces_.empty()) return blame_budget();
     pieces_ = first_pieces_;
@@ -215,7 +215,7 @@ class OneHull {
   }
   void blame(HullFault fault, std::size_t t, const Point3& place) {
     problems_.push_back({fault, inner_, place, mesh_.owners[t]});
-    mark_wrong(mesh_.owners[t], fault == HullFault::no_position ? least_share : least_share_apart);
+    mark_wrong(mesh_.owners[t], fault == HullFault::no_position ? min_share : min_share_apart);
   }
 
   // How far a vertex of a hull is at most moved when it becomes a float.
@@ -318,18 +318,18 @@ class OneHull {
       if (meets[t] == 0) continue;
       const Names& names = mesh_.triangles[t];
       blame(HullFault::meets_surface, t, mesh_.positions[names[0]]);
-      // What it meets may be another sheet, whose own facets are as near.
+      // It may meet another sheet, whose own facets are as near.
       const QuadraticTriangle facet = flat_quadratic(scaled(hull_, names));
       tree_->mark_near(facet, 0, piece_marks_);
     }
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-      if (piece_marks_[p] != 0) mark_wrong(surface_.place(pieces_[p].root).owner, least_share_apart);
+      if (piece_marks_[p] != 0) mark_wrong(surface_.place(pieces_[p].root).owner, min_share_apart);
     }
     std::vector<Point3> points;
     points.reserve(hull_.size());
     for (const Point3& p : hull_) points.push_back(scale_.apply(p));
     for (const auto& [a, b] :
-         self_contacts(points, mesh_.triangles, most_contacts, options_.threads, monitor_)) {
+         self_contacts(points, mesh_.triangles, max_contacts, options_.threads, monitor_)) {
       blame(HullFault::meets_itself, a, mesh_.positions[mesh_.triangles[a][0]]);
       blame(HullFault::meets_itself, b, mesh_.positions[mesh_.triangles[b][0]]);
     }
@@ -347,7 +347,7 @@ class OneHull {
     }
     if (any && std::any_of(piece_marks_.begin(), piece_marks_.end(), [](auto m) { return m != 0; })) {
       pieces_ = refined(surface_, pieces_, piece_marks_, quadratic_share * scale_.apply(error),
-                        options_.threads, monitor_, most_pieces(surface_, options_))
+                        options_.threads, monitor_, max_pieces(surface_, options_))
                     .pieces;
       if (pieces_.empty()) return blame_budget();
       make_tree();
@@ -381,11 +381,11 @@ class OneHull {
 // A hull as a surface of its own.
 class FacetSurface {
  public:
-  FacetSurface(const Hull& hull, std::uint64_t most_kept, const std::shared_ptr<BoundsCache>& library,
+  FacetSurface(const Hull& hull, std::uint64_t max_kept, const std::shared_ptr<BoundsCache>& library,
                const WorkMonitor& monitor)
       : limit_(mesh_of(hull), SchemeOptions{Scheme::flat}, library, monitor),
         bvh_(limit_, {}, monitor),
-        workspace_(bvh_, most_kept) {}
+        workspace_(bvh_, max_kept) {}
 
   [[nodiscard]] PlacedBvh placed() { return {bvh_, workspace_, {}}; }
   [[nodiscard]] const SurfaceBvh& model() const { return bvh_; }
@@ -415,7 +415,7 @@ class Verification {
         hulls_(hulls),
         monitor_{.on_progress = {}, .stop = monitor.stop},
         largest_count_(largest_count(hulls)),
-        own_(model, most_kept()) {}
+        own_(model, max_kept()) {}
 
   std::vector<HullProblem> run() {
     std::array<std::unique_ptr<FacetSurface>, 2> sides;
@@ -424,8 +424,8 @@ class Verification {
       const std::optional<Hull>& hull = inner ? hulls_.inner : hulls_.outer;
       if (!hull || !is_whole(*hull, inner)) continue;
       sides[inner] =
-          std::make_unique<FacetSurface>(*hull, most_kept(), model_.surface().shared_library(), monitor_);
-      if (hulls_.closed) hull_points_ = points_of(sides[inner]->model());
+          std::make_unique<FacetSurface>(*hull, max_kept(), model_.surface().shared_library(), monitor_);
+      if (hulls_.closed) points_of_hull_ = points_of(sides[inner]->model());
       apart({model_, own_, {}}, sides[inner]->placed(), HullFault::meets_surface, inner);
       near(*hull, inner);
       if (hulls_.closed) around(*sides[inner], inner);
@@ -442,7 +442,7 @@ class Verification {
     }
     return largest;
   }
-  [[nodiscard]] std::uint64_t most_kept() const {
+  [[nodiscard]] std::uint64_t max_kept() const {
     return splits_kept_beside + splits_kept_a_triangle * largest_count_;
   }
   // A limit point of each component.
@@ -456,7 +456,7 @@ class Verification {
     for (const PatchId p : model.solid().components()) {
       const SurfacePoint at = evaluate(surface, place_of(surface, p, {1.0 / 3, 1.0 / 3}));
       points.push_back({at.position, surface.place(p).owner});
-      // What does not meet is to be farther apart than this: then the limit point is on the side of the double.
+      // Sets that do not meet must be farther apart than this: then the limit point is on the side of the double.
       certain_gap_ = std::max(certain_gap_, 2 * at.error);
     }
     return points;
@@ -477,7 +477,7 @@ class Verification {
     points.reserve(hull.positions.size());
     for (const Point3& p : hull.positions) points.push_back(model_.surface().scale().apply(p));
     for (const auto& [a, b] :
-         self_contacts(points, hull.triangles, most_problems, options_.threads, monitor_)) {
+         self_contacts(points, hull.triangles, max_problems, options_.threads, monitor_)) {
       blame_triangle(HullFault::meets_itself, a);
     }
     return problems_.size() == before;
@@ -517,7 +517,7 @@ class Verification {
   // One lies in the solid of the other with all its components, and none of these in the solid of the one.
   void around(FacetSurface& hull, bool inner) {
     for (const bool of_hull : {false, true}) {
-      for (const auto& [position, owner] : of_hull ? hull_points_ : own_points_) {
+      for (const auto& [position, owner] : of_hull ? points_of_hull_ : own_points_) {
         const std::optional<bool> inside = contains(of_hull ? own_ : hull.workspace(), position, monitor_);
         if (inside == (of_hull == inner)) continue;
         blame(HullFault::not_around, inner, position,
@@ -532,7 +532,7 @@ class Verification {
   WorkMonitor monitor_;
   std::uint64_t largest_count_;  // of triangles of a hull
   SurfaceWorkspace own_;
-  std::vector<Member> own_points_, hull_points_;
+  std::vector<Member> own_points_, points_of_hull_;
   double certain_gap_ = 0;  // mesh units
   std::vector<HullProblem> problems_;
 };

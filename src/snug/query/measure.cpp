@@ -71,9 +71,9 @@ struct Net {
 
 class PatchMeasurer {
  public:
-  PatchMeasurer(const LimitSurface& surface, const Point3& origin, std::uint64_t most_splits,
+  PatchMeasurer(const LimitSurface& surface, const Point3& origin, std::uint64_t patch_splits,
                 const WorkMonitor& monitor)
-      : surface_(surface), origin_(origin), most_splits_(most_splits), monitor_(monitor) {}
+      : surface_(surface), origin_(origin), patch_splits_(patch_splits), monitor_(monitor) {}
 
   [[nodiscard]] PatchMeasures run(PatchId p, const Goal& goal) {
     result_ = {};
@@ -98,7 +98,7 @@ class PatchMeasurer {
       if (lattice.ghosts.row_count() > 0)
         error = append_rows(lattice.ghosts, net, net.points, net.largest, error);
       add_regular(net.points, lattice.places, net.largest, error);
-    } else if (kind.passing() && result_.splits < most_splits_) {
+    } else if (kind.transient() && result_.splits < patch_splits_) {
       refine(net);
     } else {
       net.area = area_of(net);
@@ -181,7 +181,7 @@ class PatchMeasurer {
     double left = sum_of_tips();
     while (left > goal && !tips_.empty()) {
       const Net& largest = tips_.front();
-      if (result_.splits >= most_splits_ || extent_sq(largest) <= 0x1p12 * largest.error * largest.error) {
+      if (result_.splits >= patch_splits_ || extent_sq(largest) <= 0x1p12 * largest.error * largest.error) {
         result_.stuck = true;
         break;
       }
@@ -214,7 +214,7 @@ class PatchMeasurer {
     for (std::uint32_t i = 0; i < pieces_.size(); ++i) gap += push(i);
     std::uint64_t halvings = 0;
     while (gap > goal && !heap_.empty()) {
-      if (result_.splits + halvings / 4 >= most_splits_) {
+      if (result_.splits + halvings / 4 >= patch_splits_) {
         result_.stuck = true;
         break;
       }
@@ -256,7 +256,7 @@ class PatchMeasurer {
 
   const LimitSurface& surface_;
   Point3 origin_;
-  std::uint64_t most_splits_;
+  std::uint64_t patch_splits_;
   const WorkMonitor& monitor_;
   PatchMeasures result_;
   Patch patch_;
@@ -272,7 +272,7 @@ struct Totals {
   std::array<Interval, 10> moments;
 };
 
-// What is asked for in scaled units, and how far totals are from it.
+// Goals in scaled units, and how far totals are from them.
 struct Answer {
   Interval area, volume;
   bool has_centroid = false;
@@ -368,13 +368,13 @@ class SurfaceMeasurer {
     size_ = longest_side(box);
     origin_ = box.lower + 0.5 * (box.upper - box.lower);
     closed_ = is_closed(surface);
-    most_splits_ = std::min<std::uint64_t>(options.budget / patches_.size(), max_splits);
+    patch_splits_ = std::min<std::uint64_t>(options.budget / patches_.size(), max_splits);
     find_shares();
   }
 
   [[nodiscard]] Measures run() {
     const double relative = options_.relative.value_or(default_relative);
-    // What is left at corners counts more in moments than in the area.
+    // Rests at corners count more in moments than in the area.
     double gap = 0.4 * relative * estimate_, tips = (closed_ ? 0.05 : 0.4) * relative * estimate_;
     Answer answer;
     for (int round = 0; round < max_rounds; ++round) {
@@ -425,7 +425,7 @@ class SurfaceMeasurer {
     std::atomic<std::size_t> count{0};
     parallel_for_with(
         open.size(), options_.threads,
-        [&] { return PatchMeasurer(surface_, origin_, most_splits_, monitor_); },
+        [&] { return PatchMeasurer(surface_, origin_, patch_splits_, monitor_); },
         [&](PatchMeasurer& measurer, std::size_t begin, std::size_t end) {
           for (std::size_t k = begin; k < end; ++k) {
             const std::uint32_t i = open[k];
@@ -460,7 +460,7 @@ class SurfaceMeasurer {
   double size_ = 0, estimate_ = 0;
   Point3 origin_;
   bool closed_ = false;
-  std::uint64_t most_splits_ = 0;
+  std::uint64_t patch_splits_ = 0;
 };
 
 }  // namespace

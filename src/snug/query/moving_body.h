@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <snug/query/linear_patches.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/query/trajectory.h>
 #include <snug/search/surface_workspace.h>
 

@@ -6,7 +6,7 @@
 
 #include <snug/geometry/rounding.h>
 #include <snug/query/closest.h>
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <snug/search/precision.h>
 #include <support/direction.h>
 #include <support/error.h>
@@ -44,10 +44,10 @@ std::vector<Vector3> some_directions() {
   return directions;
 }
 
-class Search {
+class PenetrationSearch {
  public:
-  Search(const PlacedBvh& a, const PlacedBvh& b, const PenetrationOptions& options,
-         const WorkMonitor& monitor)
+  PenetrationSearch(const PlacedBvh& a, const PlacedBvh& b, const PenetrationOptions& options,
+                    const WorkMonitor& monitor)
       : a_(a), b_(b), options_(options), monitor_(monitor) {}
 
   Penetration run() {
@@ -61,11 +61,11 @@ class Search {
     for (const Vector3& w : outward_) {
       if (const std::optional<double> t = shortest_along(w, 2 * best_.length)) descend({*t * w, *t});
     }
-    if (best_.length - below > std::max(options_.relative * best_.length, least_width())) search_further();
+    if (best_.length - below > std::max(options_.relative * best_.length, min_width())) search_further();
     answer.translation = best_.translation;
     const double above = std::max(length_up(best_.translation), enlarged(length(best_.translation)));
     answer.depth = {std::min(below, above), above};
-    answer.reached = above - answer.depth.lower <= std::max(options_.relative * above, least_width());
+    answer.reached = above - answer.depth.lower <= std::max(options_.relative * above, min_width());
     return answer;
   }
 
@@ -76,7 +76,7 @@ class Search {
   }
 
   // Solids that touch have no relative precision.
-  [[nodiscard]] double least_width() const {
+  [[nodiscard]] double min_width() const {
     return share_of_size(touching_share, a_.model.surface().size(), b_.model.surface().size());
   }
 
@@ -275,7 +275,7 @@ class Search {
   Candidate best_{{}, INFINITY};
   std::uint64_t splits_ = 0;  // of translations tried
   int tried_ = 0;
-  // Of the last point that depth_at() looked at: how deep it is in the shallower solid, negative outside;
+  // For the last point of depth_at(): its depth in the shallower solid, negative outside;
   // from it to the surface of A, and to it from that of B.
   double guide_ = 0;
   std::array<Vector3, 2> ways_out_;
@@ -287,7 +287,7 @@ class Search {
 Penetration penetration(const PlacedBvh& a, const PlacedBvh& b, const PenetrationOptions& options,
                         const WorkMonitor& monitor) {
   require_length(options.relative, "penetration: the precision");
-  return Search(a, b, options, monitor).run();
+  return PenetrationSearch(a, b, options, monitor).run();
 }
 
 Penetration penetration(const PlacedSurface& a, const PlacedSurface& b, const PenetrationOptions& options,

@@ -7,7 +7,7 @@
 namespace snug {
 namespace {
 
-// What squares, products and sums lose by underflow is less.
+// Squares, products and sums lose less than this by underflow.
 constexpr double tiny = 0x1p-500;
 
 }  // namespace

@@ -35,9 +35,9 @@ void require_ray(const Ray& ray) {
 
 namespace {
 
-class RayQuestion {
+class RaySearch {
  public:
-  RayQuestion(const LimitSurface& surface, const RayOptions& options) : surface_(surface), options_(options) {
+  RaySearch(const LimitSurface& surface, const RayOptions& options) : surface_(surface), options_(options) {
     const double precision = options.precision.value_or(share_of_size(1e-6, surface.size()));
     require_length(precision, "the precision of rays");
     precision_ = surface.scale().apply(precision);
@@ -93,18 +93,18 @@ class RayQuestion {
 
 RayHits trace(SurfaceWorkspace& workspace, const Ray& ray, const RayOptions& options,
               const WorkMonitor& monitor) {
-  return RayQuestion(workspace.model().surface(), options).ask(workspace, ray, monitor);
+  return RaySearch(workspace.model().surface(), options).ask(workspace, ray, monitor);
 }
 
 std::vector<RayHits> trace(const SurfaceBvh& model, std::span<const Ray> rays, const RayOptions& options,
                            int threads, const WorkMonitor& monitor) {
-  const RayQuestion question(model.surface(), options);
+  const RaySearch search(model.surface(), options);
   std::vector<RayHits> answers(rays.size());
   std::atomic<std::size_t> done{0};
   parallel_for_with(
       rays.size(), threads, [&] { return SurfaceWorkspace(model); },
       [&](SurfaceWorkspace& workspace, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) answers[i] = question.ask(workspace, rays[i], monitor);
+        for (std::size_t i = begin; i < end; ++i) answers[i] = search.ask(workspace, rays[i], monitor);
         monitor.report(static_cast<double>(done += end - begin) / static_cast<double>(rays.size()));
       });
   return answers;

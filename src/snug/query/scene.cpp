@@ -27,7 +27,7 @@ namespace {
 constexpr std::size_t pairs_of_a_batch = 16384;
 
 // Parts whose neighbours are looked for between two looks at how many there are.
-constexpr std::size_t least_block = 16, most_block = 4096;
+constexpr std::size_t min_block = 16, max_block = 4096;
 
 PartPair sorted(const PartPair& pair) { return {std::min(pair.a, pair.b), std::max(pair.a, pair.b)}; }
 bool before(const PartPair& x, const PartPair& y) { return x.a < y.a || (x.a == y.a && x.b < y.b); }
@@ -66,7 +66,7 @@ std::vector<PairMargin> sorted_margins(const Scene& scene) {
   return margins;
 }
 
-// What `work` does, with the part's place in front of refusals.
+// Runs `work`; refusals begin with the part's place.
 template <class Work>
 auto naming_parts(const std::string& parts, const Work& work) {
   try {
@@ -142,7 +142,7 @@ struct SceneBroadPhase::State {
     return {parts, margin_of(parts), gap_of(boxes[parts.a], boxes[parts.b])};
   }
 
-  // What part `a` has to do with parts after it.
+  // Pairs of part `a` with parts after it.
   void add_pairs_of(std::uint32_t a, std::vector<ScenePair>& out) const {
     const auto add = [&](std::uint32_t b) {
       const ScenePair pair = pair_of({a, b});
@@ -175,7 +175,7 @@ struct SceneBroadPhase::State {
     for (const std::vector<ScenePair>& pairs : found) out.insert(out.end(), pairs.begin(), pairs.end());
     done += size;
     const bool few = out.size() - old < pairs_of_a_batch;
-    block = few ? std::min(2 * block, most_block) : std::max<std::size_t>(block / 2, 1);
+    block = few ? std::min(2 * block, max_block) : std::max<std::size_t>(block / 2, 1);
   }
 
   const Scene& scene;
@@ -188,7 +188,7 @@ struct SceneBroadPhase::State {
   std::vector<double> reach;  // largest margin of a part; with a tree only
   std::optional<BoxTree> tree;
   std::size_t done = 0;  // pairs where they are listed, else parts
-  std::size_t block = least_block;
+  std::size_t block = min_block;
 };
 
 SceneBroadPhase::SceneBroadPhase(const Scene& scene, double margin, bool all, int threads,
@@ -233,10 +233,10 @@ void report_part(const WorkMonitor& monitor, double from, double to, std::size_t
 
 // All that an answer depends on: two surfaces, the bits of their poses, options.
 template <class... Options>
-struct Question {
+struct PairQuery {
   std::array<std::uint64_t, 26> placed;
   std::tuple<Options...> options;
-  Question(const PlacedSurface& a, const PlacedSurface& b, const Options&... in_options)
+  PairQuery(const PlacedSurface& a, const PlacedSurface& b, const Options&... in_options)
       : options(in_options...) {
     auto* next = placed.data();
     for (const PlacedSurface* part : {&a, &b}) {
@@ -244,7 +244,7 @@ struct Question {
       for (const double x : part->pose().numbers()) *next++ = std::bit_cast<std::uint64_t>(x);
     }
   }
-  friend bool operator==(const Question&, const Question&) = default;
+  friend bool operator==(const PairQuery&, const PairQuery&) = default;
   [[nodiscard]] std::size_t hash() const {
     std::uint64_t sum = 0;
     for (const std::uint64_t word : placed) sum = (sum ^ word) * 0x9e3779b97f4a7c15u;
@@ -253,24 +253,24 @@ struct Question {
 };
 
 // Some answers of a thread, for copies of parts in one place, whose pairs differ in nothing but names.
-template <class Question, class Answer>
+template <class Query, class Answer>
 class KnownAnswers {
  public:
-  [[nodiscard]] const Answer* find(const Question& question) const {
-    const auto& place = places_[question.hash() % places_.size()];
-    return place && place->first == question ? &place->second : nullptr;
+  [[nodiscard]] const Answer* find(const Query& query) const {
+    const auto& place = places_[query.hash() % places_.size()];
+    return place && place->first == query ? &place->second : nullptr;
   }
-  void keep(const Question& question, const Answer& answer) {
-    places_[question.hash() % places_.size()].emplace(question, answer);
+  void keep(const Query& query, const Answer& answer) {
+    places_[query.hash() % places_.size()].emplace(query, answer);
   }
 
  private:
-  std::array<std::optional<std::pair<Question, Answer>>, 64> places_;
+  std::array<std::optional<std::pair<Query, Answer>>, 64> places_;
 };
 
-auto question_of(const PlacedSurface& a, const PlacedSurface& b, const CollideOptions& options) {
+auto query_of(const PlacedSurface& a, const PlacedSurface& b, const CollideOptions& options) {
   const auto& [tolerance, margin, budget, witness, prove_contact, solid, measure] = options;
-  return Question(a, b, tolerance, margin, budget, witness, prove_contact, solid, measure);
+  return PairQuery(a, b, tolerance, margin, budget, witness, prove_contact, solid, measure);
 }
 
 }  // namespace
@@ -280,13 +280,13 @@ Collision collide(const Scene& scene, const ScenePair& pair, CollideOptions opti
   require_parts(pair.parts, scene.parts.size(), "the pair");
   const PlacedSurface &a = scene.parts[pair.parts.a], &b = scene.parts[pair.parts.b];
   options.margin = pair.margin;
-  const auto question = question_of(a, b, options);
-  thread_local KnownAnswers<std::remove_const_t<decltype(question)>, Collision> known;
-  if (const Collision* const answer = known.find(question)) return *answer;
+  const auto query = query_of(a, b, options);
+  thread_local KnownAnswers<std::remove_const_t<decltype(query)>, Collision> known;
+  if (const Collision* const answer = known.find(query)) return *answer;
   const Collision answer =
       naming_parts(names_of(pair.parts), [&] { return collide(a, b, options, monitor, workspace); });
-  // What their roots tell costs less than to keep it.
-  if (answer.stats.box_tests > 0) known.keep(question, answer);
+  // Answers from the root boxes are cheaper to compute again than to keep.
+  if (answer.stats.box_tests > 0) known.keep(query, answer);
   return answer;
 }
 
@@ -295,11 +295,11 @@ std::optional<Distance> distance(const Scene& scene, const ScenePair& pair, cons
   require_parts(pair.parts, scene.parts.size(), "the pair");
   const PlacedSurface &a = scene.parts[pair.parts.a], &b = scene.parts[pair.parts.b];
   const auto& [absolute, relative, budget, solid] = options;
-  const Question question(a, b, pair.margin, absolute, relative, budget, solid);
-  thread_local KnownAnswers<std::remove_const_t<decltype(question)>, Distance> known;
-  if (const Distance* const answer = known.find(question)) return *answer;
+  const PairQuery query(a, b, pair.margin, absolute, relative, budget, solid);
+  thread_local KnownAnswers<std::remove_const_t<decltype(query)>, Distance> known;
+  if (const Distance* const answer = known.find(query)) return *answer;
   return naming_parts(names_of(pair.parts), [&]() -> std::optional<Distance> {
-    // Pairs beyond the limit are told sooner by a verdict than by a distance.
+    // A verdict finds pairs beyond the limit sooner than a distance does.
     const CollideOptions beyond{.margin = pair.margin,
                                 .budget = options.budget,
                                 .witness = WitnessKind::none,
@@ -309,7 +309,7 @@ std::optional<Distance> distance(const Scene& scene, const ScenePair& pair, cons
     if (collide(a, b, beyond, monitor, workspace).verdict == Verdict::separated) return {};
     Distance found = distance(a, b, options, monitor, workspace);
     if (found.distance.lower > pair.margin) return {};
-    known.keep(question, found);
+    known.keep(query, found);
     return found;
   });
 }

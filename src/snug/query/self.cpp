@@ -33,16 +33,16 @@ constexpr auto verdict_names = std::to_array<Named<SelfVerdict>>({{"clear", Self
 // Levels that pieces are compared at for nearness, beside those for stars.
 constexpr unsigned further_levels = 6;
 // Distances along the surface that count, against the tolerance.
-constexpr double least_radius = 2, default_radius = 4;
+constexpr double min_radius = 2, default_radius = 4;
 // Of one pair: pieces compared, crossings tried.
-constexpr std::uint64_t most_tests = 4000;
-constexpr int most_attempts = 40;
+constexpr std::uint64_t max_tests = 4000;
+constexpr int max_attempts = 40;
 // Splits of a patch after which a pair is given up.
 constexpr unsigned deepest = 20;
 
 using NamePair = std::pair<PieceName, PieceName>;
 
-// What became of a pair of pieces: apart, or where it is not.
+// Result for a pair of pieces: apart, or where they are not.
 struct Found {
   enum class What : std::uint8_t { apart, crossing, unknown } what = What::apart;
   NamePair pieces;
@@ -71,10 +71,10 @@ Found compare(SelfPieces& pieces, BoundsCache& library, const NamePair& whole, s
     const double gap = rounded_down(rounded_down(near.certain_distance - x.offset.radius) - y.offset.radius);
     if (gap > 0) continue;
     const double size_x = size_of(x), size_y = size_of(y);
-    if (near.certain_distance == 0 && attempts < most_attempts &&
+    if (near.certain_distance == 0 && attempts < max_attempts &&
         x.offset.radius + y.offset.radius <= std::min(size_x, size_y) / 16) {
       ++attempts;
-      if (const auto at = certain_crossing(library, x, y)) {
+      if (const auto at = proved_crossing(library, x, y)) {
         found.what = Found::What::crossing;
         found.pieces = {a, b};
         found.at = {clamped(at->on_a), clamped(at->on_b)};
@@ -250,7 +250,7 @@ class SelfSearch {
 
   void compare_far(const std::vector<NamePair>& pairs) {
     if (pairs.empty()) return;
-    const std::uint64_t each = std::min(most_tests, budget_ / pairs.size());
+    const std::uint64_t each = std::min(max_tests, budget_ / pairs.size());
     std::vector<Found> found(pairs.size());
     parallel_for_with(
         pairs.size(), options_.threads, [&] { return SelfPieces(surface_); },
@@ -286,19 +286,19 @@ class SelfSearch {
   void spend(std::uint64_t work) { budget_ -= std::min(budget_, work); }
 
   SelfContact result() {
-    answer_.verdict = crossing_                                  ? SelfVerdict::intersecting
-                      : !nearness_.near.empty()                  ? SelfVerdict::near
-                      : found_.empty() && nearness_.open.empty() ? SelfVerdict::clear
-                                                                 : SelfVerdict::undecided;
+    answer_.verdict = crossing_                                        ? SelfVerdict::intersecting
+                      : !nearness_.near.empty()                        ? SelfVerdict::near
+                      : found_.empty() && nearness_.unresolved.empty() ? SelfVerdict::clear
+                                                                       : SelfVerdict::undecided;
     if (answer_.verdict != SelfVerdict::near) {
       for (const Found& found : found_) {
         if ((found.what == Found::What::crossing) == crossing_) add_place(found);
       }
     }
     if (answer_.verdict == SelfVerdict::near) {
-      for (const NearPieces& pieces : nearness_.near) add_place(pieces, SelfVerdict::near);
+      for (const ProximityPair& pieces : nearness_.near) add_place(pieces, SelfVerdict::near);
     } else if (!crossing_) {
-      for (const NearPieces& pieces : nearness_.open) add_place(pieces, SelfVerdict::undecided);
+      for (const ProximityPair& pieces : nearness_.unresolved) add_place(pieces, SelfVerdict::undecided);
     }
     return answer_;
   }
@@ -328,7 +328,7 @@ class SelfSearch {
     answer_.pairs.push_back(pair);
   }
 
-  void add_place(const NearPieces& pieces, SelfVerdict verdict) {
+  void add_place(const ProximityPair& pieces, SelfVerdict verdict) {
     if (answer_.pairs.size() == SelfContact::max_pairs) return;
     SelfContactPair pair;
     pair.verdict = verdict;
@@ -365,7 +365,7 @@ SelfContact self_contact(const Surface& surface, const SelfContactOptions& optio
                   "self: a radius without a tolerance; give both, or no radius");
     require_length(*options.radius, "self: the radius");
     require_value(
-        *options.radius / least_radius >= *options.tolerance,
+        *options.radius / min_radius >= *options.tolerance,
         "self: the radius is less than twice the tolerance, where even flat places are near each other "
         "beyond it; give a longer one");
   }

@@ -18,16 +18,16 @@
 #include <snug/query/self_pieces.h>
 #include <snug/search/quadratic_bvh.h>
 #include <snug/shape/patch_lengths.h>
-#include <snug/shape/star_stretch.h>
+#include <snug/shape/star_distortion.h>
 #include <support/parallel.h>
 
 namespace snug {
 namespace {
 
 // Pieces around one, at most, that ways along the surface are looked for in.
-constexpr std::size_t most_around = 20'000;
+constexpr std::size_t max_around = 20'000;
 // That a thread keeps between two searches.
-constexpr std::size_t most_nodes = 50'000;
+constexpr std::size_t max_nodes = 50'000;
 // Looked at in the time of a pair.
 constexpr std::uint64_t pieces_a_pair = 16;
 
@@ -110,7 +110,7 @@ class LevelPieces {
   // Where many have come together. What was returned is gone.
   void drop_many() {
     pieces_.drop_many();
-    if (nodes_.size() < most_nodes) return;
+    if (nodes_.size() < max_nodes) return;
     nodes_.clear();
     vertices_.clear();
   }
@@ -127,7 +127,7 @@ class LevelPieces {
   std::uint64_t searches_ = 0;
 };
 
-// What ways along the surface lead from one piece to, and how long they are.
+// Pieces that ways along the surface reach from one piece, and how long these ways are.
 class Surroundings {
  public:
   Surroundings(LevelPieces& pieces, const PieceName& centre)
@@ -136,7 +136,7 @@ class Surroundings {
   [[nodiscard]] std::uint64_t looked_at() const { return looked_at_; }
 
   // Which of the pieces have ways of at most this length from any point of the centre to any of theirs?
-  // Looks for shortest ways along edges until it knows, or has looked at `most` pieces.
+  // Searches shortest ways along edges until all are decided, or `most` pieces are visited.
   std::vector<bool> near_by_ways(std::span<const PieceName> partners, double longest, std::uint64_t most) {
     const std::uint64_t search = pieces_.next_search();
     std::vector<bool> found(partners.size(), false);
@@ -185,20 +185,20 @@ class Surroundings {
   }
 
   // May the pieces have ways of at most `longest` to points of the centre at most `chord` from theirs? True,
-  // too, where `most` is not enough to tell. Such ways stay within half the sum of both from the centre; and
-  // the sum of distances from both ends is at most their length, which is looked at for each piece where the
+  // too, where `most` is not enough to decide. Such ways stay within half the sum of both from the centre; and
+  // the sum of distances from both ends is at most their length, which is tested for each piece where the
   // centre is small.
   std::vector<bool> may_reach(std::span<const PieceName> partners, double longest, double chord,
                               std::uint64_t most) {
     const double distance = enlarged(0.5 * (longest + chord));
     centre_.gap = 0;
-    const bool told = spread(most, [&](LevelPieces::Node& node) {
+    const bool complete = spread(most, [&](LevelPieces::Node& node) {
       node.gap = gap_of(centre_.offset, node.offset).least;
       node.known_gap = pieces_.this_search();
       return node.gap <= distance;
     });
     std::vector<bool> may(partners.size(), true);
-    if (!told) return may;
+    if (!complete) return may;
     const std::uint64_t search = pieces_.this_search();
     for (std::size_t i = 0; i < partners.size(); ++i) {
       const LevelPieces::Node& node = pieces_.node(partners[i]);
@@ -299,7 +299,7 @@ class NearSearch {
       }
     });
     std::vector<NearPair> all;
-    // Too many: each piece with itself stands for what is not looked at.
+    // Too many: pairs of each piece with itself stand for those not compared.
     if (count > budget_) {
       for (const PieceName& piece : pieces) all.push_back({piece, piece});
       budget_ = 0;
@@ -378,10 +378,10 @@ class NearSearch {
     for (const auto& sector : star.sectors) static_cast<void>(pieces.patch(sector.piece));
     std::vector<StarSector> sectors;
     for (const auto& sector : star.sectors) sectors.push_back({&pieces.patch(sector.piece), sector.centre});
-    return star_stretch(sectors, star.closed);
+    return star_distortion(sectors, star.closed);
   }
 
-  // Those that short ways along the surface lead between; tells which others are far, and near each other.
+  // Drops those joined by short ways along the surface; finds the others that are near each other.
   void drop_by_ways(std::vector<NearPair>& live, unsigned level) {
     std::vector<std::size_t> groups;  // pairs with the same first piece
     for (std::size_t i = 0; i < live.size(); ++i) {
@@ -391,10 +391,10 @@ class NearSearch {
     const std::size_t count = groups.size();
     groups.push_back(live.size());
     const std::size_t most =
-        std::min<std::uint64_t>(most_around, std::max<std::uint64_t>(200, pieces_a_pair * budget_ / count));
+        std::min<std::uint64_t>(max_around, std::max<std::uint64_t>(200, pieces_a_pair * budget_ / count));
     std::vector<std::uint64_t> work(count, 0);
     std::vector<std::uint8_t> keep(live.size(), 1);
-    std::vector<std::optional<NearPieces>> near(live.size());
+    std::vector<std::optional<ProximityPair>> near(live.size());
     parallel_for_with(
         count, options_.threads, [&] { return LevelPieces(surface_, complex_, level); },
         [&](LevelPieces& pieces, std::size_t begin, std::size_t end) {
@@ -415,7 +415,7 @@ class NearSearch {
     keep_if(live, [&](std::size_t i) { return keep[i] != 0; });
   }
 
-  // The pairs of one piece. Returns how many pieces around it were looked at.
+  // The pairs of one piece. Returns how many pieces around it were visited.
   std::uint64_t look_around(LevelPieces& pieces, std::span<NearPair> group, std::size_t most,
                             std::uint8_t* keep) const {
     std::vector<std::size_t> which;
@@ -439,14 +439,14 @@ class NearSearch {
     return around.looked_at();
   }
 
-  std::optional<NearPieces> proved_near(LevelPieces& pieces, const NearPair& pair) const {
-    const NearPieces near = measured(pieces, pair);
+  std::optional<ProximityPair> proved_near(LevelPieces& pieces, const NearPair& pair) const {
+    const ProximityPair near = measured(pieces, pair);
     if (near.distance.upper <= options_.tolerance) return near;
     return {};
   }
 
   template <class AnyPieces>
-  static NearPieces measured(AnyPieces& pieces, const NearPair& pair) {
+  static ProximityPair measured(AnyPieces& pieces, const NearPair& pair) {
     const Piece &a = pieces.piece(pair.first), &b = pieces.piece(pair.second);
     const Gap gap = gap_of(a.offset, b.offset);
     const double upper = distance_at_most(a.patch, b.patch, gap.at);
@@ -457,9 +457,9 @@ class NearSearch {
     constexpr std::size_t enough = 100;
     SelfPieces pieces(surface_);
     for (const NearPair& pair : live) {
-      if (answer_.open.size() == enough) break;
+      if (answer_.unresolved.size() == enough) break;
       pieces.drop_many();
-      answer_.open.push_back(measured(pieces, pair));
+      answer_.unresolved.push_back(measured(pieces, pair));
     }
   }
 

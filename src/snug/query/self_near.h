@@ -10,25 +10,25 @@
 
 namespace snug {
 
-/// What counts as near, in scaled units.
+/// Definition of near, in scaled units.
 struct NearnessOptions {
   double tolerance = 0;  ///< places at most this far apart are near
   double radius = 0;     ///< if their distance along the surface is more than this
   std::uint64_t budget = 0;
-  unsigned levels = 0;  ///< most, below the coarsest one
+  unsigned levels = 0;  ///< at most, below the coarsest one
   int threads = 0;
 };
 
 /// Two pieces that have points near each other, or are not known not to.
-struct NearPieces {
+struct ProximityPair {
   std::array<PieceName, 2> pieces;
   std::array<TriangleParameter, 2> at;  ///< of each, two points
   Interval distance;                    ///< from that of the pieces to that of the points
 };
 
 struct Nearness {
-  std::vector<NearPieces> near;  ///< proved to be
-  std::vector<NearPieces> open;  ///< none if all others are proved not to be
+  std::vector<ProximityPair> near;        ///< proved to be
+  std::vector<ProximityPair> unresolved;  ///< none if all others are proved not to be
   std::uint64_t stars = 0, pair_tests = 0;
   unsigned levels = 0;
 };

@@ -12,7 +12,7 @@ namespace snug {
 namespace {
 
 // That a thread keeps between two pairs or stars.
-constexpr std::size_t most_kept = 20'000;
+constexpr std::size_t max_kept = 20'000;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ const Piece& SelfPieces::piece(const PieceName& name) {
 }
 
 bool SelfPieces::drop_many() {
-  if (patches_.size() + pieces_.size() < most_kept) return false;
+  if (patches_.size() + pieces_.size() < max_kept) return false;
   patches_.clear();
   pieces_.clear();
   return true;

@@ -28,7 +28,7 @@ class SelfPieces {
   const LimitSurface* surface_;
   std::unordered_map<PieceName, Patch, PieceNameHash> patches_;
   std::unordered_map<PieceName, Piece, PieceNameHash> pieces_;
-  HullPoints scratch_;
+  BoundingPoints scratch_;
 };
 
 /// The offset triangles of pieces as quadratic ones, which are flat.

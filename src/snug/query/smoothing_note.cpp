@@ -31,7 +31,7 @@ std::string text_of_length(double length, double size) {
 std::string smoothing_note(const LimitSurface& surface, std::string_view option, std::optional<double> apart,
                            int threads) {
   if (!smooths_untagged(surface.mesh())) return {};
-  if (!apart && surface.face_count() <= most_measured_faces) apart = away_from_faces(surface, threads);
+  if (!apart && surface.face_count() <= max_measured_faces) apart = away_from_faces(surface, threads);
   if (apart == 0) return {};
   const std::string far = apart ? ", up to " + text_of_length(*apart, surface.size()) + " away from them"
                                 : " (how far from them is not measured above 200,000 faces)";

@@ -13,12 +13,12 @@ namespace snug {
 [[nodiscard]] std::string text_of_length(double length, double size);
 
 /// Most faces whose distance from the limit surface a note measures, 0.2 seconds.
-inline constexpr std::size_t most_measured_faces = 200'000;
+inline constexpr std::size_t max_measured_faces = 200'000;
 
 /// "triangles taken as the control mesh of a Loop surface, up to 0.031 (...) away from them; scheme flat takes
 /// ..." for a surface of natural_scheme(); empty unless smooths_untagged() its mesh and moves it. `option` is
 /// how the caller gives a scheme, `apart` the distance from the faces if it is known.
-/// Cost:      that of limit_to_faces() up to most_measured_faces; above, the note is without the distance.
+/// Cost:      that of limit_to_faces() up to max_measured_faces; above, the note is without the distance.
 [[nodiscard]] std::string smoothing_note(const LimitSurface& surface, std::string_view option,
                                          std::optional<double> apart = {}, int threads = 0);
 

@@ -105,7 +105,7 @@ SweptPairs::Sample SweptPairs::sample(double time) const {
     }
     turns[s] = enlarged(spatial_error(rows) + bodies_[s].motion.closing_growth() + 16 * unit_roundoff);
   }
-  // What S(s) and M(s) differ by counts twice: heights are of S(s), and M(s) is to be told apart.
+  // The difference of S(s) and M(s) counts twice: heights are of S(s), and M(s) is to be separated.
   const double doubt = enlarged(longest * (deviations + 2 * closing_));
   const double widest = enlarged(length(centres[1] - centres[0]) + radii);
   result.place_doubt = doubt;
@@ -120,7 +120,7 @@ SweptPairs::Sample SweptPairs::sample(double time) const {
 double SweptPairs::clear(double from, double to, double least, std::uint64_t budget,
                          const WorkMonitor& monitor) {
   until_ = from;
-  least_ = least;
+  min_ = least;
   budget_ = budget;
   monitor_ = &monitor;
   steps_ = 0;
@@ -135,7 +135,7 @@ bool SweptPairs::clear(const Sample& first, const Sample& last, std::vector<Node
   const double time = first.time + (last.time - first.time) / 2;
   const Sample middle = sample(time);
   const Step step{first, middle, last};
-  const bool shortest = last.time - first.time <= least_ || time <= first.time || time >= last.time;
+  const bool shortest = last.time - first.time <= min_ || time <= first.time || time >= last.time;
   std::vector<Nodes> left;
   while (!open_pairs.empty()) {
     if (spent() >= budget_) return false;
@@ -177,14 +177,14 @@ SweptPairs::Pair SweptPairs::pair_of(const Nodes& nodes, const Step& step) {
   return pair;
 }
 
-// An upper bound of dot(w, x) over what a node stands for, but for the sample's doubt.
+// An upper bound of dot(w, x) over the set of a node, without the sample's doubt.
 double SweptPairs::height(const Sample& at, const Pair& pair, std::size_t side, const Vector3& w) const {
   const PlacedFrame& frame = at.frames[side];
   const Node& node = pair.nodes[side];
   const Vector3 own = transposed_times(frame.rows, w);
   double most = reach(pair.boxes[side], own);
   if (node.bounded()) {
-    const PieceRecord& record = SurfaceWorkspace::record(node);
+    const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
     const double of_record = dot(own, node.boxes->origin() - Point3{}) + record.extent(own) +
                              (1 + 2 * frame.defect) * longest * record.error();
     most = std::min(most, of_record);
@@ -254,7 +254,7 @@ bool SweptPairs::apart_by_triangles(const Step& step, Pair& pair) {
   std::array<Triangle, 2> placed;
   for (std::size_t s = 0; s < 2; ++s) {
     const Node& node = pair.nodes[s];
-    const PieceRecord& record = SurfaceWorkspace::record(node);
+    const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
     placed[s] = record.base(node.boxes->origin());
     for (Point3& corner : placed[s]) corner = step.middle.frames[s].apply(corner);
     radii += scales_[s] * record.radius();
@@ -264,7 +264,7 @@ bool SweptPairs::apart_by_triangles(const Step& step, Pair& pair) {
   return apart_along(step, pair, normalized(between), neither);
 }
 
-// The same, and along the triangles' normals, for flat ones that are nearer than single precision tells.
+// The same, and along the triangles' normals, for flat ones that are nearer than single precision resolves.
 bool SweptPairs::apart_in_double(const Step& step, Pair& pair) {
   double size = 0;
   for (std::size_t s = 0; s < 2; ++s) {
@@ -289,7 +289,7 @@ bool SweptPairs::apart_in_double(const Step& step, Pair& pair) {
 }
 
 OffsetTriangle SweptPairs::in_double(std::size_t side, const Node& node) {
-  thread_local HullPoints scratch;
+  thread_local BoundingPoints scratch;
   if (node.kind != Node::Kind::patch) return bodies_[side].scratch.piece(node, scratch).offset;
   const auto [known, is_new] = in_double_[side].try_emplace(bodies_[side].scratch.root_of(node).value());
   if (is_new) known->second = bodies_[side].scratch.piece(node, scratch).offset;

@@ -33,7 +33,7 @@ class SweptPairs {
   /// Requires:  0 <= from < to <= 1, times of the piece.
   [[nodiscard]] double clear(double from, double to, double least, std::uint64_t budget,
                              const WorkMonitor& monitor);
-  /// What clear() has spent.
+  /// Work that clear() has spent.
   [[nodiscard]] std::uint64_t spent() const { return steps_ + (stats_.splits - splits_before_); }
 
  private:
@@ -77,7 +77,7 @@ class SweptPairs {
   std::array<std::unordered_map<std::uint32_t, OffsetTriangle>, 2> in_double_;  // of whole patches
   double closing_ = 0;
   bool possible_ = false;
-  double least_ = 0, until_ = 0;
+  double min_ = 0, until_ = 0;
   std::uint64_t budget_ = 0, steps_ = 0, splits_before_ = 0;
   const WorkMonitor* monitor_ = nullptr;
 };

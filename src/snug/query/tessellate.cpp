@@ -26,13 +26,13 @@ namespace {
 using Index = TriangleComplex::Index;
 
 // Tolerances below these, for coordinates from 1 to 2, are refused: rounding would take too much of them.
-constexpr double least_tolerance = 0x1p-41, least_single_tolerance = 0x1p-21;
+constexpr double min_tolerance = 0x1p-41, min_single_tolerance = 0x1p-21;
 // The error of a piece's quadratic that is no hindrance, as a part of the tolerance.
 constexpr double quadratic_share = 0.25;
 constexpr unsigned deepest_level = 40;
 constexpr double shortest_side = 0x1p-46;  // in parameters
 // Whatever the budget is: edges, also those that were split, have 31 bits.
-constexpr std::uint64_t most_triangles = std::uint64_t{1} << 29;
+constexpr std::uint64_t triangle_limit = std::uint64_t{1} << 29;
 
 constexpr std::array<std::uint8_t, 8> number_of_bits{0, 1, 1, 2, 1, 2, 2, 3};
 
@@ -58,7 +58,7 @@ struct Piece {
 struct Limits {
   double tolerance = INFINITY, max_edge = INFINITY, max_thickness = INFINITY;
   std::vector<double> of_owner{};  // tolerances of owners instead of that; or none
-  double least_cosine = -2;        // of normals; -2 for none
+  double min_cosine = -2;          // of normals; -2 for none
   Point3 eye;
   double slope = INFINITY;   // of a triangle's tolerance over its distance from the eye
   double shortest_turn = 0;  // triangles without a longer side are not split for their normals
@@ -102,7 +102,7 @@ class Worker {
     return surface_->rules().triangular() ? a == b : (a | 1) == (b | 1);
   }
 
-  HullPoints hull;
+  BoundingPoints hull;
   std::array<SurfaceParameter, 64> at;
   std::array<BoundedPoint, 64> points;
 
@@ -116,10 +116,10 @@ class Worker {
   LimitEvaluator evaluator_;
 };
 
-class Refinement {
+class MeshRefinement {
  public:
-  Refinement(const LimitSurface& surface, const TessellateOptions& options, const Limits& limits,
-             const WorkMonitor& monitor)
+  MeshRefinement(const LimitSurface& surface, const TessellateOptions& options, const Limits& limits,
+                 const WorkMonitor& monitor)
       : surface_(surface),
         options_(options),
         limits_(limits),
@@ -148,7 +148,7 @@ class Refinement {
   void examine(Worker& worker, Index t, bool mark);
   void prove(Worker& worker, Index t, bool mark);
   [[nodiscard]] double seen_tolerance(Index t) const;
-  [[nodiscard]] static double thickness(const Patch& patch, const HullPoints& hull);
+  [[nodiscard]] static double thickness(const Patch& patch, const BoundingPoints& hull);
   void learn(Worker& worker, Index t);
   void mark_bent(Index t, const Flatness& flatness);
   void mark_long(Worker& worker, Index t);
@@ -187,7 +187,7 @@ class Refinement {
   std::atomic<bool> stuck_{false};
 };
 
-void Refinement::place_roots() {
+void MeshRefinement::place_roots() {
   const std::vector<PatchId>& roots = complex_.root_patches();
   constexpr std::array<TriangleParameter, 3> corners{{{0, 0}, {1, 0}, {0, 1}}};
   at_.assign(roots.size(), corners);
@@ -205,7 +205,7 @@ void Refinement::place_roots() {
 }
 
 // The number that is written, and its error.
-void Refinement::finish(Vertex& vertex, const BoundedPoint& point) const {
+void MeshRefinement::finish(Vertex& vertex, const BoundedPoint& point) const {
   Point3 written = back_.apply(point.position);
   if (options_.single_precision) {
     for (std::size_t a = 0; a < 3; ++a) {
@@ -224,7 +224,7 @@ void Refinement::finish(Vertex& vertex, const BoundedPoint& point) const {
   vertex.error = enlarged(point.error + max_abs(moved));
 }
 
-void Refinement::evaluate(std::size_t begin, std::size_t end) {
+void MeshRefinement::evaluate(std::size_t begin, std::size_t end) {
   parallel_for_with(
       end - begin, options_.threads, [&] { return Worker(surface_); },
       [&](Worker& worker, std::size_t from, std::size_t to) {
@@ -249,27 +249,27 @@ void Refinement::evaluate(std::size_t begin, std::size_t end) {
       });
 }
 
-FlatTriangle Refinement::flat(Index t) const {
+FlatTriangle MeshRefinement::flat(Index t) const {
   const std::array<Index, 3>& corners = complex_.corners(t);
   return {{scaled(corners[0]), scaled(corners[1]), scaled(corners[2])}, at_[t]};
 }
 
-void Refinement::mark_sides(Index t) {
+void MeshRefinement::mark_sides(Index t) {
   for (std::size_t k = 0; k < 3; ++k) complex_.mark(complex_.edge_of(t, k));
 }
 
 // Of a triangle as near to the eye as a ball around it; at the eye itself, what the arithmetic can do.
-double Refinement::seen_tolerance(Index t) const {
+double MeshRefinement::seen_tolerance(Index t) const {
   const Triangle triangle = flat(t).corner;
   const Point3 middle = triangle[0] + 0.5 * (triangle[1] - triangle[0]);
   double radius = 0;
   for (const Point3& p : triangle) radius = std::max(radius, distance(p, middle));
   const double nearest = (distance(middle, limits_.eye) - radius) * (1 - 0x1p-40) - 0x1p-45;
-  return std::max(limits_.slope * (1 - 0x1p-40) * nearest, least_tolerance);
+  return std::max(limits_.slope * (1 - 0x1p-40) * nearest, min_tolerance);
 }
 
 // The longest side of the boxes of its interval triangle.
-double Refinement::thickness(const Patch& patch, const HullPoints& hull) {
+double MeshRefinement::thickness(const Patch& patch, const BoundingPoints& hull) {
   const IntervalTriangle boxes = interval_simplex<3>(hull, limit_corners(patch));
   double longest = 0;
   for (const Box3& box : boxes.corner) longest = std::max(longest, longest_side(box));
@@ -277,11 +277,12 @@ double Refinement::thickness(const Patch& patch, const HullPoints& hull) {
 }
 
 // Finds the quadratic of a piece that is still one triangle; where it is coarse, the triangle's error.
-void Refinement::learn(Worker& worker, Index t) {
+void MeshRefinement::learn(Worker& worker, Index t) {
   Piece& piece = pieces_[piece_[t]];
   const Patch& patch = worker.patch(piece.patch, piece.path);
   BoundsCache& library = surface_.library();
-  if (patch.kind->shared() || limits_.max_thickness < INFINITY) hull_points(library, patch, worker.hull);
+  if (patch.kind->cacheable() || limits_.max_thickness < INFINITY)
+    bounding_points(library, patch, worker.hull);
   const QuadraticTriangle near = quadratic_triangle(library, patch, worker.hull);
   piece.known = true;
   if (limits_.max_thickness < INFINITY) piece.thick = thickness(patch, worker.hull) > limits_.max_thickness;
@@ -296,7 +297,7 @@ void Refinement::learn(Worker& worker, Index t) {
   }
 }
 
-void Refinement::prove(Worker& worker, Index t, bool mark) {
+void MeshRefinement::prove(Worker& worker, Index t, bool mark) {
   Piece& piece = pieces_[piece_[t]];
   if (!piece.known) learn(worker, t);
   if (!piece.coarse) {
@@ -310,7 +311,7 @@ void Refinement::prove(Worker& worker, Index t, bool mark) {
 }
 
 // Sides that are bent beyond what is left of the tolerance, or the most bent one.
-void Refinement::mark_bent(Index t, const Flatness& flatness) {
+void MeshRefinement::mark_bent(Index t, const Flatness& flatness) {
   const double taken = pieces_[piece_[t]].quadratic.error() + flatness.corner_gap,
                left = std::max(tolerance(t) - taken, tolerance(t) / 4);
   std::array<double, 3> bow_sq;
@@ -325,7 +326,7 @@ void Refinement::mark_bent(Index t, const Flatness& flatness) {
   }
 }
 
-void Refinement::mark_long(Worker& worker, Index t) {
+void MeshRefinement::mark_long(Worker& worker, Index t) {
   if (limits_.max_edge < INFINITY) {
     const std::array<Point3, 3> corner = flat(t).corner;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -334,10 +335,10 @@ void Refinement::mark_long(Worker& worker, Index t) {
       }
     }
   }
-  if (limits_.least_cosine >= -1) mark_turning(worker, t);
+  if (limits_.min_cosine >= -1) mark_turning(worker, t);
 }
 
-void Refinement::mark_turning(Worker& worker, Index t) {
+void MeshRefinement::mark_turning(Worker& worker, Index t) {
   const Index patch = pieces_[piece_[t]].patch;
   std::array<std::optional<Vector3>, 3> normal;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -349,7 +350,7 @@ void Refinement::mark_turning(Worker& worker, Index t) {
   std::array<double, 3> side;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3;
-    turns = turns || (normal[k] && normal[next] && dot(*normal[k], *normal[next]) < limits_.least_cosine);
+    turns = turns || (normal[k] && normal[next] && dot(*normal[k], *normal[next]) < limits_.min_cosine);
     side[k] = distance(corner[k], corner[next]);
     if (side[k] > side[longest]) longest = k;
   }
@@ -357,12 +358,12 @@ void Refinement::mark_turning(Worker& worker, Index t) {
   if (turns && side[longest] > limits_.shortest_turn) complex_.mark(complex_.edge_of(t, longest));
 }
 
-void Refinement::examine(Worker& worker, Index t, bool mark) {
+void MeshRefinement::examine(Worker& worker, Index t, bool mark) {
   prove(worker, t, mark);
   if (mark) mark_long(worker, t);
 }
 
-void Refinement::examine(const std::vector<Index>& triangles, bool mark) {
+void MeshRefinement::examine(const std::vector<Index>& triangles, bool mark) {
   parallel_for_with(
       triangles.size(), options_.threads, [&] { return Worker(surface_); },
       [&](Worker& worker, std::size_t begin, std::size_t end) {
@@ -377,7 +378,7 @@ void Refinement::examine(const std::vector<Index>& triangles, bool mark) {
   }
 }
 
-void Refinement::mark_rest_of_coarse() {
+void MeshRefinement::mark_rest_of_coarse() {
   for (bool more = true; more;) {
     more = false;
     for (const Index t : coarse_) {
@@ -389,14 +390,14 @@ void Refinement::mark_rest_of_coarse() {
   }
 }
 
-std::uint64_t Refinement::count_after() const {
+std::uint64_t MeshRefinement::count_after() const {
   std::uint64_t count = triangle_count();
   for (Index t = 0; t < triangle_count(); ++t) count += number_of_bits[complex_.marks(t)];
   return count;
 }
 
 // Which way to cut: lines inside that are less bent, and where none is bent shorter ones.
-std::size_t Refinement::choose(Index t, unsigned marks) const {
+std::size_t MeshRefinement::choose(Index t, unsigned marks) const {
   const Piece& piece = pieces_[piece_[t]];
   const std::size_t choices = split_count(marks);
   if (piece.coarse || choices == 1) return 0;
@@ -435,7 +436,7 @@ std::size_t Refinement::choose(Index t, unsigned marks) const {
   return best;
 }
 
-std::vector<Refinement::Cut> Refinement::plan_cuts() {
+std::vector<MeshRefinement::Cut> MeshRefinement::plan_cuts() {
   std::vector<Cut> cuts;
   const std::size_t old = triangle_count();
   std::size_t triangles = 0, edges = 0, pieces = pieces_.size();
@@ -457,7 +458,7 @@ std::vector<Refinement::Cut> Refinement::plan_cuts() {
   return cuts;
 }
 
-void Refinement::carry_out(const Cut& cut) {
+void MeshRefinement::carry_out(const Cut& cut) {
   const unsigned marks = complex_.marks(cut.triangle);
   SNUG_EXPECT(marks == 7 || !pieces_[piece_[cut.triangle]].coarse);
   const TriangleSplit shape = split_of(marks, choose(cut.triangle, marks));
@@ -481,7 +482,7 @@ void Refinement::carry_out(const Cut& cut) {
 }
 
 // Splits what is marked; the parts, whose sides have no marks.
-void Refinement::split(std::vector<Index>& parts) {
+void MeshRefinement::split(std::vector<Index>& parts) {
   const std::size_t old = vertices_.size();
   complex_.number_middles([&](std::size_t t, std::size_t k) {
     const TriangleParameter a = at_[t][k], b = at_[t][(k + 1) % 3];
@@ -502,7 +503,7 @@ void Refinement::split(std::vector<Index>& parts) {
   std::erase_if(coarse_, [&](Index t) { return !pieces_[piece_[t]].coarse; });
 }
 
-bool Refinement::run(std::uint64_t most) {
+bool MeshRefinement::run(std::uint64_t most) {
   place_roots();
   std::vector<Index> active(triangle_count());
   for (Index t = 0; t < active.size(); ++t) active[t] = t;
@@ -523,20 +524,20 @@ bool Refinement::run(std::uint64_t most) {
     mark_rest_of_coarse();
     const std::uint64_t next = count_after();
     if (next == triangle_count()) return true;
-    if (next > std::min(most, most_triangles)) return false;
+    if (next > std::min(most, triangle_limit)) return false;
     done = std::max(done, 1 - static_cast<double>(active.size()) / static_cast<double>(next));
     monitor_.report(done);
     split(active);
   }
 }
 
-double Refinement::error_bound() const {
+double MeshRefinement::error_bound() const {
   double largest = 0;
   for (const double error : error_) largest = std::max(largest, error);
   return unscaled_up(largest, back_);
 }
 
-void Refinement::refuse_if_stuck() const {
+void MeshRefinement::refuse_if_stuck() const {
   if (!stuck_.load()) return;
   double largest = 0;
   for (std::size_t t = 0; t < error_.size(); ++t) {
@@ -550,7 +551,7 @@ void Refinement::refuse_if_stuck() const {
   refuse_value(text);
 }
 
-void Refinement::add_normals(Tessellation& result, const std::vector<Index>& order) const {
+void MeshRefinement::add_normals(Tessellation& result, const std::vector<Index>& order) const {
   result.normals.resize(order.size());
   parallel_for_with(
       order.size(), options_.threads, [&] { return Worker(surface_); },
@@ -563,7 +564,7 @@ void Refinement::add_normals(Tessellation& result, const std::vector<Index>& ord
       });
 }
 
-Tessellation Refinement::result(std::vector<double>* errors) const {
+Tessellation MeshRefinement::result(std::vector<double>* errors) const {
   Tessellation result;
   const std::size_t count = triangle_count();
   // Patch by patch.
@@ -623,7 +624,7 @@ Limits limits_of(const LimitSurface& surface, const TessellateOptions& options) 
   require_value(!options.max_triangles || *options.max_triangles > 0,
                 "tessellate: the number of triangles must be positive");
   const PowerOfTwo scale = surface.scale(), back = scale.inverse();
-  const double least = options.single_precision ? least_single_tolerance : least_tolerance;
+  const double least = options.single_precision ? min_single_tolerance : min_tolerance;
   const auto scaled = [&](const std::optional<double>& length, const char* what) {
     if (!length) return double{INFINITY};
     const double result = scale.apply(*length);
@@ -650,22 +651,22 @@ Limits limits_of(const LimitSurface& surface, const TessellateOptions& options) 
     limits.eye = scale.apply(options.view->eye);
     limits.slope = std::sin(options.view->angle * 3.14159265358979323846 / 180);
   }
-  if (options.max_angle) limits.least_cosine = std::cos(*options.max_angle * 3.14159265358979323846 / 180);
+  if (options.max_angle) limits.min_cosine = std::cos(*options.max_angle * 3.14159265358979323846 / 180);
   limits.shortest_turn =
       std::isfinite(limits.tolerance) ? limits.tolerance : 1e-6 * scale.apply(surface.size());
   return limits;
 }
 
 // The smallest error that is found for at most so many triangles, by tolerances in between.
-class Search {
+class CountSearch {
  public:
-  Search(const LimitSurface& surface, const TessellateOptions& options, const Limits& limits,
-         const WorkMonitor& monitor)
+  CountSearch(const LimitSurface& surface, const TessellateOptions& options, const Limits& limits,
+              const WorkMonitor& monitor)
       : surface_(surface),
         options_(options),
         limits_(limits),
         monitor_(monitor),
-        most_(std::min(*options.max_triangles, options.budget)) {}
+        max_triangles_(std::min(*options.max_triangles, options.budget)) {}
 
   Tessellation run() {
     const double wanted = limits_.tolerance;
@@ -673,10 +674,10 @@ class Search {
     if (!attempt(INFINITY)) refuse_number();
     // So many triangles are too many at `low`; at `high` they are enough.
     double low = std::isfinite(wanted) ? wanted : 0, high = error_;
-    constexpr int most_attempts = 16;
-    for (int i = 0; i < most_attempts && high > least() && high > 1.02 * low; ++i) {
-      monitor_.report(i / static_cast<double>(most_attempts));
-      const double guess = high * static_cast<double>(count_) / static_cast<double>(most_);
+    constexpr int max_attempts = 16;
+    for (int i = 0; i < max_attempts && high > least() && high > 1.02 * low; ++i) {
+      monitor_.report(i / static_cast<double>(max_attempts));
+      const double guess = high * static_cast<double>(count_) / static_cast<double>(max_triangles_);
       double next = low > 0 ? std::sqrt(low * high) : guess / (i == 0 ? 1.0 : 2.0);
       next = std::max({next, least(), 1.01 * low});
       if (attempt(next)) {
@@ -691,14 +692,14 @@ class Search {
 
  private:
   [[nodiscard]] double least() const {
-    return options_.single_precision ? least_single_tolerance : least_tolerance;
+    return options_.single_precision ? min_single_tolerance : min_tolerance;
   }
   // Keeps the best.
   bool attempt(double tolerance) {
     limits_.tolerance = tolerance;
     const WorkMonitor quiet{{}, monitor_.stop};
-    Refinement refinement(surface_, options_, limits_, quiet);
-    if (!refinement.run(most_) || refinement.triangle_count() > most_) return false;
+    MeshRefinement refinement(surface_, options_, limits_, quiet);
+    if (!refinement.run(max_triangles_) || refinement.triangle_count() > max_triangles_) return false;
     const double error = surface_.scale().apply(refinement.error_bound());
     if (!best_ || error < error_) {
       best_ = refinement.result();
@@ -714,7 +715,7 @@ class Search {
   // Names the number that is enough, if the budget allows to find it.
   [[noreturn]] void refuse_number() {
     limits_.tolerance = INFINITY;
-    Refinement refinement(surface_, options_, limits_, monitor_);
+    MeshRefinement refinement(surface_, options_, limits_, monitor_);
     const bool known = refinement.run(options_.budget);
     const std::uint64_t needed = refinement.triangle_count();
     std::string text = "tessellate: ";
@@ -736,7 +737,7 @@ class Search {
   const TessellateOptions& options_;
   Limits limits_;
   const WorkMonitor& monitor_;
-  std::uint64_t most_;  // triangles of an attempt
+  std::uint64_t max_triangles_;  // triangles of an attempt
   std::optional<Tessellation> best_;
   double error_ = INFINITY;  // of the best, in scaled units
   std::size_t count_ = 0;
@@ -747,8 +748,8 @@ class Search {
 Tessellation tessellate(const LimitSurface& surface, const TessellateOptions& options,
                         const WorkMonitor& monitor) {
   const Limits limits = limits_of(surface, options);
-  if (options.max_triangles) return Search(surface, options, limits, monitor).run();
-  Refinement refinement(surface, options, limits, monitor);
+  if (options.max_triangles) return CountSearch(surface, options, limits, monitor).run();
+  MeshRefinement refinement(surface, options, limits, monitor);
   const bool reached = refinement.run(options.budget);
   Tessellation result = refinement.result();
   result.reached = reached;
@@ -760,10 +761,10 @@ LocalTessellation tessellate(const LimitSurface& surface, std::span<const double
   Limits limits;
   limits.of_owner.reserve(tolerances.size());
   for (const double tolerance : tolerances) {
-    limits.of_owner.push_back(std::max(surface.scale().apply(tolerance), least_tolerance));
+    limits.of_owner.push_back(std::max(surface.scale().apply(tolerance), min_tolerance));
   }
   limits.tolerance = *std::min_element(limits.of_owner.begin(), limits.of_owner.end());
-  Refinement refinement(surface, options, limits, monitor);
+  MeshRefinement refinement(surface, options, limits, monitor);
   const bool reached = refinement.run(options.budget);
   LocalTessellation result;
   result.mesh = refinement.result(&result.errors);

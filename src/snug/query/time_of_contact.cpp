@@ -4,9 +4,9 @@
 #include <vector>
 
 #include <snug/geometry/rounding.h>
-#include <snug/query/containment.h>
 #include <snug/query/moving_body.h>
-#include <snug/query/pairs.h>
+#include <snug/query/nesting.h>
+#include <snug/query/pair_queries.h>
 #include <snug/query/swept_pairs.h>
 #include <snug/search/pair_frames.h>
 #include <snug/search/precision.h>
@@ -20,46 +20,46 @@ namespace {
 // Precision of distances: of the distance, and of the tolerance.
 constexpr double relative = 0.25, share_of_tolerance = 0.125;
 // The least share of it, where surfaces come together slowly while they move fast.
-constexpr double least_share = 0x1p-9;
+constexpr double min_share = 0x1p-9;
 // Without a tolerance: of the size.
-constexpr double least_resolution = 0x1p-36;
-// Of the reach that two times that are looked at may have together, to be sure that they meet.
+constexpr double min_resolution = 0x1p-36;
+// Share of the reach of two evaluated times that their distance may take, so that they surely meet.
 constexpr double reach_share = 0.8;
 // Times after the surfaces have come within the tolerance that are tried for a crossing.
 constexpr int max_probes = 7;
-// Times in a row that tell nothing.
+// Times in a row without a result.
 constexpr int max_blocked = 8;
-// What a look costs of the budget, besides splits: some hundred microseconds of work. None may take more than a part of
-// the whole budget.
+// Budget that one evaluation takes besides its splits: some hundred microseconds of work. None may take more than a
+// part of the whole budget.
 constexpr std::uint64_t cost_of_look = 1000, looks_of_budget = 16;
-// Pairs of nodes are followed through time after so many looks in a piece, where so many more are to be expected. None
-// before where that has brought all of a piece before. At first so many pairs and splits are spent on it.
+// Pairs of nodes are followed through time after this many looks in a piece, if this many more are expected; at once
+// where that finished a piece before. The first allowance of pairs and splits.
 constexpr int first_patience = 8, looks_too_many = 12;
 constexpr std::uint64_t first_allowance = 1000;
 // Part of the goal that surfaces move by in the shortest step of theirs.
 constexpr double share_of_step = 0.125;
 
-// What is known at one time, of the exact motion.
+// Bounds at one time, of the exact motion.
 struct Look {
   double time = 0;
   double lower = 0, upper = INFINITY;  // of the distance
   bool crossing = false;
-  // What the distance most likely is: points found are mostly the nearest ones.
+  // The likely distance: points found are mostly the nearest ones.
   [[nodiscard]] double likely() const { return upper < INFINITY ? upper : lower; }
 };
 
 // The first contact during one piece of both motions, and what came before.
-class Query {
+class FirstContactSearch {
  public:
-  Query(const MovingBvh& a, const MovingBvh& b, const TimeOfContactOptions& options,
-        const WorkMonitor& monitor)
+  FirstContactSearch(const MovingBvh& a, const MovingBvh& b, const TimeOfContactOptions& options,
+                     const WorkMonitor& monitor)
       : body_{MovingBody(a), MovingBody(b)},
         options_(options),
         monitor_(monitor),
         tolerance_(*options.tolerance),
         size_(share_of_size(1, a.model.surface().size(), b.model.surface().size())),
         duration_(std::max(body_[0].duration(), body_[1].duration())) {
-    resolution_ = std::max(share_of_tolerance * tolerance_, least_resolution * size_);
+    resolution_ = std::max(share_of_tolerance * tolerance_, min_resolution * size_);
   }
 
   TimeOfContact run() {
@@ -246,7 +246,7 @@ class Query {
   [[nodiscard]] bool short_enough(double from, double to) const {
     return from >= to || enlarged(speed_ * (to - from)) <= goal();
   }
-  [[nodiscard]] double goal() const { return std::max(tolerance_, 8 * least_resolution * size_); }
+  [[nodiscard]] double goal() const { return std::max(tolerance_, 8 * min_resolution * size_); }
 
   // Takes into account what is known at a time.
   void take(const Look& look, double end) {
@@ -262,7 +262,7 @@ class Query {
       block(look.time);
     }
   }
-  // What lies beyond a contact is of no use.
+  // Times beyond a contact are of no use.
   void meet(double time) {
     crossing_ = std::min(crossing_, time);
     std::erase_if(ahead_, [this](const Look& look) { return look.time > crossing_; });
@@ -371,9 +371,9 @@ class Query {
   // A little after the surfaces have come near each other.
   bool find_crossing(double end) {
     probed_ = true;
-    const double closing = std::max(closing_, least_share) * speed_;
+    const double closing = std::max(closing_, min_share) * speed_;
     const double base = std::max(lower_, last_ ? last_->time + last_->likely() / closing : 0);
-    resolution_ = std::max(resolution_ * std::clamp(closing_, least_share, 1.0), least_resolution * size_);
+    resolution_ = std::max(resolution_ * std::clamp(closing_, min_share, 1.0), min_resolution * size_);
     double step = 0.25 * goal() / speed_;
     for (int i = 0; i < max_probes; ++i, step *= 2) {
       const double time = std::min(base + step, end);
@@ -389,8 +389,8 @@ class Query {
     return false;
   }
 
-  // Solids whose surfaces turned out to be apart at first only later: what is inside is asked now.
-  void settle_nesting() {
+  // Nesting of solids whose surfaces turned out only later to be apart at first.
+  void resolve_nesting() {
     if (!options_.solid || outside_.value_or(true) || lower_ == 0) return;
     inside_ = nesting(body_[0].at_start(), body_[1].at_start(), monitor_);
     if (inside_.inner) crossing_ = 0;
@@ -400,7 +400,7 @@ class Query {
   }
 
   TimeOfContact result() {
-    settle_nesting();
+    resolve_nesting();
     TimeOfContact answer;
     answer.looks = looks_;
     if (crossing_ < INFINITY) {
@@ -417,13 +417,13 @@ class Query {
     }
     if (answer.time.upper < INFINITY) {
       answer.reached = short_enough(answer.time.lower, answer.time.upper);
-      tell_witness(answer);
+      set_witness(answer);
     }
     answer.stats = stats_;
     return answer;
   }
 
-  void tell_witness(TimeOfContact& answer) {
+  void set_witness(TimeOfContact& answer) {
     // Surfaces may have come within the tolerance in a piece before.
     if (answer.time.upper < first_) place_in_piece(static_cast<std::size_t>(answer.time.upper));
     const Places at = places_at(answer.time.upper);
@@ -456,7 +456,7 @@ class Query {
   double resolution_ = 0;
   // At no time up to lower_ there is contact, or before it where it is 0 or an end of the answer.
   double lower_ = 0;
-  // The first times known with contact at or before, within the tolerance, and of which nothing can be told.
+  // The first times known with contact at or before, within the tolerance, and undecided.
   double crossing_ = INFINITY, within_ = INFINITY, blocked_ = INFINITY;
   double blocked_to_ = 0;     // the last of these
   std::vector<Look> ahead_;   // times without contact beyond lower_, the first one last
@@ -494,7 +494,7 @@ TimeOfContact time_of_contact(const MovingBvh& a, const MovingBvh& b, const Time
     static_cast<void>(a.model.solid());
     static_cast<void>(b.model.solid());
   }
-  return Query(a, b, wanted, monitor).run();
+  return FirstContactSearch(a, b, wanted, monitor).run();
 }
 
 TimeOfContact time_of_contact(const Surface& a, const Trajectory& motion_a, const Surface& b,

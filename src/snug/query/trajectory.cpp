@@ -17,7 +17,7 @@ using IntervalVector = std::array<Interval, 3>;
 // Half the cosine of poses that are so nearly half a turn apart that neither rotation is the shorter one.
 constexpr double half_turn = 1e-8;
 // Rotations by less are translations: quotients by them would leave the range.
-constexpr double least_angle = 0x1p-500;
+constexpr double min_angle = 0x1p-500;
 
 IntervalVector intervals(const Vector3& v) { return {v.x, v.y, v.z}; }
 IntervalVector operator+(const IntervalVector& a, const IntervalVector& b) {
@@ -82,7 +82,7 @@ Trajectory::Piece screw_piece(const Motion& from, const Motion& to, const std::s
   }
   const Vector3 vector{x, y, z};
   piece.radians = 2 * std::atan2(length(vector), w);
-  if (piece.radians < least_angle) piece.radians = 0;
+  if (piece.radians < min_angle) piece.radians = 0;
   if (piece.radians > 0) piece.axis = normalized(vector);
   piece.about = Point3{} + from.offset();
   const Vector3 way = to.offset() - from.offset(), n = piece.axis;
@@ -140,7 +140,7 @@ Trajectory Trajectory::steady(const Motion& from, const SteadyMotion& motion) {
   Piece piece{.from = from};
   piece.about = motion.about;
   piece.velocity = motion.velocity;
-  if (std::fabs(motion.radians) >= least_angle) {
+  if (std::fabs(motion.radians) >= min_angle) {
     piece.radians = motion.radians;
     piece.axis = PowerOfTwo::normalising(max_abs(motion.axis)).apply(motion.axis);
   }

@@ -65,7 +65,7 @@ class TriangleComplex {
   }
   /// Marks edges that others with the same ends have beside them, edges from a vertex to itself, and sides of
   /// triangles with the same sides. Did it mark any? After few steps there are none, and later steps make none:
-  /// parts of what its corners tell apart are told apart by theirs.
+  /// parts of triangles that their corners distinguish are distinguished by theirs.
   bool mark_what_is_not_simple();
 
   /// Gives the middles of marked edges that have none the next vertex numbers, in the order in which triangles

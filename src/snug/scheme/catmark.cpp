@@ -160,7 +160,7 @@ class CatmarkRules : public CreasedRules {
     for (const HalfEdge g : {h, twin}) add_mean(topology.face(topology.face_of(g)), share * face, row);
   }
 
-  [[nodiscard]] bool is_settled(const Topology& topology, const Star& star, bool dart) const override {
+  [[nodiscard]] bool has_limit_in_star(const Topology& topology, const Star& star, bool dart) const override {
     return among_quads(topology, star) && (!dart || has_distinct_places(topology, star));
   }
   void add_smooth_limit(const Topology& topology, VertexId v, const Star& star,

@@ -5,7 +5,7 @@
 
 namespace snug {
 
-/// What Loop and Catmull-Clark have in common: smooth inside, with cubic B-spline curves along creases and
+/// Rules common to Loop and Catmull-Clark: smooth inside, with cubic B-spline curves along creases and
 /// boundaries, and corners. [DeRose98]; OpenSubdiv.
 class CreasedRules : public SchemeRules {
  public:
@@ -23,7 +23,8 @@ class CreasedRules : public SchemeRules {
                                const Interval& share, RowBuilder& row) const = 0;
 
   /// Does a smooth vertex at rest, or a dart, have its limit in its star?
-  [[nodiscard]] virtual bool is_settled(const Topology& topology, const Star& star, bool dart) const = 0;
+  [[nodiscard]] virtual bool has_limit_in_star(const Topology& topology, const Star& star,
+                                               bool dart) const = 0;
   /// The limit of such a vertex.
   virtual void add_smooth_limit(const Topology& topology, VertexId v, const Star& star,
                                 Stencils& out) const = 0;

@@ -21,9 +21,9 @@ bool is_dart(const Star& star) {
 }
 
 // Can the limit be read off the star itself?
-bool settled(const CreasedRules& rules, const Topology& topology, const Star& star) {
+bool limit_in_star(const CreasedRules& rules, const Topology& topology, const Star& star) {
   return is_stationary(star) &&
-         (vertex_rule(star) != VertexRule::smooth || rules.is_settled(topology, star, is_dart(star)));
+         (vertex_rule(star) != VertexRule::smooth || rules.has_limit_in_star(topology, star, is_dart(star)));
 }
 
 // The star of a vertex one step on, with what the sharpness of its edges depends on, and the rows that lead
@@ -267,9 +267,9 @@ void add_curve_tangents(const Star& star, Stencils& out) {
 }
 
 // The limit of a vertex, if it can be read off its star; returns whether it could.
-bool add_settled_limit(const CreasedRules& rules, const RuledMesh& mesh, VertexId v, const Star& star,
+bool add_limit_in_star(const CreasedRules& rules, const RuledMesh& mesh, VertexId v, const Star& star,
                        Stencils& out) {
-  if (!settled(rules, mesh.topology, star)) return false;
+  if (!limit_in_star(rules, mesh.topology, star)) return false;
   if (is_dart(star)) {
     add_dart_row(rules, DartStep(mesh, star), out);
     return true;
@@ -296,7 +296,7 @@ bool add_settled_limit(const CreasedRules& rules, const RuledMesh& mesh, VertexI
 void CreasedRules::add_limit_row(const RuledMesh& mesh, VertexId v, Stencils& out) const {
   Star star;
   gather_star(mesh, v, star);
-  if (add_settled_limit(*this, mesh, v, star, out)) return;
+  if (add_limit_in_star(*this, mesh, v, star, out)) return;
   const NextStar next = next_star(mesh, star);
   Stencils limit;
   add_limit_row(next.ruled(), VertexId(0), limit);
@@ -307,7 +307,7 @@ bool CreasedRules::add_corner_limit(const RuledMesh& mesh, HalfEdge corner, Sten
   const VertexId v = mesh.topology.from(corner);
   Star star;
   gather_star(mesh, v, star);
-  return add_settled_limit(*this, mesh, v, star, out);
+  return add_limit_in_star(*this, mesh, v, star, out);
 }
 
 void CreasedRules::add_corner_tangents(const RuledMesh& mesh, HalfEdge corner, Stencils& out) const {
@@ -315,7 +315,7 @@ void CreasedRules::add_corner_tangents(const RuledMesh& mesh, HalfEdge corner, S
   const VertexId v = topology.from(corner);
   Star star;
   gather_star(mesh, v, star);
-  if (!settled(*this, topology, star)) {
+  if (!limit_in_star(*this, topology, star)) {
     const NextStar next = next_star(mesh, star);
     const auto& faces = next.part.faces;
     const auto place = std::find(faces.begin(), faces.end(), topology.face_of(corner)) - faces.begin();

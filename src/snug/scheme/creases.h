@@ -53,7 +53,7 @@ struct Spoke {
   double sharpness;
 };
 
-/// What the rules at a vertex look at. In a fan spokes come counter-clockwise, those of an open one from its
+/// Edges around a vertex, as the rules read them. In a fan spokes are counter-clockwise, those of an open one from its
 /// first to its last; each edge once.
 struct Star {
   std::vector<Spoke> spokes;

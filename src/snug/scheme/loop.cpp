@@ -143,7 +143,7 @@ class LoopRules : public CreasedRules {
     }
   }
 
-  [[nodiscard]] bool is_settled(const Topology&, const Star&, bool) const override { return true; }
+  [[nodiscard]] bool has_limit_in_star(const Topology&, const Star&, bool) const override { return true; }
   void add_smooth_limit(const Topology&, VertexId v, const Star& star, Stencils& out) const override {
     const RingMask mask = limit_mask(star.spokes.size());
     out.add(v.value(), mask.centre);

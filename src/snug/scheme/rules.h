@@ -15,7 +15,7 @@ namespace snug {
 /// Regular patches that fit_kernels.h knows by heart.
 enum class RegularKernel : std::uint8_t { none, box_spline, bicubic };
 
-/// What sets a scheme apart and is a plain value.
+/// Properties of a scheme that are plain values.
 struct SchemeFacts {
   Scheme scheme;
   const char* name;
@@ -31,7 +31,7 @@ struct SchemeFacts {
   std::size_t max_face_size = 512;  ///< most vertices of a face
   /// Does a step weight all corners of a polygon for each new one?
   bool full_step = false;
-  const char* wants_triangles = nullptr;  ///< What to tell who gives other faces; none: it takes them.
+  const char* wants_triangles = nullptr;  ///< advice if other faces are given; none: it takes them
   bool creases = true;                    ///< Does sharpness change the surface?
   /// Does the surface of a face depend on that face alone?
   bool local = false;
@@ -49,11 +49,11 @@ class SchemeRules : public SchemeFacts {
   virtual ~SchemeRules() = default;
 
   [[nodiscard]] bool triangular() const { return corners == 3; }
-  /// What a patch belongs to, in a word.
+  /// Owner of a patch, in a word.
   [[nodiscard]] const char* owner() const { return primal ? "face" : "vertex"; }
 
   /// Does it answer questions about the surface of a mesh with such a defect all the same? Not where a face
-  /// names a vertex twice: its patches have no corners that can be told apart.
+  /// names a vertex twice: its patches have no distinguishable corners.
   [[nodiscard]] virtual bool answers(DefectKind kind) const;
 
   /// One step of subdivision, see refine.h.
@@ -72,7 +72,7 @@ class SchemeRules : public SchemeFacts {
   /// or 3 begins at, all corners of the quarter in their places.
   [[nodiscard]] virtual HalfEdge quarter_start(const Topology& ring, const Topology& refined,
                                                std::size_t corner) const;
-  /// The half-edge of a ring that tells a corner of its patch, or of the quad that it is half of.
+  /// The half-edge of a ring that names a corner of its patch, or of the quad that it is half of.
   [[nodiscard]] HalfEdge corner_of(const Topology& ring, std::size_t corner) const {
     return primal ? static_cast<HalfEdge>(corner) : ring.first_of(FaceId(corner));
   }

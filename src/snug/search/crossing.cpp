@@ -16,11 +16,11 @@ namespace {
 // Levels that a piece near an extraordinary corner is split, if it can be, before its whole net stands for its
 // edge.
 constexpr unsigned edge_levels = 8;
-// Levels from the piece asked about to one that is small enough to pass between the strips.
+// Levels from the given piece to one that is small enough to pass between the strips.
 constexpr unsigned probe_levels = 16;
 // Least sine of the angle between the normal of a base triangle and an edge of the limit triangle: they are
 // across each other but for what the planes of the two triangles differ.
-constexpr double least_sine = 0.5;
+constexpr double min_sine = 0.5;
 
 // Bezier points of the polynomial `part` whose hull holds its edge from corner k to k + 1.
 template <class Visit>
@@ -58,7 +58,7 @@ void visit_edge(const Patch& patch, std::size_t edge, unsigned level, const Visi
 
 }  // namespace
 
-Crossed::Crossed(const Piece& piece, const Heights& heights) {
+CrossingTest::CrossingTest(const Piece& piece, const Heights& heights) {
   const OffsetTriangle& offset = piece.offset;
   normal_ = unit_normal(offset.base);
   if (normal_ == Vector3{} || !std::isfinite(heights.lower) || !std::isfinite(heights.upper)) return;
@@ -72,7 +72,7 @@ Crossed::Crossed(const Piece& piece, const Heights& heights) {
     const Vector3 edge = corners[(k + 1) % 3] - corners[k];
     // Of an edge nearly along the normal the product is mostly rounding: then it is not across either.
     const Vector3 along = normalized(edge), inward = cross(normal_, along);
-    if (!(length(inward) > least_sine)) return;
+    if (!(length(inward) > min_sine)) return;
     strip.inward = normalized(inward);
     strip.from = corners[k];
     // Both ends of the edge belong to its curve: the exact corners are within their error of these.
@@ -90,13 +90,13 @@ Crossed::Crossed(const Piece& piece, const Heights& heights) {
   possible_ = true;
 }
 
-double Crossed::rounding(const Triangle& points) const {
+double CrossingTest::rounding(const Triangle& points) const {
   double largest = 0;
   for (const Point3& p : points) largest = std::max(largest, max_abs(p - from_));
   return gamma_bound(32) * (largest + 4);
 }
 
-bool Crossed::holds(const Triangle& around, double radius) const {
+bool CrossingTest::holds(const Triangle& around, double radius) const {
   const double reach = enlarged(radius) + rounding(around);
   for (const Strip& strip : strips_) {
     for (const Point3& p : around) {
@@ -106,7 +106,7 @@ bool Crossed::holds(const Triangle& around, double radius) const {
   return true;
 }
 
-Crossed::Sides Crossed::sides(const Triangle& points, double error) const {
+CrossingTest::Sides CrossingTest::sides(const Triangle& points, double error) const {
   const double reach = enlarged(error) + rounding(points);
   Sides found;
   for (const Point3& p : points) {
@@ -119,7 +119,7 @@ Crossed::Sides Crossed::sides(const Triangle& points, double error) const {
 
 namespace {
 
-// What bounds pieces.
+// Cache and method that bound pieces.
 struct BoundedBy {
   BoundsCache& library;
   BoundMethod method;
@@ -143,7 +143,7 @@ std::optional<TriangleParameter> in_middle_child(TriangleParameter p) {
 // together they are connected. False, with the child that descend() names alone, where its parameter there
 // rounds: what holds that need not hold the others'.
 bool add_children(const BoundedBy& by, const Probe& probe, std::vector<Probe>& out) {
-  thread_local HullPoints scratch;
+  thread_local BoundingPoints scratch;
   const auto [u, v] = probe.at;
   const Descent certain = descend(probe.at);
   const auto add = [&](unsigned child, TriangleParameter at) {
@@ -168,7 +168,7 @@ bool add_children(const BoundedBy& by, const Probe& probe, std::vector<Probe>& o
 
 // Do pieces of `whole` around a parameter cross, those that meet there together? Splits some levels down, and
 // keeps nothing. seen: the pieces' frame as seen from that of the crossed piece.
-bool crosses_near(const BoundedBy& by, const Piece& whole, TriangleParameter at, const Crossed& crossed,
+bool crosses_near(const BoundedBy& by, const Piece& whole, TriangleParameter at, const CrossingTest& crossed,
                   const RelativeFrame& seen) {
   if (!seen.comparable) return false;
   std::vector<Probe> probes{{whole, on_triangle(at)}}, children;
@@ -187,7 +187,7 @@ bool crosses_near(const BoundedBy& by, const Piece& whole, TriangleParameter at,
         extent = std::max(extent, length(corners[k] - corners[0]));
       }
       inside = inside && crossed.holds(around, growth * piece.offset.radius + seen.slack);
-      const Crossed::Sides sides = crossed.sides(corners, growth * limit.error + seen.slack);
+      const CrossingTest::Sides sides = crossed.sides(corners, growth * limit.error + seen.slack);
       below = below || sides.below;
       above = above || sides.above;
       last = last || piece.patch.path.level() == PiecePath::max_level;
@@ -204,21 +204,21 @@ bool crosses_near(const BoundedBy& by, const Piece& whole, TriangleParameter at,
 
 }  // namespace
 
-bool certainly_cross(PairFrames& frames, const PiecePair& pieces) {
+bool proves_crossing(PairFrames& frames, const PiecePair& pieces) {
   const std::optional<PairOfPoints> middle = middle_of_contact(pieces.base[0], pieces.base[1]);
   if (!middle) return false;
   const std::array<Barycentric, 2> at{middle->on_a, middle->on_b};
   std::array<Piece, 2> whole;
   std::array<Heights, 2> heights;
   for (std::size_t s = 0; s < 2; ++s) {
-    thread_local HullPoints points;
+    thread_local BoundingPoints points;
     SurfaceWorkspace& workspace = frames.workspace(s);
     whole[s] = workspace.piece(pieces.nodes[s], points);
     heights[s] = workspace.model().method() == BoundMethod::table ? heights_of(whole[s].offset)
                                                                   : heights_of(whole[s], points);
   }
   for (std::size_t s = 0; s < 2; ++s) {
-    const Crossed crossed(whole[s], heights[s]);
+    const CrossingTest crossed(whole[s], heights[s]);
     const SurfaceBvh& other = frames.workspace(1 - s).model();
     if (crossed.possible() && crosses_near({other.surface().library(), other.method()}, whole[1 - s],
                                            clamped(at[1 - s]), crossed, frames.view(s).frame)) {
@@ -228,17 +228,17 @@ bool certainly_cross(PairFrames& frames, const PiecePair& pieces) {
   return false;
 }
 
-std::optional<PairOfPoints> certain_crossing(BoundsCache& library, const Piece& a, const Piece& b) {
+std::optional<PairOfPoints> proved_crossing(BoundsCache& library, const Piece& a, const Piece& b) {
   const std::optional<PairOfPoints> middle = middle_of_contact(a.offset.base, b.offset.base);
   if (!middle) return std::nullopt;
   const std::array<const Piece*, 2> pieces{&a, &b};
   const std::array<Barycentric, 2> at{middle->on_a, middle->on_b};
-  thread_local HullPoints points;
+  thread_local BoundingPoints points;
   RelativeFrame same;
   same.rows = {Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
   for (std::size_t s = 0; s < 2; ++s) {
     const Piece whole = make_piece(library, pieces[s]->root, pieces[s]->patch, points);
-    const Crossed crossed(whole, heights_of(whole, points));
+    const CrossingTest crossed(whole, heights_of(whole, points));
     if (crossed.possible() &&
         crosses_near({library, BoundMethod::rows}, *pieces[1 - s], clamped(at[1 - s]), crossed, same)) {
       return middle;

@@ -6,8 +6,8 @@
 
 namespace snug {
 
-/// What a connected set must do to be proved to meet a piece: run from below it to above it inside the prism
-/// over what its border leaves free.
+/// A condition under which a connected set meets a piece: it runs from below the piece to above it, inside the prism
+/// over the part that the border leaves free.
 ///
 ///              . above .           The piece lies between two planes across n, and its border, seen along n,
 ///          ___/_________\___       within three strips along the edges of the limit triangle. A set inside
@@ -17,9 +17,9 @@ namespace snug {
 ///
 /// Guarantee: a connected set meets the piece if holds() all its parts and sides() finds points on either.
 /// Source:    derivations/contact.md.
-class Crossed {
+class CrossingTest {
  public:
-  Crossed(const Piece& piece, const Heights& heights);
+  CrossingTest(const Piece& piece, const Heights& heights);
 
   /// False if the border leaves nothing free, or the piece has no normal.
   [[nodiscard]] bool possible() const { return possible_; }
@@ -50,9 +50,9 @@ class Crossed {
 
 /// Is it proved that two pieces, or smaller ones where their base triangles are nearest, cross each other?
 /// Source:    derivations/contact.md.
-[[nodiscard]] bool certainly_cross(PairFrames& frames, const PiecePair& pieces);
-/// The same of two pieces of one surface, by rows: about where, if it is proved.
-[[nodiscard]] std::optional<PairOfPoints> certain_crossing(BoundsCache& library, const Piece& a,
-                                                           const Piece& b);
+[[nodiscard]] bool proves_crossing(PairFrames& frames, const PiecePair& pieces);
+/// The same of two pieces of one surface, by rows: an approximate place, if it is proved.
+[[nodiscard]] std::optional<PairOfPoints> proved_crossing(BoundsCache& library, const Piece& a,
+                                                          const Piece& b);
 
 }  // namespace snug

@@ -64,7 +64,7 @@ double gap_between(const Outline& one, const Outline& other) {
   return gap - 32 * unit_roundoff * (apart + one.size + other.size);
 }
 
-// What both boxes need along the line of their centres and along their axes, in mesh units.
+// A placed root box: axes and half sizes in mesh units.
 struct PlacedRoot {
   std::array<Vector3, 3> axes;
   Vector3 half;

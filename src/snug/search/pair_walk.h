@@ -43,8 +43,8 @@ class PairWalk {
     return !node.bounded() ||
            (stats_.splits < budget && !frames_.workspace(0).full() && !frames_.workspace(1).full());
   }
-  /// What a node opens to, against the other one: pairs with a gap of at most `prune_distance` are added to
-  /// `out`, the one with the smallest gap last. Returns the smallest gap of the others; infinite if there are none.
+  /// Opens one node of a pair: child pairs with a gap of at most `prune_distance` are added to `out`, the one with
+  /// the smallest gap last. Returns the smallest gap of the others; infinite if there are none.
   /// Requires:  an opening that is not none.
   float open(const NodePair& pair, Opening opening, double prune_distance, std::vector<NodePair>& out);
 

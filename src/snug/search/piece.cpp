@@ -11,20 +11,21 @@
 
 namespace snug {
 
-Piece make_piece(BoundsCache& library, PatchId root, Patch patch, HullPoints& scratch, BoundMethod method) {
+Piece make_piece(BoundsCache& library, PatchId root, Patch patch, BoundingPoints& scratch,
+                 BoundMethod method) {
   Piece piece;
   piece.root = root;
   if (method == BoundMethod::table) {
     piece.offset = offset_triangle(table_triangle(library.table(*patch.kind), patch));
   } else {
-    hull_points(library, patch, scratch);
+    bounding_points(library, patch, scratch);
     piece.offset = offset_triangle(library, scratch, limit_corners(patch));
   }
   piece.patch = std::move(patch);
   return piece;
 }
 
-Piece child_of(BoundsCache& library, const Piece& piece, unsigned child, HullPoints& scratch,
+Piece child_of(BoundsCache& library, const Piece& piece, unsigned child, BoundingPoints& scratch,
                BoundMethod method) {
   return make_piece(library, piece.root, split(piece.patch, child), scratch, method);
 }
@@ -50,7 +51,7 @@ Vector3 unit_normal(const Triangle& triangle) {
   return (1 / area) * normal;
 }
 
-Extent extent_of(const HullPoints& hull, const Vector3& direction, const Point3& from) {
+Extent extent_of(const BoundingPoints& hull, const Vector3& direction, const Point3& from) {
   const Slab slab = outer_slab(hull, direction);
   if (std::isnan(slab.lower) || std::isnan(slab.upper)) return unbounded;
   const double sum = std::fabs(direction.x) + std::fabs(direction.y) + std::fabs(direction.z);
@@ -74,7 +75,7 @@ Extent extent_of(const OffsetTriangle& triangle, const Vector3& direction) {
   return {extent.lower - reach, extent.upper + reach};
 }
 
-Heights heights_of(const Piece& piece, const HullPoints& points) {
+Heights heights_of(const Piece& piece, const BoundingPoints& points) {
   const Vector3 normal = unit_normal(piece.offset.base);
   const Vector3 from = piece.offset.base[0] - points.origin;
   const kernels::Range range = kernels::heights(points.coordinates(), from, normal);
@@ -125,7 +126,7 @@ std::array<Vector3, 3> box_axes(const Triangle& base) {
 
 }  // namespace
 
-Obb box_around(const OffsetTriangle& offset, const HullPoints& points, BoundMethod method) {
+Obb box_around(const OffsetTriangle& offset, const BoundingPoints& points, BoundMethod method) {
   return fit_box(box_axes(offset.base), [&](const Vector3& d) {
     return method == BoundMethod::table ? extent_of(offset, d) : extent_of(points, d);
   });

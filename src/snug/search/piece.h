@@ -24,13 +24,13 @@ struct Piece {
   [[nodiscard]] bool can_split() const { return snug::can_split(patch, offset); }
 };
 
-/// A piece made from a patch: its offset triangle is fitted to hull rows, in `scratch`, or comes from tables.
-[[nodiscard]] Piece make_piece(BoundsCache& library, PatchId root, Patch patch, HullPoints& scratch,
+/// A piece made from a patch: its offset triangle is fitted to bounding rows, in `scratch`, or comes from tables.
+[[nodiscard]] Piece make_piece(BoundsCache& library, PatchId root, Patch patch, BoundingPoints& scratch,
                                BoundMethod method = BoundMethod::rows);
 /// One of the four children of a piece.
 /// Requires:  below the last level, PiecePath::max_level.
-[[nodiscard]] Piece child_of(BoundsCache& library, const Piece& piece, unsigned child, HullPoints& scratch,
-                             BoundMethod method = BoundMethod::rows);
+[[nodiscard]] Piece child_of(BoundsCache& library, const Piece& piece, unsigned child,
+                             BoundingPoints& scratch, BoundMethod method = BoundMethod::rows);
 
 /// Limit points, as a triangle: exact ones are within `error`, a length, of its corners.
 struct LimitTriangle {
@@ -49,12 +49,12 @@ struct Heights {
   double lower, upper;
 };
 /// From the points that the piece was fitted to; infinite where they are not finite.
-[[nodiscard]] Heights heights_of(const Piece& piece, const HullPoints& points);
+[[nodiscard]] Heights heights_of(const Piece& piece, const BoundingPoints& points);
 /// From the offset triangle alone.
 [[nodiscard]] Heights heights_of(const OffsetTriangle& offset);
 
 /// Bounds of dot(direction, x - from) over a patch known by points whose hull holds it.
-[[nodiscard]] Extent extent_of(const HullPoints& hull, const Vector3& direction, const Point3& from = {});
+[[nodiscard]] Extent extent_of(const BoundingPoints& hull, const Vector3& direction, const Point3& from = {});
 /// Bounds of dot(direction, x) over an offset triangle.
 [[nodiscard]] Extent extent_of(const OffsetTriangle& triangle, const Vector3& direction);
 
@@ -69,6 +69,6 @@ template <std::ranges::range Sets>
 }
 /// A box around a piece, along its base triangle and normal, or the coordinate axes where it has none; by the
 /// points that the offset triangle was fitted to, or from tables by itself.
-[[nodiscard]] Obb box_around(const OffsetTriangle& offset, const HullPoints& points, BoundMethod method);
+[[nodiscard]] Obb box_around(const OffsetTriangle& offset, const BoundingPoints& points, BoundMethod method);
 
 }  // namespace snug

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include <snug/bounds/hull_points.h>
+#include <snug/bounds/bounding_points.h>
 #include <snug/geometry/rounding.h>
 #include <support/contract.h>
 #include <support/direction.h>
@@ -12,15 +12,15 @@
 namespace snug {
 namespace {
 
-// What a few roundings may add to a bound.
+// Factor that covers a few roundings of a bound.
 constexpr double safely = 1 + 0x1p-30;
 // Slopes above this are not worth a bound; sines of the angle between pieces below that are none.
-constexpr double max_slope = 0.5, least_sine = 1e-5, direction_error = 1e-9;
+constexpr double max_slope = 0.5, min_sine = 1e-5, direction_error = 1e-9;
 // The share of its distance from a zero that a step may leave, and how many are made.
 constexpr double max_contraction = 0.9;
 constexpr unsigned max_steps = 80;
-// How large a box may be in which ends of arcs are not told apart.
-constexpr double max_speck = 0x1p-24;
+// Largest box in which ends of arcs are not separated.
+constexpr double max_end_box = 0x1p-24;
 
 Vector3 mean(const std::vector<Vector3>& vectors) {
   Vector3 sum;
@@ -159,8 +159,8 @@ void PlacedPiece::take_polynomial(const Patch& patch, const PlacedFrame& frame) 
 }
 
 void PlacedPiece::take_hull(BoundsCache& library, const Patch& patch, const PlacedFrame& frame) {
-  thread_local HullPoints points;
-  hull_points(library, patch, points);
+  thread_local BoundingPoints points;
+  bounding_points(library, patch, points);
   origin_ = frame.apply(points.origin);
   origin_error_ = frame.apply_error(points.origin);
   net_.resize(points.size());
@@ -184,10 +184,10 @@ void PlacedPiece::bound_slope() {
   const double determinant = (1 - uu) * (1 - vv) - uv * vu;
   if (!(uu < 0.75 && vv < 0.75 && determinant > 0.0625)) return;
   const double length_u = length(dual_u), length_v = length(dual_v);
-  const double most_u = (length_u * (1 - vv) + uv * length_v) / determinant,
-               most_v = (length_v * (1 - uu) + vu * length_u) / determinant;
+  const double max_u = (length_u * (1 - vv) + uv * length_v) / determinant,
+               max_v = (length_v * (1 - uu) + vu * length_u) / determinant;
   const double slope =
-      safely * (most_u * widest(along_u_, e, normal, 0) + most_v * widest(along_v_, e, normal, 0)) + 0x1p-46;
+      safely * (max_u * widest(along_u_, e, normal, 0) + max_v * widest(along_v_, e, normal, 0)) + 0x1p-46;
   if (!(slope < max_slope)) return;
   normal_ = normal;
   slope_ = slope;
@@ -395,7 +395,7 @@ CutArc arc_between(const CutEnd& from, const CutEnd& to, const Vector3& along, d
   return arc;
 }
 
-// Ends that are not told apart along the direction of the curve.
+// Ends that are not separated along the direction of the curve.
 struct EndGroup {
   std::vector<CutEnd> ends;
   double lower, upper;  // heights along the direction
@@ -419,7 +419,7 @@ TriangleParameter on_first(const PlacedPiece& first, const CutEnd& end) {
   return end.side == 0 ? edge_of(first, end.edge).at(end.along) : end.at;
 }
 
-// What two pieces have in common, which is met once at most on each plane across `along`.
+// The common curve of two pieces; each plane across `along` meets it at most once.
 class Transversal {
  public:
   Transversal(const PlacedPiece& a, const PlacedPiece& b, const Vector3& along, double spread)
@@ -447,8 +447,8 @@ class Transversal {
       }
       if (!groups_[i].sure()) {
         const Box3 box = groups_[i].box();
-        if (!(longest_side(box) < max_speck)) return {};
-        result.specks.push_back(box);
+        if (!(longest_side(box) < max_end_box)) return {};
+        result.end_boxes.push_back(box);
       }
       before = *after;
     }
@@ -545,7 +545,7 @@ PieceCut cut(const PlacedPiece& a, const PlacedPiece& b) {
   if (!a.bounded_slope() || !b.bounded_slope()) return {};
   const Vector3 across = cross(a.normal(), b.normal());
   const double sine = length(across), cosine = std::fabs(dot(a.normal(), b.normal()));
-  if (!(sine > least_sine)) return {};
+  if (!(sine > min_sine)) return {};
   const Vector3 along = normalized(across);
   if (parts(along)) return {PieceCut::State::apart, {}, {}};
   // The share of a chord of both pieces that is across `along`.

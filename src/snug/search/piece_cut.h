@@ -86,17 +86,17 @@ struct CutArc {
 struct PieceCut {
   enum class State : std::uint8_t {
     apart,  ///< proved: they have no point in common
-    arcs,   ///< proved: what they have in common are these arcs, and what lies in the specks
+    arcs,   ///< proved: what they have in common are these arcs, and the contents of the end boxes
     unsure,
   };
   State state = State::unsure;
   std::vector<CutArc> arcs;
   /// Tiny boxes around ends that are not `sure`, where an edge of one piece meets an edge of the other, or nearly so.
-  std::vector<Box3> specks;
+  std::vector<Box3> end_boxes;
 };
 
 /// Guarantee: the state, rounding included. Ends of arcs that are `sure` are each the only common point of their edge
-///            and the other piece; an arc begins and ends within CutEnd::error of these, or in a speck.
+///            and the other piece; an arc begins and ends within CutEnd::error of these, or in an end box.
 /// Source:    derivations/contacts.md.
 [[nodiscard]] PieceCut cut(const PlacedPiece& a, const PlacedPiece& b);
 

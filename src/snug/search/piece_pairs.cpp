@@ -12,7 +12,7 @@ namespace snug {
 PiecePair PiecePairs::nearest(const NodePair& pair) {
   std::array<OffsetTriangle, 2> offsets;
   for (std::size_t s = 0; s < 2; ++s) {
-    const PieceRecord& record = SurfaceWorkspace::record(pair.nodes[s]);
+    const PieceBounds& record = SurfaceWorkspace::bounds_of(pair.nodes[s]);
     offsets[s] = {record.base(pair.nodes[s].boxes->origin()), record.radius()};
   }
   PiecePair pieces = nearest(pair, offsets);
@@ -24,13 +24,13 @@ bool PiecePairs::at_single_precision(const NodePair& pair) {
   const auto& [a, b] = pair.nodes;
   const bool can_a = SurfaceWorkspace::can_open(a), can_b = SurfaceWorkspace::can_open(b);
   if (can_a == can_b) return !can_a;
-  const double fixed = SurfaceWorkspace::record(can_a ? b : a).radius(),
-               other = SurfaceWorkspace::record(can_a ? a : b).radius();
+  const double fixed = SurfaceWorkspace::bounds_of(can_a ? b : a).radius(),
+               other = SurfaceWorkspace::bounds_of(can_a ? a : b).radius();
   return other <= fixed;
 }
 
 PiecePair PiecePairs::nearest_in_double(const NodePair& pair) {
-  thread_local HullPoints scratch;
+  thread_local BoundingPoints scratch;
   std::array<OffsetTriangle, 2> offsets;
   for (std::size_t s = 0; s < 2; ++s) {
     offsets[s] = frames_.workspace(s).piece(pair.nodes[s], scratch).offset;
@@ -64,7 +64,7 @@ PiecePair PiecePairs::nearest(const NodePair& pair, const std::array<OffsetTrian
 
 Point3 PiecePairs::quadratic_point(const PiecePair& pieces, std::size_t side, TriangleParameter at) const {
   const Node& node = pieces.nodes[side];
-  return frames_.frame(side).apply(node.boxes->origin() + SurfaceWorkspace::record(node).at(at));
+  return frames_.frame(side).apply(node.boxes->origin() + SurfaceWorkspace::bounds_of(node).at(at));
 }
 
 void PiecePairs::set_points(PiecePair& pieces) const {
@@ -74,7 +74,7 @@ void PiecePairs::set_points(PiecePair& pieces) const {
     const PlacedFrame& frame = frames_.frame(s);
     pieces.points[s] = quadratic_point(pieces, s, pieces.at[s]);
     // The sum with the origin is rounded once, too.
-    const double error = enlarged(frame.growth() * SurfaceWorkspace::record(pieces.nodes[s]).error() +
+    const double error = enlarged(frame.growth() * SurfaceWorkspace::bounds_of(pieces.nodes[s]).error() +
                                   2 * spatial_error(frame.largest_apply_error()));
     pieces.error = std::max(pieces.error, error);
     errors += error;
@@ -112,7 +112,7 @@ void PiecePairs::approach(PiecePair& pieces) const {
 void PiecePairs::step_together(PiecePair& pieces, const Vector3& between) const {
   std::array<Vector3, 4> by;
   for (std::size_t s = 0; s < 2; ++s) {
-    const PieceRecord& record = SurfaceWorkspace::record(pieces.nodes[s]);
+    const PieceBounds& record = SurfaceWorkspace::bounds_of(pieces.nodes[s]);
     const PlacedFrame& frame = frames_.frame(s);
     const double factor = (s == 0 ? -1 : 1) * frame.scale;
     const std::array<Vector3, 2> own = record.derivatives(pieces.at[s]);
@@ -137,7 +137,7 @@ void PiecePairs::step_together(PiecePair& pieces, const Vector3& between) const 
 
 double PiecePairs::placed_extent(std::size_t side, const Node& node, const Vector3& w) const {
   const PlacedFrame& frame = frames_.frame(side);
-  const PieceRecord& record = SurfaceWorkspace::record(node);
+  const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
   const Point3 origin = frame.apply(node.boxes->origin());
   // w . (scale R x) = scale (R' w) . x
   const double own = frame.scale * record.extent(transposed_times(frame.rows, w));
@@ -157,7 +157,7 @@ double PiecePairs::gap_along(const std::array<Node, 2>& nodes, const Vector3& di
 
 namespace {
 
-// Extents of the pieces asked about last, by side and by a hash of the piece, each along a direction that has
+// Extents of the latest pieces, by side and by a hash of the piece, each along a direction that has
 // a number of its own: none of an earlier query is ever met.
 struct KnownExtent {
   const WideNode* boxes = nullptr;
@@ -204,7 +204,7 @@ bool PiecePairs::beyond(std::size_t side, const Vector3& w, double height, doubl
     open.pop_back();
     if (node.bounded()) {
       if (placed_extent(side, node, w) <= height) continue;
-      const bool fine = frame.growth() * SurfaceWorkspace::record(node).error() <= error;
+      const bool fine = frame.growth() * SurfaceWorkspace::bounds_of(node).error() <= error;
       if (fine || !SurfaceWorkspace::can_open(node) || stats_.splits >= budget || workspace.full()) {
         if (out.size() == most) return false;
         out.push_back(node);

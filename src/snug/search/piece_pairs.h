@@ -19,7 +19,7 @@ struct PiecePair {
   std::array<double, 2> radii;
   NearestTriangles near;
   double gap;  ///< lower bound of their distance, zero if none shows
-  /// Points of the quadratics, at first where the base triangles are nearest, and the way from A's to B's.
+  /// Points of the quadratics, at first where the base triangles are nearest, and the vector from A's to B's.
   std::array<TriangleParameter, 2> at;
   std::array<Point3, 2> points;
   Vector3 between;
@@ -46,14 +46,14 @@ class PiecePairs {
   /// Where the base triangles of two pieces are nearest, with points of their quadratics there.
   /// Requires:  pair.bounded(), here and below.
   [[nodiscard]] PiecePair nearest(const NodePair& pair);
-  /// Is what single precision moved all that is left to gain? One piece then cannot be split, and the other one
+  /// True when single-precision rounding dominates the remaining gap: one piece cannot be split, and the other one
   /// is known as well.
   [[nodiscard]] static bool at_single_precision(const NodePair& pair);
   /// The same as nearest() from offset triangles in double precision, which are made anew, with limit points.
   [[nodiscard]] PiecePair nearest_in_double(const NodePair& pair);
   /// Moves the points on the quadratics to where these are about nearest.
   void approach(PiecePair& pieces) const;
-  /// Moves them by a Newton step to where `between`, the way from A's to B's or that of what they stand for, is about zero.
+  /// Moves them by a Newton step to where `between`, the vector from A's to B's or that of their limit points, is about zero.
   /// Stays where the pieces are parallel.
   void step_together(PiecePair& pieces, const Vector3& between) const;
 
@@ -61,12 +61,12 @@ class PiecePairs {
   /// quadratics apart, less what these err. The best direction is that from the nearest point of A to that of
   /// B.
   [[nodiscard]] double gap_along(const std::array<Node, 2>& nodes, const Vector3& direction) const;
-  /// The same along a direction that many pairs are asked about, where what is known of pieces is kept; zero
-  /// before there is one. The walk looks along it, too.
+  /// The same along one direction for many pairs, with extents of pieces cached; zero before look_along(). The walk
+  /// uses it, too.
   void look_along(const Vector3& direction);
   [[nodiscard]] double gap_along(const std::array<Node, 2>& nodes);
-  /// What reaches beyond `height` along a direction: pieces, split while their quadratics err by more than
-  /// `error`, as far as `budget` allows. False, with some of them, where that is more than `most`.
+  /// Pieces that reach beyond `height` along a direction, split while their quadratics err by more than
+  /// `error`, as far as `budget` allows. False, with some of them, where there are more than `most`.
   /// Guarantee: dot(w, x) <= height for all other points of the placed surface.
   /// Requires:  |w| at most 1 up to a few roundings.
   [[nodiscard]] bool beyond(std::size_t side, const Vector3& w, double height, double error, std::size_t most,
@@ -75,9 +75,9 @@ class PiecePairs {
   /// The limit points at the pair's parameters, or the quadratics' own.
   [[nodiscard]] Witness witness(const PiecePair& pieces);
   [[nodiscard]] static Witness approximate_witness(const PiecePair& pieces);
-  /// What a Collision or a Distance says of a witness of this query, in mesh units.
+  /// Writes a witness of this query to a Collision or a Distance, in mesh units.
   template <class Answer>
-  void tell(const Witness& witness, Answer& answer) const {
+  void write_to(const Witness& witness, Answer& answer) const {
     const PowerOfTwo back = frames_.to_mesh_units();
     answer.witness = {require_representable(back.apply(witness.points[0])),
                       require_representable(back.apply(witness.points[1]))};

@@ -10,7 +10,7 @@ namespace {
 constexpr Box3 everywhere{{-INFINITY, -INFINITY, -INFINITY}, {INFINITY, INFINITY, INFINITY}};
 
 // A row without entries that are too small for Dop26::reach().
-Vector3 without_specks(const Vector3& row) {
+Vector3 without_tiny_entries(const Vector3& row) {
   Vector3 result = row;
   for (std::size_t k = 0; k < 3; ++k) {
     if (std::fabs(row[k]) < 0x1p-100) result[k] = 0;
@@ -29,9 +29,9 @@ Box3 placed_box(const SurfaceBvh& model, const Motion& pose) {
   const double back = scale.inverse_factor(), size = back * (max_abs(centre) + dop.radius());
   Box3 box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Vector3 row = without_specks(pose.row(axis));
+    const Vector3 row = without_tiny_entries(pose.row(axis));
     const double t = pose.offset()[axis], middle = dot(row, centre);
-    // Sums of three with |row|_1 < 1.8, and what specks and reach() leave out: less than 50 u of the size.
+    // Sums of three with |row|_1 < 1.8, and what tiny entries and reach() leave out: less than 50 u of the size.
     const double doubt = 128 * unit_roundoff * (std::fabs(t) + size) + 64 * underflow_error;
     const double lower = t + back * (middle - dop.reach(-row)) - doubt;
     const double upper = t + back * (middle + dop.reach(row)) + doubt;

@@ -11,7 +11,7 @@
 
 namespace snug {
 
-/// A share of the larger of two sizes: what is asked for where nothing is.
+/// A share of the larger of two sizes: the default precision.
 [[nodiscard]] inline double share_of_size(double share, double size_a, double size_b = 0) {
   return std::min(share * std::max(size_a, size_b), std::numeric_limits<double>::max());
 }
@@ -28,7 +28,7 @@ template <class Options>
   return options;
 }
 
-/// Are bounds, in mesh units, as near as was asked for?
+/// Are bounds, in mesh units, within the precision of the options?
 template <class Options>
 [[nodiscard]] bool near_enough(const Interval& bounds, const Options& options) {
   return bounds.upper - bounds.lower <= std::max(*options.absolute, *options.relative * bounds.upper);
@@ -40,7 +40,7 @@ template <class Options>
 /// Bounds of a distance while it is searched for, in units in which surfaces are about 2 large.
 class DistanceBounds {
  public:
-  /// `absolute`, `noise`: bounds come no nearer to each other; `noise` since rounding hides what is left.
+  /// `absolute`, `noise`: bounds come no nearer to each other; below `noise` rounding dominates.
   DistanceBounds(double absolute, double relative, double noise)
       : absolute_(std::max(absolute, noise)), relative_(relative) {}
 
@@ -51,7 +51,7 @@ class DistanceBounds {
   [[nodiscard]] double prune_distance() const { return upper_ == INFINITY ? INFINITY : upper_ - precision(); }
   /// The distance is at least this, whatever is left to be searched.
   void raise_lower(double floor) { floor_ = std::max(floor_, floor); }
-  /// Is what is left to be searched of no interest?
+  /// Can the rest of the search be skipped?
   [[nodiscard]] bool done() const { return upper_ <= 0 || floor_ >= prune_distance(); }
   /// The distance is at most this.
   void reduce_upper(double upper) { upper_ = std::min(upper_, upper); }
@@ -69,7 +69,7 @@ struct NodeGap {
   float gap;
 };
 
-/// What is still to be opened, by a lower bound `gap` of its distance: the nearest comes first.
+/// Queue of items to open, ordered by a lower bound `gap` of their distance, nearest first.
 template <class Item>
 class NearestFirst {
  public:

@@ -189,7 +189,7 @@ double plane_distance(const QuadraticTriangle& q, const Point3& p, const Point3&
   return least - distance_rounding;
 }
 
-// A ball that contains what a quadratic stands for.
+// A ball that contains the set of a quadratic.
 Ball ball_of(const QuadraticTriangle& q) {
   Vector3 sum;
   for (const Point3& x : q.corners) sum = sum + (x - Point3{});
@@ -391,7 +391,7 @@ double QuadraticBvh::certain_distance(const Point3& p, double gap, QuadraticFoot
 
 namespace {
 
-// May what two quadratics stand for meet? The second one is split until it is as small
+// May the sets of two quadratics meet? The second one is split until it is as small
 // as the first, and flat.
 bool may_meet(const QuadraticTriangle& part, const Ball& ball, const Vector3& normal,
               const QuadraticTriangle& q, bool curved, double flat) {

@@ -14,8 +14,8 @@
 
 namespace snug {
 
-/// What roundings may add to a distance below, or take from it: coordinates are at most about 4, and no
-/// result has more than some hundred roundings of them behind it.
+/// Rounding error of distances below: coordinates are at most about 4, and no
+/// result takes more than some hundred roundings.
 inline constexpr double distance_rounding = 0x1p-41;
 
 /// The point of a quadratic triangle at a parameter.
@@ -34,7 +34,7 @@ struct QuadraticFoot {
   double distance = INFINITY;  ///< from the other point, in double precision
 };
 
-/// A tree over quadratic triangles, each with what it stands for: all that is within its error.
+/// A tree over quadratic triangles; each stands for all points within its error.
 /// Immutable; may be read by many threads.
 class QuadraticBvh {
  public:
@@ -52,21 +52,20 @@ class QuadraticBvh {
   /// No proof rests on its being the nearest one.
   [[nodiscard]] QuadraticFoot nearest(const Point3& p, const QuadraticFoot& hint = {}) const;
 
-  /// A lower bound of the distance of p to what the pieces stand for. Improves `foot` where a nearer one is
-  /// met.
-  /// Tightness: within `gap` of foot.distance less the errors of the pieces near it, unless curvature makes
-  ///            this too dear.
+  /// A lower bound of the distance of p to the sets of the pieces. Improves `foot` where a nearer one is met.
+  /// Tightness: within `gap` of foot.distance less the errors of the pieces near it, unless curvature would
+  ///            take too many splits.
   [[nodiscard]] double certain_distance(const Point3& p, double gap, QuadraticFoot& foot) const;
 
-  /// May what `part` stands for meet what a piece stands for? False is proved. Pieces are split
+  /// May the set of `part` meet that of a piece? False is proved. Pieces are split
   /// until they are as small as the part and their Bezier points nearly as flat as `flat`.
   [[nodiscard]] bool may_meet(const QuadraticTriangle& part, double flat = INFINITY) const;
 
-  /// Marks pieces whose sets may be within `reach` of a point of what `part` stands for; all others are
+  /// Marks pieces whose sets may be within `reach` of a point of the set of `part`; all others are
   /// certainly farther away.
   void mark_near(const QuadraticTriangle& part, double reach, std::span<std::uint8_t> marks) const;
 
-  /// Calls visit(piece) for all whose sets may meet the ball around what `part` stands for.
+  /// Calls visit(piece) for all whose sets may meet the ball around that of `part`.
   void for_each_near(const QuadraticTriangle& part, const std::function<void(std::uint32_t)>& visit) const;
 
   [[nodiscard]] std::size_t bytes() const;

@@ -13,8 +13,8 @@ namespace {
 // Newton steps that are tried: each is a proof of its own, and the error of the one is squared by the next.
 constexpr unsigned max_steps = 4;
 // Share of a step that bending may take or add.
-constexpr double most_bent = 0.8;
-// What a few roundings may add to a bound.
+constexpr double max_bent = 0.8;
+// Factor that covers a few roundings of a bound.
 constexpr double safely = 1 + 0x1p-40;
 
 double cross2(const Offset2& a, const Offset2& b) { return a.x * b.y - a.y * b.x; }
@@ -28,7 +28,7 @@ struct Matrix2 {
   }
 };
 
-// What bounds a value from the matrix and the images of the second differences: of u, of v, of the rest 1 - u - v.
+// Bounds of u, of v or of the rest 1 - u - v, from the matrix and the images of the second differences.
 struct Gains {
   double of_off;  // of an error across the ray
   double bent;    // times the square of a step
@@ -77,7 +77,7 @@ RayFrame::RayFrame(const Point3& from, const Vector3& direction) : origin(from),
   across[1] = snug::cross(along, across[0]);
 }
 
-SeenPiece::SeenPiece(const RayFrame& ray, const PieceRecord& record, const Point3& origin) {
+SeenPiece::SeenPiece(const RayFrame& ray, const PieceBounds& record, const Point3& origin) {
   const auto seen = [&](const Vector3& v) {
     return Vector3{dot(ray.across[0], v), dot(ray.across[1], v), dot(ray.along, v)};
   };
@@ -100,8 +100,8 @@ SeenPiece::SeenPiece(const RayFrame& ray, const PieceRecord& record, const Point
   if (!(error_ < INFINITY)) error_ = INFINITY;
 }
 
-Crossing SeenPiece::crossing(const Offset2& place, double reach, double enough) const {
-  Crossing result;
+LinePieceCrossing SeenPiece::crossing(const Offset2& place, double reach, double enough) const {
+  LinePieceCrossing result;
   const double off = (error_ + reach) * safely;
   if (!(off < INFINITY)) {
     result.along = unbounded;
@@ -125,7 +125,7 @@ Crossing SeenPiece::crossing(const Offset2& place, double reach, double enough) 
                                            std::fabs(b_uu.y) + std::fabs(b_uv.y) + std::fabs(b_vv.y)) +
                                   doubt);
     const double share = safely * (bent * farthest + doubt);
-    if (!(share < most_bent)) break;  // of what is not a number, too
+    if (!(share < max_bent)) break;  // of what is not a number, too
     const Offset2 newton = inverse({value.x - place.x, value.y - place.y, 0});
     const double blur = norm * off + 32 * unit_roundoff * max_abs(newton);
     // Zeros are at most so far from `at`, then this far from the next place.
@@ -144,7 +144,7 @@ Crossing SeenPiece::crossing(const Offset2& place, double reach, double enough) 
                                          b_uv.x + b_uv.y, b_vv.x + b_vv.y),
                                    2);
     if (next_u < -off_u || next_v < -off_v || rest < -off_rest) {
-      result.state = Crossing::State::none;
+      result.state = LinePieceCrossing::State::none;
       return result;
     }
     const double middle = value.z - newton.x * du.z - newton.y * dv.z;
@@ -163,22 +163,22 @@ Crossing SeenPiece::crossing(const Offset2& place, double reach, double enough) 
         next_u > off_u && next_v > off_v && rest > off_rest && safely * (max_abs(newton) + radius) <= far;
     result.at = clamped(next_u, next_v);
     if (inside) {
-      result.state = Crossing::State::one;
+      result.state = LinePieceCrossing::State::one;
       result.side = determinant > 0 ? 1 : -1;
-    } else if (result.state != Crossing::State::one) {
-      result.state = Crossing::State::unsure;
+    } else if (result.state != LinePieceCrossing::State::one) {
+      result.state = LinePieceCrossing::State::unsure;
     }
     // Nothing is left to be gained where errors are most of the radius, and of the extent.
     if (radius < 2 * blur &&
         (bend_along <= rest_along || result.along.upper - result.along.lower <= enough)) {
-      result.settled = true;
+      result.limited_by_errors = true;
       return result;
     }
     at = result.at;
     farthest = std::min(
         1.0, safely * (std::max(std::fabs(next_u - at.u), std::fabs(next_v - at.v)) + radius + rounding));
   }
-  if (result.state != Crossing::State::bent) return result;
+  if (result.state != LinePieceCrossing::State::bent) return result;
   // By lines between the piece and the ray: across its edges, and from its corners.
   Offset2 middle;
   result.along = {};
@@ -202,7 +202,7 @@ Crossing SeenPiece::crossing(const Offset2& place, double reach, double enough) 
     none = beyond(net_, place, corner, off) || beyond(net_, place, normal, off) ||
            beyond(net_, place, {-normal.x, -normal.y}, off);
   }
-  if (none) result.state = Crossing::State::none;
+  if (none) result.state = LinePieceCrossing::State::none;
   return result;
 }
 

@@ -3,12 +3,12 @@
 #include <array>
 
 #include <snug/geometry/triangle.h>
-#include <snug/search/piece_node.h>
+#include <snug/search/piece_leaf.h>
 #include <support/point.h>
 
 namespace snug {
 
-/// A line, and axes across it: points are told by how far they are along it and where it passes them.
+/// A line, and axes across it: coordinates of points are the distance along it and the offset across.
 struct RayFrame {
   /// Requires:  direction of length 1, up to some roundings.
   RayFrame(const Point3& from, const Vector3& direction);
@@ -23,7 +23,7 @@ struct Offset2 {
 };
 
 /// Does a line near a ray meet a piece? Where it does so, and on which side.
-struct Crossing {
+struct LinePieceCrossing {
   enum class State : std::uint8_t {
     none,    ///< the piece is not met
     one,     ///< it is met, and its border, seen along the line, winds around that once
@@ -31,8 +31,8 @@ struct Crossing {
     bent,    ///< the piece bends too much as seen along the line, or lies along it
   };
   State state = State::bent;
-  /// All that is left open is due to errors and the reach; else to the piece's bending, which splits reduce.
-  bool settled = false;
+  /// Only errors and the reach leave it open; otherwise bending does, and splits help.
+  bool limited_by_errors = false;
   int side = 0;          ///< of `one`: +1 where the line leaves to the side of the normal, else -1
   TriangleParameter at;  ///< close to the place, on the triangle; but for `none`
   Extent along;          ///< holds all of the piece that the line meets, as distances from the ray's origin
@@ -40,17 +40,17 @@ struct Crossing {
 
 /// A piece as it is seen from a ray: the quadratic triangle near it, and how near it is.
 ///
-/// Guarantee: what is told of the piece holds for the limit surface; rounding included.
+/// Guarantee: all results hold for the limit surface, rounding included.
 /// Source:    derivations/rays.md.
 class SeenPiece {
  public:
   SeenPiece() = default;
-  SeenPiece(const RayFrame& ray, const PieceRecord& record, const Point3& origin);
+  SeenPiece(const RayFrame& ray, const PieceBounds& record, const Point3& origin);
 
   /// How the line through `place`, parallel to the ray, and all lines within `reach` of it meet the piece: with a
   /// reach of zero that line alone, else `none` and `along` are about all of these lines. An extent of `enough`
   /// is not narrowed further where errors leave the place itself no narrower.
-  [[nodiscard]] Crossing crossing(const Offset2& place, double reach, double enough = 0) const;
+  [[nodiscard]] LinePieceCrossing crossing(const Offset2& place, double reach, double enough = 0) const;
   /// Upper bound of how far the limit surface is from the quadratic, a length, rounding included.
   [[nodiscard]] double error() const { return error_; }
   /// Does the line through `place` pass the side from corner k to the next one with more than `reach`?

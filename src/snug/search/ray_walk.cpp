@@ -14,7 +14,7 @@
 namespace snug {
 namespace {
 
-using State = Crossing::State;
+using State = LinePieceCrossing::State;
 
 // Splits after which a ray that meets no border should have been decided.
 constexpr std::uint64_t quick_splits = 256;
@@ -48,8 +48,8 @@ class Spiral {
 // A piece in the tube around a ray that is not split further.
 struct Leaf {
   SeenPiece seen;
-  Crossing crossing;  // of the ray itself
-  Extent along;       // of all of the piece in the tube
+  LinePieceCrossing crossing;  // of the ray itself
+  Extent along;                // of all of the piece in the tube
   Node node;
 };
 
@@ -69,21 +69,21 @@ class RayWalk {
     const double least = 0x1p-40 * (1 + far_);
     reach = std::max(reach, least);
     double share = first_share;
-    bool settled = false;
-    for (unsigned i = 0; i < tubes + (settled ? 2 : 0); ++i) {
+    bool resolved = false;
+    for (unsigned i = 0; i < tubes + (resolved ? 2 : 0); ++i) {
       const bool certain = search_tube(reach, std::max(share * reach, 0x1p-4 * least));
       const double widest = widest_hit();
       const bool located = certain && !(widest > task_.precision);
       const bool ended = !found_.complete;
-      if (i == 0 || (!ended && (certain || !settled))) best = std::move(found_);
-      settled = settled || certain;
-      if (located || ended || (settled && task_.query == RayQuery::any)) break;
+      if (i == 0 || (!ended && (certain || !resolved))) best = std::move(found_);
+      resolved = resolved || certain;
+      if (located || ended || (resolved && task_.query == RayQuery::any)) break;
       if (certain) {  // but too wide: as much narrower as that
         if (!(reach > least)) break;
         reach = std::max(std::clamp(0.25 * task_.precision / widest, narrowing, 0.25) * reach, least);
       } else {  // around needles there is room between smaller pieces, even where rounding leaves no narrower tube
         share *= smaller_share;
-        if (settled) {  // no narrower than is needed
+        if (resolved) {  // no narrower than is needed
           reach *= std::clamp(0.9 * task_.precision / widest, 1.0, 8.0);
         } else if (narrowing * reach > 16 * least) {
           reach *= narrowing;
@@ -144,14 +144,14 @@ class RayWalk {
     return along.lower >= task_.inner.lower && along.upper <= task_.inner.upper;
   }
 
-  // Also pieces that are as flat as doubles tell: what is known of them is in single precision, relative to their
+  // Also pieces that are as flat as doubles can resolve: their bounds are in single precision, relative to their
   // size.
   [[nodiscard]] bool can_open(const Node& node) {
     return SurfaceWorkspace::can_open(node) || workspace_.patch(node).path.level() < PiecePath::max_level;
   }
 
   [[nodiscard]] SeenPiece seen(const Node& node) const {
-    return {task_.ray, SurfaceWorkspace::record(node), node.boxes->origin()};
+    return {task_.ray, SurfaceWorkspace::bounds_of(node), node.boxes->origin()};
   }
 
   [[nodiscard]] bool is_located(const Extent& along) const {
@@ -178,7 +178,7 @@ class RayWalk {
       if (node.bounded()) {
         monitor_.checkpoint();
         const SeenPiece piece = seen(node);
-        const Crossing crossing = piece.crossing({}, 0, task_.precision);
+        const LinePieceCrossing crossing = piece.crossing({}, 0, task_.precision);
         if (crossing.state == State::none || outside(crossing.along, end)) continue;
         const bool hit = crossing.state == State::one && within(crossing.along);
         if (hit) {
@@ -190,7 +190,7 @@ class RayWalk {
           if (task_.query == RayQuery::nearest) end = std::min(end, crossing.along.upper);
           if (narrow) continue;
         }
-        const double off = crossing.settled ? piece.error() : piece.width();
+        const double off = crossing.limited_by_errors ? piece.error() : piece.width();
         const bool small = !hit && off <= first_share / 8 * task_.precision;
         if (small || !can_open(node) || splits_ >= std::min(quick_splits, task_.budget)) return false;
         ++splits_;
@@ -227,17 +227,17 @@ class RayWalk {
               [](const FoundHit& x, const FoundHit& y) { return x.along.lower < y.along.lower; });
   }
 
-  // All that is within `reach` of the line, in pieces known up to `fine` or thinner than that, in groups that are
-  // apart along it. True if each group is crossed for certain.
+  // Collects all pieces within `reach` of the line, known up to `fine` or thinner, in groups that are apart along it.
+  // True if each group is crossed for certain.
   bool search_tube(double reach, double fine) {
     start();
     leaves_.clear();
-    settled_ = true;
+    resolved_ = true;
     done_ = false;
     double end_of_group = -INFINITY;
     while (!open_.empty() && !done_) {
       if (!leaves_.empty() && static_cast<double>(open_.nearest().gap) > end_of_group) {
-        settle_leaves(reach);
+        resolve_leaves(reach);
         end_of_group = -INFINITY;
         continue;
       }
@@ -246,12 +246,12 @@ class RayWalk {
       if (node.bounded()) {
         monitor_.checkpoint();
         const SeenPiece piece = seen(node);
-        Crossing near = piece.crossing({}, reach);
+        LinePieceCrossing near = piece.crossing({}, reach);
         if (near.state == State::none) continue;
-        // As far as its boxes tell: so groups follow one another.
+        // Its boxes begin there, so that groups follow one another.
         near.along.lower = std::max(near.along.lower, static_cast<double>(begin));
         if (near.along.upper < near.along.lower || outside(near.along, upper_ + reach)) continue;
-        const double off = near.settled ? piece.error() : piece.width() + 2 * piece.error();
+        const double off = near.limited_by_errors ? piece.error() : piece.width() + 2 * piece.error();
         const bool out_of_budget = splits_ >= task_.budget || workspace_.full();
         if (out_of_budget) found_.complete = false;
         if (out_of_budget || off <= fine || !can_open(node)) {
@@ -264,10 +264,10 @@ class RayWalk {
       }
       open(node, begin, reach, upper_ + reach);
     }
-    if (!done_) settle_leaves(reach);
+    if (!done_) resolve_leaves(reach);
     if (task_.query == RayQuery::any) keep_certified();
     sort_hits();
-    return settled_;
+    return resolved_;
   }
 
   void keep_certified() {
@@ -277,7 +277,7 @@ class RayWalk {
     if (certified != hits.end()) hits.assign(1, FoundHit(*certified));
   }
 
-  void settle_leaves(double reach) {
+  void resolve_leaves(double reach) {
     std::sort(leaves_.begin(), leaves_.end(),
               [](const Leaf& x, const Leaf& y) { return x.along.lower < y.along.lower; });
     for (std::size_t begin = 0, end; begin < leaves_.size() && !done_; begin = end) {
@@ -285,14 +285,14 @@ class RayWalk {
       for (end = begin + 1; end < leaves_.size() && !(leaves_[end].along.lower > along.upper); ++end) {
         along.add(leaves_[end].along);
       }
-      settle(std::span(leaves_).subspan(begin, end - begin), along, reach);
+      resolve_group(std::span(leaves_).subspan(begin, end - begin), along, reach);
     }
     leaves_.clear();
   }
 
   // One group. Its border, but for that of an open surface, belongs to pieces that no line in the tube meets: so
   // each of these crosses the group equally often, signs counted.
-  void settle(std::span<const Leaf> group, const Extent& along, double reach) {
+  void resolve_group(std::span<const Leaf> group, const Extent& along, double reach) {
     if (outside(along, task_.outer.upper)) return;
     const bool whole = found_.complete && within(along) &&
                        std::none_of(group.begin(), group.end(),
@@ -318,7 +318,7 @@ class RayWalk {
     for (int i = 0; i < answers; ++i) {
       add_hit(at->node, along, number != 0, std::clamp(number, -1, 1), place);
     }
-    settled_ = settled_ && number != 0;
+    resolved_ = resolved_ && number != 0;
     done_ = number != 0 && task_.query != RayQuery::all;
   }
 
@@ -330,7 +330,7 @@ class RayWalk {
   [[nodiscard]] static std::optional<Count> count(std::span<const Leaf> group, const Offset2& place) {
     Count result;
     for (const Leaf& leaf : group) {
-      const Crossing crossing = leaf.seen.crossing(place, 0);
+      const LinePieceCrossing crossing = leaf.seen.crossing(place, 0);
       if (crossing.state == State::none) continue;
       if (crossing.state != State::one) return std::nullopt;
       result.number += crossing.side;
@@ -358,7 +358,7 @@ class RayWalk {
   // The sides of a patch beyond which there is no other, or more than one: a bit each.
   [[nodiscard]] unsigned open_sides(PatchId root) const {
     const Topology& topology = surface_.topology();
-    const auto bare = [&](std::size_t owner) {
+    const auto without_surface = [&](std::size_t owner) {
       const auto [begin, end] = surface_.patches_of(owner);
       return begin == end || !surface_.has_patch(PatchId(begin));
     };
@@ -371,8 +371,9 @@ class RayWalk {
       const bool ends =
           topology.ends_fans(edge) ||
           (surface_.rules().primal
-               ? bare(topology.face_of(half).index()) || bare(topology.face_of(topology.twin(half)).index())
-               : bare(topology.from(half).index()) || bare(topology.to(half).index()));
+               ? without_surface(topology.face_of(half).index()) ||
+                     without_surface(topology.face_of(topology.twin(half)).index())
+               : without_surface(topology.from(half).index()) || without_surface(topology.to(half).index()));
       open |= static_cast<unsigned>(ends) << k;
     }
     return open;
@@ -388,7 +389,7 @@ class RayWalk {
   std::vector<Leaf> leaves_;
   FoundHits found_;
   std::uint64_t splits_ = 0;
-  bool bounded_ = true, settled_ = true, done_ = false;
+  bool bounded_ = true, resolved_ = true, done_ = false;
 };
 
 }  // namespace

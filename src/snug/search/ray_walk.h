@@ -13,7 +13,7 @@ namespace snug {
 struct RayTask {
   RayFrame ray;
   Extent outer,
-      inner;  ///< what of it counts: all of `inner`, nothing beyond `outer`, which roundings tell apart
+      inner;  ///< the part that counts: all of `inner`, nothing beyond `outer`; they differ by roundings
   RayQuery query = RayQuery::nearest;
   double precision = 0;
   std::uint64_t budget = 0;

@@ -16,28 +16,28 @@ namespace {
 using Names = std::array<std::uint32_t, 3>;
 
 // Directions from a common vertex are compared with a plane through it; products of unit vectors err by less.
-constexpr double least_height = 0x1p-40;
+constexpr double min_height = 0x1p-40;
 // Of a triangle with later ones: bounds the memory where everything meets everything.
-constexpr int most_of_one = 16;
+constexpr int max_of_one = 16;
 
 // Is there a plane through a vertex with two triangles on different sides of it?
 bool parted_at(const Point3& vertex, const std::array<Point3, 2>& a, const std::array<Point3, 2>& b) {
   const std::array<Vector3, 4> rays{normalized(a[0] - vertex), normalized(a[1] - vertex),
                                     -normalized(b[0] - vertex), -normalized(b[1] - vertex)};
   const Vector3 w = normalized(nearest_to_origin(rays));
-  return std::all_of(rays.begin(), rays.end(), [&](const Vector3& r) { return dot(w, r) > least_height; });
+  return std::all_of(rays.begin(), rays.end(), [&](const Vector3& r) { return dot(w, r) > min_height; });
 }
 
 // Do two triangles on an edge have an angle between them?
 bool parted_along(const Point3& from, const Point3& to, const Point3& a, const Point3& b) {
   const Vector3 edge = normalized(to - from);
-  double rounding = least_height;
+  double rounding = min_height;
   std::array<Vector3, 2> across;
   for (std::size_t i = 0; i < 2; ++i) {
     const Vector3 d = (i == 0 ? a : b) - from;
     const Vector3 own = d - dot(d, edge) * edge;
     // A component across the edge that is mostly rounding is no direction.
-    if (edge == Vector3{} || !(length(own) > least_height * length(d))) return false;
+    if (edge == Vector3{} || !(length(own) > min_height * length(d))) return false;
     across[i] = normalized(own);
     rounding += 64 * unit_roundoff * length(d) / length(own);
   }
@@ -92,7 +92,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> self_contacts(std::span<con
       for (std::size_t i = b * block; i < std::min(triangles.size(), (b + 1) * block); ++i) {
         int of_this = 0;
         tree.for_each_near(flat[i], [&](std::uint32_t other) {
-          if (other <= i || of_this == most_of_one) return;
+          if (other <= i || of_this == max_of_one) return;
           if (may_touch(points, triangles[i], triangles[other])) {
             found[b].emplace_back(static_cast<std::uint32_t>(i), other);
             ++of_this;

@@ -60,7 +60,7 @@ LimitTriangle make_filler(const LimitSurface& surface, PatchId first, PatchId se
 }
 
 // The first edge along which faces run more often one way than the other, from the end of the lesser number
-// to that of the greater one and back. Twins cancel: all others are looked at.
+// to that of the greater one and back. Twins cancel: all others are tested.
 struct OpenEdge {
   HalfEdge first;
   VertexId low, high;

@@ -19,8 +19,8 @@ namespace snug {
 /// if it is closed.
 [[nodiscard]] std::optional<std::string> open_reason(const LimitSurface& surface);
 
-/// What a closed limit surface needs to be asked about inside and outside: the solid that it bounds is the
-/// surface with all points around which it winds. Immutable; may be read by many threads.
+/// Data for inside tests of a closed limit surface. The solid that it bounds is the surface with all points around
+/// which it winds. Immutable; may be read by many threads.
 /// Source:    derivations/contact.md, "Inside or outside of a closed surface".
 class Solid {
  public:

@@ -31,18 +31,18 @@ std::vector<PatchId> existing_patches(const LimitSurface& surface) {
 
 }  // namespace
 
-std::span<const PieceSketch> SurfaceBvh::sketches(std::span<const std::uint32_t> items) const {
-  thread_local std::array<PieceSketch, WideBvh::leaf_size> pieces;
+std::span<const PieceBuild> SurfaceBvh::piece_builds(std::span<const std::uint32_t> items) const {
+  thread_local std::array<PieceBuild, WideBvh::leaf_size> pieces;
   thread_local Patch patch;
   for (std::size_t i = 0; i < items.size(); ++i) {
     surface_->patch(patches_[items[i]], patch);
-    pieces[i] = sketch(surface_->library(), patch, method_);
+    pieces[i] = build_piece(surface_->library(), patch, method_);
   }
   return std::span(pieces).first(items.size());
 }
 
 const LeafNode& SurfaceBvh::make_leaf(std::uint32_t i) const {
-  return leaves_->keep(i, sketches(tree_.leaf(i)));
+  return leaves_->keep(i, piece_builds(tree_.leaf(i)));
 }
 
 LeafNode* SurfaceBvh::Leaves::unused() {
@@ -56,7 +56,7 @@ LeafNode* SurfaceBvh::Leaves::unused() {
   return node;
 }
 
-const LeafNode& SurfaceBvh::Leaves::keep(std::uint32_t i, std::span<const PieceSketch> pieces) {
+const LeafNode& SurfaceBvh::Leaves::keep(std::uint32_t i, std::span<const PieceBuild> pieces) {
   std::unique_ptr<LeafNode> made(unused());
   if (made) {
     *made = LeafNode(pieces);
@@ -104,7 +104,7 @@ WideBvh SurfaceBvh::make_tree(const SurfaceBvhOptions& options, const WorkMonito
     hull.assign(*surface, std::span(members).first(items.size()));
     boxes.push_back(hull.box());
   };
-  if (!options.tight && patches_.size() >= options.least_lazy) {
+  if (!options.tight && patches_.size() >= options.min_lazy) {
     return {control_balls(*surface_, patches_), fit_to_control, options.part_level};
   }
   std::vector<Point3> centres;
@@ -114,8 +114,8 @@ WideBvh SurfaceBvh::make_tree(const SurfaceBvhOptions& options, const WorkMonito
           [&](std::size_t leaf, std::span<const std::uint32_t> items, std::vector<Obb>& boxes) {
             monitor.checkpoint();
             if (options.tight) {
-              const std::span<const PieceSketch> pieces = sketches(items);
-              for (const PieceSketch& piece : pieces) boxes.push_back(piece.box);
+              const std::span<const PieceBuild> pieces = piece_builds(items);
+              for (const PieceBuild& piece : pieces) boxes.push_back(piece.box);
               leaves_->keep(static_cast<std::uint32_t>(leaf), pieces);
               return;
             }
@@ -128,7 +128,7 @@ SurfaceBvh::SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& opt
     : surface_(&surface),
       method_(options.method),
       threads_(options.threads),
-      most_looser_(options.most_looser),
+      max_looser_(options.max_looser),
       patches_(existing_patches(surface)),
       leaves_(std::make_unique<Leaves>((patches_.size() + WideBvh::leaf_size - 1) / WideBvh::leaf_size)),
       tree_(make_tree(options, monitor)),
@@ -153,7 +153,7 @@ SurfaceBvh::SurfaceBvh(const LimitSurface& surface, const SurfaceBvhOptions& opt
     : surface_(&surface),
       method_(options.method),
       threads_(options.threads),
-      most_looser_(options.most_looser),
+      max_looser_(options.max_looser),
       plan_(plan_for(surface, plan, options.threads)),
       patches_(plan_->patches()),
       leaves_(std::make_unique<Leaves>(plan_->order().leaf_count())),
@@ -173,7 +173,7 @@ void SurfaceBvh::refit(SharedPlan& plan) {
   leaves_->clear();
   solid_->clear();
   const double looseness = refit_by(plan_for(*surface_, plan, threads_));
-  if (looseness > most_looser_ * plan_->looseness()) {
+  if (looseness > max_looser_ * plan_->looseness()) {
     auto better = std::make_shared<const RefitPlan>(*surface_, patches_, threads_);
     plan.set(better);
     refit_by(std::move(better));

@@ -8,7 +8,7 @@
 
 #include <snug/bvh/wide_bvh.h>
 #include <snug/monitor.h>
-#include <snug/search/piece_node.h>
+#include <snug/search/piece_leaf.h>
 #include <snug/search/refit_plan.h>
 #include <snug/search/solid.h>
 #include <support/lazy.h>
@@ -24,11 +24,11 @@ struct SurfaceBvhOptions {
   int threads = 0;  ///< that make it
   /// A tree over the control net of so many patches or more is itself made where queries come, in parts of so
   /// many levels; one of fewer takes some milliseconds.
-  std::size_t least_lazy = 8192;
+  std::size_t min_lazy = 8192;
   unsigned part_level = 2;
   /// A surface that moves gets another plan where boxes are so many times as large for their patches as they
   /// were where the plan was made.
-  double most_looser = 1.5;
+  double max_looser = 1.5;
 };
 
 /// A surface made ready for queries: a tree down to its patches, parts and leaves of which are made where
@@ -49,7 +49,7 @@ class SurfaceBvh {
   [[nodiscard]] const LimitSurface& surface() const { return *surface_; }
   [[nodiscard]] BoundMethod method() const { return method_; }
   [[nodiscard]] const WideBvh& tree() const { return tree_; }
-  /// What is known of the patches of a leaf.
+  /// Bounds of the patches of a leaf, made on first use.
   [[nodiscard]] const LeafNode& leaf(std::uint32_t i) const {
     const LeafNode* const ready = leaves_->find(i);
     return ready != nullptr ? *ready : make_leaf(i);
@@ -77,7 +77,7 @@ class SurfaceBvh {
     [[nodiscard]] const LeafNode* find(std::uint32_t i) const {
       return nodes_[i].load(std::memory_order_acquire);
     }
-    const LeafNode& keep(std::uint32_t i, std::span<const PieceSketch> pieces);
+    const LeafNode& keep(std::uint32_t i, std::span<const PieceBuild> pieces);
     // Back to none; keeps their memory.
     void clear();
     [[nodiscard]] std::size_t bytes() const;
@@ -90,7 +90,7 @@ class SurfaceBvh {
     std::vector<std::unique_ptr<LeafNode>> unused_;
     std::size_t count_ = 0;  // of those made, be they in use or not
   };
-  [[nodiscard]] std::span<const PieceSketch> sketches(std::span<const std::uint32_t> items) const;
+  [[nodiscard]] std::span<const PieceBuild> piece_builds(std::span<const std::uint32_t> items) const;
   [[nodiscard]] WideBvh make_tree(const SurfaceBvhOptions& options, const WorkMonitor& monitor);
   const LeafNode& make_leaf(std::uint32_t i) const;
   void find_extents();
@@ -98,7 +98,7 @@ class SurfaceBvh {
   const LimitSurface* surface_;
   BoundMethod method_;
   int threads_;
-  double most_looser_;
+  double max_looser_;
   std::shared_ptr<const RefitPlan> plan_;  // that tree_ has its order from; null where it was built
   std::vector<PatchId> patches_;
   std::unique_ptr<Leaves> leaves_;

@@ -8,15 +8,15 @@ namespace snug {
 namespace {
 
 // Kinds are never forgotten, so a cache that knows this many is left to the surfaces that have it.
-constexpr std::size_t most_shared_kinds = 4096;
+constexpr std::size_t max_shared_kinds = 4096;
 
-// What surfaces with equal connectivity share: there as long as one of them is.
+// The bounds cache of all surfaces; it lives as long as one of them does.
 std::shared_ptr<BoundsCache> shared_bounds() {
   static std::mutex mutex;
   static std::weak_ptr<BoundsCache> kept;
   const std::lock_guard lock(mutex);
   std::shared_ptr<BoundsCache> cache = kept.lock();
-  if (!cache || cache->kinds().size() >= most_shared_kinds) kept = cache = std::make_shared<BoundsCache>();
+  if (!cache || cache->kinds().size() >= max_shared_kinds) kept = cache = std::make_shared<BoundsCache>();
   return cache;
 }
 

@@ -11,7 +11,7 @@
 
 namespace snug {
 
-/// What a Surface is a handle of: the limit surface, and its tree once a query asks.
+/// The data behind a Surface: its limit surface, and a tree that the first query builds.
 class SurfaceData {
  public:
   SurfaceData(ControlMesh mesh, const SurfaceOptions& options);

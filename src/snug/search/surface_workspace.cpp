@@ -10,10 +10,10 @@ constexpr std::size_t max_bytes = std::size_t{256} << 20;
 
 SplitNode split_node(const SurfaceBvh& model, const Patch& parent) {
   thread_local Patch child;
-  std::array<PieceSketch, 4> pieces;
+  std::array<PieceBuild, 4> pieces;
   for (unsigned i = 0; i < 4; ++i) {
     split(parent, i, child);
-    pieces[i] = sketch(model.surface().library(), child, model.method());
+    pieces[i] = build_piece(model.surface().library(), child, model.method());
   }
   return SplitNode(pieces);
 }
@@ -95,7 +95,7 @@ std::uint32_t SurfaceWorkspace::patch_place(const Node& node) {
 
 const Patch& SurfaceWorkspace::patch(const Node& node) { return patches_[patch_place(node)]; }
 
-Piece SurfaceWorkspace::piece(const Node& node, HullPoints& scratch) {
+Piece SurfaceWorkspace::piece(const Node& node, BoundingPoints& scratch) {
   return make_piece(model_->surface().library(), root_of(node), patch(node), scratch, model_->method());
 }
 

@@ -23,14 +23,14 @@ struct Node {
   [[nodiscard]] float size() const { return boxes->size_of(place); }
 };
 
-/// What queries have split of one surface. One a thread. Dropped between two queries when it has grown beyond
+/// Pieces of one surface that queries have split. One a thread. Dropped between two queries when it has grown beyond
 /// 256 MiB.
 /// Guarantee: a node opens to the same boxes whatever came before: no answer depends on earlier queries.
 class SurfaceWorkspace {
  public:
   /// A query splits at most this many different pieces, which bounds its memory.
-  explicit SurfaceWorkspace(const SurfaceBvh& model, std::size_t most_pieces = 50'000)
-      : model_(&model), most_pieces_(most_pieces) {}
+  explicit SurfaceWorkspace(const SurfaceBvh& model, std::size_t max_pieces = 50'000)
+      : model_(&model), max_pieces_(max_pieces) {}
 
   [[nodiscard]] const SurfaceBvh& model() const { return *model_; }
   [[nodiscard]] std::size_t bytes() const;
@@ -40,11 +40,11 @@ class SurfaceWorkspace {
   /// Forgets all that was split, when the surface has moved. Keeps its memory.
   void renew(const SurfaceBvh& model);
   [[nodiscard]] Node root() const { return {&model_->tree().root(), 0, Node::Kind::tree, 0}; }
-  /// What is known of a patch or a piece.
+  /// Bounds of a patch or a piece.
   /// Requires:  node.bounded(), here and below.
-  [[nodiscard]] static const PieceRecord& record(const Node& node) {
-    return node.kind == Node::Kind::patch ? static_cast<const LeafNode*>(node.boxes)->records[node.place]
-                                          : static_cast<const SplitNode*>(node.boxes)->records[node.place];
+  [[nodiscard]] static const PieceBounds& bounds_of(const Node& node) {
+    return node.kind == Node::Kind::patch ? static_cast<const LeafNode*>(node.boxes)->bounds[node.place]
+                                          : static_cast<const SplitNode*>(node.boxes)->bounds[node.place];
   }
   /// Its control points, which stay where they are until begin().
   [[nodiscard]] const Patch& patch(const Node& node);
@@ -53,7 +53,7 @@ class SurfaceWorkspace {
     return node.kind == Node::Kind::patch ? model_->patch(node.owner, node.place) : splits_[node.owner].root;
   }
   /// The piece with its offset triangle, made anew.
-  [[nodiscard]] Piece piece(const Node& node, HullPoints& scratch);
+  [[nodiscard]] Piece piece(const Node& node, BoundingPoints& scratch);
   /// False for a piece that need not be split: at the last level, or where rounding makes up its radius.
   [[nodiscard]] static bool can_open(const Node& node) {
     if (node.kind == Node::Kind::tree) return true;
@@ -63,7 +63,7 @@ class SurfaceWorkspace {
     return (can_split >> node.place & 1u) != 0;
   }
 
-  /// What a node opens to, made if need be.
+  /// Children of a node, made if need be.
   struct Opened {
     const WideNode* boxes;
     Node::Kind kind;
@@ -76,8 +76,8 @@ class SurfaceWorkspace {
   /// Requires:  can_open(node), or a piece above the last level.
   [[nodiscard]] Opened open(const Node& node);
 
-  /// Has the query split as many different pieces as one may?
-  [[nodiscard]] bool full() const { return touched_ >= most_pieces_; }
+  /// Has this query reached the limit of distinct splits?
+  [[nodiscard]] bool full() const { return touched_ >= max_pieces_; }
 
  private:
   static constexpr std::uint32_t none = UINT32_MAX;
@@ -96,7 +96,7 @@ class SurfaceWorkspace {
   // Of whole patches, by number; open addressing.
   class Roots {
    public:
-    // Stays where it is until another patch is asked for.
+    // Valid until the next call.
     [[nodiscard]] Root& operator[](std::uint32_t patch);
     // Keeps its memory.
     void clear();
@@ -118,9 +118,9 @@ class SurfaceWorkspace {
   [[nodiscard]] Patch& next_patch();
 
   const SurfaceBvh* model_;
-  std::size_t most_pieces_;
+  std::size_t max_pieces_;
   Roots roots_;
-  // What is behind the counts is memory for more.
+  // Elements beyond the counts are spare memory.
   std::deque<Split> splits_;
   std::deque<Patch> patches_;
   std::size_t split_count_ = 0, patch_count_ = 0;

@@ -12,7 +12,7 @@ namespace snug {
 /// Where no set around a piece holds the point, the surface is replaced by triangles of limit corners, with a
 /// third triangle over each edge where a piece is split; signed crossings of a ray with these are counted.
 ///
-/// Guarantee: right for every point within `error` of `point`; nothing where that cannot be told, as on the
+/// Guarantee: right for every point within `error` of `point`; nothing where that cannot be decided, as on the
 ///            surface. Depends on the point and the surface alone.
 /// Requires:  point and error in scaled units of the surface.
 /// Errors:    those of SurfaceBvh::solid().

@@ -7,7 +7,7 @@ namespace snug {
 namespace {
 
 constexpr std::size_t byte_limit = std::size_t{512} << 20;
-// What workspaces hold is added up once in so many queries, and when a surface is met for the first time.
+// The memory of workspaces is summed once in so many queries, and when a surface is met for the first time.
 constexpr std::uint64_t queries_between_looks = 1024;
 
 }  // namespace

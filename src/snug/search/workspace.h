@@ -10,8 +10,8 @@
 
 namespace snug {
 
-/// What a Workspace holds: pieces of each surface that a query met, twice where a surface is asked about
-/// against itself.
+/// Contents of a Workspace: pieces of each surface that a query met, twice where a surface is compared with
+/// itself.
 class Workspace::Pieces {
  public:
   /// For a query about one surface.

@@ -265,7 +265,7 @@ bool CharacteristicMap::bound_remainders(const Stencils& step) {
 }
 
 std::optional<CharacteristicMap> make_characteristic_map(const Kind& kind) {
-  if (kind.polynomial() || kind.passing() || kind.key().polygon || !kind.key().plain()) return std::nullopt;
+  if (kind.polynomial() || kind.transient() || kind.key().polygon || !kind.key().plain()) return std::nullopt;
   for (std::size_t corner = 0; corner < 3; ++corner) {
     if (kind.regular_corner(corner) || !suitable(kind, corner)) continue;
     const KindChild& child = kind.children()[corner];

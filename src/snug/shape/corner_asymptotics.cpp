@@ -27,9 +27,9 @@ double growth(double largest_sum, double overlap, double overlap_error) {
 // The common part of all rows, a column at a time.
 class Overlap {
  public:
-  explicit Overlap(std::size_t columns) : least_(columns, INFINITY), row_(columns, 0.0) {}
+  explicit Overlap(std::size_t columns) : min_(columns, INFINITY), row_(columns, 0.0) {}
   void add(std::span<const double> row) {
-    for (std::size_t c = 0; c < row.size(); ++c) least_[c] = std::min(least_[c], row[c]);
+    for (std::size_t c = 0; c < row.size(); ++c) min_[c] = std::min(min_[c], row[c]);
   }
   void add(const Stencils::Row& row) {
     std::fill(row_.begin(), row_.end(), 0.0);
@@ -38,12 +38,12 @@ class Overlap {
   }
   [[nodiscard]] double sum() const {
     double sum = 0;
-    for (const double least : least_) sum += std::max(0.0, least);
+    for (const double least : min_) sum += std::max(0.0, least);
     return sum;
   }
 
  private:
-  std::vector<double> least_, row_;
+  std::vector<double> min_, row_;
 };
 
 double growth_of(const Stencils& rows, std::span<const std::uint32_t> which, std::size_t columns) {
@@ -178,7 +178,7 @@ class CornerAsymptotics::FactorSearch {
   double find_new(const Kind& kind) {
     Path path;
     std::unordered_set<const Kind*> seen;
-    const bool again = !kind.passing() && comes_again(kind, kind, seen, path);
+    const bool again = !kind.transient() && comes_again(kind, kind, seen, path);
     if (!again) path = {4};  // no child is left out
     DenseRows rows(kind.control_count());
     double factor = 0;

@@ -11,7 +11,7 @@
 namespace snug {
 namespace {
 
-// Rings that are looked at. Rests against sizes that further ones would hardly make better.
+// Rings that are bounded. Share of the size below which a rest is not worth more rings.
 constexpr std::size_t max_rings = 120;
 constexpr double small_rest = 0x1p-13;
 

@@ -17,8 +17,8 @@ namespace snug {
 namespace {
 
 // Times that a polynomial is split where its coefficients have no cone; levels until sharpness has decayed, and
-// rings around a corner that are looked at one by one.
-constexpr unsigned max_splits = 2, passing_levels = 6, net_levels = 2, max_rings = 50;
+// rings around a corner that are bounded one by one.
+constexpr unsigned max_splits = 2, transient_levels = 6, net_levels = 2, max_rings = 50;
 // Of a net that stands for all further rings: its error against its size, and the angle that this adds.
 constexpr double max_error = 1.0 / 512, max_widening = 1.0 / 32;
 // Angles between the axis of a first trial and vectors of the second one have larger cosines.
@@ -56,12 +56,12 @@ void centre_at(std::size_t corner, Patch& patch) {
 class NormalBalls {
  public:
   // False where no set of vectors is found.
-  [[nodiscard]] bool add(const Patch& patch) { return add(patch, passing_levels); }
+  [[nodiscard]] bool add(const Patch& patch) { return add(patch, transient_levels); }
   [[nodiscard]] bool add_near(Vector3 axis, const Patch& patch) {
     axis_ = axis;
     balls_.clear();
     next_tip_ = 0;
-    return add(patch, passing_levels);
+    return add(patch, transient_levels);
   }
   [[nodiscard]] std::span<const Ball> balls() const { return balls_; }
   // Do they hold all vectors? Those that may be zero are left out at first.

@@ -21,8 +21,8 @@ namespace {
 constexpr int directions = 12, tried_layouts = 4;
 // Edges of the border that are less steep, and lead to its top or bottom, are laid out level there.
 constexpr std::array<double, 3> level_slopes{0, 0.35, 0.6};
-// Levels that a piece is split for its coefficients to tell.
-constexpr unsigned polynomial_levels = 2, passing_levels = 6;
+// Levels that a piece is split to bound its coefficients.
+constexpr unsigned polynomial_levels = 2, transient_levels = 6;
 // Of a net that stands for all further rings, against its size: more would hardly do.
 constexpr double max_error = 0.02;
 // Layouts have so many bits: differences of their numbers, halves and products of two differences are exact.
@@ -133,8 +133,8 @@ class SectorCheck {
   [[nodiscard]] bool holds(const Patch& patch, unsigned border) {
     // The star's axes suit corners of its own pieces alone.
     const CharacteristicMap* const tip = map_of(*patch.kind);
-    if (tip != nullptr) return tip_holds(*tip, patch, border, 1, passing_levels);
-    return holds(patch, border, 1, patch.kind->polynomial() ? 1 : passing_levels);
+    if (tip != nullptr) return tip_holds(*tip, patch, border, 1, transient_levels);
+    return holds(patch, border, 1, patch.kind->polynomial() ? 1 : transient_levels);
   }
 
  private:

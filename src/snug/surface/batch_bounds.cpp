@@ -25,7 +25,7 @@ constexpr std::size_t patches_for_rows = 64;
 // One a thread; keeps its memory from call to call.
 struct Scratch {
   Patch patch, polygon;
-  HullPoints hull;
+  BoundingPoints hull;
   std::array<OffsetTriangle, chunk_size> answers;
 };
 
@@ -118,7 +118,7 @@ BatchBounds::BatchBounds(const LimitSurface& surface, std::vector<PatchId> patch
       if (method == BoundMethod::table) {
         group.table = &library_->table(*group.kind);
       } else {
-        prepare_hull_points(*library_, *group.kind);
+        prepare_bounding_points(*library_, *group.kind);
         if (of_kind[group.kind->id().index()] >= patches_for_rows && !group.polygon &&
             kernels::RowsWithTips::fit(*group.kind)) {
           for (const unsigned levels : levels_of_rows)
@@ -266,7 +266,7 @@ void BatchBounds::fit(const Chunk& chunk, PowerOfTwo back, std::span<OffsetTrian
       out[place.position] = unscaled(offset_triangle(table_triangle(*group.table, patch)), back);
       continue;
     }
-    hull_points(*library_, patch, scratch.hull);
+    bounding_points(*library_, patch, scratch.hull);
     out[place.position] = unscaled(offset_triangle(*library_, scratch.hull, limit_corners(patch)), back);
   }
 }

@@ -250,7 +250,7 @@ LevelStar LevelComplex::star(const LevelVertex& vertex, unsigned level) const {
   return star;
 }
 
-// Each piece's third corner is the next one's second, on the same edge: edges are told by their middles.
+// Each piece's third corner is the next one's second, on the same edge: middles identify edges.
 void LevelComplex::put_in_order(LevelStar& star) const {
   const std::size_t n = star.sectors.size();
   struct Ends {

@@ -94,8 +94,8 @@ void LimitSurface::Layout::lay_out_patches() {
 
 void LimitSurface::Layout::find_bare_owners(const ControlMesh& mesh) {
   const auto leave_out = [this](std::size_t owner) {
-    if (bare.empty()) bare.assign(owner_count(), false);
-    bare[owner] = true;
+    if (without_surface.empty()) without_surface.assign(owner_count(), false);
+    without_surface[owner] = true;
   };
   if (!rules->primal) {
     for (std::size_t owner = 0; owner < owner_count(); ++owner) {
@@ -170,7 +170,7 @@ bool LimitSurface::after_first_split(PatchId p) const {
 
 const Kind* LimitSurface::polygon_of(PatchId p) const {
   if (!after_first_split(p)) return nullptr;
-  static_cast<void>(kind(p));  // tells it
+  static_cast<void>(kind(p));  // refuses it
   return layout_->polygons[layout_->owners[p.index()]].load(std::memory_order_relaxed);
 }
 

@@ -81,7 +81,7 @@ class LimitSurface {
   /// Is there a limit patch? Not in a hole, not at a boundary with BoundaryRule::none, and with a dual scheme
   /// not of a boundary vertex.
   [[nodiscard]] bool has_patch(PatchId p) const {
-    return layout_->bare.empty() || !layout_->bare[place(p).owner];
+    return layout_->without_surface.empty() || !layout_->without_surface[place(p).owner];
   }
   /// Requires:  has_patch(p).
   [[nodiscard]] const Kind& kind(PatchId p) const {
@@ -92,7 +92,7 @@ class LimitSurface {
   /// Requires:  has_patch(p).
   [[nodiscard]] std::uint8_t first(PatchId p) const {
     if (layout_->firsts.empty()) return 0;
-    static_cast<void>(kind(p));  // tells it
+    static_cast<void>(kind(p));  // refuses it
     return layout_->firsts[p.index()].load(std::memory_order_relaxed);
   }
   /// The kind of the polygon that a patch is made of in a first split; none for others. Requires has_patch(p).
@@ -119,7 +119,7 @@ class LimitSurface {
   [[nodiscard]] std::size_t kind_count() const;
 
  private:
-  // What depends on connectivity alone.
+  // Depends on connectivity alone.
   struct Layout {
     Layout(const ControlMesh& mesh, const SchemeOptions& scheme, std::shared_ptr<BoundsCache> cache,
            const WorkMonitor& monitor);
@@ -136,7 +136,7 @@ class LimitSurface {
     Sharpness sharpness;
     std::vector<VertexId> isolated;
     std::size_t patch_count = 0;
-    std::vector<bool> bare;             // owners without a surface; empty where there are none
+    std::vector<bool> without_surface;  // owners without a surface; empty where there are none
     std::vector<std::uint32_t> begins;  // first patch of each owner and the end; empty for triangles
     std::vector<std::uint32_t> owners;  // of each patch; empty for triangles
     // Null until asked for. What `firsts` and `polygons` say is there before the kind.

@@ -16,12 +16,12 @@ constexpr double min_error = 0x1p-46;
 // How many pieces there are, for all threads.
 class Count {
  public:
-  explicit Count(std::uint64_t most) : most_(most) {}
+  explicit Count(std::uint64_t most) : max_(most) {}
   void add() { count_.fetch_add(1, std::memory_order_relaxed); }
-  [[nodiscard]] bool too_many() const { return count_.load(std::memory_order_relaxed) > most_; }
+  [[nodiscard]] bool too_many() const { return count_.load(std::memory_order_relaxed) > max_; }
 
  private:
-  std::uint64_t most_;
+  std::uint64_t max_;
   std::atomic<std::uint64_t> count_{0};
 };
 

@@ -15,15 +15,15 @@ void require_solids(const PlacedBvh& a, const PlacedBvh& b);
 struct Nesting {
   /// 0: a component of A has a point in the solid of B; 1: the other way round. Nothing where none is found.
   std::optional<std::size_t> inner;
-  /// Is it certain that there is none else? Not where a point is too near to the other surface to tell.
+  /// Is it certain that there is no other? Not where a point is too near the other surface to decide.
   bool certain = true;
   BoundedPoint point;     ///< of the inner surface, in the outer solid; mesh units, world coordinates
   SurfaceParameter at{};  ///< where it lies on the inner surface
 
-  /// What a Collision or a Distance says of two solids with this point in common.
+  /// Writes this common point of two solids to a Collision or a Distance.
   /// Requires:  inner.
   template <class Answer>
-  void tell(Answer& answer) const {
+  void write_to(Answer& answer) const {
     answer.distance = 0;
     answer.witness = {point.position, point.position};
     answer.witness_error = point.error;

@@ -10,16 +10,16 @@
 #include <cmath>
 #include <random>
 
-namespace snug::bound_rows_test {
+namespace snug::bounding_rows_test {
 namespace {
 
 using testing::assorted_kinds;
 using testing::inside;
 
-TEST(bound_rows, sum_to_one_within_their_stated_error) {
+TEST(bounding_rows, sum_to_one_within_their_stated_error) {
   KindCache library;
   for (const KindKey& key : assorted_kinds()) {
-    const BoundRows rows = make_bound_rows(library.find(key));
+    const BoundingRows rows = make_bounding_rows(library.find(key));
     ASSERT_GT(rows.count(), 0u);
     EXPECT_LT(rows.entry_error(), 1e-12);
     for (std::size_t r = 0; r < rows.count(); ++r) {
@@ -34,7 +34,7 @@ TEST(bound_rows, sum_to_one_within_their_stated_error) {
   }
 }
 
-TEST(bound_rows, end_with_the_control_nets_of_the_tips) {
+TEST(bounding_rows, end_with_the_control_nets_of_the_tips) {
   BoundsCache library;
   std::mt19937_64 random(3);
   const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
@@ -42,12 +42,12 @@ TEST(bound_rows, end_with_the_control_nets_of_the_tips) {
   for (const KindKey& key : assorted_kinds()) {
     const Kind& kind = library.kinds().find(key);
     for (const unsigned most : {1u, 24u}) {
-      const BoundRows rows = make_bound_rows(kind, most);
+      const BoundingRows rows = make_bounding_rows(kind, most);
       std::vector<Point3> points(kind.control_count());
       for (Point3& p : points) p = {unit(), unit(), unit()};
       const Patch patch = testing::patch_of(kind, points);
       std::size_t row = rows.bezier_count(), tip = 0;
-      EXPECT_EQ(rows.lasting(), has_lasting_tips(kind) && !kind.polynomial());
+      EXPECT_EQ(rows.self_similar(), has_self_similar_tips(kind) && !kind.polynomial());
       for (unsigned corner = 0; corner < 3; ++corner) {
         if (kind.regular_corner(corner)) continue;
         Patch piece = patch;
@@ -74,22 +74,23 @@ TEST(bound_rows, end_with_the_control_nets_of_the_tips) {
   EXPECT_GT(tips, 20u);
 }
 
-TEST(bound_rows, of_a_regular_patch_are_its_bezier_points_after_one_split) {
+TEST(bounding_rows, of_a_regular_patch_are_its_bezier_points_after_one_split) {
   KindCache library;
-  const BoundRows rows = make_bound_rows(library.find({Scheme::loop, {inside(6), inside(6), inside(6)}}));
+  const BoundingRows rows =
+      make_bounding_rows(library.find({Scheme::loop, {inside(6), inside(6), inside(6)}}));
   EXPECT_EQ(rows.count(), 45u);
   EXPECT_EQ(rows.control_count(), 12u);
 }
 
 // The twin evaluates every basis function of a kind: a random functional of the control points is bounded by
 // its values on the rows. As a mesh the neighbourhood has a rim, but the patch of face 0 does not see it.
-TEST(bound_rows, bound_random_functionals_of_the_patch) {
+TEST(bounding_rows, bound_random_functionals_of_the_patch) {
   KindCache library;
   std::mt19937_64 random(17);
   std::normal_distribution<double> normal;
   for (const KindKey& key : assorted_kinds()) {
     const Kind& kind = library.find(key);
-    const BoundRows rows = make_bound_rows(kind);
+    const BoundingRows rows = make_bounding_rows(kind);
     const Topology around = neighbourhood(key).topology;
     for (int trial = 0; trial < 12; ++trial) {
       oracle::TwinMesh twin;
@@ -146,4 +147,4 @@ TEST(tip_depth, grows_with_the_valence_and_stays_bounded) {
 }
 
 }  // namespace
-}  // namespace snug::bound_rows_test
+}  // namespace snug::bounding_rows_test

@@ -1,4 +1,4 @@
-#include <snug/search/piece_node.h>
+#include <snug/search/piece_leaf.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace snug {
 
-PieceRecord::PieceRecord(const OffsetTriangle& offset, const QuadraticTriangle& quadratic,
+PieceBounds::PieceBounds(const OffsetTriangle& offset, const QuadraticTriangle& quadratic,
                          const Point3& origin) {
   const auto single = [](const Vector3& v) {
     return Single3{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
@@ -42,17 +42,17 @@ PieceRecord::PieceRecord(const OffsetTriangle& offset, const QuadraticTriangle& 
   radius_ = error_ = INFINITY;
 }
 
-Triangle PieceRecord::base(const Point3& origin) const {
+Triangle PieceBounds::base(const Point3& origin) const {
   return {origin + wide(base_[0]), origin + wide(base_[1]), origin + wide(base_[2])};
 }
 
-Vector3 PieceRecord::at(TriangleParameter at) const {
+Vector3 PieceBounds::at(TriangleParameter at) const {
   const double r = 1 - at.u - at.v, u = at.u, v = at.v;
   return (r * r) * wide(net_[0]) + (u * u) * wide(net_[1]) + (v * v) * wide(net_[2]) +
          (2 * r * u) * wide(net_[3]) + (2 * u * v) * wide(net_[4]) + (2 * r * v) * wide(net_[5]);
 }
 
-std::array<Vector3, 2> PieceRecord::derivatives(TriangleParameter at) const {
+std::array<Vector3, 2> PieceBounds::derivatives(TriangleParameter at) const {
   const double u = at.u, v = at.v, r = 1 - u - v;
   std::array<Vector3, 6> net;
   for (std::size_t k = 0; k < 6; ++k) net[k] = wide(net_[k]);
@@ -61,7 +61,7 @@ std::array<Vector3, 2> PieceRecord::derivatives(TriangleParameter at) const {
 }
 
 // Over the Bezier points of the four parts after a split, those that are no means of others.
-double PieceRecord::extent(const Vector3& w) const {
+double PieceBounds::extent(const Vector3& w) const {
   std::array<double, 6> f;
   for (std::size_t k = 0; k < 6; ++k) f[k] = dot(w, wide(net_[k]));
   double most = std::max({f[0], f[1], f[2]});
@@ -73,14 +73,14 @@ double PieceRecord::extent(const Vector3& w) const {
   return most;
 }
 
-PieceSketch sketch(BoundsCache& library, const Patch& patch, BoundMethod method) {
-  thread_local HullPoints points;
-  PieceSketch result;
+PieceBuild build_piece(BoundsCache& library, const Patch& patch, BoundMethod method) {
+  thread_local BoundingPoints points;
+  PieceBuild result;
   if (method == BoundMethod::table) {
     result.quadratic = quadratic_triangle(library, patch);
     result.offset = offset_triangle(table_triangle(library.table(*patch.kind), patch));
   } else {
-    hull_points(library, patch, points);
+    bounding_points(library, patch, points);
     result.quadratic = quadratic_triangle(library, patch, points);
     // Refines tips, which the box profits from.
     result.offset = offset_triangle(library, points, limit_corners(patch));
@@ -91,17 +91,17 @@ PieceSketch sketch(BoundsCache& library, const Patch& patch, BoundMethod method)
 }
 
 template <std::size_t N>
-PieceNode<N>::PieceNode(std::span<const PieceSketch> pieces) {
+PieceLeaf<N>::PieceLeaf(std::span<const PieceBuild> pieces) {
   std::array<Obb, N> boxes;
   for (std::size_t i = 0; i < pieces.size(); ++i) boxes[i] = pieces[i].box;
   static_cast<WideNode&>(*this) = WideNode(std::span(boxes).first(pieces.size()));
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    records[i] = PieceRecord(pieces[i].offset, pieces[i].quadratic, origin());
+    bounds[i] = PieceBounds(pieces[i].offset, pieces[i].quadratic, origin());
     if (pieces[i].can_split) can_split |= static_cast<std::uint8_t>(1u << i);
   }
 }
 
-template struct PieceNode<WideNode::width>;
-template struct PieceNode<4>;
+template struct PieceLeaf<WideNode::width>;
+template struct PieceLeaf<4>;
 
 }  // namespace snug

@@ -1,4 +1,4 @@
-#include <snug/shape/star_stretch.h>
+#include <snug/shape/star_distortion.h>
 
 #include <algorithm>
 #include <array>
@@ -317,7 +317,7 @@ class StretchCheck {
 
 }  // namespace
 
-double star_stretch(std::span<const StarSector> sectors, bool closed) {
+double star_distortion(std::span<const StarSector> sectors, bool closed) {
   return StretchCheck(sectors, closed).stretch();
 }
 

@@ -19,12 +19,12 @@ struct QuadraticSet {
   std::function<BoundedPoint(std::uint32_t piece, TriangleParameter at)> point;
 };
 
-/// Tells for each thread whether points are on the side that is asked about; nothing where that is not known.
+/// Is a point on the queried side? Nothing where that is not known. One test a thread.
 using SideTest = std::function<std::optional<bool>(const Point3& point, double error)>;
 
-struct OneSidedOptions {
-  double precision;                 ///< upper - lower <= precision is asked for
-  std::optional<double> tolerance;  ///< ... or that one of them tells that the distance is greater, or is not
+struct HausdorffOptions {
+  double precision;                 ///< wanted: upper - lower <= precision
+  std::optional<double> tolerance;  ///< ... or that one of them decides whether the distance is greater
   std::function<SideTest()> make_side_test{};  ///< count only points on this side of the other set
   std::uint64_t budget;                        ///< most parts to be compared
   int threads = 0;
@@ -32,34 +32,34 @@ struct OneSidedOptions {
 
 /// The greatest distance of points of one set from another one, while it is searched for.
 struct Farthest {
-  double lower = 0, upper = 0;  ///< of pieces that are settled
+  double lower = 0, upper = 0;  ///< of pieces that are resolved
   BoundedPoint from;            ///< where `lower` is reached
   QuadraticFoot to;
   std::optional<std::pair<std::uint32_t, TriangleParameter>> at;  ///< piece and parameter of `from`; none yet
   std::uint64_t compared = 0;
-  bool ended = false;  ///< the budget is used up: pieces were settled as they are
+  bool ended = false;  ///< the budget is used up: pieces were resolved as they are
 };
 
-/// A piece that could not be settled since its quadratic, or those near it, are not exact enough.
-struct Unsettled {
+/// A piece that could not be resolved since its quadratic, or those near it, are not exact enough.
+struct Unresolved {
   std::uint32_t piece;
   double reach;  ///< all points of its set are at most this far from the other set
 };
 
-/// Settles pieces of a set: each is cut into parts until a part is proved to be no farther from the other set
+/// Resolves pieces of a set: each is cut into parts until a part is proved to be no farther from the other set
 /// than `farthest.upper`, which is raised where it must be.
 ///
 /// A part is compared with one piece of the other set at a time: the difference of two quadratics over the
 /// same parameters is a quadratic, no longer than its longest Bezier point. Points of the set bound the
 /// distance from below.
 ///
-/// Guarantee: after it, every point of pieces that are settled, and on the side that is asked about, is at most
+/// Guarantee: after it, every point of pieces that are resolved, and on the queried side, is at most
 ///            `farthest.upper` from the other set; the point `from` is at least `farthest.lower` from it. The
 ///            same for any number of threads.
-/// Requires:  with `last` pieces are settled whatever their errors are.
+/// Requires:  with `last` pieces are resolved whatever their errors are.
 /// Source:    derivations/deviation.md.
-[[nodiscard]] std::vector<Unsettled> settle(const QuadraticSet& set, std::span<const std::uint32_t> pieces,
-                                            const QuadraticBvh& other, const OneSidedOptions& options,
-                                            bool last, Farthest& farthest, const WorkMonitor& monitor = {});
+[[nodiscard]] std::vector<Unresolved> resolve(const QuadraticSet& set, std::span<const std::uint32_t> pieces,
+                                              const QuadraticBvh& other, const HausdorffOptions& options,
+                                              bool last, Farthest& farthest, const WorkMonitor& monitor = {});
 
 }  // namespace snug

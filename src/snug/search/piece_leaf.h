@@ -10,14 +10,14 @@
 
 namespace snug {
 
-/// What a query knows of a piece without its control points: its offset triangle, and a quadratic Bezier
+/// Bounds of a piece that queries read without its control points: its offset triangle, and a quadratic Bezier
 /// triangle near it. Numbers of single precision relative to an origin, which is its node's, read in double.
 /// Guarantee: the radius and the error cover what rounding to single precision moved.
-class PieceRecord {
+class PieceBounds {
  public:
-  PieceRecord() = default;
+  PieceBounds() = default;
   /// Radius and error are infinite where a number is not finite.
-  PieceRecord(const OffsetTriangle& offset, const QuadraticTriangle& quadratic, const Point3& origin);
+  PieceBounds(const OffsetTriangle& offset, const QuadraticTriangle& quadratic, const Point3& origin);
 
   /// The base triangle of the offset triangle.
   [[nodiscard]] Triangle base(const Point3& origin) const;
@@ -46,26 +46,26 @@ class PieceRecord {
   float radius_ = 0, error_ = 0;
 };
 
-/// What a node is made of: a piece, before there is an origin to be relative to.
-struct PieceSketch {
+/// Bounds of a piece before its node, and so the origin they are relative to, is made.
+struct PieceBuild {
   Obb box;
   OffsetTriangle offset;
   QuadraticTriangle quadratic;
   bool can_split;
 };
-[[nodiscard]] PieceSketch sketch(BoundsCache& library, const Patch& patch, BoundMethod method);
+[[nodiscard]] PieceBuild build_piece(BoundsCache& library, const Patch& patch, BoundMethod method);
 
 /// A node of pieces: boxes around up to N of them, and their records.
 template <std::size_t N>
-struct PieceNode : WideNode {
+struct PieceLeaf : WideNode {
   /// Requires:  1 to N pieces.
-  explicit PieceNode(std::span<const PieceSketch> pieces);
-  std::array<PieceRecord, N> records;
+  explicit PieceLeaf(std::span<const PieceBuild> pieces);
+  std::array<PieceBounds, N> bounds;
   std::uint8_t can_split = 0;  ///< a bit each
 };
 /// The patches of a leaf of a tree.
-using LeafNode = PieceNode<WideNode::width>;
+using LeafNode = PieceLeaf<WideNode::width>;
 /// The pieces that a piece is split into.
-using SplitNode = PieceNode<4>;
+using SplitNode = PieceLeaf<4>;
 
 }  // namespace snug

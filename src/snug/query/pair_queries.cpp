@@ -1,6 +1,6 @@
 #include <atomic>
 
-#include <snug/query/pairs.h>
+#include <snug/query/pair_queries.h>
 #include <support/parallel.h>
 
 namespace snug {

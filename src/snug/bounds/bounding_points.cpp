@@ -1,4 +1,4 @@
-#include <snug/bounds/hull_points.h>
+#include <snug/bounds/bounding_points.h>
 
 #include <algorithm>
 #include <cmath>
@@ -7,54 +7,54 @@
 #include <support/contract.h>
 
 namespace snug {
-void HullPoints::restart(const Point3& new_origin) {
+void BoundingPoints::restart(const Point3& new_origin) {
   origin = new_origin;
   error = largest = 0;
   count_ = tip_count_ = 0;
 }
 
-void HullPoints::reserve(std::size_t count) {
+void BoundingPoints::reserve(std::size_t count) {
   if (count <= x_.size()) return;
   for (std::vector<double>* axis : {&x_, &y_, &z_}) axis->resize(count);
 }
 
-void HullPoints::assign(const HullPoints& other) {
+void BoundingPoints::assign(const BoundingPoints& other) {
   origin = other.origin;
   error = other.error;
   largest = other.largest;
   count_ = other.count_;
   tip_count_ = 0;
-  for (const auto axis : {&HullPoints::x_, &HullPoints::y_, &HullPoints::z_}) {
+  for (const auto axis : {&BoundingPoints::x_, &BoundingPoints::y_, &BoundingPoints::z_}) {
     const double* const from = (other.*axis).data();
     (this->*axis).assign(from, from + count_);
   }
 }
 
-std::size_t HullPoints::extend(std::size_t by) {
+std::size_t BoundingPoints::extend(std::size_t by) {
   const std::size_t begin = count_;
   count_ += by;
   reserve(count_);
   return begin;
 }
 
-inline void HullPoints::set(std::size_t i, const Vector3& p) {
+inline void BoundingPoints::set(std::size_t i, const Vector3& p) {
   x_[i] = p.x;
   y_[i] = p.y;
   z_[i] = p.z;
 }
 
-void HullPoints::widen(double of_error, double of_largest) {
+void BoundingPoints::widen(double of_error, double of_largest) {
   error = std::max(error, of_error);
   largest = std::max(largest, of_largest);
 }
 
-void HullPoints::add(std::span<const Vector3> points, double of_error, double of_largest) {
+void BoundingPoints::add(std::span<const Vector3> points, double of_error, double of_largest) {
   std::size_t at = extend(points.size());
   for (const Vector3& p : points) set(at++, p);
   widen(of_error, of_largest);
 }
 
-void HullPoints::add(const BoundRows& rows, const Patch& patch) {
+void BoundingPoints::add(const BoundingRows& rows, const Patch& patch) {
   SNUG_EXPECT(rows.control_count() == patch.points.size());
   const std::size_t at = extend(rows.count());
   kernels::apply_rows(rows.column(0), rows.count(), patch.points, x_.data() + at, y_.data() + at,
@@ -63,21 +63,21 @@ void HullPoints::add(const BoundRows& rows, const Patch& patch) {
         enlarged((rows.abs_sum() + rows.entry_error()) * patch.largest));
 }
 
-void HullPoints::add(const HullPoints& others) {
+void BoundingPoints::add(const BoundingPoints& others) {
   const std::size_t at = extend(others.count_);
-  for (const auto axis : {&HullPoints::x_, &HullPoints::y_, &HullPoints::z_}) {
+  for (const auto axis : {&BoundingPoints::x_, &BoundingPoints::y_, &BoundingPoints::z_}) {
     std::copy_n((others.*axis).begin(), others.count_, (this->*axis).begin() + at);
   }
   widen(others.error, others.largest);
 }
 
-void HullPoints::add(const Stencils& rows, const Patch& patch) {
+void BoundingPoints::add(const Stencils& rows, const Patch& patch) {
   std::size_t at = extend(rows.row_count());
   for (std::size_t r = 0; r < rows.row_count(); ++r) set(at++, rows.apply<Vector3>(r, patch.points));
   widen(rows.result_error(patch.largest, patch.error), enlarged(rows.max_abs_sum() * patch.largest));
 }
 
-void HullPoints::take_net(const BoundRows::Net& net, std::size_t begin, Patch& out) const {
+void BoundingPoints::take_net(const BoundingRows::Net& net, std::size_t begin, Patch& out) const {
   out.kind = net.kind;
   out.first = 0;
   out.origin = origin;
@@ -93,7 +93,7 @@ void HullPoints::take_net(const BoundRows::Net& net, std::size_t begin, Patch& o
   out.error = error;
 }
 
-void HullPoints::set_boxes(BoundsCache& library, std::size_t tip) {
+void BoundingPoints::set_boxes(BoundsCache& library, std::size_t tip) {
   const TipBoxes boxes = library.tip_table(*tips_[tip].kind).boxes(tips_[tip]);
   std::size_t i = tip_size * tip;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -105,10 +105,10 @@ void HullPoints::set_boxes(BoundsCache& library, std::size_t tip) {
   }
 }
 
-void HullPoints::add_with_tips(BoundsCache& library, const Patch& patch) {
+void BoundingPoints::add_with_tips(BoundsCache& library, const Patch& patch) {
   SNUG_EXPECT(count_ == 0);
-  const BoundRows& rows = library.rows(*patch.kind);
-  if (!rows.lasting()) return add(rows, patch);
+  const BoundingRows& rows = library.rows(*patch.kind);
+  if (!rows.self_similar()) return add(rows, patch);
   tip_count_ = rows.nets().size();
   SNUG_EXPECT(tip_count_ <= tips_.size());
   const std::size_t begin = tips_end();
@@ -121,10 +121,10 @@ void HullPoints::add_with_tips(BoundsCache& library, const Patch& patch) {
   cut(begin + rows.bezier_count());
 }
 
-void HullPoints::refine_tip(BoundsCache& library, std::size_t tip) {
+void BoundingPoints::refine_tip(BoundsCache& library, std::size_t tip) {
   Patch& net = tips_[tip];
-  const BoundRows& rows = library.level_rows(*net.kind);
-  SNUG_EXPECT(rows.lasting() && rows.nets().size() == 1);
+  const BoundingRows& rows = library.level_rows(*net.kind);
+  SNUG_EXPECT(rows.self_similar() && rows.nets().size() == 1);
   const std::size_t begin = count_;
   add(rows, net);
   take_net(rows.nets()[0], begin + rows.bezier_count(), net);
@@ -132,32 +132,32 @@ void HullPoints::refine_tip(BoundsCache& library, std::size_t tip) {
   cut(begin + rows.bezier_count());
 }
 
-void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out) {
+void bounding_points(const BoundingRows& rows, const Patch& patch, BoundingPoints& out) {
   out.restart(patch.origin);
   out.add(rows, patch);
 }
 
 namespace {
 
-// Levels that a patch is split, before the nets of its pieces do: one of a passing kind, and at a crowded
+// Levels that a patch is split, before the nets of its pieces do: one of a transient kind, and at a crowded
 // corner.
-constexpr unsigned passing_levels = 5, crowded_levels = 12;
+constexpr unsigned transient_levels = 5, high_valence_levels = 12;
 
 // The points of the parts of a patch of a kind that few share; `scratch` has a patch a level below.
 void add_parts(BoundsCache& library, const Patch& patch, unsigned level, std::span<Patch> scratch,
-               HullPoints& out) {
+               BoundingPoints& out) {
   const Kind& kind = *patch.kind;
   if (kind.polynomial()) return out.add(kind.bezier(), patch);
-  if (kind.shared()) {
-    thread_local HullPoints part;
+  if (kind.cacheable()) {
+    thread_local BoundingPoints part;
     part.restart(patch.origin);
     part.add_with_tips(library, patch);
     return out.add(part);
   }
   // A split brings Bezier points nearer.
-  const Stencils* const creased = level > 0 && kind.passing() ? library.crease_rows(kind) : nullptr;
+  const Stencils* const creased = level > 0 && kind.transient() ? library.crease_rows(kind) : nullptr;
   if (creased) return out.add(*creased, patch);
-  if (level >= (kind.passing() ? passing_levels : crowded_levels)) {
+  if (level >= (kind.transient() ? transient_levels : high_valence_levels)) {
     return out.add(patch.points, patch.error, patch.largest);
   }
   for (unsigned child = 0; child < 4; ++child) {
@@ -168,9 +168,9 @@ void add_parts(BoundsCache& library, const Patch& patch, unsigned level, std::sp
 
 }  // namespace
 
-void hull_points(BoundsCache& library, const Patch& patch, HullPoints& out) {
-  if (!patch.kind->shared()) {
-    thread_local std::array<Patch, crowded_levels> scratch;
+void bounding_points(BoundsCache& library, const Patch& patch, BoundingPoints& out) {
+  if (!patch.kind->cacheable()) {
+    thread_local std::array<Patch, high_valence_levels> scratch;
     thread_local Patch whole;
     whole = patch;
     whole.path = {};  // a path may have no room for so many more digits
@@ -186,7 +186,7 @@ void hull_points(BoundsCache& library, const Patch& patch, HullPoints& out) {
   out.reserve(count);
 }
 
-void hull_points(const CurvePiece& piece, HullPoints& out) {
+void bounding_points(const CurvePiece& piece, BoundingPoints& out) {
   out.restart(piece.origin);
   CurvePiece whole = piece;
   whole.path = {};  // a path may have no room for two more digits
@@ -199,25 +199,25 @@ void hull_points(const CurvePiece& piece, HullPoints& out) {
   }
 }
 
-void close_points(BoundsCache& library, const Patch& patch, HullPoints& out) {
-  if (!patch.kind->polynomial()) return hull_points(library, patch, out);
+void close_points(BoundsCache& library, const Patch& patch, BoundingPoints& out) {
+  if (!patch.kind->polynomial()) return bounding_points(library, patch, out);
   out.restart(patch.origin);
   out.add(patch.kind->bezier(), patch);
 }
 
 // A patch of the kind asks for all that the others will.
-void prepare_hull_points(BoundsCache& library, const Kind& kind) {
+void prepare_bounding_points(BoundsCache& library, const Kind& kind) {
   Patch patch;
   patch.kind = &kind;
   patch.points.resize(kind.control_count());
-  HullPoints points;
-  hull_points(library, patch, points);
+  BoundingPoints points;
+  bounding_points(library, patch, points);
   for (std::size_t round = 0; round < max_tip_refinements; ++round) {
     for (std::size_t tip = 0; tip < points.tips().size(); ++tip) points.refine_tip(library, tip);
   }
 }
 
-Slab outer_slab(const HullPoints& points, const Vector3& normal) {
+Slab outer_slab(const BoundingPoints& points, const Vector3& normal) {
   const kernels::Range range = kernels::heights(points.coordinates(), Vector3{}, normal);
   const double sum = std::fabs(normal.x) + std::fabs(normal.y) + std::fabs(normal.z);
   const double error = enlarged(sum * (points.error + gamma_bound(8) * points.largest)) + 8 * underflow_error;

@@ -1,7 +1,7 @@
-// What queries know of pieces without their control points: limit points of the library, and of the twins, are
+// Bounds of pieces without their control points: limit points of the library, and of the twins, are
 // near base triangles and quadratics as records say, for whole patches and for pieces down to level 20.
 
-#include <snug/search/piece_node.h>
+#include <snug/search/piece_leaf.h>
 
 #include <gtest/gtest.h>
 #include <oracle/polygon_twin.h>
@@ -13,7 +13,7 @@
 
 #include <cstdio>
 
-namespace snug::piece_node_test {
+namespace snug::piece_leaf_test {
 namespace {
 
 using testing::Extended;
@@ -32,7 +32,7 @@ struct Counts {
 
 void expect_known(const Node& node, const Sample& sample, const Vector3& w, const std::string& name,
                   Counts& counts) {
-  const PieceRecord& record = SurfaceWorkspace::record(node);
+  const PieceBounds& record = SurfaceWorkspace::bounds_of(node);
   const Point3& origin = node.boxes->origin();
   ++counts.samples;
   if (!std::isfinite(record.radius())) {
@@ -66,7 +66,7 @@ Vector3 any_direction(std::mt19937_64& random, const Node& node) {
       return {0, random() % 2 == 0 ? length : -length, 0};
     case 1:
       return (random() % 2 == 0 ? length : -length) *
-             unit_normal(SurfaceWorkspace::record(node).base(node.boxes->origin()));
+             unit_normal(SurfaceWorkspace::bounds_of(node).base(node.boxes->origin()));
     default:
       return length *
              Vector3{testing::unit(random) - 0.5, testing::unit(random) - 0.5, testing::unit(random) - 0.5};
@@ -239,7 +239,7 @@ TEST(piece_record, is_infinite_where_a_number_is_not_finite) {
   const QuadraticTriangle flat{{Point3{}, Point3{1, 0, 0}, Point3{0, 1, 0}},
                                {Point3{0.5, 0, 0}, Point3{0.5, 0.5, 0}, Point3{0, 0.5, 0}},
                                0.01};
-  const PieceRecord good(offset, flat, {});
+  const PieceBounds good(offset, flat, {});
   EXPECT_LE(good.radius(), 0.1001);
   EXPECT_LE(good.error(), 0.0101);
   for (const double bad : std::array<double, 3>{NAN, INFINITY, 1e200}) {
@@ -249,9 +249,9 @@ TEST(piece_record, is_infinite_where_a_number_is_not_finite) {
     QuadraticTriangle error = flat, middle = flat;
     error.error = bad;
     middle.middles[2].z = bad;
-    for (const PieceRecord& record :
-         {PieceRecord(radius, flat, {}), PieceRecord(corner, flat, {}), PieceRecord(offset, error, {}),
-          PieceRecord(offset, middle, {}), PieceRecord(offset, flat, {bad, 0, 0})}) {
+    for (const PieceBounds& record :
+         {PieceBounds(radius, flat, {}), PieceBounds(corner, flat, {}), PieceBounds(offset, error, {}),
+          PieceBounds(offset, middle, {}), PieceBounds(offset, flat, {bad, 0, 0})}) {
       EXPECT_EQ(record.radius(), INFINITY) << bad;
       EXPECT_EQ(record.error(), INFINITY) << bad;
       // Not that much more is known by numbers that are left.
@@ -261,4 +261,4 @@ TEST(piece_record, is_infinite_where_a_number_is_not_finite) {
 }
 
 }  // namespace
-}  // namespace snug::piece_node_test
+}  // namespace snug::piece_leaf_test

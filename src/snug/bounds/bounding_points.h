@@ -12,7 +12,7 @@
 namespace snug {
 
 /// Points whose convex hull contains a piece of a surface or a curve, relative to its origin; arrays by axis.
-class HullPoints {
+class BoundingPoints {
  public:
   Point3 origin;
   double error = 0;    ///< upper bound, a coordinate, of |point - exact point|
@@ -35,16 +35,16 @@ class HullPoints {
   /// Memory for so many.
   void reserve(std::size_t count);
   /// A copy of the points with no more memory than they need.
-  void assign(const HullPoints& other);
+  void assign(const BoundingPoints& other);
   /// Adds points of at most `of_largest` that are off by at most `of_error`.
   void add(std::span<const Vector3> points, double of_error, double of_largest);
   /// Adds rows times the points of a patch.
-  void add(const BoundRows& rows, const Patch& patch);
+  void add(const BoundingRows& rows, const Patch& patch);
   void add(const Stencils& rows, const Patch& patch);
   /// The net whose points begin at `begin`, as a patch in its kind's order.
-  void take_net(const BoundRows::Net& net, std::size_t begin, Patch& out) const;
+  void take_net(const BoundingRows::Net& net, std::size_t begin, Patch& out) const;
   /// Adds all points of others.
-  void add(const HullPoints& others);
+  void add(const BoundingPoints& others);
   /// Adds the points of the rows that a library keeps for a patch, to none, with tips for their nets.
   void add_with_tips(BoundsCache& library, const Patch& patch);
   /// Replaces a tip by the points that a level of rows of its kind makes of its net: the hull
@@ -72,20 +72,20 @@ inline constexpr std::size_t max_tip_refinements = 20;
 /// Guarantee: the patch lies in the hull of points that differ from these by at most out.error a coordinate.
 /// Requires:  rows of the patch's kind.
 /// Cost:      3 rows.count() rows.control_count() multiply-adds; no allocation once `out` has been as large.
-void hull_points(const BoundRows& rows, const Patch& patch, HullPoints& out);
+void bounding_points(const BoundingRows& rows, const Patch& patch, BoundingPoints& out);
 
 /// The same from the rows and tables that a library keeps, with tips. Takes memory for all refinements to
-/// come. Passing and crowded kinds, which few patches share, have no rows: the patch is split, and its pieces
+/// come. Transient and high-valence kinds, which few patches share, have no rows: the patch is split, and its pieces
 /// have theirs, see also make_crease_rows().
-void hull_points(BoundsCache& library, const Patch& patch, HullPoints& out);
+void bounding_points(BoundsCache& library, const Patch& patch, BoundingPoints& out);
 /// Makes the rows and tables that the call above and refinements will need for patches of this kind.
-void prepare_hull_points(BoundsCache& library, const Kind& kind);
+void prepare_bounding_points(BoundsCache& library, const Kind& kind);
 
 /// The same of a curve: the Bezier points of its four quarters.
-void hull_points(const CurvePiece& piece, HullPoints& out);
+void bounding_points(const CurvePiece& piece, BoundingPoints& out);
 
 /// Few points whose hull holds the patch closely: the Bezier points of a polynomial one, else those above.
-void close_points(BoundsCache& library, const Patch& patch, HullPoints& out);
+void close_points(BoundsCache& library, const Patch& patch, BoundingPoints& out);
 
 /// The set lower <= dot(normal, p) <= upper.
 struct Slab {
@@ -95,6 +95,6 @@ struct Slab {
 
 /// Slab along `normal`, which need not be of length 1, that contains the patch, rounding included; infinite
 /// where a point is not finite. Bounds belong to points relative to points.origin.
-[[nodiscard]] Slab outer_slab(const HullPoints& points, const Vector3& normal);
+[[nodiscard]] Slab outer_slab(const BoundingPoints& points, const Vector3& normal);
 
 }  // namespace snug

@@ -1,4 +1,4 @@
-#include <snug/query/containment.h>
+#include <snug/query/nesting.h>
 
 #include <algorithm>
 #include <cmath>
@@ -45,9 +45,9 @@ Point3 beside(const SurfaceBvh& model, PatchId p, double way) {
          way * model.tree().ball().radius * across;
 }
 
-class Asking {
+class NestingTest {
  public:
-  Asking(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor)
+  NestingTest(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor)
       : side_{&a, &b}, frames_(a, b), monitor_(monitor) {}
 
   Nesting components() {
@@ -158,17 +158,17 @@ void require_solids(const PlacedBvh& a, const PlacedBvh& b) {
 
 Nesting nesting(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor) {
   require_solids(a, b);
-  return Asking(a, b, monitor).components();
+  return NestingTest(a, b, monitor).components();
 }
 
 Nesting common_point(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor) {
   const Nesting found = nesting(a, b, monitor);
-  return found.inner ? found : Asking(a, b, monitor).deep_patches();
+  return found.inner ? found : NestingTest(a, b, monitor).deep_patches();
 }
 
 bool have_inner_point_in_common(const PlacedBvh& a, const PlacedBvh& b, const WorkMonitor& monitor) {
   require_solids(a, b);
-  return Asking(a, b, monitor).inner_points();
+  return NestingTest(a, b, monitor).inner_points();
 }
 
 std::optional<PatchId> wound_twice(const SurfaceBvh& model, const WorkMonitor& monitor) {

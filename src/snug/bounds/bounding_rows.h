@@ -9,13 +9,13 @@
 
 namespace snug {
 
-/// Hull rows of a kind: a matrix M such that, whatever the control points c, the limit patch lies in the
+/// Bounding rows of a kind: a matrix M such that, whatever the control points c, the limit patch lies in the
 /// convex hull of the points M c.
 ///
 /// Guarantee: the exact rows have that property; every stored row differs from the exact one by at most
 ///            entry_error() in the sum of its entries' absolute values.
-/// Source:    derivations/hull_rows.md.
-class BoundRows {
+/// Source:    derivations/bounding_rows.md.
+class BoundingRows {
  public:
   [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] std::size_t control_count() const { return control_count_; }
@@ -43,19 +43,19 @@ class BoundRows {
   };
   /// The last rows are those of the nets, one after the other.
   [[nodiscard]] const std::vector<Net>& nets() const { return nets_; }
-  /// Do the nets belong to tips, one at each extraordinary corner in turn (has_lasting_tips())?
-  [[nodiscard]] bool lasting() const { return lasting_; }
+  /// Do the nets belong to tips, one at each extraordinary corner in turn (has_self_similar_tips())?
+  [[nodiscard]] bool self_similar() const { return self_similar_; }
 
   /// Upper bound, a coordinate, of |M c computed - M c exact| for points of at most `largest`, off by at most
   /// `error`.
   [[nodiscard]] double result_error(double largest, double error) const;
 
  private:
-  friend BoundRows make_bound_rows(const Kind& kind, unsigned most_levels);
+  friend BoundingRows make_bounding_rows(const Kind& kind, unsigned max_levels);
   std::size_t count_ = 0, control_count_ = 0, bezier_count_ = 0;
   std::vector<double> weights_, quadratic_;
   std::vector<Net> nets_;
-  bool lasting_ = false;
+  bool self_similar_ = false;
   double entry_error_ = 0, abs_sum_ = 0;
 };
 
@@ -64,17 +64,17 @@ inline constexpr unsigned deepest_tip = 24;
 
 /// The rows of a kind: Bezier points of the polynomial pieces after one split; at an extraordinary corner of
 /// the rings of pieces around it down to tip_depth() levels, and the control net of the last piece there, the
-/// tip. Tips end at `most_levels` if that is less. Where sharpness decays, or polygons are about, control
+/// tip. Tips end at `max_levels` if that is less. Where sharpness decays, or polygons are about, control
 /// nets of pieces a few levels down end it.
 ///
 /// Requires:  a patch, no polygon.
 /// Cost:      up to valence 12 well below a millisecond; for valence n about 20 n^2 multiply-adds a level.
-[[nodiscard]] BoundRows make_bound_rows(const Kind& kind, unsigned most_levels = deepest_tip);
+[[nodiscard]] BoundingRows make_bounding_rows(const Kind& kind, unsigned max_levels = deepest_tip);
 
 /// Is the quarter at each extraordinary corner, after a few levels, of a kind that comes again at every
 /// level? Only such tips can be bounded by tables of their own.
 /// Requires:  a kind that is no polynomial.
-[[nodiscard]] bool has_lasting_tips(const Kind& kind);
+[[nodiscard]] bool has_self_similar_tips(const Kind& kind);
 
 /// Levels of rings around an extraordinary corner until the control net of the tip sticks out behind the
 /// corner by less than 1 % of the width of the patch there.

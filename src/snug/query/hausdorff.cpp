@@ -1,4 +1,4 @@
-#include <snug/query/one_sided.h>
+#include <snug/query/hausdorff.h>
 
 #include <algorithm>
 #include <bit>
@@ -12,7 +12,7 @@
 namespace snug {
 namespace {
 
-// What is known of a part: are all its points on the side that is asked about?
+// Are all points of a part on the queried side?
 enum class Side : std::uint8_t { unknown, asked, other };
 
 struct Part {
@@ -35,7 +35,7 @@ struct Comparison {
   double share = 0.5;
 };
 
-// What rounding leaves uncovered at each cut adds up to less than distance_rounding.
+// Gaps that rounding leaves at each cut sum to less than distance_rounding.
 constexpr unsigned max_depth = 120;
 
 // Parts that are compared before what is left goes back to be handed out again.
@@ -45,32 +45,32 @@ constexpr std::size_t chunks_at_once = 64;
 
 class Chunk {
  public:
-  Chunk(const QuadraticSet& set, const QuadraticBvh& other, const OneSidedOptions& options, bool last,
+  Chunk(const QuadraticSet& set, const QuadraticBvh& other, const HausdorffOptions& options, bool last,
         const Farthest& known)
       : set_(set), other_(other), options_(options), last_(last), found_(known) {
     found_.compared = 0;
   }
 
-  // Settles parts until the work of a chunk is done; `stack` keeps the others.
-  void run(std::vector<Part>& stack, const SideTest& side_test, std::vector<Unsettled>& unsettled,
+  // Resolves parts until the work of a chunk is done; `stack` keeps the others.
+  void run(std::vector<Part>& stack, const SideTest& side_test, std::vector<Unresolved>& unresolved,
            const WorkMonitor& monitor) {
     while (!stack.empty() && found_.compared < chunk_work) {
       if (found_.compared % 64 == 0) monitor.checkpoint();
       Part part = stack.back();
       stack.pop_back();
       ++found_.compared;
-      if (settle(part, side_test)) continue;
+      if (resolve(part, side_test)) continue;
       if (limited_) {
-        // What else there is of the piece comes again with it.
+        // The rest of the piece is compared again with it.
         const std::uint32_t piece = part.piece;
         std::erase_if(stack, [&](const Part& p) { return p.piece == piece; });
-        unsettled.push_back({piece, part.reach});
+        unresolved.push_back({piece, part.reach});
         continue;
       }
       cut(part, stack);
     }
   }
-  // Settles all parts as they are.
+  // Resolves all parts as they are.
   void give_up(std::vector<Part>& stack) {
     for (Part& part : stack) {
       if (part.side == Side::other) continue;
@@ -88,18 +88,18 @@ class Chunk {
     if (part.depth == 0) part.reach = part.upper;
   }
 
-  // What parts need not be below.
+  // Distance that parts need not be below.
   [[nodiscard]] double goal() const {
     const double wanted = found_.lower + options_.precision;
     if (!options_.tolerance) return wanted;
     return found_.lower > *options_.tolerance ? INFINITY : std::max(wanted, *options_.tolerance);
   }
 
-  bool settle(Part& part, const SideTest& side_test) {
+  bool resolve(Part& part, const SideTest& side_test) {
     limited_ = false;
     if (part.side == Side::other) return true;
     see(part);
-    // A point to show, whatever is asked.
+    // A first point to report, whatever the options.
     if (found_.lower == 0 && !side_test && raise_lower(part, side_test)) compare(part);
     if (accept(part)) return true;
     if (side_test && part.side == Side::unknown) {
@@ -122,7 +122,7 @@ class Chunk {
     return true;
   }
 
-  // What smaller parts may be nearer by.
+  // Largest distance that smaller parts may gain.
   [[nodiscard]] double gain(const Part& part) const {
     return now_.geometric - std::max({part.feet[0].distance, part.feet[1].distance, part.feet[2].distance});
   }
@@ -270,7 +270,7 @@ class Chunk {
 
   const QuadraticSet& set_;
   const QuadraticBvh& other_;
-  const OneSidedOptions& options_;
+  const HausdorffOptions& options_;
   bool last_;
   Farthest found_;
   QuadraticTriangle quadratic_{};  // of the part at hand
@@ -345,16 +345,16 @@ void merge(Farthest& all, const Farthest& part) {
 
 }  // namespace
 
-std::vector<Unsettled> settle(const QuadraticSet& set, std::span<const std::uint32_t> pieces,
-                              const QuadraticBvh& other, const OneSidedOptions& options, bool last,
-                              Farthest& farthest, const WorkMonitor& monitor) {
+std::vector<Unresolved> resolve(const QuadraticSet& set, std::span<const std::uint32_t> pieces,
+                                const QuadraticBvh& other, const HausdorffOptions& options, bool last,
+                                Farthest& farthest, const WorkMonitor& monitor) {
   const CornerFeet corners(set, pieces, other, options.threads, monitor);
   const auto first_part = [&](std::size_t i) {
     Part part{.piece = pieces[i], .at = {TriangleParameter{0, 0}, {1, 0}, {0, 1}}, .feet = {}};
     for (std::size_t k = 0; k < 3; ++k) part.feet[k] = corners(i, k);
     return part;
   };
-  // The farthest first: they tell at once how far the others need not be looked at.
+  // Farthest first: they bound at once how far the others must be examined.
   std::vector<double> far(pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     far[i] = std::max({corners(i, 0).distance, corners(i, 1).distance, corners(i, 2).distance});
@@ -364,7 +364,7 @@ std::vector<Unsettled> settle(const QuadraticSet& set, std::span<const std::uint
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t x, std::uint32_t y) { return far[x] != far[y] ? far[x] > far[y] : x < y; });
 
-  std::vector<Unsettled> unsettled;
+  std::vector<Unresolved> unresolved;
   std::vector<std::vector<Part>> left;  // of chunks that had more to do
   std::size_t next = 0;
   // With the first ones the lower end is not known yet.
@@ -381,7 +381,7 @@ std::vector<Unsettled> settle(const QuadraticSet& set, std::span<const std::uint
     chunks = std::min(chunks_at_once, 2 * chunks);
     const bool ends = farthest.compared >= options.budget;
     std::vector<Farthest> found(stacks.size());
-    std::vector<std::vector<Unsettled>> limited(stacks.size());
+    std::vector<std::vector<Unresolved>> limited(stacks.size());
     parallel_for_with(
         stacks.size(), options.threads,
         [&] { return options.make_side_test ? options.make_side_test() : SideTest{}; },
@@ -398,12 +398,12 @@ std::vector<Unsettled> settle(const QuadraticSet& set, std::span<const std::uint
         });
     for (std::size_t c = 0; c < stacks.size(); ++c) {
       merge(farthest, found[c]);
-      unsettled.insert(unsettled.end(), limited[c].begin(), limited[c].end());
+      unresolved.insert(unresolved.end(), limited[c].begin(), limited[c].end());
       if (!stacks[c].empty()) left.push_back(std::move(stacks[c]));
     }
     farthest.ended = farthest.ended || ends;
   }
-  return unsettled;
+  return unresolved;
 }
 
 }  // namespace snug

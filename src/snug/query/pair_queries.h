@@ -66,7 +66,7 @@ class PairWorkspaces {
   using Ask = std::function<void(SurfaceWorkspace& a, SurfaceWorkspace& b, std::size_t pose)>;
   void for_each(std::size_t count, const Ask& ask, const WorkMonitor& monitor = {});
 
-  /// What query(a, b, options, monitor), such as collide(), answers for each pose, in their order.
+  /// Answers of query(a, b, options, monitor), such as collide(), for each pose in order.
   /// Guarantee: the same bits as one by one, for any number of threads.
   template <class Answer, class Options>
   [[nodiscard]] std::vector<Answer> answers(Answer (*query)(const PlacedBvh&, const PlacedBvh&,

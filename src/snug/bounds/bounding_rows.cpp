@@ -1,4 +1,4 @@
-#include <snug/bounds/bound_rows.h>
+#include <snug/bounds/bounding_rows.h>
 
 #include <algorithm>
 #include <array>
@@ -80,11 +80,11 @@ bool on_covered_edge(std::size_t degree, std::size_t i, std::size_t j, const Cov
 
 // Kinds that few patches share have rows of few levels, for tables alone.
 constexpr unsigned few_levels = 3;
-bool has_few_levels(const Kind& kind) { return kind.passing() || kind.crowded_beside_creases(); }
+bool has_few_levels(const Kind& kind) { return kind.transient() || kind.high_valence_beside_creases(); }
 
 class Collector {
  public:
-  Collector(const Kind& kind, unsigned most_levels) : most_levels_(most_levels) {
+  Collector(const Kind& kind, unsigned max_levels) : max_levels_(max_levels) {
     rows_.width = kind.control_count();
     // At most: four pieces, three a ring, the nets of the tips.
     std::size_t most = 112;
@@ -139,9 +139,9 @@ class Collector {
   [[nodiscard]] const std::vector<QuadraticWeights>& quadratic() const { return quadratic_; }
 
   // Where they are among all rows.
-  [[nodiscard]] std::vector<BoundRows::Net> nets() const {
-    std::vector<BoundRows::Net> nets = nets_found_;
-    for (BoundRows::Net& net : nets) net.begin += quadratic_.size();
+  [[nodiscard]] std::vector<BoundingRows::Net> nets() const {
+    std::vector<BoundingRows::Net> nets = nets_found_;
+    for (BoundingRows::Net& net : nets) net.begin += quadratic_.size();
     return nets;
   }
 
@@ -153,10 +153,10 @@ class Collector {
 
  private:
   [[nodiscard]] unsigned levels(const Kind& kind, std::size_t corner) const {
-    return std::min(most_levels_, tip_depth(kind.corner(corner), kind.scheme()));
+    return std::min(max_levels_, tip_depth(kind.corner(corner), kind.scheme()));
   }
   [[nodiscard]] unsigned depth_limit(const Kind& kind, unsigned depth) const {
-    if (has_few_levels(kind)) return std::min(most_levels_, few_levels);
+    if (has_few_levels(kind)) return std::min(max_levels_, few_levels);
     unsigned limit = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       if (!kind.regular_corner(i)) limit = std::max(limit, levels(kind, i));
@@ -170,10 +170,10 @@ class Collector {
     quadratic_.push_back(degree < 2 ? QuadraticWeights{} : raised_quadratic(piece, degree, i, j));
   }
 
-  unsigned most_levels_;
+  unsigned max_levels_;
   DenseRows rows_, tips_;
   std::vector<QuadraticWeights> quadratic_;
-  std::vector<BoundRows::Net> nets_found_;
+  std::vector<BoundingRows::Net> nets_found_;
   std::array<DenseRows, deepest_tip + 2> nets_;  // of the piece at work, a depth each
 };
 
@@ -193,13 +193,13 @@ bool lasts(const KindChild& child, std::size_t corner) {
 
 }  // namespace
 
-double BoundRows::result_error(double largest, double error) const {
+double BoundingRows::result_error(double largest, double error) const {
   return enlarged((gamma_bound(control_count_) * abs_sum_ + entry_error_) * largest +
                   (abs_sum_ + entry_error_) * error) +
          3 * static_cast<double>(control_count_) * underflow_error;
 }
 
-bool has_lasting_tips(const Kind& kind) {
+bool has_self_similar_tips(const Kind& kind) {
   if (has_few_levels(kind)) return false;
   for (std::size_t corner = 0; corner < 3; ++corner) {
     const KindChild& child = kind.children()[corner];
@@ -221,12 +221,12 @@ unsigned tip_depth(const CornerFan& fan, Scheme scheme) {
   return std::clamp(static_cast<unsigned>(std::ceil(levels)), 3u, deepest_tip);
 }
 
-BoundRows make_bound_rows(const Kind& kind, unsigned most_levels) {
+BoundingRows make_bounding_rows(const Kind& kind, unsigned max_levels) {
   SNUG_EXPECT(!kind.key().polygon);
-  Collector collector(kind, most_levels);
+  Collector collector(kind, max_levels);
   collector.collect(kind, identity(kind.control_count()), 0, {}, whole_patch);
   const DenseRows rows = collector.take();
-  BoundRows result;
+  BoundingRows result;
   result.count_ = rows.count();
   result.control_count_ = rows.width;
   result.weights_.resize(rows.entries.size());
@@ -242,7 +242,7 @@ BoundRows make_bound_rows(const Kind& kind, unsigned most_levels) {
     for (const QuadraticWeights& row : quadratic) result.quadratic_.push_back(row[k]);
   }
   result.nets_ = collector.nets();
-  result.lasting_ = !kind.polynomial() && has_lasting_tips(kind);
+  result.self_similar_ = !kind.polynomial() && has_self_similar_tips(kind);
   return result;
 }
 

@@ -13,6 +13,6 @@ namespace snug {
 /// Requires:  as certainly_injective(), star.h.
 /// Cost:      about 10 microseconds for six regular patches, a millisecond at an extraordinary corner.
 /// Source:    derivations/self_contact.md, "The stretch of a star".
-[[nodiscard]] double star_stretch(std::span<const StarSector> sectors, bool closed);
+[[nodiscard]] double star_distortion(std::span<const StarSector> sectors, bool closed);
 
 }  // namespace snug
