@@ -150,9 +150,7 @@ ExitStatus independence_of_mesh(const std::string& path, const CommonOptions& op
   const ControlMesh mesh = load_mesh(path, options);
   refuse_curves(mesh, options.scheme, path);
   const SurfaceOptions how = surface_options(options, options.scheme, mesh);
-  const SchemeOptions rules = with_tags(
-      {*how.scheme, how.boundary.value_or(mesh.tags.boundary.value_or(BoundaryRule::edge_and_corner))},
-      mesh.tags);
+  const SchemeOptions rules = rules_for(mesh, how.scheme, how.boundary);
   Report report("independence", options);
   Answer found;
   {

@@ -183,21 +183,13 @@ Surface make_surface(ControlMesh mesh, const std::string& path, const CommonOpti
 }
 
 void require_closed(const Surface& surface) {
-  if (const auto reason = surface.open_reason()) {
-    throw InputError(InputProblem::refused, "solids are bounded by closed surfaces, and " + *reason +
-                                                "; close the mesh or ask about its surface");
-  }
+  if (const auto reason = surface.open_reason()) refuse_open(*reason);
 }
 
 void write_mesh(const ControlMesh& mesh, AtomicFile& file, const std::string& path,
                 const CommonOptions& options, std::span<const Vector3> normals) {
-  const WorkMonitor monitor = stopped_by_interrupts();
-  const std::string bytes = format_mesh(mesh, path, {.normals = normals, .notes = notes_for(options)});
-  constexpr std::size_t part = std::size_t{1} << 20;
-  for (std::size_t begin = 0; begin < bytes.size(); begin += part) {
-    monitor.checkpoint();
-    file.write(std::string_view(bytes).substr(begin, part));
-  }
+  file.write(format_mesh(mesh, path, {.normals = normals, .notes = notes_for(options)}),
+             stopped_by_interrupts());
 }
 
 void write_facets(ControlMesh mesh, AtomicFile& file, const std::string& path, const CommonOptions& options,

@@ -52,9 +52,7 @@ ExitStatus run(const Options& options) {
     const SurfaceOptions how = surface_options(options, options.scheme, mesh);
     scheme = *how.scheme;
     // Also of a mesh without a limit surface, which no Surface can have.
-    const SchemeOptions rules =
-        with_tags({scheme, how.boundary.value_or(mesh.tags.boundary.value_or(BoundaryRule::edge_and_corner))},
-                  mesh.tags);
+    const SchemeOptions rules = rules_for(mesh, scheme, how.boundary);
     result = subdivide(std::move(mesh), rules, options.level, options.limit, bar.monitor());
   });
   if (!curves && format_of(options.output).scheme) result.tags.scheme = scheme;

@@ -146,6 +146,14 @@ void AtomicFile::write(std::string_view bytes) {
   }
 }
 
+void AtomicFile::write(std::string_view bytes, const WorkMonitor& monitor) {
+  constexpr std::size_t part = std::size_t{1} << 20;
+  for (std::size_t begin = 0; begin < bytes.size(); begin += part) {
+    monitor.checkpoint();
+    write(bytes.substr(begin, part));
+  }
+}
+
 void AtomicFile::flush() {
   std::size_t written = 0;
   while (written < buffer_.size()) {

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include <snug/monitor.h>
+
 namespace snug {
 
 /// A file that is written whole or not at all: bytes go to a temporary file in the folder of the target, and
@@ -31,6 +33,8 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
 
   void write(std::string_view bytes);
+  /// The same in parts of 1 MiB, each after a checkpoint.
+  void write(std::string_view bytes, const WorkMonitor& monitor);
   /// Hands a target that receives bytes as they come all that it has not had; does nothing for a file.
   void send();
   /// Brings all bytes to the disk, or to where the target takes them: what commit() has left to do is a

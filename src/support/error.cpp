@@ -7,6 +7,11 @@ namespace snug {
 
 void refuse_value(const char* message) { throw InputError(InputProblem::value, message); }
 
+void refuse_open(const std::string& reason) {
+  throw InputError(InputProblem::refused, "solids are bounded by closed surfaces, and " + reason +
+                                              "; close the mesh or ask about its surface");
+}
+
 std::string shortest(double x) {
   char digits[32];
   const char* const end = std::to_chars(digits, digits + sizeof digits, x).ptr;

@@ -13,6 +13,9 @@ inline void require_value(bool holds, const char* message) {
   if (!holds) refuse_value(message);
 }
 
+/// Throws InputError (refused) for a surface that bounds no solid; `reason` is that of Surface::open_reason().
+[[noreturn]] void refuse_open(const std::string& reason);
+
 /// The shortest digits that read back as x: 1e-300 is not 0.
 [[nodiscard]] std::string shortest(double x);
 

@@ -165,12 +165,7 @@ std::string format_mesh(const ControlMesh& mesh, const std::string& path, const 
 void write_mesh(const ControlMesh& mesh, const std::string& path, const WriteOptions& options) {
   static_cast<void>(format_to_write(path));
   AtomicFile file(path);
-  const std::string bytes = format_mesh(mesh, path, options);
-  constexpr std::size_t part = std::size_t{1} << 20;
-  for (std::size_t begin = 0; begin < bytes.size(); begin += part) {
-    options.monitor.checkpoint();
-    file.write(std::string_view(bytes).substr(begin, part));
-  }
+  file.write(format_mesh(mesh, path, options), options.monitor);
   file.commit();
 }
 

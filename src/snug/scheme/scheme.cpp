@@ -127,6 +127,12 @@ SchemeOptions with_tags(SchemeOptions options, const MeshTags& tags) {
   return options;
 }
 
+SchemeOptions rules_for(const ControlMesh& mesh, std::optional<Scheme> scheme,
+                        std::optional<BoundaryRule> boundary) {
+  if (!boundary) boundary = mesh.tags.boundary.value_or(BoundaryRule::edge_and_corner);
+  return {scheme ? *scheme : natural_scheme(mesh), *boundary};
+}
+
 Topology require_subdividable(const ControlMesh& mesh, const SchemeOptions& options) {
   return require_fit_for(Purpose::refinement, mesh, options);
 }

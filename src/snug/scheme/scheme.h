@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include <snug/mesh/control_mesh.h>
 #include <snug/mesh/topology.h>
@@ -19,6 +20,10 @@ struct SchemeOptions {
 
 /// The rules for this mesh: its tags name the crease method and the treatment of triangles.
 [[nodiscard]] SchemeOptions with_tags(SchemeOptions options, const MeshTags& tags);
+
+/// Scheme and boundary rule of a mesh: the given ones, else its tags', else natural_scheme() and edge_and_corner.
+[[nodiscard]] SchemeOptions rules_for(const ControlMesh& mesh, std::optional<Scheme> scheme,
+                                      std::optional<BoundaryRule> boundary);
 
 /// Loop for triangles alone, else Catmull-Clark, whatever the tag.
 [[nodiscard]] Scheme scheme_of_faces(const ControlMesh& mesh);

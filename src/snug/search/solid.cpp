@@ -136,10 +136,7 @@ std::optional<std::string> open_reason(const LimitSurface& surface) {
 }
 
 Solid::Solid(const LimitSurface& surface) {
-  if (const auto reason = open_reason(surface)) {
-    throw InputError(InputProblem::refused, "solids are bounded by closed surfaces, and " + *reason +
-                                                "; close the mesh or ask about its surface");
-  }
+  if (const auto reason = open_reason(surface)) refuse_open(*reason);
   components_ = component_patches(surface);
   // Where as many sides of an edge are cut that run one way as the other, their fillers cancel.
   std::vector<int> ways(surface.corner_name_count());

@@ -21,10 +21,7 @@ std::shared_ptr<BoundsCache> shared_bounds() {
 }
 
 LimitSurface make_surface(ControlMesh mesh, const SurfaceOptions& options) {
-  SchemeOptions rules;
-  rules.scheme = options.scheme ? *options.scheme : natural_scheme(mesh);
-  rules.boundary =
-      options.boundary ? *options.boundary : mesh.tags.boundary.value_or(BoundaryRule::edge_and_corner);
+  const SchemeOptions rules = rules_for(mesh, options.scheme, options.boundary);
   return {std::move(mesh), rules, shared_bounds(), options.monitor};
 }
 

@@ -21,7 +21,7 @@ LimitSurface::Layout::Layout(const ControlMesh& mesh, const SchemeOptions& schem
   }
   if (rules->primal) sharpness = sharpness_of(mesh, topology);
   lay_out_patches();
-  find_bare_owners(mesh);
+  find_owners_without_surface(mesh);
 }
 
 LimitSurface::LimitSurface(ControlMesh mesh, const SchemeOptions& options,
@@ -92,7 +92,7 @@ void LimitSurface::Layout::lay_out_patches() {
   kinds = std::vector<std::atomic<const Kind*>>(patch_count);
 }
 
-void LimitSurface::Layout::find_bare_owners(const ControlMesh& mesh) {
+void LimitSurface::Layout::find_owners_without_surface(const ControlMesh& mesh) {
   const auto leave_out = [this](std::size_t owner) {
     if (without_surface.empty()) without_surface.assign(owner_count(), false);
     without_surface[owner] = true;

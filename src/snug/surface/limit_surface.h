@@ -127,7 +127,7 @@ class LimitSurface {
       return rules->primal ? topology.face_count() : topology.vertex_count();
     }
     void lay_out_patches();
-    void find_bare_owners(const ControlMesh& mesh);
+    void find_owners_without_surface(const ControlMesh& mesh);
 
     SchemeOptions options;
     const SchemeRules* rules;
