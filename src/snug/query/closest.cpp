@@ -80,8 +80,7 @@ class ClosestSearch {
       const bool last = !SurfaceWorkspace::can_open(node);
       if (last && gap < bounds_.prune_distance()) {
         // Single precision is what is left of it.
-        thread_local BoundingPoints scratch;
-        gap = std::max(gap, look_at(node, workspace_.piece(node, scratch).offset));
+        gap = std::max(gap, look_at(node, workspace_.piece(node).offset));
       }
       if (gap >= bounds_.prune_distance() || last) {
         bounds_.prune(gap);

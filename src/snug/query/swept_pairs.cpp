@@ -289,10 +289,9 @@ bool SweptPairs::apart_in_double(const Step& step, Pair& pair) {
 }
 
 OffsetTriangle SweptPairs::in_double(std::size_t side, const Node& node) {
-  thread_local BoundingPoints scratch;
-  if (node.kind != Node::Kind::patch) return bodies_[side].scratch.piece(node, scratch).offset;
+  if (node.kind != Node::Kind::patch) return bodies_[side].scratch.piece(node).offset;
   const auto [known, is_new] = in_double_[side].try_emplace(bodies_[side].scratch.root_of(node).value());
-  if (is_new) known->second = bodies_[side].scratch.piece(node, scratch).offset;
+  if (is_new) known->second = bodies_[side].scratch.piece(node).offset;
   return known->second;
 }
 

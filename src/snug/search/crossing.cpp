@@ -211,11 +211,10 @@ bool proves_crossing(PairFrames& frames, const PiecePair& pieces) {
   std::array<Piece, 2> whole;
   std::array<Heights, 2> heights;
   for (std::size_t s = 0; s < 2; ++s) {
-    thread_local BoundingPoints points;
     SurfaceWorkspace& workspace = frames.workspace(s);
-    whole[s] = workspace.piece(pieces.nodes[s], points);
+    whole[s] = workspace.piece(pieces.nodes[s]);
     heights[s] = workspace.model().method() == BoundMethod::table ? heights_of(whole[s].offset)
-                                                                  : heights_of(whole[s], points);
+                                                                  : heights_of(whole[s], workspace.points());
   }
   for (std::size_t s = 0; s < 2; ++s) {
     const CrossingTest crossed(whole[s], heights[s]);

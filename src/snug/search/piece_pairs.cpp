@@ -30,10 +30,9 @@ bool PiecePairs::at_single_precision(const NodePair& pair) {
 }
 
 PiecePair PiecePairs::nearest_in_double(const NodePair& pair) {
-  thread_local BoundingPoints scratch;
   std::array<OffsetTriangle, 2> offsets;
   for (std::size_t s = 0; s < 2; ++s) {
-    offsets[s] = frames_.workspace(s).piece(pair.nodes[s], scratch).offset;
+    offsets[s] = frames_.workspace(s).piece(pair.nodes[s]).offset;
   }
   PiecePair pieces = nearest(pair, offsets);
   const Witness exact = witness(pieces);
@@ -155,25 +154,9 @@ double PiecePairs::gap_along(const std::array<Node, 2>& nodes, const Vector3& di
   return std::max(0.0, -taken * (1 - 16 * unit_roundoff));
 }
 
-namespace {
-
-// Extents of the latest pieces, by side and by a hash of the piece, each along a direction that has
-// a number of its own: none of an earlier query is ever met.
-struct KnownExtent {
-  const WideNode* boxes = nullptr;
-  std::uint32_t place = 0;
-  std::uint64_t direction = 0;
-  double extent = 0;
-};
-constexpr std::size_t kept_extents = 128;
-thread_local std::array<std::array<KnownExtent, kept_extents>, 2> known_extents;
-thread_local std::uint64_t last_direction = 0;
-
-}  // namespace
-
 void PiecePairs::look_along(const Vector3& direction) {
   along_ = normalized(direction);
-  direction_ = ++last_direction;
+  for (std::size_t s = 0; s < 2; ++s) directions_[s] = frames_.workspace(s).extents().next_direction();
   frames_.look_along(along_);
 }
 
@@ -181,13 +164,8 @@ double PiecePairs::gap_along(const std::array<Node, 2>& nodes) {
   if (along_ == Vector3{}) return 0;
   double taken = 0;
   for (std::size_t s = 0; s < 2; ++s) {
-    const Node& node = nodes[s];
-    const auto hash = (reinterpret_cast<std::uintptr_t>(node.boxes) >> 6) * 5 + node.place;
-    KnownExtent& known = known_extents[s][hash % kept_extents];
-    if (known.boxes != node.boxes || known.place != node.place || known.direction != direction_) {
-      known = {node.boxes, node.place, direction_, placed_extent(s, node, s == 0 ? along_ : -along_)};
-    }
-    taken += known.extent;
+    taken += frames_.workspace(s).extents().of(
+        nodes[s], directions_[s], [&] { return placed_extent(s, nodes[s], s == 0 ? along_ : -along_); });
   }
   return std::max(0.0, -taken * (1 - 16 * unit_roundoff));
 }

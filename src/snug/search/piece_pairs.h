@@ -97,8 +97,8 @@ class PiecePairs {
 
   PairFrames& frames_;
   SearchStats& stats_;
-  Vector3 along_;  // of length 1, or zero
-  std::uint64_t direction_ = 0;
+  Vector3 along_;                              // of length 1, or zero
+  std::array<std::uint64_t, 2> directions_{};  // its numbers in the workspaces
 };
 
 }  // namespace snug

@@ -1,7 +1,6 @@
 #include <snug/search/surface_workspace.h>
 
 #include <algorithm>
-#include <utility>
 
 namespace snug {
 namespace {
@@ -95,8 +94,8 @@ std::uint32_t SurfaceWorkspace::patch_place(const Node& node) {
 
 const Patch& SurfaceWorkspace::patch(const Node& node) { return patches_[patch_place(node)]; }
 
-Piece SurfaceWorkspace::piece(const Node& node, BoundingPoints& scratch) {
-  return make_piece(model_->surface().library(), root_of(node), patch(node), scratch, model_->method());
+Piece SurfaceWorkspace::piece(const Node& node) {
+  return make_piece(model_->surface().library(), root_of(node), patch(node), points_, model_->method());
 }
 
 std::uint32_t& SurfaceWorkspace::split_place(const Node& node) {

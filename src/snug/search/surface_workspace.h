@@ -23,6 +23,32 @@ struct Node {
   [[nodiscard]] float size() const { return boxes->size_of(place); }
 };
 
+/// Extents of the latest pieces, by a hash of the piece, each along a direction that has a number of its own.
+class KnownExtents {
+ public:
+  [[nodiscard]] std::uint64_t next_direction() { return ++last_direction_; }
+  /// The extent of a piece along a direction: make(), unless it is known.
+  template <class Make>
+  [[nodiscard]] double of(const Node& node, std::uint64_t direction, const Make& make) {
+    const auto hash = (reinterpret_cast<std::uintptr_t>(node.boxes) >> 6) * 5 + node.place;
+    Known& known = known_[hash % known_.size()];
+    if (known.boxes != node.boxes || known.place != node.place || known.direction != direction) {
+      known = {node.boxes, node.place, direction, make()};
+    }
+    return known.extent;
+  }
+
+ private:
+  struct Known {
+    const WideNode* boxes = nullptr;
+    std::uint32_t place = 0;
+    std::uint64_t direction = 0;
+    double extent = 0;
+  };
+  std::array<Known, 128> known_{};
+  std::uint64_t last_direction_ = 0;
+};
+
 /// Pieces of one surface that queries have split. One a thread. Dropped between two queries when it has grown beyond
 /// 256 MiB.
 /// Guarantee: a node opens to the same boxes whatever came before: no answer depends on earlier queries.
@@ -53,7 +79,9 @@ class SurfaceWorkspace {
     return node.kind == Node::Kind::patch ? model_->patch(node.owner, node.place) : splits_[node.owner].root;
   }
   /// The piece with its offset triangle, made anew.
-  [[nodiscard]] Piece piece(const Node& node, BoundingPoints& scratch);
+  [[nodiscard]] Piece piece(const Node& node);
+  /// Its bounding points, until the next call, where the model is bounded by rows.
+  [[nodiscard]] const BoundingPoints& points() const { return points_; }
   /// False for a piece that need not be split: at the last level, or where rounding makes up its radius.
   [[nodiscard]] static bool can_open(const Node& node) {
     if (node.kind == Node::Kind::tree) return true;
@@ -75,6 +103,9 @@ class SurfaceWorkspace {
   };
   /// Requires:  can_open(node), or a piece above the last level.
   [[nodiscard]] Opened open(const Node& node);
+
+  /// For a query that asks for extents of pieces along one direction many times.
+  [[nodiscard]] KnownExtents& extents() { return extents_; }
 
   /// Has this query reached the limit of distinct splits?
   [[nodiscard]] bool full() const { return touched_ >= max_pieces_; }
@@ -119,6 +150,8 @@ class SurfaceWorkspace {
 
   const SurfaceBvh* model_;
   std::size_t max_pieces_;
+  BoundingPoints points_;
+  KnownExtents extents_;
   Roots roots_;
   // Elements beyond the counts are spare memory.
   std::deque<Split> splits_;

@@ -149,8 +149,7 @@ class Winding {
   // Lower bound of the distance of a piece, by its offset triangle: of one that cannot be split this is much
   // nearer to it than the set around it.
   [[nodiscard]] double gap_of(const Node& node) const {
-    thread_local BoundingPoints scratch;
-    const OffsetTriangle offset = workspace_.piece(node, scratch).offset;
+    const OffsetTriangle offset = workspace_.piece(node).offset;
     const double apart = nearest({point_, point_, point_}, offset.base).certain_distance;
     return rounded_down(apart - enlarged(offset.radius + spatial_error(error_)));
   }
