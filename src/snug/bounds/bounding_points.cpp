@@ -199,12 +199,6 @@ void bounding_points(const CurvePiece& piece, BoundingPoints& out) {
   }
 }
 
-void close_points(BoundsCache& library, const Patch& patch, BoundingPoints& out) {
-  if (!patch.kind->polynomial()) return bounding_points(library, patch, out);
-  out.restart(patch.origin);
-  out.add(patch.kind->bezier(), patch);
-}
-
 // A patch of the kind asks for all that the others will.
 void prepare_bounding_points(BoundsCache& library, const Kind& kind) {
   Patch patch;

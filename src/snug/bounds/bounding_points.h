@@ -84,9 +84,6 @@ void prepare_bounding_points(BoundsCache& library, const Kind& kind);
 /// The same of a curve: the Bezier points of its four quarters.
 void bounding_points(const CurvePiece& piece, BoundingPoints& out);
 
-/// Few points whose hull holds the patch closely: the Bezier points of a polynomial one, else those above.
-void close_points(BoundsCache& library, const Patch& patch, BoundingPoints& out);
-
 /// The set lower <= dot(normal, p) <= upper.
 struct Slab {
   Vector3 normal;

@@ -1,7 +1,6 @@
 #include <snug/bounds/layout.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <optional>
 

@@ -7,7 +7,6 @@
 #include <snug/bounds/table_boxes-inl.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>

@@ -6,7 +6,6 @@
 #include <snug/bounds/table_boxes-inl.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -14,7 +13,6 @@
 #include <snug/bounds/fit_kernels.h>
 #include <snug/bounds/flat_table.h>
 #include <snug/geometry/rounding.h>
-#include <support/contract.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace snug::kernels::HWY_NAMESPACE {

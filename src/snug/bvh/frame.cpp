@@ -1,7 +1,5 @@
 #include <snug/bvh/frame.h>
 
-#include <cmath>
-
 #include <snug/geometry/rounding.h>
 
 namespace snug {

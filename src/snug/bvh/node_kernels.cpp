@@ -3,7 +3,6 @@
 #include <snug/geometry/vector_code-inl.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include <snug/bvh/node_kernels.h>

@@ -190,7 +190,6 @@ CasterTree::CasterTree(const LimitSurface& surface, double tolerance, int thread
     builder.order.push_back(static_cast<std::uint32_t>(builder.order.size()));
     all.add(builder.boxes.back());
   }
-  piece_count_ = pieces.size();
   centre_ = all.lower + 0.5 * (all.upper - all.lower);
   radius_ = length(all.upper - centre_);
   rounding_ = static_cast<float>(single_error * (1 + radius_));

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -27,8 +26,6 @@ class CasterTree {
   [[nodiscard]] QuickHit cast(const Ray& ray) const;
   /// The same for many; those that follow one another and lie close together are searched at once.
   void cast(std::span<const Ray> rays, std::span<QuickHit> out) const;
-  /// How many quadratic triangles there are.
-  [[nodiscard]] std::size_t piece_count() const { return piece_count_; }
   [[nodiscard]] std::size_t bytes() const;
 
  private:
@@ -73,7 +70,6 @@ class CasterTree {
   Point3 centre_;
   double radius_ = 0;   // around everything
   float rounding_ = 0;  // of places across a ray
-  std::size_t piece_count_ = 0;
 };
 
 }  // namespace snug

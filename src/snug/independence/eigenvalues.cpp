@@ -1,6 +1,5 @@
 #include <snug/independence/eigenvalues.h>
 
-#include <algorithm>
 #include <initializer_list>
 #include <optional>
 #include <utility>

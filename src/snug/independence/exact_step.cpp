@@ -1,6 +1,5 @@
 #include <snug/independence/exact_step.h>
 
-#include <algorithm>
 #include <array>
 #include <map>
 #include <numeric>

@@ -1,7 +1,6 @@
 #include <snug/independence/exact_surface.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
 #include <unordered_map>
 

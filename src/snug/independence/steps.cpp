@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <map>
 
-#include <support/contract.h>
-
 namespace snug {
 namespace {
 

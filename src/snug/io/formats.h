@@ -7,7 +7,8 @@
 #include <snug/mesh.h>
 #include <snug/mesh/control_mesh.h>
 
-/// The formats of meshes, from bytes and to bytes. `name` is what messages call the file.
+/// The formats of meshes, from bytes and to bytes. `name` is what messages call the file. docs/command.md, "Files", has
+/// what each parser reads and ignores.
 ///
 /// Guarantee: whatever a parser reads costs time linear in the bytes, whatever a header promises. Faces with
 ///            repeated corners, or with one or two, are kept: see mesh/validate.h.
@@ -19,11 +20,6 @@ namespace snug {
 
 /// The control mesh that an OBJ text describes.
 ///
-/// Reads:     `v` (three numbers; a weight or colour after them is ignored), `f` and its old name `fo`
-///            (corners as a, a/b, a//c or a/b/c; negative indices count back from the line they are on,
-///            positive ones may point ahead), `l` (a polyline, likewise), and the tags of obj_tags.h.
-///            Everything else is ignored: normals, texture coordinates, groups, free-form curves. Words may
-///            be separated and lines may end as in text_cursor.h.
 /// Guarantee: coordinates are the nearest doubles. Vertices, faces and polylines keep their order; messages
 ///            number them from 0, as everywhere in snug.
 /// Notes:     one line for each sort of tag that is left out although it changes the surface, hierarchical
@@ -40,13 +36,9 @@ namespace snug {
 
 /// The control mesh that an OFF text describes.
 ///
-/// Reads:     the header word OFF with any of the prefixes ST, C, N (texture coordinates, colours and normals
-///            after the coordinates are ignored), or none; the counts on its line or the next, with or
-///            without a number of edges; face colours are ignored. Comments and blank lines may stand
-///            anywhere. An element begins a new line and ends with it. Over several lines it may go on only
-///            if the file has more lines than elements; vertices may share lines only if a plain OFF file has
-///            fewer, and its first vertex does. So words cannot slip from one element to the next and still
-///            fit the end of the file.
+/// Reads:     an element begins a new line and ends with it. Over several lines it may go on only if the file has
+///            more lines than elements; vertices may share lines only if a plain OFF file has fewer, and its first
+///            vertex does. So words cannot slip from one element to the next and still fit the end of the file.
 /// Guarantee: as parse_obj; OFF has no tags.
 /// Errors:    also more or fewer elements than the header promises, 4OFF, nOFF and OFF BINARY, a file that is
 ///            no text.
@@ -60,12 +52,6 @@ namespace snug {
 
 /// The control mesh that a PLY file describes.
 ///
-/// Reads:     version 1.0 of all three formats; `vertex` with the scalars x, y, z of any type, and `face`
-///            with the list `vertex_index` or `vertex_indices` of any integer type. Elements stand in any
-///            order. Other elements and properties, lists too, are passed over, and so are `comment` and
-///            `obj_info` lines. Types have their old names (char to double) or the new ones (int8 to
-///            float64). Header lines end with LF, CR LF or CR, as the first one does. In ascii files an
-///            element stands on a line of its own, in words as in text_cursor.h; blank lines may follow.
 /// Guarantee: coordinates are exactly the numbers of a binary file; in ascii files they are the doubles
 ///            nearest to the decimals, whatever type the header names. Vertices and faces keep their order.
 /// Errors:    also a header that is not as above, `tristrips` that are not empty, values that do not fit
@@ -80,9 +66,6 @@ namespace snug {
 
 /// The control mesh that an STL file describes.
 ///
-/// Reads:     binary files: exactly 84 + 50 n bytes, n facets, whatever the first 80 bytes are; and ascii
-///            files: text that begins with `solid`. Words count in any case, and the solids of one file are
-///            joined. Normals, attributes, and names are ignored.
 /// Guarantee: coordinates are exactly the floats of a binary file and the doubles nearest to the decimals of
 ///            an ascii one. Corners become one vertex where they are equal, 0 and -0 being equal. Vertices
 ///            are numbered in the order of their first corners. Facets keep their order. The tag of the
@@ -105,11 +88,6 @@ namespace snug {
 
 /// The control mesh that a USD text describes.
 ///
-/// Reads:     the meshes (`def Mesh`) that are defined, active, visible, and neither guide nor proxy, as one
-///            control mesh: points, faceVertexCounts, faceVertexIndices, subdivisionScheme,
-///            interpolateBoundary, triangleSubdivisionRule, creases, corners, holes and orientation; and the
-///            transforms of their prims and of those above. All else is passed over: normals, primvars,
-///            materials, subsets, lights, cameras.
 /// Guarantee: coordinates are the doubles nearest to the decimals, whatever type the file names; where a
 ///            transform is not the identity, they are at most as far off as a note says. Meshes, vertices and
 ///            faces keep their order. The scheme and the rules are tags, the scheme always: `catmullClark`
@@ -137,10 +115,6 @@ namespace snug {
 
 /// The control mesh that the triangles of a binary glTF 2.0 file are.
 ///
-/// Reads:     the meshes of the nodes of the default scene (without one: the first; without any: all nodes):
-///            triangles, strips and fans, with or without indices; positions as floats, and as integers where
-///            KHR_mesh_quantization allows them; sparse and interleaved accessors. Materials, normals, cameras
-///            and animations are ignored.
 /// Guarantee: coordinates are exactly the floats, and moved by nodes at most as far off as a note says. The
 ///            file splits vertices by normals and the like: within a node, corners become one vertex where
 ///            they are equal. Triangles with two corners in one place are left out, the others keep their

@@ -6,7 +6,6 @@
 
 #include <snug/io/formats.h>
 #include <snug/mesh/loose_creases.h>
-#include <snug/mesh/weld.h>
 #include <snug/scheme/scheme.h>
 #include <support/atomic_file.h>
 #include <support/error.h>

@@ -4,7 +4,6 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <snug/mesh.h>
 #include <snug/mesh/control_mesh.h>

@@ -1,8 +1,6 @@
 #include <snug/io/formats.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <utility>
 #include <vector>
 

@@ -1,6 +1,5 @@
 #include <snug/io/transform.h>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 

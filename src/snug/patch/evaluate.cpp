@@ -7,7 +7,6 @@
 #include <snug/geometry/rounding.h>
 #include <snug/patch/descent.h>
 #include <snug/patch/net_kernels.h>
-#include <support/contract.h>
 
 namespace snug {
 namespace {

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <utility>
 #include <vector>
 
 #include <snug/bounds/table_triangle.h>
-#include <snug/geometry/rounding.h>
 #include <snug/patch/evaluate.h>
 #include <snug/search/surface_data.h>
 #include <snug/shape/normal_cone.h>

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <deque>
 #include <map>
-#include <unordered_map>
 #include <utility>
 
 #include <snug/geometry/rounding.h>
@@ -35,22 +34,18 @@ struct ContactPair {
   std::array<std::shared_ptr<const Patch>, 2> pieces;  // of those that may have a point in common
 };
 
-Box3 box_of(const Triangle& base, double radius) {
-  Box3 box;
-  for (const Point3& p : base) box.add(p);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.lower[axis] = rounded_down(box.lower[axis] - radius);
-    box.upper[axis] = rounded_up(box.upper[axis] + radius);
-  }
-  return box;
-}
-
 Box3 widened(Box3 box, double by) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     box.lower[axis] = rounded_down(box.lower[axis] - by);
     box.upper[axis] = rounded_up(box.upper[axis] + by);
   }
   return box;
+}
+
+Box3 box_of(const Triangle& base, double radius) {
+  Box3 box;
+  for (const Point3& p : base) box.add(p);
+  return widened(box, radius);
 }
 
 class ContactsSearch {

@@ -1,7 +1,6 @@
 #include <snug/query/moving_body.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include <snug/error.h>
 #include <snug/geometry/rounding.h>

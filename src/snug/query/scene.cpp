@@ -4,9 +4,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
-#include <cmath>
 #include <string>
-#include <thread>
 #include <tuple>
 #include <type_traits>
 #include <unordered_map>

@@ -2,10 +2,8 @@
 #include <snug/self.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 
 #include <snug/geometry/rounding.h>
@@ -194,41 +192,25 @@ class SelfSearch {
 
   // Leaves pairs no common corner of which has a star that is proved to be injective.
   void drop_proved(std::vector<NamePair>& live, unsigned level) {
-    std::vector<LevelVertex> vertices;
+    std::vector<LevelVertex> corners;
     for (const NamePair& pair : live) {
-      for (const LevelVertex& v : common_corners(complex_, pair.first, pair.second)) vertices.push_back(v);
+      for (const LevelVertex& v : common_corners(complex_, pair.first, pair.second)) corners.push_back(v);
     }
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    if (vertices.size() > budget_) return;
-    std::vector<std::uint8_t> proved(vertices.size(), 0);
-    parallel_for_with(
-        vertices.size(), options_.threads, [&] { return SelfPieces(surface_); },
-        [&](SelfPieces& pieces, std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            monitor_.checkpoint();
-            pieces.drop_many();
-            proved[i] = star_holds(pieces, vertices[i], level) ? 1 : 0;
-          }
-        });
-    spend(vertices.size());
-    answer_.stars += vertices.size();
+    MarkedVertices proved(std::move(corners));
+    if (proved.count() > budget_) return;
+    for_each_with_pieces(
+        surface_, proved.count(), options_.threads, monitor_,
+        [&](SelfPieces& pieces, std::size_t i) { proved.mark(i, star_holds(pieces, proved[i], level)); });
+    spend(proved.count());
+    answer_.stars += proved.count();
     std::erase_if(live, [&](const NamePair& pair) {
-      const auto common = common_corners(complex_, pair.first, pair.second);
-      return std::any_of(common.begin(), common.end(), [&](const LevelVertex& v) {
-        return proved[static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), v) -
-                                               vertices.begin())] != 0;
-      });
+      return proved.any(common_corners(complex_, pair.first, pair.second));
     });
   }
 
   [[nodiscard]] bool star_holds(SelfPieces& pieces, const LevelVertex& vertex, unsigned level) const {
     const LevelStar star = complex_.star(vertex, level);
-    if (!star.fan) return false;
-    for (const auto& sector : star.sectors) static_cast<void>(pieces.patch(sector.piece));
-    std::vector<StarSector> sectors;
-    for (const auto& sector : star.sectors) sectors.push_back({&pieces.patch(sector.piece), sector.centre});
-    return certainly_injective(sectors, star.closed);
+    return star.fan && certainly_injective(sectors_of(pieces, star), star.closed);
   }
 
   // The children's pairs: those with a common corner, and `far` the others.
@@ -252,14 +234,9 @@ class SelfSearch {
     if (pairs.empty()) return;
     const std::uint64_t each = std::min(max_tests, budget_ / pairs.size());
     std::vector<Found> found(pairs.size());
-    parallel_for_with(
-        pairs.size(), options_.threads, [&] { return SelfPieces(surface_); },
-        [&](SelfPieces& kept, std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            monitor_.checkpoint();
-            kept.drop_many();
-            found[i] = compare(kept, surface_.library(), pairs[i], std::max<std::uint64_t>(each, 1));
-          }
+    for_each_with_pieces(
+        surface_, pairs.size(), options_.threads, monitor_, [&](SelfPieces& kept, std::size_t i) {
+          found[i] = compare(kept, surface_.library(), pairs[i], std::max<std::uint64_t>(each, 1));
         });
     for (const Found& one : found) {
       answer_.pair_tests += one.tests;

@@ -323,17 +323,12 @@ class NearSearch {
   // Those more than the tolerance apart.
   void drop_apart(std::vector<NearPair>& live) {
     std::vector<std::uint8_t> keep(live.size(), 0);
-    parallel_for_with(
-        live.size(), options_.threads, [&] { return SelfPieces(surface_); },
-        [&](SelfPieces& pieces, std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            monitor_.checkpoint();
-            pieces.drop_many();
-            const Piece& a = pieces.piece(live[i].first);
-            const Gap gap = gap_of(a.offset, pieces.piece(live[i].second).offset);
-            keep[i] = gap.least <= options_.tolerance ? 1 : 0;
-          }
-        });
+    for_each_with_pieces(surface_, live.size(), options_.threads, monitor_,
+                         [&](SelfPieces& pieces, std::size_t i) {
+                           const Piece& a = pieces.piece(live[i].first);
+                           const Gap gap = gap_of(a.offset, pieces.piece(live[i].second).offset);
+                           keep[i] = gap.least <= options_.tolerance ? 1 : 0;
+                         });
     spend(live.size());
     answer_.pair_tests += live.size();
     keep_if(live, [&](std::size_t i) { return keep[i] != 0; });
@@ -341,44 +336,28 @@ class NearSearch {
 
   // Those in a star along which ways are not much longer than distances.
   void drop_stretched(std::vector<NearPair>& live, unsigned level) {
-    std::vector<LevelVertex> vertices;
+    std::vector<LevelVertex> corners;
     for (const NearPair& pair : live) {
       if (pair.far) continue;
-      for (const LevelVertex& v : common_corners(complex_, pair.first, pair.second)) vertices.push_back(v);
+      for (const LevelVertex& v : common_corners(complex_, pair.first, pair.second)) corners.push_back(v);
     }
-    std::sort(vertices.begin(), vertices.end());
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    if (vertices.size() > budget_) return;
-    std::vector<std::uint8_t> short_ways(vertices.size(), 0);
-    parallel_for_with(
-        vertices.size(), options_.threads, [&] { return SelfPieces(surface_); },
-        [&](SelfPieces& pieces, std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            monitor_.checkpoint();
-            pieces.drop_many();
-            const double stretch = stretch_of(pieces, vertices[i], level);
-            short_ways[i] = enlarged(stretch * options_.tolerance) <= options_.radius ? 1 : 0;
-          }
-        });
-    spend(vertices.size());
-    answer_.stars += vertices.size();
-    keep_if(live, [&](std::size_t i) {
-      if (live[i].far) return true;
-      const auto common = common_corners(complex_, live[i].first, live[i].second);
-      return std::none_of(common.begin(), common.end(), [&](const LevelVertex& v) {
-        return short_ways[static_cast<std::size_t>(std::lower_bound(vertices.begin(), vertices.end(), v) -
-                                                   vertices.begin())] != 0;
-      });
+    MarkedVertices short_ways(std::move(corners));
+    if (short_ways.count() > budget_) return;
+    for_each_with_pieces(surface_, short_ways.count(), options_.threads, monitor_,
+                         [&](SelfPieces& pieces, std::size_t i) {
+                           const double stretch = stretch_of(pieces, short_ways[i], level);
+                           short_ways.mark(i, enlarged(stretch * options_.tolerance) <= options_.radius);
+                         });
+    spend(short_ways.count());
+    answer_.stars += short_ways.count();
+    std::erase_if(live, [&](const NearPair& pair) {
+      return !pair.far && short_ways.any(common_corners(complex_, pair.first, pair.second));
     });
   }
 
   double stretch_of(SelfPieces& pieces, const LevelVertex& vertex, unsigned level) const {
     const LevelStar star = complex_.star(vertex, level);
-    if (!star.fan) return INFINITY;
-    for (const auto& sector : star.sectors) static_cast<void>(pieces.patch(sector.piece));
-    std::vector<StarSector> sectors;
-    for (const auto& sector : star.sectors) sectors.push_back({&pieces.patch(sector.piece), sector.centre});
-    return star_distortion(sectors, star.closed);
+    return star.fan ? star_distortion(sectors_of(pieces, star), star.closed) : INFINITY;
   }
 
   // Drops those joined by short ways along the surface; finds the others that are near each other.

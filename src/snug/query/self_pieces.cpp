@@ -6,7 +6,6 @@
 #include <snug/geometry/rounding.h>
 #include <snug/search/quadratic_bvh.h>
 #include <support/error.h>
-#include <support/parallel.h>
 
 namespace snug {
 namespace {
@@ -36,20 +35,21 @@ bool SelfPieces::drop_many() {
   return true;
 }
 
+std::vector<StarSector> sectors_of(SelfPieces& pieces, const LevelStar& star) {
+  for (const auto& sector : star.sectors) static_cast<void>(pieces.patch(sector.piece));
+  std::vector<StarSector> sectors;
+  for (const auto& sector : star.sectors) sectors.push_back({&pieces.patch(sector.piece), sector.centre});
+  return sectors;
+}
+
 std::vector<QuadraticTriangle> enclosures_of(const LimitSurface& surface, std::span<const PieceName> pieces,
                                              int threads, const WorkMonitor& monitor) {
   std::vector<QuadraticTriangle> sets(pieces.size());
-  parallel_for_with(
-      pieces.size(), threads, [&] { return SelfPieces(surface); },
-      [&](SelfPieces& kept, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          monitor.checkpoint();
-          kept.drop_many();
-          const OffsetTriangle& offset = kept.piece(pieces[i]).offset;
-          sets[i] = flat_quadratic(offset.base);
-          sets[i].error = enlarged(sets[i].error + offset.radius);
-        }
-      });
+  for_each_with_pieces(surface, pieces.size(), threads, monitor, [&](SelfPieces& kept, std::size_t i) {
+    const OffsetTriangle& offset = kept.piece(pieces[i]).offset;
+    sets[i] = flat_quadratic(offset.base);
+    sets[i].error = enlarged(sets[i].error + offset.radius);
+  });
   for (const QuadraticTriangle& set : sets) {
     if (!std::isfinite(set.error)) {
       throw InputError(InputProblem::unrepresentable,
@@ -72,6 +72,19 @@ std::vector<LevelVertex> common_corners(const LevelComplex& complex, const Piece
     if (std::find(y.begin(), y.end(), v) != y.end()) common.push_back(v);
   }
   return common;
+}
+
+MarkedVertices::MarkedVertices(std::vector<LevelVertex> vertices) : vertices_(std::move(vertices)) {
+  std::sort(vertices_.begin(), vertices_.end());
+  vertices_.erase(std::unique(vertices_.begin(), vertices_.end()), vertices_.end());
+  marks_.assign(vertices_.size(), 0);
+}
+
+bool MarkedVertices::any(const std::vector<LevelVertex>& of) const {
+  return std::any_of(of.begin(), of.end(), [this](const LevelVertex& v) {
+    return marks_[static_cast<std::size_t>(std::lower_bound(vertices_.begin(), vertices_.end(), v) -
+                                           vertices_.begin())] != 0;
+  });
 }
 
 }  // namespace snug

@@ -1,6 +1,5 @@
 #include <snug/scheme/creased.h>
 
-#include <algorithm>
 #include <array>
 
 namespace snug {

@@ -3,7 +3,6 @@
 #include <array>
 #include <span>
 #include <string>
-#include <utility>
 
 #include <snug/geometry/rounding.h>
 #include <snug/mesh/validate.h>

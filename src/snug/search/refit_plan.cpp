@@ -1,6 +1,5 @@
 #include <snug/search/refit_plan.h>
 
-#include <algorithm>
 #include <utility>
 
 namespace snug {

@@ -1,7 +1,6 @@
 #include <snug/search/self_contact.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include <snug/geometry/nearest_to_origin.h>
 #include <snug/geometry/rounding.h>

@@ -1,7 +1,6 @@
 #include <snug/shape/patch_lengths.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include <snug/geometry/rounding.h>
 #include <snug/scheme/bezier.h>

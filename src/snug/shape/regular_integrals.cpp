@@ -7,7 +7,6 @@
 #include <snug/geometry/rounding.h>
 #include <snug/scheme/bezier.h>
 #include <snug/scheme/rules.h>
-#include <support/contract.h>
 
 namespace snug {
 namespace {
@@ -17,18 +16,6 @@ constexpr std::size_t point_roundings = 40, product_roundings = 128, mean_roundi
 
 // Bound of all underflow in the computations on a piece; sizes are between 1e-30 and 4.
 constexpr double tiny = 0x1p-900;
-
-// Bezier points of one polynomial part, by axis and relative to the piece's own origin.
-template <class P>
-using BezierPoints = std::array<std::array<double, P::count>, 3>;
-
-// Bezier points of one polynomial part, by axis and relative to the piece's own origin.
-template <class P>
-using BezierPoints = std::array<std::array<double, P::count>, 3>;
-
-// Bezier points of one polynomial part, by axis and relative to the piece's own origin.
-template <class P>
-using BezierPoints = std::array<std::array<double, P::count>, 3>;
 
 // Bezier points of one polynomial part, by axis and relative to the piece's own origin.
 template <class P>

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cstddef>
 
-#include <snug/geometry/rounding.h>
 #include <support/parallel.h>
 
 namespace snug {
