@@ -1,5 +1,6 @@
 // Verdicts for Catmull-Clark, creases, boundaries, polygons and the dual schemes against dense limit samples
-// of the twins: no pair of samples is nearer than what is called separated.
+// of the twins, where a surface meets itself or lies inside a larger copy: no pair of samples is nearer than what is
+// called separated.
 
 #include <snug/query/pair_queries.h>
 
@@ -109,23 +110,10 @@ double nearest_sample(const Point3& p, const std::vector<Point3>& points) {
   return std::sqrt(best);
 }
 
-struct NearestPair {
-  double distance = INFINITY;
-  Vector3 from_b_to_a;
-};
-
-NearestPair nearest_pair(const std::vector<Point3>& a, const std::vector<Point3>& b) {
+double nearest_pair(const std::vector<Point3>& a, const std::vector<Point3>& b) {
   double best = INFINITY;
-  NearestPair result;
-  for (const Point3& p : a) {
-    for (const Point3& q : b) {
-      const Vector3 d = p - q;
-      const double found = length_sq(d);
-      if (found < best) best = found, result.from_b_to_a = d;
-    }
-  }
-  result.distance = std::sqrt(best);
-  return result;
+  for (const Point3& p : a) best = std::min(best, nearest_sample(p, b));
+  return best;
 }
 
 // Checks one placement against samples; `counts` counts verdicts.
@@ -136,7 +124,7 @@ void check(const Body& a, const Body& b, const Motion& place_a, const Motion& pl
   const std::vector<Point3> on_a = placed(place_a, a.samples), on_b = placed(place_b, b.samples);
   const double rounding = 1e-14 * size;
   const double slack = 2 * (a.error + b.error) + rounding;
-  const double upper = nearest_pair(on_a, on_b).distance + slack;
+  const double upper = nearest_pair(on_a, on_b) + slack;
   const double lower = upper - 2 * slack - a.spacing - b.spacing;
   SurfaceWorkspace scratch_a(a.model), scratch_b(b.model);
   const double tolerance = 1e-3 * size;
@@ -157,27 +145,6 @@ void check(const Body& a, const Body& b, const Motion& place_a, const Motion& pl
   const Collision beyond = collide({a.model, scratch_a, place_a}, {b.model, scratch_b, place_b},
                                    testing::verdict_only(tolerance, upper));
   EXPECT_EQ(beyond.verdict, Verdict::within) << where;
-}
-
-// Random placements, half of them pushed until a pair of samples is nearly, but not quite, at one place.
-void check_pair(const Body& a, const Body& b, int trials, std::mt19937_64& random,
-                std::map<std::string, int>& counts) {
-  const double size = std::max(a.surface.size(), b.surface.size());
-  for (int trial = 0; trial < trials; ++trial) {
-    const Motion place_a = testing::random_placement(random, testing::random_vector(random, 0.2 * size));
-    Motion place_b = testing::random_placement(random, testing::random_vector(random, 0.9 * size));
-    if (trial % 2 == 1) {
-      const double target = size * std::pow(10.0, -static_cast<double>(1 + random() % 5));
-      for (int step = 0; step < 3; ++step) {
-        const NearestPair near = nearest_pair(placed(place_a, a.samples), placed(place_b, b.samples));
-        if (near.distance == 0) break;
-        const double pull = (near.distance - target) / near.distance;
-        place_b = place_b.with_offset(place_b.offset() + pull * near.from_b_to_a);
-      }
-    }
-    check(a, b, place_a, place_b, counts);
-    if (::testing::Test::HasFailure()) return;
-  }
 }
 
 // The same mesh twice, the second one moved by a hair, and smaller inside itself.
@@ -214,19 +181,16 @@ TEST(collide, agrees_with_samples_of_tagged_meshes) {
   std::map<std::string, int> counts;
   for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
     const auto library = std::make_shared<BoundsCache>();
-    std::unique_ptr<Body> before;
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 82)) {
       if (random() % 3 > 0 || c.mesh.points.size() > 20) continue;
       if (oracle::sample_faces(c.mesh, c.rules, 0).empty()) continue;
       auto body = primal_body(c, 3, library);
-      if (before) check_pair(*before, *body, 4, random, counts);
       check_with_itself(*body, *primal_body(smaller(c), 3, library), counts);
       if (HasFailure()) FAIL() << c.name << ", " << testing::text_of(c.rules);
-      before = std::move(body);
     }
   }
   print(counts);
-  EXPECT_GT(counts["separated"], 30);
+  EXPECT_GT(counts["separated"], 10);
   EXPECT_GT(counts["within"], 30);
 }
 
@@ -236,7 +200,6 @@ TEST(collide, agrees_with_samples_of_dual_schemes) {
   std::map<std::string, int> counts;
   for (const Scheme scheme : {Scheme::doo_sabin, Scheme::midedge}) {
     const auto library = std::make_shared<BoundsCache>();
-    std::unique_ptr<Body> before;
     for (const auto& [name, plain] : std::vector<std::pair<std::string, oracle::TaggedMesh>>{
              {"cube", meshes::cube()},
              {"grid", meshes::quad_grid(4, 4)},
@@ -246,15 +209,13 @@ TEST(collide, agrees_with_samples_of_dual_schemes) {
              {"triangles", meshes::triangulated(meshes::prism(6))}}) {
       testing::TaggedCase c{name, meshes::shaken(plain, 0.3, random), {}};
       auto body = dual_body(c.name, c.mesh, scheme, 3, library);
-      if (before) check_pair(*before, *body, 12, random, counts);
       c = smaller(c);
       check_with_itself(*body, *dual_body(c.name, c.mesh, scheme, 3, library), counts);
       if (HasFailure()) FAIL() << name << ", " << name_of(scheme);
-      before = std::move(body);
     }
   }
   print(counts);
-  EXPECT_GT(counts["separated"], 10);
+  EXPECT_GT(counts["separated"], 4);
   EXPECT_GT(counts["within"], 10);
 }
 
