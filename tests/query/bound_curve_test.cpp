@@ -87,7 +87,7 @@ TEST(bound_curve, stops_where_rounding_stands_in_the_way) {
   const auto stopped = [&] {
     bound(curves, how, [&](const CurveEnclosure& piece) {
       deepest = std::max<std::uint64_t>(deepest, piece.path.level());
-      if (++visited > 4'000) throw Interrupted();
+      if (++visited > 400) throw Interrupted();
     });
   };
   EXPECT_THROW(stopped(), Interrupted);

@@ -213,7 +213,7 @@ class Checks {
 };
 
 TEST(contacts, hold_for_every_scheme_tag_and_rule_with_each_other) {
-  constexpr std::uint64_t of_each_row = 2;
+  constexpr std::uint64_t of_each_row = 1;
   const std::uint64_t count = testing::number_of("SNUG_PLACEMENTS", testing::row_count() * of_each_row),
                       first = testing::number_of("SNUG_FIRST", 0);
   testing::GroundTrials trials(of_each_row);

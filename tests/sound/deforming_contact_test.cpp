@@ -22,7 +22,7 @@ using testing::random_placement;
 using testing::random_vector;
 
 TEST(deforming_contact, is_not_later_than_points_that_meet_of_every_scheme_and_deformation) {
-  testing::Tally tally = testing::points_that_meet(41, testing::trials(250), 400'000);
+  testing::Tally tally = testing::points_that_meet(41, testing::trials(150), 400'000);
   tally.print();
   EXPECT_GT(tally.sharp, static_cast<int>(tally.looks.size() / 2));
   EXPECT_LE(tally.median(), 20);

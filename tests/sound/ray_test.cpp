@@ -537,9 +537,11 @@ class CurvedTrials {
   }
 
   // Lines through two spots of every two sorts.
-  void run_pairs() {
+  // Every third pair of spots: three surfaces in a row have all.
+  void run_pairs(std::size_t turn) {
     for (std::size_t a = 0; a < spots; ++a)
       for (std::size_t b = 0; b < spots && !::testing::Test::HasFailure(); ++b) {
+        if ((a + b + turn) % 3 != 0) continue;
         const Point3 p = spot(static_cast<Spot>(a)), q = spot(static_cast<Spot>(b));
         if (p == q) continue;
         Ray ray{p, q - p, -1e3, 1e3};
@@ -885,12 +887,12 @@ TEST(rays, aimed_at_closed_surfaces_miss_none) {
 TEST(rays, cross_open_surfaces_where_the_twins_do) {
   const std::uint64_t rounds = 1 + number_of("SNUG_PLACEMENTS", 0) / 20'000 / 2;
   CurvedCounts counts;
-  std::size_t refused = 0;
+  std::size_t refused = 0, turn = 0, number = 0;
   const auto try_one = [&](CurvedCase c, std::uint64_t seed) {
     try {
       CurvedTrials trials(std::move(c), seed, counts);
-      trials.run_pairs();
-      trials.run(40);
+      trials.run_pairs(turn++);
+      trials.run(20);
     } catch (const InputError&) {
       ++refused;  // no face has a surface
     }
@@ -899,6 +901,7 @@ TEST(rays, cross_open_surfaces_where_the_twins_do) {
     const std::uint64_t seed = 500 + number_of("SNUG_FIRST", 0) + round;
     for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
       for (const testing::TaggedCase& c : testing::tagged_cases(scheme, seed)) {
+        if (number++ % 5 > 2) continue;  // plain and tagged, with each boundary rule, by turns
         try_one({c.name + ", " + testing::text_of(c.rules), c.mesh, c.rules, testing::options_of(c.rules),
                  testing::twin_levels(c.mesh, 2000)},
                 seed);
@@ -924,7 +927,7 @@ TEST(rays, cross_open_surfaces_where_the_twins_do) {
 TEST(rays, hold_in_every_disguise) {
   CurvedCounts counts;
   std::size_t refused = 0, number = number_of("SNUG_FIRST", 0);
-  const std::uint64_t rays = 6 * (1 + number_of("SNUG_PLACEMENTS", 0) / 20'000);
+  const std::uint64_t rays = 4 * (1 + number_of("SNUG_PLACEMENTS", 0) / 20'000);
   for (const auto scheme : {oracle::PrimalScheme::catmull_clark, oracle::PrimalScheme::loop}) {
     for (const testing::TaggedCase& c : testing::tagged_cases(scheme, 800 + number)) {
       if (++number % 6 != 0) continue;

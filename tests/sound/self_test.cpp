@@ -121,6 +121,7 @@ TEST(self, verdicts_are_those_of_refined_meshes) {
         for (int trial = 0; trial < 2 * trials; ++trial) {
           oracle::TaggedMesh mesh = shaken(shape, amount, random);
           const bool tagged = trial % 2 == 1 && (scheme == Scheme::loop || scheme == Scheme::catmark);
+          if (trial % 2 == 1 && !tagged) continue;
           if (tagged) add_tags(mesh, random);
           const SelfContact found =
               self_contact(Surface(testing::control_mesh(mesh), {.scheme = scheme}), {.budget = 20'000});
