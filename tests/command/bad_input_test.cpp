@@ -41,7 +41,7 @@ TEST(bad_input, ends_with_the_status_of_the_index_for_every_command) {
   ASSERT_GT(files.size(), 100u);
   // Faces that name a vertex twice: refinement needs no patches.
   const std::set<std::string> refined{"repeated_index.obj", "repeated_index.off", "repeated_index.ply"};
-  std::size_t number = 0;  // under sanitizers every file has two of the commands, by turns
+  std::size_t number = 0;
   for (const auto& [name, listed] : files) {
     const std::string path = testing::corpus_dir() + "/" + name;
     const Outcome info = run_snug({"info", path, "--json", "--quiet"});
@@ -61,7 +61,9 @@ TEST(bad_input, ends_with_the_status_of_the_index_for_every_command) {
         {"subdivide", path, "--quiet", "-o", folder.file("fine.obj")},
         {"collide", path, path, "--quiet", "--tolerance", "1%", "-o", folder.file("collide.json")},
         {"render", path, "--quiet", "--size", "40", "-o", folder.file("picture.png")}};
-    for (std::size_t i = 0; i < testing::fewer(commands.size()); ++i) {
+    // Whatever reads refuses: two of the commands by turns.
+    const std::size_t some = testing::fewer(expected == 0 ? commands.size() : 2);
+    for (std::size_t i = 0; i < some; ++i) {
       const std::vector<std::string>& command = commands[(number + i) % commands.size()];
       const Outcome outcome = run_snug(command);
       const int status = command[0] == "subdivide" && refined.contains(name) ? 0 : expected;
