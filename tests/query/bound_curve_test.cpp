@@ -80,7 +80,8 @@ TEST(bound_curve, that_runs_out_of_budget_still_covers) {
 
 TEST(bound_curve, stops_where_rounding_stands_in_the_way) {
   TwinPolyline twin = testing::assorted_polylines(3)[5];
-  for (auto& p : twin.points) p[0] += 1000;  // sooner there: an edge is bounded as a whole before it is visited
+  for (auto& p : twin.points)
+    p[0] += 1000;  // sooner there: an edge is bounded as a whole before it is visited
   const CurveSet curves = testing::curve_set(twin, 3);
   BoundOptions how;
   how.tolerance = 1e-300;
