@@ -41,7 +41,7 @@ using testing::TriangleSet;
 constexpr std::array precisions{1e-2, 1e-3, 1e-4, 1e-5};
 
 // Enough for nearly all, and an end of the others.
-constexpr std::uint64_t budget = 200'000;
+constexpr std::uint64_t budget = 50'000;
 constexpr std::uint64_t usual_trials = 800;
 
 /// Scales to the ends of the doubles, and far away.

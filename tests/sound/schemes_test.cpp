@@ -232,6 +232,7 @@ void check_dual(const std::string& name, const oracle::TaggedMesh& mesh, Scheme 
         bool found[2]{};
         for (std::size_t p = begin; p < end; ++p) {
           for (const auto& [path, piece] : pieces[i][p]) {
+            if (found[0] && found[1]) break;
             const char* what = "";
             const bool inside = contains(piece, s, what);
             found[0] = found[0] || inside || std::string(what) == "interval triangle";
